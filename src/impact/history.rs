@@ -1,0 +1,66 @@
+//! The course of an impact over time, the same type for reduced models and the reference.
+
+/// Motion of one body along z.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Motion {
+    /// Displacement in m since t = 0, signed along z.
+    pub displacement: Vec<f64>,
+    /// Velocity in m/s, signed along z.
+    pub velocity: Vec<f64>,
+}
+
+/// Displacement, velocity and contact force over one time axis. All vectors have `time.len()` entries.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct History {
+    /// Time in s since the first touch, strictly increasing.
+    pub time: Vec<f64>,
+    /// Outer body (mass average).
+    pub outer: Motion,
+    /// Centre of the plate (mean of both faces).
+    pub plate: Motion,
+    /// Inner body (mass average).
+    pub inner: Motion,
+    /// Force between outer body and plate in N, positive in compression.
+    pub outer_force: Vec<f64>,
+    /// Force between plate and inner body in N, positive in compression.
+    pub inner_force: Vec<f64>,
+}
+
+/// Name, unit and symbol of a curve of the [`History`].
+pub const CURVES: [(&str, &str); 8] = [
+    ("outer_displacement", "m"),
+    ("plate_displacement", "m"),
+    ("inner_displacement", "m"),
+    ("outer_velocity", "m/s"),
+    ("plate_velocity", "m/s"),
+    ("inner_velocity", "m/s"),
+    ("outer_force", "N"),
+    ("inner_force", "N"),
+];
+
+impl History {
+    /// The curve called `name` in [`CURVES`].
+    pub fn curve(&self, name: &str) -> Option<&[f64]> {
+        Some(match name {
+            "outer_displacement" => &self.outer.displacement,
+            "plate_displacement" => &self.plate.displacement,
+            "inner_displacement" => &self.inner.displacement,
+            "outer_velocity" => &self.outer.velocity,
+            "plate_velocity" => &self.plate.velocity,
+            "inner_velocity" => &self.inner.velocity,
+            "outer_force" => &self.outer_force,
+            "inner_force" => &self.inner_force,
+            _ => return None,
+        })
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+}

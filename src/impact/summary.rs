@@ -1,0 +1,118 @@
+//! The result of a run in a few numbers, the same type for reduced models and the reference.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Version of every JSON document the program writes.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// Which side of the comparison a result comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Source {
+    /// Reduced model.
+    Reduced,
+    /// Finite-element reference.
+    Reference,
+}
+
+/// Results of an impact through a plate (scene kind `plate-impact`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlateQuantities {
+    /// Eq. (1): kinetic energy of the inner body after the last contact over that of the outer before the first.
+    pub efficiency: f64,
+    /// Velocity of the outer body after the last contact, m/s, signed along z.
+    pub outer_velocity_final: f64,
+    /// Velocity of the inner body after the last contact, m/s, signed along z.
+    pub inner_velocity_final: f64,
+    /// Largest force between outer body and plate, N.
+    pub outer_force_peak: f64,
+    /// Largest force between plate and inner body, N.
+    pub inner_force_peak: f64,
+    /// Time of the last release of the outer body, s.
+    pub outer_contact_end: f64,
+    /// Time of the last release of the inner body, s.
+    pub inner_contact_end: f64,
+    /// Number of separate contacts of the outer body.
+    pub outer_contacts: u32,
+    /// Number of separate contacts of the inner body.
+    pub inner_contacts: u32,
+    /// First eigenfrequency of the plate that is not a rigid motion, Hz.
+    pub first_frequency: f64,
+}
+
+/// The quantities of [`PlateQuantities`] that are compared, with their units.
+pub const PLATE_QUANTITIES: [(&str, &str); 10] = [
+    ("efficiency", "1"),
+    ("outer_velocity_final", "m/s"),
+    ("inner_velocity_final", "m/s"),
+    ("outer_force_peak", "N"),
+    ("inner_force_peak", "N"),
+    ("outer_contact_end", "s"),
+    ("inner_contact_end", "s"),
+    ("outer_contacts", "1"),
+    ("inner_contacts", "1"),
+    ("first_frequency", "Hz"),
+];
+
+impl PlateQuantities {
+    /// The value of the quantity called `name` in [`PLATE_QUANTITIES`].
+    pub fn get(&self, name: &str) -> Option<f64> {
+        Some(match name {
+            "efficiency" => self.efficiency,
+            "outer_velocity_final" => self.outer_velocity_final,
+            "inner_velocity_final" => self.inner_velocity_final,
+            "outer_force_peak" => self.outer_force_peak,
+            "inner_force_peak" => self.inner_force_peak,
+            "outer_contact_end" => self.outer_contact_end,
+            "inner_contact_end" => self.inner_contact_end,
+            "outer_contacts" => f64::from(self.outer_contacts),
+            "inner_contacts" => f64::from(self.inner_contacts),
+            "first_frequency" => self.first_frequency,
+            _ => return None,
+        })
+    }
+}
+
+/// Summary of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// [`SCHEMA_VERSION`].
+    pub schema_version: u32,
+    /// Name of the scene.
+    pub scene: String,
+    /// Hash of the scene's physical content.
+    pub scene_hash: String,
+    /// Reduced model or reference.
+    pub source: Source,
+    /// Name of the reduced model; `None` for the reference.
+    pub model: Option<String>,
+    /// Number of elastic modes of the reduced model; `None` for the reference.
+    pub modes: Option<usize>,
+    /// The physical results.
+    #[serde(flatten)]
+    pub quantities: PlateQuantities,
+    /// |energy at the end + losses - energy at the start| over the energy at the start.
+    pub energy_residual: f64,
+    /// Momentum that no impulse accounts for, over the momentum at the start.
+    pub momentum_residual: f64,
+    /// Time steps taken.
+    pub steps: u64,
+    /// Wall time of the time integration, s.
+    pub solve_seconds: f64,
+    /// Reference only: half width of the 95 % band of each quantity, absolute, in its unit.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub uncertainty: BTreeMap<String, f64>,
+    /// Reference only: the mesh (nodes, dofs, elements per contact radius, ...), kept as written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<serde_json::Value>,
+    /// Reference only: solver settings and versions, kept as written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solver: Option<serde_json::Value>,
+    /// Reference only: number of samples in the history.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<usize>,
+    /// Reference only: distance of the samples in s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sample_interval: Option<f64>,
+}
