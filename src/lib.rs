@@ -3,7 +3,9 @@
 //! Data flows one way: [`scene`] -> `body` -> [`impact`] -> `comparison` -> `report`.
 #![warn(missing_docs)]
 
+pub mod analytical;
 pub mod body;
+pub mod contact;
 pub mod error;
 pub mod impact;
 pub mod scene;

@@ -1,6 +1,9 @@
 //! An elastic body as the impact sees it: modes, their participation at the contact points,
 //! residual flexibility.
 
+pub mod kirchhoff;
+pub mod quadrature;
+
 /// Linear elastic body reduced to its modes, seen from its contact points.
 ///
 /// With mass-normalised coordinates q the body obeys

@@ -1,8 +1,16 @@
 //! The impact: from bodies and contacts to a [`History`] and a [`Summary`].
 
+pub mod collocation;
+mod contact_ledger;
+pub mod duhamel;
+mod free_flight;
 mod history;
+pub mod integrator;
+mod recorder;
 mod summary;
+pub mod system;
 
+pub use contact_ledger::ContactLedger;
 pub use history::{CURVES, History, Motion};
 pub use summary::{PLATE_QUANTITIES, PlateQuantities, SCHEMA_VERSION, Source, Summary};
 

@@ -83,9 +83,7 @@ impl Shape {
     /// Mass in kg of the body made of `material`.
     pub fn mass(&self, material: &Material) -> f64 {
         match *self {
-            Shape::Sphere { radius } => {
-                4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * material.density
-            }
+            Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * material.density,
             Shape::Compact { mass, .. } => mass,
         }
     }

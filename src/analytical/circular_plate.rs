@@ -1,0 +1,115 @@
+//! Axisymmetric vibration of a thin circular plate, closed form
+//! (A. Leissa, Vibration of Plates, NASA SP-160, 1969, chapter 2).
+//!
+//! w = A J0(k r/a) + B I0(k r/a), omega = k^2/a^2 sqrt(D / (rho h)).
+
+use crate::scene::Edge;
+use std::f64::consts::PI;
+
+/// Bending stiffness D = E h^3 / (12 (1 - nu^2)) in N m.
+pub fn rigidity(youngs_modulus: f64, poisson_ratio: f64, thickness: f64) -> f64 {
+    youngs_modulus * thickness.powi(3) / (12.0 * (1.0 - poisson_ratio.powi(2)))
+}
+
+/// The first `count` frequency parameters k (without the rigid motion of a free plate).
+///
+/// `poisson_ratio` matters for simply supported and free edges only.
+pub fn frequency_parameters(edge: Edge, poisson_ratio: f64, count: usize) -> Vec<f64> {
+    let characteristic = |k: f64| {
+        let (j0, j1, r) = (libm::j0(k), libm::j1(k), bessel_i_ratio(k));
+        let nu1 = 1.0 - poisson_ratio;
+        match edge {
+            Edge::Clamped => j0 * r + j1,
+            Edge::SimplySupported => nu1 * (j1 + j0 * r) - 2.0 * k * j0,
+            Edge::Free => k * (j0 * r + j1) - 2.0 * nu1 * j1 * r,
+        }
+    };
+    // successive roots are about pi apart: a tenth of that brackets each one
+    let step = PI / 10.0;
+    let mut roots = Vec::with_capacity(count);
+    let mut low = 1.0;
+    while roots.len() < count {
+        let high = low + step;
+        if characteristic(low) * characteristic(high) < 0.0 {
+            roots.push(bisect(characteristic, low, high));
+        }
+        low = high;
+    }
+    roots
+}
+
+/// Eigenfrequencies in Hz of a plate of `radius` m, `rigidity` N m, `mass_per_area` kg/m^2.
+pub fn frequencies(
+    edge: Edge,
+    poisson_ratio: f64,
+    radius: f64,
+    rigidity: f64,
+    mass_per_area: f64,
+    count: usize,
+) -> Vec<f64> {
+    frequency_parameters(edge, poisson_ratio, count)
+        .into_iter()
+        .map(|k| (k / radius).powi(2) * (rigidity / mass_per_area).sqrt() / (2.0 * PI))
+        .collect()
+}
+
+/// Deflection of the centre in the mass-normalised mode with parameter `k`, for unit radius and mass per area:
+/// w(0) with the integral of w^2 2 pi r dr over 0..1 equal to one.
+pub fn centre_deflection(edge: Edge, k: f64) -> f64 {
+    let (j0, j1, ratio) = (libm::j0(k), libm::j1(k), bessel_i_ratio(k));
+    // w = J0(k r) + g I0(k r)/I0(k)
+    let g = if edge == Edge::Free { -j1 / ratio } else { -j0 };
+    let norm = 0.5 * (j0 * j0 + j1 * j1) + g / k * (j1 + j0 * ratio) + 0.5 * g * g * (1.0 - ratio * ratio);
+    (1.0 + g / bessel_i0(k)) / (2.0 * PI * norm).sqrt()
+}
+
+/// I0(x) by its power series.
+fn bessel_i0(x: f64) -> f64 {
+    let (mut term, mut sum) = (1.0, 1.0);
+    for n in 1.. {
+        term *= (0.5 * x / f64::from(n)).powi(2);
+        sum += term;
+        if term < 1e-17 * sum {
+            break;
+        }
+    }
+    sum
+}
+
+/// I1(x) / I0(x) by its continued fraction (Gauss), x > 0.
+fn bessel_i_ratio(x: f64) -> f64 {
+    let terms = 30 + (2.0 * x) as usize;
+    (1..=terms).rev().fold(0.0, |tail, n| 1.0 / (2.0 * n as f64 / x + tail))
+}
+
+/// Root of `f` between `low` and `high`, to the last bit.
+fn bisect(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let sign = f(low).signum();
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if f(middle).signum() == sign { low = middle } else { high = middle }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn squares_of_the_frequency_parameters_of_leissa_1969() {
+        let table: [(Edge, &[f64]); 3] = [
+            (Edge::Clamped, &[10.2158, 39.7711, 89.1041, 158.1842]),
+            (Edge::SimplySupported, &[4.9351, 29.7200, 74.1561]),
+            (Edge::Free, &[9.0031, 38.4432, 87.7502]),
+        ];
+        for (edge, squares) in table {
+            for (k, square) in frequency_parameters(edge, 0.3, squares.len()).iter().zip(squares) {
+                assert_relative_eq!(k * k, square, max_relative = 1e-5);
+            }
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Thin circular plate (Kirchhoff): axisymmetric finite elements and their modes.
+//!
+//! Bending energy per D: 1/2 integral of ((w'' + w'/r)^2 - 2 (1 - nu) w'' w'/r) 2 pi r dr
+//! (Timoshenko & Woinowsky-Krieger, Theory of Plates and Shells, 1959, section 59).
+//! Elements are C1: Hermite cubics for deflection and slope at the nodes, and inside the element
+//! twice integrated Legendre polynomials, which vanish with their slope at both ends.
+
+use super::ModalBody;
+use crate::analytical::circular_plate::rigidity;
+use crate::error::{Error, Result};
+use crate::scene::{Edge, Plate};
+use faer::{Mat, Side};
+use std::f64::consts::PI;
+
+/// Degree of the polynomials in an element.
+const DEGREE: usize = 9;
+/// Functions of an element: deflection and slope at both ends, then the inner ones.
+const SHAPES: usize = DEGREE + 1;
+/// Gauss points of an element; the integrands are smooth but, near the axis, rational in r.
+const POINTS: usize = DEGREE + 4;
+
+/// Modes of the plate of unit radius, rigidity and mass per area; they depend on the edge and on
+/// Poisson's ratio only, so that a parameter study solves one eigenproblem for all its plates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnitPlate {
+    edge: Edge,
+    poisson_ratio: f64,
+    /// omega of each mode, ascending; first 0 for a free plate.
+    omega: Vec<f64>,
+    /// Deflection of the centre in each mass-normalised mode.
+    centre: Vec<f64>,
+}
+
+impl UnitPlate {
+    /// The lowest `modes` elastic modes, and the rigid one if the edge is free.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if the eigenproblem does not converge.
+    pub fn new(edge: Edge, poisson_ratio: f64, modes: usize) -> Result<Self> {
+        // 4/3 half waves of the highest mode to an element of degree 9: shapes to 1e-8, frequencies beyond
+        let elements = modes * 3 / 4 + 3;
+        let (stiffness, mass) = assemble(edge, poisson_ratio, elements);
+        // a free plate's stiffness is singular: shift by a part of its first elastic eigenvalue
+        let shift = if edge == Edge::Free { 10.0 } else { 0.0 };
+        let failed = |what: &str| Error::Internal(format!("plate modes: {what} failed"));
+        let shifted = &stiffness + faer::Scale(shift) * &mass;
+        let factor = shifted.llt(Side::Lower).map_err(|_| failed("Cholesky factorisation"))?;
+        let lower = factor.L();
+        // mu = 1/(omega^2 + shift) are the eigenvalues of L^-1 M L^-T: the lowest modes come out sharpest
+        let mut half = mass.clone();
+        faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, half.as_mut(), faer::Par::Seq);
+        let mut both = half.transpose().to_owned();
+        faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, both.as_mut(), faer::Par::Seq);
+        let eigen = both.self_adjoint_eigen(Side::Lower).map_err(|_| failed("eigenvalue iteration"))?;
+        let (values, vectors) = (eigen.S().column_vector(), eigen.U());
+        let size = both.nrows();
+        let count = modes + usize::from(edge == Edge::Free);
+        let mut omega = Vec::with_capacity(count);
+        let mut centre = Vec::with_capacity(count);
+        for mode in 0..count {
+            let column = size - 1 - mode;
+            let mu = values[column];
+            let square = 1.0 / mu - shift;
+            omega.push(if edge == Edge::Free && mode == 0 { 0.0 } else { square.max(0.0).sqrt() });
+            // x = L^-T y has x^T M x = mu; the deflection of the axis is the first unknown
+            let mut shape = Mat::from_fn(size, 1, |i, _| vectors[(i, column)]);
+            faer::linalg::triangular_solve::solve_upper_triangular_in_place(
+                lower.transpose(),
+                shape.as_mut(),
+                faer::Par::Seq,
+            );
+            centre.push((shape[(0, 0)] / mu.sqrt()).abs());
+        }
+        Ok(Self { edge, poisson_ratio, omega, centre })
+    }
+
+    /// Eigenfrequencies of the unit plate, k^2 of the closed form; first 0 for a free plate.
+    pub fn omega(&self) -> &[f64] {
+        &self.omega
+    }
+
+    /// Deflection of the centre in each mass-normalised mode.
+    pub fn centre(&self) -> &[f64] {
+        &self.centre
+    }
+
+    /// The modes in the terms of `plate`, which must have this edge and Poisson's ratio.
+    pub fn scale(&self, plate: &Plate) -> ModalBody {
+        debug_assert!(plate.edge == self.edge && plate.material.poisson_ratio == self.poisson_ratio);
+        let material = &plate.material;
+        let mass_per_area = material.density * plate.thickness;
+        let bending = rigidity(material.youngs_modulus, material.poisson_ratio, plate.thickness);
+        let frequency = (bending / mass_per_area).sqrt() / plate.radius.powi(2);
+        let amplitude = 1.0 / (plate.radius * mass_per_area.sqrt());
+        ModalBody {
+            omega: self.omega.iter().map(|w| w * frequency).collect(),
+            damping_ratio: vec![plate.damping_ratio; self.omega.len()],
+            participation: self.centre.iter().map(|c| [c * amplitude; 2]).collect(),
+            residual: [[0.0; 2]; 2],
+        }
+    }
+}
+
+/// The lowest `modes` elastic modes of `plate` (and the rigid one of a free plate).
+///
+/// # Errors
+/// As [`UnitPlate::new`].
+pub fn modes(plate: &Plate, modes: usize) -> Result<ModalBody> {
+    Ok(UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.scale(plate))
+}
+
+/// Stiffness and mass of the unit plate on `elements` equal elements, constrained by symmetry at
+/// the axis and by the edge. The first unknown is the deflection of the axis.
+fn assemble(edge: Edge, poisson_ratio: f64, elements: usize) -> (Mat<f64>, Mat<f64>) {
+    // unknowns of a node stand before those of the element outside it: w, w', inner ...
+    let per_element = SHAPES - 2;
+    let total = elements * per_element + 2;
+    let dof = |element: usize, shape: usize| match shape {
+        0 | 1 => element * per_element + shape,
+        2 | 3 => (element + 1) * per_element + shape - 2,
+        _ => element * per_element + shape - 2,
+    };
+    let mut stiffness = Mat::<f64>::zeros(total, total);
+    let mut mass = Mat::<f64>::zeros(total, total);
+    let length = 1.0 / elements as f64;
+    let (points, weights) = super::quadrature::gauss_legendre(POINTS);
+    for element in 0..elements {
+        for (&xi, &weight) in points.iter().zip(&weights) {
+            let r = (element as f64 + 0.5 * (xi + 1.0)) * length;
+            let area = 2.0 * PI * r * weight * 0.5 * length;
+            let shapes = shape_functions(xi, length);
+            for (i, a) in shapes.iter().enumerate() {
+                for (j, b) in shapes.iter().enumerate() {
+                    let (slope_a, slope_b) = (a[1] / r, b[1] / r);
+                    let bending = (a[2] + slope_a) * (b[2] + slope_b)
+                        - (1.0 - poisson_ratio) * (a[2] * slope_b + slope_a * b[2]);
+                    stiffness[(dof(element, i), dof(element, j))] += area * bending;
+                    mass[(dof(element, i), dof(element, j))] += area * a[0] * b[0];
+                }
+            }
+        }
+    }
+    let rim = elements * per_element;
+    let fixed: &[usize] = match edge {
+        Edge::Clamped => &[1, rim, rim + 1],
+        Edge::SimplySupported => &[1, rim],
+        Edge::Free => &[1],
+    };
+    let free: Vec<usize> = (0..total).filter(|i| !fixed.contains(i)).collect();
+    let reduce = |full: &Mat<f64>| Mat::from_fn(free.len(), free.len(), |i, j| full[(free[i], free[j])]);
+    (reduce(&stiffness), reduce(&mass))
+}
+
+/// Value, first and second derivative in r of the element's functions at xi in -1..1.
+fn shape_functions(xi: f64, length: f64) -> [[f64; 3]; SHAPES] {
+    let scale = 2.0 / length;
+    let mut shapes = [[0.0; 3]; SHAPES];
+    let (m, p) = (1.0 - xi, 1.0 + xi);
+    let half = 0.5 * length;
+    // value, d/dxi, d2/dxi2
+    shapes[0] = [0.25 * m * m * (2.0 + xi), -0.75 * m * p, 1.5 * xi];
+    shapes[1] =
+        [0.25 * half * m * m * p, 0.25 * half * (-m) * (1.0 + 3.0 * xi), 0.25 * half * (6.0 * xi - 2.0)];
+    shapes[2] = [0.25 * p * p * (2.0 - xi), 0.75 * m * p, -1.5 * xi];
+    shapes[3] =
+        [-0.25 * half * p * p * m, 0.25 * half * (-p) * (1.0 - 3.0 * xi), 0.25 * half * (6.0 * xi + 2.0)];
+    let legendre = legendre(xi);
+    let once = |j: usize| (legendre[j + 1] - legendre[j - 1]) / (2 * j + 1) as f64;
+    for (shape, j) in shapes[4..].iter_mut().zip(2..) {
+        *shape = [(once(j + 1) - once(j - 1)) / (2 * j + 1) as f64, once(j), legendre[j]];
+    }
+    shapes.map(|[value, first, second]| [value, first * scale, second * scale * scale])
+}
+
+/// Legendre polynomials P_0 to P_(DEGREE) at xi.
+fn legendre(xi: f64) -> [f64; DEGREE + 1] {
+    let mut p = [1.0; DEGREE + 1];
+    p[1] = xi;
+    for n in 1..DEGREE {
+        p[n + 1] = ((2 * n + 1) as f64 * xi * p[n] - n as f64 * p[n - 1]) / (n + 1) as f64;
+    }
+    p
+}

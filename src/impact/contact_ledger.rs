@@ -1,0 +1,103 @@
+//! What is booked about one contact: impulse, peak force, touches and releases.
+
+use super::collocation::{Collocation, STAGES, Stages};
+
+/// Points of a step at which a contact is known: its start, the Gauss points, its end.
+const POINTS: usize = STAGES + 2;
+
+/// Course of one contact over one step.
+pub struct StepCourse {
+    /// Start of the step and its length, s.
+    pub time: f64,
+    /// Length of the step in s.
+    pub h: f64,
+    /// Approach at start, Gauss points and end, m.
+    pub approach: [f64; POINTS],
+    /// Force at start, Gauss points and end, N.
+    pub force: [f64; POINTS],
+}
+
+/// Account of one contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ContactLedger {
+    /// Impulse so far in N s.
+    pub impulse: f64,
+    /// Largest force so far in N.
+    pub force_peak: f64,
+    /// Time of the latest release in s.
+    pub end: f64,
+    /// Number of separate contacts so far.
+    pub contacts: u32,
+    /// Whether the bodies touch now.
+    pub closed: bool,
+}
+
+impl ContactLedger {
+    /// Books a step.
+    pub fn book(&mut self, collocation: &Collocation, course: &StepCourse) {
+        let gauss: &Stages = course.force[1..=STAGES].try_into().expect("STAGES values");
+        self.impulse += course.h * gauss.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
+        let (highest, largest) = argmax(&course.force);
+        if largest > self.force_peak {
+            self.force_peak = largest.max(self.interpolated_peak(collocation, course, highest));
+        }
+        for point in 1..POINTS {
+            let closed = course.approach[point] > 0.0;
+            if closed && !self.closed {
+                self.contacts += 1;
+            } else if !closed && self.closed {
+                self.end = course.time + course.h * release(collocation, course, point);
+            }
+            self.closed = closed;
+        }
+    }
+
+    /// Peak of the polynomial through all points of the step, around the highest of them.
+    fn interpolated_peak(&self, collocation: &Collocation, course: &StepCourse, highest: usize) -> f64 {
+        if highest == 0 || highest == POINTS - 1 || course.force.contains(&0.0) {
+            return course.force[highest];
+        }
+        let u = abscissae(collocation);
+        let value = |x: f64| interpolate(&u, &course.force, x);
+        let (mut low, mut high) = (u[highest - 1], u[highest + 1]);
+        for _ in 0..40 {
+            let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+            if value(a) < value(b) { low = a } else { high = b }
+        }
+        value(0.5 * (low + high))
+    }
+}
+
+/// Where in the step (0..1), before `point`, the approach passes zero.
+fn release(collocation: &Collocation, course: &StepCourse, point: usize) -> f64 {
+    let u = abscissae(collocation);
+    let (mut low, mut high) = (u[point - 1], u[point]);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if interpolate(&u, &course.approach, middle) > 0.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+fn abscissae(collocation: &Collocation) -> [f64; POINTS] {
+    std::array::from_fn(|i| match i {
+        0 => 0.0,
+        _ if i == POINTS - 1 => 1.0,
+        _ => collocation.nodes[i - 1],
+    })
+}
+
+/// Lagrange's polynomial through (`u`, `y`) at `x`.
+fn interpolate(u: &[f64; POINTS], y: &[f64; POINTS], x: f64) -> f64 {
+    (0..POINTS)
+        .map(|i| y[i] * (0..POINTS).filter(|j| *j != i).map(|j| (x - u[j]) / (u[i] - u[j])).product::<f64>())
+        .sum()
+}
+
+fn argmax(values: &[f64]) -> (usize, f64) {
+    values
+        .iter()
+        .copied()
+        .enumerate()
+        .fold((0, f64::NEG_INFINITY), |best, (i, v)| if v > best.1 { (i, v) } else { best })
+}

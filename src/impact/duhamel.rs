@@ -1,0 +1,153 @@
+//! Exact response of a damped oscillator to a force that is a polynomial in time (Duhamel's integral).
+//!
+//! With s the impulse response of q'' + 2 alpha q' + omega^2 q = f, the moments
+//! S_p(t) = integral of s(t - tau) tau^p / p! over 0..t obey, with S_-1 = s and S_-2 = s',
+//!     S_(p-2) + 2 alpha S_(p-1) + omega^2 S_p = t^p / p!   and   dS_p/dt = S_(p-1).
+//! Upwards in p the recurrence divides by omega^2 and is used when omega t is large; downwards,
+//! started by the power series, it is stable when omega t is small, a rigid motion included.
+
+use super::collocation::STAGES;
+
+/// Number of moments of one time: s', s, S_0 ... S_(STAGES-1).
+pub const MOMENTS: usize = STAGES + 2;
+
+/// Damped oscillator; omega = 0 is a rigid motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Oscillator {
+    /// Eigenfrequency of the undamped oscillator in rad/s.
+    pub omega: f64,
+    /// Decay rate alpha = zeta omega in 1/s.
+    pub alpha: f64,
+}
+
+impl Oscillator {
+    /// The moments [S_-2, S_-1, S_0, ..., S_(STAGES-1)] at time `t` >= 0.
+    pub fn moments(&self, t: f64) -> [f64; MOMENTS] {
+        if (self.omega + 2.0 * self.alpha) * t < 2.0 { self.series(t) } else { self.closed_form(t) }
+    }
+
+    /// Small omega t: power series for the two highest moments, recurrence downwards.
+    fn series(&self, t: f64) -> [f64; MOMENTS] {
+        let (w2, a2) = (self.omega * self.omega, 2.0 * self.alpha);
+        let rate = (self.omega + a2) * t;
+        let mut powers = [1.0; MOMENTS];
+        for p in 1..MOMENTS {
+            powers[p] = powers[p - 1] * t / p as f64;
+        }
+        // s = sum of s_n t^n/n! (s_1 = 1), integrated p + 1 times: sum of s_n t^(n+p+1)/(n+p+1)!
+        let mut moments = [0.0; MOMENTS];
+        let (mut earlier, mut coefficient) = (0.0, 1.0);
+        let (mut power, mut envelope) = (powers[STAGES], 1.0);
+        for n in 1.. {
+            moments[MOMENTS - 2] += coefficient * power;
+            power *= t / (n + STAGES) as f64;
+            moments[MOMENTS - 1] += coefficient * power;
+            envelope *= rate / (n + STAGES) as f64;
+            if envelope < 1e-18 {
+                break;
+            }
+            (earlier, coefficient) = (coefficient, -a2 * coefficient - w2 * earlier);
+        }
+        for p in (0..STAGES).rev() {
+            moments[p] = powers[p] - a2 * moments[p + 1] - w2 * moments[p + 2];
+        }
+        moments
+    }
+
+    /// Large omega t: impulse response in closed form, recurrence upwards.
+    fn closed_form(&self, t: f64) -> [f64; MOMENTS] {
+        let (w2, a2) = (self.omega * self.omega, 2.0 * self.alpha);
+        let [slope, value] = self.impulse_response(t);
+        let mut moments = [0.0; MOMENTS];
+        moments[0] = slope;
+        moments[1] = value;
+        let mut power = 1.0;
+        for p in 0..STAGES {
+            if p > 0 {
+                power *= t / p as f64;
+            }
+            moments[p + 2] = (power - a2 * moments[p + 1] - moments[p]) / w2;
+        }
+        moments
+    }
+
+    /// s'(t) and s(t) for omega > 0, under-, over- and (by a nudge of 1e-8) critically damped.
+    fn impulse_response(&self, t: f64) -> [f64; 2] {
+        let mut zeta = self.alpha / self.omega;
+        if (zeta - 1.0).abs() < 1e-8 {
+            zeta = 1.0 - 1e-8;
+        }
+        let alpha = zeta * self.omega;
+        if zeta < 1.0 {
+            let damped = self.omega * (1.0 - zeta * zeta).sqrt();
+            let (sin, cos) = (damped * t).sin_cos();
+            let decay = (-alpha * t).exp();
+            let value = decay * sin / damped;
+            [decay * cos - alpha * value, value]
+        } else {
+            let spread = self.omega * (zeta * zeta - 1.0).sqrt();
+            let fast = -(alpha + spread);
+            let slow = self.omega * self.omega / fast;
+            let (e_fast, e_slow) = ((fast * t).exp(), (slow * t).exp());
+            [(slow * e_slow - fast * e_fast) / (2.0 * spread), (e_slow - e_fast) / (2.0 * spread)]
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::quadrature::gauss_legendre;
+    use approx::assert_relative_eq;
+
+    /// s(t) in closed form, written apart from the code under test.
+    fn impulse(omega: f64, zeta: f64, t: f64) -> f64 {
+        if omega == 0.0 {
+            t
+        } else if zeta < 1.0 {
+            let d = omega * (1.0 - zeta * zeta).sqrt();
+            (-zeta * omega * t).exp() * (d * t).sin() / d
+        } else {
+            let d = omega * (zeta * zeta - 1.0).sqrt();
+            (-zeta * omega * t).exp() * (d * t).sinh() / d
+        }
+    }
+
+    #[test]
+    fn moments_equal_the_quadrature_of_duhamels_integral() {
+        let (points, weights) = gauss_legendre(60);
+        for omega in [0.0, 1e-6, 0.3, 1.0, 1.9, 2.1, 7.0, 40.0] {
+            for zeta in [0.0, 0.02, 0.7, 1.3, 4.0] {
+                let t = 1.0;
+                let moments = Oscillator { omega, alpha: zeta * omega }.moments(t);
+                assert_relative_eq!(
+                    moments[1],
+                    impulse(omega, zeta, t),
+                    epsilon = 1e-12,
+                    max_relative = 1e-10
+                );
+                let mut factorial = 1.0;
+                for p in 0..STAGES {
+                    factorial *= (p.max(1)) as f64;
+                    let integral: f64 = points
+                        .iter()
+                        .zip(&weights)
+                        .map(|(x, w)| {
+                            let tau = 0.5 * (x + 1.0) * t;
+                            0.5 * t * w * impulse(omega, zeta, t - tau) * tau.powi(p as i32) / factorial
+                        })
+                        .sum();
+                    assert_relative_eq!(moments[p + 2], integral, epsilon = 1e-13, max_relative = 1e-9);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn critical_damping_is_the_limit() {
+        let critical = Oscillator { omega: 3.0, alpha: 3.0 }.moments(1.0);
+        let response = (-3.0_f64).exp();
+        assert_relative_eq!(critical[1], response, max_relative = 1e-7);
+        assert_relative_eq!(critical[0], response * (1.0 - 3.0), max_relative = 1e-7);
+    }
+}

@@ -1,0 +1,142 @@
+//! Flight with both contacts open: exact, and ended at the next touch or for good.
+//!
+//! The gap of a contact is linear in the rigid motions plus free vibration. Its second derivative is bounded
+//! by the amplitudes of the modes, so that steps can be chosen that provably pass no touch; near a touch they
+//! shrink like Newton's iteration. When the bodies recede and the gap exceeds all the amplitudes together, no
+//! further contact is possible.
+
+use super::system::{PLATE, System};
+use crate::error::{Error, Result};
+
+/// What comes after a flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Flight {
+    /// A contact touches after this time in s.
+    Touch(f64),
+    /// No contact can touch any more.
+    Over,
+}
+
+/// Evaluations after which a flight counts as endless.
+const MAX_EVALUATIONS: usize = 1_000_000;
+
+/// Time from the state (`q`, `v`), both contacts open, to the next touch.
+///
+/// # Errors
+/// [`Error::Solver`] if the bodies neither touch nor recede within [`MAX_EVALUATIONS`] evaluations.
+pub fn next_touch(system: &System, q: &[f64], v: &[f64]) -> Result<Flight> {
+    let bounds = [GapBounds::new(system, 0, q, v), GapBounds::new(system, 1, q, v)];
+    let mut time = 0.0;
+    for _ in 0..MAX_EVALUATIONS {
+        let mut step = f64::INFINITY;
+        for bound in &bounds {
+            let Some(horizon) = bound.horizon(time) else { continue };
+            let (gap, rate) = bound.gap(system, q, v, time);
+            let scale = bound.elastic.max(bound.rigid_gap.abs());
+            if gap <= 1e-14 * scale && rate < 0.0 {
+                return Ok(Flight::Touch(time));
+            }
+            step =
+                step.min(bound.safe_step(gap.max(0.0), rate)).min(horizon.max(1e-3 * bound.shortest_period));
+        }
+        if step.is_infinite() {
+            return Ok(Flight::Over);
+        }
+        // a step of round-off size: the touch is here
+        if time + step == time {
+            return Ok(Flight::Touch(time));
+        }
+        time += step;
+    }
+    Err(Error::Solver(format!(
+        "free flight: no touch and no end found within {time:.3e} s ({MAX_EVALUATIONS} evaluations); set `run.end_time`"
+    )))
+}
+
+/// The state after `time` s of free flight, in place.
+pub fn advance(system: &System, time: f64, q: &mut [f64], v: &mut [f64]) {
+    for (oscillator, (q, v)) in system.oscillators.iter().zip(q.iter_mut().zip(v)) {
+        let [slope, impulse, ..] = oscillator.moments(time);
+        let start = *q;
+        *q = (slope + 2.0 * oscillator.alpha * impulse) * start + impulse * *v;
+        *v = slope * *v - oscillator.omega.powi(2) * impulse * start;
+    }
+}
+
+/// Bounds on the gap of one contact during free flight.
+struct GapBounds {
+    contact: usize,
+    /// Rigid part of the gap in m at the start, and its rate in m/s.
+    rigid_gap: f64,
+    rigid_rate: f64,
+    /// Largest elastic displacement in m and acceleration in m/s^2.
+    elastic: f64,
+    acceleration: f64,
+    /// Shortest period of a mode in s.
+    shortest_period: f64,
+}
+
+impl GapBounds {
+    fn new(system: &System, contact: usize, q: &[f64], v: &[f64]) -> Self {
+        let b = &system.approach[contact];
+        let mut bounds = Self {
+            contact,
+            rigid_gap: system.gap[contact],
+            rigid_rate: 0.0,
+            elastic: 0.0,
+            acceleration: 0.0,
+            shortest_period: f64::INFINITY,
+        };
+        for (k, oscillator) in system.oscillators.iter().enumerate() {
+            if oscillator.omega == 0.0 {
+                bounds.rigid_gap -= b[k] * q[k];
+                bounds.rigid_rate -= b[k] * v[k];
+                continue;
+            }
+            debug_assert!(k >= PLATE);
+            // energy bound of the amplitude; it only decays when damped
+            let omega = oscillator.omega;
+            let amplitude = b[k].abs() * q[k].hypot(v[k] / omega);
+            bounds.elastic += amplitude;
+            bounds.acceleration += amplitude * omega * (omega + 2.0 * oscillator.alpha);
+            bounds.shortest_period = bounds.shortest_period.min(2.0 * std::f64::consts::PI / omega);
+        }
+        bounds
+    }
+
+    /// Gap in m and its rate in m/s at `time`.
+    fn gap(&self, system: &System, q: &[f64], v: &[f64], time: f64) -> (f64, f64) {
+        let b = &system.approach[self.contact];
+        let (mut gap, mut rate) = (self.rigid_gap + self.rigid_rate * time, self.rigid_rate);
+        for (k, oscillator) in system.oscillators.iter().enumerate() {
+            if oscillator.omega > 0.0 {
+                let [slope, impulse, ..] = oscillator.moments(time);
+                gap -= b[k] * ((slope + 2.0 * oscillator.alpha * impulse) * q[k] + impulse * v[k]);
+                rate -= b[k] * (slope * v[k] - oscillator.omega.powi(2) * impulse * q[k]);
+            }
+        }
+        (gap, rate)
+    }
+
+    /// Time left from `time` in which a touch is possible; `None` if it is not any more.
+    fn horizon(&self, time: f64) -> Option<f64> {
+        let gap = self.rigid_gap + self.rigid_rate * time;
+        if self.rigid_rate >= 0.0 && gap > self.elastic {
+            None
+        } else if self.rigid_rate > 0.0 {
+            Some((self.elastic - gap) / self.rigid_rate)
+        } else {
+            Some(f64::INFINITY)
+        }
+    }
+
+    /// A step in s from a gap and its rate within which the gap cannot close: gap + rate t - acceleration t^2/2 >= 0.
+    fn safe_step(&self, gap: f64, rate: f64) -> f64 {
+        if self.acceleration == 0.0 {
+            return if rate < 0.0 { gap / -rate } else { f64::INFINITY };
+        }
+        let root = (rate * rate + 2.0 * self.acceleration * gap).sqrt();
+        // the form without cancellation for either sign of the rate
+        if rate >= 0.0 { (rate + root) / self.acceleration } else { 2.0 * gap / (root - rate) }
+    }
+}

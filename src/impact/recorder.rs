@@ -1,0 +1,73 @@
+//! Sampling of the course over time; a run that is not asked for its history has no recorder.
+
+use super::collocation::{Collocation, Stages};
+use super::history::History;
+use super::system::{INNER, OUTER, System, dot};
+use crate::error::Result;
+
+/// Collects a [`History`] with samples at most `interval` s apart and at the end of every step.
+pub struct Recorder<'a> {
+    system: &'a System,
+    collocation: &'a Collocation,
+    interval: f64,
+    history: History,
+}
+
+impl<'a> Recorder<'a> {
+    /// Starts with the sample at t = 0.
+    pub fn new(system: &'a System, collocation: &'a Collocation, interval: f64) -> Self {
+        let mut recorder = Self { system, collocation, interval, history: History::default() };
+        let (q, v) = system.initial_state();
+        recorder.push(0.0, &q, &v, [0.0, 0.0]);
+        recorder
+    }
+
+    /// Samples the step of length `h` that starts at `time` in the state (`q`, `v`) under `forces` at the Gauss points.
+    ///
+    /// # Errors
+    /// As the contact's system of equations.
+    pub fn step(&mut self, time: f64, h: f64, q: &[f64], v: &[f64], forces: &[Stages; 2]) -> Result<()> {
+        let count = (h / self.interval).ceil().max(1.0) as usize;
+        let (mut q_at, mut v_at) = (vec![0.0; q.len()], vec![0.0; q.len()]);
+        for sample in 1..=count {
+            let t = h * sample as f64 / count as f64;
+            for (k, oscillator) in self.system.oscillators.iter().enumerate() {
+                let at = self.collocation.response(oscillator, t, h);
+                let (b0, b1) = (self.system.approach[0][k], self.system.approach[1][k]);
+                let force: Stages = std::array::from_fn(|l| -(b0 * forces[0][l] + b1 * forces[1][l]));
+                q_at[k] = at.displacement_per_displacement * q[k]
+                    + at.displacement_per_velocity * v[k]
+                    + dot(&at.displacement_per_force, &force);
+                v_at[k] = at.velocity_per_displacement * q[k]
+                    + at.velocity_per_velocity * v[k]
+                    + dot(&at.velocity_per_force, &force);
+            }
+            let contact = self.system.forces(self.system.modal_approach(&q_at)).unwrap_or([f64::NAN; 2]);
+            self.push(time + t, &q_at, &v_at, contact);
+        }
+        Ok(())
+    }
+
+    /// The history so far.
+    pub fn finish(self) -> History {
+        self.history
+    }
+
+    fn push(&mut self, time: f64, q: &[f64], v: &[f64], forces: [f64; 2]) {
+        let history = &mut self.history;
+        // a step too short to move the clock adds nothing
+        if history.time.last().is_some_and(|last| *last >= time) {
+            return;
+        }
+        let masses = self.system.masses.map(f64::sqrt);
+        history.time.push(time);
+        history.outer.displacement.push(q[OUTER] / masses[0]);
+        history.outer.velocity.push(v[OUTER] / masses[0]);
+        history.inner.displacement.push(q[INNER] / masses[1]);
+        history.inner.velocity.push(v[INNER] / masses[1]);
+        history.plate.displacement.push(dot(&self.system.centre, q));
+        history.plate.velocity.push(dot(&self.system.centre, v));
+        history.outer_force.push(forces[0]);
+        history.inner_force.push(forces[1]);
+    }
+}

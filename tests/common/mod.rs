@@ -1,0 +1,26 @@
+//! Bodies and scenes that several tests use.
+#![allow(dead_code)]
+
+use impactcheck::scene::*;
+
+/// Steel of Table 1.
+pub fn steel() -> Material {
+    Material { name: "steel".into(), youngs_modulus: 210e9, poisson_ratio: 0.3, density: 7780.0 }
+}
+
+/// Clamped steel plate of Table 1 between two steel spheres of `radius` m, struck at `speed` m/s.
+pub fn scaled_plate(radius: f64, speed: f64) -> PlateImpact {
+    let steel = steel();
+    PlateImpact {
+        plate: Plate {
+            radius: 0.033,
+            thickness: 0.002,
+            edge: Edge::Clamped,
+            material: steel.clone(),
+            damping_ratio: 0.0,
+        },
+        outer: Outer { shape: Shape::Sphere { radius }, material: steel.clone(), speed },
+        inner: Inner { shape: Shape::Sphere { radius }, material: steel, gap: 0.0 },
+        fluid: None,
+    }
+}

@@ -1,0 +1,34 @@
+//! Kirchhoff plate elements against the closed form of Leissa, Vibration of Plates (1969), chapter 2.
+//!
+//! Unit plate: frequencies are k^2, the centre's deflection is that of the mass-normalised mode.
+
+use approx::assert_relative_eq;
+use impactcheck::analytical::circular_plate::{centre_deflection, frequency_parameters};
+use impactcheck::body::kirchhoff::UnitPlate;
+use impactcheck::scene::Edge;
+
+#[test]
+fn frequencies_and_centre_deflections_of_every_edge() {
+    for edge in [Edge::Clamped, Edge::SimplySupported, Edge::Free] {
+        for (modes, bound) in [(1, 1e-9), (16, 1e-9), (64, 1e-6)] {
+            let plate = UnitPlate::new(edge, 0.3, modes).unwrap();
+            let rigid = plate.omega().len() - modes;
+            assert_eq!(rigid, usize::from(edge == Edge::Free));
+            for (mode, k) in frequency_parameters(edge, 0.3, modes).into_iter().enumerate() {
+                assert_relative_eq!(plate.omega()[rigid + mode], k * k, max_relative = bound);
+                assert_relative_eq!(
+                    plate.centre()[rigid + mode],
+                    centre_deflection(edge, k),
+                    max_relative = 10.0 * bound
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn rigid_mode_of_the_free_plate_carries_its_mass() {
+    let plate = UnitPlate::new(Edge::Free, 0.3, 4).unwrap();
+    assert_eq!(plate.omega()[0], 0.0);
+    assert_relative_eq!(plate.centre()[0], (1.0 / std::f64::consts::PI).sqrt(), max_relative = 1e-10);
+}
