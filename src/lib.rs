@@ -6,6 +6,7 @@
 pub mod body;
 pub mod error;
 pub mod impact;
+pub mod project;
 pub mod scene;
 
 pub use error::{Error, ExitStatus, Result};
