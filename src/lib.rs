@@ -8,6 +8,7 @@ pub mod body;
 pub mod contact;
 pub mod error;
 pub mod impact;
+pub mod project;
 pub mod scene;
 
 pub use error::{Error, ExitStatus, Result};

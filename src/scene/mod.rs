@@ -4,6 +4,21 @@
 //! reference, comparison) takes it by reference. Its JSON form (SI numbers only) is what
 //! the finite-element side receives, and its physical part is what [`Scene::hash`] identifies.
 
+mod check;
+mod find;
+pub(crate) mod hash;
+mod problem;
+mod quantity;
+mod read;
+mod schema;
+mod specification;
+mod tolerances;
+
+pub use find::{resolve, shipped};
+pub use problem::{Problem, Problems, problems};
+pub use read::MAX_FILE_BYTES;
+pub use schema::schema;
+
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -1,0 +1,370 @@
+//! Walks the tree of a TOML file along the specification and notes every fault.
+
+use super::problem::{Collector, did_you_mean};
+use super::quantity::{self, Dimension, QuantityError};
+use super::specification::{Bound, Choice, Field, Kind};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A value that has passed its checks; quantities are in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Checked {
+    Number(f64),
+    Count(u64),
+    Text(String),
+    Flag(bool),
+    Table(Values),
+}
+
+/// The checked values of one table by key.
+pub(super) type Values = BTreeMap<String, Checked>;
+
+/// Where a table stands: its full name and the place a missing key is reported at.
+pub(super) struct Place<'a> {
+    pub(super) path: &'a str,
+    pub(super) span: Range<usize>,
+}
+
+impl Place<'_> {
+    pub(super) fn key(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    fn name(&self) -> String {
+        if self.path.is_empty() { "a scene".to_owned() } else { format!("[{}]", self.path) }
+    }
+}
+
+/// Checks one file.
+pub(super) struct Checker<'a> {
+    text: &'a str,
+    materials: Vec<String>,
+    pub(super) problems: Collector,
+}
+
+impl<'a> Checker<'a> {
+    pub(super) fn new(name: &str, text: &'a str, root: &DeTable) -> Self {
+        let materials = root.get("materials").and_then(|m| m.get_ref().as_table());
+        let materials = materials.map(|t| t.keys().map(|k| k.get_ref().to_string()).collect());
+        Checker { text, materials: materials.unwrap_or_default(), problems: Collector::new(name, text) }
+    }
+
+    /// The text of a value as it stands in the file, cut to what fits a message.
+    pub(super) fn written(&self, value: &Spanned<DeValue>) -> String {
+        let text = self.text.get(value.span()).unwrap_or_default().trim();
+        let line = text.lines().next().unwrap_or_default();
+        let mut short: String = line.chars().take(60).collect();
+        if short.len() < text.len() {
+            short.push_str("...");
+        }
+        short
+    }
+
+    /// Checks `table` against `fields`; what is returned holds only values without fault.
+    /// `None` if this version can't run its `kind`: then nothing else in it is looked at.
+    pub(super) fn table(&mut self, place: &Place, table: &DeTable, fields: &[Field]) -> Option<Values> {
+        let mut values = Values::new();
+        let kind = fields.iter().find(|f| f.key == "kind").zip(table.get("kind"));
+        if let Some((field, value)) = kind
+            && let Some(Choice { refused: Some(sentence), .. }) = chosen(field, value)
+        {
+            let help = alternatives(field);
+            self.problems.add(
+                value.span(),
+                format!("`{}`: {sentence}", place.key("kind")),
+                "not in this version",
+                help,
+            );
+            return None;
+        }
+        let kind = kind.and_then(|(field, value)| Some(chosen(field, value)?.name));
+        for field in fields {
+            match table.get_key_value(field.key) {
+                Some((key, _)) if field.only.is_some_and(|o| kind.is_some_and(|k| k != o)) => {
+                    let (kind, owner) = (kind.unwrap_or_default(), field.only.unwrap_or_default());
+                    self.problems.add(
+                        key.span(),
+                        format!(
+                            "`{}` does not belong to kind `{kind}`, only to `{owner}`",
+                            place.key(field.key)
+                        ),
+                        "not for this kind",
+                        format!("remove it, or set kind = \"{owner}\""),
+                    );
+                }
+                Some((key, value)) => {
+                    let path = place.key(field.key);
+                    let place = Place { path: &path, span: key.span() };
+                    if let Some(value) = self.value(&place, value, field) {
+                        values.insert(field.key.to_owned(), value);
+                    }
+                }
+                None if field.required && field.only.is_none_or(|o| kind == Some(o)) => {
+                    self.problems.add(
+                        place.span.clone(),
+                        format!("`{}` is missing in {}", place.key(field.key), place.name()),
+                        "incomplete",
+                        format!("add {}", example(place, field)),
+                    );
+                }
+                None => {}
+            }
+        }
+        self.refuse_unknown(
+            place,
+            table,
+            fields.iter().filter(|f| f.only.is_none_or(|o| kind.is_none_or(|k| k == o))).map(|f| f.key),
+            fields,
+        );
+        Some(values)
+    }
+
+    /// Notes the keys of `table` that are in none of `fields`, and names `valid` ones.
+    fn refuse_unknown<'k>(
+        &mut self,
+        place: &Place,
+        table: &DeTable,
+        valid: impl Iterator<Item = &'k str>,
+        fields: &[Field],
+    ) {
+        let mut valid: Vec<&str> = valid.collect();
+        if place.path.is_empty() {
+            valid.push(super::specification::TOLERANCES.key);
+        }
+        for key in table.keys() {
+            let name = key.get_ref().as_ref();
+            if valid.contains(&name) || fields.iter().any(|f| f.key == name) {
+                continue;
+            }
+            self.problems.add(
+                key.span(),
+                format!("`{}` is not a key of {}", place.key(name), place.name()),
+                "unknown key",
+                format!(
+                    "{}{} has: {}",
+                    did_you_mean(name, valid.iter().copied()),
+                    place.name(),
+                    valid.join(", ")
+                ),
+            );
+        }
+    }
+
+    fn value(&mut self, place: &Place, value: &Spanned<DeValue>, field: &Field) -> Option<Checked> {
+        match (&field.kind, value.get_ref()) {
+            (Kind::Text, DeValue::String(text)) => Some(Checked::Text(text.to_string())),
+            (Kind::Name, DeValue::String(text)) => self.name(place, value, text),
+            (Kind::Choice(choices), DeValue::String(text)) => {
+                if choices.iter().any(|c| c.name == text) {
+                    return Some(Checked::Text(text.to_string()));
+                }
+                let help = did_you_mean(text, choices.iter().map(|c| c.name)) + &alternatives(field);
+                self.fault(place, value, "which it can't be", "not valid", help)
+            }
+            (Kind::Quantity(dimension, bound), _) => {
+                self.quantity(place, value, *dimension, *bound).map(Checked::Number)
+            }
+            (Kind::Count(low, high), _) => self.count(place, value, *low, *high),
+            (Kind::Flag, DeValue::Boolean(flag)) => Some(Checked::Flag(*flag)),
+            (Kind::Material, DeValue::String(text)) => self.material(place, value, text),
+            (Kind::Table(fields), DeValue::Table(table)) => {
+                self.table(place, table, fields).map(Checked::Table)
+            }
+            (Kind::TableOf(fields), DeValue::Table(tables)) => self.tables(place, tables, fields),
+            (kind, found) => {
+                let (needed, help) = needed(kind, place.path);
+                let message = format!("but it has to be {needed}; found: {}", found.type_str());
+                self.fault(place, value, &message, "wrong type", help)
+            }
+        }
+    }
+
+    /// Notes "`path` is <value>, <message>".
+    pub(super) fn fault<T>(
+        &mut self,
+        place: &Place,
+        value: &Spanned<DeValue>,
+        message: &str,
+        label: &str,
+        help: String,
+    ) -> Option<T> {
+        let written = self.written(value);
+        let message = format!("`{}` is {written}, {message}", place.path);
+        self.problems.add(value.span(), message, label, help);
+        None
+    }
+
+    fn tables(&mut self, place: &Place, tables: &DeTable, fields: &[Field]) -> Option<Checked> {
+        let mut values = Values::new();
+        for (key, value) in tables {
+            let path = place.key(key.get_ref());
+            let inner = Place { path: &path, span: key.span() };
+            match value.get_ref() {
+                DeValue::Table(table) => {
+                    let checked = self.table(&inner, table, fields).unwrap_or_default();
+                    values.insert(key.get_ref().to_string(), Checked::Table(checked));
+                }
+                found => {
+                    let message = format!("but it has to be a table; found: {}", found.type_str());
+                    self.fault::<()>(
+                        &inner,
+                        value,
+                        &message,
+                        "wrong type",
+                        format!("write a table [{path}]"),
+                    );
+                }
+            }
+        }
+        Some(Checked::Table(values))
+    }
+
+    fn name(&mut self, place: &Place, value: &Spanned<DeValue>, text: &str) -> Option<Checked> {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+        if (1..=MAX_NAME).contains(&text.len()) && text.chars().all(plain) && !text.starts_with('.') {
+            return Some(Checked::Text(text.to_owned()));
+        }
+        let help = format!(
+            "it names a folder: 1 to {MAX_NAME} of the characters A-Z a-z 0-9 . _ -, not starting with a dot"
+        );
+        self.fault(place, value, "which can't be a name", "not a valid name", help)
+    }
+
+    fn material(&mut self, place: &Place, value: &Spanned<DeValue>, text: &str) -> Option<Checked> {
+        if self.materials.iter().any(|m| m == text) {
+            return Some(Checked::Text(text.to_owned()));
+        }
+        let known = self.materials.join(", ");
+        let known =
+            if known.is_empty() { "there is no material".to_owned() } else { format!("there is: {known}") };
+        let help = format!(
+            "{}{known}; a material is a table [materials.{text}] with youngs_modulus, poisson_ratio, density",
+            did_you_mean(text, self.materials.iter().map(String::as_str))
+        );
+        self.fault(place, value, "which is no material of this scene", "unknown material", help)
+    }
+
+    fn count(&mut self, place: &Place, value: &Spanned<DeValue>, low: u64, high: u64) -> Option<Checked> {
+        let number = value.get_ref().as_integer();
+        let count =
+            number.and_then(|n| u64::from_str_radix(n.as_str().trim_start_matches('+'), n.radix()).ok());
+        if let Some(count) = count.filter(|c| (low..=high).contains(c)) {
+            return Some(Checked::Count(count));
+        }
+        let message = format!("but it has to be a whole number from {low} to {high}");
+        self.fault(
+            place,
+            value,
+            &message,
+            "out of range",
+            format!("write a whole number from {low} to {high}, for example 16"),
+        )
+    }
+
+    /// Reads a number or a text with unit, in SI.
+    pub(super) fn quantity(
+        &mut self,
+        place: &Place,
+        value: &Spanned<DeValue>,
+        dimension: Dimension,
+        bound: Bound,
+    ) -> Option<f64> {
+        let (what, unit, sample) = dimension.describe();
+        let range = bound.describe(unit);
+        let help = if dimension == Dimension::NONE {
+            format!("write a number that is {range}, for example {sample}")
+        } else {
+            format!(
+                "write {what} that is {range}: a number in {unit} or a text with its unit, for example \"{sample}\""
+            )
+        };
+        let outcome = match value.get_ref() {
+            DeValue::Float(number) => number.as_str().parse().map_err(|_| QuantityError::NotANumber),
+            DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
+                .map(|n| n as f64)
+                .map_err(|_| QuantityError::OutOfRange),
+            DeValue::String(text) => quantity::parse(text, dimension),
+            found => {
+                let message = format!("but it has to be {what} in {unit}; found: {}", found.type_str());
+                return self.fault(place, value, &message, "wrong type", help);
+            }
+        };
+        let number = match outcome {
+            Ok(number) => number + 0.0,
+            Err(error) => {
+                let message = match error {
+                    QuantityError::NotANumber => {
+                        format!("which is not a number with a unit; {what} in {unit} is needed")
+                    }
+                    QuantityError::UnknownUnit(u) => {
+                        format!("but `{u}` is not a known unit; {what} in {unit} is needed")
+                    }
+                    QuantityError::MalformedUnit(u) => {
+                        format!("but `{u}` is not a product of units; {what} in {unit} is needed")
+                    }
+                    QuantityError::WrongDimension(u) => {
+                        format!("but `{u}` is not the unit of {what}; {unit} is needed, with any prefix")
+                    }
+                    QuantityError::OutOfRange => "which double precision can't hold".to_owned(),
+                };
+                return self.fault(place, value, &message, "not a valid quantity", help);
+            }
+        };
+        if !bound.holds(number) {
+            let finite = if number.is_finite() { "" } else { "finite and " };
+            let message = format!("but it has to be {finite}{range}");
+            return self.fault(place, value, &message, "out of range", help);
+        }
+        Some(number)
+    }
+}
+
+/// Longest name of a scene: it is a folder's name, and report files add an ending.
+pub(super) const MAX_NAME: usize = 100;
+
+fn chosen<'f>(field: &'f Field, value: &Spanned<DeValue>) -> Option<&'f Choice> {
+    let Kind::Choice(choices) = &field.kind else { return None };
+    let text = value.get_ref().as_str()?;
+    choices.iter().find(|c| c.name == text)
+}
+
+fn alternatives(field: &Field) -> String {
+    let Kind::Choice(choices) = &field.kind else { return String::new() };
+    let names: Vec<&str> = choices.iter().filter(|c| c.refused.is_none()).map(|c| c.name).collect();
+    format!("it can be: {}", names.join(", "))
+}
+
+/// What a key of this kind has to be, and how to write it.
+fn needed(kind: &Kind, path: &str) -> (&'static str, String) {
+    match kind {
+        Kind::Choice(choices) => {
+            let names: Vec<&str> = choices.iter().map(|c| c.name).collect();
+            ("a text", format!("write one of: \"{}\"", names.join("\", \"")))
+        }
+        Kind::Flag => ("true or false", "write true or false, without quotes".to_owned()),
+        Kind::Table(_) | Kind::TableOf(_) | Kind::Tolerances => {
+            ("a table", format!("write a table [{path}]"))
+        }
+        _ => ("a text", "write a text in quotes".to_owned()),
+    }
+}
+
+/// An example of a missing key.
+fn example(place: &Place, field: &Field) -> String {
+    let (key, doc) = (field.key, field.doc);
+    match &field.kind {
+        Kind::Table(_) => format!("a table [{}]: {doc}", place.key(key)),
+        Kind::TableOf(_) => format!("a table [{}.steel]: {doc}", place.key(key)),
+        Kind::Quantity(dimension, bound) => {
+            let (_, unit, sample) = dimension.describe();
+            let quote = if *dimension == Dimension::NONE { "" } else { "\"" };
+            format!("`{key} = {quote}{sample}{quote}`: {doc}, {}", bound.describe(unit))
+        }
+        Kind::Choice(choices) => format!("`{key} = \"{}\"`: {doc}; {}", choices[0].name, alternatives(field)),
+        Kind::Count(low, _) => format!("`{key} = {low}`: {doc}"),
+        Kind::Flag => format!("`{key} = true`: {doc}"),
+        _ => format!("`{key} = \"...\"`: {doc}"),
+    }
+}

@@ -1,0 +1,253 @@
+//! From the text of a scene file to a [`Scene`].
+
+use super::check::{Checked, Checker, Place, Values};
+use super::problem::Collector;
+use super::specification::{DEFAULT_ELEMENTS, SCENE};
+use super::*;
+use crate::{Error, Result};
+use std::io::Read;
+use std::path::Path;
+use toml::de::DeTable;
+
+/// Largest scene file in bytes; a real one has about a thousand.
+pub const MAX_FILE_BYTES: u64 = 1 << 20;
+
+impl Scene {
+    /// Reads and checks the scene file at `path`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there is no such file, [`Error::Scene`] if it is not a valid scene,
+    /// [`Error::Io`] if the system refuses to read it.
+    pub fn read(path: impl AsRef<Path>) -> Result<Scene> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let system = |source: std::io::Error| match source.kind() {
+            std::io::ErrorKind::NotFound => Error::Usage(format!("there is no scene file {name}")),
+            _ => Error::io("reading", path, source),
+        };
+        let metadata = std::fs::metadata(path).map_err(system)?;
+        if metadata.is_dir() {
+            return Err(refused(
+                &format!("{name} is a folder, not a scene file"),
+                "name the .toml file inside it",
+            ));
+        }
+        let too_large = |size: String| {
+            refused(
+                &format!("{name} has {size} bytes; a scene file has at most {MAX_FILE_BYTES} (1 MiB)"),
+                "give a scene file, such as one of the folder scenes/",
+            )
+        };
+        if metadata.is_file() && metadata.len() > MAX_FILE_BYTES {
+            return Err(too_large(metadata.len().to_string()));
+        }
+        let mut bytes = Vec::new();
+        let file = std::fs::File::open(path).map_err(system)?;
+        // A pipe or a device has no size to check beforehand.
+        file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(system)?;
+        if bytes.len() as u64 > MAX_FILE_BYTES {
+            return Err(too_large(format!("more than {MAX_FILE_BYTES}")));
+        }
+        let text = decode(&name, bytes)?;
+        Scene::parse(&name, &text)
+    }
+
+    /// Checks `text`, the content of a scene file; `source_name` is what messages call the file.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] with every fault, its place and what would be valid.
+    pub fn parse(source_name: &str, text: &str) -> Result<Scene> {
+        let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
+        let root = tree.get_ref();
+        if root.is_empty() {
+            return Err(refused(
+                &format!("{source_name}, line 1: the scene file has no content"),
+                "copy a file of the folder scenes/ and change it",
+            ));
+        }
+        let mut checker = Checker::new(source_name, text, root);
+        let place = Place { path: "", span: 0..0 };
+        let checked = checker.table(&place, root, &SCENE).map(|values| (values, checker.tolerances(root)));
+        match checked {
+            Some((values, tolerances)) if checker.problems.is_empty() => assemble(&Node(&values), tolerances),
+            _ => Err(Error::Scene(checker.problems.into_report())),
+        }
+    }
+}
+
+fn refused(message: &str, help: &str) -> Error {
+    Error::Scene(miette::miette!(help = help.to_owned(), "{message}"))
+}
+
+/// Bytes to text; says where they stop being text.
+fn decode(name: &str, bytes: Vec<u8>) -> Result<String> {
+    let line = |at: usize| 1 + bytes[..at].iter().filter(|b| **b == b'\n').count();
+    if let Some(at) = bytes.iter().position(|b| *b == 0) {
+        let message = format!("{name}, line {}: not a text file (byte {at} is zero)", line(at));
+        return Err(refused(&message, "a scene file is TOML, a text in UTF-8; see the folder scenes/"));
+    }
+    if let Err(error) = std::str::from_utf8(&bytes) {
+        let at = error.valid_up_to();
+        let message =
+            format!("{name}, line {}: not valid UTF-8 (byte {at} is 0x{:02x})", line(at), bytes[at]);
+        return Err(refused(&message, "save the file as UTF-8"));
+    }
+    String::from_utf8(bytes).map_err(|e| Error::Internal(e.to_string()))
+}
+
+fn syntax(name: &str, text: &str, error: &toml::de::Error) -> Error {
+    let mut problems = Collector::new(name, text);
+    let help =
+        "a scene file is TOML (https://toml.io): `key = value` lines under [table] headers, each key once";
+    let message = format!("not valid TOML: {}", error.message());
+    problems.add(error.span().unwrap_or(0..0), message, "here", help.to_owned());
+    Error::Scene(problems.into_report())
+}
+
+/// Typed access to checked values. The specification has seen to presence and type, so
+/// what is not found is a defect of the program.
+struct Node<'a>(&'a Values);
+
+impl<'a> Node<'a> {
+    fn get(&self, key: &str) -> Result<&'a Checked> {
+        self.0.get(key).ok_or_else(|| Error::Internal(format!("the scene's `{key}` was not checked")))
+    }
+
+    fn table(&self, key: &str) -> Result<Node<'a>> {
+        match self.get(key)? {
+            Checked::Table(values) => Ok(Node(values)),
+            other => Err(mismatch(key, other)),
+        }
+    }
+
+    fn optional_table(&self, key: &str) -> Result<Option<Node<'a>>> {
+        self.0.contains_key(key).then(|| self.table(key)).transpose()
+    }
+
+    fn number(&self, key: &str) -> Result<f64> {
+        match self.get(key)? {
+            Checked::Number(number) => Ok(*number),
+            other => Err(mismatch(key, other)),
+        }
+    }
+
+    fn number_or(&self, key: &str, default: f64) -> Result<f64> {
+        if self.0.contains_key(key) { self.number(key) } else { Ok(default) }
+    }
+
+    fn text(&self, key: &str) -> Result<&'a str> {
+        match self.get(key)? {
+            Checked::Text(text) => Ok(text),
+            other => Err(mismatch(key, other)),
+        }
+    }
+}
+
+fn mismatch(key: &str, found: &Checked) -> Error {
+    Error::Internal(format!("the scene's `{key}` was checked as {found:?}"))
+}
+
+fn unknown(key: &str, word: &str) -> Error {
+    Error::Internal(format!("the scene's `{key}` = `{word}` has no type"))
+}
+
+fn assemble(root: &Node, tolerances: BTreeMap<Model, Tolerances>) -> Result<Scene> {
+    let materials = root.table("materials")?;
+    let (plate, outer, inner) = (root.table("plate")?, root.table("outer")?, root.table("inner")?);
+    let plate = Plate {
+        radius: plate.number("radius")?,
+        thickness: plate.number("thickness")?,
+        edge: match plate.text("edge")? {
+            "clamped" => Edge::Clamped,
+            "simply-supported" => Edge::SimplySupported,
+            "free" => Edge::Free,
+            other => return Err(unknown("edge", other)),
+        },
+        material: material(&materials, plate.text("material")?)?,
+        damping_ratio: plate.number_or("damping_ratio", 0.0)?,
+    };
+    let fluid = root.optional_table("fluid")?.map(|f| fluid(&f, &plate)).transpose()?;
+    let setup = PlateImpact {
+        fluid,
+        outer: Outer {
+            shape: shape(&outer)?,
+            material: material(&materials, outer.text("material")?)?,
+            speed: outer.number("speed")?,
+        },
+        inner: Inner {
+            shape: shape(&inner)?,
+            material: material(&materials, inner.text("material")?)?,
+            gap: inner.number_or("gap", 0.0)?,
+        },
+        plate,
+    };
+    let end_time = root.optional_table("run")?.filter(|r| r.0.contains_key("end_time"));
+    Ok(Scene {
+        name: root.text("name")?.to_owned(),
+        description: if root.0.contains_key("description") {
+            root.text("description")?.to_owned()
+        } else {
+            String::new()
+        },
+        setup: Setup::PlateImpact(Box::new(setup)),
+        run: Run { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
+        reduced: reduced(root.optional_table("reduced")?)?,
+        reference: reference(root.optional_table("reference")?)?,
+        tolerances,
+    })
+}
+
+fn material(materials: &Node, name: &str) -> Result<Material> {
+    let material = materials.table(name)?;
+    Ok(Material {
+        name: name.to_owned(),
+        youngs_modulus: material.number("youngs_modulus")?,
+        poisson_ratio: material.number("poisson_ratio")?,
+        density: material.number("density")?,
+    })
+}
+
+fn shape(body: &Node) -> Result<Shape> {
+    match body.text("kind")? {
+        "sphere" => Ok(Shape::Sphere { radius: body.number("radius")? }),
+        "compact" => {
+            Ok(Shape::Compact { mass: body.number("mass")?, tip_radius: body.number("tip_radius")? })
+        }
+        other => Err(unknown("kind", other)),
+    }
+}
+
+fn fluid(fluid: &Node, plate: &Plate) -> Result<Fluid> {
+    Ok(Fluid {
+        viscosity: fluid.number("viscosity")?,
+        density: fluid.number("density")?,
+        minimum_gap: fluid.number("minimum_gap")?,
+        squeeze_film: !matches!(fluid.0.get("squeeze_film"), Some(Checked::Flag(false))),
+        added_mass_frequency_ratio: fluid.number_or("added_mass_frequency_ratio", 1.0)?,
+        plate_damping_ratio: fluid.number_or("plate_damping_ratio", plate.damping_ratio)?,
+        drag_coefficient: fluid.number_or("drag_coefficient", 0.0)?,
+    })
+}
+
+fn reduced(settings: Option<Node>) -> Result<ReducedSettings> {
+    let mut reduced = ReducedSettings { model: None, modes: None };
+    let Some(settings) = settings else { return Ok(reduced) };
+    if settings.0.contains_key("model") {
+        reduced.model = Some(settings.text("model")?.parse().map_err(Error::Internal)?);
+    }
+    if let Some(Checked::Count(modes)) = settings.0.get("modes") {
+        reduced.modes = usize::try_from(*modes).ok();
+    }
+    Ok(reduced)
+}
+
+fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
+    let empty = Values::new();
+    let settings = settings.unwrap_or(Node(&empty));
+    let geometry = match settings.0.get("geometry") {
+        Some(Checked::Text(word)) if word == "solid" => Geometry::Solid,
+        _ => Geometry::Axisymmetric,
+    };
+    let elements_per_contact_radius = settings.number_or("elements_per_contact_radius", DEFAULT_ELEMENTS)?;
+    Ok(ReferenceSettings { geometry, elements_per_contact_radius })
+}

@@ -1,0 +1,120 @@
+//! JSON schema of scene files, for editors; made from the same specification the reader uses.
+
+use super::check::MAX_NAME;
+use super::quantity::Dimension;
+use super::specification::{Bound, Field, Kind, MODELS, SCENE, TOLERANCES};
+use super::tolerances::{TERMS, gated_names};
+use serde_json::{Map, Value, json};
+
+/// The JSON schema (draft 2020-12) of scene files.
+///
+/// It refuses what can be told without arithmetic: unknown and missing keys, wrong types,
+/// bare numbers out of range. Units and names of materials are checked by [`super::Scene::parse`].
+pub fn schema() -> Value {
+    let mut schema = table(&SCENE);
+    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    schema["title"] = json!("impactcheck scene");
+    schema["properties"][TOLERANCES.key] = described(tolerances(), TOLERANCES.doc);
+    schema
+}
+
+fn described(mut schema: Value, doc: &str) -> Value {
+    schema["description"] = json!(doc);
+    schema
+}
+
+/// A table that has these keys and no other; keys of one `kind` are refused under another.
+fn table(fields: &[Field]) -> Value {
+    let properties: Map<String, Value> =
+        fields.iter().map(|f| (f.key.to_owned(), described(value(&f.kind), f.doc))).collect();
+    let required: Vec<&str> =
+        fields.iter().filter(|f| f.required && f.only.is_none()).map(|f| f.key).collect();
+    let mut schema = json!({
+        "type": "object", "properties": properties, "required": required, "additionalProperties": false,
+    });
+    let mut owners: Vec<&str> = fields.iter().filter_map(|f| f.only).collect();
+    owners.sort_unstable();
+    owners.dedup();
+    let rules: Vec<Value> = owners
+        .iter()
+        .map(|owner| {
+            let keys = |own: bool| {
+                fields.iter().filter(move |f| f.only.is_some_and(|o| (o == *owner) == own)).map(|f| f.key)
+            };
+            let needed: Vec<&str> = keys(true).collect();
+            let foreign: Map<String, Value> = keys(false).map(|k| (k.to_owned(), json!(false))).collect();
+            json!({
+                "if": { "properties": { "kind": { "const": owner } }, "required": ["kind"] },
+                "then": { "required": needed, "properties": foreign },
+            })
+        })
+        .collect();
+    if !rules.is_empty() {
+        schema["allOf"] = json!(rules);
+    }
+    schema
+}
+
+fn value(kind: &Kind) -> Value {
+    match kind {
+        Kind::Text | Kind::Material => json!({ "type": "string" }),
+        Kind::Name => json!({
+            "type": "string", "pattern": "^[A-Za-z0-9_-][A-Za-z0-9._-]*$", "maxLength": MAX_NAME,
+        }),
+        Kind::Choice(choices) => {
+            let names: Vec<&str> = choices.iter().filter(|c| c.refused.is_none()).map(|c| c.name).collect();
+            json!({ "enum": names })
+        }
+        Kind::Quantity(dimension, bound) => quantity(*dimension, *bound),
+        Kind::Count(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
+        Kind::Flag => json!({ "type": "boolean" }),
+        Kind::Table(fields) => table(fields),
+        Kind::TableOf(fields) => json!({ "type": "object", "additionalProperties": table(fields) }),
+        Kind::Tolerances => tolerances(),
+    }
+}
+
+/// A number in SI, or a text that begins with a decimal number.
+fn quantity(dimension: Dimension, bound: Bound) -> Value {
+    let (_, unit, sample) = dimension.describe();
+    let mut number =
+        json!({ "type": "number", "description": format!("in {unit}, {}", bound.describe(unit)) });
+    for (end, valid, open) in
+        [(bound.low, "minimum", "exclusiveMinimum"), (bound.high, "maximum", "exclusiveMaximum")]
+    {
+        if let Some((at, is_valid)) = end {
+            number[if is_valid { valid } else { open }] = json!(at);
+        }
+    }
+    let sign = if bound.low.is_some_and(|(at, _)| at >= 0.0) { r"\+?" } else { "[+-]?" };
+    let pattern = format!(r"^\s*{sign}([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*[^0-9]?.*$");
+    json!({ "anyOf": [number, { "type": "string", "pattern": pattern }], "examples": [sample] })
+}
+
+fn tolerances() -> Value {
+    let text_or_number = |low: Option<f64>| {
+        let mut number = json!({ "type": "number" });
+        if let Some(low) = low {
+            number["minimum"] = json!(low);
+        }
+        json!({ "anyOf": [number, { "type": "string" }] })
+    };
+    let terms: Map<String, Value> = TERMS
+        .iter()
+        .map(|(name, doc)| {
+            let low = (*name != "bias").then_some(0.0);
+            ((*name).to_owned(), described(text_or_number(low), doc))
+        })
+        .collect();
+    let bounds: Vec<Value> =
+        TERMS.iter().filter(|(n, _)| *n != "bias").map(|(n, _)| json!({ "required": [n] })).collect();
+    let tolerance = json!({ "anyOf": [
+        { "type": "number", "minimum": 0 },
+        { "type": "string" },
+        { "type": "object", "properties": terms, "additionalProperties": false, "anyOf": bounds },
+    ] });
+    let quantities: Map<String, Value> = gated_names().map(|n| (n, tolerance.clone())).collect();
+    let model = json!({ "type": "object", "properties": quantities, "additionalProperties": false });
+    let models: Map<String, Value> = MODELS.iter().map(|m| (m.name.to_owned(), model.clone())).collect();
+    json!({ "type": "object", "properties": models, "additionalProperties": false })
+}

@@ -1,0 +1,246 @@
+//! Every key a scene file may have: one table that drives reading, checking and the JSON schema.
+
+use super::quantity::Dimension;
+
+/// Valid range of a number, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Bound {
+    /// Lower end and whether it is valid itself.
+    pub(super) low: Option<(f64, bool)>,
+    /// Upper end and whether it is valid itself.
+    pub(super) high: Option<(f64, bool)>,
+}
+
+impl Bound {
+    const POSITIVE: Bound = Bound { low: Some((0.0, false)), high: None };
+    pub(super) const NOT_NEGATIVE: Bound = Bound { low: Some((0.0, true)), high: None };
+    pub(super) const ANY: Bound = Bound { low: None, high: None };
+    /// Lehr's damping ratio of an oscillation: 1 and above does not oscillate.
+    const DAMPING: Bound = Bound { low: Some((0.0, true)), high: Some((1.0, false)) };
+
+    /// Whether `value` is valid.
+    pub(super) fn holds(&self, value: f64) -> bool {
+        let above = self.low.is_none_or(|(b, valid)| value > b || (valid && value == b));
+        let below = self.high.is_none_or(|(b, valid)| value < b || (valid && value == b));
+        value.is_finite() && above && below
+    }
+
+    /// "greater than 0 m", "at least 0 and less than 1".
+    pub(super) fn describe(&self, unit: &str) -> String {
+        let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+        let word = |at: Option<(f64, bool)>, valid: &str, open: &str| {
+            at.map(|(b, v)| format!("{} {b}{unit}", if v { valid } else { open }))
+        };
+        let ends = [word(self.low, "at least", "greater than"), word(self.high, "at most", "less than")];
+        let ends: Vec<String> = ends.into_iter().flatten().collect();
+        if ends.is_empty() { format!("finite{unit}") } else { ends.join(" and ") }
+    }
+}
+
+/// One value of a key that has a fixed set of them.
+#[derive(Debug)]
+pub(super) struct Choice {
+    pub(super) name: &'static str,
+    /// What this version says when it can't run the choice.
+    pub(super) refused: Option<&'static str>,
+}
+
+const fn choice(name: &'static str) -> Choice {
+    Choice { name, refused: None }
+}
+
+const fn refused(name: &'static str, sentence: &'static str) -> Choice {
+    Choice { name, refused: Some(sentence) }
+}
+
+/// What stands behind a key.
+#[derive(Debug)]
+pub(super) enum Kind {
+    /// Any text.
+    Text,
+    /// A text that can name a folder.
+    Name,
+    /// One of a few words.
+    Choice(&'static [Choice]),
+    /// A number with a unit.
+    Quantity(Dimension, Bound),
+    /// A whole number in a range, both ends valid.
+    Count(u64, u64),
+    /// true or false.
+    Flag,
+    /// The name of a table under `[materials]`.
+    Material,
+    /// A table with fixed keys.
+    Table(&'static [Field]),
+    /// A table of tables with fixed keys under names of the user's choice.
+    TableOf(&'static [Field]),
+    /// `[tolerances.<model>]`, see `tolerances.rs`.
+    Tolerances,
+}
+
+/// One key.
+#[derive(Debug)]
+pub(super) struct Field {
+    pub(super) key: &'static str,
+    pub(super) kind: Kind,
+    pub(super) required: bool,
+    /// The key belongs to this `kind` of its table only.
+    pub(super) only: Option<&'static str>,
+    pub(super) doc: &'static str,
+}
+
+const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Field {
+    Field { key, kind, required: true, only: None, doc }
+}
+
+const fn optional(key: &'static str, kind: Kind, doc: &'static str) -> Field {
+    Field { key, kind, required: false, only: None, doc }
+}
+
+const fn only(kind_name: &'static str, field: Field) -> Field {
+    Field { only: Some(kind_name), ..field }
+}
+
+const fn positive(dimension: Dimension) -> Kind {
+    Kind::Quantity(dimension, Bound::POSITIVE)
+}
+
+const fn pure(bound: Bound) -> Kind {
+    Kind::Quantity(Dimension::NONE, bound)
+}
+
+/// Smallest and largest number of elements across the contact radius.
+const ELEMENTS: Bound = Bound { low: Some((2.0, true)), high: Some((64.0, true)) };
+const POISSON: Bound = Bound { low: Some((-1.0, false)), high: Some((0.5, false)) };
+const FRACTION: Bound = Bound { low: Some((0.0, false)), high: Some((1.0, true)) };
+
+/// The names of the reduced models.
+pub(super) const MODELS: [Choice; 3] = [choice("A"), choice("B"), choice("C")];
+
+/// The keys of a scene file.
+pub(super) static SCENE: [Field; 11] = [
+    required("name", Kind::Name, "Name of the scene in the store and in reports"),
+    optional("description", Kind::Text, "One line for people"),
+    required(
+        "kind",
+        Kind::Choice(&[
+            choice("plate-impact"),
+            refused("seal-seat", "this version has no seal-seat scenes; it runs `plate-impact` only"),
+        ]),
+        "What strikes what",
+    ),
+    required("materials", Kind::TableOf(&MATERIAL), "Materials by name"),
+    required("plate", Kind::Table(&PLATE), "Circular plate of constant thickness"),
+    required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above"),
+    required("inner", Kind::Table(&INNER), "The body that rests below the plate"),
+    optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry"),
+    optional("run", Kind::Table(&RUN), "Length of the run"),
+    optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model"),
+    optional("reference", Kind::Table(&REFERENCE), "Settings of the finite-element reference"),
+];
+
+/// Stands apart from [`SCENE`] because its shape is checked by its own reader.
+pub(super) static TOLERANCES: Field =
+    optional("tolerances", Kind::Tolerances, "Tolerances of the gate, by reduced model and quantity");
+
+static MATERIAL: [Field; 3] = [
+    required("youngs_modulus", positive(Dimension::PRESSURE), "Young's modulus E"),
+    required("poisson_ratio", pure(POISSON), "Poisson's ratio nu"),
+    required("density", positive(Dimension::DENSITY), "Density rho"),
+];
+
+static PLATE: [Field; 5] = [
+    required("radius", positive(Dimension::LENGTH), "Radius R of the plate"),
+    required("thickness", positive(Dimension::LENGTH), "Thickness t of the plate"),
+    required(
+        "edge",
+        Kind::Choice(&[choice("clamped"), choice("simply-supported"), choice("free")]),
+        "Support of the rim",
+    ),
+    required("material", Kind::Material, "Material of the plate, a name under [materials]"),
+    optional("damping_ratio", pure(Bound::DAMPING), "Modal damping ratio of every mode; 0 = undamped"),
+];
+
+const SHAPE_KIND: &str = "Shape of the body";
+const SPHERE_RADIUS: Field =
+    only("sphere", required("radius", positive(Dimension::LENGTH), "Radius of the sphere"));
+const COMPACT_MASS: Field = only("compact", required("mass", positive(Dimension::MASS), "Mass of the body"));
+const COMPACT_TIP: Field =
+    only("compact", required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip"));
+const BODY_MATERIAL: Field =
+    required("material", Kind::Material, "Material of the body, a name under [materials]");
+
+static OUTER: [Field; 6] = [
+    required(
+        "kind",
+        Kind::Choice(&[
+            choice("sphere"),
+            choice("compact"),
+            refused("bender", "this version has no bender (beam with a tip mass) as outer body"),
+        ]),
+        SHAPE_KIND,
+    ),
+    SPHERE_RADIUS,
+    COMPACT_MASS,
+    COMPACT_TIP,
+    BODY_MATERIAL,
+    required("speed", positive(Dimension::SPEED), "Speed towards the plate"),
+];
+
+static INNER: [Field; 6] = [
+    required("kind", Kind::Choice(&[choice("sphere"), choice("compact")]), SHAPE_KIND),
+    SPHERE_RADIUS,
+    COMPACT_MASS,
+    COMPACT_TIP,
+    BODY_MATERIAL,
+    optional(
+        "gap",
+        Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
+        "Initial distance to the plate; absent = 0",
+    ),
+];
+
+static FLUID: [Field; 7] = [
+    required("viscosity", positive(Dimension::VISCOSITY), "Dynamic viscosity"),
+    required("density", positive(Dimension::DENSITY), "Density of the fluid"),
+    required("minimum_gap", positive(Dimension::LENGTH), "Minimal gap of eq. (4)"),
+    optional("squeeze_film", Kind::Flag, "Whether the squeeze film of eq. (3) acts; absent = true"),
+    optional(
+        "added_mass_frequency_ratio",
+        pure(FRACTION),
+        "First wet over first dry eigenfrequency; absent = 1, no added mass",
+    ),
+    optional(
+        "plate_damping_ratio",
+        pure(Bound::DAMPING),
+        "Modal damping ratio of the wet plate; absent = that of the dry plate",
+    ),
+    optional("drag_coefficient", pure(Bound::NOT_NEGATIVE), "c_W of eq. (2); absent = 0, no drag"),
+];
+
+static RUN: [Field; 1] = [optional(
+    "end_time",
+    positive(Dimension::TIME),
+    "End time after the first touch; absent = until no further contact is possible",
+)];
+
+static REDUCED: [Field; 2] = [
+    optional("model", Kind::Choice(&MODELS), "The model to run when the command line names none"),
+    optional("modes", Kind::Count(1, 1024), "Number of modes of the plate"),
+];
+
+static REFERENCE: [Field; 2] = [
+    optional(
+        "geometry",
+        Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
+        "Geometry of the elements; absent = axisymmetric",
+    ),
+    optional(
+        "elements_per_contact_radius",
+        pure(ELEMENTS),
+        "Elements across the contact radius at `paper` resolution; absent = 12",
+    ),
+];
+
+/// Default of `reference.elements_per_contact_radius`.
+pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;

@@ -1,0 +1,400 @@
+//! Reading of scene files: what is valid arrives exactly, what is not is refused with field,
+//! value, valid range and line, and nothing else happens.
+
+use impactcheck::scene::{
+    self, Edge, Geometry, MAX_FILE_BYTES, Model, PlateImpact, Problem, Scene, Setup, Shape, problems,
+};
+use impactcheck::{Error, ExitStatus};
+
+const VALID: &str = include_str!("../scenes/scaled-plate-r10.toml");
+
+fn parse(text: &str) -> Scene {
+    Scene::parse("scene.toml", text).expect("valid scene")
+}
+
+fn plate_impact(scene: &Scene) -> &PlateImpact {
+    let Setup::PlateImpact(setup) = &scene.setup;
+    setup
+}
+
+/// The valid scene with `from` replaced once; fails if there is nothing to replace.
+fn edited(from: &str, to: &str) -> String {
+    assert!(VALID.contains(from), "`{from}` is not in the scene");
+    VALID.replacen(from, to, 1)
+}
+
+fn faults(text: &str) -> Vec<Problem> {
+    match Scene::parse("scene.toml", text) {
+        Err(error) => {
+            assert_eq!(error.exit_status(), ExitStatus::InvalidScene);
+            let Error::Scene(report) = error else { panic!("not a scene error") };
+            let rendered = format!("{report:?}");
+            let problems = problems(&report);
+            assert!(!problems.is_empty(), "{rendered}");
+            for problem in &problems {
+                let place = format!("scene.toml:{}:", problem.line);
+                assert!(rendered.contains(&place), "`{place}` is not in\n{rendered}");
+            }
+            problems
+        }
+        Ok(_) => panic!("accepted:\n{text}"),
+    }
+}
+
+/// The one fault of `text` stands in `line` and says all of `words`.
+#[track_caller]
+fn refuses(text: &str, line: usize, words: &[&str]) {
+    let found = faults(text);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    let said = format!("{} / {}", found[0].message, found[0].help.clone().unwrap_or_default());
+    for word in words {
+        assert!(said.contains(word), "`{word}` is not in: {said}");
+    }
+    assert_eq!(found[0].line, line, "{said}");
+}
+
+#[test]
+fn shipped_scene_has_the_values_of_table_1() {
+    let scene = parse(VALID);
+    let setup = plate_impact(&scene);
+    assert_eq!(scene.name, "scaled-plate-r10");
+    assert_eq!((setup.plate.radius, setup.plate.thickness), (0.033, 0.002));
+    assert_eq!(setup.plate.edge, Edge::Clamped);
+    let steel = &setup.plate.material;
+    assert_eq!((steel.youngs_modulus, steel.poisson_ratio, steel.density), (210e9, 0.3, 7780.0));
+    assert_eq!(setup.outer.shape, Shape::Sphere { radius: 0.01 });
+    assert_eq!(setup.outer.speed, 0.55);
+    assert_eq!(setup.inner.gap, 0.0);
+    assert_eq!(setup.fluid, None);
+    assert_eq!(scene.run.end_time, None);
+    assert_eq!((scene.reduced.model, scene.reduced.modes), (Some(Model::B), Some(16)));
+    assert_eq!(scene.reference.geometry, Geometry::Axisymmetric);
+    assert_eq!(scene.reference.elements_per_contact_radius, 12.0);
+}
+
+#[test]
+fn every_shipped_scene_is_valid_and_named_like_its_file() {
+    let paths = scene::shipped().expect("scenes");
+    assert!(paths.len() >= 2 && paths.is_sorted(), "{paths:?}");
+    for path in paths {
+        let scene = Scene::read(&path).expect("valid scene");
+        assert_eq!(Some(scene.name.as_str()), path.file_stem().and_then(|s| s.to_str()));
+        assert_eq!(scene::resolve(&scene.name).expect("by name"), path);
+        assert_eq!(scene::resolve(&path.display().to_string()).expect("by path"), path);
+    }
+}
+
+const FLUID: &str = r#"gap = "2 um"
+[fluid]
+viscosity = "1 mPa*s"
+density = 1000
+minimum_gap = "0.25 um"
+squeeze_film = false
+added_mass_frequency_ratio = 0.3333
+plate_damping_ratio = 0.03
+drag_coefficient = 0.4
+[run]
+end_time = "250 us"
+[reduced]"#;
+
+const TOLERANCES: &str = r#"
+[tolerances.B]
+efficiency = 0.01
+outer_contact_end = { absolute = "0.5 us", bias = "2.8 us" }
+outer_force_peak = { relative = 0.01, bias = -0.021 }
+inner_force_rms = { relative_to_peak = "3 %" }
+energy_residual = 1e-6
+[tolerances.C]
+first_frequency = { absolute = "1 kHz" }
+"#;
+
+#[test]
+fn everything_optional_is_read() {
+    let sphere = "kind     = \"sphere\"\nradius   = \"10 mm\"";
+    let text = edited(sphere, "kind = \"compact\"\nmass = \"32 g\"\ntip_radius = \"4 mm\"")
+        .replace("edge      = \"clamped\"", "edge = \"free\"\ndamping_ratio = 0.01")
+        .replace("[reduced]", FLUID)
+        .replace("axisymmetric", "solid")
+        + TOLERANCES;
+    let scene = parse(&text);
+    let setup = plate_impact(&scene);
+    assert_eq!(setup.outer.shape, Shape::Compact { mass: 0.032, tip_radius: 0.004 });
+    assert_eq!((setup.plate.edge, setup.plate.damping_ratio), (Edge::Free, 0.01));
+    assert_eq!((setup.inner.gap, scene.run.end_time), (2e-6, Some(250e-6)));
+    let fluid = setup.fluid.as_ref().expect("fluid");
+    assert_eq!((fluid.viscosity, fluid.density, fluid.minimum_gap), (1e-3, 1000.0, 0.25e-6));
+    assert_eq!((fluid.squeeze_film, fluid.added_mass_frequency_ratio), (false, 0.3333));
+    assert_eq!((fluid.plate_damping_ratio, fluid.drag_coefficient), (0.03, 0.4));
+    assert_eq!(scene.reference.geometry, Geometry::Solid);
+    let bounds = &scene.tolerances[&Model::B];
+    assert_eq!(bounds["efficiency"].relative, Some(0.01));
+    assert_eq!(bounds["outer_contact_end"].absolute, Some(0.5e-6));
+    assert_eq!(bounds["outer_contact_end"].bias, Some(2.8e-6));
+    assert_eq!(bounds["outer_force_peak"].bias, Some(-0.021));
+    assert_eq!(bounds["inner_force_rms"].relative_to_peak, Some(0.03));
+    assert_eq!(bounds["energy_residual"].absolute, Some(1e-6));
+    assert_eq!(scene.tolerances[&Model::C]["first_frequency"].absolute, Some(1000.0));
+}
+
+#[test]
+fn a_bare_number_is_si() {
+    let bare =
+        edited("\"33 mm\"", "0.033").replace("\"7780 kg/m^3\"", "7780").replace("\"550 mm/s\"", "0.55");
+    assert_eq!(parse(&bare), parse(VALID));
+    assert_eq!(parse(&edited("\"33 mm\"", "\"0.033\"")), parse(VALID), "a text without unit");
+    assert_eq!(parse(&edited("\"33 mm\"", "\"3.3 cm\"")), parse(VALID));
+}
+
+#[test]
+fn numbers_out_of_range_are_refused() {
+    refuses(&edited("\"33 mm\"", "\"-33 mm\""), 11, &["plate.radius", "-33 mm", "greater than 0 m"]);
+    refuses(&edited("\"33 mm\"", "nan"), 11, &["plate.radius", "nan", "finite", "greater than 0 m"]);
+    refuses(&edited("\"33 mm\"", "inf"), 11, &["plate.radius", "inf", "finite", "greater than 0 m"]);
+    refuses(&edited("\"33 mm\"", "-inf"), 11, &["plate.radius", "-inf", "finite"]);
+    refuses(&edited("\"33 mm\"", "1e999"), 11, &["plate.radius", "1e999"]);
+    refuses(&edited("\"33 mm\"", "\"1e999 mm\""), 11, &["plate.radius", "1e999 mm"]);
+    refuses(&edited("\"2 mm\"", "\"0 mm\""), 12, &["plate.thickness", "0 mm", "greater than 0 m"]);
+    refuses(&edited("0.3", "0.5"), 7, &["materials.steel.poisson_ratio", "0.5", "less than 0.5"]);
+    refuses(&edited("0.3", "-1"), 7, &["materials.steel.poisson_ratio", "-1", "greater than -1"]);
+    refuses(&edited("\"550 mm/s\"", "0"), 20, &["outer.speed", "is 0", "greater than 0 m/s"]);
+    refuses(
+        &edited("\n[reduced]", "gap = \"-1 um\"\n[reduced]"),
+        26,
+        &["inner.gap", "-1 um", "at least 0 m"],
+    );
+    refuses(
+        &edited("\n[outer]", "damping_ratio = -0.1\n[outer]"),
+        15,
+        &["plate.damping_ratio", "-0.1", "at least 0"],
+    );
+    refuses(
+        &edited("\n[outer]", "damping_ratio = 1.0\n[outer]"),
+        15,
+        &["plate.damping_ratio", "1.0", "less than 1"],
+    );
+    for count in ["1.9", "65", "-3"] {
+        let text = edited("radius = 12", &format!("radius = {count}"));
+        refuses(&text, 33, &["reference.elements_per_contact_radius", count, "at least 2 and at most 64"]);
+    }
+    for count in ["0", "1025", "-1", "16.5", "\"16\""] {
+        let text = edited("modes = 16", &format!("modes = {count}"));
+        refuses(&text, 29, &["reduced.modes", count, "from 1 to 1024"]);
+    }
+}
+
+#[test]
+fn wrong_units_are_refused() {
+    refuses(&edited("33 mm", "33 kg"), 11, &["plate.radius", "33 kg", "`kg`", "length", "needed", "33 mm"]);
+    refuses(&edited("210 GPa", "210 GN"), 6, &["materials.steel.youngs_modulus", "210 GN", "`GN`", "Pa"]);
+    refuses(&edited("550 mm/s", "550 mm"), 20, &["outer.speed", "550 mm", "m/s"]);
+    refuses(
+        &edited("33 mm", "33 inch"),
+        11,
+        &["plate.radius", "33 inch", "`inch` is not a known unit", "33 mm"],
+    );
+    refuses(&edited("33 mm", "thirty"), 11, &["plate.radius", "thirty", "not a number"]);
+    refuses(&edited("\"33 mm\"", "[33]"), 11, &["plate.radius", "[33]", "array"]);
+    refuses(&edited("\"33 mm\"", "true"), 11, &["plate.radius", "true", "boolean"]);
+}
+
+#[test]
+fn unknown_keys_are_refused_at_every_level() {
+    let extra = |before: &str, key: &str| edited(before, &format!("{key} = 1\n{before}"));
+    refuses(&extra("name  ", "nmae"), 1, &["`nmae`", "did you mean `name`"]);
+    refuses(&extra("youngs_modulus", "densty"), 6, &["materials.steel.densty", "did you mean `density`"]);
+    refuses(&extra("thickness", "raduis"), 12, &["plate.raduis", "did you mean `radius`", "edge"]);
+    refuses(&extra("speed", "sped"), 20, &["outer.sped", "did you mean `speed`"]);
+    refuses(&edited("\n[reduced]", "speed = 1\n[reduced]"), 26, &["inner.speed", "gap"]);
+    refuses(&extra("modes", "mods"), 29, &["reduced.mods", "did you mean `modes`"]);
+    refuses(&extra("geometry", "mesh"), 32, &["reference.mesh", "elements_per_contact_radius"]);
+    refuses(&edited("[reduced]", "[run]\nend = 1\n[reduced]"), 28, &["run.end", "end_time"]);
+    refuses(&edited("[reduced]", "[runs]\n[reduced]"), 27, &["`runs`", "did you mean `run`"]);
+    let fluid = "[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6\nvelocity = 1\n[reduced]";
+    refuses(&edited("[reduced]", fluid), 31, &["fluid.velocity", "viscosity"]);
+    refuses(&edited("speed ", "mass = 1\nspeed "), 20, &["outer.mass", "`sphere`", "`compact`"]);
+}
+
+#[test]
+fn tolerances_are_checked() {
+    let with = |line: &str| format!("{VALID}[tolerances.B]\n{line}\n");
+    let at = VALID.lines().count() + 2;
+    refuses(&with("eficiency = 0.1"), at, &["tolerances.B.eficiency", "did you mean `efficiency`"]);
+    refuses(&with("outer_force_rsm = 0.1"), at, &["tolerances.B.outer_force_rsm", "`outer_force_rms`"]);
+    refuses(&with("efficiency = -0.1"), at, &["tolerances.B.efficiency", "-0.1", "at least 0"]);
+    refuses(&with("efficiency = { absolut = 0.1 }"), at, &["efficiency.absolut", "did you mean `absolute`"]);
+    refuses(&with("efficiency = {}"), at, &["tolerances.B.efficiency", "bounds nothing"]);
+    refuses(&with("efficiency = { bias = 1 }"), at, &["tolerances.B.efficiency", "bounds nothing"]);
+    refuses(&with("efficiency = { absolute = nan }"), at, &["tolerances.B.efficiency.absolute", "nan"]);
+    refuses(&with("energy_residual = { relative = 0.1 }"), at, &["energy_residual.relative", "absolute"]);
+    refuses(
+        &with("outer_contact_end = { absolute = \"1 N\" }"),
+        at,
+        &["outer_contact_end.absolute", "1 N", " s "],
+    );
+    refuses(
+        &with("first_frequency = { relative_to_peak = 1 }"),
+        at,
+        &["first_frequency.relative_to_peak", "no curve"],
+    );
+    refuses(&format!("{VALID}[tolerances.D]\nefficiency = 1"), at - 1, &["tolerances.D", "A, B, C"]);
+    refuses(&format!("{VALID}[tolerances]\nB = 1"), at, &["tolerances.B", "table"]);
+}
+
+#[test]
+fn missing_keys_are_named_with_what_to_add() {
+    refuses(
+        &edited("radius    = \"33 mm\"\n", ""),
+        10,
+        &["plate.radius", "missing", "33 mm", "greater than 0 m"],
+    );
+    refuses(&edited("name        = \"scaled-plate-r10\"\n", ""), 1, &["`name`", "missing"]);
+    refuses(
+        &edited("poisson_ratio  = 0.3\n", ""),
+        5,
+        &["materials.steel.poisson_ratio", "missing", "less than 0.5"],
+    );
+    refuses(&edited("speed    = \"550 mm/s\"\n", ""), 16, &["outer.speed", "missing", "550 mm/s"]);
+    let table = "[inner]\nkind     = \"sphere\"\nradius   = \"10 mm\"\nmaterial = \"steel\"\n";
+    refuses(&edited(table, ""), 1, &["`inner`", "missing", "[inner]"]);
+}
+
+#[test]
+fn words_are_checked() {
+    let material = "material  = \"steel\"";
+    refuses(
+        &edited(material, "material = \"stel\""),
+        14,
+        &["plate.material", "stel", "did you mean `steel`"],
+    );
+    refuses(&edited(material, "material = \"brass\""), 14, &["plate.material", "brass", "there is: steel"]);
+    refuses(&edited("clamped", "glued"), 13, &["plate.edge", "glued", "clamped, simply-supported, free"]);
+    refuses(&edited("model = \"B\"", "model = \"D\""), 28, &["reduced.model", "\"D\"", "A, B, C"]);
+    refuses(
+        &edited("axisymmetric", "axisymetric"),
+        32,
+        &["reference.geometry", "did you mean `axisymmetric`"],
+    );
+    for name in ["", "../x", "a/b", ".hidden", "a b", "a\\\\b", "\u{e4}"] {
+        refuses(&edited("scaled-plate-r10", name), 1, &["`name`", "A-Z a-z 0-9", "dot"]);
+    }
+    refuses(&edited("scaled-plate-r10", &"x".repeat(101)), 1, &["`name`", "1 to 100"]);
+    refuses(&edited("\"scaled-plate-r10\"", "3"), 1, &["`name`", "is 3", "text"]);
+}
+
+#[test]
+fn what_this_version_lacks_is_said_in_its_own_sentence() {
+    refuses(&edited("plate-impact", "seal-seat"), 3, &["this version has no seal-seat"]);
+    let bender =
+        edited("kind     = \"sphere\"\nradius   = \"10 mm\"", "kind = \"bender\"\nlength = \"13 mm\"");
+    refuses(&bender, 17, &["outer.kind", "this version has no bender", "sphere, compact"]);
+    let at = VALID.rfind("\"sphere\"").expect("inner body");
+    let inner = format!("{}\"bender\"{}", &VALID[..at], &VALID[at + 8..]);
+    refuses(&inner, 23, &["inner.kind", "bender", "sphere, compact"]);
+}
+
+#[test]
+fn all_faults_are_told_at_once_in_the_order_of_the_file() {
+    let text = edited("\"33 mm\"", "-1").replace("\"550 mm/s\"", "nan").replace("modes", "mode");
+    let lines: Vec<usize> = faults(&text).iter().map(|p| p.line).collect();
+    assert_eq!(lines, [11, 20, 29]);
+}
+
+#[test]
+fn text_that_is_not_toml_is_refused_with_its_line() {
+    refuses(&edited("\n[outer]", "radius = 1\n[outer]"), 15, &["not valid TOML", "duplicate key"]);
+    refuses(&edited("[outer]", "[plate]\n[outer]"), 16, &["not valid TOML", "duplicate key"]);
+    refuses(&edited("\"33 mm\"", "\"33 mm"), 11, &["not valid TOML"]);
+    refuses(&edited("\"33 mm\"", "33 mm"), 11, &["not valid TOML"]);
+    let deep = format!("x = {}{}", "[".repeat(100_000), "]".repeat(100_000));
+    assert!(Scene::parse("deep.toml", &deep).is_err());
+}
+
+/// What reading `bytes` from a file says.
+fn read_error(bytes: &[u8]) -> String {
+    let file = tempfile::NamedTempFile::new().expect("temporary file");
+    std::fs::write(file.path(), bytes).expect("written");
+    let error = Scene::read(file.path()).expect_err("refused");
+    assert_eq!(error.exit_status(), ExitStatus::InvalidScene);
+    flat(&error)
+}
+
+/// The message without the line breaks and frames of the terminal.
+fn flat(error: &Error) -> String {
+    let text = error.to_string().replace(['\u{2502}', '\u{d7}', '|'], " ");
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn files_that_are_no_scene_are_refused() {
+    assert!(read_error(b"").contains("no content"));
+    assert!(read_error(b"# only a comment\n").contains("no content"));
+    assert!(read_error(b"name = \"x\"\n\0\x01ELF").contains("line 2: not a text file"));
+    assert!(read_error(b"name = \"x\"\n# \xff\n").contains("line 2: not valid UTF-8 (byte 13 is 0xff)"));
+
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let error = Scene::read(folder.path()).expect_err("a folder");
+    assert_eq!(error.exit_status(), ExitStatus::InvalidScene);
+    assert!(flat(&error).contains("is a folder, not a scene file"));
+
+    let missing = folder.path().join("missing.toml");
+    let error = Scene::read(&missing).expect_err("no file");
+    assert_eq!(error.exit_status(), ExitStatus::Usage);
+    assert!(flat(&error).contains("there is no scene file") && flat(&error).contains("missing.toml"));
+}
+
+#[test]
+fn a_file_of_100_mb_is_refused_by_its_size() {
+    let file = tempfile::NamedTempFile::new().expect("temporary file");
+    file.as_file().set_len(100_000_000).expect("sparse file");
+    let error = Scene::read(file.path()).expect_err("too large");
+    assert_eq!(error.exit_status(), ExitStatus::InvalidScene);
+    let said = flat(&error);
+    assert!(said.contains("100000000 bytes") && said.contains("at most 1048576"), "{said}");
+    assert_eq!(MAX_FILE_BYTES, 1_048_576);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_endless_device_is_not_read_to_its_end() {
+    let said = flat(&Scene::read("/dev/zero").expect_err("endless"));
+    assert!(said.contains("more than 1048576 bytes"), "{said}");
+}
+
+#[test]
+fn an_unknown_name_lists_the_shipped_scenes() {
+    let error = scene::resolve("scaled-plate-r1O").expect_err("no such scene");
+    assert_eq!(error.exit_status(), ExitStatus::Usage);
+    assert!(flat(&error).contains("did you mean `scaled-plate-r10`?"), "{error}");
+    assert!(flat(&error).contains("scaled-plate-r6.35"), "{error}");
+    assert!(scene::resolve("").is_err() && scene::resolve("../nothing").is_err());
+}
+
+#[test]
+fn hash_is_the_physics_and_nothing_else() {
+    let hash = |text: &str| parse(text).hash();
+    let original = hash(VALID);
+    assert_eq!(original.len(), 64);
+    for (from, to) in [
+        ("scaled-plate-r10", "other"),
+        ("10 mm spheres", "ten"),
+        ("\"33 mm\"", "0.033"),
+        ("modes = 16", "modes = 8"),
+        ("radius = 12", "radius = 6"),
+        ("[reduced]", "gap = \"-0 mm\"\n[reduced]"),
+    ] {
+        assert_eq!(hash(&edited(from, to)), original, "{from}");
+    }
+    assert_eq!(hash(&VALID.replace("steel", "iron")), original, "a material's name");
+    assert_eq!(hash(&format!("{VALID}[tolerances.B]\nefficiency = 1\n")), original);
+    for (from, to) in [
+        ("33 mm", "33.000001 mm"),
+        ("0.3\n", "0.31\n"),
+        ("clamped", "free"),
+        ("550", "551"),
+        ("[reduced]", "gap = \"1 um\"\n[reduced]"),
+        ("[reduced]", "[run]\nend_time = \"1 ms\"\n[reduced]"),
+        ("[reduced]", "[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6\n[reduced]"),
+    ] {
+        assert_ne!(hash(&edited(from, to)), original, "{from}");
+    }
+}

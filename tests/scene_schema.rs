@@ -1,0 +1,118 @@
+//! The JSON schema for editors: it accepts the shipped scenes and refuses what the reader refuses.
+
+use impactcheck::scene::{Scene, schema, shipped};
+use serde_json::{Map, Value, json};
+
+/// Whether `schema` accepts `value`: the keywords of draft 2020-12 that the schema uses, apart
+/// from `pattern`. A keyword it does not know fails the test.
+fn accepts(schema: &Value, value: &Value) -> bool {
+    if let Some(flag) = schema.as_bool() {
+        return flag;
+    }
+    let schema = schema.as_object().expect("a schema is an object or a boolean");
+    schema.iter().all(|(keyword, rule)| accepts_keyword(schema, keyword, rule, value))
+}
+
+fn accepts_keyword(schema: &Map<String, Value>, keyword: &str, rule: &Value, value: &Value) -> bool {
+    let all = |rule: &Value| rule.as_array().expect("array").clone();
+    let number = |check: fn(f64, f64) -> bool| {
+        value.as_f64().is_none_or(|v| check(v, rule.as_f64().expect("numeric bound")))
+    };
+    match keyword {
+        "$schema" | "title" | "description" | "examples" | "then" | "pattern" => true,
+        "type" => match rule.as_str().expect("type") {
+            "object" => value.is_object(),
+            "string" => value.is_string(),
+            "boolean" => value.is_boolean(),
+            "number" => value.is_number(),
+            "integer" => value.is_u64() || value.is_i64(),
+            other => panic!("unknown type {other}"),
+        },
+        "const" => value == rule,
+        "enum" => all(rule).contains(value),
+        "minimum" => number(|v, bound| v >= bound),
+        "maximum" => number(|v, bound| v <= bound),
+        "exclusiveMinimum" => number(|v, bound| v > bound),
+        "exclusiveMaximum" => number(|v, bound| v < bound),
+        "maxLength" => value.as_str().is_none_or(|s| s.len() as u64 <= rule.as_u64().expect("length")),
+        "anyOf" => all(rule).iter().any(|s| accepts(s, value)),
+        "allOf" => all(rule).iter().all(|s| accepts(s, value)),
+        "if" => !accepts(rule, value) || accepts(&schema["then"], value),
+        "required" => all(rule).iter().all(|k| value.get(k.as_str().expect("key")).is_some()),
+        "properties" => rule
+            .as_object()
+            .expect("object")
+            .iter()
+            .all(|(key, s)| value.get(key).is_none_or(|v| accepts(s, v))),
+        "additionalProperties" => value.as_object().is_none_or(|map| {
+            let known = schema.get("properties");
+            map.iter()
+                .filter(|(k, _)| known.and_then(|p| p.get(k.as_str())).is_none())
+                .all(|(_, v)| accepts(rule, v))
+        }),
+        other => panic!("the schema uses `{other}`, which this test does not check"),
+    }
+}
+
+fn scene_json(text: &str) -> Value {
+    let value: toml::Value = toml::from_str(text).expect("TOML");
+    serde_json::to_value(value).expect("JSON")
+}
+
+const VALID: &str = include_str!("../scenes/scaled-plate-r10.toml");
+
+#[test]
+fn schema_accepts_the_shipped_scenes() {
+    let schema = schema();
+    assert_eq!(schema["$schema"], json!("https://json-schema.org/draft/2020-12/schema"));
+    for path in shipped().expect("scenes") {
+        let text = std::fs::read_to_string(&path).expect("scene");
+        assert!(accepts(&schema, &scene_json(&text)), "{}", path.display());
+    }
+}
+
+#[test]
+fn schema_and_reader_agree() {
+    let schema = schema();
+    let compact = "kind = \"compact\"\nmass = 0.1\ntip_radius = 0.01";
+    let fluid = "[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6\n[reduced]";
+    let tolerances = "[tolerances.B]\nefficiency = 0.1\nouter_force_rms = { relative_to_peak = 0.1, bias = -1 }\n[reduced]";
+    let sphere = "kind     = \"sphere\"\nradius   = \"10 mm\"";
+    for (from, to, valid) in [
+        ("modes", "modes", true),
+        ("\"33 mm\"", "0.033", true),
+        (sphere, compact, true),
+        ("[reduced]", fluid, true),
+        ("[reduced]", tolerances, true),
+        ("[reduced]", "[run]\nend_time = 1\n[reduced]", true),
+        ("description", "#", true),
+        ("\"33 mm\"", "-0.033", false),
+        ("\"33 mm\"", "0", false),
+        ("\"33 mm\"", "true", false),
+        ("0.3", "0.5", false),
+        ("modes = 16", "modes = 0", false),
+        ("modes = 16", "modes = 1025", false),
+        ("radius = 12", "radius = 1", false),
+        ("radius = 12", "radius = 65", false),
+        ("clamped", "glued", false),
+        ("plate-impact", "seal-seat", false),
+        ("\"sphere\"", "\"bender\"", false),
+        ("\"sphere\"", "\"compact\"", false),
+        ("model = \"B\"", "model = \"D\"", false),
+        ("speed ", "mass = 1\nspeed ", false),
+        ("speed ", "sped ", false),
+        ("name ", "nmae ", false),
+        ("youngs_modulus", "youngs", false),
+        ("[reduced]", "[runs]\n[reduced]", false),
+        ("[reduced]", "[run]\nend = 1\n[reduced]", false),
+        ("[reduced]", "[tolerances.D]\n[reduced]", false),
+        ("[reduced]", "[tolerances.B]\nefficency = 0.1\n[reduced]", false),
+        ("[reduced]", "[tolerances.B]\nefficiency = { bias = 0.1 }\n[reduced]", false),
+        ("[reduced]", "[tolerances.B]\nefficiency = { absolut = 0.1 }\n[reduced]", false),
+    ] {
+        assert!(VALID.contains(from), "`{from}` is not in the scene");
+        let text = VALID.replacen(from, to, 1);
+        assert_eq!(Scene::parse("scene.toml", &text).is_ok(), valid, "reader, {to}");
+        assert_eq!(accepts(&schema, &scene_json(&text)), valid, "schema, {to}");
+    }
+}
