@@ -118,7 +118,7 @@ pub struct StepTable {
 impl StepTable {
     /// Tables of `system` for steps of length `h` s.
     pub fn new(system: &System, collocation: &Collocation, h: f64) -> Self {
-        let n = system.len();
+        let n = system.size();
         let zeros = |rows: usize| vec![0.0; rows * n];
         let mut table = Self {
             h,

@@ -7,6 +7,7 @@ mod free_flight;
 mod history;
 pub mod integrator;
 mod recorder;
+pub mod reduced;
 mod summary;
 pub mod system;
 

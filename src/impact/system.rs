@@ -81,15 +81,15 @@ impl System {
     }
 
     /// Number of oscillators.
-    pub fn len(&self) -> usize {
+    pub fn size(&self) -> usize {
         self.oscillators.len()
     }
 
     /// Coordinates and their rates at t = 0, when the outer body touches. Shapes (n).
     pub fn initial_state(&self) -> (Vec<f64>, Vec<f64>) {
-        let mut rates = vec![0.0; self.len()];
+        let mut rates = vec![0.0; self.size()];
         rates[OUTER] = -self.speed * self.masses[0].sqrt();
-        (vec![0.0; self.len()], rates)
+        (vec![0.0; self.size()], rates)
     }
 
     /// Kinetic energy of the outer body before the impact in J.

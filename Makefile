@@ -1,0 +1,61 @@
+# make test      installs what is missing (Debian, root or sudo) and runs every check
+# make setup     only the installation
+# make report    the report of the shipped scenes, into reports/
+# make solutions computes the stored references of the shipped scenes again
+# make evidence  slow evidence: convergence of the references over three meshes
+
+# The python that has (or gets) FEniCSx; Debian's packages belong to /usr/bin/python3.
+PYTHON := $(or $(IMPACTCHECK_PYTHON),/usr/bin/python3)
+SUDO   := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
+DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc
+VENV   := target/python-tools
+TOOL   := $(VENV)/bin/python
+RUN    := cargo run --release --quiet --
+OUT    := target/check
+SCENES := $(basename $(notdir $(wildcard scenes/*.toml)))
+
+.PHONY: test setup rust python live gate report solutions evidence
+
+test: setup rust python live gate
+	@echo "all checks passed"
+
+setup:
+	@$(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" 2>/dev/null || \
+	    { $(SUDO) apt-get update && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y $(DEBIAN); }
+	@[ -x $(VENV)/bin/ruff ] && [ -x $(VENV)/bin/mypy ] || \
+	    { $(PYTHON) -m venv --system-site-packages $(VENV) && $(TOOL) -m pip install --quiet ruff mypy; }
+
+rust:
+	cargo fmt --check
+	cargo clippy --release --all-targets -- -D warnings
+	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release; else cargo test --release; fi
+	cargo test --release --doc
+	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --quiet
+
+python: setup
+	$(VENV)/bin/ruff check fem_reference
+	$(VENV)/bin/ruff format --check fem_reference
+	$(TOOL) -m mypy fem_reference
+	$(PYTHON) -m pytest -q fem_reference
+
+# a live finite-element run on coarse meshes, and the gate on what it gives
+live: setup
+	rm -rf $(OUT)/live
+	$(RUN) doctor
+	$(RUN) --store $(OUT)/live/store reference scaled-plate-r10 --resolution coarse
+	$(RUN) --store $(OUT)/live/store gate scaled-plate-r10 --resolution coarse --out $(OUT)/live/report
+
+# the gate on the stored references
+gate:
+	$(RUN) gate --out $(OUT)/gate --junit $(OUT)/gate/junit.xml
+
+report:
+	$(RUN) compare
+
+solutions: setup
+	for scene in $(SCENES); do for resolution in coarse paper fine; do \
+	    $(RUN) reference $$scene --resolution $$resolution --fresh || exit 1; done; done
+
+evidence: setup
+	for scene in $(SCENES); do for resolution in coarse paper fine; do \
+	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution $$resolution || exit 1; done; done

@@ -1,0 +1,35 @@
+//! An independent, slow integration of the reduced model: classical Runge-Kutta with a fixed small step.
+
+use impactcheck::impact::system::System;
+
+/// Velocities of outer and inner body in m/s after `steps` steps of `h` s.
+pub fn final_velocities(system: &System, h: f64, steps: usize) -> [f64; 2] {
+    let n = system.size();
+    let (q, v) = system.initial_state();
+    let mut state: Vec<f64> = q.into_iter().chain(v).collect();
+    let rate = |state: &[f64]| -> Vec<f64> {
+        let (q, v) = state.split_at(n);
+        let forces = system.forces(system.modal_approach(q)).expect("equilibrium");
+        let acceleration = (0..n).map(|k| {
+            let o = system.oscillators[k];
+            -2.0 * o.alpha * v[k]
+                - o.omega.powi(2) * q[k]
+                - system.approach[0][k] * forces[0]
+                - system.approach[1][k] * forces[1]
+        });
+        v.iter().copied().chain(acceleration).collect()
+    };
+    let add = |state: &[f64], k: &[f64], c: f64| -> Vec<f64> {
+        state.iter().zip(k).map(|(s, k)| s + c * k).collect()
+    };
+    for _ in 0..steps {
+        let k1 = rate(&state);
+        let k2 = rate(&add(&state, &k1, 0.5 * h));
+        let k3 = rate(&add(&state, &k2, 0.5 * h));
+        let k4 = rate(&add(&state, &k3, h));
+        for i in 0..2 * n {
+            state[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+        }
+    }
+    [state[n] / system.masses[0].sqrt(), state[n + 1] / system.masses[1].sqrt()]
+}
