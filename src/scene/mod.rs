@@ -4,6 +4,7 @@
 //! reference, comparison) takes it by reference. Its JSON form (SI numbers only) is what
 //! the finite-element side receives, and its physical part is what [`Scene::hash`] identifies.
 
+mod advice;
 mod check;
 mod find;
 pub(crate) mod hash;
