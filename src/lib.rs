@@ -7,6 +7,7 @@ pub mod body;
 pub mod error;
 pub mod impact;
 pub mod project;
+pub mod reference;
 pub mod scene;
 
 pub use error::{Error, ExitStatus, Result};

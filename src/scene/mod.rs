@@ -19,6 +19,7 @@ pub use find::{resolve, shipped};
 pub use problem::{Problem, Problems, problems};
 pub use read::MAX_FILE_BYTES;
 pub use schema::schema;
+pub(crate) use specification::unit_of;
 
 use serde::Serialize;
 use std::collections::BTreeMap;
