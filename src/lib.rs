@@ -9,6 +9,7 @@ pub mod contact;
 pub mod error;
 pub mod impact;
 pub mod project;
+pub mod reference;
 pub mod scene;
 
 pub use error::{Error, ExitStatus, Result};

@@ -1,5 +1,6 @@
 //! Walks the tree of a TOML file along the specification and notes every fault.
 
+use super::advice::{alternatives, chosen, example, needed};
 use super::problem::{Collector, did_you_mean};
 use super::quantity::{self, Dimension, QuantityError};
 use super::specification::{Bound, Choice, Field, Kind};
@@ -323,48 +324,3 @@ impl<'a> Checker<'a> {
 
 /// Longest name of a scene: it is a folder's name, and report files add an ending.
 pub(super) const MAX_NAME: usize = 100;
-
-fn chosen<'f>(field: &'f Field, value: &Spanned<DeValue>) -> Option<&'f Choice> {
-    let Kind::Choice(choices) = &field.kind else { return None };
-    let text = value.get_ref().as_str()?;
-    choices.iter().find(|c| c.name == text)
-}
-
-fn alternatives(field: &Field) -> String {
-    let Kind::Choice(choices) = &field.kind else { return String::new() };
-    let names: Vec<&str> = choices.iter().filter(|c| c.refused.is_none()).map(|c| c.name).collect();
-    format!("it can be: {}", names.join(", "))
-}
-
-/// What a key of this kind has to be, and how to write it.
-fn needed(kind: &Kind, path: &str) -> (&'static str, String) {
-    match kind {
-        Kind::Choice(choices) => {
-            let names: Vec<&str> = choices.iter().map(|c| c.name).collect();
-            ("a text", format!("write one of: \"{}\"", names.join("\", \"")))
-        }
-        Kind::Flag => ("true or false", "write true or false, without quotes".to_owned()),
-        Kind::Table(_) | Kind::TableOf(_) | Kind::Tolerances => {
-            ("a table", format!("write a table [{path}]"))
-        }
-        _ => ("a text", "write a text in quotes".to_owned()),
-    }
-}
-
-/// An example of a missing key.
-fn example(place: &Place, field: &Field) -> String {
-    let (key, doc) = (field.key, field.doc);
-    match &field.kind {
-        Kind::Table(_) => format!("a table [{}]: {doc}", place.key(key)),
-        Kind::TableOf(_) => format!("a table [{}.steel]: {doc}", place.key(key)),
-        Kind::Quantity(dimension, bound) => {
-            let (_, unit, sample) = dimension.describe();
-            let quote = if *dimension == Dimension::NONE { "" } else { "\"" };
-            format!("`{key} = {quote}{sample}{quote}`: {doc}, {}", bound.describe(unit))
-        }
-        Kind::Choice(choices) => format!("`{key} = \"{}\"`: {doc}; {}", choices[0].name, alternatives(field)),
-        Kind::Count(low, _) => format!("`{key} = {low}`: {doc}"),
-        Kind::Flag => format!("`{key} = true`: {doc}"),
-        _ => format!("`{key} = \"...\"`: {doc}"),
-    }
-}

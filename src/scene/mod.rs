@@ -4,6 +4,7 @@
 //! reference, comparison) takes it by reference. Its JSON form (SI numbers only) is what
 //! the finite-element side receives, and its physical part is what [`Scene::hash`] identifies.
 
+mod advice;
 mod check;
 mod find;
 pub(crate) mod hash;
@@ -18,6 +19,7 @@ pub use find::{resolve, shipped};
 pub use problem::{Problem, Problems, problems};
 pub use read::MAX_FILE_BYTES;
 pub use schema::schema;
+pub(crate) use specification::unit_of;
 
 use serde::Serialize;
 use std::collections::BTreeMap;

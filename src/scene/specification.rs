@@ -244,3 +244,19 @@ static REFERENCE: [Field; 2] = [
 
 /// Default of `reference.elements_per_contact_radius`.
 pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;
+
+/// The SI unit of the quantity at `path` in a scene's JSON form, such as `plate.material.density`.
+pub(crate) fn unit_of(path: &str) -> Option<&'static str> {
+    let mut fields: &[Field] = &SCENE;
+    let mut unit = None;
+    for key in path.split('.') {
+        match fields.iter().find(|f| f.key == key)?.kind {
+            Kind::Table(inner) => fields = inner,
+            // In JSON a material stands where it is used.
+            Kind::Material => fields = &MATERIAL,
+            Kind::Quantity(dimension, _) => unit = Some(dimension.describe().1),
+            _ => {}
+        }
+    }
+    unit
+}

@@ -141,7 +141,8 @@ impl Checker<'_> {
         };
         let mut tolerance = Tolerance::default();
         let mut sound = true;
-        let only_absolute = !terms.contains_key("relative") && !terms.contains_key("relative_to_peak");
+        // The bias stands with the first bound there is: relative, absolute, relative to the peak.
+        let absolute_bias = !terms.contains_key("relative") && terms.contains_key("absolute");
         for (key, value) in terms {
             let path = place.key(key.get_ref());
             let term = Place { path: &path, span: key.span() };
@@ -153,7 +154,7 @@ impl Checker<'_> {
                     (Dimension::NONE, Bound::NOT_NEGATIVE, &mut tolerance.relative_to_peak)
                 }
                 "absolute" => (gated.dimension, Bound::NOT_NEGATIVE, &mut tolerance.absolute),
-                "bias" if only_absolute => (gated.dimension, Bound::ANY, &mut tolerance.bias),
+                "bias" if absolute_bias => (gated.dimension, Bound::ANY, &mut tolerance.bias),
                 "bias" => (Dimension::NONE, Bound::ANY, &mut tolerance.bias),
                 other => {
                     sound = false;

@@ -1,0 +1,119 @@
+//! A running `fem_reference`: its progress, what it says when it fails, and its end.
+
+use serde::Deserialize;
+use std::collections::VecDeque;
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
+use std::thread::JoinHandle;
+
+/// How far a solver is.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Progress {
+    /// What it does: mesh, assembly, stepping, writing.
+    pub phase: String,
+    /// Share of the phase that is done, 0 to 1.
+    pub done: f64,
+    /// For people.
+    pub message: String,
+}
+
+/// One line a solver writes to its standard output.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Line {
+    Progress(Progress),
+    Error { phase: ErrorPhase, message: String },
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum ErrorPhase {
+    Error,
+}
+
+/// How a solver ended.
+#[derive(Debug)]
+pub(super) struct Ending {
+    pub(super) status: ExitStatus,
+    /// The message of its error line.
+    pub(super) error: Option<String>,
+    /// The first line that was neither progress nor error.
+    pub(super) stray: Option<String>,
+    /// The last lines of its standard error.
+    pub(super) log: String,
+}
+
+/// Longest line that is looked at, in bytes.
+const MAX_LINE: u64 = 1 << 16;
+/// Lines of standard error that are kept.
+const LOG_LINES: usize = 12;
+/// Characters of a line that are shown.
+const SHOWN: usize = 200;
+
+/// A child that does not outlive its owner, however that ends.
+struct Guarded(Child);
+
+impl Drop for Guarded {
+    fn drop(&mut self) {
+        // Both do nothing to a child that has ended and been waited for.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Runs `command` to its end, handing on its progress. If this process dies, the child's next
+/// line of progress finds the pipe closed and ends it; Ctrl-C in a terminal reaches both.
+///
+/// # Errors
+/// What the system says if the program can't be started or waited for.
+pub(super) fn run(mut command: Command, progress: &mut dyn FnMut(&Progress)) -> std::io::Result<Ending> {
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = Guarded(command.spawn()?);
+    let log = child.0.stderr.take().map(|stderr| std::thread::spawn(move || tail(stderr)));
+    let (error, stray) = match child.0.stdout.take() {
+        Some(stdout) => listen(stdout, progress)?,
+        None => (None, None),
+    };
+    let status = child.0.wait()?;
+    let log = log.and_then(|thread: JoinHandle<String>| thread.join().ok()).unwrap_or_default();
+    Ok(Ending { status, error, stray, log })
+}
+
+fn listen(
+    stdout: ChildStdout,
+    progress: &mut dyn FnMut(&Progress),
+) -> std::io::Result<(Option<String>, Option<String>)> {
+    let mut reader = BufReader::new(stdout);
+    let (mut error, mut stray) = (None, None);
+    while let Some(text) = next_line(&mut reader)? {
+        match serde_json::from_str(&text) {
+            Ok(Line::Progress(step)) => progress(&step),
+            Ok(Line::Error { phase: ErrorPhase::Error, message }) => error = Some(message),
+            Err(_) if text.is_empty() || stray.is_some() => {}
+            Err(_) => stray = Some(text.chars().take(SHOWN).collect()),
+        }
+    }
+    Ok((error, stray))
+}
+
+/// The next line, trimmed, bytes that are no text replaced; `None` at the end.
+fn next_line(reader: &mut impl BufRead) -> std::io::Result<Option<String>> {
+    let mut bytes = Vec::new();
+    let count = reader.take(MAX_LINE).read_until(b'\n', &mut bytes)?;
+    Ok((count > 0).then(|| String::from_utf8_lossy(&bytes).trim().to_owned()))
+}
+
+/// The last lines of a stream, read to its end so that the writer never waits.
+fn tail(stream: impl Read) -> String {
+    let mut reader = BufReader::new(stream);
+    let mut lines = VecDeque::new();
+    while let Ok(Some(line)) = next_line(&mut reader) {
+        if !line.is_empty() {
+            lines.push_back(line.chars().take(SHOWN).collect::<String>());
+        }
+        if lines.len() > LOG_LINES {
+            lines.pop_front();
+        }
+    }
+    Vec::from(lines).join("\n")
+}

@@ -1,0 +1,125 @@
+//! One stored solution: a folder whose files are verified before they are believed.
+
+use super::history_file;
+use crate::impact::{Outcome, SCHEMA_VERSION, Source, Summary};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// A solution whose files are intact.
+///
+/// `outcome.summary.samples` may differ from the number of rows of the history: both are kept
+/// as found, and the comparison makes a failed check of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stored {
+    /// Summary and history.
+    pub outcome: Outcome,
+    /// What it was made from and with: `provenance.json`.
+    pub provenance: Value,
+    /// Where it lies.
+    pub folder: PathBuf,
+}
+
+/// A file that is not what it should be.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Damage {
+    pub(super) file: PathBuf,
+    pub(super) reason: String,
+}
+
+const CHECKSUMS: &str = "checksums.sha256";
+const SUMMARY: &str = "summary.json";
+const HISTORY: &str = "history.csv";
+const PROVENANCE: &str = "provenance.json";
+const REQUIRED: [&str; 4] = [SUMMARY, HISTORY, "mesh.vtu", PROVENANCE];
+
+/// Verifies the folder's checksums and reads it.
+pub(super) fn load(folder: &Path) -> Result<Stored, Damage> {
+    verify(folder)?;
+    let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
+    let summary: Summary = read_json(folder, SUMMARY)?;
+    let provenance: Value = read_json(folder, PROVENANCE)?;
+    let history = history_file::read(&folder.join(HISTORY)).map_err(|reason| damage(HISTORY, reason))?;
+    if summary.schema_version != SCHEMA_VERSION {
+        let reason =
+            format!("schema_version is {}; this program reads {SCHEMA_VERSION}", summary.schema_version);
+        return Err(damage(SUMMARY, reason));
+    }
+    if summary.source != Source::Reference {
+        return Err(damage(SUMMARY, "source is not `reference`".to_owned()));
+    }
+    if provenance["scene_hash"] != summary.scene_hash.as_str() {
+        let reason =
+            format!("scene_hash is {}, but {} in {SUMMARY}", provenance["scene_hash"], summary.scene_hash);
+        return Err(damage(PROVENANCE, reason));
+    }
+    Ok(Stored { outcome: Outcome { summary, history }, provenance, folder: folder.to_path_buf() })
+}
+
+/// Text of the checksum file; what tells one version of an entry from the next.
+pub(super) fn fingerprint(folder: &Path) -> Option<String> {
+    std::fs::read_to_string(folder.join(CHECKSUMS)).ok()
+}
+
+fn read_json<T: serde::de::DeserializeOwned>(folder: &Path, name: &str) -> Result<T, Damage> {
+    let file = folder.join(name);
+    let fail = |reason: String| Damage { file: file.clone(), reason };
+    let text = std::fs::read_to_string(&file).map_err(|e| fail(format!("can't be read: {e}")))?;
+    serde_json::from_str(&text).map_err(|e| fail(format!("is not what is expected: {e}")))
+}
+
+fn verify(folder: &Path) -> Result<(), Damage> {
+    let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
+    let text = std::fs::read_to_string(folder.join(CHECKSUMS))
+        .map_err(|e| damage(CHECKSUMS, format!("can't be read: {e}")))?;
+    let listed = parse_checksums(&text).map_err(|reason| damage(CHECKSUMS, reason))?;
+    if let Some(name) = REQUIRED.iter().find(|name| !listed.contains_key(**name)) {
+        return Err(damage(CHECKSUMS, format!("does not list {name}")));
+    }
+    for (name, expected) in listed {
+        let found =
+            sha256_file(&folder.join(name)).map_err(|e| damage(name, format!("can't be read: {e}")))?;
+        if !found.eq_ignore_ascii_case(expected) {
+            return Err(damage(name, format!("its SHA-256 is {found}, recorded is {expected}")));
+        }
+    }
+    Ok(())
+}
+
+/// File names and their checksums from the text of `sha256sum`.
+fn parse_checksums(text: &str) -> Result<BTreeMap<&str, &str>, String> {
+    let mut listed = BTreeMap::new();
+    for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        let malformed = || format!("line {}: `{line}` is not a checksum and a file name", index + 1);
+        let (sum, name) = line.split_once(' ').ok_or_else(malformed)?;
+        // After one space stands the mode: a space for text, an asterisk for binary.
+        let name = name.strip_prefix([' ', '*']).ok_or_else(malformed)?;
+        let is_hash = sum.len() == 64 && sum.bytes().all(|b| b.is_ascii_hexdigit());
+        // A name that leads elsewhere would make this verify a file of someone else.
+        if !is_hash || name.is_empty() || name.starts_with('.') || name.contains(['/', '\\']) {
+            return Err(malformed());
+        }
+        listed.insert(name, sum);
+    }
+    Ok(listed)
+}
+
+fn sha256_file(path: &Path) -> std::io::Result<String> {
+    let mut hasher = Sha256::new();
+    let mut file = std::fs::File::open(path)?;
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        let count = std::io::Read::read(&mut file, &mut buffer)?;
+        if count == 0 {
+            break;
+        }
+        hasher.update(&buffer[..count]);
+    }
+    Ok(hasher.finalize().iter().fold(String::new(), |mut text, byte| {
+        // Writing into a string can't fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}

@@ -1,0 +1,101 @@
+//! Computes a reference: one run of `fem_reference`, whose result enters the store when it is proven.
+
+use super::child::{self, Ending, Progress};
+use super::entry::{self, Stored};
+use super::{Resolution, Store, identity, python};
+use crate::scene::Scene;
+use crate::{Error, Result};
+use std::ffi::OsStr;
+use std::path::Path;
+
+/// Computes the reference of `scene` at `resolution` and puts it into `store`.
+///
+/// The result is verified first: checksums, format, and that it is one of this scene with these
+/// settings. Until then an older entry stays, and a failed run leaves the store as it was.
+///
+/// # Errors
+/// [`Error::Scene`] if the solver does not support the scene, [`Error::Solver`] if there is no
+/// solver or it fails, [`Error::Io`] if the store can't be written.
+pub fn solve(
+    scene: &Scene,
+    resolution: Resolution,
+    store: &Store,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Stored> {
+    solve_with(&python::python()?, scene, resolution, store, progress)
+}
+
+/// As [`solve`], with the interpreter `python`.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_with(
+    python: &Path,
+    scene: &Scene,
+    resolution: Resolution,
+    store: &Store,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Stored> {
+    let work = store.work_folder(scene)?;
+    let input = work.path().join("scene.json");
+    let output = work.path().join("result");
+    let document = identity::solver_document(scene, resolution)?;
+    std::fs::write(&input, format!("{document:#}\n")).map_err(|e| Error::io("writing", &input, e))?;
+
+    let mut command = python::fem_reference(python);
+    command.args([OsStr::new("solve"), OsStr::new("--scene"), input.as_os_str()]);
+    command.args([OsStr::new("--out"), output.as_os_str()]);
+    command.args(["--resolution", resolution.name()]);
+    let ending = child::run(command, progress)
+        .map_err(|e| Error::Solver(format!("{} can't be run: {e}", python.display())))?;
+    if !ending.status.success() {
+        return Err(failure(&ending));
+    }
+
+    let unusable = |reason: String| {
+        let stray = ending.stray.as_ref().map(|s| format!("; it printed `{s}`")).unwrap_or_default();
+        Error::Solver(format!("the reference's solver ended well, but {reason}{stray}{}", log(&ending)))
+    };
+    if !output.is_dir() {
+        return Err(unusable("it wrote no result".to_owned()));
+    }
+    let stored = entry::load(&output).map_err(|d| {
+        let file = d.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        unusable(format!("its {file} {}", d.reason))
+    })?;
+    if let Some(reason) = identity::staleness(&stored.provenance, scene, resolution)? {
+        return Err(unusable(format!("its result is not one of this scene: {reason}")));
+    }
+    let folder = store.install(&work, &output, scene, resolution)?;
+    Ok(Stored { folder, ..stored })
+}
+
+/// The error a failed run ends with.
+fn failure(ending: &Ending) -> Error {
+    // Without an exit code a signal ended it: someone killed it, or the memory ran out.
+    let Some(code) = ending.status.code() else {
+        return Error::Solver(format!(
+            "the reference's solver was ended before it was done ({}); nothing was stored{}",
+            ending.status,
+            log(ending)
+        ));
+    };
+    match &ending.error {
+        Some(message) if code == 3 => {
+            let help = "the reduced models may run this scene; the finite-element reference does not";
+            Error::Scene(miette::miette!(help = help, "the reference can't run this scene: {message}"))
+        }
+        Some(message) => Error::Solver(format!("the reference's solver failed: {message}")),
+        None => {
+            let stray = ending.stray.as_ref().map(|s| format!("; it printed `{s}`")).unwrap_or_default();
+            Error::Solver(format!(
+                "the reference's solver failed (exit status {code}) without saying why{stray}{}",
+                log(ending)
+            ))
+        }
+    }
+}
+
+fn log(ending: &Ending) -> String {
+    if ending.log.is_empty() { String::new() } else { format!("; its last messages:\n{}", ending.log) }
+}

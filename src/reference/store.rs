@@ -1,0 +1,188 @@
+//! The store: one folder per scene and resolution under a root.
+//!
+//! Entries appear by renaming a complete folder, so a reader never sees half of one. Work in
+//! progress lies in `.partial-*` folders that hold a locked file while their maker lives.
+
+use super::entry::{self, Damage, Stored};
+use super::{Resolution, identity};
+use crate::project::project_root;
+use crate::scene::Scene;
+use crate::{Error, Result};
+use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+/// Environment variable that names the root of the store.
+const STORE_VARIABLE: &str = "IMPACTCHECK_STORE";
+const PARTIAL_PREFIX: &str = ".partial-";
+const LOCK: &str = "lock";
+/// A leftover whose lock can't be asked about goes after this time.
+const LEFTOVER_AGE: Duration = Duration::from_secs(24 * 3600);
+/// A folder this young may not have its lock yet.
+const LOCK_GRACE: Duration = Duration::from_secs(10);
+
+/// Where reference solutions are kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Store {
+    root: PathBuf,
+}
+
+/// What the store has for a scene at a resolution.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Lookup {
+    /// A solution of exactly this scene with exactly these settings.
+    Found(Box<Stored>),
+    /// There is none.
+    Missing,
+    /// There is one of another scene or with other settings.
+    Stale {
+        /// What changed, with old and new value.
+        reason: String,
+    },
+    /// There is one that can't be used.
+    Damaged {
+        /// The file at fault.
+        file: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl From<Damage> for Lookup {
+    fn from(damage: Damage) -> Self {
+        Lookup::Damaged { file: damage.file, reason: damage.reason }
+    }
+}
+
+impl Store {
+    /// The store at `root`, else at the environment variable `IMPACTCHECK_STORE`, else the
+    /// project's own (`fem_reference/solutions`). Nothing is created.
+    pub fn open(root: Option<&Path>) -> Store {
+        let variable = || std::env::var_os(STORE_VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
+        let root = root.map(Path::to_path_buf).or_else(variable);
+        Store { root: root.unwrap_or_else(|| project_root().join("fem_reference").join("solutions")) }
+    }
+
+    /// The folder all entries lie in.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// The folder of the entry of `scene` at `resolution`, whether it exists or not.
+    pub fn folder(&self, scene: &Scene, resolution: Resolution) -> PathBuf {
+        self.root.join(&scene.name).join(resolution.name())
+    }
+
+    /// Looks for the solution of `scene` at `resolution`. Every file is verified by its checksum.
+    pub fn find(&self, scene: &Scene, resolution: Resolution) -> Lookup {
+        let folder = self.folder(scene, resolution);
+        loop {
+            let before = entry::fingerprint(&folder);
+            let lookup = examine(&folder, scene, resolution);
+            // An entry that is replaced while it is read looks damaged or gone, but is neither.
+            let replaced = before.is_some() && entry::fingerprint(&folder) != before;
+            if !replaced || matches!(lookup, Lookup::Found(_)) {
+                return lookup;
+            }
+        }
+    }
+
+    /// A new work folder on the file system of the entry, after removing what dead runs left.
+    pub(super) fn work_folder(&self, scene: &Scene) -> Result<WorkFolder> {
+        let parent = self.root.join(&scene.name);
+        fs::create_dir_all(&parent).map_err(|e| Error::io("creating", &parent, e))?;
+        // Others' solvers get an absolute path: they run in another folder.
+        let parent = parent.canonicalize().map_err(|e| Error::io("finding", &parent, e))?;
+        remove_leftovers(&parent);
+        let failed = |e| Error::io("creating a work folder in", &parent, e);
+        let folder = tempfile::Builder::new().prefix(PARTIAL_PREFIX).tempdir_in(&parent).map_err(failed)?;
+        let lock = File::create(folder.path().join(LOCK)).map_err(failed)?;
+        // Where locks don't work, leftovers go by their age.
+        let _ = lock.lock();
+        Ok(WorkFolder { folder, _lock: lock })
+    }
+
+    /// Puts the complete folder `made` in the place of the entry of `scene` at `resolution`.
+    /// An older entry goes only now, and two that do this at once leave one complete entry.
+    pub(super) fn install(
+        &self,
+        work: &WorkFolder,
+        made: &Path,
+        scene: &Scene,
+        resolution: Resolution,
+    ) -> Result<PathBuf> {
+        let folder = self.folder(scene, resolution);
+        let failed = |e| Error::io("putting the solution into", &folder, e);
+        for attempt in 0..100 {
+            let aside = work.path().join(format!("replaced-{attempt}"));
+            match fs::rename(&folder, &aside) {
+                Err(e) if e.kind() != ErrorKind::NotFound => return Err(failed(e)),
+                _ => {}
+            }
+            match fs::rename(made, &folder) {
+                Ok(()) => return Ok(folder),
+                // Another run was faster: its entry goes aside as well.
+                Err(e) if matches!(e.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists) => {}
+                Err(e) => {
+                    // What was there is better than nothing.
+                    let _ = fs::rename(&aside, &folder);
+                    return Err(failed(e));
+                }
+            }
+        }
+        Err(Error::Internal(format!("{} is replaced again and again by others", folder.display())))
+    }
+}
+
+fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
+    match fs::metadata(folder) {
+        Err(e) if e.kind() == ErrorKind::NotFound => return Lookup::Missing,
+        Err(e) => return Damage { file: folder.to_path_buf(), reason: format!("can't be read: {e}") }.into(),
+        Ok(metadata) if !metadata.is_dir() => {
+            return Damage { file: folder.to_path_buf(), reason: "is not a folder".to_owned() }.into();
+        }
+        Ok(_) => {}
+    }
+    let stored = match entry::load(folder) {
+        Ok(stored) => stored,
+        Err(damage) => return damage.into(),
+    };
+    match identity::staleness(&stored.provenance, scene, resolution) {
+        Ok(None) => Lookup::Found(Box::new(stored)),
+        Ok(Some(reason)) => Lookup::Stale { reason },
+        Err(error) => Damage { file: folder.to_path_buf(), reason: error.to_string() }.into(),
+    }
+}
+
+/// A `.partial-*` folder that goes when it is dropped, or, if its process dies, at the next run.
+#[derive(Debug)]
+pub(super) struct WorkFolder {
+    folder: tempfile::TempDir,
+    _lock: File,
+}
+
+impl WorkFolder {
+    pub(super) fn path(&self) -> &Path {
+        self.folder.path()
+    }
+}
+
+/// Removes work folders whose maker is gone. What can't be removed stays: it harms nothing.
+fn remove_leftovers(parent: &Path) {
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
+        if entry.file_name().to_string_lossy().starts_with(PARTIAL_PREFIX) && is_abandoned(&entry.path()) {
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
+}
+
+fn is_abandoned(folder: &Path) -> bool {
+    let modified = fs::metadata(folder).and_then(|m| m.modified());
+    let age = modified.ok().and_then(|m| SystemTime::now().duration_since(m).ok()).unwrap_or_default();
+    match File::open(folder.join(LOCK)).map(|lock| lock.try_lock()) {
+        Ok(Ok(())) => age > LOCK_GRACE,
+        Ok(Err(TryLockError::WouldBlock)) => false,
+        Ok(Err(TryLockError::Error(_))) | Err(_) => age > LEFTOVER_AGE,
+    }
+}

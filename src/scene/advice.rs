@@ -1,0 +1,54 @@
+//! What messages about a scene file advise: the choices there are, how a key is written.
+
+use super::check::Place;
+use super::quantity::Dimension;
+use super::specification::{Choice, Field, Kind};
+use toml::Spanned;
+use toml::de::DeValue;
+
+/// The choice a value makes, if it is one.
+pub(super) fn chosen<'f>(field: &'f Field, value: &Spanned<DeValue>) -> Option<&'f Choice> {
+    let Kind::Choice(choices) = &field.kind else { return None };
+    let text = value.get_ref().as_str()?;
+    choices.iter().find(|c| c.name == text)
+}
+
+/// "it can be: a, b" for what this version can run.
+pub(super) fn alternatives(field: &Field) -> String {
+    let Kind::Choice(choices) = &field.kind else { return String::new() };
+    let names: Vec<&str> = choices.iter().filter(|c| c.refused.is_none()).map(|c| c.name).collect();
+    format!("it can be: {}", names.join(", "))
+}
+
+/// What a key of this kind has to be, and how to write it.
+pub(super) fn needed(kind: &Kind, path: &str) -> (&'static str, String) {
+    match kind {
+        Kind::Choice(choices) => {
+            let names: Vec<&str> = choices.iter().map(|c| c.name).collect();
+            ("a text", format!("write one of: \"{}\"", names.join("\", \"")))
+        }
+        Kind::Flag => ("true or false", "write true or false, without quotes".to_owned()),
+        Kind::Table(_) | Kind::TableOf(_) | Kind::Tolerances => {
+            ("a table", format!("write a table [{path}]"))
+        }
+        _ => ("a text", "write a text in quotes".to_owned()),
+    }
+}
+
+/// An example of a missing key.
+pub(super) fn example(place: &Place, field: &Field) -> String {
+    let (key, doc) = (field.key, field.doc);
+    match &field.kind {
+        Kind::Table(_) => format!("a table [{}]: {doc}", place.key(key)),
+        Kind::TableOf(_) => format!("a table [{}.steel]: {doc}", place.key(key)),
+        Kind::Quantity(dimension, bound) => {
+            let (_, unit, sample) = dimension.describe();
+            let quote = if *dimension == Dimension::NONE { "" } else { "\"" };
+            format!("`{key} = {quote}{sample}{quote}`: {doc}, {}", bound.describe(unit))
+        }
+        Kind::Choice(choices) => format!("`{key} = \"{}\"`: {doc}; {}", choices[0].name, alternatives(field)),
+        Kind::Count(low, _) => format!("`{key} = {low}`: {doc}"),
+        Kind::Flag => format!("`{key} = true`: {doc}"),
+        _ => format!("`{key} = \"...\"`: {doc}"),
+    }
+}
