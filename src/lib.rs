@@ -4,6 +4,7 @@
 #![warn(missing_docs)]
 
 pub mod body;
+pub mod comparison;
 pub mod error;
 pub mod impact;
 pub mod scene;

@@ -1,0 +1,11 @@
+//! x
+mod dynamic_time_warping;
+mod inner_products;
+mod iso18571;
+mod russell;
+mod sprague_geers;
+mod verdict;
+pub use iso18571::{Grade, Iso18571, iso18571};
+pub use russell::{Russell, russell};
+pub use sprague_geers::{SpragueGeers, sprague_geers};
+pub use verdict::Verdict;
