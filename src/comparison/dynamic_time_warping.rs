@@ -13,11 +13,7 @@ pub(super) fn warping_path(a: &[f64], b: &[f64], band: usize) -> Vec<(usize, usi
     let mut cost = vec![f64::INFINITY; n * width];
     let column = |i: usize, j: usize| j + band - i;
     let at = |cost: &[f64], i: usize, j: usize| {
-        if i.abs_diff(j) <= band {
-            cost[i * width + column(i, j)]
-        } else {
-            f64::INFINITY
-        }
+        if i.abs_diff(j) <= band { cost[i * width + column(i, j)] } else { f64::INFINITY }
     };
     for i in 0..n {
         for j in i.saturating_sub(band)..=(i + band).min(n - 1) {
@@ -25,9 +21,7 @@ pub(super) fn warping_path(a: &[f64], b: &[f64], band: usize) -> Vec<(usize, usi
                 (0, 0) => 0.0,
                 (0, _) => at(&cost, 0, j - 1),
                 (_, 0) => at(&cost, i - 1, 0),
-                _ => at(&cost, i - 1, j - 1)
-                    .min(at(&cost, i - 1, j))
-                    .min(at(&cost, i, j - 1)),
+                _ => at(&cost, i - 1, j - 1).min(at(&cost, i - 1, j)).min(at(&cost, i, j - 1)),
             };
             cost[i * width + column(i, j)] = before + (a[i] - b[j]).powi(2);
         }

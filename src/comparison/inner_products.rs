@@ -27,10 +27,8 @@ impl InnerProducts {
             candidate: integral(candidate, candidate),
             mixed: integral(reference, candidate),
         };
-        (products.reference.is_finite()
-            && products.candidate.is_finite()
-            && products.mixed.is_finite())
-        .then_some(products)
+        (products.reference.is_finite() && products.candidate.is_finite() && products.mixed.is_finite())
+            .then_some(products)
     }
 
     /// Whether both curves are zero throughout.

@@ -84,13 +84,7 @@ pub fn iso18571(reference: &[f64], candidate: &[f64]) -> Option<Iso18571> {
         return None;
     }
     if reference == candidate {
-        return Some(Iso18571 {
-            corridor: 1.0,
-            phase: 1.0,
-            magnitude: 1.0,
-            slope: 1.0,
-            overall: 1.0,
-        });
+        return Some(Iso18571 { corridor: 1.0, phase: 1.0, magnitude: 1.0, slope: 1.0, overall: 1.0 });
     }
     if reference.iter().all(|&x| x == 0.0) {
         return None;
@@ -106,13 +100,7 @@ pub fn iso18571(reference: &[f64], candidate: &[f64]) -> Option<Iso18571> {
         LARGEST_SLOPE_ERROR,
     );
     let overall = 0.4 * corridor + 0.2 * (phase + magnitude + slope);
-    Some(Iso18571 {
-        corridor,
-        phase,
-        magnitude,
-        slope,
-        overall,
-    })
+    Some(Iso18571 { corridor, phase, magnitude, slope, overall })
 }
 
 /// 1 at no error, 0 from `largest` on.
@@ -122,17 +110,9 @@ fn linear_score(error: f64, largest: f64) -> f64 {
 
 /// ||c - m||_1 / ||m||_1; 0 for equal curves also when they vanish.
 fn relative_distance(reference: &[f64], candidate: &[f64]) -> f64 {
-    let distance: f64 = reference
-        .iter()
-        .zip(candidate)
-        .map(|(m, c)| (c - m).abs())
-        .sum();
+    let distance: f64 = reference.iter().zip(candidate).map(|(m, c)| (c - m).abs()).sum();
     let norm: f64 = reference.iter().map(|m| m.abs()).sum();
-    if distance == 0.0 {
-        0.0
-    } else {
-        distance / norm
-    }
+    if distance == 0.0 { 0.0 } else { distance / norm }
 }
 
 /// Mean over the samples: 1 in the inner corridor, 0 outside the outer one, quadratic between.
@@ -148,11 +128,7 @@ fn corridor(reference: &[f64], candidate: &[f64]) -> f64 {
             ((outer - distance) / (outer - inner)).powi(2)
         }
     };
-    let sum: f64 = reference
-        .iter()
-        .zip(candidate)
-        .map(|(m, c)| score((c - m).abs()))
-        .sum();
+    let sum: f64 = reference.iter().zip(candidate).map(|(m, c)| score((c - m).abs())).sum();
     sum / reference.len() as f64
 }
 
@@ -216,10 +192,7 @@ fn best_shift(reference: &[f64], candidate: &[f64]) -> Shift {
 fn magnitude(reference: &[f64], candidate: &[f64]) -> f64 {
     let band = (WARPING_BAND * reference.len() as f64).ceil() as usize;
     let path = warping_path(reference, candidate, band);
-    let (m, c): (Vec<f64>, Vec<f64>) = path
-        .into_iter()
-        .map(|(i, j)| (reference[i], candidate[j]))
-        .unzip();
+    let (m, c): (Vec<f64>, Vec<f64>) = path.into_iter().map(|(i, j)| (reference[i], candidate[j])).unzip();
     linear_score(relative_distance(&m, &c), LARGEST_MAGNITUDE_ERROR)
 }
 

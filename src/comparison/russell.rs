@@ -24,20 +24,11 @@ pub struct Russell {
 pub fn russell(reference: &[f64], candidate: &[f64]) -> Option<Russell> {
     let products = InnerProducts::of(reference, candidate)?;
     if products.both_vanish() {
-        return Some(Russell {
-            magnitude: 0.0,
-            phase: 0.0,
-            comprehensive: 0.0,
-        });
+        return Some(Russell { magnitude: 0.0, phase: 0.0, comprehensive: 0.0 });
     }
     let phase = products.phase()?;
-    let x = (products.candidate - products.reference)
-        / (products.reference * products.candidate).sqrt();
+    let x = (products.candidate - products.reference) / (products.reference * products.candidate).sqrt();
     let magnitude = (1.0 + x.abs()).log10().copysign(x);
     let comprehensive = (FRAC_PI_4 * (magnitude.powi(2) + phase.powi(2))).sqrt();
-    Some(Russell {
-        magnitude,
-        phase,
-        comprehensive,
-    })
+    Some(Russell { magnitude, phase, comprehensive })
 }

@@ -23,17 +23,9 @@ pub struct SpragueGeers {
 pub fn sprague_geers(reference: &[f64], candidate: &[f64]) -> Option<SpragueGeers> {
     let products = InnerProducts::of(reference, candidate)?;
     if products.both_vanish() {
-        return Some(SpragueGeers {
-            magnitude: 0.0,
-            phase: 0.0,
-            comprehensive: 0.0,
-        });
+        return Some(SpragueGeers { magnitude: 0.0, phase: 0.0, comprehensive: 0.0 });
     }
     let phase = products.phase()?;
     let magnitude = (products.candidate / products.reference).sqrt() - 1.0;
-    Some(SpragueGeers {
-        magnitude,
-        phase,
-        comprehensive: magnitude.hypot(phase),
-    })
+    Some(SpragueGeers { magnitude, phase, comprehensive: magnitude.hypot(phase) })
 }
