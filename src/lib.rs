@@ -5,6 +5,7 @@
 
 pub mod analytical;
 pub mod body;
+pub mod comparison;
 pub mod contact;
 pub mod error;
 pub mod impact;

@@ -1,0 +1,148 @@
+//! Two histories with different time axes, brought onto a common one.
+
+use super::interpolation::MonotoneCubic;
+use crate::impact::{CURVES, History, Outcome};
+use serde::Serialize;
+
+/// Samples of the common axis: about as many as a crash signal at 10 kHz has, for which
+/// ISO/TS 18571 was made.
+const SAMPLES: usize = 1501;
+
+/// How far the window extends beyond the reference's last contact.
+const WINDOW_FACTOR: f64 = 1.1;
+
+/// Uniform time axis: `samples` instants from `start` to `end`, both included.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CommonAxis {
+    /// First instant in s.
+    pub start: f64,
+    /// Last instant in s.
+    pub end: f64,
+    /// Number of instants.
+    pub samples: usize,
+}
+
+impl CommonAxis {
+    /// The window of a comparison, fixed by the reference: from 0 to 1.1 times the end of its
+    /// last contact, or to the end of its history if that comes first. `None` if the
+    /// reference's history can't be sampled.
+    pub fn of_reference(reference: &Outcome) -> Option<Self> {
+        if !can_be_sampled(&reference.history) {
+            return None;
+        }
+        let last = *reference.history.time.last()?;
+        let q = &reference.summary.quantities;
+        let contact = q.outer_contact_end.max(q.inner_contact_end) * WINDOW_FACTOR;
+        let end = if contact > 0.0 { contact.min(last) } else { last };
+        (end > 0.0).then_some(CommonAxis { start: 0.0, end, samples: SAMPLES })
+    }
+
+    /// Instant number `k` in s.
+    pub fn time(&self, k: usize) -> f64 {
+        self.start + (self.end - self.start) * k as f64 / (self.samples - 1) as f64
+    }
+
+    /// The same axis, ending at `end` if it ended later.
+    fn cut(self, end: f64) -> Self {
+        CommonAxis { end: self.end.min(end), ..self }
+    }
+}
+
+/// One curve of two histories on their common axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AlignedCurve {
+    /// Name in [`CURVES`].
+    pub quantity: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// The axis: the reference's window, cut to what the reduced model covers.
+    pub axis: CommonAxis,
+    /// The reference. Shape (axis.samples).
+    pub reference: Vec<f64>,
+    /// The reduced model. Shape (axis.samples).
+    pub reduced: Vec<f64>,
+}
+
+impl AlignedCurve {
+    /// Largest magnitude of the reference.
+    pub fn peak(&self) -> f64 {
+        peak(&self.reference)
+    }
+
+    /// Root mean square of the difference.
+    pub fn rms(&self) -> f64 {
+        let sum: f64 = self.differences().map(|d| d * d).sum();
+        (sum / self.axis.samples as f64).sqrt()
+    }
+
+    /// Largest magnitude of the difference; NaN if any is.
+    pub fn largest_difference(&self) -> f64 {
+        self.differences().map(f64::abs).fold(0.0, |a, b| if b <= a { a } else { b })
+    }
+
+    fn differences(&self) -> impl Iterator<Item = f64> {
+        self.reduced.iter().zip(&self.reference).map(|(c, m)| c - m)
+    }
+}
+
+/// Largest magnitude in `values`.
+pub(super) fn peak(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |p, v| p.max(v.abs()))
+}
+
+/// Whether every curve has a finite value at every instant and time increases strictly.
+pub(super) fn can_be_sampled(history: &History) -> bool {
+    let n = history.len();
+    let whole = |values: &[f64]| values.len() == n && values.iter().all(|v| v.is_finite());
+    n >= 2
+        && whole(&history.time)
+        && history.time.windows(2).all(|w| w[0] < w[1])
+        && CURVES.iter().all(|(name, _)| history.curve(name).is_some_and(whole))
+}
+
+/// Every curve of both histories on the reference's window `axis`; empty if one can't be sampled.
+///
+/// Between samples the curves are interpolated by monotone cubics. If the reduced history ends
+/// inside the window with both contacts open, the spheres fly on freely: constant velocity, no
+/// force. The plate's curves are then compared up to the end of the reduced history; so are
+/// all curves if it ends during a contact.
+pub fn align(axis: CommonAxis, reference: &History, reduced: &History) -> Vec<AlignedCurve> {
+    if !can_be_sampled(reference) || !can_be_sampled(reduced) {
+        return Vec::new();
+    }
+    let aligned = |(quantity, unit)| {
+        let axis = axis.cut(covered_until(quantity, reduced));
+        let of = |history| sampled(quantity, history, &axis);
+        (axis.end > axis.start).then(|| AlignedCurve {
+            quantity,
+            unit,
+            axis,
+            reference: of(reference),
+            reduced: of(reduced),
+        })
+    };
+    CURVES.into_iter().filter_map(aligned).collect()
+}
+
+/// Time in s up to which a curve is known, free flight included.
+fn covered_until(quantity: &str, history: &History) -> f64 {
+    let last = history.len() - 1;
+    let flies = history.outer_force[last] == 0.0 && history.inner_force[last] == 0.0;
+    if flies && !quantity.starts_with("plate") { f64::INFINITY } else { history.time[last] }
+}
+
+/// A curve of a history that can be sampled, at the instants of `axis`.
+fn sampled(quantity: &str, history: &History, axis: &CommonAxis) -> Vec<f64> {
+    let Some(values) = history.curve(quantity) else {
+        return Vec::new();
+    };
+    let curve = MonotoneCubic::new(&history.time, values);
+    let last = history.len() - 1;
+    let end = history.time[last];
+    let rate = match quantity {
+        "outer_displacement" => history.outer.velocity[last],
+        "inner_displacement" => history.inner.velocity[last],
+        _ => 0.0,
+    };
+    (0..axis.samples).map(|k| axis.time(k)).map(|t| curve.at(t) + rate * (t - end).max(0.0)).collect()
+}

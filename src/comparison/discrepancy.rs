@@ -1,0 +1,183 @@
+//! The difference of one quantity between reduced model and reference, against its bound.
+
+use super::verdict::Verdict;
+use crate::scene::Tolerance;
+use serde::Serialize;
+
+/// One row of the comparison. Values are in `unit`; a value that is not finite becomes `null` in JSON.
+///
+/// A row of a curve (`<curve>_rms`, `<curve>_max`) holds the distance of the curves: `reduced` is
+/// the distance from the reference's curve, `reference` is 0 and `relative` is over the peak of the
+/// reference's curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Discrepancy {
+    /// Name of the quantity.
+    pub quantity: String,
+    /// SI unit.
+    pub unit: String,
+    /// Value of the reduced model.
+    pub reduced: f64,
+    /// Value of the reference.
+    pub reference: f64,
+    /// `reduced - reference`.
+    pub difference: f64,
+    /// `difference / |reference|`; `None` if the reference is 0.
+    pub relative: Option<f64>,
+    /// Half width of the reference's 95 % band, absolute, if known.
+    pub uncertainty: Option<f64>,
+    /// Bound on `|difference - bias|`, absolute; `None` = not gated.
+    pub tolerance: Option<f64>,
+    /// Known discrepancy of the model, absolute; `None` = none stated.
+    pub bias: Option<f64>,
+    /// Whether the checked value is within the bound.
+    pub verdict: Verdict,
+}
+
+/// Magnitudes that relative bounds refer to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scales {
+    /// Of the reference's value; of the peak of its curve for a row of a curve.
+    pub(super) value: f64,
+    /// Of the peak of the quantity's curve in the reference.
+    pub(super) peak: f64,
+}
+
+/// Bound and bias of a [`Tolerance`] in the quantity's own unit.
+struct Bound {
+    /// The widest of the bounds given: being within any of them is enough.
+    width: f64,
+    bias: Option<f64>,
+}
+
+impl Bound {
+    /// `None` if the tolerance gives no bound.
+    fn of(tolerance: &Tolerance, scales: Scales) -> Option<Self> {
+        let bounds = [
+            (tolerance.relative, scales.value),
+            (tolerance.absolute, 1.0),
+            (tolerance.relative_to_peak, scales.peak),
+        ];
+        let mut given = bounds.into_iter().filter_map(|(bound, scale)| Some((bound?, scale)));
+        let (first, scale) = given.next()?;
+        let width = given.map(|(bound, scale)| bound * scale).fold(first * scale, f64::max);
+        Some(Bound { width, bias: tolerance.bias.map(|bias| bias * scale) })
+    }
+}
+
+impl Discrepancy {
+    /// Row with `difference = reduced - reference`, gated if there is a bound.
+    pub(super) fn new(
+        (quantity, unit): (&str, &str),
+        (reduced, reference): (f64, f64),
+        scales: Scales,
+        tolerance: Option<&Tolerance>,
+        uncertainty: Option<f64>,
+    ) -> Self {
+        let difference = reduced - reference;
+        let bound = tolerance.and_then(|t| Bound::of(t, scales));
+        let bias = bound.as_ref().and_then(|b| b.bias);
+        let checked = (difference - bias.unwrap_or(0.0)).abs();
+        // Written so that NaN fails, gated or not.
+        let within = bound.as_ref().is_none_or(|b| checked <= b.width);
+        Discrepancy {
+            quantity: quantity.to_owned(),
+            unit: unit.to_owned(),
+            reduced,
+            reference,
+            difference,
+            relative: Some(difference / scales.value).filter(|r| r.is_finite()),
+            uncertainty,
+            tolerance: bound.map(|b| b.width),
+            bias,
+            verdict: Verdict::of(difference.is_finite() && within),
+        }
+    }
+
+    /// Row of a residual, which is small on both sides or wrong: each is gated by itself.
+    pub(super) fn of_residual(
+        quantity: &str,
+        (reduced, reference): (f64, f64),
+        tolerance: Option<&Tolerance>,
+    ) -> Self {
+        let scales = Scales { value: reference.abs(), peak: 1.0 };
+        let row = Discrepancy::new((quantity, "1"), (reduced, reference), scales, None, None);
+        // A residual is relative already: whatever the bound is called, it is the bound of the number.
+        let bound = tolerance.and_then(|t| Bound::of(t, Scales { value: 1.0, peak: 1.0 }));
+        let width = bound.map(|b| b.width);
+        let within = |x: f64| x.is_finite() && width.is_none_or(|w| x.abs() <= w);
+        Discrepancy { tolerance: width, verdict: Verdict::of(within(reduced) && within(reference)), ..row }
+    }
+
+    /// Magnitude that is held against the tolerance: of the difference without the known bias.
+    pub fn checked(&self) -> f64 {
+        (self.difference - self.bias.unwrap_or(0.0)).abs()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Discrepancy, Scales};
+    use crate::comparison::Verdict;
+    use crate::scene::Tolerance;
+
+    fn row(reduced: f64, reference: f64, tolerance: Tolerance) -> Discrepancy {
+        let scales = Scales { value: reference.abs(), peak: 200.0 };
+        Discrepancy::new(("x", "N"), (reduced, reference), scales, Some(&tolerance), None)
+    }
+
+    #[test]
+    fn relative_bound_refers_to_the_magnitude_of_the_reference() {
+        let tolerance = Tolerance { relative: Some(0.02), ..Tolerance::default() };
+        assert_eq!(row(-101.9, -100.0, tolerance).verdict, Verdict::Pass);
+        assert_eq!(row(-102.1, -100.0, tolerance).verdict, Verdict::Fail);
+        assert_eq!(row(-102.0, -100.0, tolerance).relative, Some(-0.02));
+    }
+
+    #[test]
+    fn bias_moves_the_centre_of_the_band() {
+        let tolerance = Tolerance { relative: Some(0.01), bias: Some(-0.10), ..Tolerance::default() };
+        assert_eq!(row(90.5, 100.0, tolerance).verdict, Verdict::Pass);
+        assert_eq!(row(88.5, 100.0, tolerance).verdict, Verdict::Fail);
+        // Without the model's known error the band is left on the other side.
+        assert_eq!(row(100.0, 100.0, tolerance).verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn near_zero_reference_passes_by_its_absolute_bound() {
+        let relative = Tolerance { relative: Some(0.01), ..Tolerance::default() };
+        assert_eq!(row(1e-9, 1e-12, relative).verdict, Verdict::Fail);
+        let either = Tolerance { absolute: Some(1e-6), ..relative };
+        let passed = row(1e-9, 1e-12, either);
+        assert_eq!((passed.verdict, passed.tolerance), (Verdict::Pass, Some(1e-6)));
+        assert_eq!(row(0.0, 0.0, relative).relative, None);
+    }
+
+    #[test]
+    fn bound_relative_to_the_peak_of_the_curve() {
+        let tolerance = Tolerance { relative_to_peak: Some(0.01), ..Tolerance::default() };
+        assert_eq!(row(1.9, 0.0, tolerance).verdict, Verdict::Pass);
+        assert_eq!(row(2.1, 0.0, tolerance).verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn nan_fails_even_if_nothing_is_gated() {
+        let scales = Scales { value: 1.0, peak: 1.0 };
+        let row = Discrepancy::new(("x", "N"), (f64::NAN, 1.0), scales, None, None);
+        assert_eq!(row.verdict, Verdict::Fail);
+        let wide = Tolerance { absolute: Some(f64::INFINITY), ..Tolerance::default() };
+        let row = Discrepancy::new(("x", "N"), (1.0, f64::NAN), scales, Some(&wide), None);
+        assert_eq!(row.verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn residuals_are_gated_on_both_sides() {
+        let tolerance = Tolerance { absolute: Some(1e-5), ..Tolerance::default() };
+        let verdict = |a, b| Discrepancy::of_residual("r", (a, b), Some(&tolerance)).verdict;
+        assert_eq!(verdict(1e-6, 1e-6), Verdict::Pass);
+        assert_eq!(verdict(1e-4, 1e-6), Verdict::Fail);
+        assert_eq!(verdict(1e-6, -1e-4), Verdict::Fail);
+        // Two equal residuals differ by nothing, and are wrong all the same.
+        assert_eq!(verdict(1e-2, 1e-2), Verdict::Fail);
+        assert_eq!(verdict(f64::NAN, 0.0), Verdict::Fail);
+    }
+}
