@@ -1,6 +1,6 @@
 //! impactcheck: how far can a fast reduced model of an impact be trusted?
 //!
-//! Data flows one way: [`scene`] -> `body` -> [`impact`] -> `comparison` -> `report`.
+//! Data flows one way: [`scene`] -> [`body`] -> [`impact`] -> [`comparison`] -> [`report`].
 #![warn(missing_docs)]
 
 pub mod analytical;

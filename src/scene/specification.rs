@@ -15,8 +15,6 @@ impl Bound {
     const POSITIVE: Bound = Bound { low: Some((0.0, false)), high: None };
     pub(super) const NOT_NEGATIVE: Bound = Bound { low: Some((0.0, true)), high: None };
     pub(super) const ANY: Bound = Bound { low: None, high: None };
-    /// Lehr's damping ratio of an oscillation: 1 and above does not oscillate.
-    const DAMPING: Bound = Bound { low: Some((0.0, true)), high: Some((1.0, false)) };
 
     /// Whether `value` is valid.
     pub(super) fn holds(&self, value: f64) -> bool {
@@ -158,7 +156,7 @@ static PLATE: [Field; 5] = [
         "Support of the rim",
     ),
     required("material", Kind::Material, "Material of the plate, a name under [materials]"),
-    optional("damping_ratio", pure(Bound::DAMPING), "Modal damping ratio of every mode; 0 = undamped"),
+    optional("damping_ratio", pure(Bound::NOT_NEGATIVE), "Modal damping ratio of every mode; 0 = undamped"),
 ];
 
 const SHAPE_KIND: &str = "Shape of the body";
@@ -212,7 +210,7 @@ static FLUID: [Field; 7] = [
     ),
     optional(
         "plate_damping_ratio",
-        pure(Bound::DAMPING),
+        pure(Bound::NOT_NEGATIVE),
         "Modal damping ratio of the wet plate; absent = that of the dry plate",
     ),
     optional("drag_coefficient", pure(Bound::NOT_NEGATIVE), "c_W of eq. (2); absent = 0, no drag"),
