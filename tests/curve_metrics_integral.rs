@@ -6,9 +6,7 @@ use std::f64::consts::PI;
 
 /// One period of a sine, `amplitude` and lag in rad; trapezoidal sums over a period are exact.
 fn sine(amplitude: f64, lag: f64) -> Vec<f64> {
-    (0..=1000)
-        .map(|k| amplitude * (2.0 * PI * f64::from(k) / 1000.0 - lag).sin())
-        .collect()
+    (0..=1000).map(|k| amplitude * (2.0 * PI * f64::from(k) / 1000.0 - lag).sin()).collect()
 }
 
 /// Closed form for amplitude 1.2 and lag 0.2 pi: M = 0.2, P = 0.2.
@@ -35,23 +33,11 @@ fn russell_of_a_scaled_late_sine() {
 #[test]
 fn sign_of_the_magnitude_and_phase_of_opposite_curves() {
     let weak = (sine(1.0, 0.0), sine(0.8, 0.0));
-    assert_abs_diff_eq!(
-        sprague_geers(&weak.0, &weak.1).unwrap().magnitude,
-        -0.2,
-        epsilon = 1e-12
-    );
+    assert_abs_diff_eq!(sprague_geers(&weak.0, &weak.1).unwrap().magnitude, -0.2, epsilon = 1e-12);
     assert!(russell(&weak.0, &weak.1).unwrap().magnitude < 0.0);
     let opposite = sine(-1.0, 0.0);
-    assert_abs_diff_eq!(
-        sprague_geers(&weak.0, &opposite).unwrap().phase,
-        1.0,
-        epsilon = 1e-12
-    );
-    assert_abs_diff_eq!(
-        russell(&weak.0, &opposite).unwrap().phase,
-        1.0,
-        epsilon = 1e-12
-    );
+    assert_abs_diff_eq!(sprague_geers(&weak.0, &opposite).unwrap().phase, 1.0, epsilon = 1e-12);
+    assert_abs_diff_eq!(russell(&weak.0, &opposite).unwrap().phase, 1.0, epsilon = 1e-12);
 }
 
 #[test]

@@ -57,31 +57,33 @@ impl Collocation {
     /// An oscillator's answer at time `t` of a step of length `h`.
     pub fn response(&self, oscillator: &Oscillator, t: f64, h: f64) -> Response {
         let moments = oscillator.moments(t);
-        // S_p belongs to tau^p/p!, the polynomials to (tau/h)^p
-        let (mut displacement, mut velocity) = ([0.0; STAGES], [0.0; STAGES]);
+        let [slope, impulse, ..] = moments;
+        Response {
+            displacement_per_displacement: slope + 2.0 * oscillator.alpha * impulse,
+            displacement_per_velocity: impulse,
+            velocity_per_displacement: -oscillator.omega.powi(2) * impulse,
+            velocity_per_velocity: slope,
+            displacement_per_force: self.per_force(&moments[2..], h),
+            velocity_per_force: self.per_force(&moments[1..], h),
+        }
+    }
+
+    /// Answer per force at each Gauss point of a step of length `h`, from the answers to tau^p / p!.
+    fn per_force(&self, moments: &[f64], h: f64) -> Stages {
+        let mut answer = [0.0; STAGES];
+        // the polynomials are in (tau/h)^p
         let mut scale = 1.0;
         for p in 0..STAGES {
             if p > 0 {
                 scale *= p as f64 / h;
             }
             for l in 0..STAGES {
-                displacement[l] += self.lagrange[l][p] * scale * moments[p + 2];
-                velocity[l] += self.lagrange[l][p] * scale * moments[p + 1];
+                answer[l] += self.lagrange[l][p] * scale * moments[p];
             }
         }
-        let [slope, impulse] = [moments[0], moments[1]];
-        Response {
-            displacement_per_displacement: slope + 2.0 * oscillator.alpha * impulse,
-            displacement_per_velocity: impulse,
-            velocity_per_displacement: -oscillator.omega.powi(2) * impulse,
-            velocity_per_velocity: slope,
-            displacement_per_force: displacement,
-            velocity_per_force: velocity,
-        }
+        answer
     }
 }
-
-const _: () = assert!(MOMENTS == STAGES + 2);
 
 /// Answer of an oscillator to its state at the start of the step and to the force at the Gauss points.
 #[derive(Debug, Clone, Copy)]
@@ -100,11 +102,21 @@ pub struct Response {
     pub velocity_per_force: Stages,
 }
 
+/// Moments of one oscillator at the Gauss points and at the end of a step.
+type PointMoments = [[f64; MOMENTS]; STAGES + 1];
+
+/// Times of the Gauss points and of the end in a step of length `h`.
+fn times(collocation: &Collocation, h: f64) -> [f64; STAGES + 1] {
+    std::array::from_fn(|i| collocation.nodes.get(i).map_or(h, |node| node * h))
+}
+
 /// Everything about a step of one length that does not depend on the state.
 #[derive(Debug, Clone)]
 pub struct StepTable {
     /// Length of the step in s.
     pub h: f64,
+    /// Moments of every oscillator at the Gauss points and at the end. Shape (n).
+    moments: Vec<PointMoments>,
     /// q at Gauss point j per q(0) and q'(0). Each of shape (STAGES, n), row by row.
     node: [Vec<f64>; 2],
     /// [q per q(0), q per q'(0), q' per q(0), q' per q'(0)] at the end. Each of shape (n).
@@ -118,38 +130,55 @@ pub struct StepTable {
 impl StepTable {
     /// Tables of `system` for steps of length `h` s.
     pub fn new(system: &System, collocation: &Collocation, h: f64) -> Self {
+        let times = times(collocation, h);
+        let moments = system.oscillators.iter().map(|o| times.map(|t| o.moments(t))).collect();
+        Self::from_moments(system, collocation, h, moments)
+    }
+
+    /// Tables for steps of twice the length of these.
+    pub fn doubled(&self, system: &System, collocation: &Collocation) -> Self {
+        let times = times(collocation, self.h);
+        let double = |(o, moments): (&Oscillator, &PointMoments)| {
+            std::array::from_fn(|i| o.doubled(&moments[i], times[i]))
+        };
+        let moments = system.oscillators.iter().zip(&self.moments).map(double).collect();
+        Self::from_moments(system, collocation, 2.0 * self.h, moments)
+    }
+
+    fn from_moments(system: &System, collocation: &Collocation, h: f64, moments: Vec<PointMoments>) -> Self {
         let n = system.size();
         let zeros = |rows: usize| vec![0.0; rows * n];
-        let mut table = Self {
-            h,
-            node: [zeros(STAGES), zeros(STAGES)],
-            end: [zeros(1), zeros(1), zeros(1), zeros(1)],
-            force: [zeros(STAGES), zeros(STAGES)],
-            coupling: [[[0.0; STAGES]; STAGES]; 3],
-        };
-        for (k, oscillator) in system.oscillators.iter().enumerate() {
+        let mut node = [zeros(STAGES), zeros(STAGES)];
+        let mut end = [zeros(1), zeros(1), zeros(1), zeros(1)];
+        let mut force = [zeros(STAGES), zeros(STAGES)];
+        let mut coupling = [[[0.0; STAGES]; STAGES]; 3];
+        for (k, (oscillator, moments)) in system.oscillators.iter().zip(&moments).enumerate() {
             let (b0, b1) = (system.approach[0][k], system.approach[1][k]);
             for j in 0..STAGES {
-                let at = collocation.response(oscillator, collocation.nodes[j] * h, h);
-                table.node[0][j * n + k] = at.displacement_per_displacement;
-                table.node[1][j * n + k] = at.displacement_per_velocity;
-                for l in 0..STAGES {
-                    for (coupling, product) in table.coupling.iter_mut().zip([b0 * b0, b0 * b1, b1 * b1]) {
-                        coupling[j][l] += product * at.displacement_per_force[l];
+                let [slope, impulse, ..] = moments[j];
+                node[0][j * n + k] = slope + 2.0 * oscillator.alpha * impulse;
+                node[1][j * n + k] = impulse;
+                let per_force = collocation.per_force(&moments[j][2..], h);
+                for (coupling, product) in coupling.iter_mut().zip([b0 * b0, b0 * b1, b1 * b1]) {
+                    for l in 0..STAGES {
+                        coupling[j][l] += product * per_force[l];
                     }
                 }
             }
-            let end = collocation.response(oscillator, h, h);
-            table.end[0][k] = end.displacement_per_displacement;
-            table.end[1][k] = end.displacement_per_velocity;
-            table.end[2][k] = end.velocity_per_displacement;
-            table.end[3][k] = end.velocity_per_velocity;
-            for l in 0..STAGES {
-                table.force[0][l * n + k] = end.displacement_per_force[l];
-                table.force[1][l * n + k] = end.velocity_per_force[l];
+            let last = &moments[STAGES];
+            let [slope, impulse, ..] = *last;
+            end[0][k] = slope + 2.0 * oscillator.alpha * impulse;
+            end[1][k] = impulse;
+            end[2][k] = -oscillator.omega.powi(2) * impulse;
+            end[3][k] = slope;
+            for (part, force) in force.iter_mut().enumerate() {
+                let per_force = collocation.per_force(&last[2 - part..], h);
+                for l in 0..STAGES {
+                    force[l * n + k] = per_force[l];
+                }
             }
         }
-        table
+        Self { h, moments, node, end, force, coupling }
     }
 
     /// Approaches at the Gauss points, in m, if no force acted during the step.

@@ -60,6 +60,23 @@ pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     Run::new(system, &collocation, options, recorder).go()
 }
 
+/// Tables of the step lengths in use, each half as long as the one before; made when they are first needed.
+struct Ladder(Vec<Option<StepTable>>);
+
+impl Ladder {
+    fn get(&mut self, system: &System, collocation: &Collocation, index: usize, h: f64) -> &StepTable {
+        if self.0[index].is_none() {
+            let half = self.0.get(index + 1).and_then(Option::as_ref);
+            let table = half.map_or_else(
+                || StepTable::new(system, collocation, h),
+                |half| half.doubled(system, collocation),
+            );
+            self.0[index] = Some(table);
+        }
+        self.0[index].as_ref().expect("made just now")
+    }
+}
+
 /// State of a run.
 struct Run<'a> {
     system: &'a System,
@@ -69,7 +86,7 @@ struct Run<'a> {
     /// Largest admissible defect of a step, see [`Run::defect`].
     defect_bound: f64,
     base_step: f64,
-    tables: Vec<Option<StepTable>>,
+    tables: Ladder,
     level: i32,
     time: f64,
     q: Vec<f64>,
@@ -108,7 +125,7 @@ impl<'a> Run<'a> {
             end_time: options.end_time.unwrap_or(f64::INFINITY),
             defect_bound: defect_bound(options.tolerance),
             base_step: 0.25 * hit.duration(),
-            tables: LEVELS.map(|_| None).collect(),
+            tables: Ladder(LEVELS.map(|_| None).collect()),
             level: 8,
             time: 0.0,
             next_q: q.clone(),
@@ -179,7 +196,7 @@ impl<'a> Run<'a> {
                 last = StepTable::new(self.system, self.collocation, rest);
                 &last
             } else {
-                self.tables[index].get_or_insert_with(|| StepTable::new(self.system, self.collocation, h))
+                self.tables.get(self.system, self.collocation, index, h)
             };
             let trial = solve(
                 self.system,
