@@ -20,6 +20,12 @@ fn stored() -> (tempfile::TempDir, Store, PathBuf) {
     (root, store, folder)
 }
 
+/// Replaces one file of an entry and makes its checksums right again.
+fn replace(folder: &std::path::Path, name: &str, text: &str) {
+    std::fs::write(folder.join(name), text).expect("file");
+    seal(folder);
+}
+
 #[track_caller]
 fn damaged(store: &Store, file: &str, words: &[&str]) {
     match store.find(&scene(), PAPER) {

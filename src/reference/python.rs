@@ -4,7 +4,7 @@ use crate::project::project_root;
 use crate::{Error, Result};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::ffi::OsString;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -60,8 +60,12 @@ impl Interpreter {
 /// # Errors
 /// [`Error::Solver`] if there is none; it says where was looked and what was missing.
 pub fn python() -> Result<PathBuf> {
+    find(asked(), &std::env::var_os("PATH").unwrap_or_default())
+}
+
+fn find(asked: Option<PathBuf>, path: &OsStr) -> Result<PathBuf> {
     let mut looked = Vec::new();
-    for path in candidates() {
+    for path in candidates(asked.clone(), path) {
         match Interpreter::probe(&path) {
             Ok(interpreter) if interpreter.missing().is_empty() => return Ok(interpreter.path),
             Ok(interpreter) => {
@@ -70,7 +74,7 @@ pub fn python() -> Result<PathBuf> {
             Err(reason) => looked.push(format!("{}: {reason}", path.display())),
         }
     }
-    Err(Error::Solver(match asked() {
+    Err(Error::Solver(match asked {
         Some(_) => format!(
             "the Python named by {PYTHON_VARIABLE} can't run the reference: {}; name one that imports dolfinx, gmsh and cffi, or install them on Debian with {INSTALL}",
             looked.join("; ")
@@ -88,22 +92,22 @@ pub fn python() -> Result<PathBuf> {
 
 /// The best interpreter there is, complete or not; `None` if no candidate runs.
 pub(super) fn best() -> Option<Interpreter> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
     let found: Vec<Interpreter> =
-        candidates().iter().filter_map(|path| Interpreter::probe(path).ok()).collect();
+        candidates(asked(), &path).iter().filter_map(|path| Interpreter::probe(path).ok()).collect();
     let fewest = found.iter().map(|i| i.missing().len()).min()?;
     found.into_iter().find(|i| i.missing().len() == fewest)
 }
 
-fn asked() -> Option<OsString> {
-    std::env::var_os(PYTHON_VARIABLE).filter(|v| !v.is_empty())
+fn asked() -> Option<PathBuf> {
+    std::env::var_os(PYTHON_VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from)
 }
 
-fn candidates() -> Vec<PathBuf> {
-    if let Some(path) = asked() {
-        return vec![path.into()];
+fn candidates(asked: Option<PathBuf>, path: &OsStr) -> Vec<PathBuf> {
+    if let Some(path) = asked {
+        return vec![path];
     }
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let on_path = std::env::split_paths(&path).map(|folder| folder.join("python3"));
+    let on_path = std::env::split_paths(path).map(|folder| folder.join("python3"));
     let mut found: Vec<PathBuf> = Vec::new();
     let mut seen: Vec<PathBuf> = Vec::new();
     for candidate in std::iter::once(PathBuf::from("/usr/bin/python3")).chain(on_path) {
@@ -148,4 +152,56 @@ pub fn versions(python: &Path) -> Result<Value> {
         return Err(failed(format!("failed ({}): {last}", output.status)));
     }
     serde_json::from_slice(&output.stdout).map_err(|e| failed(format!("does not answer in JSON: {e}")))
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt;
+
+    /// A program that answers the probe with `answer` and ends with `status`.
+    fn fake(folder: &Path, name: &str, answer: &str, status: u8) -> PathBuf {
+        let path = folder.join(name);
+        std::fs::write(&path, format!("#!/bin/sh\necho '{answer}'\nexit {status}\n")).expect("script");
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).expect("executable");
+        path
+    }
+
+    const COMPLETE: &str = r#"{"python": "3.11.2", "dolfinx": "0.5.2", "gmsh": "4.8.4", "cffi": "1.15.1"}"#;
+    const BARE: &str = r#"{"python": "3.11.2", "dolfinx": null, "gmsh": null, "cffi": "1.15.1"}"#;
+
+    #[test]
+    fn an_interpreter_without_dolfinx_is_named_with_what_installs_it() {
+        let folder = tempfile::tempdir().expect("folder");
+        let bare = fake(folder.path(), "bare", BARE, 0);
+        let error = find(Some(bare.clone()), OsStr::new("")).expect_err("incomplete");
+        assert_eq!(error.exit_status(), crate::ExitStatus::Solver);
+        let said = error.to_string();
+        let bare = bare.to_string_lossy();
+        for word in [&*bare, "has no dolfinx, gmsh", PYTHON_VARIABLE, INSTALL] {
+            assert!(said.contains(word), "`{word}` is not in: {said}");
+        }
+    }
+
+    #[test]
+    fn a_named_interpreter_that_does_not_run_is_not_replaced_by_another() {
+        let folder = tempfile::tempdir().expect("folder");
+        let broken = fake(folder.path(), "broken", "Segmentation fault", 139);
+        for (path, word) in [(folder.path().join("none"), "can't be run"), (broken, "no working Python")] {
+            let said = find(Some(path), OsStr::new("/usr/bin")).expect_err("unusable").to_string();
+            assert!(said.contains(word), "{said}");
+        }
+    }
+
+    #[test]
+    fn every_python3_on_the_path_is_asked_in_turn() {
+        let (first, second) = (tempfile::tempdir().expect("folder"), tempfile::tempdir().expect("folder"));
+        fake(first.path(), "python3", BARE, 0);
+        let complete = fake(second.path(), "python3", COMPLETE, 0);
+        let path = std::env::join_paths([first.path(), second.path(), first.path()]).expect("path");
+        let asked = candidates(None, &path);
+        let on_path: Vec<&PathBuf> = asked.iter().filter(|p| !p.starts_with("/usr/bin")).collect();
+        assert_eq!(on_path, [&first.path().join("python3"), &complete]);
+        assert_eq!(find(Some(complete.clone()), &path).expect("complete"), complete);
+    }
 }
