@@ -7,6 +7,7 @@ pub mod body;
 pub mod comparison;
 pub mod error;
 pub mod impact;
+pub mod report;
 pub mod scene;
 
 pub use error::{Error, ExitStatus, Result};
