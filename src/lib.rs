@@ -5,12 +5,14 @@
 
 pub mod analytical;
 pub mod body;
+pub mod cli;
 pub mod comparison;
 pub mod contact;
 pub mod error;
 pub mod impact;
 pub mod project;
 pub mod reference;
+pub mod report;
 pub mod scene;
 
 pub use error::{Error, ExitStatus, Result};

@@ -45,7 +45,7 @@ impl Bench {
 
     fn solve(&self, script: &str) -> Result<Vec<Progress>> {
         let mut steps = Vec::new();
-        solve_with(&self.solver(script), &scene(), PAPER, &self.store, &mut |p| steps.push(p.clone()))?;
+        solve_with(&self.solver(script), &scene(), PAPER, &self.store, &[], &mut |p| steps.push(p.clone()))?;
         Ok(steps)
     }
 
@@ -211,7 +211,7 @@ fn runs_at_once_leave_one_complete_entry() {
     let bench = Bench::new();
     let python = bench.solver(COPY);
     std::thread::scope(|scope| {
-        let run = || solve_with(&python, &scene(), PAPER, &bench.store, &mut |_| ());
+        let run = || solve_with(&python, &scene(), PAPER, &bench.store, &[], &mut |_| ());
         let workers: Vec<_> = (0..6).map(|_| scope.spawn(move || (0..5).all(|_| run().is_ok()))).collect();
         for worker in workers {
             assert!(worker.join().expect("thread"));
@@ -228,7 +228,7 @@ fn the_solver_does_not_outlive_its_caller() {
         .solver(r#"echo $$ > "$here/pid"; echo '{"phase":"mesh","done":0,"message":""}'; exec sleep 60"#);
     let store = bench.store.clone();
     let stopped = std::thread::spawn(move || {
-        let _ = solve_with(&python, &scene(), PAPER, &store, &mut |_| panic!("the caller stops"));
+        let _ = solve_with(&python, &scene(), PAPER, &store, &[], &mut |_| panic!("the caller stops"));
     });
     assert!(stopped.join().is_err());
     let pid = fs::read_to_string(bench.path("pid")).expect("pid");
@@ -271,7 +271,8 @@ fn a_store_that_can_not_be_written_is_named() {
 fn an_interpreter_that_is_not_there_is_named() {
     let bench = Bench::new();
     let none = bench.path("none");
-    let error = solve_with(&none, &scene(), PAPER, &bench.store, &mut |_| ()).expect_err("no interpreter");
+    let error =
+        solve_with(&none, &scene(), PAPER, &bench.store, &[], &mut |_| ()).expect_err("no interpreter");
     assert_eq!(error.exit_status(), ExitStatus::Solver);
     assert!(
         flat(&error).contains(&*none.to_string_lossy()) && flat(&error).contains("can't be run"),

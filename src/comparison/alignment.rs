@@ -124,6 +124,31 @@ pub fn align(axis: CommonAxis, reference: &History, reduced: &History) -> Vec<Al
     CURVES.into_iter().filter_map(aligned).collect()
 }
 
+/// One curve of a history on a common axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledCurve {
+    /// Name in [`CURVES`].
+    pub quantity: &'static str,
+    /// Values; NaN where the history doesn't cover the axis, free flight of the spheres included.
+    /// Shape (axis.samples).
+    pub values: Vec<f64>,
+}
+
+/// Every curve of a history at the instants of `axis`; empty if it can't be sampled.
+pub fn sample(axis: CommonAxis, history: &History) -> Vec<SampledCurve> {
+    if !can_be_sampled(history) {
+        return Vec::new();
+    }
+    let curve = |(quantity, _)| {
+        let end = covered_until(quantity, history);
+        let mut values = sampled(quantity, history, &axis);
+        let beyond = (0..axis.samples).filter(|&k| axis.time(k) > end);
+        beyond.for_each(|k| values[k] = f64::NAN);
+        SampledCurve { quantity, values }
+    };
+    CURVES.into_iter().map(curve).collect()
+}
+
 /// Time in s up to which a curve is known, free flight included.
 fn covered_until(quantity: &str, history: &History) -> f64 {
     let last = history.len() - 1;

@@ -18,7 +18,7 @@ mod russell;
 mod sprague_geers;
 mod verdict;
 
-pub use alignment::{AlignedCurve, CommonAxis, align};
+pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
 pub use curve_metrics::CurveMetrics;
 pub use discrepancy::Discrepancy;
 pub use integrity::Check;

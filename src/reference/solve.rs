@@ -12,6 +12,7 @@ use std::path::Path;
 ///
 /// The result is verified first: checksums, format, and that it is one of this scene with these
 /// settings. Until then an older entry stays, and a failed run leaves the store as it was.
+/// Stress fields are written for the times `stress_at` in s.
 ///
 /// # Errors
 /// [`Error::Scene`] if the solver does not support the scene, [`Error::Solver`] if there is no
@@ -20,9 +21,10 @@ pub fn solve(
     scene: &Scene,
     resolution: Resolution,
     store: &Store,
+    stress_at: &[f64],
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
-    solve_with(&python::python()?, scene, resolution, store, progress)
+    solve_with(&python::python()?, scene, resolution, store, stress_at, progress)
 }
 
 /// As [`solve`], with the interpreter `python`.
@@ -34,6 +36,7 @@ pub fn solve_with(
     scene: &Scene,
     resolution: Resolution,
     store: &Store,
+    stress_at: &[f64],
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
     let work = store.work_folder(scene)?;
@@ -46,6 +49,10 @@ pub fn solve_with(
     command.args([OsStr::new("solve"), OsStr::new("--scene"), input.as_os_str()]);
     command.args([OsStr::new("--out"), output.as_os_str()]);
     command.args(["--resolution", resolution.name()]);
+    if !stress_at.is_empty() {
+        command.arg("--stress-at");
+        command.arg(stress_at.iter().map(f64::to_string).collect::<Vec<_>>().join(","));
+    }
     let ending = child::run(command, progress)
         .map_err(|e| Error::Solver(format!("{} can't be run: {e}", python.display())))?;
     if !ending.status.success() {

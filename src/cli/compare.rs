@@ -1,0 +1,166 @@
+//! `impactcheck compare` and `impactcheck gate`: the main job, scene to verdict.
+
+use super::{Context, JsonArgument, reference};
+use crate::comparison::{Comparison, Verdict, compare_scene};
+use crate::error::{Error, ExitStatus, Result};
+use crate::impact::Outcome;
+use crate::impact::reduced::Reduced;
+use crate::reference::{Lookup, Resolution, Store, Stored};
+use crate::report::{self, Report, SceneReport};
+use crate::scene::{self, Model, Scene};
+use clap::Args;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Relative error of the efficiency that the reduced models' time integration may have in a comparison.
+const TOLERANCE: f64 = 1e-7;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene files or names of shipped scenes [default: all shipped scenes]
+    scenes: Vec<String>,
+    /// Reduced models to compare
+    #[arg(long, value_delimiter = ',', default_value = "A,B")]
+    models: Vec<Model>,
+    /// Resolution of the reference
+    #[arg(long, default_value = "paper")]
+    resolution: Resolution,
+    /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
+    #[arg(long)]
+    compute: bool,
+    /// Folder the report is written to
+    #[arg(long, default_value = "reports", value_name = "DIR")]
+    out: PathBuf,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+#[derive(Debug, Args)]
+pub struct GateArguments {
+    #[command(flatten)]
+    compare: Arguments,
+    /// Write the checks as JUnit XML to this file
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+}
+
+/// Compares and writes the report. The verdict is shown; the exit status tells only whether the job was done.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    job(context, arguments, None)?;
+    Ok(ExitStatus::Pass)
+}
+
+/// Compares, writes the report and lets the verdict be the exit status.
+pub fn gate(context: &Context, arguments: &GateArguments) -> Result<ExitStatus> {
+    Ok(match job(context, &arguments.compare, arguments.junit.as_ref())? {
+        Verdict::Pass => ExitStatus::Pass,
+        Verdict::Fail => ExitStatus::ToleranceExceeded,
+    })
+}
+
+fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Result<Verdict> {
+    let start = Instant::now();
+    let scenes = read(&arguments.scenes)?;
+    // refused before anything is computed
+    report::check_writable(&arguments.out)?;
+    if let Some(folder) = junit.and_then(|file| file.parent()).filter(|folder| !folder.as_os_str().is_empty())
+    {
+        report::check_writable(folder)?;
+    }
+    let references = references(context, arguments, &scenes)?;
+    let mut reduced = Vec::new();
+    for scene in &scenes {
+        let outcomes: Result<Vec<Outcome>> = models(arguments, scene)
+            .into_iter()
+            .map(|(model, modes)| Reduced::new(scene, model, modes)?.run_with_history(TOLERANCE))
+            .collect();
+        reduced.push(outcomes?);
+    }
+    let reports: Vec<SceneReport> = scenes
+        .iter()
+        .zip(&references)
+        .zip(&reduced)
+        .map(|((scene, stored), reduced)| SceneReport {
+            scene,
+            comparison: compare_scene(scene, &stored.outcome, reduced),
+            reference: &stored.outcome,
+            reduced,
+            provenance: stored.provenance.clone(),
+            command: format!("impactcheck compare {}", scene.name),
+        })
+        .collect();
+    let comparison = Comparison::new(reports.iter().map(|scene| scene.comparison.clone()).collect());
+    let verdict = comparison.verdict;
+    let report = Report { scenes: reports };
+    report::write(&report, &arguments.out)?;
+    if let Some(file) = junit {
+        report::write_file(file, report::junit(&report)?.as_bytes())?;
+    }
+    if arguments.json.json {
+        super::print_json(&comparison)?;
+    } else {
+        super::print(&report::terminal(&report))?;
+    }
+    context.note(format_args!(
+        "{} scene{} compared in {:.2} s; report: {}",
+        scenes.len(),
+        if scenes.len() == 1 { "" } else { "s" },
+        start.elapsed().as_secs_f64(),
+        arguments.out.join("index.html").display()
+    ));
+    Ok(verdict)
+}
+
+/// The scenes named, or all shipped ones.
+fn read(names: &[String]) -> Result<Vec<Scene>> {
+    let paths = if names.is_empty() {
+        scene::shipped()?
+    } else {
+        names.iter().map(|name| scene::resolve(name)).collect::<Result<Vec<_>>>()?
+    };
+    let scenes = paths.iter().map(Scene::read).collect::<Result<Vec<_>>>()?;
+    for (i, scene) in scenes.iter().enumerate() {
+        if scenes[..i].iter().any(|other| other.name == scene.name) {
+            return Err(Error::Usage(format!(
+                "two scenes are called `{}`; a report needs different names",
+                scene.name
+            )));
+        }
+    }
+    Ok(scenes)
+}
+
+/// The references of all scenes, or one error that names every one that can't be used.
+fn references(context: &Context, arguments: &Arguments, scenes: &[Scene]) -> Result<Vec<Stored>> {
+    let store = context.store();
+    let mut found = Vec::new();
+    let mut problems = Vec::new();
+    for scene in scenes {
+        match store.find(scene, arguments.resolution) {
+            Lookup::Found(stored) => found.push(*stored),
+            Lookup::Missing | Lookup::Stale { .. } if arguments.compute => {
+                found.push(computed(context, arguments, scene, &store)?);
+            }
+            other => problems.push(reference::problem(scene, arguments.resolution, &other)),
+        }
+    }
+    if problems.is_empty() {
+        return Ok(found);
+    }
+    problems.push(
+        "compute references with `impactcheck reference SCENE` or `--compute` (`impactcheck doctor` tells what that needs)"
+            .into(),
+    );
+    Err(Error::Reference(problems.join("\n  ")))
+}
+
+fn computed(context: &Context, arguments: &Arguments, scene: &Scene, store: &Store) -> Result<Stored> {
+    reference::compute(context, scene, arguments.resolution, store, &[])
+}
+
+/// The models to compare; the scene's number of modes belongs to model B (and C).
+fn models(arguments: &Arguments, _scene: &Scene) -> Vec<(Model, Option<usize>)> {
+    let mut models: Vec<_> = arguments.models.iter().map(|model| (*model, None)).collect();
+    models.dedup();
+    models
+}

@@ -1,0 +1,129 @@
+//! The command line: one file per command, no physics.
+
+mod compare;
+mod doctor;
+mod progress;
+mod reduced;
+mod reference;
+mod schema;
+
+use crate::error::{Error, ExitStatus, Result};
+use clap::{Args, Parser, Subcommand};
+use serde::Serialize;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// How far can a fast reduced model of an impact be trusted?
+#[derive(Debug, Parser)]
+#[command(name = "impactcheck", version, about, after_help = EXIT_STATUS, max_term_width = 110)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Folder of the stored references [default: $IMPACTCHECK_STORE, else the project's fem_reference/solutions]
+    #[arg(long, global = true, value_name = "DIR")]
+    store: Option<PathBuf>,
+    /// Say nothing but results and errors
+    #[arg(long, short, global = true)]
+    quiet: bool,
+}
+
+const EXIT_STATUS: &str = "Exit status: 0 pass, 1 internal error, 2 usage, 3 invalid scene, \
+10 a tolerance is exceeded, 11 reference missing, stale or damaged, 12 a solver failed.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a reduced model of a scene
+    #[command(after_help = "Example: impactcheck reduced scaled-plate-r10 --model B --modes 16")]
+    Reduced(reduced::Arguments),
+    /// Find the stored finite-element solution of a scene, or compute it
+    #[command(after_help = "Example: impactcheck reference scaled-plate-r10 --resolution coarse")]
+    Reference(reference::Arguments),
+    /// Compare reduced models with the reference and write the report; the main job
+    #[command(after_help = "Example: impactcheck compare scaled-plate-r10 --models A,B --out my-report")]
+    Compare(compare::Arguments),
+    /// Compare, and let the scene's tolerances decide the exit status
+    #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
+    Gate(compare::GateArguments),
+    /// Tell what is installed, and the command that installs what is missing
+    Doctor(JsonArgument),
+    /// Print the JSON schema of scene files, for editors
+    Schema,
+}
+
+/// The switch every command has that prints results.
+#[derive(Debug, Clone, Copy, Args)]
+struct JsonArgument {
+    /// Print one JSON document and nothing else on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+/// What every command is told besides its own arguments.
+#[derive(Debug, Clone)]
+struct Context {
+    store: Option<PathBuf>,
+    quiet: bool,
+}
+
+impl Context {
+    fn store(&self) -> crate::reference::Store {
+        crate::reference::Store::open(self.store.as_deref())
+    }
+
+    /// A line for people, on standard error.
+    fn note(&self, text: impl std::fmt::Display) {
+        if !self.quiet {
+            eprintln!("{text}");
+        }
+    }
+}
+
+/// Runs the program with `arguments` (the first is its name) and gives the exit status.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(error) => {
+            let status = if error.use_stderr() { ExitStatus::Usage } else { ExitStatus::Pass };
+            // a closed pipe is no reason to fail
+            let _ = error.print();
+            return status;
+        }
+    };
+    let context = Context { store: cli.store, quiet: cli.quiet };
+    let result = match cli.command {
+        Command::Reduced(arguments) => reduced::run(&context, &arguments),
+        Command::Reference(arguments) => reference::run(&context, &arguments),
+        Command::Compare(arguments) => compare::run(&context, &arguments),
+        Command::Gate(arguments) => compare::gate(&context, &arguments),
+        Command::Doctor(arguments) => doctor::run(&context, arguments),
+        Command::Schema => schema::run(),
+    };
+    result.unwrap_or_else(|error| {
+        eprintln!("{}", describe(&error));
+        error.exit_status()
+    })
+}
+
+/// The error as a person reads it; scene errors come with the place in the file.
+fn describe(error: &Error) -> String {
+    match error {
+        Error::Scene(report) => format!("{report:?}"),
+        other => format!("error: {other}"),
+    }
+}
+
+/// Prints `document` as JSON on standard output.
+fn print_json(document: &impl Serialize) -> Result<()> {
+    let text =
+        serde_json::to_string_pretty(document).map_err(|e| Error::Internal(format!("writing JSON: {e}")))?;
+    print(&text)
+}
+
+/// Prints a line on standard output; a reader that has gone away is no error.
+fn print(text: &str) -> Result<()> {
+    use std::io::{ErrorKind, Write};
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::io("writing to", "standard output", e)),
+        _ => Ok(()),
+    }
+}

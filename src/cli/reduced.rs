@@ -1,0 +1,105 @@
+//! `impactcheck reduced`: runs a reduced model of a scene.
+
+use super::{Context, JsonArgument};
+use crate::error::{Error, ExitStatus, Result};
+use crate::impact::reduced::Reduced;
+use crate::impact::{CURVES, History, PLATE_QUANTITIES, Summary};
+use crate::scene::{self, Model, Scene};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file, or the name of a shipped scene
+    scene: String,
+    /// Reduced model: A (one mode), B (Kirchhoff modes) [default: the scene's, else B]
+    #[arg(long)]
+    model: Option<Model>,
+    /// Number of modes [default: the scene's, else 16]
+    #[arg(long, value_name = "N")]
+    modes: Option<usize>,
+    /// Relative error of the efficiency that the time integration may have
+    #[arg(long, default_value_t = 1e-7, value_parser = tolerance)]
+    tolerance: f64,
+    /// Write displacement, velocity and force over time to this CSV file
+    #[arg(long, value_name = "FILE")]
+    history: Option<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// Runs the model and prints its summary.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
+    let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::B);
+    let reduced = Reduced::new(&scene, model, arguments.modes)?;
+    let summary = match &arguments.history {
+        None => reduced.run(arguments.tolerance)?,
+        Some(path) => {
+            let outcome = reduced.run_with_history(arguments.tolerance)?;
+            crate::report::write_file(path, &csv(&outcome.history)?)?;
+            context.note(format_args!("history of {} samples in {}", outcome.history.len(), path.display()));
+            outcome.summary
+        }
+    };
+    if arguments.json.json {
+        super::print_json(&summary)?;
+    } else {
+        super::print(&table(&summary))?;
+    }
+    Ok(ExitStatus::Pass)
+}
+
+/// The summary as lines of name, value and unit.
+pub fn table(summary: &Summary) -> String {
+    let who = match (&summary.model, summary.modes) {
+        (Some(model), Some(modes)) => format!("model {model}, {modes} modes"),
+        _ => "reference".to_owned(),
+    };
+    let mut lines = vec![format!("{} ({who})", summary.scene)];
+    for (name, unit) in PLATE_QUANTITIES {
+        let value = summary.quantities.get(name).unwrap_or(f64::NAN);
+        let unit = if unit == "1" { "" } else { unit };
+        let band = summary.uncertainty.get(name).map_or_else(String::new, |u| format!(" +- {u:.2e}"));
+        lines.push(format!("  {name:<22} {:>14}{band} {unit}", significant(value)));
+    }
+    lines.push(format!("  {:<22} {:>14.1e}", "energy_residual", summary.energy_residual));
+    lines.push(format!("  {:<22} {:>14.1e}", "momentum_residual", summary.momentum_residual));
+    lines.push(format!("  {} steps in {:.3e} s", summary.steps, summary.solve_seconds));
+    lines.join("\n")
+}
+
+/// Six significant digits, in scientific notation only where it is needed.
+fn significant(value: f64) -> String {
+    if value == value.trunc() && value.abs() < 1e6 {
+        format!("{value}")
+    } else if value.abs() >= 1e-3 && value.abs() < 1e6 {
+        format!("{value:.*}", (5 - value.abs().log10().floor() as i32).max(0) as usize)
+    } else {
+        format!("{value:.5e}")
+    }
+}
+
+/// The history as a CSV file with the columns of a reference's history.
+fn csv(history: &History) -> Result<Vec<u8>> {
+    let failed = |e: csv::Error| Error::Internal(format!("writing CSV: {e}"));
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let names = CURVES.map(|(name, _)| name);
+    writer.write_record(std::iter::once("time").chain(names)).map_err(failed)?;
+    for i in 0..history.len() {
+        let row = names.iter().filter_map(|name| history.curve(name)).map(|curve| curve[i]);
+        writer
+            .serialize(std::iter::once(history.time[i]).chain(row).collect::<Vec<f64>>())
+            .map_err(failed)?;
+    }
+    writer.into_inner().map_err(|e| Error::Internal(format!("writing CSV: {e}")))
+}
+
+/// Parses a tolerance between what double precision gives and what is of use.
+fn tolerance(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (1e-12..=1e-2).contains(&value) => Ok(value),
+        Ok(value) => Err(format!("{value} is not within 1e-12 to 1e-2")),
+        Err(e) => Err(e.to_string()),
+    }
+}

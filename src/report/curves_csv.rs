@@ -1,0 +1,43 @@
+//! The curves of a scene on the common axis as CSV, SI units.
+
+use super::SceneReport;
+use crate::comparison::sample;
+use crate::error::{Error, Result};
+use crate::impact::CURVES;
+
+/// CSV with the columns `time`, then `<source>_<curve>` for the reference and every model. A cell
+/// is empty where the result doesn't cover the axis; without a common axis there is only the header.
+///
+/// # Errors
+/// [`Error::Internal`] if it can't be written.
+pub fn curves_csv(report: &SceneReport) -> Result<String> {
+    let internal = |e: String| Error::Internal(format!("writing the curves as CSV: {e}"));
+    let reference = ("reference".to_owned(), &report.reference.history);
+    let reduced = report.reduced.iter().map(|o| (o.summary.model.clone().unwrap_or_default(), &o.history));
+    let sources: Vec<_> = std::iter::once(reference).chain(reduced).collect();
+
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let names = sources.iter().flat_map(|(s, _)| CURVES.iter().map(move |(c, _)| format!("{s}_{c}")));
+    writer.write_record(["time".to_owned()].into_iter().chain(names)).map_err(|e| internal(e.to_string()))?;
+    if let Some(axis) = report.comparison.window {
+        let columns: Vec<Vec<f64>> = sources
+            .iter()
+            .flat_map(|(_, history)| {
+                let mut curves = sample(axis, history);
+                curves.sort_by_key(|c| CURVES.iter().position(|(name, _)| *name == c.quantity));
+                let missing = if curves.is_empty() { CURVES.len() } else { 0 };
+                curves.into_iter().map(|c| c.values).chain(vec![Vec::new(); missing])
+            })
+            .collect();
+        for k in 0..axis.samples {
+            let cell = |column: &Vec<f64>| match column.get(k) {
+                Some(v) if v.is_finite() => format!("{v:e}"),
+                _ => String::new(),
+            };
+            let row = [format!("{:e}", axis.time(k))].into_iter().chain(columns.iter().map(cell));
+            writer.write_record(row).map_err(|e| internal(e.to_string()))?;
+        }
+    }
+    let bytes = writer.into_inner().map_err(|e| internal(e.to_string()))?;
+    String::from_utf8(bytes).map_err(|e| internal(e.to_string()))
+}

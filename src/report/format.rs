@@ -1,0 +1,128 @@
+//! Numbers and names as people read them: SI prefixes, significant digits, plain words.
+
+/// Unit with a prefix: a value in the unit times `factor` is the number to show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Prefixed {
+    pub(super) unit: &'static str,
+    pub(super) factor: f64,
+}
+
+/// Prefix of `unit` that suits a value of magnitude `scale`.
+pub(super) fn prefixed(unit: &str, scale: f64) -> Prefixed {
+    let of = |unit, factor| Prefixed { unit, factor };
+    let small = scale.abs();
+    match unit {
+        "s" if small < 1e-3 => of("µs", 1e6),
+        "s" if small < 1.0 => of("ms", 1e3),
+        "s" => of("s", 1.0),
+        "m" if small < 1e-3 => of("µm", 1e6),
+        "m" if small < 1.0 => of("mm", 1e3),
+        "m" => of("m", 1.0),
+        "m/s" if small < 10.0 => of("mm/s", 1e3),
+        "m/s" => of("m/s", 1.0),
+        "N" if small < 0.1 => of("mN", 1e3),
+        "N" => of("N", 1.0),
+        "N*s" => of("mN s", 1e3),
+        "Hz" if small >= 1e3 => of("kHz", 1e-3),
+        "Hz" => of("Hz", 1.0),
+        _ => of("", 1.0),
+    }
+}
+
+/// `value` with `digits` significant digits; a dash if it is no number.
+pub(super) fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let magnitude = value.abs().log10().floor();
+    if !(-4.0..7.0).contains(&magnitude) {
+        return minus(format!("{:.*e}", digits.saturating_sub(1), value));
+    }
+    let decimals = (digits as i32 - 1 - magnitude as i32).max(0) as usize;
+    minus(format!("{value:.decimals$}"))
+}
+
+/// A true minus sign.
+fn minus(text: String) -> String {
+    text.replace('-', "−")
+}
+
+/// `value` in the unit, with digits and unit.
+pub(super) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
+    let number = significant(value * to.factor, digits);
+    if to.unit.is_empty() || !value.is_finite() { number } else { format!("{number} {}", to.unit) }
+}
+
+/// A relative value in per cent with its sign.
+pub(super) fn percent(relative: Option<f64>) -> String {
+    match relative {
+        Some(r) if r.is_finite() => {
+            let number =
+                if r.abs() < 0.1 { format!("{:.2}", 100.0 * r) } else { format!("{:.1}", 100.0 * r) };
+            let sign = if r > 0.0 { "+" } else { "" };
+            format!("{sign}{} %", minus(number))
+        }
+        _ => "–".into(),
+    }
+}
+
+/// A name of the results in words: `outer_force_peak` is "outer force, peak".
+pub(super) fn words(quantity: &str) -> String {
+    for (ending, word) in [
+        ("_rms", "rms distance"),
+        ("_max", "largest distance"),
+        ("_peak", "peak"),
+        ("_final", "final"),
+        ("_end", "end"),
+    ] {
+        if let Some(stem) = quantity.strip_suffix(ending) {
+            return format!("{}, {word}", stem.replace('_', " "));
+        }
+    }
+    quantity.replace('_', " ")
+}
+
+/// "A, 1 mode", "B, 16 modes".
+pub(super) fn model_name(model: &str, modes: Option<usize>) -> String {
+    match modes {
+        Some(1) => format!("{model}, 1 mode"),
+        Some(n) => format!("{model}, {n} modes"),
+        None => model.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{percent, prefixed, significant, with_unit, words};
+
+    #[test]
+    fn significant_digits() {
+        assert_eq!(significant(443.0961, 4), "443.1");
+        assert_eq!(significant(-0.69458, 4), "−0.6946");
+        assert_eq!(significant(1.25e-9, 3), "1.25e−9");
+        assert_eq!(significant(41_792.0, 4), "41792");
+        assert_eq!(significant(f64::NAN, 4), "–");
+        assert_eq!(significant(0.0, 4), "0");
+    }
+
+    #[test]
+    fn prefixes_suit_the_scale() {
+        assert_eq!(with_unit(180.46e-6, prefixed("s", 180e-6), 4), "180.5 µs");
+        assert_eq!(with_unit(-0.2958, prefixed("m/s", 0.5), 4), "−295.8 mm/s");
+        assert_eq!(with_unit(4655.0, prefixed("Hz", 4655.0), 4), "4.655 kHz");
+        assert_eq!(with_unit(0.6946, prefixed("1", 0.7), 4), "0.6946");
+    }
+
+    #[test]
+    fn percentages_and_words() {
+        assert_eq!(percent(Some(-0.0987)), "−9.87 %");
+        assert_eq!(percent(Some(0.2)), "+20.0 %");
+        assert_eq!(percent(None), "–");
+        assert_eq!(words("outer_force_peak"), "outer force, peak");
+        assert_eq!(words("plate_velocity_rms"), "plate velocity, rms distance");
+        assert_eq!(words("efficiency"), "efficiency");
+    }
+}

@@ -1,0 +1,72 @@
+//! JUnit XML for continuous integration: a suite per scene, a case per model and quantity.
+
+use super::Report;
+use crate::comparison::{Check, Discrepancy};
+use crate::error::{Error, Result};
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
+
+/// JUnit XML. It holds no times, so that equal results give equal files.
+///
+/// # Errors
+/// [`Error::Internal`] if it can't be serialised.
+pub fn junit(report: &Report) -> Result<String> {
+    let mut document = quick_junit::Report::new("impactcheck");
+    for scene in &report.scenes {
+        let comparison = &scene.comparison;
+        let mut suite = TestSuite::new(comparison.scene.clone());
+        suite.add_test_cases(
+            comparison.integrity.iter().map(|c| integrity_case(&comparison.scene, "reference", c)),
+        );
+        for model in &comparison.models {
+            let rows = model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d));
+            suite.add_test_cases(rows);
+            let checks = model.integrity.iter();
+            suite.add_test_cases(checks.map(|c| integrity_case(&comparison.scene, &model.model, c)));
+        }
+        document.add_test_suite(suite);
+    }
+    document.to_string().map_err(|e| Error::Internal(format!("writing JUnit XML: {e}")))
+}
+
+fn named(scene: &str, source: &str, name: &str, failure: Option<String>) -> TestCase {
+    let status = match failure {
+        None => TestCaseStatus::success(),
+        Some(message) => {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+            status.set_type("discrepancy").set_message(message);
+            status
+        }
+    };
+    let mut case = TestCase::new(name, status);
+    case.set_classname(format!("{scene}.{source}"));
+    case
+}
+
+fn case(scene: &str, model: &str, row: &Discrepancy) -> TestCase {
+    let failure = (!row.verdict.passed()).then(|| failure(row));
+    named(scene, model, &row.quantity, failure)
+}
+
+fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
+    let failure = (!check.verdict.passed()).then(|| integrity_failure(check));
+    named(scene, source, &format!("integrity.{}", check.check), failure)
+}
+
+/// What is wrong with a row, in one sentence with numbers, unit and bound.
+pub(super) fn failure(row: &Discrepancy) -> String {
+    let Discrepancy { quantity, unit, reduced, reference, difference, .. } = row;
+    let numbers = format!("{quantity}: reduced {reduced} {unit}, reference {reference} {unit}");
+    match (row.tolerance, row.bias) {
+        (None, _) => format!("{numbers}: not a number"),
+        (Some(bound), None) => format!("{numbers}, difference {difference} {unit}, bound {bound} {unit}"),
+        (Some(bound), Some(bias)) => format!(
+            "{numbers}, difference {difference} {unit} where {bias} {unit} is known, bound {bound} {unit} about it"
+        ),
+    }
+}
+
+/// What is wrong with a check, in one sentence with numbers, unit and bound.
+pub(super) fn integrity_failure(check: &Check) -> String {
+    let Check { check, unit, found, expected, bound, .. } = check;
+    format!("{check}: found {found} {unit}, expected {expected} {unit} within {bound} {unit}")
+}

@@ -1,0 +1,128 @@
+//! The report as Markdown: verdicts, discrepancies and curve metrics as tables.
+
+use super::format::{model_name, percent, prefixed, significant, with_unit, words};
+use super::{Report, SceneReport};
+use crate::comparison::{Check, Discrepancy, ModelComparison};
+
+/// Markdown of the whole report.
+pub fn markdown(report: &Report) -> String {
+    let verdict = report.comparison().verdict;
+    let mut text = format!(
+        "# impactcheck: {verdict}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy |\n|---|---|---|--:|--:|---|\n"
+    );
+    for scene in &report.scenes {
+        let reference = scene.comparison.reference.quantities.efficiency;
+        for model in &scene.comparison.models {
+            let largest = model
+                .largest()
+                .map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
+            text += &format!(
+                "| {} | {} | {} | {} | {} | {largest} |\n",
+                escape(&scene.comparison.scene),
+                escape(&model_name(&model.model, model.summary.modes)),
+                model.verdict,
+                significant(model.summary.quantities.efficiency, 4),
+                significant(reference, 4),
+            );
+        }
+    }
+    for scene in &report.scenes {
+        text += &section(scene);
+    }
+    text
+}
+
+fn section(scene: &SceneReport) -> String {
+    let comparison = &scene.comparison;
+    let mut text = format!(
+        "\n## {}: {}\n\n{}\n\n![Displacement, velocity and contact force]({}.svg)\n",
+        escape(&comparison.scene),
+        comparison.verdict,
+        escape(&scene.scene.description),
+        comparison.scene,
+    );
+    text += &failures("the reference", &comparison.integrity);
+    for model in &comparison.models {
+        text += &model_section(model);
+    }
+    text += &format!("\nMade by:\n\n    {}\n", scene.command);
+    text
+}
+
+fn model_section(model: &ModelComparison) -> String {
+    let name = escape(&model_name(&model.model, model.summary.modes));
+    let mut text = format!(
+        "\n### Model {name}: {}\n\n| quantity | reduced | reference | difference | relative | 95 % band | tolerance | bias | verdict |\n|---|--:|--:|--:|--:|--:|--:|--:|---|\n",
+        model.verdict
+    );
+    for row in &model.discrepancies {
+        text += &format!("{}\n", discrepancy(row));
+    }
+    text += "\n| curve | Sprague-Geers | Russell | ISO/TS 18571 | corridor | phase | magnitude | slope | grade | window | samples |\n|---|--:|--:|--:|--:|--:|--:|--:|---|--:|--:|\n";
+    let score = |value: Option<f64>| value.map_or("–".into(), |v| format!("{v:.3}"));
+    for curve in &model.curves {
+        text += &format!(
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} to {} | {} |\n",
+            words(&curve.quantity),
+            score(curve.sprague_geers),
+            score(curve.russell),
+            score(curve.iso18571),
+            score(curve.iso18571_corridor),
+            score(curve.iso18571_phase),
+            score(curve.iso18571_magnitude),
+            score(curve.iso18571_slope),
+            curve.grade.map_or("–".into(), |g| g.to_string()),
+            significant(curve.window[0] * 1e6, 4),
+            with_unit(curve.window[1], prefixed("s", curve.window[1]), 4),
+            curve.samples,
+        );
+    }
+    text + &failures(&format!("model {name}"), &model.integrity)
+}
+
+fn discrepancy(row: &Discrepancy) -> String {
+    let to = prefixed(&row.unit, row.reference.abs().max(row.reduced.abs()));
+    let show = |value: f64, digits| with_unit(value, to, digits);
+    let optional = |value: Option<f64>| value.map_or("–".into(), |v| show(v, 3));
+    format!(
+        "| {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+        words(&row.quantity),
+        show(row.reduced, 5),
+        show(row.reference, 5),
+        show(row.difference, 3),
+        percent(row.relative),
+        optional(row.uncertainty),
+        optional(row.tolerance),
+        optional(row.bias),
+        row.verdict,
+    )
+}
+
+/// What a result contradicts itself in; nothing if it doesn't.
+fn failures(of: &str, checks: &[Check]) -> String {
+    let failed: Vec<_> = checks.iter().filter(|c| !c.verdict.passed()).collect();
+    if failed.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("\nThe result of {of} contradicts itself or its scene:\n\n");
+    for check in failed {
+        text += &format!("- {}\n", super::junit::integrity_failure(check));
+    }
+    text
+}
+
+/// Text without what Markdown would take for markup or for a column.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '|' | '*' | '`' | '[' | ']' | '\\' => escaped.extend(['\\', c]),
+            '\n' | '\r' => escaped.push(' '),
+            _ => escaped.push(c),
+        }
+    }
+    escaped
+}

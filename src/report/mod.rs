@@ -1,0 +1,63 @@
+//! The report: one result type, [`Report`], and an exporter per format that reads it.
+//!
+//! Nothing here computes physics, and nothing depends on the time of day: the same results give
+//! the same files.
+
+mod curves_csv;
+mod figure;
+mod format;
+mod html;
+mod json;
+mod junit;
+mod label_placement;
+mod markdown;
+mod png;
+mod polyline;
+mod terminal;
+mod ticks;
+mod write;
+
+pub use curves_csv::curves_csv;
+pub use figure::{Theme, figure};
+pub use html::{index_page, scene_page};
+pub use json::json;
+pub use junit::junit;
+pub use markdown::markdown;
+pub use png::png;
+pub use terminal::terminal;
+pub use write::{check_writable, write, write_file};
+
+use crate::comparison::{Comparison, SceneComparison};
+use crate::impact::Outcome;
+use crate::scene::Scene;
+
+/// Everything the exporters need.
+#[derive(Debug, Clone)]
+pub struct Report<'a> {
+    /// One entry per scene, in the order of the report.
+    pub scenes: Vec<SceneReport<'a>>,
+}
+
+/// One scene of the report.
+#[derive(Debug, Clone)]
+pub struct SceneReport<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its comparison.
+    pub comparison: SceneComparison,
+    /// Result of the reference.
+    pub reference: &'a Outcome,
+    /// Results of the reduced models, in the order of `comparison.models`.
+    pub reduced: &'a [Outcome],
+    /// How the reference was made, as its store says.
+    pub provenance: serde_json::Value,
+    /// Command line that makes this comparison again.
+    pub command: String,
+}
+
+impl Report<'_> {
+    /// The comparison document of all scenes.
+    pub fn comparison(&self) -> Comparison {
+        Comparison::new(self.scenes.iter().map(|s| s.comparison.clone()).collect())
+    }
+}

@@ -1,0 +1,118 @@
+//! The report's files, complete or not at all.
+
+use super::{Report, Theme};
+use crate::error::{Error, Result};
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+/// Pixels of the PNG per unit of the drawing: 760 units are 2280 px, 300 dpi at a width of 19 cm.
+const PNG_SCALE: f32 = 3.0;
+
+/// Writes `index.html`, `comparison.json`, `comparison.md`, `junit.xml` and, per scene, its page,
+/// figure (SVG, PNG) and curves (CSV) into `dir`, which is made if it does not exist.
+///
+/// Everything is made in a temporary folder inside `dir` first and then renamed into place; on an error
+/// before that, no file of the report has changed. Returns the paths, sorted.
+///
+/// # Errors
+/// [`Error::Io`] naming the folder or file; [`Error::Usage`] for scenes whose names can't be file
+/// names or are the same.
+pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+    let files = files(report)?;
+    for (name, _) in &files {
+        let target = dir.join(name);
+        if target.is_dir() {
+            return Err(Error::io("writing", target, io::Error::from(io::ErrorKind::IsADirectory)));
+        }
+    }
+    fs::create_dir_all(dir).map_err(|e| Error::io("creating", dir, e))?;
+    let partial = tempfile::Builder::new()
+        .prefix(".partial-")
+        .tempdir_in(dir)
+        .map_err(|e| Error::io("writing into", dir, e))?;
+    for (name, bytes) in &files {
+        fs::write(partial.path().join(name), bytes).map_err(|e| Error::io("writing", dir.join(name), e))?;
+    }
+    let mut written = Vec::with_capacity(files.len());
+    for (name, _) in files {
+        let target = dir.join(&name);
+        fs::rename(partial.path().join(&name), &target).map_err(|e| Error::io("writing", &target, e))?;
+        written.push(target);
+    }
+    written.sort();
+    Ok(written)
+}
+
+/// Writes one file by way of a temporary one beside it, so that it is never seen half-written.
+///
+/// # Errors
+/// [`Error::Io`] naming the file.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    let fail = |e| Error::io("writing", path, e);
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(fail)?;
+    let mut partial = tempfile::Builder::new().prefix(".partial-").tempfile_in(folder).map_err(fail)?;
+    io::Write::write_all(&mut partial, bytes).map_err(fail)?;
+    partial.persist(path).map_err(|e| fail(e.error))?;
+    Ok(())
+}
+
+/// Checks, leaving nothing behind, that [`write()`] can write into `dir` or create it.
+///
+/// # Errors
+/// [`Error::Io`] naming the folder.
+pub fn check_writable(dir: &Path) -> Result<()> {
+    let fail = |e| Error::io("writing into", dir, e);
+    // The nearest folder that exists takes the test file; a file in the way is no folder.
+    let start = if dir.as_os_str().is_empty() { Path::new(".") } else { dir };
+    let mut existing = start;
+    loop {
+        match fs::metadata(existing) {
+            Ok(data) if data.is_dir() => break,
+            Ok(_) => return Err(fail(io::Error::from(io::ErrorKind::NotADirectory))),
+            Err(e) if e.kind() == io::ErrorKind::NotFound => {
+                existing = match existing.parent() {
+                    Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
+                    Some(parent) => parent,
+                    None => return Err(fail(e)),
+                };
+            }
+            Err(e) => return Err(fail(e)),
+        }
+    }
+    tempfile::Builder::new().prefix(".partial-").tempfile_in(existing).map(drop).map_err(fail)
+}
+
+/// Name and content of every file.
+fn files(report: &Report) -> Result<Vec<(String, Vec<u8>)>> {
+    let mut names = BTreeSet::new();
+    let mut files = vec![
+        ("index.html".to_owned(), super::index_page(report).into_bytes()),
+        ("comparison.json".to_owned(), super::json(report)?.into_bytes()),
+        ("comparison.md".to_owned(), super::markdown(report).into_bytes()),
+        ("junit.xml".to_owned(), super::junit(report)?.into_bytes()),
+    ];
+    for scene in &report.scenes {
+        let name = &scene.comparison.scene;
+        if !is_file_name(name) {
+            return Err(Error::Usage(format!("scene name `{name}` can't be used as a file name")));
+        }
+        if !names.insert(name) || name == "index" {
+            return Err(Error::Usage(format!("scene name `{name}` stands for two pages of the report")));
+        }
+        let svg = super::figure(scene, Theme::Standalone);
+        files.push((format!("{name}.png"), super::png(&svg, PNG_SCALE)?));
+        files.push((format!("{name}.svg"), svg.into_bytes()));
+        files.push((format!("{name}.csv"), super::curves_csv(scene)?.into_bytes()));
+        files.push((format!("{name}.html"), super::scene_page(scene).into_bytes()));
+    }
+    Ok(files)
+}
+
+/// Whether `name` is one plain component of a path.
+fn is_file_name(name: &str) -> bool {
+    let mut components = Path::new(name).components();
+    matches!(components.next(), Some(Component::Normal(c)) if c == name) && components.next().is_none()
+}

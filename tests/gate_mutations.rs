@@ -1,0 +1,168 @@
+//! A test of the gate itself: errors are put into a stored reference, sealed again with fresh checksums, and
+//! the gate has to fail with exit status 10; with the untouched one it has to pass.
+
+use assert_cmd::Command;
+use sha2::{Digest, Sha256};
+use std::fs;
+use std::path::Path;
+
+const SCENES: [&str; 2] = ["scaled-plate-r10", "scaled-plate-r6.35"];
+
+/// A history as a table: header and rows of numbers.
+struct Table {
+    header: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Table {
+    fn read(path: &Path) -> Self {
+        let mut reader = csv::Reader::from_path(path).unwrap();
+        let header = reader.headers().unwrap().iter().map(str::to_owned).collect();
+        let rows =
+            reader.records().map(|r| r.unwrap().iter().map(|x| x.parse().unwrap()).collect()).collect();
+        Self { header, rows }
+    }
+
+    fn write(&self, path: &Path) {
+        let mut writer = csv::Writer::from_path(path).unwrap();
+        writer.write_record(&self.header).unwrap();
+        for row in &self.rows {
+            writer.write_record(row.iter().map(|x| format!("{x:e}"))).unwrap();
+        }
+        writer.flush().unwrap();
+    }
+
+    fn column(&self, name: &str) -> usize {
+        self.header.iter().position(|h| h == name).unwrap_or_else(|| panic!("no column {name}"))
+    }
+
+    fn scale(&mut self, name: &str, factor: f64) {
+        let column = self.column(name);
+        self.rows.iter_mut().for_each(|row| row[column] *= factor);
+    }
+
+    /// Delays every curve by about `delay` s; the first samples repeat the initial state.
+    fn delay(&mut self, delay: f64) {
+        let interval = self.rows[1][0] - self.rows[0][0];
+        let samples = (delay / interval).round() as usize;
+        assert!(samples > 0, "the samples are {interval} s apart");
+        let earlier: Vec<Vec<f64>> = self.rows.clone();
+        for (i, row) in self.rows.iter_mut().enumerate() {
+            let from = &earlier[i.saturating_sub(samples)];
+            row[1..].copy_from_slice(&from[1..]);
+        }
+    }
+}
+
+/// A store that holds `scene` only, its history changed by `change` and its checksums made again.
+fn store(scene: &str, change: impl Fn(&mut Table)) -> tempfile::TempDir {
+    let store = tempfile::tempdir().unwrap();
+    let from =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("fem_reference/solutions").join(scene).join("paper");
+    let to = store.path().join(scene).join("paper");
+    fs::create_dir_all(&to).unwrap();
+    for entry in fs::read_dir(&from).unwrap() {
+        let entry = entry.unwrap();
+        fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
+    }
+    let history = to.join("history.csv");
+    let mut table = Table::read(&history);
+    change(&mut table);
+    table.write(&history);
+    seal(&to);
+    store
+}
+
+/// Writes checksums.sha256 of a solution again.
+fn seal(folder: &Path) {
+    let mut lines: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name != "checksums.sha256")
+        .map(|name| {
+            let digest = Sha256::digest(fs::read(folder.join(&name)).unwrap());
+            let hex: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+            format!("{hex}  {name}\n")
+        })
+        .collect();
+    lines.sort();
+    fs::write(folder.join("checksums.sha256"), lines.concat()).unwrap();
+}
+
+/// Exit status of the gate on `scene` with the references of `store`.
+fn gate(scene: &str, store: &Path) -> i32 {
+    let out = tempfile::tempdir().unwrap();
+    let output = Command::cargo_bin("impactcheck")
+        .unwrap()
+        .args(["gate", scene, "--store"])
+        .arg(store)
+        .arg("--out")
+        .arg(out.path())
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    println!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    output.status.code().unwrap()
+}
+
+#[test]
+fn untouched_reference_passes() {
+    for scene in SCENES {
+        assert_eq!(gate(scene, store(scene, |_| ()).path()), 0, "{scene}");
+    }
+}
+
+#[test]
+fn three_percent_error_of_a_force_fails() {
+    for scene in SCENES {
+        for force in ["outer_force", "inner_force"] {
+            for factor in [0.97, 1.03] {
+                let store = store(scene, |table| table.scale(force, factor));
+                assert_eq!(gate(scene, store.path()), 10, "{scene}: {force} x {factor}");
+            }
+        }
+    }
+}
+
+#[test]
+fn shift_by_two_microseconds_fails() {
+    for scene in SCENES {
+        assert_eq!(gate(scene, store(scene, |table| table.delay(2e-6)).path()), 10, "{scene}");
+    }
+}
+
+#[test]
+fn swapped_sign_fails() {
+    for scene in SCENES {
+        for column in
+            ["outer_velocity", "inner_velocity", "inner_displacement", "plate_velocity", "inner_force"]
+        {
+            let store = store(scene, |table| table.scale(column, -1.0));
+            assert_eq!(gate(scene, store.path()), 10, "{scene}: -{column}");
+        }
+    }
+}
+
+#[test]
+fn one_missing_sample_fails() {
+    for scene in SCENES {
+        for position in [0.01, 0.5, 0.999] {
+            let store = store(scene, |table| {
+                let row = (position * table.rows.len() as f64) as usize;
+                table.rows.remove(row);
+            });
+            assert_eq!(gate(scene, store.path()), 10, "{scene}: sample at {position}");
+        }
+    }
+}
+
+#[test]
+fn changed_file_without_new_checksum_is_damage() {
+    let scene = SCENES[0];
+    let store = store(scene, |_| ());
+    let file = store.path().join(scene).join("paper/history.csv");
+    let mut text = fs::read_to_string(&file).unwrap();
+    text = text.replacen('7', "8", 1);
+    fs::write(&file, text).unwrap();
+    assert_eq!(gate(scene, store.path()), 11);
+}
