@@ -20,7 +20,7 @@ from .contact import (
 )
 from .errors import SolverError
 from .mesh import Floats
-from .system import BODIES, System, critical_time_step, node_flexibility
+from .system import BODIES, System, critical_time_step, hertz_weights, patch_flexibility
 
 PEAK_WINDOW_SAMPLES = 4
 """Raw sampling intervals in the window of the peak force."""
@@ -180,10 +180,12 @@ class _EndCheck:
     def __init__(self, system: System) -> None:
         self.system = system
         self.free_plate = system.supports.size == 0
-        both = np.concatenate([pairs.plate_nodes for pairs in system.contacts])
-        self.plate_flexibility = node_flexibility(system, _PLATE, both)
+        self.plate_flexibility = max(
+            patch_flexibility(system, _PLATE, pairs.plate_nodes, hertz_weights(pairs.radii))
+            for pairs in system.contacts
+        )
         self.sphere_flexibility = [
-            node_flexibility(system, body, pairs.sphere_nodes)
+            patch_flexibility(system, body, pairs.sphere_nodes, hertz_weights(pairs.radii))
             for body, pairs in zip((_OUTER, _INNER), system.contacts, strict=True)
         ]
 

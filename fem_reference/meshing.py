@@ -197,6 +197,12 @@ def mesh_plate(plate: Plate, settings: MeshSettings) -> BodyMesh:
         return _generate("plate")
 
 
+def modal_plate_mesh(plate: Plate) -> BodyMesh:
+    """Even mesh of the plate alone, fit for eigenmodes with quadratic elements."""
+    size = min(plate.thickness / 4.0, plate.radius / 48.0)
+    return mesh_plate(plate, MeshSettings(size, 1, size, 1.15))
+
+
 def _half_disc(sphere: Sphere, settings: MeshSettings, name: str) -> BodyMesh:
     """Mesh of a sphere that touches z = 0 from above, without corrections."""
     radius, zone = sphere.radius, settings.contact_zone
@@ -217,7 +223,7 @@ def _half_disc(sphere: Sphere, settings: MeshSettings, name: str) -> BodyMesh:
         centre = add(1j * radius)
         pole, top = add(0j), add(2j * radius)
         # Core, first shell, equator: each from the surface over the diagonal to the axis.
-        core = [add(edge), add(physical(c * (1 + 1j))), add(physical(1j * c))]
+        core = [add(edge), add(physical(1.12 * c * (1 + 1j))), add(physical(1j * c))]
         ring = [add(physical(shell * d)) for d in (1.0, diagonal, 1j)]
         middle = (math.sqrt(2.0) - 1.0) * radius
         equator = [add(complex(radius, radius)), add(complex(middle, radius)), centre]
@@ -230,7 +236,7 @@ def _half_disc(sphere: Sphere, settings: MeshSettings, name: str) -> BodyMesh:
         right, lid = _line(core[0], core[1], even), _line(core[1], core[2], even)
         _block(floor, right, lid, -wall)
         # From the core's square to a circle.
-        m = max(2, round(0.8 * n))
+        m = max(2, round(0.55 * n))
         widening = 2.0 ** (1.0 / m)
         spokes = [
             _arc(core[0], centre, ring[0], Segment(0.0, m, widening)),

@@ -157,32 +157,40 @@ def critical_time_step(system: System) -> float:
     return 2.0 / math.sqrt(float(values[0]) + residual)
 
 
-def node_flexibility(system: System, body: int, nodes: Ints) -> float:
-    """Largest axial flexibility of single nodes of a body, m/N.
+def hertz_weights(radii: Floats) -> Floats:
+    """Nodal shares (n,) of a unit Hertz pressure over the zone of the nodes at ``radii`` (m).
 
-    The displacement of the node by a unit axial force on it: the static one if the body is
-    supported, otherwise that of the free body under the force and its own inertia, rigid motion
-    apart (inertia relief).
+    Each node gets the pressure sqrt(1 - (r/a)^2) at its radius times the area of its ring.
+    """
+    edges = np.concatenate([[0.0], 0.5 * (radii[1:] + radii[:-1]), radii[-1:]])
+    weights = np.sqrt(1.0 - (radii / radii[-1]) ** 2) * np.diff(edges**2)
+    return np.asarray(weights / weights.sum())
+
+
+def patch_flexibility(system: System, body: int, nodes: Ints, weights: Floats) -> float:
+    """Axial flexibility of a body over a patch, p^T K^-1 p, m/N.
+
+    The mean displacement, weighted with ``weights``, under a unit axial force spread with the
+    same weights over ``nodes``: static if the body is supported, otherwise that of the free
+    body under the force and its own inertia, rigid motion apart (inertia relief).
     """
     rows = system.body(body)
     stiffness = system.stiffness[rows, rows].tocsc()
     free = np.flatnonzero(system.inverse_mass[rows] > 0.0)
-    mass = np.repeat(system.mass[system.first[body] : system.first[body + 1]], 2)
-    loads = np.zeros((mass.size, nodes.size))
-    at = 2 * (nodes - system.first[body]) + 1
-    loads[at, np.arange(nodes.size)] = 1.0
+    mass = system.mass[system.first[body] : system.first[body + 1]]
+    load = np.zeros(2 * mass.size)
+    load[2 * (nodes - system.first[body]) + 1] = weights
+    patch = load.copy()
     supported = bool(
         np.any((system.supports >= system.first[body])
                & (system.supports < system.first[body + 1]))
     )
     if not supported:
-        axial = np.zeros(mass.size)
-        axial[1::2] = mass[1::2]
-        loads -= np.outer(axial / axial.sum(), np.ones(nodes.size))
+        load[1::2] -= mass / mass.sum()
         # One axial component pinned: the load is in equilibrium, so the pin carries nothing.
-        free = free[free != 2 * (mass.size // 2) - 1]
-    solution = np.zeros_like(loads)
-    solution[free] = scipy.sparse.linalg.splu(stiffness[free][:, free]).solve(loads[free])
+        free = free[free != 2 * mass.size - 1]
+    solution = np.zeros_like(load)
+    solution[free] = scipy.sparse.linalg.splu(stiffness[free][:, free]).solve(load[free])
     if not supported:
-        solution[1::2] -= (axial[1::2] @ solution[1::2]) / axial.sum()
-    return float(solution[at, np.arange(nodes.size)].max())
+        solution[1::2] -= mass @ solution[1::2] / mass.sum()
+    return float(patch @ solution)
