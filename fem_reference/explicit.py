@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse
 
 from . import kernel
 from .contact import (
@@ -85,12 +86,24 @@ class Run:
     snapshots: tuple[Snapshot, ...]
 
 
+def _upper_blocks(stiffness: scipy.sparse.csr_matrix) -> scipy.sparse.bsr_matrix:
+    """The 2x2 blocks on and above the diagonal, the diagonal one first in each row."""
+    blocks = stiffness.tobsr((2, 2))
+    blocks.sort_indices()
+    rows = np.repeat(np.arange(blocks.indptr.size - 1), np.diff(blocks.indptr))
+    upper = blocks.indices >= rows
+    indptr = np.concatenate([[0], np.cumsum(np.bincount(rows[upper]))])
+    return scipy.sparse.bsr_matrix(
+        (blocks.data[upper], blocks.indices[upper], indptr), shape=blocks.shape
+    )
+
+
 class _Loop:
     """The compiled loop's state together with the arrays it points to."""
 
     def __init__(self, system: System, time_step: float, speed: float, split: int) -> None:
         self.system = system
-        blocks = system.stiffness.tobsr((2, 2))
+        blocks = _upper_blocks(system.stiffness)
         nodes = system.mass.size
         self._keep: list[object] = []
         self.u = np.zeros(2 * nodes)
@@ -105,6 +118,7 @@ class _Loop:
         state.mass = self._pointer(system.mass, np.float64)
         state.u = self._pointer(self.u, np.float64)
         state.v = self._pointer(self.v, np.float64)
+        state.f = self._pointer(np.zeros(2 * nodes), np.float64)
         state.dt = time_step
         state.supports = system.supports.size
         state.support = self._pointer(system.supports, np.int32)

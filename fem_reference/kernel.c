@@ -1,18 +1,17 @@
 /* Time loop of the explicit reference: central differences, lumped mass, kinematic contact.
  *
  * One step, n -> n+1 (Carpenter, Taylor & Katona 1991, Int. J. Numer. Meth. Eng. 32, 103):
- *   predictor   v <- v_{n-1/2} - dt M^-1 K u_n
- *   gap         g = g0 + (u_s + dt v_s) - (u_p + dt v_p)   per pair, along the pair's normal
+ *   predictor   v <- v_{n-1/2} - dt M^-1 K u_n,  u <- u_n + dt v
+ *   gap         g = g0 + u_s - u_p   per pair, along the pair's normal
  *   multiplier  lambda = max(0, -g) / (dt^2 (1/m_s + 1/m_p))
- *   corrector   v <- v + dt M^-1 G^T lambda,  u_{n+1} = u_n + dt v_{n+1/2}
+ *   corrector   v_{n+1/2} = v + dt M^-1 G^T lambda,  u_{n+1} = u + dt^2 M^-1 G^T lambda
  * The multiplier is the contact force of the pair at t_n.
  */
 #include <stdint.h>
 #include <string.h>
 
-typedef double pair2 __attribute__((vector_size(16)));
-typedef double quad4 __attribute__((vector_size(32)));
-typedef int64_t mask4 __attribute__((vector_size(32)));
+typedef double pair __attribute__((vector_size(16)));
+typedef int64_t pair_mask __attribute__((vector_size(16)));
 
 enum { MAX_INTERVALS = 256 };
 enum { OUTER = 0, PLATE = 1, INNER = 2 };
@@ -39,12 +38,13 @@ typedef struct {
 
 typedef struct {
     int64_t nodes;
-    const int64_t *row;      /* (nodes + 1) */
-    const int32_t *column;   /* neighbour of each 2x2 block */
-    const double *block;     /* (4, per block) column by column */
+    const int64_t *row;      /* (nodes + 1) first block of each node */
+    const int32_t *column;   /* node of each block: the node itself, then its later neighbours */
+    const double *block;     /* (4 per block) 2x2, column by column; the upper half of K */
     const double *inverse;   /* (2 nodes) 1/m, zero where fixed */
-    double *u;               /* (2 nodes) */
-    double *v;               /* (2 nodes) at half steps */
+    double *u;               /* (2 nodes) displacement */
+    double *v;               /* (2 nodes) velocity at half steps */
+    double *f;               /* (2 nodes) K u of the last step */
     double dt;
     int64_t step;            /* steps done */
     int32_t supports;
@@ -58,38 +58,69 @@ typedef struct {
     Contact contact[2];
 } State;
 
-static inline pair2 row_product(const State *s, const double *x, int64_t i) {
-    quad4 sum = {0.0, 0.0, 0.0, 0.0};
-    const mask4 spread = {0, 0, 1, 1};
-    for (int64_t p = s->row[i]; p < s->row[i + 1]; ++p) {
-        quad4 a, b;
-        const double *xj = x + 2 * (int64_t)s->column[p];
-        memcpy(&a, s->block + 4 * p, sizeof a);
-        b = (quad4){xj[0], xj[1], 0.0, 0.0};
-        sum += a * __builtin_shuffle(b, spread);
+static inline pair load(const double *x) {
+    pair value;
+    memcpy(&value, x, sizeof value);
+    return value;
+}
+
+static inline void store(double *x, pair value) { memcpy(x, &value, sizeof value); }
+
+/* One block above the diagonal, in row i: adds its part to the row's sum and passes its mirror
+ * image on to the later row j. */
+static inline pair off_diagonal(const double *block, int64_t j, const double *x, pair xi,
+                                double *y, pair sum) {
+    const pair_mask low = {0, 2}, high = {1, 3};
+    const pair first = load(block), second = load(block + 2);
+    const pair a = first * xi, b = second * xi;
+    store(y + 2 * j,
+          load(y + 2 * j) + (__builtin_shuffle(a, b, low) + __builtin_shuffle(a, b, high)));
+    return sum + first * x[2 * j] + second * x[2 * j + 1];
+}
+
+/* Row i of K x, complete once the rows before it have been done: adds the node's own and later
+ * neighbours' part to what earlier rows left in y, and passes on to later rows what they need
+ * (K is symmetric, only its upper half is stored and read). */
+static inline pair row_product(const int64_t *restrict row, const int32_t *restrict columns,
+                               const double *restrict blocks, const double *x, double *y,
+                               int64_t i) {
+    const double *block = blocks + 4 * row[i];
+    const int32_t *column = columns + row[i];
+    const int64_t count = row[i + 1] - row[i];
+    const pair xi = load(x + 2 * i);
+    pair sum = load(y + 2 * i) + load(block) * xi[0] + load(block + 2) * xi[1];
+    if (count == 5) { /* inside a structured mesh: worth a loop without tests */
+#pragma GCC unroll 4
+        for (int p = 1; p < 5; ++p) sum = off_diagonal(block + 4 * p, column[p], x, xi, y, sum);
+    } else {
+        for (int64_t p = 1; p < count; ++p)
+            sum = off_diagonal(block + 4 * p, column[p], x, xi, y, sum);
     }
-    return (pair2){sum[0] + sum[2], sum[1] + sum[3]};
+    store(y + 2 * i, sum);
+    return sum;
 }
 
 /* y = K x */
 void stiffness_product(const State *s, const double *x, double *y) {
-    for (int64_t i = 0; i < s->nodes; ++i) {
-        const pair2 f = row_product(s, x, i);
-        y[2 * i] = f[0];
-        y[2 * i + 1] = f[1];
-    }
+    memset(y, 0, 2 * (size_t)s->nodes * sizeof *y);
+    for (int64_t i = 0; i < s->nodes; ++i) row_product(s->row, s->column, s->block, x, y, i);
 }
 
-static void correct(const State *s, Contact *c, double *before) {
+/* Corrects the predicted displacements and velocities of a contact's nodes. */
+static void correct(const State *s, Contact *c, const double *before) {
     const double dt = s->dt, n = c->normal;
     double force = 0.0, work = 0.0;
     for (int32_t k = 0; k < c->pairs; ++k) {
         const int64_t i = 2 * (int64_t)c->sphere[k] + 1, j = 2 * (int64_t)c->plate[k] + 1;
-        const double gap = c->gap[k] + n * (s->u[i] + dt * s->v[i] - s->u[j] - dt * s->v[j]);
+        const double gap = c->gap[k] + n * (s->u[i] - s->u[j]);
         if (gap >= 0.0) continue;
         const double lambda = -gap * c->compliance[k] / (dt * dt);
-        s->v[i] += n * dt * lambda * s->inverse[i];
-        s->v[j] -= n * dt * lambda * s->inverse[j];
+        const double sphere = n * dt * lambda * s->inverse[i];
+        const double plate = -n * dt * lambda * s->inverse[j];
+        s->v[i] += sphere;
+        s->v[j] += plate;
+        s->u[i] += dt * sphere;
+        s->u[j] += dt * plate;
         force += lambda;
         /* The discrete energy changes by exactly dt lambda times the mean relative velocity. */
         work += 0.5 * dt * lambda * (n * (s->v[i] - s->v[j]) + before[k]);
@@ -109,10 +140,15 @@ static void correct(const State *s, Contact *c, double *before) {
     }
 }
 
-/* Brings the velocities from t_{n-1/2} to t_{n+1/2}. */
-static void kick(State *s) {
+/* One step: velocities to t_{n+1/2}, displacements to t_{n+1}. */
+static void advance(State *s) {
     const double dt = s->dt;
-    double *restrict v = s->v;
+    const double *restrict inverse = s->inverse;
+    double *restrict u = s->u, *restrict v = s->v, *restrict f = s->f;
+    const int64_t nodes = s->nodes;
+    const int64_t *row = s->row;
+    const int32_t *column = s->column;
+    const double *block = s->block;
     double *before = s->velocity_before;
     for (int32_t c = 0; c < s->contacts; ++c) {
         const Contact *contact = &s->contact[c];
@@ -120,25 +156,22 @@ static void kick(State *s) {
             *before++ = contact->normal * (v[2 * (int64_t)contact->sphere[k] + 1]
                                            - v[2 * (int64_t)contact->plate[k] + 1]);
     }
-    double reaction = 0.0;
-    for (int32_t k = 0; k < s->supports; ++k) reaction += row_product(s, s->u, s->support[k])[1];
-    s->support_impulse += dt * reaction;
-    for (int64_t i = 0; i < s->nodes; ++i) {
-        const pair2 f = row_product(s, s->u, i);
-        v[2 * i] -= dt * s->inverse[2 * i] * f[0];
-        v[2 * i + 1] -= dt * s->inverse[2 * i + 1] * f[1];
+    memset(f, 0, 2 * (size_t)nodes * sizeof *f);
+    for (int64_t i = 0; i < nodes; ++i) {
+        const pair force = row_product(row, column, block, u, f, i);
+        /* No later row reads u of this node any more. */
+        const pair velocity = load(v + 2 * i) - dt * load(inverse + 2 * i) * force;
+        store(v + 2 * i, velocity);
+        store(u + 2 * i, load(u + 2 * i) + dt * velocity);
     }
+    double reaction = 0.0;
+    for (int32_t k = 0; k < s->supports; ++k) reaction += f[2 * (int64_t)s->support[k] + 1];
+    s->support_impulse += dt * reaction;
     before = s->velocity_before;
     for (int32_t c = 0; c < s->contacts; ++c) {
         correct(s, &s->contact[c], before);
         before += s->contact[c].pairs;
     }
-}
-
-/* Brings the displacements from t_n to t_{n+1}. */
-static void drift(State *s) {
-    const double dt = s->dt;
-    for (int64_t i = 0; i < 2 * s->nodes; ++i) s->u[i] += dt * s->v[i];
     ++s->step;
 }
 
@@ -167,17 +200,13 @@ void run(State *s, int64_t samples, int64_t stride, double *row) {
         row[1] = mean(s, s->v, OUTER);
         row[4] = centre(s, s->v);
         row[6] = mean(s, s->v, INNER);
-        kick(s);
+        advance(s);
         row[1] = 0.5 * (row[1] + mean(s, s->v, OUTER));
         row[4] = 0.5 * (row[4] + centre(s, s->v));
         row[6] = 0.5 * (row[6] + mean(s, s->v, INNER));
         row[2] = s->contact[0].impulse - 0.5 * s->dt * s->contact[0].force;
         row[7] = s->contact[1].impulse - 0.5 * s->dt * s->contact[1].force;
-        drift(s);
-        for (int64_t n = 1; n < stride; ++n) {
-            kick(s);
-            drift(s);
-        }
+        for (int64_t n = 1; n < stride; ++n) advance(s);
     }
 }
 

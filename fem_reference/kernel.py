@@ -45,7 +45,7 @@ class State(ctypes.Structure):
 
     _fields_ = (
         ("nodes", ctypes.c_int64), ("row", _INT64), ("column", _INT32), ("block", _DOUBLE),
-        ("inverse", _DOUBLE), ("u", _DOUBLE), ("v", _DOUBLE), ("dt", ctypes.c_double),
+        ("inverse", _DOUBLE), ("u", _DOUBLE), ("v", _DOUBLE), ("f", _DOUBLE), ("dt", ctypes.c_double),
         ("step", ctypes.c_int64), ("supports", ctypes.c_int32), ("contacts", ctypes.c_int32),
         ("support", _INT32), ("support_impulse", ctypes.c_double),
         ("velocity_before", _DOUBLE), ("mass", _DOUBLE), ("first", ctypes.c_int64 * 4),
