@@ -18,7 +18,9 @@ def _times(text: str) -> tuple[float, ...]:
     try:
         return tuple(float(part) for part in text.split(",") if part.strip())
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a list of seconds like 1e-5,2e-5") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a list of seconds like 1e-5,2e-5"
+        ) from None
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -51,26 +53,34 @@ def _run(arguments: argparse.Namespace) -> None:
     scene = read_scene(arguments.scene)
     try:
         if arguments.command == "modes":
-            from .modal import plate_modes
             from .meshing import modal_plate_mesh
+            from .modal import plate_modes
 
             if arguments.count < 1:
                 raise SolverError(f"--count is {arguments.count}; it must be at least 1")
             mesh = modal_plate_mesh(scene.plate)
             found = plate_modes(scene.plate, mesh, arguments.count)
-            print(json.dumps({
-                "schema_version": 1,
-                "scene": scene.name,
-                "modes": [
-                    {"frequency": mode.frequency, "longitudinal": mode.longitudinal}
-                    for mode in found
-                ],
-            }, indent=2))
+            print(
+                json.dumps(
+                    {
+                        "schema_version": 1,
+                        "scene": scene.name,
+                        "modes": [
+                            {"frequency": mode.frequency, "longitudinal": mode.longitudinal}
+                            for mode in found
+                        ],
+                    },
+                    indent=2,
+                )
+            )
         else:
-            from .solve import solve
+            from .result import solve
 
             solve(
-                scene, arguments.out, arguments.resolution, courant=arguments.courant,
+                scene,
+                arguments.out,
+                arguments.resolution,
+                courant=arguments.courant,
                 stress_times=arguments.stress_at,
             )
     except ImportError as error:

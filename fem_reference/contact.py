@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,8 +33,13 @@ def sphere_profile(radius: float, r: Floats) -> Floats:
 
 
 def pair_nodes(
-    name: str, normal: float, sphere_nodes: Ints, plate_nodes: Ints, radii: Floats,
-    sphere: Sphere, gap: float,
+    name: str,
+    normal: float,
+    sphere_nodes: Ints,
+    plate_nodes: Ints,
+    radii: Floats,
+    sphere: Sphere,
+    gap: float,
 ) -> ContactPairs:
     """Node pairs with the exact gap of a sphere that stands ``gap`` (m) off the plate."""
     return ContactPairs(
@@ -83,30 +87,3 @@ def peak_force(cumulative_impulse: Floats, window: int, sample_interval: float) 
         window * sample_interval
     )
     return float(means.max())
-
-
-def no_further_contact(
-    clearance: float, opening_speed: float, plate_energy: float, plate_flexibility: float,
-    sphere_energy: float, sphere_flexibility: float,
-) -> bool:
-    """Whether a sphere and the plate can be proven never to touch again.
-
-    A body of elastic energy E (kinetic and strain, rigid motion apart) displaces its contact
-    patch by at most sqrt(2 E C), C = p^T K^-1 p the flexibility of the patch with the weights p
-    (Cauchy's inequality in the norm of K: |p^T u| = |p^T K^-1 K u| <= sqrt(p^T K^-1 p)
-    sqrt(u^T K u)). The weights are Hertz's pressure: a single node's flexibility grows without
-    bound on finer meshes. Two bodies whose rigid motions part, and are further apart than both
-    bounds, stay apart.
-
-    Args:
-        clearance: distance of the undeformed bodies in their rigid motion, m.
-        opening_speed: rate of the clearance, m/s.
-        plate_energy: J.
-        plate_flexibility: larger static flexibility of the plate's two contact patches, m/N.
-        sphere_energy: elastic energy of the sphere, J.
-        sphere_flexibility: its inertia-relief flexibility, m/N.
-    """
-    reach = math.sqrt(2.0 * max(plate_energy, 0.0) * plate_flexibility) + math.sqrt(
-        2.0 * max(sphere_energy, 0.0) * sphere_flexibility
-    )
-    return opening_speed >= 0.0 and clearance > reach

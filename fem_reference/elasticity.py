@@ -44,9 +44,7 @@ def _forms(domain: Domain, material: Material) -> tuple[Any, Any]:
         "dx", domain=domain.mesh, metadata={"quadrature_degree": 2 * domain.degree + 1}
     )
     weight = 2.0 * math.pi * r
-    lame, shear = (
-        domain.constant(material.lame_lambda), domain.constant(material.shear_modulus)
-    )
+    lame, shear = (domain.constant(material.lame_lambda), domain.constant(material.shear_modulus))
     density = domain.constant(material.density)
     stiffness = ufl.inner(_stress(u, r, lame, shear), _strain(v, r)) * weight * measure
     mass = density * ufl.inner(u, v) * weight * measure

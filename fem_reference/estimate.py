@@ -42,7 +42,7 @@ def hertz_stiffness(effective: float, radius: float) -> float:
 
 def hertz_contact_radius(force: float, effective: float, radius: float) -> float:
     """Contact radius (3 F R / (4 E*))^(1/3), m."""
-    return (3.0 * force * radius / (4.0 * effective)) ** (1.0 / 3.0)
+    return math.pow(3.0 * force * radius / (4.0 * effective), 1.0 / 3.0)
 
 
 def hertz_time_scale(mass: float, stiffness: float, speed: float) -> float:
@@ -63,20 +63,27 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
     def forces(y: NDArray[np.float64]) -> NDArray[np.float64]:
         # y = outer, its velocity, plate, inner, its velocity, in units of length and scale
         approach = length * np.array([y[2] - y[0], y[3] - y[2] - scene.gap / length])
-        return np.array(stiffness) * np.maximum(approach, 0.0) ** 1.5
+        return np.asarray(np.array(stiffness) * np.maximum(approach, 0.0) ** 1.5)
 
     def rate(_: float, y: NDArray[np.float64]) -> list[float]:
         outer, inner = forces(y)
         unit = scale / scene.speed
         return [
-            y[1], unit * outer / scene.outer.mass, mobility * (inner - outer) / scene.speed,
-            y[4], -unit * inner / scene.inner.mass,
+            y[1],
+            unit * outer / scene.outer.mass,
+            mobility * (inner - outer) / scene.speed,
+            y[4],
+            -unit * inner / scene.inner.mass,
         ]
 
     # Until the plate's point has moved as far as the spheres can: four Hertz durations are ample.
     path = solve_ivp(
-        rate, (0.0, 13.0), [0.0, -1.0, 0.0, -scene.gap / length, 0.0],
-        rtol=1e-6, atol=1e-9, max_step=0.05,
+        rate,
+        (0.0, 13.0),
+        [0.0, -1.0, 0.0, -scene.gap / length, 0.0],
+        rtol=1e-6,
+        atol=1e-9,
+        max_step=0.05,
     )
     history = np.array([forces(y) for y in path.y.T])
     peak = history.max(axis=0)

@@ -38,7 +38,7 @@ def _fit(length: float, first: float, count: int) -> Segment:
 
 
 def graded(length: float, first: float, cap: float, ratio: float) -> list[Segment]:
-    """Divide ``length`` (m) starting with elements of ``first`` (m), growing by ``ratio`` to ``cap``.
+    """Divide ``length`` (m): elements of ``first`` (m) at first, growing by ``ratio`` to ``cap``.
 
     Returns one or two segments: growth, then elements of about ``cap``. Element sizes scale
     with (first, cap, ln ratio) up to rounding, so meshes made with scaled arguments are

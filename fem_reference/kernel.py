@@ -30,13 +30,23 @@ class Contact(ctypes.Structure):
     """Mirror of ``Contact`` in kernel.c."""
 
     _fields_ = (
-        ("pairs", ctypes.c_int32), ("reserved", ctypes.c_int32),
-        ("sphere", _INT32), ("plate", _INT32), ("gap", _DOUBLE), ("compliance", _DOUBLE),
-        ("normal", ctypes.c_double), ("impulse", ctypes.c_double), ("work", ctypes.c_double),
-        ("force", ctypes.c_double), ("last", ctypes.c_int64), ("split", ctypes.c_int64),
-        ("intervals", ctypes.c_int64), ("first_step", ctypes.c_int64 * MAX_INTERVALS),
+        ("pairs", ctypes.c_int32),
+        ("reserved", ctypes.c_int32),
+        ("sphere", _INT32),
+        ("plate", _INT32),
+        ("gap", _DOUBLE),
+        ("compliance", _DOUBLE),
+        ("normal", ctypes.c_double),
+        ("impulse", ctypes.c_double),
+        ("work", ctypes.c_double),
+        ("force", ctypes.c_double),
+        ("last", ctypes.c_int64),
+        ("split", ctypes.c_int64),
+        ("intervals", ctypes.c_int64),
+        ("first_step", ctypes.c_int64 * MAX_INTERVALS),
         ("last_step", ctypes.c_int64 * MAX_INTERVALS),
-        ("outermost", ctypes.c_int32), ("reserved2", ctypes.c_int32),
+        ("outermost", ctypes.c_int32),
+        ("reserved2", ctypes.c_int32),
     )
 
 
@@ -44,12 +54,25 @@ class State(ctypes.Structure):
     """Mirror of ``State`` in kernel.c."""
 
     _fields_ = (
-        ("nodes", ctypes.c_int64), ("row", _INT64), ("column", _INT32), ("block", _DOUBLE),
-        ("inverse", _DOUBLE), ("u", _DOUBLE), ("v", _DOUBLE), ("f", _DOUBLE), ("dt", ctypes.c_double),
-        ("step", ctypes.c_int64), ("supports", ctypes.c_int32), ("contacts", ctypes.c_int32),
-        ("support", _INT32), ("support_impulse", ctypes.c_double),
-        ("velocity_before", _DOUBLE), ("mass", _DOUBLE), ("first", ctypes.c_int64 * 4),
-        ("centre", ctypes.c_int32 * 2), ("contact", Contact * 2),
+        ("nodes", ctypes.c_int64),
+        ("row", _INT64),
+        ("column", _INT32),
+        ("block", _DOUBLE),
+        ("inverse", _DOUBLE),
+        ("u", _DOUBLE),
+        ("v", _DOUBLE),
+        ("f", _DOUBLE),
+        ("dt", ctypes.c_double),
+        ("step", ctypes.c_int64),
+        ("supports", ctypes.c_int32),
+        ("contacts", ctypes.c_int32),
+        ("support", _INT32),
+        ("support_impulse", ctypes.c_double),
+        ("velocity_before", _DOUBLE),
+        ("mass", _DOUBLE),
+        ("first", ctypes.c_int64 * 4),
+        ("centre", ctypes.c_int32 * 2),
+        ("contact", Contact * 2),
     )
 
 
@@ -111,8 +134,9 @@ def load() -> ctypes.CDLL:
     program = compiler()
     source = _SOURCE.read_bytes()
     key = hashlib.sha256(
-        b"\0".join([source, " ".join(FLAGS).encode(), compiler_version().encode(),
-                    _processor().encode()])
+        b"\0".join(
+            [source, " ".join(FLAGS).encode(), compiler_version().encode(), _processor().encode()]
+        )
     ).hexdigest()[:24]
     folder = _cache_folder()
     library = folder / f"kernel-{key}.so"
@@ -122,7 +146,9 @@ def load() -> ctypes.CDLL:
         try:
             result = subprocess.run(
                 [program, *FLAGS, "-o", temporary, str(_SOURCE)],
-                capture_output=True, text=True, check=False,
+                capture_output=True,
+                text=True,
+                check=False,
             )
             if result.returncode != 0:
                 detail = (result.stderr.strip().splitlines() or ["no message"])[0]

@@ -29,8 +29,15 @@ SAMPLES = 2000
 """About how many samples a history has."""
 
 HISTORY_COLUMNS = (
-    "time", "outer_displacement", "outer_velocity", "outer_force", "plate_displacement",
-    "plate_velocity", "inner_displacement", "inner_velocity", "inner_force",
+    "time",
+    "outer_displacement",
+    "outer_velocity",
+    "outer_force",
+    "plate_displacement",
+    "plate_velocity",
+    "inner_displacement",
+    "inner_velocity",
+    "inner_force",
 )
 
 
@@ -123,7 +130,10 @@ def _bodies(mesh: ImpactMesh) -> tuple[Floats, np.ndarray[Any, Any], np.ndarray[
 
 
 def write_mesh(path: Path, mesh: ImpactMesh) -> None:
-    """All bodies as one .vtu (uncompressed): x is r, y is z; cell data "body": 0 outer, 1 plate, 2 inner."""
+    """All bodies as one uncompressed .vtu; x is r, y is z.
+
+    Cell data "body": 0 outer, 1 plate, 2 inner.
+    """
     points, quads, body = _bodies(mesh)
     grid = meshio.Mesh(points, [("quad", quads)], cell_data={"body": [body]})
     meshio.vtu.write(path, grid, binary=True, compression=None)
@@ -146,9 +156,10 @@ def write_stress(
     for name, column in zip(STRESS_COMPONENTS, stresses.T, strict=True):
         cell_data[name] = [column]
     grid = meshio.Mesh(
-        points, [("quad", quads)], point_data={"displacement": np.vstack(displacement)},
-        cell_data=cell_data, field_data={},
+        points,
+        [("quad", quads)],
+        point_data={"displacement": np.vstack(displacement)},
+        cell_data=cell_data,
+        field_data={},
     )
     meshio.vtu.write(path, grid, binary=True, compression=None)
-
-

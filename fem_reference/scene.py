@@ -145,7 +145,12 @@ class _Reader:
         return value
 
     def number(
-        self, key: str, unit: str, *, above: float = 0.0, below: float = math.inf,
+        self,
+        key: str,
+        unit: str,
+        *,
+        above: float = 0.0,
+        below: float = math.inf,
         inclusive: bool = False,
     ) -> float:
         """A finite number above (or at, if ``inclusive``) one bound and below another."""
@@ -198,9 +203,7 @@ def _plate(reader: _Reader) -> Plate:
 def _sphere(reader: _Reader, extra: str) -> Sphere:
     reader.choice("kind", ("sphere",))
     reader.allow("kind", "radius", "material", extra)
-    return Sphere(
-        radius=reader.number("radius", "m"), material=_material(reader.child("material"))
-    )
+    return Sphere(radius=reader.number("radius", "m"), material=_material(reader.child("material")))
 
 
 def parse_scene(document: Any) -> Scene:
@@ -212,8 +215,17 @@ def parse_scene(document: Any) -> Scene:
     root = _Reader(document, "")
     root.choice("kind", ("plate-impact",))
     root.allow(
-        "name", "description", "kind", "scene_hash", "settings_hash", "plate", "outer", "inner",
-        "fluid", "run", "reference",
+        "name",
+        "description",
+        "kind",
+        "scene_hash",
+        "settings_hash",
+        "plate",
+        "outer",
+        "inner",
+        "fluid",
+        "run",
+        "reference",
     )
     if root.node.get("fluid") is not None:
         raise SceneError("fluid is given; this solver is for dry impacts, it must be null")

@@ -18,6 +18,7 @@ from .meshing import ImpactMesh
 from .scene import Plate, Scene
 
 BODIES = ("outer", "plate", "inner")
+OUTER, PLATE, INNER = range(3)
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def plate_constraints(plate: Plate, mesh: BodyMesh) -> Ints:
         fixed.append(2 * rim + 1)
     if plate.edge == "clamped":
         fixed.append(2 * rim)
-    return np.unique(np.concatenate(fixed))
+    return np.asarray(np.unique(np.concatenate(fixed)))
 
 
 def _axis_constraints(mesh: BodyMesh) -> Ints:
@@ -91,7 +92,8 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
     bodies = (mesh.outer, mesh.plate, mesh.inner)
     materials = (scene.outer.material, scene.plate.material, scene.inner.material)
     fixed_of = (
-        _axis_constraints(mesh.outer), plate_constraints(scene.plate, mesh.plate),
+        _axis_constraints(mesh.outer),
+        plate_constraints(scene.plate, mesh.plate),
         _axis_constraints(mesh.inner),
     )
     stiffness, mass, inverse, numbers = [], [], [], []
@@ -125,8 +127,13 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
         sphere = scene.outer if index == 0 else scene.inner
         contacts.append(
             pair_nodes(
-                name, normal, numbers[index][surface.sphere_nodes],
-                numbers[1][surface.plate_nodes], surface.radii, sphere, gap,
+                name,
+                normal,
+                numbers[index][surface.sphere_nodes],
+                numbers[1][surface.plate_nodes],
+                surface.radii,
+                sphere,
+                gap,
             )
         )
     return System(
@@ -182,8 +189,7 @@ def patch_flexibility(system: System, body: int, nodes: Ints, weights: Floats) -
     load[2 * (nodes - system.first[body]) + 1] = weights
     patch = load.copy()
     supported = bool(
-        np.any((system.supports >= system.first[body])
-               & (system.supports < system.first[body + 1]))
+        np.any((system.supports >= system.first[body]) & (system.supports < system.first[body + 1]))
     )
     if not supported:
         load[1::2] -= mass / mass.sum()

@@ -7,6 +7,8 @@ only two meshes are used, taken as a 95 % bound. The order p is not measured by 
 
 from __future__ import annotations
 
+import math
+
 SAFETY_FACTOR = 3.0
 ASSUMED_ORDER = 2.0
 """Formal order of bilinear elements and central differences."""
@@ -14,4 +16,4 @@ ASSUMED_ORDER = 2.0
 
 def two_grid_uncertainty(fine: float, coarse: float, ratio: float) -> float:
     """Absolute 95 % bound of the discretisation error of ``fine``; ratio of element sizes > 1."""
-    return SAFETY_FACTOR * abs(fine - coarse) / (ratio**ASSUMED_ORDER - 1.0)
+    return SAFETY_FACTOR * abs(fine - coarse) / (math.pow(ratio, ASSUMED_ORDER) - 1.0)
