@@ -1,0 +1,108 @@
+"""Command line: ``solve``, ``modes`` and ``versions``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import logging
+import sys
+from pathlib import Path
+
+from .errors import RunError, SolverError
+from .progress import Progress
+
+RESOLUTION_NAMES = ("coarse", "paper", "fine")
+
+
+def _times(text: str) -> tuple[float, ...]:
+    try:
+        return tuple(float(part) for part in text.split(",") if part.strip())
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a list of seconds like 1e-5,2e-5"
+        ) from None
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="fem_reference", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    solve = commands.add_parser("solve", help="solve a scene, write a result folder")
+    solve.add_argument("--scene", type=Path, required=True, help="scene.json")
+    solve.add_argument("--out", type=Path, required=True, help="result folder, made when complete")
+    solve.add_argument("--resolution", choices=RESOLUTION_NAMES, default="paper")
+    solve.add_argument("--stress-at", type=_times, default=(), metavar="T1,T2", help="seconds")
+    solve.add_argument(
+        "--courant", type=float, default=0.9, help="time step over the critical one (0.9)"
+    )
+    modes = commands.add_parser("modes", help="axisymmetric eigenfrequencies of the plate")
+    modes.add_argument("--scene", type=Path, required=True)
+    modes.add_argument("--count", type=int, default=8)
+    commands.add_parser("versions", help="versions of everything a result depends on")
+    return parser
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    # Only `versions` must work without the finite-element modules: import late.
+    if arguments.command == "versions":
+        from .versions import versions
+
+        print(json.dumps(versions(), indent=2))
+        return
+    from .scene import read_scene
+
+    scene = read_scene(arguments.scene)
+    try:
+        if arguments.command == "modes":
+            from .meshing import modal_plate_mesh
+            from .modal import plate_modes
+
+            if arguments.count < 1:
+                raise SolverError(f"--count is {arguments.count}; it must be at least 1")
+            mesh = modal_plate_mesh(scene.plate)
+            found = plate_modes(scene.plate, mesh, arguments.count)
+            print(
+                json.dumps(
+                    {
+                        "schema_version": 1,
+                        "scene": scene.name,
+                        "modes": [
+                            {"frequency": mode.frequency, "longitudinal": mode.longitudinal}
+                            for mode in found
+                        ],
+                    },
+                    indent=2,
+                )
+            )
+        else:
+            from .result import solve
+
+            solve(
+                scene,
+                arguments.out,
+                arguments.resolution,
+                courant=arguments.courant,
+                stress_times=arguments.stress_at,
+            )
+    except ImportError as error:
+        raise SolverError(
+            f"a Python module is missing: {error}; install dolfinx, gmsh, scipy and meshio"
+        ) from error
+
+
+def main() -> int:
+    """Run; returns the exit status."""
+    arguments = _parser().parse_args()
+    # FFCx and its compiler driver log through the root logger.
+    logging.disable(logging.WARNING)
+    try:
+        _run(arguments)
+    except RunError as error:
+        if arguments.command == "solve":
+            Progress().error(str(error))
+        print(f"error: {error}", file=sys.stderr)
+        return error.exit_status
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

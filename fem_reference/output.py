@@ -1,0 +1,165 @@
+"""The result folder: complete or not there at all."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+
+from .elasticity import STRESS_COMPONENTS, cell_stress, von_mises
+from .errors import SolverError
+from .explicit import Run, Snapshot
+from .mesh import Floats
+from .meshing import ImpactMesh
+from .scene import Scene
+from .system import System
+
+CHECKSUMS = "checksums.sha256"
+PARTIAL_PREFIX = ".partial-"
+SAMPLES = 2000
+"""About how many samples a history has."""
+
+HISTORY_COLUMNS = (
+    "time",
+    "outer_displacement",
+    "outer_velocity",
+    "outer_force",
+    "plate_displacement",
+    "plate_velocity",
+    "inner_displacement",
+    "inner_velocity",
+    "inner_force",
+)
+
+
+@contextmanager
+def result_folder(target: Path) -> Iterator[Path]:
+    """A temporary sibling of ``target`` that takes its place when the block succeeds.
+
+    Whatever is at ``target`` already is replaced then. If the process dies, at most a folder
+    ``.partial-*`` is left.
+    """
+    parent = target.absolute().parent
+    try:
+        parent.mkdir(parents=True, exist_ok=True)
+        partial = Path(tempfile.mkdtemp(prefix=f"{PARTIAL_PREFIX}{target.name}-", dir=parent))
+        partial.chmod(0o755)
+    except OSError as error:
+        raise SolverError(f"the output folder {target} cannot be made: {error}") from error
+    try:
+        yield partial
+        _write_checksums(partial)
+        old = None
+        if target.exists():
+            old = Path(tempfile.mkdtemp(prefix=f"{PARTIAL_PREFIX}{target.name}-old-", dir=parent))
+            target.replace(old / target.name)
+        partial.replace(target)
+        if old is not None:
+            shutil.rmtree(old, ignore_errors=True)
+    except OSError as error:
+        raise SolverError(f"the output folder {target} cannot be written: {error}") from error
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def _write_checksums(folder: Path) -> None:
+    lines = [
+        f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n"
+        for path in sorted(folder.iterdir())
+    ]
+    with (folder / CHECKSUMS).open("w", encoding="ascii") as stream:
+        stream.writelines(lines)
+        stream.flush()
+        os.fsync(stream.fileno())
+
+
+def write_json(path: Path, document: dict[str, Any]) -> None:
+    """Indented JSON; NaN and infinity are refused."""
+    path.write_text(json.dumps(document, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def history(run: Run) -> tuple[Floats, float]:
+    """Table (samples, 9) of `HISTORY_COLUMNS`, and the sampling interval, s.
+
+    Forces are impulse over interval, the interval centred on the sample; at both ends only its
+    half inside the run counts.
+    """
+    raw = run.times.size - 1
+    # An even number of raw intervals, so that the middle between two samples is one of them.
+    stride = max(2, 2 * round(raw / SAMPLES / 2))
+    keep = np.arange(0, run.times.size, stride)
+    interval = float(stride * (run.times[1] - run.times[0]))
+    table = np.empty((keep.size, len(HISTORY_COLUMNS)))
+    table[:, 0] = run.times[keep]
+    for column, source in ((1, 0), (2, 1), (4, 3), (5, 4), (6, 5), (7, 6)):
+        table[:, column] = run.rows[keep, source]
+    low = np.maximum(keep - stride // 2, 0)
+    high = np.minimum(keep + stride // 2, raw)
+    for column, source in ((3, 2), (8, 7)):
+        impulse = run.rows[high, source] - run.rows[low, source]
+        table[:, column] = impulse / (run.times[high] - run.times[low])
+    return table, interval
+
+
+def write_history(path: Path, table: Floats) -> None:
+    """Comma-separated, header `HISTORY_COLUMNS`; the last row ends with a newline."""
+    np.savetxt(
+        path, table, fmt="%.10g", delimiter=",", header=",".join(HISTORY_COLUMNS), comments=""
+    )
+
+
+def _bodies(mesh: ImpactMesh) -> tuple[Floats, np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """Points (n, 3), quads (m, 4) and body number (m,) of all bodies; z is the second axis."""
+    points, quads, body = [], [], []
+    offset = 0
+    for number, part in enumerate((mesh.outer, mesh.plate, mesh.inner)):
+        points.append(np.column_stack([part.points, np.zeros(part.points.shape[0])]))
+        quads.append(part.quads + offset)
+        body.append(np.full(part.quads.shape[0], number, dtype=np.int32))
+        offset += part.points.shape[0]
+    return np.vstack(points), np.vstack(quads).astype(np.int32), np.concatenate(body)
+
+
+def write_mesh(path: Path, mesh: ImpactMesh) -> None:
+    """All bodies as one uncompressed .vtu; x is r, y is z.
+
+    Cell data "body": 0 outer, 1 plate, 2 inner.
+    """
+    points, quads, body = _bodies(mesh)
+    grid = meshio.Mesh(points, [("quad", quads)], cell_data={"body": [body]})
+    meshio.vtu.write(path, grid, binary=True, compression=None)
+
+
+def write_stress(
+    path: Path, scene: Scene, mesh: ImpactMesh, system: System, snapshot: Snapshot
+) -> None:
+    """Displacement (nodes) and stress (elements' midpoints) of one instant as .vtu."""
+    points, quads, body = _bodies(mesh)
+    parts = (mesh.outer, mesh.plate, mesh.inner)
+    materials = (scene.outer.material, scene.plate.material, scene.inner.material)
+    displacement, stress = [], []
+    for part, material, numbers in zip(parts, materials, system.numbers, strict=True):
+        local = snapshot.displacement[numbers]
+        displacement.append(np.column_stack([local, np.zeros(local.shape[0])]))
+        stress.append(cell_stress(part, material, local))
+    stresses = np.vstack(stress)
+    cell_data = {"body": [body], "von_mises": [von_mises(stresses)]}
+    for name, column in zip(STRESS_COMPONENTS, stresses.T, strict=True):
+        cell_data[name] = [column]
+    grid = meshio.Mesh(
+        points,
+        [("quad", quads)],
+        point_data={"displacement": np.vstack(displacement)},
+        cell_data=cell_data,
+        field_data={},
+    )
+    meshio.vtu.write(path, grid, binary=True, compression=None)

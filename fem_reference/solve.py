@@ -1,0 +1,180 @@
+"""From a scene to a verified solution: mesh, assemble, step, check, and repeat if need be."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass
+
+from .errors import SolverError
+from .estimate import ContactEstimate, effective_modulus, estimate_contact, hertz_contact_radius
+from .explicit import Run, integrate
+from .mesh import edge_lengths
+from .meshing import ImpactMesh, mesh_impact, mesh_settings
+from .progress import Progress
+from .scene import Material, Scene
+from .system import System, build_system
+
+ACCEPTED_SHARE = 0.9
+"""Least share of the requested elements per contact radius that is accepted."""
+MOST_MESHES = 3
+LEAST_ELEMENTS_PER_WAVELENGTH = 20.0
+WAVE_FREQUENCY = 3.0
+"""Highest frequency resolved, times the shorter Hertz contact duration.
+
+The spectrum of Hertz's pulse (about a half sine to the power 3/2) is below 1 % of its value at
+zero from there on.
+"""
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """What the mesh resolves, found after the run."""
+
+    outer: float
+    """Elements per contact radius at the outer sphere's peak force."""
+    inner: float
+    """The same for the inner sphere; infinite if it was never touched."""
+    wavelength: float
+    """Shortest wavelength that matters, m."""
+    per_wavelength: float
+    """Elements per this wavelength, at the largest element of the body it is in (the least of all
+    bodies)."""
+    smallest: float
+    """Shortest edge, m."""
+    largest: float
+    """Longest edge, m."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A verified run."""
+
+    run: Run
+    mesh: ImpactMesh
+    system: System
+    resolution: Resolution
+    estimate: ContactEstimate
+    meshes_tried: int
+
+
+def shortest_wavelengths(scene: Scene, duration: float) -> tuple[float, float, float]:
+    """Shortest wavelength that matters in outer sphere, plate and inner sphere, m.
+
+    At the frequency f = `WAVE_FREQUENCY` / duration: shear sqrt(G/rho)/f, in the plate also
+    bending sqrt(2 pi/f) (D/(rho h))^(1/4) (Kirchhoff).
+    """
+    frequency = WAVE_FREQUENCY / duration
+    plate = scene.plate
+    bending = (
+        math.sqrt(2.0 * math.pi / frequency)
+        * (plate.bending_stiffness / plate.surface_density) ** 0.25
+    )
+
+    def shear(material: Material) -> float:
+        return math.sqrt(material.shear_modulus / material.density) / frequency
+
+    return (
+        shear(scene.outer.material),
+        min(bending, shear(plate.material)),
+        shear(scene.inner.material),
+    )
+
+
+def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Resolution:
+    found = [
+        hertz_contact_radius(
+            contact.force_peak,
+            effective_modulus(sphere.material, scene.plate.material),
+            sphere.radius,
+        )
+        for contact, sphere in zip(run.contacts, (scene.outer, scene.inner), strict=True)
+    ]
+    edges = [edge_lengths(body.points, body.quads) for body in (mesh.outer, mesh.plate, mesh.inner)]
+    largest = [float(lengths.max()) for lengths in edges]
+    per_wavelength, wavelength = min(
+        (wave / size, wave)
+        for wave, size in zip(shortest_wavelengths(scene, duration), largest, strict=True)
+    )
+    size = mesh.settings.contact_element
+    return Resolution(
+        outer=found[0] / size,
+        inner=found[1] / size if run.contacts[1].count else math.inf,
+        wavelength=wavelength,
+        per_wavelength=per_wavelength,
+        smallest=min(float(lengths.min()) for lengths in edges),
+        largest=max(largest),
+    )
+
+
+def compute(
+    scene: Scene,
+    factor: float,
+    *,
+    courant: float = 0.9,
+    snapshot_times: tuple[float, ...] = (),
+    progress: Progress | None = None,
+    label: str = "",
+) -> Solution:
+    """Solve a scene with ``factor`` (see `meshing.RESOLUTIONS`) times the asked elements.
+
+    The mesh is made for estimated contact radii. If the radii found from the peak forces leave
+    fewer than `ACCEPTED_SHARE` of the elements asked for, or contact reached the last pair of
+    matching nodes, it is made again with the radii found.
+
+    Raises:
+        SceneError: the scene is outside the method.
+        SolverError: meshing or the run failed, or the mesh stayed too coarse.
+    """
+
+    def report(phase: str, done: float, message: str) -> None:
+        if progress is not None:
+            progress.report(phase, done, f"{label}{message}")
+
+    estimate = estimate_contact(scene)
+    radii = (estimate.outer_radius, estimate.inner_radius)
+    asked = scene.elements_per_contact_radius * factor
+    for attempt in range(1, MOST_MESHES + 1):
+        report("mesh", 0.0, "meshing")
+        settings = mesh_settings(scene, *radii, factor)
+        mesh = mesh_impact(scene, settings)
+        nodes = sum(body.points.shape[0] for body in (mesh.outer, mesh.plate, mesh.inner))
+        report("assembly", 0.0, f"{nodes} nodes")
+        system = build_system(scene, mesh)
+        run = integrate(
+            system,
+            scene.speed,
+            estimate.duration,
+            end_time=scene.end_time,
+            courant=courant,
+            snapshot_times=snapshot_times,
+            on_progress=lambda done, message: report("stepping", done, message),
+        )
+        resolution = _resolution(scene, mesh, run, estimate.duration)
+        if resolution.per_wavelength < LEAST_ELEMENTS_PER_WAVELENGTH:
+            raise SolverError(
+                f"only {resolution.per_wavelength:.3g} elements per wavelength of "
+                f"{resolution.wavelength:.3g} m, at least {LEAST_ELEMENTS_PER_WAVELENGTH:g} are required; "
+                "raise reference.elements_per_contact_radius"
+            )
+        zone_left = all(
+            contact.outermost_radius < 0.999 * settings.contact_zone for contact in run.contacts
+        )
+        if min(resolution.outer, resolution.inner) >= ACCEPTED_SHARE * asked and zone_left:
+            return Solution(run, mesh, system, resolution, estimate, attempt)
+        size = settings.contact_element
+        grow = 1.0 if zone_left else 1.3
+        radii = (
+            grow * size * resolution.outer,
+            grow * size * resolution.inner if math.isfinite(resolution.inner) else radii[1],
+        )
+        print(
+            f"mesh {attempt}: {min(resolution.outer, resolution.inner):.3g} elements per contact "
+            f"radius, {asked:.3g} asked; meshing again with the radii found",
+            file=sys.stderr,
+        )
+    raise SolverError(
+        f"after {MOST_MESHES} meshes there are still only "
+        f"{min(resolution.outer, resolution.inner):.3g} elements per contact radius, "
+        f"{asked:.3g} are asked for"
+    )

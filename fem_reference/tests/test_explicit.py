@@ -1,0 +1,176 @@
+"""The time loop: ledgers, stability limit, invariances, and the end of a run."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fem_reference import system as system_module
+from fem_reference.elasticity import BodyMatrices
+from fem_reference.errors import SolverError
+from fem_reference.explicit import Run, integrate
+from fem_reference.loop import Loop
+from fem_reference.mesh import Ints
+from fem_reference.scene import Scene, parse_scene
+from fem_reference.system import INNER, OUTER, System, critical_time_step, patch_flexibility
+
+from .conftest import document, make_system
+
+
+def test_ledger_of_momentum_and_energy(run: Run) -> None:
+    assert run.momentum_residual < 1e-9
+    assert run.energy_residual < 1e-9
+    # The constraint takes energy out when pairs close, little of it, and never adds any.
+    assert 0.0 <= run.contact_loss < 1e-5
+
+
+def test_energy_of_all_bodies_is_the_initial_energy(run: Run, scene: Scene) -> None:
+    initial = 0.5 * scene.outer.mass * scene.speed**2
+    assert run.initial_energy == pytest.approx(initial, rel=1e-12)
+    assert sum(run.energies.total) == pytest.approx(initial, rel=1e-5)
+
+
+def test_impulse_is_the_change_of_momentum(run: Run, scene: Scene) -> None:
+    outer = scene.outer.mass * (run.outer_velocity + scene.speed)
+    inner = -scene.inner.mass * run.inner_velocity
+    assert run.contacts[0].impulse == pytest.approx(outer, rel=1e-9)
+    assert run.contacts[1].impulse == pytest.approx(inner, rel=1e-9)
+    assert run.rows[-1, 2] == pytest.approx(outer, rel=1e-9)
+
+
+def test_displacement_is_the_integral_of_velocity(run: Run) -> None:
+    for displacement, velocity in ((0, 1), (3, 4), (5, 6)):
+        mean = 0.5 * (run.rows[1:, velocity] + run.rows[:-1, velocity])
+        moved = np.concatenate([[0.0], np.cumsum(mean * np.diff(run.times))])
+        scale = np.abs(moved).max()
+        assert np.abs(run.rows[:, displacement] - moved).max() < 2e-3 * scale
+
+
+def test_time_step_above_the_critical_one_is_refused(
+    system: System, scene: Scene, duration: float
+) -> None:
+    critical = critical_time_step(system)
+    with pytest.raises(SolverError, match=rf"{critical:.6g} s.*1\.01"):
+        integrate(system, scene.speed, duration, courant=1.01)
+    for courant in (0.0, -0.5, float("nan")):
+        with pytest.raises(SolverError, match="Courant"):
+            integrate(system, scene.speed, duration, courant=courant)
+
+
+def test_critical_time_step_is_the_limit_of_stability(system: System) -> None:
+    """Free vibration from noise grows just above 2/omega_max and not just below it."""
+    critical = critical_time_step(system)
+    growth = {}
+    for courant in (0.98, 1.003):
+        loop = Loop(system, courant * critical, 0.0, 1)
+        for contact in loop.state.contact:
+            contact.pairs = 0
+        noise = np.random.default_rng(3).standard_normal(loop.v.size)
+        loop.v[:] = noise * (system.inverse_mass > 0.0)
+        before = np.abs(loop.v).max()
+        loop.run(1, 4000)
+        growth[courant] = np.abs(loop.v).max() / before
+    assert growth[0.98] < 10.0
+    assert not growth[1.003] < 1e6
+
+
+def test_half_the_time_step_gives_the_same_answer(
+    run: Run, system: System, scene: Scene, duration: float
+) -> None:
+    finer = integrate(system, scene.speed, duration, courant=0.5)
+    assert finer.inner_velocity == pytest.approx(run.inner_velocity, rel=2e-5)
+    assert finer.outer_velocity == pytest.approx(run.outer_velocity, rel=1e-4)
+    for a, b in zip(finer.contacts, run.contacts, strict=True):
+        assert a.force_peak == pytest.approx(b.force_peak, rel=2e-3)
+        assert a.end == pytest.approx(b.end, rel=2e-3)
+        assert a.count == b.count
+
+
+def test_numbering_of_the_nodes_does_not_matter(
+    run: Run, scene: Scene, duration: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def shuffled(matrices: BodyMatrices) -> Ints:
+        return np.random.default_rng(7).permutation(matrices.mass.size)
+
+    monkeypatch.setattr(system_module, "_renumbering", shuffled)
+    other = integrate(make_system(scene)[0], scene.speed, duration)
+    assert other.steps == run.steps
+    assert other.inner_velocity == pytest.approx(run.inner_velocity, rel=1e-7)
+    assert other.contacts[0].force_peak == pytest.approx(run.contacts[0].force_peak, rel=1e-5)
+
+
+def test_impact_from_below_mirrors_the_impact_from_above(
+    run: Run, system: System, scene: Scene
+) -> None:
+    loop = Loop(system, run.time_step, 0.0, 1)
+    rows = system.body(INNER)
+    loop.v[rows][1::2] = scene.speed
+    mirrored = loop.run(run.times.size - 1, round(run.times[1] / run.time_step))
+    for above, below in ((0, 5), (1, 6), (3, 3), (4, 4), (5, 0), (6, 1)):
+        scale = np.abs(run.rows[:, above]).max()
+        assert np.abs(run.rows[:-1, above] + mirrored[:, below]).max() < 1e-4 * scale
+    assert np.abs(run.rows[:-1, 2] - mirrored[:, 7]).max() < 1e-4 * run.rows[-1, 2]
+
+
+def test_compiled_product_is_the_matrix_product(system: System) -> None:
+    loop = Loop(system, 1e-9, 0.0, 1)
+    x = np.random.default_rng(5).standard_normal(loop.u.size)
+    expected = system.stiffness @ x
+    assert np.allclose(loop.product(x), expected, rtol=0.0, atol=1e-13 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"plate__edge": "free"},
+        {"plate__edge": "simply-supported", "outer__radius": 0.006},
+        {"inner__gap": 5e-6},
+    ],
+)
+def test_nothing_touches_after_the_end_of_the_run(changes: dict[str, object]) -> None:
+    """The run ends by itself; one twice as long changes none of its results."""
+    scene = parse_scene(document(reference__elements_per_contact_radius=3, **changes))
+    system, duration = make_system(scene)
+    ended = integrate(system, scene.speed, duration)
+    end_time = 2.0 * float(ended.times[-1])
+    longer = integrate(system, scene.speed, duration, end_time=end_time)
+    assert longer.times[-1] == pytest.approx(end_time, rel=1e-12)
+    for a, b in zip(longer.contacts, ended.contacts, strict=True):
+        assert a.count == b.count
+        assert a.impulse == pytest.approx(b.impulse, rel=1e-5)
+        assert (a.end is None) == (b.end is None)
+        if a.end is not None and b.end is not None:
+            assert a.end == pytest.approx(b.end, rel=1e-3)
+    assert ended.momentum_residual < 1e-9
+
+
+def test_run_cut_short_says_so(system: System, scene: Scene, duration: float) -> None:
+    cut = integrate(system, scene.speed, duration, end_time=2e-5)
+    assert cut.in_contact_at_end
+    assert cut.times[-1] == pytest.approx(2e-5, rel=1e-12)
+
+
+def test_snapshot_is_the_state_at_its_time(system: System, scene: Scene, duration: float) -> None:
+    cut = integrate(system, scene.speed, duration, end_time=2e-5, snapshot_times=(0.0, 1e-5))
+    assert [shot.time for shot in cut.snapshots] == [
+        0.0, pytest.approx(1e-5, abs=float(cut.times[1]))
+    ]
+    assert not cut.snapshots[0].displacement.any()
+    index = int(np.argmin(np.abs(cut.times - cut.snapshots[1].time)))
+    rows = slice(int(system.first[OUTER]), int(system.first[OUTER + 1]))
+    mean = system.mass[rows] @ cut.snapshots[1].displacement[rows, 1] / system.mass[rows].sum()
+    assert mean == pytest.approx(cut.rows[index, 0], rel=1e-12)
+
+
+def test_flexibility_of_a_free_sphere(scene: Scene) -> None:
+    """That of the half-space under Hertz's pressure, 0.6 (1 - nu^2)/(E a), less 0.40/(E r).
+
+    The second part, 5 % here, is what a free sphere of nu = 0.3 lacks against its half-space.
+    """
+    system, _ = make_system(scene, 4.0)
+    pairs = system.contacts[0]
+    weights = system_module.hertz_weights(pairs.radii)
+    found = patch_flexibility(system, OUTER, pairs.sphere_nodes, weights)
+    half_space = 0.6 * (1.0 - 0.3**2) / (210e9 * pairs.radii[-1])
+    assert found == pytest.approx(half_space - 0.40 / (210e9 * 0.01), rel=0.01)

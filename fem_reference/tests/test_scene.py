@@ -1,0 +1,78 @@
+"""Scenes that are invalid or unsupported are refused, and the field is named."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fem_reference.errors import SceneError
+from fem_reference.scene import parse_scene, read_scene
+
+from .conftest import document
+
+
+def test_valid_scene_is_read() -> None:
+    scene = parse_scene(document(run__end_time=1e-4, plate__edge="free"))
+    assert scene.plate.edge == "free"
+    assert scene.end_time == 1e-4
+    assert scene.outer.mass == pytest.approx(7780.0 * 4 / 3 * math.pi * 1e-6, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"kind": "seal-seat"}, "kind"),
+        ({"outer__kind": "compact"}, "outer.kind"),
+        ({"inner__kind": "compact"}, "inner.kind"),
+        ({"outer__kind": "bender"}, "outer.kind"),
+        ({"fluid": {"viscosity": 1e-3}}, "fluid"),
+        ({"plate__damping_ratio": 0.01}, "plate.damping_ratio"),
+        ({"plate__edge": "glued"}, "plate.edge"),
+        ({"reference__geometry": "solid"}, "reference.geometry"),
+        ({"reference__elements_per_contact_radius": 1}, "elements_per_contact_radius"),
+        ({"plate__radius": -1.0}, "plate.radius"),
+        ({"plate__thickness": math.nan}, "plate.thickness"),
+        ({"outer__speed": math.inf}, "outer.speed"),
+        ({"outer__speed": 0.0}, "outer.speed"),
+        ({"inner__gap": -1e-6}, "inner.gap"),
+        ({"inner__radius": "10 mm"}, "inner.radius"),
+        ({"inner__radius": True}, "inner.radius"),
+        ({"run__end_time": 0.0}, "run.end_time"),
+        ({"plate__material__poisson_ratio": 0.5}, "plate.material.poisson_ratio"),
+        ({"plate__colour": "red"}, "plate.colour"),
+        ({"outer": None}, "outer"),
+    ],
+)
+def test_unsupported_or_invalid_field_is_named(changes: dict[str, Any], field: str) -> None:
+    with pytest.raises(SceneError, match=field):
+        parse_scene(document(**changes))
+
+
+def test_missing_field_is_named() -> None:
+    broken = document()
+    del broken["outer"]["material"]["density"]
+    with pytest.raises(SceneError, match=r"outer\.material\.density is missing"):
+        parse_scene(broken)
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"\xff\xfe\x00", b"[" * 100000, b"[1]"])
+def test_file_that_is_no_scene(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "scene.json"
+    path.write_bytes(content)
+    with pytest.raises(SceneError):
+        read_scene(path)
+
+
+def test_absent_file(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="cannot be read"):
+        read_scene(tmp_path / "none.json")
+
+
+def test_document_is_kept_for_the_provenance(tmp_path: Path) -> None:
+    path = tmp_path / "scene.json"
+    path.write_text(json.dumps(document()))
+    assert read_scene(path).raw == document()
