@@ -1,6 +1,8 @@
 //! An elastic body as the impact sees it: modes, their participation at the contact points,
 //! residual flexibility.
 
+pub mod continuum;
+
 /// Linear elastic body reduced to its modes, seen from its contact points.
 ///
 /// With mass-normalised coordinates q the body obeys
