@@ -1,6 +1,7 @@
 //! An elastic body as the impact sees it: modes, their participation at the contact points,
 //! residual flexibility.
 
+pub mod continuum;
 pub mod kirchhoff;
 pub mod quadrature;
 

@@ -1,0 +1,198 @@
+//! Lowest elastic modes by shift-invert Lanczos with full reorthogonalisation.
+//!
+//! Works on x -> K^-1 M x in the inner product of M, with the stiffness factorised once; a free body's
+//! rigid motion is projected out of every vector (see [`HalfBody::solve`]). faer's own
+//! `partial_self_adjoint_eigen` is bound to the Euclidean product, which would need half solves with
+//! the sparse factor, and to a number of modes that is known beforehand.
+
+use super::mirror::{HalfBody, axpy, dot};
+use crate::error::{Error, Result};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+
+/// Modes of a half body, ascending.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Modes {
+    /// Eigenfrequencies in rad/s, ascending. Shape (k).
+    pub omega: Vec<f64>,
+    /// Shapes with v^T M_h v = 1. Shape (k, n).
+    pub shape: Vec<Vec<f64>>,
+}
+
+/// Bound on the residual of K^-1 M v = theta v relative to theta; the error of the frequency is its square.
+const RESIDUAL: f64 = 1e-6;
+
+/// The lowest elastic modes: as many as `wanted`, or fewer if one beyond `omega_limit` is found.
+///
+/// The last mode returned is then the first beyond the limit.
+///
+/// # Errors
+/// [`Error::Solver`] if the mesh has not enough modes or the iteration does not converge.
+pub(super) fn lowest_modes(body: &HalfBody, wanted: usize, omega_limit: f64) -> Result<Modes> {
+    if wanted == 0 {
+        return Ok(Modes::default());
+    }
+    if 2 * wanted > body.elastic_size() {
+        return Err(Error::Solver(format!(
+            "{wanted} modes are asked of a continuum mesh with {} degrees of freedom; it gives at most half as many",
+            body.elastic_size()
+        )));
+    }
+    let mut random = SplitMix(0x9e37_79b9_7f4a_7c15);
+    let mut basis = Columns::new(body.size()); // M-orthonormal
+    let (mut alpha, mut beta): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    let mut next = random.vector(body.size());
+    body.remove_rigid(&mut next);
+    let mut next_mass = body.mass_times(&next);
+    let mut previous = Vec::new();
+    let mut next_check = wanted.min(8);
+    let longest = body.elastic_size().min(4 * wanted + 200);
+    loop {
+        let norm = dot(&next, &next_mass).sqrt();
+        scale(1.0 / norm, &mut next);
+        scale(1.0 / norm, &mut next_mass);
+        basis.push(&next);
+        let mut w = next_mass.clone();
+        body.solve(&mut w);
+        // First the three-term recurrence, which takes nearly all; then the whole basis.
+        alpha.push(dot(&next_mass, &w));
+        axpy(-alpha[alpha.len() - 1], &next, &mut w);
+        if let Some(beta) = beta.last() {
+            axpy(-beta, &previous, &mut w);
+        }
+        previous = next;
+        let mut w_mass = body.mass_times(&w);
+        orthogonalise(body, &mut w, &mut w_mass, &basis);
+        let steps = basis.len();
+        let residual = dot(&w, &w_mass).max(0.0).sqrt();
+        if steps >= next_check || steps == longest {
+            let (theta, vectors) = tridiagonal_eigen(&alpha, &beta)?;
+            let converged = theta
+                .iter()
+                .enumerate()
+                .take_while(|(k, t)| {
+                    residual * vectors[(steps - 1, steps - 1 - k)].abs() <= RESIDUAL * **t
+                })
+                .count();
+            let beyond = theta[..converged]
+                .iter()
+                .position(|t| 1.0 / t.sqrt() > omega_limit);
+            if converged >= wanted || beyond.is_some() {
+                let count = beyond.map_or(wanted, |k| (k + 1).min(wanted));
+                return Ok(ritz(&basis, &theta[..count], &vectors));
+            }
+            next_check = steps + (steps / 8).max(4);
+        }
+        if steps == longest {
+            return Err(Error::Solver(format!(
+                "the {wanted} lowest modes of the continuum mesh did not converge in {steps} Lanczos steps"
+            )));
+        }
+        if residual > f64::EPSILON * alpha[0].abs() {
+            (next, next_mass) = (w, w_mass);
+            beta.push(residual);
+        } else {
+            // An invariant subspace: go on in its complement.
+            next = random.vector(body.size());
+            body.remove_rigid(&mut next);
+            next_mass = body.mass_times(&next);
+            orthogonalise(body, &mut next, &mut next_mass, &basis);
+            beta.push(0.0);
+        }
+    }
+}
+
+/// Vectors of equal length, side by side in memory.
+struct Columns {
+    length: usize,
+    values: Vec<f64>,
+}
+
+impl Columns {
+    fn new(length: usize) -> Self {
+        Self {
+            length,
+            values: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, column: &[f64]) {
+        self.values.extend(column);
+    }
+
+    fn len(&self) -> usize {
+        self.values.len() / self.length
+    }
+
+    fn matrix(&self) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice(&self.values, self.length, self.len())
+    }
+}
+
+/// Makes `w` M-orthogonal to the basis, and `w_mass` = M w with it.
+///
+/// Once more if much of `w` was lost: twice is enough (Parlett, The Symmetric Eigenvalue Problem, 6.9).
+fn orthogonalise(body: &HalfBody, w: &mut [f64], w_mass: &mut Vec<f64>, basis: &Columns) {
+    let n = w.len();
+    for _ in 0..2 {
+        let before = dot(w, w_mass);
+        let part = basis.matrix().transpose() * MatRef::from_column_major_slice(w_mass, n, 1);
+        let vector = MatMut::from_column_major_slice_mut(w, n, 1);
+        matmul(vector, Accum::Add, basis.matrix(), &part, -1.0, Par::Seq);
+        *w_mass = body.mass_times(w);
+        if dot(w, w_mass) > 0.5 * before {
+            break;
+        }
+    }
+}
+
+/// Eigenvalues (descending) and eigenvectors (columns, ascending) of the symmetric tridiagonal matrix.
+fn tridiagonal_eigen(alpha: &[f64], beta: &[f64]) -> Result<(Vec<f64>, Mat<f64>)> {
+    let n = alpha.len();
+    let matrix = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
+        0 => alpha[i],
+        1 => beta[i.min(j)],
+        _ => 0.0,
+    });
+    let eigen = matrix.self_adjoint_eigen(Side::Lower).map_err(|e| {
+        Error::Solver(format!(
+            "the modes of the continuum mesh did not converge: {e:?}"
+        ))
+    })?;
+    let theta = (0..n).rev().map(|k| eigen.S().column_vector()[k]).collect();
+    Ok((theta, eigen.U().to_owned()))
+}
+
+fn ritz(basis: &Columns, theta: &[f64], vectors: &Mat<f64>) -> Modes {
+    let steps = basis.len();
+    let chosen = Mat::from_fn(steps, theta.len(), |i, k| vectors[(i, steps - 1 - k)]);
+    let shapes = basis.matrix() * chosen;
+    Modes {
+        omega: theta.iter().map(|t| 1.0 / t.sqrt()).collect(),
+        shape: shapes
+            .col_iter()
+            .map(|shape| shape.iter().copied().collect())
+            .collect(),
+    }
+}
+
+fn scale(factor: f64, x: &mut [f64]) {
+    x.iter_mut().for_each(|x| *x *= factor);
+}
+
+/// Steele, Lea, Flood 2014: a start vector must be generic, not random; the same on every run.
+struct SplitMix(u64);
+
+impl SplitMix {
+    fn vector(&mut self, n: usize) -> Vec<f64> {
+        (0..n)
+            .map(|_| {
+                self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+                let mut z = self.0;
+                z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+                z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+                (z ^ (z >> 31)) as f64 / u64::MAX as f64 - 0.5
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,203 @@
+//! The upper half of a mirror-symmetric body of revolution, for one parity of the motion.
+//!
+//! A body that is its own mirror image in z = 0 moves in two independent ways: *bending*
+//! (u_z even, u_r odd in z: u_r = 0 on the mid-plane) and *longitudinal* (u_z odd, u_r even:
+//! u_z = 0 on the mid-plane). Each needs only the half z >= 0. With the half's stiffness K_h, mass
+//! M_h and load vectors p_i (unit force on the upper face along +z):
+//!
+//! - a load on the whole body is half bending, half longitudinal; the flexibility between
+//!   points i and j is p_i^T K_h^-1 p_j / 2 for each parity, times -1 for longitudinal motion
+//!   if exactly one of the points is on the lower face;
+//! - a mode with v^T M_h v = 1 has the norm 2 on the whole body: participation p_i^T v / sqrt(2).
+
+use super::assembly::{FIXED, Matrices};
+use super::mesh::Mesh;
+use crate::error::{Error, Result};
+use faer::linalg::solvers::Solve;
+use faer::mat::MatMut;
+use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
+use faer::{MatRef, Side};
+use std::rc::Rc;
+
+/// How the motion behaves under reflection in the mid-plane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Parity {
+    /// u_z even in z.
+    Bending,
+    /// u_z odd in z.
+    Longitudinal,
+}
+
+/// Rigid axial motion of a free body.
+#[derive(Debug, Clone)]
+struct RigidMotion {
+    /// Unit axial displacement: 1 at every axial degree of freedom. Shape (n).
+    shape: Vec<f64>,
+    /// Mass matrix times `shape`. Shape (n).
+    momentum: Vec<f64>,
+    /// Mass of the half body in kg.
+    mass: f64,
+    /// Degree of freedom held when the stiffness is factorised.
+    pinned: usize,
+}
+
+/// Factorised stiffness and mass of the half body for one parity; n degrees of freedom.
+pub(super) struct HalfBody {
+    /// Degrees of freedom (u_r, u_z) of each node, or [`FIXED`]. Shape (nodes, 2).
+    dof: Vec<[usize; 2]>,
+    size: usize,
+    stiffness: Llt<usize, f64>,
+    matrices: Rc<Matrices>,
+    rigid: Option<RigidMotion>,
+}
+
+impl HalfBody {
+    /// Assembles and factorises. `supported(node)` says which of (u_r, u_z) the support holds;
+    /// `free` says that nothing holds the axial rigid motion (only bending has one).
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if the stiffness is not positive definite.
+    pub fn new(
+        mesh: &Mesh,
+        matrices: &Rc<Matrices>,
+        parity: Parity,
+        supported: impl Fn([f64; 2]) -> [bool; 2],
+        free: bool,
+    ) -> Result<Self> {
+        let mut size = 0;
+        let number = |fixed: bool, size: &mut usize| {
+            if fixed {
+                return FIXED;
+            }
+            *size += 1;
+            *size - 1
+        };
+        let mut dof = Vec::with_capacity(mesh.nodes.len());
+        for &[r, z] in &mesh.nodes {
+            let [support_r, support_z] = supported([r, z]);
+            let mid_plane = z == 0.0;
+            let fixed_r = support_r || r == 0.0 || (mid_plane && parity == Parity::Bending);
+            let fixed_z = support_z || (mid_plane && parity == Parity::Longitudinal);
+            dof.push([number(fixed_r, &mut size), number(fixed_z, &mut size)]);
+        }
+        let pinned = (free && parity == Parity::Bending).then(|| {
+            dof.iter()
+                .rev()
+                .map(|d| d[1])
+                .find(|&d| d != FIXED)
+                .unwrap_or(0)
+        });
+        let stiffness = matrices.free_stiffness(&dof, size, pinned)?;
+        let stiffness = SymbolicLlt::try_new(stiffness.symbolic(), Side::Lower)
+            .map_err(|e| Error::Internal(format!("ordering the continuum stiffness: {e:?}")))
+            .and_then(|symbolic| {
+                Llt::try_new_with_symbolic(symbolic, stiffness.as_ref(), Side::Lower).map_err(|e| {
+                    Error::Solver(format!(
+                        "the stiffness of the continuum mesh ({size} degrees of freedom) is not positive definite: {e:?}"
+                    ))
+                })
+            })?;
+        let mut body = Self {
+            dof,
+            size,
+            stiffness,
+            matrices: matrices.clone(),
+            rigid: None,
+        };
+        if let Some(pinned) = pinned {
+            let mut shape = vec![0.0; size];
+            body.dof
+                .iter()
+                .filter(|d| d[1] != FIXED)
+                .for_each(|d| shape[d[1]] = 1.0);
+            let momentum = body.mass_times(&shape);
+            let mass = dot(&shape, &momentum);
+            body.rigid = Some(RigidMotion {
+                shape,
+                momentum,
+                mass,
+                pinned,
+            });
+        }
+        Ok(body)
+    }
+
+    /// Number of degrees of freedom.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Number of elastic modes the mesh has.
+    pub fn elastic_size(&self) -> usize {
+        self.size - usize::from(self.rigid.is_some())
+    }
+
+    /// Load vector with the nodal axial forces `forces`, given as (node, N).
+    pub fn axial_load(&self, forces: &[(usize, f64)]) -> Vec<f64> {
+        let mut load = vec![0.0; self.size];
+        for &(node, force) in forces {
+            let dof = self.dof[node][1];
+            if dof != FIXED {
+                load[dof] += force;
+            }
+        }
+        load
+    }
+
+    /// Mass matrix times `x`.
+    pub fn mass_times(&self, x: &[f64]) -> Vec<f64> {
+        let value = |dof: usize| if dof == FIXED { 0.0 } else { x[dof] };
+        let nodal: Vec<[f64; 2]> = self.dof.iter().map(|d| d.map(value)).collect();
+        let momentum = self.matrices.mass_times(&nodal);
+        let mut y = vec![0.0; self.size];
+        for (dof, momentum) in self.dof.iter().zip(momentum) {
+            for (&d, m) in dof.iter().zip(momentum) {
+                if d != FIXED {
+                    y[d] = m;
+                }
+            }
+        }
+        y
+    }
+
+    /// Static displacement under the load `f`, in place.
+    ///
+    /// A free body is accelerated by the resultant; its displacement is that under the load and the
+    /// inertia forces, with the rigid part (M-orthogonally) taken out: inertia relief.
+    pub fn solve(&self, f: &mut [f64]) {
+        if let Some(rigid) = &self.rigid {
+            let acceleration = dot(&rigid.shape, f) / rigid.mass;
+            axpy(-acceleration, &rigid.momentum, f);
+            f[rigid.pinned] = 0.0;
+        }
+        let n = f.len();
+        self.stiffness
+            .solve_in_place(MatMut::from_column_major_slice_mut(f, n, 1));
+        self.remove_rigid(f);
+    }
+
+    /// Makes `x` M-orthogonal to the rigid motion, in place.
+    pub fn remove_rigid(&self, x: &mut [f64]) {
+        if let Some(rigid) = &self.rigid {
+            let rigid_part = dot(&rigid.momentum, x) / rigid.mass;
+            axpy(-rigid_part, &rigid.shape, x);
+        }
+    }
+}
+
+/// Scalar product.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len();
+    let (a, b) = (
+        MatRef::from_column_major_slice(a, n, 1),
+        MatRef::from_column_major_slice(b, n, 1),
+    );
+    a.col(0).transpose() * b.col(0)
+}
+
+/// y += factor x.
+pub(super) fn axpy(factor: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += factor * x;
+    }
+}

@@ -1,0 +1,306 @@
+//! Circular plate of any thickness as a continuum.
+//!
+//! Supports of the rim r = R, on its whole face -t/2 <= z <= t/2:
+//! - clamped: u_r = u_z = 0 (Table 2 of the paper);
+//! - simply supported: u_z = 0, u_r free. The rim may rotate, as in plate theory, and the problem has a
+//!   limit under mesh refinement: holding only the mid-plane's circle would be a line load, under which a
+//!   continuum sinks without bound;
+//! - free.
+
+use super::assembly::Matrices;
+use super::grading::Grading;
+use super::lanczos::{Modes, lowest_modes};
+use super::mesh::{self, Mesh, patch_then_graded};
+use super::mirror::{HalfBody, Parity, dot};
+use super::patch::{half_space_flexibility, nodal_forces};
+use super::{MeshOptions, check_patch};
+use crate::body::ModalBody;
+use crate::error::Result;
+use crate::scene::{Edge, Plate};
+use std::f64::consts::{PI, SQRT_2, TAU};
+use std::rc::Rc;
+
+/// Mode of the continuum plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlateMode {
+    /// Eigenfrequency in Hz; 0 = rigid motion.
+    pub frequency: f64,
+    /// Whether the axial displacement is antisymmetric about the mid-plane.
+    pub longitudinal: bool,
+}
+
+/// Continuum plate seen from the contact points 0 (outer face, z = +t/2) and 1 (inner face), both at r = 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContinuumPlate {
+    /// Elastic eigenfrequencies in rad/s, ascending, one more than asked for. Shape (n + 1).
+    pub omega: Vec<f64>,
+    /// Mass-normalised shapes weighted over the patches, kg^(-1/2). Shape (n + 1, 2).
+    pub participation: Vec<[f64; 2]>,
+    /// Static flexibility of all elastic modes in m/N, without Hertz's half-spaces on the diagonal.
+    pub flexibility: [[f64; 2]; 2],
+    /// Mass of the plate in kg if it is free to move, otherwise `None`.
+    pub free_mass: Option<f64>,
+    /// Modal damping ratio.
+    pub damping_ratio: f64,
+    /// Degrees of freedom of the mesh (both parities).
+    pub degrees_of_freedom: usize,
+}
+
+impl ContinuumPlate {
+    /// Meshes the plate and finds `modes` elastic modes, the next one, and the flexibility, for contact patches
+    /// of the radii `patch_radius` (outer, inner face) in m.
+    ///
+    /// # Errors
+    /// [`crate::Error::Solver`] if a patch radius is not below the plate's radius or the numerics fail,
+    /// [`crate::Error::Usage`] for a mesh option out of bounds.
+    pub fn new(
+        plate: &Plate,
+        patch_radius: [f64; 2],
+        modes: usize,
+        options: &MeshOptions,
+    ) -> Result<Self> {
+        options.check()?;
+        for a in patch_radius {
+            check_patch(a, plate.radius, "the plate's radius")?;
+        }
+        let mesh = plate_mesh(
+            plate,
+            Some(patch_radius[0].min(patch_radius[1])),
+            modes,
+            options,
+        );
+        let halves = Halves::new(plate, &mesh)?;
+        let spectrum = halves.spectrum(modes + 1)?;
+        let forces = patch_radius.map(|a| nodal_forces(&mesh, a));
+        let mut result = Self {
+            omega: Vec::new(),
+            participation: Vec::new(),
+            flexibility: [[0.0; 2]; 2],
+            free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
+            damping_ratio: plate.damping_ratio,
+            degrees_of_freedom: halves.bending.size() + halves.longitudinal.size(),
+        };
+        for (parity, half) in halves.each() {
+            let load = [half.axial_load(&forces[0]), half.axial_load(&forces[1])];
+            for (j, load_j) in load.iter().enumerate() {
+                let mut displacement = load_j.clone();
+                half.solve(&mut displacement);
+                for (i, load_i) in load.iter().enumerate() {
+                    result.flexibility[i][j] +=
+                        0.5 * sign(parity, i) * sign(parity, j) * dot(load_i, &displacement);
+                }
+            }
+            for entry in spectrum.iter().filter(|entry| entry.parity == parity) {
+                let phi = |i: usize| sign(parity, i) * dot(&load[i], &entry.shape) / SQRT_2;
+                result.omega.push(entry.omega);
+                result.participation.push([phi(0), phi(1)]);
+            }
+        }
+        let mut order: Vec<usize> = (0..result.omega.len()).collect();
+        order.sort_by(|&i, &j| result.omega[i].total_cmp(&result.omega[j]));
+        result.omega = order.iter().map(|&i| result.omega[i]).collect();
+        result.participation = order.iter().map(|&i| result.participation[i]).collect();
+        for (i, a) in patch_radius.into_iter().enumerate() {
+            result.flexibility[i][i] -= half_space_flexibility(&plate.material, a);
+        }
+        let mean = 0.5 * (result.flexibility[0][1] + result.flexibility[1][0]);
+        (result.flexibility[0][1], result.flexibility[1][0]) = (mean, mean);
+        Ok(result)
+    }
+
+    /// The body with its `modes` lowest elastic modes (at most as many as were asked for) and what they lack
+    /// as residual. The rigid motion of a free plate comes before them as a mode of its own.
+    pub fn modal_body(&self, modes: usize) -> ModalBody {
+        let modes = modes.min(self.omega.len() - 1);
+        let mut body = ModalBody {
+            omega: Vec::with_capacity(modes + 1),
+            damping_ratio: Vec::with_capacity(modes + 1),
+            participation: Vec::with_capacity(modes + 1),
+            residual: self.flexibility,
+        };
+        if let Some(mass) = self.free_mass {
+            body.omega.push(0.0);
+            body.damping_ratio.push(0.0);
+            body.participation.push([1.0 / mass.sqrt(); 2]);
+        }
+        for (&omega, phi) in self.omega.iter().zip(&self.participation).take(modes) {
+            body.omega.push(omega);
+            body.damping_ratio.push(self.damping_ratio);
+            body.participation.push(*phi);
+            for i in 0..2 {
+                for j in 0..2 {
+                    body.residual[i][j] -= phi[i] * phi[j] / omega.powi(2);
+                }
+            }
+        }
+        body
+    }
+
+    /// Frequency in rad/s of the lowest elastic mode that [`Self::modal_body`] leaves to the residual.
+    ///
+    /// The residual is static: a contact of frequency w sees it with a relative error of about
+    /// (w / omega_next)^2.
+    pub fn omega_next(&self, modes: usize) -> f64 {
+        self.omega[modes.min(self.omega.len() - 1)]
+    }
+}
+
+/// Continuum plate with `modes` elastic modes (and before them the rigid motion if the plate is free) and
+/// residual flexibility; see [`ContinuumPlate`].
+///
+/// # Errors
+/// As [`ContinuumPlate::new`].
+pub fn plate(
+    plate: &Plate,
+    patch_radius: [f64; 2],
+    modes: usize,
+    mesh: &MeshOptions,
+) -> Result<ModalBody> {
+    Ok(ContinuumPlate::new(plate, patch_radius, modes, mesh)?.modal_body(modes))
+}
+
+/// The `count` lowest axisymmetric modes of the plate, the rigid motion of a free one included.
+///
+/// # Errors
+/// [`crate::Error::Solver`] if the numerics fail.
+pub fn eigenfrequencies(plate: &Plate, count: usize) -> Result<Vec<PlateMode>> {
+    let mesh = plate_mesh(plate, None, count, &MeshOptions::default().refined(1.5));
+    let rigid = PlateMode {
+        frequency: 0.0,
+        longitudinal: false,
+    };
+    let mut modes = vec![rigid; usize::from(plate.edge == Edge::Free).min(count)];
+    modes.extend(
+        Halves::new(plate, &mesh)?
+            .spectrum(count - modes.len())?
+            .iter()
+            .map(|entry| PlateMode {
+                frequency: entry.omega / TAU,
+                longitudinal: entry.parity == Parity::Longitudinal,
+            }),
+    );
+    Ok(modes)
+}
+
+/// +1, or -1 for the inner face in longitudinal motion.
+fn sign(parity: Parity, point: usize) -> f64 {
+    if parity == Parity::Longitudinal && point == 1 {
+        -1.0
+    } else {
+        1.0
+    }
+}
+
+/// The two independent motions of the plate.
+struct Halves {
+    bending: HalfBody,
+    longitudinal: HalfBody,
+}
+
+/// Elastic mode of one parity; `shape` as in [`Modes`].
+struct SpectrumEntry {
+    omega: f64,
+    parity: Parity,
+    shape: Vec<f64>,
+}
+
+impl Halves {
+    fn new(plate: &Plate, mesh: &Mesh) -> Result<Self> {
+        let matrices = Rc::new(Matrices::new(mesh, &plate.material)?);
+        let held = match plate.edge {
+            Edge::Clamped => [true, true],
+            Edge::SimplySupported => [false, true],
+            Edge::Free => [false, false],
+        };
+        let support = |[r, _]: [f64; 2]| {
+            if r == mesh.radius {
+                held
+            } else {
+                [false, false]
+            }
+        };
+        let half =
+            |parity| HalfBody::new(mesh, &matrices, parity, support, plate.edge == Edge::Free);
+        Ok(Self {
+            bending: half(Parity::Bending)?,
+            longitudinal: half(Parity::Longitudinal)?,
+        })
+    }
+
+    fn each(&self) -> [(Parity, &HalfBody); 2] {
+        [
+            (Parity::Bending, &self.bending),
+            (Parity::Longitudinal, &self.longitudinal),
+        ]
+    }
+
+    /// The `count` lowest elastic modes of both parities, ascending.
+    fn spectrum(&self, count: usize) -> Result<Vec<SpectrumEntry>> {
+        let entries = |modes: Modes, parity| {
+            modes
+                .omega
+                .into_iter()
+                .zip(modes.shape)
+                .map(move |(omega, shape)| SpectrumEntry {
+                    omega,
+                    parity,
+                    shape,
+                })
+        };
+        let bending = lowest_modes(&self.bending, count, f64::INFINITY)?;
+        let limit = bending.omega.last().copied().unwrap_or(0.0);
+        let longitudinal = lowest_modes(&self.longitudinal, count, limit)?;
+        let mut all: Vec<_> = entries(bending, Parity::Bending).collect();
+        all.extend(entries(longitudinal, Parity::Longitudinal));
+        all.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+        all.truncate(count);
+        Ok(all)
+    }
+}
+
+/// Mesh of the upper half, fine at the patch (if any) and at a clamped rim, and
+/// fine enough everywhere for the `modes` lowest modes.
+fn plate_mesh(
+    plate: &Plate,
+    patch_radius: Option<f64>,
+    modes: usize,
+    options: &MeshOptions,
+) -> Mesh {
+    let half_thickness = 0.5 * plate.thickness;
+    // Wave number of the highest mode: at most that of modes in one row along the longer
+    // side, and of twice Weyl's count of modes over the section (wider rows, surface waves).
+    let count = modes as f64 + 2.0;
+    let row = PI * count / plate.radius.max(plate.thickness);
+    let area = (8.0 * PI * (count + 2.0) / (plate.radius * plate.thickness)).sqrt();
+    let wavelength = TAU / row.min(area);
+    let wave_size = options.order as f64 * wavelength / options.nodes_per_wavelength;
+    let largest = wave_size.min(plate.radius / 4.0);
+    let thick = largest.min(half_thickness / options.thickness_elements);
+    // The stress at the clamped rim's corners is singular.
+    let rim_size = if plate.edge == Edge::Clamped {
+        0.25 * thick
+    } else {
+        thick
+    };
+    let size = patch_radius.map(|a| a / options.patch_elements);
+    let radial_grading = |start: f64| Grading {
+        start,
+        end: rim_size,
+        largest,
+        growth: options.growth,
+    };
+    let radial = match (patch_radius, size) {
+        (Some(a), Some(size)) => {
+            patch_then_graded(a, plate.radius, size.min(largest), radial_grading)
+        }
+        _ => radial_grading(largest).breakpoints(plate.radius),
+    };
+    let start = size.unwrap_or(f64::INFINITY).min(rim_size);
+    let depth = Grading {
+        start,
+        end: f64::INFINITY,
+        largest: thick,
+        growth: options.growth,
+    };
+    mesh::plate(options.order, &radial, &depth.breakpoints(half_thickness))
+}
