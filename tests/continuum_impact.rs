@@ -20,18 +20,8 @@ struct Scene {
     end: f64,
 }
 
-const A: Scene = Scene {
-    sphere_radius: 10e-3,
-    speed: 0.55,
-    patch_radius: 0.30e-3,
-    end: 200e-6,
-};
-const B: Scene = Scene {
-    sphere_radius: 6.35e-3,
-    speed: 0.437,
-    patch_radius: 0.18e-3,
-    end: 80e-6,
-};
+const A: Scene = Scene { sphere_radius: 10e-3, speed: 0.55, patch_radius: 0.30e-3, end: 200e-6 };
+const B: Scene = Scene { sphere_radius: 6.35e-3, speed: 0.437, patch_radius: 0.18e-3, end: 80e-6 };
 
 fn run(scene: &Scene, modes: usize, patch_factor: f64, mesh: &MeshOptions) -> ImpactResult {
     let plate = plate_of(33e-3, 2e-3, Edge::Clamped, steel());
@@ -52,40 +42,20 @@ fn run(scene: &Scene, modes: usize, patch_factor: f64, mesh: &MeshOptions) -> Im
     result
 }
 
-fn assert_close(
-    result: ImpactResult,
-    expected: ImpactResult,
-    efficiency: f64,
-    force: f64,
-    time: f64,
-) {
-    assert!(
-        (result.efficiency - expected.efficiency).abs() < efficiency,
-        "{result:?} {expected:?}"
-    );
+fn assert_close(result: ImpactResult, expected: ImpactResult, efficiency: f64, force: f64, time: f64) {
+    assert!((result.efficiency - expected.efficiency).abs() < efficiency, "{result:?} {expected:?}");
     for c in 0..2 {
         assert_relative_eq!(result.peak[c], expected.peak[c], max_relative = force);
-        assert!(
-            (result.end[c] - expected.end[c]).abs() < time,
-            "{result:?} {expected:?}"
-        );
+        assert!((result.end[c] - expected.end[c]).abs() < time, "{result:?} {expected:?}");
     }
 }
 
 #[test]
 fn both_scenes_of_table_1_agree_with_converged_finite_elements() {
     let mesh = MeshOptions::default();
-    let fe = ImpactResult {
-        efficiency: 0.6946,
-        peak: [443.1, 352.1],
-        end: [180.5e-6, 84.5e-6],
-    };
+    let fe = ImpactResult { efficiency: 0.6946, peak: [443.1, 352.1], end: [180.5e-6, 84.5e-6] };
     assert_close(run(&A, 16, 1.0, &mesh), fe, 0.001, 2.5e-3, 0.5e-6);
-    let fe = ImpactResult {
-        efficiency: 0.3868,
-        peak: [142.9, 85.35],
-        end: [62.4e-6, 52.2e-6],
-    };
+    let fe = ImpactResult { efficiency: 0.3868, peak: [142.9, 85.35], end: [62.4e-6, 52.2e-6] };
     assert_close(run(&B, 16, 1.0, &mesh), fe, 0.001, 2.5e-3, 0.2e-6);
 }
 
@@ -97,11 +67,7 @@ fn patch_radius_and_number_of_modes_hardly_matter() {
         for (modes, patch_factor) in [(4, 1.0), (6, 1.0), (64, 1.0), (16, 0.5), (16, 2.0)] {
             let other = run(scene, modes, patch_factor, &mesh);
             // A patch twice as wide as the contact ever is sees less of the plate's local compliance.
-            let force = if modes < 16 || patch_factor > 1.0 {
-                5e-3
-            } else {
-                2e-3
-            };
+            let force = if modes < 16 || patch_factor > 1.0 { 5e-3 } else { 2e-3 };
             assert_close(other, normal, 0.001, force, 0.3e-6);
         }
     }
@@ -109,10 +75,7 @@ fn patch_radius_and_number_of_modes_hardly_matter() {
 
 #[test]
 fn the_mesh_does_not_matter() {
-    let fine = MeshOptions {
-        order: 4,
-        ..MeshOptions::default().refined(1.5)
-    };
+    let fine = MeshOptions { order: 4, ..MeshOptions::default().refined(1.5) };
     for scene in [&A, &B] {
         let normal = run(scene, 16, 1.0, &MeshOptions::default());
         let refined = run(scene, 16, 1.0, &fine);

@@ -39,21 +39,12 @@ fn fixed_titanium_plate_to_rod_follows_table_2_of_the_paper() {
         let plate = plate_of(3e-3, thickness * 1e-3, Edge::Clamped, titanium());
         let modes = eigenfrequencies(&plate, 10).unwrap();
         let found = modes.iter().position(|m| m.longitudinal).unwrap();
-        println!(
-            "{thickness} mm: {:.2} {:.2} #{}",
-            modes[0].frequency,
-            modes[found].frequency,
-            found + 1
-        );
+        println!("{thickness} mm: {:.2} {:.2} #{}", modes[0].frequency, modes[found].frequency, found + 1);
         assert_eq!(found + 1, number, "t = {thickness} mm");
         // 0.1 %, or half of the last digit given.
         let half_digit = 0.05;
         assert!((modes[0].frequency / 1e3 - first).abs() < (1e-3 * first).max(half_digit));
-        assert_relative_eq!(
-            modes[found].frequency / 1e3,
-            longitudinal,
-            max_relative = 1e-3
-        );
+        assert_relative_eq!(modes[found].frequency / 1e3, longitudinal, max_relative = 1e-3);
     }
 }
 
@@ -72,16 +63,12 @@ fn thin_plates_follow_kirchhoff_closed_form() {
         let modes = eigenfrequencies(&plate, 3 + rigid).unwrap();
         assert_eq!(modes.iter().filter(|m| m.frequency == 0.0).count(), rigid);
         for (mode, k2) in modes[rigid..].iter().zip(expected) {
-            let kirchhoff =
-                k2 / radius.powi(2) * (rigidity / (material.density * thickness)).sqrt() / TAU;
+            let kirchhoff = k2 / radius.powi(2) * (rigidity / (material.density * thickness)).sqrt() / TAU;
             // Shear and rotary inertia lower the frequency by less than k2 (t/R)^2.
             let lower = k2 * f64::powi(thickness / radius, 2);
             let relative = mode.frequency / kirchhoff - 1.0;
             println!("{edge:?} {relative:e} {lower:e}");
-            assert!(
-                relative < 5e-5 && relative > -lower - 5e-5,
-                "{edge:?} {relative:e} {lower:e}"
-            );
+            assert!(relative < 5e-5 && relative > -lower - 5e-5, "{edge:?} {relative:e} {lower:e}");
         }
     }
 }
@@ -98,9 +85,7 @@ fn frequencies_of_a_free_plate_converge_with_twice_the_order_of_the_elements() {
             nodes_per_wavelength: 2.0,
             thickness_elements: refinement,
         };
-        ContinuumPlate::new(&plate, [0.2; 2], 3, &options)
-            .unwrap()
-            .omega[1]
+        ContinuumPlate::new(&plate, [0.2; 2], 3, &options).unwrap().omega[1]
     };
     let exact = frequency(6, 3.0);
     for (order, expected) in [(2, 4.0), (3, 6.0)] {
@@ -108,13 +93,7 @@ fn frequencies_of_a_free_plate_converge_with_twice_the_order_of_the_elements() {
         let (coarse, fine) = (error(1.0), error(2.0));
         let observed = (coarse / fine).log2();
         println!("order {order}: observed {observed} ({coarse:e}, {fine:e})");
-        assert!(
-            fine > 0.0,
-            "frequencies come from above: {coarse:e} {fine:e}"
-        );
-        assert!(
-            (observed - expected).abs() < 0.5,
-            "order {order}: {observed}"
-        );
+        assert!(fine > 0.0, "frequencies come from above: {coarse:e} {fine:e}");
+        assert!((observed - expected).abs() < 0.5, "order {order}: {observed}");
     }
 }

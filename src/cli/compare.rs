@@ -20,7 +20,7 @@ pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all shipped scenes]
     scenes: Vec<String>,
     /// Reduced models to compare
-    #[arg(long, value_delimiter = ',', default_value = "A,B")]
+    #[arg(long, value_delimiter = ',', default_value = "A,B,C")]
     models: Vec<Model>,
     /// Resolution of the reference
     #[arg(long, default_value = "paper")]

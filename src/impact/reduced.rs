@@ -4,9 +4,10 @@ use super::integrator::{Integration, Options, integrate};
 use super::system::System;
 use super::{Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary};
 use crate::analytical::hertz::HertzImpact;
+use crate::body::continuum::{self, MeshOptions};
 use crate::body::kirchhoff;
 use crate::error::{Error, Result};
-use crate::scene::{Model, PlateImpact, Scene, Setup};
+use crate::scene::{Material, Model, PlateImpact, Scene, Setup, Shape};
 use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
@@ -127,8 +128,33 @@ impl Reduced {
 
 /// The oscillators and contacts of `model`.
 fn system(setup: &PlateImpact, model: Model, modes: usize) -> Result<System> {
+    let kirchhoff = || Ok(System::new(setup, &kirchhoff::modes(&setup.plate, modes)?, [0.0; 2]));
     match model {
-        Model::A | Model::B => Ok(System::new(setup, &kirchhoff::modes(&setup.plate, modes)?, [0.0; 2])),
-        Model::C => Err(Error::Usage("model C is not part of this version; there are A and B".into())),
+        Model::A | Model::B => kirchhoff(),
+        Model::C => {
+            let patch = patch_radii(&kirchhoff()?)?;
+            let mesh = MeshOptions::default();
+            let plate = continuum::plate(&setup.plate, patch, modes, &mesh)?;
+            let tip = |shape: &Shape, material: &Material, patch| match *shape {
+                Shape::Sphere { radius } => continuum::sphere_residual(radius, material, patch, &mesh),
+                // a compact body is rigid but for its Hertz contact
+                Shape::Compact { .. } => Ok(0.0),
+            };
+            let tips = [
+                tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
+                tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
+            ];
+            Ok(System::new(setup, &plate, tips))
+        }
     }
+}
+
+/// Radii in m of the contact patches over which model C weights loads: Hertz's at the force peaks of `system`, a
+/// model of the same impact without residual. The result hardly depends on them.
+fn patch_radii(system: &System) -> Result<[f64; 2]> {
+    let rough = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
+    let radius = |i: usize| system.laws[i].contact_radius(rough.contacts[i].force_peak);
+    let outer = radius(0);
+    // an inner body that is never reached takes the outer one's patch
+    Ok([outer, if rough.contacts[1].contacts > 0 { radius(1) } else { outer }])
 }

@@ -5,12 +5,7 @@ use impactcheck::body::ModalBody;
 use impactcheck::scene::{Edge, Material, Plate};
 
 pub fn material(youngs_modulus: f64, poisson_ratio: f64, density: f64) -> Material {
-    Material {
-        name: "material".into(),
-        youngs_modulus,
-        poisson_ratio,
-        density,
-    }
+    Material { name: "material".into(), youngs_modulus, poisson_ratio, density }
 }
 
 pub fn steel() -> Material {
@@ -22,13 +17,7 @@ pub fn titanium() -> Material {
 }
 
 pub fn plate_of(radius: f64, thickness: f64, edge: Edge, material: Material) -> Plate {
-    Plate {
-        radius,
-        thickness,
-        edge,
-        material,
-        damping_ratio: 0.0,
-    }
+    Plate { radius, thickness, edge, material, damping_ratio: 0.0 }
 }
 
 /// Two spheres on the axis of a plate, in contact with it at t = 0.
@@ -64,16 +53,9 @@ impl Impact {
     /// Classical Runge-Kutta with the constant step `step` up to `end`, both in s.
     pub fn run(&self, step: f64, end: f64) -> ImpactResult {
         let n = self.plate.omega.len() + 2;
-        let mut state = State {
-            position: vec![0.0; n],
-            velocity: vec![0.0; n],
-        };
+        let mut state = State { position: vec![0.0; n], velocity: vec![0.0; n] };
         state.velocity[0] = -self.speed;
-        let mut result = ImpactResult {
-            efficiency: 0.0,
-            peak: [0.0; 2],
-            end: [0.0; 2],
-        };
+        let mut result = ImpactResult { efficiency: 0.0, peak: [0.0; 2], end: [0.0; 2] };
         let mut force = [0.0; 2];
         for i in 0..(end / step).round() as usize {
             let mut stages: Vec<(Vec<f64>, Vec<f64>)> = Vec::with_capacity(4);
@@ -90,10 +72,7 @@ impl Impact {
             }
             for j in 0..n {
                 let mean = |pick: &dyn Fn(&(Vec<f64>, Vec<f64>)) -> f64| {
-                    (pick(&stages[0])
-                        + 2.0 * pick(&stages[1])
-                        + 2.0 * pick(&stages[2])
-                        + pick(&stages[3]))
+                    (pick(&stages[0]) + 2.0 * pick(&stages[1]) + 2.0 * pick(&stages[2]) + pick(&stages[3]))
                         / 6.0
                 };
                 state.position[j] += step * mean(&|s| s.0[j]);
@@ -115,18 +94,8 @@ impl Impact {
     fn acceleration(&self, state: &State, force: [f64; 2]) -> Vec<f64> {
         let on_plate = [-force[0], force[1]];
         let mut a = vec![force[0] / self.mass[0], -force[1] / self.mass[1]];
-        for (k, (&omega, phi)) in self
-            .plate
-            .omega
-            .iter()
-            .zip(&self.plate.participation)
-            .enumerate()
-        {
-            a.push(
-                -omega * omega * state.position[k + 2]
-                    + phi[0] * on_plate[0]
-                    + phi[1] * on_plate[1],
-            );
+        for (k, (&omega, phi)) in self.plate.omega.iter().zip(&self.plate.participation).enumerate() {
+            a.push(-omega * omega * state.position[k + 2] + phi[0] * on_plate[0] + phi[1] * on_plate[1]);
         }
         a
     }
@@ -135,20 +104,13 @@ impl Impact {
     fn forces(&self, state: &State, guess: [f64; 2]) -> [f64; 2] {
         let modal = |i: usize| -> f64 {
             let q = &state.position[2..];
-            self.plate
-                .participation
-                .iter()
-                .zip(q)
-                .map(|(phi, q)| phi[i] * q)
-                .sum()
+            self.plate.participation.iter().zip(q).map(|(phi, q)| phi[i] * q).sum()
         };
         let rigid = [modal(0) - state.position[0], state.position[1] - modal(1)];
         let r = self.plate.residual;
         // delta = rigid - a F; forces on the plate are (-F0, +F1).
-        let a = [
-            [r[0][0] + self.sphere_residual[0], -r[0][1]],
-            [-r[1][0], r[1][1] + self.sphere_residual[1]],
-        ];
+        let a =
+            [[r[0][0] + self.sphere_residual[0], -r[0][1]], [-r[1][0], r[1][1] + self.sphere_residual[1]]];
         let mut force = guess;
         for _ in 0..100 {
             let mut f = [0.0; 2];
@@ -157,16 +119,13 @@ impl Impact {
                 let delta = (rigid[i] - a[i][0] * force[0] - a[i][1] * force[1]).max(0.0);
                 f[i] = force[i] - self.stiffness[i] * delta.powf(1.5);
                 for j in 0..2 {
-                    jacobian[i][j] = f64::from(u8::from(i == j))
-                        + 1.5 * self.stiffness[i] * delta.sqrt() * a[i][j];
+                    jacobian[i][j] =
+                        f64::from(u8::from(i == j)) + 1.5 * self.stiffness[i] * delta.sqrt() * a[i][j];
                 }
             }
             let [[j00, j01], [j10, j11]] = jacobian;
             let determinant = j00 * j11 - j01 * j10;
-            let change = [
-                (j11 * f[0] - j01 * f[1]) / determinant,
-                (j00 * f[1] - j10 * f[0]) / determinant,
-            ];
+            let change = [(j11 * f[0] - j01 * f[1]) / determinant, (j00 * f[1] - j10 * f[0]) / determinant];
             force = [force[0] - change[0], force[1] - change[1]];
             if change[0].abs().max(change[1].abs()) < 1e-9 {
                 return force.map(|f| f.max(0.0));

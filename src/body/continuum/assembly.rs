@@ -31,12 +31,8 @@ impl Matrices {
     pub fn new(mesh: &Mesh, material: &Material) -> Result<Self> {
         let (row_start, column) = sparsity(mesh);
         let entries = column.len();
-        let mut all = Self {
-            row_start,
-            column,
-            stiffness: vec![[0.0; 4]; entries],
-            mass: vec![0.0; entries],
-        };
+        let mut all =
+            Self { row_start, column, stiffness: vec![[0.0; 4]; entries], mass: vec![0.0; entries] };
         let quadrature = tabulate(mesh.order);
         let per_element = (mesh.order + 1).pow(2);
         let mut element = ElementMatrices::new(per_element);
@@ -95,10 +91,7 @@ impl Matrices {
                 start.len() - 1
             )));
         }
-        Ok(SparseColMat::new(
-            SymbolicSparseColMat::new_checked(size, size, start, None, rows),
-            values,
-        ))
+        Ok(SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, start, None, rows), values))
     }
 
     /// Mass matrix times the nodal displacements `x` (u_r, u_z). Shape (nodes, 2).
@@ -122,9 +115,7 @@ impl Matrices {
 fn sparsity(mesh: &Mesh) -> (Vec<usize>, Vec<usize>) {
     let mut elements_of = vec![Vec::new(); mesh.nodes.len()];
     for (element, nodes) in mesh.elements.iter().enumerate() {
-        nodes
-            .iter()
-            .for_each(|&node| elements_of[node].push(element));
+        nodes.iter().for_each(|&node| elements_of[node].push(element));
     }
     let (mut start, mut column) = (vec![0], Vec::new());
     let mut row: Vec<usize> = Vec::new();

@@ -8,10 +8,7 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
     }
     for k in 2..=n {
         let k = k as f64;
-        (previous, current) = (
-            current,
-            ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k,
-        );
+        (previous, current) = (current, ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k);
     }
     (current, n as f64 * (x * current - previous) / (x * x - 1.0))
 }
@@ -69,9 +66,7 @@ pub(super) struct Basis {
 
 impl Basis {
     pub fn new(order: usize) -> Self {
-        Self {
-            nodes: gauss_lobatto(order),
-        }
+        Self { nodes: gauss_lobatto(order) }
     }
 
     /// Values of all basis functions at `x`. Shape (order + 1).
@@ -127,11 +122,8 @@ pub(super) struct QuadraturePoint {
 pub(super) fn tabulate(order: usize) -> Vec<QuadraturePoint> {
     let basis = Basis::new(order);
     let rule = gauss_legendre(order + 1);
-    let product = |a: &[f64], b: &[f64]| -> Vec<f64> {
-        a.iter()
-            .flat_map(|x| b.iter().map(move |y| x * y))
-            .collect()
-    };
+    let product =
+        |a: &[f64], b: &[f64]| -> Vec<f64> { a.iter().flat_map(|x| b.iter().map(move |y| x * y)).collect() };
     let mut points = Vec::with_capacity(rule.len() * rule.len());
     for &(xi, weight_xi) in &rule {
         for &(eta, weight_eta) in &rule {
@@ -156,10 +148,7 @@ mod tests {
     fn gauss_rule_is_exact_to_degree_2n_minus_1() {
         for n in 1..=12 {
             let degree = 2 * n - 2;
-            let sum: f64 = gauss_legendre(n)
-                .iter()
-                .map(|(x, w)| w * x.powi(degree as i32))
-                .sum();
+            let sum: f64 = gauss_legendre(n).iter().map(|(x, w)| w * x.powi(degree as i32)).sum();
             assert_relative_eq!(sum, 2.0 / (degree as f64 + 1.0), max_relative = 1e-13);
         }
     }
@@ -180,11 +169,7 @@ mod tests {
             let power = order as i32;
             let x: f64 = 0.37;
             let sum = |weights: Vec<f64>| -> f64 {
-                weights
-                    .iter()
-                    .zip(&basis.nodes)
-                    .map(|(w, s)| w * s.powi(power))
-                    .sum()
+                weights.iter().zip(&basis.nodes).map(|(w, s)| w * s.powi(power)).sum()
             };
             assert_relative_eq!(sum(basis.values(x)), x.powi(power), max_relative = 1e-12);
             assert_relative_eq!(

@@ -20,12 +20,7 @@ pub(super) struct ElementMatrices {
 impl ElementMatrices {
     pub fn new(nodes: usize) -> Self {
         let zero = vec![0.0; nodes * nodes];
-        Self {
-            k_rr: zero.clone(),
-            k_rz: zero.clone(),
-            k_zz: zero.clone(),
-            mass: zero,
-        }
+        Self { k_rr: zero.clone(), k_rz: zero.clone(), k_zz: zero.clone(), mass: zero }
     }
 
     /// Computes the matrices of the element with the node coordinates `nodes` (r, z) in m.
@@ -46,12 +41,7 @@ impl ElementMatrices {
         let lambda = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
         let axial = lambda + 2.0 * shear;
         let n = nodes.len();
-        for field in [
-            &mut self.k_rr,
-            &mut self.k_rz,
-            &mut self.k_zz,
-            &mut self.mass,
-        ] {
+        for field in [&mut self.k_rr, &mut self.k_rz, &mut self.k_zz, &mut self.mass] {
             field.fill(0.0);
         }
         let (mut dr, mut dz, mut hoop) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);

@@ -19,9 +19,7 @@ impl Grading {
     /// A size that grows linearly with slope ln(growth) gives elements in geometric progression.
     fn size(&self, x: f64, length: f64) -> f64 {
         let slope = self.growth.ln();
-        self.largest
-            .min(self.start + slope * x)
-            .min(self.end + slope * (length - x).max(0.0))
+        self.largest.min(self.start + slope * x).min(self.end + slope * (length - x).max(0.0))
     }
 
     /// Breakpoints from exactly 0 to exactly `length`, strictly increasing, at least one element.
@@ -56,46 +54,22 @@ mod tests {
 
     #[test]
     fn breakpoints_are_ordered_graded_and_end_exactly() {
-        for (start, end) in [
-            (0.01, f64::INFINITY),
-            (0.01, 0.02),
-            (5.0, 0.003),
-            (2.0, f64::INFINITY),
-        ] {
-            let grading = Grading {
-                start,
-                end,
-                largest: 0.2,
-                growth: 1.3,
-            };
+        for (start, end) in [(0.01, f64::INFINITY), (0.01, 0.02), (5.0, 0.003), (2.0, f64::INFINITY)] {
+            let grading = Grading { start, end, largest: 0.2, growth: 1.3 };
             let points = grading.breakpoints(1.0);
             assert_eq!((points[0], points[points.len() - 1]), (0.0, 1.0));
             let sizes: Vec<f64> = points.windows(2).map(|p| p[1] - p[0]).collect();
-            assert!(
-                sizes.iter().all(|s| *s > 0.0 && *s < 0.2 * 1.2),
-                "{sizes:?}"
-            );
-            assert!(
-                sizes[0] < 1.4 * start && sizes[sizes.len() - 1] < 1.4 * end,
-                "{sizes:?}"
-            );
+            assert!(sizes.iter().all(|s| *s > 0.0 && *s < 0.2 * 1.2), "{sizes:?}");
+            assert!(sizes[0] < 1.4 * start && sizes[sizes.len() - 1] < 1.4 * end, "{sizes:?}");
             for pair in sizes.windows(2) {
-                assert!(
-                    (1.0 / 1.35..1.35).contains(&(pair[1] / pair[0])),
-                    "{sizes:?}"
-                );
+                assert!((1.0 / 1.35..1.35).contains(&(pair[1] / pair[0])), "{sizes:?}");
             }
         }
     }
 
     #[test]
     fn a_line_shorter_than_the_wanted_size_is_one_element() {
-        let grading = Grading {
-            start: 3.0,
-            end: 3.0,
-            largest: 3.0,
-            growth: 1.2,
-        };
+        let grading = Grading { start: 3.0, end: 3.0, largest: 3.0, growth: 1.2 };
         assert_eq!(grading.breakpoints(1.0), vec![0.0, 1.0]);
     }
 }

@@ -70,13 +70,9 @@ pub(super) fn lowest_modes(body: &HalfBody, wanted: usize, omega_limit: f64) -> 
             let converged = theta
                 .iter()
                 .enumerate()
-                .take_while(|(k, t)| {
-                    residual * vectors[(steps - 1, steps - 1 - k)].abs() <= RESIDUAL * **t
-                })
+                .take_while(|(k, t)| residual * vectors[(steps - 1, steps - 1 - k)].abs() <= RESIDUAL * **t)
                 .count();
-            let beyond = theta[..converged]
-                .iter()
-                .position(|t| 1.0 / t.sqrt() > omega_limit);
+            let beyond = theta[..converged].iter().position(|t| 1.0 / t.sqrt() > omega_limit);
             if converged >= wanted || beyond.is_some() {
                 let count = beyond.map_or(wanted, |k| (k + 1).min(wanted));
                 return Ok(ritz(&basis, &theta[..count], &vectors));
@@ -110,10 +106,7 @@ struct Columns {
 
 impl Columns {
     fn new(length: usize) -> Self {
-        Self {
-            length,
-            values: Vec::new(),
-        }
+        Self { length, values: Vec::new() }
     }
 
     fn push(&mut self, column: &[f64]) {
@@ -154,11 +147,9 @@ fn tridiagonal_eigen(alpha: &[f64], beta: &[f64]) -> Result<(Vec<f64>, Mat<f64>)
         1 => beta[i.min(j)],
         _ => 0.0,
     });
-    let eigen = matrix.self_adjoint_eigen(Side::Lower).map_err(|e| {
-        Error::Solver(format!(
-            "the modes of the continuum mesh did not converge: {e:?}"
-        ))
-    })?;
+    let eigen = matrix
+        .self_adjoint_eigen(Side::Lower)
+        .map_err(|e| Error::Solver(format!("the modes of the continuum mesh did not converge: {e:?}")))?;
     let theta = (0..n).rev().map(|k| eigen.S().column_vector()[k]).collect();
     Ok((theta, eigen.U().to_owned()))
 }
@@ -169,10 +160,7 @@ fn ritz(basis: &Columns, theta: &[f64], vectors: &Mat<f64>) -> Modes {
     let shapes = basis.matrix() * chosen;
     Modes {
         omega: theta.iter().map(|t| 1.0 / t.sqrt()).collect(),
-        shape: shapes
-            .col_iter()
-            .map(|shape| shape.iter().copied().collect())
-            .collect(),
+        shape: shapes.col_iter().map(|shape| shape.iter().copied().collect()).collect(),
     }
 }
 

@@ -46,13 +46,7 @@ impl NodeGrid {
 
 impl Mesh {
     fn empty(order: usize, radius: f64) -> Self {
-        Self {
-            order,
-            nodes: Vec::new(),
-            elements: Vec::new(),
-            surface: Vec::new(),
-            radius,
-        }
+        Self { order, nodes: Vec::new(), elements: Vec::new(), surface: Vec::new(), radius }
     }
 
     /// Adds a block whose nodes are new, except those in `shared` (by position (i, j) in the block).
@@ -62,30 +56,22 @@ impl Mesh {
         let fine = |breakpoints: &[f64]| -> Vec<f64> {
             let mut all = vec![breakpoints[0]];
             for pair in breakpoints.windows(2) {
-                let inner = basis.nodes[1..p]
-                    .iter()
-                    .map(|x| 0.5 * ((1.0 - x) * pair[0] + (1.0 + x) * pair[1]));
+                let inner =
+                    basis.nodes[1..p].iter().map(|x| 0.5 * ((1.0 - x) * pair[0] + (1.0 + x) * pair[1]));
                 all.extend(inner);
                 all.push(pair[1]);
             }
             all
         };
         let (s, t) = (fine(block.s), fine(block.t));
-        let mut grid = NodeGrid {
-            columns: t.len(),
-            nodes: Vec::with_capacity(s.len() * t.len()),
-        };
+        let mut grid = NodeGrid { columns: t.len(), nodes: Vec::with_capacity(s.len() * t.len()) };
         for (i, &s) in s.iter().enumerate() {
             for (j, &t) in t.iter().enumerate() {
                 let node = *shared.get(&(i, j)).unwrap_or(&self.nodes.len());
                 if node == self.nodes.len() {
                     // Symmetry planes must be met exactly: constraints are found by comparing with 0.
                     let snap = |x: f64| {
-                        if x.abs() < 1e-12 * self.radius {
-                            0.0
-                        } else {
-                            x
-                        }
+                        if x.abs() < 1e-12 * self.radius { 0.0 } else { x }
                     };
                     self.nodes.push((block.map)(s, t).map(snap));
                 }
@@ -95,8 +81,7 @@ impl Mesh {
         for i in (0..s.len() - 1).step_by(p) {
             for j in (0..t.len() - 1).step_by(p) {
                 let node = |k: usize| grid.at(i + k / (p + 1), j + k % (p + 1));
-                self.elements
-                    .push((0..(p + 1) * (p + 1)).map(node).collect());
+                self.elements.push((0..(p + 1) * (p + 1)).map(node).collect());
             }
         }
         grid
@@ -110,26 +95,13 @@ impl Mesh {
 pub(super) fn plate(order: usize, radial: &[f64], depth: &[f64]) -> Mesh {
     let (radius, half_thickness) = (radial[radial.len() - 1], depth[depth.len() - 1]);
     let s: Vec<f64> = radial.iter().map(|r| r / radius).collect();
-    let t: Vec<f64> = depth
-        .iter()
-        .rev()
-        .map(|d| 1.0 - d / half_thickness)
-        .collect();
+    let t: Vec<f64> = depth.iter().rev().map(|d| 1.0 - d / half_thickness).collect();
     let mut mesh = Mesh::empty(order, radius);
     let map = |s: f64, t: f64| [s * radius, t * half_thickness];
-    let grid = mesh.add(
-        &Block {
-            s: &s,
-            t: &t,
-            map: &map,
-        },
-        &HashMap::new(),
-    );
+    let grid = mesh.add(&Block { s: &s, t: &t, map: &map }, &HashMap::new());
     let top = grid.columns - 1;
     for element in 0..radial.len() - 1 {
-        let edge = (0..=order)
-            .map(|k| grid.at(element * order + k, top))
-            .collect();
+        let edge = (0..=order).map(|k| grid.at(element * order + k, top)).collect();
         mesh.surface.push(edge);
     }
     mesh
@@ -148,12 +120,7 @@ pub(super) fn half_sphere(
     largest: f64,
 ) -> Mesh {
     use std::f64::consts::FRAC_PI_4;
-    let grading = |start: f64| Grading {
-        start,
-        end: f64::INFINITY,
-        largest,
-        growth,
-    };
+    let grading = |start: f64| Grading { start, end: f64::INFINITY, largest, growth };
     let normalised = |points: Vec<f64>| -> Vec<f64> {
         let length = points[points.len() - 1];
         points.iter().map(|x| x / length).collect()
@@ -171,54 +138,26 @@ pub(super) fn half_sphere(
     ));
 
     let arc = |angle: f64| [radius * angle.sin(), radius * angle.cos()];
-    let line = |a: [f64; 2], b: [f64; 2], x: f64| {
-        [(1.0 - x) * a[0] + x * b[0], (1.0 - x) * a[1] + x * b[1]]
-    };
+    let line = |a: [f64; 2], b: [f64; 2], x: f64| [(1.0 - x) * a[0] + x * b[0], (1.0 - x) * a[1] + x * b[1]];
     let centre_edge = [0.0, spoke]; // on the axis
     let middle = [spoke, spoke];
     let equator_edge = [spoke, 0.0];
     // Ruled between an arc (s = 0) and a straight edge (s = 1): straight lines of constant t.
     let pole_map = |s: f64, t: f64| line(arc(t * FRAC_PI_4), line(centre_edge, middle, t), s);
     let core_map = |s: f64, t: f64| [t * spoke, (1.0 - s) * spoke];
-    let equator_map =
-        |s: f64, t: f64| line(arc((1.0 + t) * FRAC_PI_4), line(middle, equator_edge, t), s);
+    let equator_map = |s: f64, t: f64| line(arc((1.0 + t) * FRAC_PI_4), line(middle, equator_edge, t), s);
 
     let mut mesh = Mesh::empty(order, radius);
     let (rows, columns) = ((depth.len() - 1) * order, (lateral.len() - 1) * order);
     let core_rows = (core.len() - 1) * order;
-    let pole = mesh.add(
-        &Block {
-            s: &depth,
-            t: &lateral,
-            map: &pole_map,
-        },
-        &HashMap::new(),
-    );
+    let pole = mesh.add(&Block { s: &depth, t: &lateral, map: &pole_map }, &HashMap::new());
     let shared = (0..=columns).map(|j| ((0, j), pole.at(rows, j))).collect();
-    let centre = mesh.add(
-        &Block {
-            s: &core,
-            t: &lateral,
-            map: &core_map,
-        },
-        &shared,
-    );
+    let centre = mesh.add(&Block { s: &core, t: &lateral, map: &core_map }, &shared);
     let mut shared: HashMap<_, _> = (0..=rows).map(|i| ((i, 0), pole.at(i, columns))).collect();
     shared.extend((0..=core_rows).map(|k| ((rows, k), centre.at(k, columns))));
-    mesh.add(
-        &Block {
-            s: &depth,
-            t: &core,
-            map: &equator_map,
-        },
-        &shared,
-    );
+    mesh.add(&Block { s: &depth, t: &core, map: &equator_map }, &shared);
     for element in 0..lateral.len() - 1 {
-        mesh.surface.push(
-            (0..=order)
-                .map(|k| pole.at(0, element * order + k))
-                .collect(),
-        );
+        mesh.surface.push((0..=order).map(|k| pole.at(0, element * order + k)).collect());
     }
     mesh
 }
@@ -231,15 +170,8 @@ pub(super) fn patch_then_graded(
     grading: impl Fn(f64) -> Grading,
 ) -> Vec<f64> {
     let inner = ((patch / size).round() as usize).max(1);
-    let mut points: Vec<f64> = (0..inner)
-        .map(|i| patch * i as f64 / inner as f64)
-        .collect();
-    points.extend(
-        grading(patch / inner as f64)
-            .breakpoints(length - patch)
-            .iter()
-            .map(|x| patch + x),
-    );
+    let mut points: Vec<f64> = (0..inner).map(|i| patch * i as f64 / inner as f64).collect();
+    points.extend(grading(patch / inner as f64).breakpoints(length - patch).iter().map(|x| patch + x));
     let last = points.len() - 1;
     points[last] = length;
     points

@@ -80,13 +80,8 @@ impl HalfBody {
             let fixed_z = support_z || (mid_plane && parity == Parity::Longitudinal);
             dof.push([number(fixed_r, &mut size), number(fixed_z, &mut size)]);
         }
-        let pinned = (free && parity == Parity::Bending).then(|| {
-            dof.iter()
-                .rev()
-                .map(|d| d[1])
-                .find(|&d| d != FIXED)
-                .unwrap_or(0)
-        });
+        let pinned = (free && parity == Parity::Bending)
+            .then(|| dof.iter().rev().map(|d| d[1]).find(|&d| d != FIXED).unwrap_or(0));
         let stiffness = matrices.free_stiffness(&dof, size, pinned)?;
         let stiffness = SymbolicLlt::try_new(stiffness.symbolic(), Side::Lower)
             .map_err(|e| Error::Internal(format!("ordering the continuum stiffness: {e:?}")))
@@ -97,27 +92,13 @@ impl HalfBody {
                     ))
                 })
             })?;
-        let mut body = Self {
-            dof,
-            size,
-            stiffness,
-            matrices: matrices.clone(),
-            rigid: None,
-        };
+        let mut body = Self { dof, size, stiffness, matrices: matrices.clone(), rigid: None };
         if let Some(pinned) = pinned {
             let mut shape = vec![0.0; size];
-            body.dof
-                .iter()
-                .filter(|d| d[1] != FIXED)
-                .for_each(|d| shape[d[1]] = 1.0);
+            body.dof.iter().filter(|d| d[1] != FIXED).for_each(|d| shape[d[1]] = 1.0);
             let momentum = body.mass_times(&shape);
             let mass = dot(&shape, &momentum);
-            body.rigid = Some(RigidMotion {
-                shape,
-                momentum,
-                mass,
-                pinned,
-            });
+            body.rigid = Some(RigidMotion { shape, momentum, mass, pinned });
         }
         Ok(body)
     }
@@ -171,8 +152,7 @@ impl HalfBody {
             f[rigid.pinned] = 0.0;
         }
         let n = f.len();
-        self.stiffness
-            .solve_in_place(MatMut::from_column_major_slice_mut(f, n, 1));
+        self.stiffness.solve_in_place(MatMut::from_column_major_slice_mut(f, n, 1));
         self.remove_rigid(f);
     }
 
@@ -188,10 +168,7 @@ impl HalfBody {
 /// Scalar product.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len();
-    let (a, b) = (
-        MatRef::from_column_major_slice(a, n, 1),
-        MatRef::from_column_major_slice(b, n, 1),
-    );
+    let (a, b) = (MatRef::from_column_major_slice(a, n, 1), MatRef::from_column_major_slice(b, n, 1));
     a.col(0).transpose() * b.col(0)
 }
 

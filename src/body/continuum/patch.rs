@@ -30,10 +30,7 @@ pub(super) fn nodal_forces(mesh: &Mesh, patch_radius: f64) -> Vec<(usize, f64)> 
         }
         let mut nodal = vec![0.0; edge.len()];
         // With r = a sin(s) the integrand 3 N sin(s) cos(s)^2 is smooth up to the patch's edge.
-        let (from, to) = (
-            (inner / patch_radius).asin(),
-            (outer / patch_radius).min(1.0).asin(),
-        );
+        let (from, to) = ((inner / patch_radius).asin(), (outer / patch_radius).min(1.0).asin());
         debug_assert!(to <= FRAC_PI_2);
         for &(x, weight) in &rule {
             let s = 0.5 * ((1.0 - x) * from + (1.0 + x) * to);
@@ -73,10 +70,7 @@ mod tests {
     fn check(mesh: &Mesh, patch_radius: f64, tolerance: f64) {
         let forces = nodal_forces(mesh, patch_radius);
         let total: f64 = forces.iter().map(|(_, f)| f).sum();
-        let moment: f64 = forces
-            .iter()
-            .map(|(node, f)| f * mesh.nodes[*node][0].powi(2))
-            .sum();
+        let moment: f64 = forces.iter().map(|(node, f)| f * mesh.nodes[*node][0].powi(2)).sum();
         assert_relative_eq!(total, 1.0, max_relative = 1e-12);
         assert_relative_eq!(moment, 0.4 * patch_radius.powi(2), max_relative = tolerance);
     }

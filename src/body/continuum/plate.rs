@@ -53,22 +53,12 @@ impl ContinuumPlate {
     /// # Errors
     /// [`crate::Error::Solver`] if a patch radius is not below the plate's radius or the numerics fail,
     /// [`crate::Error::Usage`] for a mesh option out of bounds.
-    pub fn new(
-        plate: &Plate,
-        patch_radius: [f64; 2],
-        modes: usize,
-        options: &MeshOptions,
-    ) -> Result<Self> {
+    pub fn new(plate: &Plate, patch_radius: [f64; 2], modes: usize, options: &MeshOptions) -> Result<Self> {
         options.check()?;
         for a in patch_radius {
             check_patch(a, plate.radius, "the plate's radius")?;
         }
-        let mesh = plate_mesh(
-            plate,
-            Some(patch_radius[0].min(patch_radius[1])),
-            modes,
-            options,
-        );
+        let mesh = plate_mesh(plate, Some(patch_radius[0].min(patch_radius[1])), modes, options);
         let halves = Halves::new(plate, &mesh)?;
         let spectrum = halves.spectrum(modes + 1)?;
         let forces = patch_radius.map(|a| nodal_forces(&mesh, a));
@@ -150,12 +140,7 @@ impl ContinuumPlate {
 ///
 /// # Errors
 /// As [`ContinuumPlate::new`].
-pub fn plate(
-    plate: &Plate,
-    patch_radius: [f64; 2],
-    modes: usize,
-    mesh: &MeshOptions,
-) -> Result<ModalBody> {
+pub fn plate(plate: &Plate, patch_radius: [f64; 2], modes: usize, mesh: &MeshOptions) -> Result<ModalBody> {
     Ok(ContinuumPlate::new(plate, patch_radius, modes, mesh)?.modal_body(modes))
 }
 
@@ -165,30 +150,18 @@ pub fn plate(
 /// [`crate::Error::Solver`] if the numerics fail.
 pub fn eigenfrequencies(plate: &Plate, count: usize) -> Result<Vec<PlateMode>> {
     let mesh = plate_mesh(plate, None, count, &MeshOptions::default().refined(1.5));
-    let rigid = PlateMode {
-        frequency: 0.0,
-        longitudinal: false,
-    };
+    let rigid = PlateMode { frequency: 0.0, longitudinal: false };
     let mut modes = vec![rigid; usize::from(plate.edge == Edge::Free).min(count)];
-    modes.extend(
-        Halves::new(plate, &mesh)?
-            .spectrum(count - modes.len())?
-            .iter()
-            .map(|entry| PlateMode {
-                frequency: entry.omega / TAU,
-                longitudinal: entry.parity == Parity::Longitudinal,
-            }),
-    );
+    modes.extend(Halves::new(plate, &mesh)?.spectrum(count - modes.len())?.iter().map(|entry| PlateMode {
+        frequency: entry.omega / TAU,
+        longitudinal: entry.parity == Parity::Longitudinal,
+    }));
     Ok(modes)
 }
 
 /// +1, or -1 for the inner face in longitudinal motion.
 fn sign(parity: Parity, point: usize) -> f64 {
-    if parity == Parity::Longitudinal && point == 1 {
-        -1.0
-    } else {
-        1.0
-    }
+    if parity == Parity::Longitudinal && point == 1 { -1.0 } else { 1.0 }
 }
 
 /// The two independent motions of the plate.
@@ -213,39 +186,24 @@ impl Halves {
             Edge::Free => [false, false],
         };
         let support = |[r, _]: [f64; 2]| {
-            if r == mesh.radius {
-                held
-            } else {
-                [false, false]
-            }
+            if r == mesh.radius { held } else { [false, false] }
         };
-        let half =
-            |parity| HalfBody::new(mesh, &matrices, parity, support, plate.edge == Edge::Free);
-        Ok(Self {
-            bending: half(Parity::Bending)?,
-            longitudinal: half(Parity::Longitudinal)?,
-        })
+        let half = |parity| HalfBody::new(mesh, &matrices, parity, support, plate.edge == Edge::Free);
+        Ok(Self { bending: half(Parity::Bending)?, longitudinal: half(Parity::Longitudinal)? })
     }
 
     fn each(&self) -> [(Parity, &HalfBody); 2] {
-        [
-            (Parity::Bending, &self.bending),
-            (Parity::Longitudinal, &self.longitudinal),
-        ]
+        [(Parity::Bending, &self.bending), (Parity::Longitudinal, &self.longitudinal)]
     }
 
     /// The `count` lowest elastic modes of both parities, ascending.
     fn spectrum(&self, count: usize) -> Result<Vec<SpectrumEntry>> {
         let entries = |modes: Modes, parity| {
-            modes
-                .omega
-                .into_iter()
-                .zip(modes.shape)
-                .map(move |(omega, shape)| SpectrumEntry {
-                    omega,
-                    parity,
-                    shape,
-                })
+            modes.omega.into_iter().zip(modes.shape).map(move |(omega, shape)| SpectrumEntry {
+                omega,
+                parity,
+                shape,
+            })
         };
         let bending = lowest_modes(&self.bending, count, f64::INFINITY)?;
         let limit = bending.omega.last().copied().unwrap_or(0.0);
@@ -260,12 +218,7 @@ impl Halves {
 
 /// Mesh of the upper half, fine at the patch (if any) and at a clamped rim, and
 /// fine enough everywhere for the `modes` lowest modes.
-fn plate_mesh(
-    plate: &Plate,
-    patch_radius: Option<f64>,
-    modes: usize,
-    options: &MeshOptions,
-) -> Mesh {
+fn plate_mesh(plate: &Plate, patch_radius: Option<f64>, modes: usize, options: &MeshOptions) -> Mesh {
     let half_thickness = 0.5 * plate.thickness;
     // Wave number of the highest mode: at most that of modes in one row along the longer
     // side, and of twice Weyl's count of modes over the section (wider rows, surface waves).
@@ -277,30 +230,14 @@ fn plate_mesh(
     let largest = wave_size.min(plate.radius / 4.0);
     let thick = largest.min(half_thickness / options.thickness_elements);
     // The stress at the clamped rim's corners is singular.
-    let rim_size = if plate.edge == Edge::Clamped {
-        0.25 * thick
-    } else {
-        thick
-    };
+    let rim_size = if plate.edge == Edge::Clamped { 0.25 * thick } else { thick };
     let size = patch_radius.map(|a| a / options.patch_elements);
-    let radial_grading = |start: f64| Grading {
-        start,
-        end: rim_size,
-        largest,
-        growth: options.growth,
-    };
+    let radial_grading = |start: f64| Grading { start, end: rim_size, largest, growth: options.growth };
     let radial = match (patch_radius, size) {
-        (Some(a), Some(size)) => {
-            patch_then_graded(a, plate.radius, size.min(largest), radial_grading)
-        }
+        (Some(a), Some(size)) => patch_then_graded(a, plate.radius, size.min(largest), radial_grading),
         _ => radial_grading(largest).breakpoints(plate.radius),
     };
     let start = size.unwrap_or(f64::INFINITY).min(rim_size);
-    let depth = Grading {
-        start,
-        end: f64::INFINITY,
-        largest: thick,
-        growth: options.growth,
-    };
+    let depth = Grading { start, end: f64::INFINITY, largest: thick, growth: options.growth };
     mesh::plate(options.order, &radial, &depth.breakpoints(half_thickness))
 }

@@ -28,14 +28,7 @@ pub fn sphere_residual(
     check_patch(patch_radius, 0.5 * radius, "half the sphere's radius")?;
     let size = patch_radius / options.patch_elements;
     let largest = 0.5 * radius / options.thickness_elements;
-    let mesh = mesh::half_sphere(
-        options.order,
-        radius,
-        patch_radius,
-        size,
-        options.growth,
-        largest,
-    );
+    let mesh = mesh::half_sphere(options.order, radius, patch_radius, size, options.growth, largest);
     let matrices = Rc::new(Matrices::new(&mesh, material)?);
     let forces = nodal_forces(&mesh, patch_radius);
     let mut flexibility = 0.0;
