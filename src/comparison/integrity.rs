@@ -140,7 +140,6 @@ fn start(setup: &PlateImpact, history: &History) -> Vec<Check> {
     let touch = force.iter().position(|&f| f > floor).map_or(f64::NAN, |k| history.time[k]);
     vec![
         velocity("outer_velocity_start", &history.outer.velocity, -speed),
-        velocity("plate_velocity_start", &history.plate.velocity, 0.0),
         velocity("inner_velocity_start", &history.inner.velocity, 0.0),
         displacement("outer_displacement_start", &history.outer.displacement),
         displacement("plate_displacement_start", &history.plate.displacement),

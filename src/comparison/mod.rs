@@ -94,16 +94,22 @@ impl ModelComparison {
         self.discrepancies.iter().find(|d| d.quantity == quantity)
     }
 
-    /// The quantity of the summary that lies furthest from the reference, relatively.
+    /// The quantity of the summary that lies furthest from the reference, relatively; numbers of
+    /// contacts aside, of which one is 100 %.
     pub fn largest(&self) -> Option<&Discrepancy> {
         self.discrepancies
             .iter()
             .filter(|d| PLATE_QUANTITIES.iter().any(|(name, _)| *name == d.quantity))
-            .filter(|d| d.relative.is_some())
+            .filter(|d| d.relative.is_some() && !d.quantity.ends_with("_contacts"))
             .max_by(|a, b| {
                 let size = |d: &Discrepancy| d.relative.map_or(0.0, f64::abs);
                 size(a).total_cmp(&size(b))
             })
+    }
+
+    /// Number of rows that have a tolerance.
+    pub fn gated(&self) -> usize {
+        self.discrepancies.iter().filter(|d| d.tolerance.is_some()).count()
     }
 }
 

@@ -5,7 +5,7 @@ use crate::comparison::sample;
 use crate::error::{Error, Result};
 use crate::impact::CURVES;
 
-/// CSV with the columns `time`, then `<source>_<curve>` for the reference and every model. A cell
+/// CSV, eight significant digits, with the columns `time`, then `<source>_<curve>` for the reference and every model. A cell
 /// is empty where the result doesn't cover the axis; without a common axis there is only the header.
 ///
 /// # Errors
@@ -31,10 +31,10 @@ pub fn curves_csv(report: &SceneReport) -> Result<String> {
             .collect();
         for k in 0..axis.samples {
             let cell = |column: &Vec<f64>| match column.get(k) {
-                Some(v) if v.is_finite() => format!("{v:e}"),
+                Some(v) if v.is_finite() => format!("{v:.7e}"),
                 _ => String::new(),
             };
-            let row = [format!("{:e}", axis.time(k))].into_iter().chain(columns.iter().map(cell));
+            let row = [format!("{:.7e}", axis.time(k))].into_iter().chain(columns.iter().map(cell));
             writer.write_record(row).map_err(|e| internal(e.to_string()))?;
         }
     }

@@ -5,9 +5,10 @@
 //! Okabe and Ito, which colour-blind readers can tell apart.
 
 use super::SceneReport;
-use super::format::{model_name, significant};
+use super::efficiency_boxes::EfficiencyBoxes;
+use super::format::model_name;
 use super::label_placement::{Panel, Rect};
-use super::polyline::{Point, path};
+use super::polyline::{Point, path, thinned};
 use super::ticks::{tick_label, ticks};
 use crate::comparison::{CommonAxis, SampledCurve, sample};
 use maud::{Markup, PreEscaped, html};
@@ -62,13 +63,13 @@ const QUANTITIES: [Quantity; 3] = [
 ];
 
 /// Curves of one result, and how they are drawn.
-struct Line {
+pub(super) struct Line {
     name: String,
-    short: String,
+    pub(super) short: String,
     class: String,
     dash: &'static str,
     width: f64,
-    efficiency: f64,
+    pub(super) efficiency: f64,
     curves: Vec<SampledCurve>,
 }
 
@@ -142,7 +143,7 @@ pub fn figure(report: &SceneReport, theme: Theme) -> String {
     .into_string()
 }
 
-fn stroke(line: &Line, data: &str) -> Markup {
+pub(super) fn stroke(line: &Line, data: &str) -> Markup {
     html! {
         path class=(line.class) d=(data) fill="none" stroke-width=(line.width)
             stroke-dasharray=(line.dash) stroke-linejoin="round" {}
@@ -199,24 +200,89 @@ fn range(quantity: &Quantity, lines: &[Line]) -> (f64, f64) {
     (if low < 0.0 { low - room } else { -0.5 * room }, high + room)
 }
 
+/// One panel with its curves in px.
+struct Layout<'a> {
+    low: f64,
+    high: f64,
+    top: f64,
+    drawn: Vec<(&'a Line, Vec<Vec<Point>>)>,
+    room: Panel,
+}
+
+impl<'a> Layout<'a> {
+    /// `headroom` px are kept free at the top.
+    fn new(
+        quantity: &Quantity,
+        (top, end, headroom): (f64, f64, f64),
+        lines: &'a [Line],
+        axis: Option<CommonAxis>,
+    ) -> Self {
+        let (low, high) = range(quantity, lines);
+        let high = low + (high - low) * PANEL_HEIGHT / (PANEL_HEIGHT - headroom);
+        let y_of = |v: f64| y_of(v, top, low, high);
+        let points = |line: &Line, body: &str| -> Vec<Point> {
+            let name = format!("{body}_{}", quantity.suffix);
+            let curve = line.curves.iter().find(|c| c.quantity == name);
+            axis.zip(curve).map_or_else(Vec::new, |(axis, curve)| {
+                let at = |(k, v): (usize, &f64)| (x_of(axis.time(k) * 1e6, end), y_of(v * quantity.factor));
+                curve.values.iter().enumerate().map(at).filter(|p| p.1.is_finite()).collect()
+            })
+        };
+        let drawn: Vec<(&Line, Vec<Vec<Point>>)> =
+            lines.iter().map(|l| (l, quantity.bodies.iter().map(|b| points(l, b)).collect())).collect();
+        let area = Rect {
+            x: LEFT + 6.0,
+            y: top + 5.0,
+            width: WIDTH - LEFT - RIGHT - 12.0,
+            height: PANEL_HEIGHT - 10.0,
+        };
+        let curves = drawn.iter().flat_map(|(_, bodies)| bodies).map(|line| thinned(line, 2.0)).collect();
+        Layout { low, high, top, room: Panel { area, curves, taken: Vec::new() }, drawn }
+    }
+
+    fn y_of(&self, value: f64) -> f64 {
+        y_of(value, self.top, self.low, self.high)
+    }
+}
+
+fn y_of(value: f64, top: f64, low: f64, high: f64) -> f64 {
+    top + PANEL_HEIGHT * (high - value) / (high - low)
+}
+
+/// The boxes fit between the curves in one of their two arrangements, or room is made at the top.
+fn layout_with_boxes<'a>(
+    quantity: &Quantity,
+    top: f64,
+    end: f64,
+    lines: &'a [Line],
+    axis: Option<CommonAxis>,
+) -> (Layout<'a>, EfficiencyBoxes) {
+    let mut layout = Layout::new(quantity, (top, end, 0.0), lines, axis);
+    for arrangement in [EfficiencyBoxes::column(lines.len()), EfficiencyBoxes::row(lines.len())] {
+        let (free, place) = layout.room.find_box(arrangement.width(), arrangement.height());
+        if free >= 5.0 {
+            layout.room.taken.push(place);
+            return (layout, arrangement.at(place));
+        }
+    }
+    let row = EfficiencyBoxes::row(lines.len());
+    let mut layout = Layout::new(quantity, (top, end, row.height() + 12.0), lines, axis);
+    let (_, place) = layout.room.find_box(row.width(), row.height());
+    layout.room.taken.push(place);
+    (layout, row.at(place))
+}
+
 fn panel(quantity: &Quantity, top: f64, end: f64, lines: &[Line], axis: Option<CommonAxis>) -> Markup {
-    let (low, high) = range(quantity, lines);
-    let y_of = |v: f64| top + PANEL_HEIGHT * (high - v) / (high - low);
-    let points = |line: &Line, body: &str| -> Vec<Point> {
-        let name = format!("{body}_{}", quantity.suffix);
-        let curve = line.curves.iter().find(|c| c.quantity == name);
-        axis.zip(curve).map_or_else(Vec::new, |(axis, curve)| {
-            let at = |(k, v): (usize, &f64)| (x_of(axis.time(k) * 1e6, end), y_of(v * quantity.factor));
-            curve.values.iter().enumerate().map(at).filter(|p| p.1.is_finite()).collect()
-        })
+    let (mut layout, boxes) = if quantity.suffix == "velocity" {
+        let (layout, boxes) = layout_with_boxes(quantity, top, end, lines, axis);
+        (layout, Some(boxes))
+    } else {
+        (Layout::new(quantity, (top, end, 0.0), lines, axis), None)
     };
-    let drawn: Vec<(&Line, Vec<Vec<Point>>)> =
-        lines.iter().map(|l| (l, quantity.bodies.iter().map(|b| points(l, b)).collect())).collect();
+    let labels: Vec<_> =
+        quantity.bodies.iter().enumerate().map(|(k, body)| body_label(&mut layout, body, k)).collect();
+    let (low, high) = (layout.low, layout.high);
     let width = WIDTH - LEFT - RIGHT;
-    let inner = Rect { x: LEFT + 6.0, y: top + 5.0, width: width - 12.0, height: PANEL_HEIGHT - 10.0 };
-    let curves = drawn.iter().flat_map(|(_, bodies)| bodies.clone()).collect();
-    let mut room = Panel { area: inner, curves, taken: Vec::new() };
-    let boxes = (quantity.suffix == "velocity").then(|| efficiencies(&mut room, lines));
     let (x_marks, y_marks) = (ticks(0.0, end, 8), ticks(low, high, 5));
     html! {
         g stroke-width="1" {
@@ -224,67 +290,49 @@ fn panel(quantity: &Quantity, top: f64, end: f64, lines: &[Line], axis: Option<C
                 line.fig-grid x1=(x2(x_of(*t, end))) x2=(x2(x_of(*t, end))) y1=(top) y2=(top + PANEL_HEIGHT) {}
             }
             @for v in &y_marks {
-                line.fig-grid x1=(LEFT) x2=(LEFT + width) y1=(x2(y_of(*v))) y2=(x2(y_of(*v))) {}
+                line.fig-grid x1=(LEFT) x2=(LEFT + width) y1=(x2(layout.y_of(*v))) y2=(x2(layout.y_of(*v))) {}
             }
         }
         @for v in &y_marks {
-            text.fig-text x=(LEFT - 8.0) y=(x2(y_of(*v) + 0.36 * FONT_SIZE)) text-anchor="end" {
+            text.fig-text x=(LEFT - 8.0) y=(x2(layout.y_of(*v) + 0.36 * FONT_SIZE)) text-anchor="end" {
                 (tick_label(*v, &y_marks))
             }
         }
         text.fig-text transform=(format!("translate(17 {:.2}) rotate(-90)", top + PANEL_HEIGHT / 2.0))
             text-anchor="middle" { (quantity.label) }
-        @for (line, bodies) in &drawn {
+        @for (line, bodies) in &layout.drawn {
             @for body in bodies { (stroke(line, &path(body))) }
         }
         rect.fig-frame x=(LEFT) y=(top) width=(width) height=(PANEL_HEIGHT) {}
-        @if let Some(boxes) = boxes { (boxes) }
-        @for (k, body) in quantity.bodies.iter().enumerate() {
-            (body_label(&mut room, body, k, &drawn))
-        }
+        @if let Some(boxes) = boxes { (boxes.draw(lines)) }
+        @for label in labels { (label) }
     }
 }
 
 /// Coordinate with two decimals.
-fn x2(value: f64) -> String {
+pub(super) fn x2(value: f64) -> String {
     format!("{value:.2}")
 }
 
-fn body_label(room: &mut Panel, body: &str, k: usize, drawn: &[(&Line, Vec<Vec<Point>>)]) -> Markup {
-    let Some((_, reference)) = drawn.first() else { return html! {} };
-    let others: Vec<_> = drawn
-        .iter()
-        .flat_map(|(_, bodies)| bodies.iter().enumerate())
-        .filter(|(j, _)| *j != k)
-        .map(|(_, points)| points.clone())
-        .collect();
-    let rect = room.place_label(&reference[k], &others, text_width(body), FONT_SIZE);
-    let (x, y) = (rect.x + 0.5 * rect.width, rect.y + 0.83 * rect.height);
+fn body_label(layout: &mut Layout, body: &str, k: usize) -> Markup {
+    let zero = layout.y_of(0.0);
+    let Some((_, reference)) = layout.drawn.first() else { return html! {} };
+    let thin: Vec<_> = reference.iter().map(|line| thinned(line, 2.0)).collect();
+    let others: Vec<_> = (0..thin.len()).filter(|j| *j != k).map(|j| thin[j].clone()).collect();
+    // Where a curve is zero others may be as well; it is labelled elsewhere if there is an elsewhere.
+    let away = |p: &&Point| (p.1 - zero).abs() > 0.08 * PANEL_HEIGHT;
+    let mut own: Vec<Point> = thin[k].iter().filter(away).copied().collect();
+    if own.is_empty() {
+        own.clone_from(&thin[k]);
+    }
+    let label = layout.room.place_label(&own, &others, text_width(body), FONT_SIZE);
+    let (x, y) = (label.rect.x + 0.5 * label.rect.width, label.rect.y + 0.83 * label.rect.height);
     html! {
+        @if let Some((from, to)) = label.leader {
+            line.fig-frame x1=(x2(from.0)) y1=(x2(from.1)) x2=(x2(to.0)) y2=(x2(to.1)) stroke-width="0.8" {}
+        }
         text.fig-text.fig-halo x=(x2(x)) y=(x2(y)) text-anchor="middle" stroke-width="3"
             stroke-linejoin="round" aria-hidden="true" { (body) }
         text.fig-text x=(x2(x)) y=(x2(y)) text-anchor="middle" { (body) }
-    }
-}
-
-/// A box per result with its efficiency, as in Fig. 10.
-fn efficiencies(room: &mut Panel, lines: &[Line]) -> Markup {
-    let (box_width, box_height, gap) = (122.0, 22.0, 4.0);
-    let rows = lines.len() as f64;
-    let heading = 18.0;
-    let place = room.place_box(box_width, heading + rows * (box_height + gap) - gap);
-    html! {
-        @if !lines.is_empty() {
-            text.fig-text x=(x2(place.x)) y=(x2(place.y + 12.0)) { "Efficiency" }
-        }
-        @for (k, line) in lines.iter().enumerate() {
-            @let y = place.y + heading + k as f64 * (box_height + gap);
-            rect.fig-box x=(x2(place.x)) y=(x2(y)) width=(box_width) height=(box_height) rx="2" {}
-            (stroke(line, &format!("M{:.2} {:.2}L{:.2} {:.2}", place.x + 7.0, y + 11.0, place.x + 29.0, y + 11.0)))
-            text.fig-text x=(x2(place.x + 35.0)) y=(x2(y + 15.6)) { (line.short) }
-            text.fig-text x=(x2(place.x + box_width - 7.0)) y=(x2(y + 15.6)) text-anchor="end" {
-                (significant(100.0 * line.efficiency, 3)) " %"
-            }
-        }
     }
 }

@@ -52,13 +52,17 @@ fn minus(text: String) -> String {
 
 /// `value` in the unit, with digits and unit.
 pub(super) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
-    let number = significant(value * to.factor, digits);
+    // Numbers of something are shown as such.
+    let whole = to.unit.is_empty() && value.fract() == 0.0 && value.abs() < 1e6;
+    let number = if whole { minus(format!("{value}")) } else { significant(value * to.factor, digits) };
     if to.unit.is_empty() || !value.is_finite() { number } else { format!("{number} {}", to.unit) }
 }
 
 /// A relative value in per cent with its sign.
 pub(super) fn percent(relative: Option<f64>) -> String {
     match relative {
+        // Beyond that the reference is nothing to compare with.
+        Some(r) if r.abs() >= 100.0 => format!("{} 10⁴ %", if r > 0.0 { ">" } else { "< −" }),
         Some(r) if r.is_finite() => {
             let number =
                 if r.abs() < 0.1 { format!("{:.2}", 100.0 * r) } else { format!("{:.1}", 100.0 * r) };
@@ -114,6 +118,7 @@ mod tests {
         assert_eq!(with_unit(-0.2958, prefixed("m/s", 0.5), 4), "−295.8 mm/s");
         assert_eq!(with_unit(4655.0, prefixed("Hz", 4655.0), 4), "4.655 kHz");
         assert_eq!(with_unit(0.6946, prefixed("1", 0.7), 4), "0.6946");
+        assert_eq!(with_unit(2.0, prefixed("1", 2.0), 5), "2");
     }
 
     #[test]
@@ -121,6 +126,7 @@ mod tests {
         assert_eq!(percent(Some(-0.0987)), "−9.87 %");
         assert_eq!(percent(Some(0.2)), "+20.0 %");
         assert_eq!(percent(None), "–");
+        assert_eq!(percent(Some(1e6)), "> 10⁴ %");
         assert_eq!(words("outer_force_peak"), "outer force, peak");
         assert_eq!(words("plate_velocity_rms"), "plate velocity, rms distance");
         assert_eq!(words("efficiency"), "efficiency");

@@ -106,6 +106,7 @@ pub fn scene_page(report: &SceneReport) -> String {
                 @if let Some(d) = model.largest() {
                     ": largest discrepancy " strong { (percent(d.relative)) } " (" (words(&d.quantity)) ")"
                 }
+                "; " (model.gated()) " of " (model.discrepancies.len()) " rows gated"
             }
         }
         (contradictions("reference", &comparison.integrity))
@@ -152,10 +153,10 @@ fn model_section(model: &ModelComparison) -> Markup {
         h3 { "Discrepancies" }
         div.scroll { table.discrepancies data-model=(model.model) {
             thead { tr {
-                @for heading in ["quantity", "reduced", "reference", "difference", "relative", "95 % band", "tolerance", "bias"] {
+                th scope="col" { "quantity" } th.left scope="col" { "verdict" }
+                @for heading in ["reduced", "reference", "difference", "relative", "95 % band", "tolerance", "bias"] {
                     th scope="col" { (heading) }
                 }
-                th.left scope="col" { "verdict" }
             } }
             tbody { @for row in &model.discrepancies { (discrepancy_row(row)) } }
         } }
@@ -185,6 +186,7 @@ fn discrepancy_row(row: &Discrepancy) -> Markup {
     html! {
         tr data-quantity=(row.quantity) {
             td { (words(&row.quantity)) }
+            td.left { (badge(row.verdict)) }
             (number("reduced", Some(row.reduced), to, 5))
             (number("reference", Some(row.reference), to, 5))
             (number("difference", Some(row.difference), to, 3))
@@ -194,7 +196,6 @@ fn discrepancy_row(row: &Discrepancy) -> Markup {
             (number("uncertainty", row.uncertainty, to, 2))
             (number("tolerance", row.tolerance, to, 3))
             (number("bias", row.bias, to, 3))
-            td.left { (badge(row.verdict)) }
         }
     }
 }

@@ -23,11 +23,11 @@ impl Rect {
             && other.y + other.height <= self.y + self.height
     }
 
-    /// Distance of a point from the rectangle; 0 inside.
-    fn distance(&self, p: Point) -> f64 {
+    /// Squared distance of a point from the rectangle; 0 inside.
+    fn distance_squared(&self, p: Point) -> f64 {
         let dx = (self.x - p.0).max(p.0 - self.x - self.width).max(0.0);
         let dy = (self.y - p.1).max(p.1 - self.y - self.height).max(0.0);
-        dx.hypot(dy)
+        dx * dx + dy * dy
     }
 
     /// Distance from another rectangle; 0 if they overlap.
@@ -37,9 +37,22 @@ impl Rect {
         dx.hypot(dy)
     }
 
+    /// Distance of the nearest point.
     fn clearance<'a>(&self, points: impl IntoIterator<Item = &'a Point>) -> f64 {
-        points.into_iter().map(|p| self.distance(*p)).fold(f64::INFINITY, f64::min)
+        points.into_iter().map(|p| self.distance_squared(*p)).fold(f64::INFINITY, f64::min).sqrt()
     }
+}
+
+/// Distances of a label from its curve that are tried, px.
+const DISTANCES: [f64; 7] = [4.0, 8.0, 13.0, 22.0, 34.0, 50.0, 70.0];
+/// Distance from which on a line leads from the label to its curve, px.
+const LEADER_FROM: f64 = 10.0;
+
+/// Where a label stands.
+pub(super) struct Label {
+    pub(super) rect: Rect,
+    /// From the label to its curve, if it stands too far away to be taken for its own.
+    pub(super) leader: Option<(Point, Point)>,
 }
 
 /// What is already in a panel.
@@ -53,8 +66,9 @@ pub(super) struct Panel {
 }
 
 impl Panel {
-    /// The place of most room for a box, of equal ones the one furthest right; it is then taken.
-    pub(super) fn place_box(&mut self, width: f64, height: f64) -> Rect {
+    /// The place of most room for a box, of equal ones the one furthest right, with the room it has
+    /// on all sides in px.
+    pub(super) fn find_box(&self, width: f64, height: f64) -> (f64, Rect) {
         let steps = 24;
         let mut best = (f64::NEG_INFINITY, Rect { x: self.area.x, y: self.area.y, width, height });
         for i in 0..=steps {
@@ -66,44 +80,46 @@ impl Panel {
                     width,
                     height,
                 };
-                let score =
+                let room =
                     rect.clearance(self.curves.iter().flatten()).min(self.room_between(&rect)).min(14.0);
-                if score >= best.0 {
-                    best = (score, rect);
+                if room >= best.0 {
+                    best = (room, rect);
                 }
             }
         }
-        self.taken.push(best.1);
-        best.1
+        best
     }
 
-    /// The place for a label beside the curve `own`: close to it, far from all others. It is then taken.
+    /// The place for a label beside the curve `own`: close to it, clear of all curves, and nearer to it
+    /// than to the curves in `others`. It is then taken.
     pub(super) fn place_label(
         &mut self,
         own: &[Point],
         others: &[Vec<Point>],
         width: f64,
         height: f64,
-    ) -> Rect {
-        let mut best = (f64::NEG_INFINITY, Rect { x: self.area.x, y: self.area.y, width, height });
-        for k in (0..own.len()).step_by((own.len() / 120).max(1)) {
-            for offset in [-1.0, 1.0] {
-                for lift in [0.5 * height + 4.0, 0.5 * height + 9.0, 0.5 * height + 15.0] {
-                    let at = (own[k].0, own[k].1 + offset * lift);
-                    let rect = Rect::centred(at, width, height);
-                    if !self.area.contains(&rect) {
-                        continue;
-                    }
-                    let free = rect.clearance(self.curves.iter().flatten()).min(self.room_between(&rect));
-                    let apart = rect.clearance(others.iter().flatten());
-                    let score = free.min(6.0) + 0.08 * apart.min(60.0) - 0.02 * lift;
-                    if score > best.0 {
-                        best = (score, rect);
-                    }
+    ) -> Label {
+        let nowhere = Rect { x: self.area.x, y: self.area.y, width, height };
+        let mut best = (f64::NEG_INFINITY, Label { rect: nowhere, leader: None });
+        for &point in own.iter().step_by((own.len() / 100).max(1)) {
+            for (side, distance) in [-1.0, 1.0].into_iter().flat_map(|s| DISTANCES.map(|d| (s, d))) {
+                let at = (point.0, point.1 + side * (0.5 * height + distance));
+                let rect = Rect::centred(at, width, height);
+                if !self.area.contains(&rect) {
+                    continue;
+                }
+                let free = rect.clearance(self.curves.iter().flatten()).min(self.room_between(&rect));
+                let apart = rect.clearance(others.iter().flatten());
+                let near = rect.clearance(own);
+                let score = 10.0 * free.min(2.5) + (apart - near).clamp(-20.0, 30.0) / 5.0 - 0.15 * distance;
+                if score > best.0 {
+                    let edge = (point.0, at.1 - side * 0.5 * height);
+                    let leader = (near > LEADER_FROM).then_some((edge, point));
+                    best = (score, Label { rect, leader });
                 }
             }
         }
-        self.taken.push(best.1);
+        self.taken.push(best.1.rect);
         best.1
     }
 
@@ -126,9 +142,10 @@ mod tests {
         let curves = vec![line(50.0), line(100.0)];
         let area = Rect { x: 0.0, y: 0.0, width: 300.0, height: 200.0 };
         let mut panel = Panel { area, curves: curves.clone(), taken: Vec::new() };
-        let boxed = panel.place_box(120.0, 40.0);
-        let first = panel.place_label(&curves[0], &curves[1..], 40.0, 12.0);
-        let second = panel.place_label(&curves[1], &curves[..1], 40.0, 12.0);
+        let (_, boxed) = panel.find_box(120.0, 40.0);
+        panel.taken.push(boxed);
+        let first = panel.place_label(&curves[0], &curves[1..], 40.0, 12.0).rect;
+        let second = panel.place_label(&curves[1], &curves[..1], 40.0, 12.0).rect;
         for rect in [boxed, first, second] {
             assert!(area.contains(&rect));
             assert!(rect.clearance(curves.iter().flatten()) >= 3.0, "{rect:?}");

@@ -4,6 +4,7 @@
 //! the same files.
 
 mod curves_csv;
+mod efficiency_boxes;
 mod figure;
 mod format;
 mod html;

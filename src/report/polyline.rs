@@ -43,6 +43,17 @@ pub(super) fn path(line: &[Point]) -> String {
     data
 }
 
+/// Points of `line` at least `spacing` apart, enough to keep labels away from it.
+pub(super) fn thinned(line: &[Point], spacing: f64) -> Vec<Point> {
+    let mut kept: Vec<Point> = Vec::new();
+    for p in line {
+        if kept.last().is_none_or(|k| (p.0 - k.0).hypot(p.1 - k.1) >= spacing) {
+            kept.push(*p);
+        }
+    }
+    kept
+}
+
 #[cfg(test)]
 mod tests {
     use super::{path, simplified};

@@ -1,0 +1,100 @@
+//! Writing the report: complete or not at all, the same for the same results.
+
+mod synthetic_impact;
+
+use impactcheck::comparison::compare_scene;
+use impactcheck::impact::Outcome;
+use impactcheck::report::{Report, SceneReport, check_writable, write};
+use impactcheck::scene::Scene;
+use impactcheck::{Error, ExitStatus};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use synthetic_impact::{reduced, reference, scene};
+
+fn report<'a>(scene: &'a Scene, reference: &'a Outcome, reduced: &'a [Outcome]) -> Report<'a> {
+    let comparison = compare_scene(scene, reference, reduced);
+    let command = "impactcheck compare synthetic".into();
+    let provenance = serde_json::Value::Null;
+    Report { scenes: vec![SceneReport { scene, comparison, reference, reduced, provenance, command }] }
+}
+
+fn contents(dir: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entry = |e: fs::DirEntry| (e.file_name().into_string().unwrap(), fs::read(e.path()).unwrap());
+    fs::read_dir(dir).unwrap().map(|e| entry(e.unwrap())).collect()
+}
+
+#[test]
+fn writes_every_file_and_leaves_nothing_else() {
+    let (scene, reference, reduced) = (scene(), reference(), [reduced()]);
+    let report = report(&scene, &reference, &reduced);
+    let root = tempfile::tempdir().unwrap();
+    let dir = root.path().join("new/reports");
+    check_writable(&dir).unwrap();
+    assert!(!root.path().join("new").exists());
+    let written = write(&report, &dir).unwrap();
+    let first = contents(&dir);
+    let names: Vec<_> = first.keys().map(String::as_str).collect();
+    let expected = [
+        "comparison.json",
+        "comparison.md",
+        "index.html",
+        "junit.xml",
+        "synthetic.csv",
+        "synthetic.html",
+        "synthetic.png",
+        "synthetic.svg",
+    ];
+    assert_eq!(names, expected);
+    assert_eq!(written, expected.map(|name| dir.join(name)));
+    assert!(first.values().all(|bytes| !bytes.is_empty()));
+    // Again, over the old files: the same bytes.
+    write(&report, &dir).unwrap();
+    assert_eq!(contents(&dir), first);
+}
+
+/// The error names the folder; what was there stays as it was.
+#[test]
+fn impossible_folders_are_errors_that_name_them() {
+    let (scene, reference, reduced) = (scene(), reference(), [reduced()]);
+    let report = report(&scene, &reference, &reduced);
+    let root = tempfile::tempdir().unwrap();
+    let file = root.path().join("file");
+    fs::write(&file, "kept").unwrap();
+    for dir in [file.clone(), file.join("below"), Path::new("/proc/impactcheck").into()] {
+        for error in [check_writable(&dir).unwrap_err(), write(&report, &dir).unwrap_err()] {
+            assert!(matches!(error, Error::Io { .. }));
+            assert_eq!(error.exit_status(), ExitStatus::Internal);
+            assert!(error.to_string().contains(dir.to_str().unwrap()), "{error}");
+        }
+    }
+    assert_eq!(fs::read_to_string(&file).unwrap(), "kept");
+    assert_eq!(contents(root.path()).len(), 1);
+}
+
+/// A folder in the place of a file is found before any file is replaced.
+#[test]
+fn nothing_is_replaced_if_one_file_cannot_be() {
+    let (scene, reference, reduced) = (scene(), reference(), [reduced()]);
+    let report = report(&scene, &reference, &reduced);
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("index.html"), "old").unwrap();
+    fs::create_dir(root.path().join("synthetic.svg")).unwrap();
+    let error = write(&report, root.path()).unwrap_err();
+    assert!(error.to_string().contains("synthetic.svg"), "{error}");
+    assert_eq!(fs::read_to_string(root.path().join("index.html")).unwrap(), "old");
+    assert_eq!(fs::read_dir(root.path()).unwrap().count(), 2);
+}
+
+#[test]
+fn names_that_leave_the_folder_are_refused() {
+    let (reference, reduced) = (reference(), [reduced()]);
+    for name in ["../outside", "a/b", "", "..", "index"] {
+        let scene = Scene { name: name.into(), ..scene() };
+        let root = tempfile::tempdir().unwrap();
+        let dir = root.path().join("reports");
+        let error = write(&report(&scene, &reference, &reduced), &dir).unwrap_err();
+        assert!(matches!(error, Error::Usage(_)), "{name}: {error}");
+        assert!(!dir.exists());
+    }
+}
