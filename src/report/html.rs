@@ -165,15 +165,15 @@ fn model_section(model: &ModelComparison) -> Markup {
         h3 { "Curve metrics" }
         div.scroll { table.curves data-model=(model.model) {
             thead { tr {
-                @for heading in ["curve", "Sprague-Geers", "magnitude", "phase", "Russell", "magnitude", "phase",
-                    "ISO/TS 18571", "corridor", "phase", "magnitude", "slope"] {
+                @for heading in ["curve", "Sprague-Geers C", "M", "P", "Russell C", "M", "P", "ISO/TS 18571 R", "Z", "EP", "EM", "ES"] {
                     th scope="col" { (heading) }
                 }
                 th.left scope="col" { "grade" } th scope="col" { "window" } th scope="col" { "samples" }
             } }
             tbody { @for curve in &model.curves { (curve_row(curve)) } }
         } }
-        p.soft { "Sprague-Geers and Russell: 0 is best. ISO/TS 18571: 1 is best. Reported, not gated." }
+        p.soft { "Sprague-Geers and Russell: comprehensive, magnitude and phase error, 0 is best. ISO/TS 18571: rating, "
+            "corridor, phase, magnitude and slope score, 1 is best. Reported, not gated." }
         details {
             summary { "Checks of the result against itself (" (model.integrity.len()) ")" }
             (checks(&model.integrity))
@@ -186,7 +186,10 @@ fn discrepancy_row(row: &Discrepancy) -> Markup {
     html! {
         tr data-quantity=(row.quantity) {
             td { (words(&row.quantity)) }
-            td.left { (badge(row.verdict)) }
+            td.left {
+                @if row.tolerance.is_none() && row.verdict.passed() { span.soft { "not gated" } }
+                @else { (badge(row.verdict)) }
+            }
             (number("reduced", Some(row.reduced), to, 5))
             (number("reference", Some(row.reference), to, 5))
             (number("difference", Some(row.difference), to, 3))
