@@ -77,13 +77,14 @@ impl Reduced {
     /// # Errors
     /// As [`integrate`].
     pub fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
-        let summary = self.run(tolerance)?;
+        let mut summary = self.run(tolerance)?;
         let system = &self.system;
         let hit =
             HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
         let sample_interval = Some(hit.duration() / SAMPLES_PER_CONTACT);
         let result = integrate(system, &Options { sample_interval, ..self.options(tolerance) })?;
         let history = result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))?;
+        summary.samples = Some(history.len());
         Ok(Outcome { summary, history })
     }
 

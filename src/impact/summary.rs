@@ -109,10 +109,10 @@ pub struct Summary {
     /// Reference only: solver settings and versions, kept as written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solver: Option<serde_json::Value>,
-    /// Reference only: number of samples in the history.
+    /// Number of samples in the history, if one was kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<usize>,
-    /// Reference only: distance of the samples in s.
+    /// Distance of the samples in s, if it is the same between all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sample_interval: Option<f64>,
 }
