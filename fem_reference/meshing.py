@@ -100,7 +100,7 @@ def mesh_settings(
         if 4.0 * zone > radius:
             raise SceneError(
                 f"{name} is {radius:g} m, but a contact radius of {zone / CONTACT_ZONE:.3g} m "
-                f"is expected; this method needs it to be at least {4.0 * CONTACT_ZONE:g} times larger"
+                f"is expected; {4.0 * CONTACT_ZONE:g} times as much is the least"
             )
     count = math.ceil(zone / size - 1e-9)
     if count > 400:
@@ -283,7 +283,8 @@ def _with_exact_volume(mesh: BodyMesh, sphere: Sphere, surface: Ints, radii: Flo
     The chords of an inscribed polygon cut off volume, hence mass: 0.1 % on these meshes, the
     largest error of all on coarse ones. The mesh is therefore enlarged about the contact pole
     until its volume is that of the sphere: the mass is then exact with the density unchanged,
-    and the shape is off by less than before. Contact nodes are put at ``radii`` (m) on the enlarged sphere.
+    and the shape is off by less than before. Contact nodes are put at ``radii`` (m) on the
+    enlarged sphere.
     """
     points = mesh.points
     scale = 1.0
