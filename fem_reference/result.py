@@ -196,6 +196,7 @@ def _provenance(
             "plate_element": settings.plate_element,
             "through_element": settings.through_element,
             "growth": settings.growth,
+            "through_growth": settings.through_growth,
             "meshes_tried": solution.meshes_tried,
             "estimated_contact_radius": {
                 "outer": solution.estimate.outer_radius,
