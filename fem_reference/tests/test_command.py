@@ -313,6 +313,8 @@ def test_modes_command(tmp_path: Path) -> None:
     assert [mode["longitudinal"] for mode in modes] == [False] * 5 + [True]
 
 
-def test_two_grid_uncertainty_covers_the_error_of_a_second_order_method() -> None:
-    exact, fine, coarse = 1.0, 1.0 + 0.01, 1.0 + 0.01 * 1.5**2
+def test_two_grid_uncertainty_is_three_times_the_error_at_its_assumed_order() -> None:
+    exact, fine, coarse = 1.0, 1.0 + 0.01, 1.0 + 0.01 * 1.5**1.5
     assert two_grid_uncertainty(fine, coarse, 1.5) == pytest.approx(3.0 * (fine - exact))
+    # And it is on the safe side for a method of second order.
+    assert two_grid_uncertainty(fine, 1.0 + 0.01 * 1.5**2, 1.5) > 3.0 * (fine - exact)
