@@ -55,6 +55,7 @@ class EndCheck:
         ]
 
     def __call__(self, loop: Loop, energies: Energies) -> bool:
+        """Whether the state allows no further contact."""
         plate_energy = energies.total[PLATE]
         plate_position = plate_velocity = 0.0
         if self.free_plate:

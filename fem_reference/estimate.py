@@ -17,6 +17,9 @@ from scipy.integrate import solve_ivp
 
 from .scene import Material, Scene, Sphere
 
+MINOR_FORCE = 0.05
+"""A contact whose force stays below this share of the other one's does not refine the mesh."""
+
 
 @dataclass(frozen=True)
 class ContactEstimate:
@@ -87,12 +90,15 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
     )
     history = np.array([forces(y) for y in path.y.T])
     peak = history.max(axis=0)
-    # A sphere that the first contact does not reach still gets a mesh fit for the other one.
-    peak = np.maximum(peak, 0.05 * peak.max())
+    if peak[1] > 0.0:
+        peak = np.maximum(peak, MINOR_FORCE * peak.max())
     radii = [
         hertz_contact_radius(force, e, body.radius)
         for force, e, body in zip(peak, effective, bodies, strict=True)
     ]
+    if peak[1] == 0.0:
+        # Not reached in the first contact: the mesh is made for the other one, and verified.
+        radii[1] = min(radii[0], 0.15 * scene.inner.radius)
     durations = [
         3.218 * hertz_time_scale(body.mass, k, scene.speed)
         for k, body in zip(stiffness, bodies, strict=True)

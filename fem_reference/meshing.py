@@ -44,7 +44,9 @@ class MeshSettings:
     through_element: float
     """Largest element of the plate through the thickness, m."""
     growth: float
-    """Ratio of neighbouring elements away from the contact, in the plate."""
+    """Ratio of neighbouring elements away from the contact, along the plate."""
+    through_growth: float
+    """The same through the thickness, where every layer runs along the whole plate."""
 
     @property
     def contact_zone(self) -> float:
@@ -100,15 +102,17 @@ def mesh_settings(
         if 4.0 * zone > radius:
             raise SceneError(
                 f"{name} is {radius:g} m, but a contact radius of {zone / CONTACT_ZONE:.3g} m "
-                f"is expected; this method needs it to be at least {4.0 * CONTACT_ZONE:g} times larger"
+                f"is expected; {4.0 * CONTACT_ZONE:g} times as much is the least"
             )
-    count = math.ceil(zone / size - 1e-9)
+    # An even count at factor 1: then the zone is the same at 2/3 and 3/2 of it, up to rounding.
+    count = max(4, round(2.0 * math.ceil(zone / (2.0 * size * factor) - 1e-9) * factor))
     if count > 400:
         raise SceneError(
             f"the scene needs {count} elements across the contact zone, more than 400: its two "
             "contacts or contact and plate differ too much in size"
         )
-    return MeshSettings(size, count, along, through, 1.2 ** (1.0 / factor))
+    growth, through_growth = (ratio ** (1.0 / factor) for ratio in (1.2, 1.35))
+    return MeshSettings(size, count, along, through, growth, through_growth)
 
 
 @contextmanager
@@ -179,7 +183,7 @@ def mesh_plate(plate: Plate, settings: MeshSettings) -> BodyMesh:
             plate.radius - zone, size * settings.growth, settings.plate_element, settings.growth
         ),
     ]
-    half = graded(plate.thickness / 2.0, size, settings.through_element, settings.growth)
+    half = graded(plate.thickness / 2.0, size, settings.through_element, settings.through_growth)
     through = [*half, *(segment.reversed for segment in reversed(half))]
     r = np.concatenate([[0.0], np.cumsum([segment.length for segment in radial])])
     z = np.concatenate([[0.0], np.cumsum([segment.length for segment in through])])
@@ -202,7 +206,7 @@ def mesh_plate(plate: Plate, settings: MeshSettings) -> BodyMesh:
 def modal_plate_mesh(plate: Plate) -> BodyMesh:
     """Even mesh of the plate alone, fit for eigenmodes with quadratic elements."""
     size = min(plate.thickness / 4.0, plate.radius / 24.0)
-    return mesh_plate(plate, MeshSettings(size, 1, size, size, 1.2))
+    return mesh_plate(plate, MeshSettings(size, 1, size, size, 1.2, 1.2))
 
 
 def _half_disc(sphere: Sphere, settings: MeshSettings, name: str) -> BodyMesh:
@@ -283,7 +287,8 @@ def _with_exact_volume(mesh: BodyMesh, sphere: Sphere, surface: Ints, radii: Flo
     The chords of an inscribed polygon cut off volume, hence mass: 0.1 % on these meshes, the
     largest error of all on coarse ones. The mesh is therefore enlarged about the contact pole
     until its volume is that of the sphere: the mass is then exact with the density unchanged,
-    and the shape is off by less than before. Contact nodes are put at ``radii`` (m) on the enlarged sphere.
+    and the shape is off by less than before. Contact nodes are put at ``radii`` (m) on the
+    enlarged sphere.
     """
     points = mesh.points
     scale = 1.0

@@ -87,7 +87,7 @@ def _summary(
             "dofs": 2 * nodes,
             "elements": sum(body.quads.shape[0] for body in bodies),
             "elements_per_contact_radius": {
-                "outer": resolution.outer,
+                "outer": resolution.outer if math.isfinite(resolution.outer) else None,
                 "inner": resolution.inner if math.isfinite(resolution.inner) else None,
             },
             "elements_per_wavelength": resolution.per_wavelength,
@@ -139,6 +139,7 @@ def solve(
             courant=courant,
             progress=progress,
             label="coarser mesh for the uncertainty: ",
+            verify_waves=False,
         )
         solution = compute(
             scene, factor, courant=courant, snapshot_times=stress_times, progress=progress
@@ -195,6 +196,7 @@ def _provenance(
             "plate_element": settings.plate_element,
             "through_element": settings.through_element,
             "growth": settings.growth,
+            "through_growth": settings.through_growth,
             "meshes_tried": solution.meshes_tried,
             "estimated_contact_radius": {
                 "outer": solution.estimate.outer_radius,

@@ -6,8 +6,16 @@ import math
 import sys
 from dataclasses import dataclass
 
+import numpy as np
+
 from .errors import SolverError
-from .estimate import ContactEstimate, effective_modulus, estimate_contact, hertz_contact_radius
+from .estimate import (
+    MINOR_FORCE,
+    ContactEstimate,
+    effective_modulus,
+    estimate_contact,
+    hertz_contact_radius,
+)
 from .explicit import Run, integrate
 from .mesh import edge_lengths
 from .meshing import ImpactMesh, mesh_impact, mesh_settings
@@ -34,7 +42,7 @@ class Resolution:
     outer: float
     """Elements per contact radius at the outer sphere's peak force."""
     inner: float
-    """The same for the inner sphere; infinite if it was never touched."""
+    """The same for the inner sphere; infinite for a contact of less than `MINOR_FORCE`."""
     wavelength: float
     """Shortest wavelength that matters, m."""
     per_wavelength: float
@@ -81,6 +89,15 @@ def shortest_wavelengths(scene: Scene, duration: float) -> tuple[float, float, f
     )
 
 
+def elements_per_wavelength(scene: Scene, mesh: ImpactMesh, duration: float) -> tuple[float, float]:
+    """Least number of elements per wavelength in any body, and that wavelength, m."""
+    bodies = (mesh.outer, mesh.plate, mesh.inner)
+    return min(
+        (wavelength / float(edge_lengths(body.points, body.quads).max()), wavelength)
+        for wavelength, body in zip(shortest_wavelengths(scene, duration), bodies, strict=True)
+    )
+
+
 def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Resolution:
     found = [
         hertz_contact_radius(
@@ -90,20 +107,22 @@ def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Re
         )
         for contact, sphere in zip(run.contacts, (scene.outer, scene.inner), strict=True)
     ]
-    edges = [edge_lengths(body.points, body.quads) for body in (mesh.outer, mesh.plate, mesh.inner)]
-    largest = [float(lengths.max()) for lengths in edges]
-    per_wavelength, wavelength = min(
-        (wave / size, wave)
-        for wave, size in zip(shortest_wavelengths(scene, duration), largest, strict=True)
-    )
+    bodies = (mesh.outer, mesh.plate, mesh.inner)
+    edges = np.concatenate([edge_lengths(body.points, body.quads) for body in bodies])
+    per_wavelength, wavelength = elements_per_wavelength(scene, mesh, duration)
     size = mesh.settings.contact_element
+    peaks = [contact.force_peak for contact in run.contacts]
+    outer, inner = (
+        radius / size if peak >= MINOR_FORCE * max(peaks) else math.inf
+        for radius, peak in zip(found, peaks, strict=True)
+    )
     return Resolution(
-        outer=found[0] / size,
-        inner=found[1] / size if run.contacts[1].count else math.inf,
+        outer=outer,
+        inner=inner,
         wavelength=wavelength,
         per_wavelength=per_wavelength,
-        smallest=min(float(lengths.min()) for lengths in edges),
-        largest=max(largest),
+        smallest=float(edges.min()),
+        largest=float(edges.max()),
     )
 
 
@@ -115,12 +134,14 @@ def compute(
     snapshot_times: tuple[float, ...] = (),
     progress: Progress | None = None,
     label: str = "",
+    verify_waves: bool = True,
 ) -> Solution:
     """Solve a scene with ``factor`` (see `meshing.RESOLUTIONS`) times the asked elements.
 
     The mesh is made for estimated contact radii. If the radii found from the peak forces leave
     fewer than `ACCEPTED_SHARE` of the elements asked for, or contact reached the last pair of
-    matching nodes, it is made again with the radii found.
+    matching nodes, it is made again with the radii found. ``verify_waves`` is for meshes that
+    only serve to estimate the error of another one.
 
     Raises:
         SceneError: the scene is outside the method.
@@ -138,6 +159,13 @@ def compute(
         report("mesh", 0.0, "meshing")
         settings = mesh_settings(scene, *radii, factor)
         mesh = mesh_impact(scene, settings)
+        per_wavelength, wavelength = elements_per_wavelength(scene, mesh, estimate.duration)
+        if verify_waves and per_wavelength < LEAST_ELEMENTS_PER_WAVELENGTH:
+            raise SolverError(
+                f"only {per_wavelength:.3g} elements per wavelength of {wavelength:.3g} m, "
+                f"at least {LEAST_ELEMENTS_PER_WAVELENGTH:g} are required; raise "
+                "reference.elements_per_contact_radius"
+            )
         nodes = sum(body.points.shape[0] for body in (mesh.outer, mesh.plate, mesh.inner))
         report("assembly", 0.0, f"{nodes} nodes")
         system = build_system(scene, mesh)
@@ -151,12 +179,6 @@ def compute(
             on_progress=lambda done, message: report("stepping", done, message),
         )
         resolution = _resolution(scene, mesh, run, estimate.duration)
-        if resolution.per_wavelength < LEAST_ELEMENTS_PER_WAVELENGTH:
-            raise SolverError(
-                f"only {resolution.per_wavelength:.3g} elements per wavelength of "
-                f"{resolution.wavelength:.3g} m, at least {LEAST_ELEMENTS_PER_WAVELENGTH:g} are required; "
-                "raise reference.elements_per_contact_radius"
-            )
         zone_left = all(
             contact.outermost_radius < 0.999 * settings.contact_zone for contact in run.contacts
         )
@@ -165,7 +187,7 @@ def compute(
         size = settings.contact_element
         grow = 1.0 if zone_left else 1.3
         radii = (
-            grow * size * resolution.outer,
+            grow * size * resolution.outer if math.isfinite(resolution.outer) else radii[0],
             grow * size * resolution.inner if math.isfinite(resolution.inner) else radii[1],
         )
         print(

@@ -10,8 +10,10 @@ from __future__ import annotations
 import math
 
 SAFETY_FACTOR = 3.0
-ASSUMED_ORDER = 2.0
-"""Formal order of bilinear elements and central differences."""
+ASSUMED_ORDER = 1.5
+"""Below the formal order 2 of bilinear elements: the displacement's gradient has a square-root
+singularity at the edge of contact. Three meshes of the shipped scenes show 1.3 to 1.8 for
+efficiency and contact end; the force peaks scatter by 0.1 % with the position of the nodes."""
 
 
 def two_grid_uncertainty(fine: float, coarse: float, ratio: float) -> float:

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
+from fem_reference.estimate import estimate_contact
 from fem_reference.explicit import Run, integrate
 from fem_reference.meshing import mesh_impact, mesh_settings
-from fem_reference.estimate import estimate_contact
 from fem_reference.scene import Scene, parse_scene
 from fem_reference.system import System, build_system
 
@@ -25,7 +25,10 @@ def document(**changes: Any) -> dict[str, Any]:
         "scene_hash": "0",
         "settings_hash": "0",
         "plate": {
-            "radius": 0.033, "thickness": 0.002, "edge": "clamped", "material": STEEL,
+            "radius": 0.033,
+            "thickness": 0.002,
+            "edge": "clamped",
+            "material": STEEL,
             "damping_ratio": 0.0,
         },
         "outer": {"kind": "sphere", "radius": 0.01, "material": STEEL, "speed": 0.55},

@@ -47,7 +47,6 @@ def test_thin_plate_leissa(edge: str) -> None:
         (0.003, 340.8e3, 868.9e3),
         (0.006, 367.5e3, 592.5e3),
         (0.012, 379.5e3, 443.7e3),
-        (0.024, 385.2e3, 399.3e3),
     ],
 )
 def test_thick_titanium_plate_table_2(
