@@ -139,6 +139,24 @@ fn stiffness_only_scales_a_soft_plate() {
 }
 
 #[test]
+fn membranes_are_right_down_to_a_five_hundredth_and_refused_when_rounding_spoils_them() {
+    let options = MeshOptions::default();
+    for nu in [0.3, 0.49] {
+        let rubber = material(1e6, nu, 1000.0);
+        let deflection = |thickness: f64| {
+            let body = plate_of(1.0, thickness, Edge::Clamped, rubber.clone());
+            let body = ContinuumPlate::new(&body, [0.01; 2], 4, &options)?;
+            let rigidity = rubber.plane_strain_modulus() * thickness.powi(3) / 12.0;
+            Ok::<f64, impactcheck::Error>(body.flexibility[0][1] * 16.0 * PI * rigidity)
+        };
+        assert_relative_eq!(deflection(0.003).unwrap(), 1.0, max_relative = 2e-3);
+        assert_relative_eq!(deflection(0.002).unwrap(), 1.0, max_relative = 5e-3);
+        let error = deflection(0.0003).unwrap_err().to_string();
+        assert!(error.contains("too thin"), "{error}");
+    }
+}
+
+#[test]
 fn impossible_requests_are_refused_with_the_value() {
     let body = plate_of(33e-3, 2e-3, Edge::Clamped, steel());
     let options = MeshOptions::default();

@@ -93,7 +93,7 @@ impl HalfBody {
             .and_then(|symbolic| {
                 Llt::try_new_with_symbolic(symbolic, stiffness.as_ref(), Side::Lower).map_err(|e| {
                     Error::Solver(format!(
-                        "the stiffness of the continuum mesh ({size} degrees of freedom) is not positive definite: {e:?}"
+                        "the stiffness of the continuum mesh ({size} degrees of freedom) is not positive definite ({e:?}): the body is too thin or too nearly incompressible for double precision"
                     ))
                 })
             })?;
@@ -130,6 +130,14 @@ impl HalfBody {
     /// Number of elastic modes the mesh has.
     pub fn elastic_size(&self) -> usize {
         self.size - usize::from(self.rigid.is_some())
+    }
+
+    /// Relative error that rounding in the assembled stiffness can leave in the square of the frequency
+    /// `omega` (rad/s): machine precision times the largest nodal frequency squared over omega squared.
+    ///
+    /// It grows as (R/t)^4 for thin plates and without bound towards nu = 1/2.
+    pub fn rounding_error(&self, omega: f64) -> f64 {
+        f64::EPSILON * self.matrices.largest_nodal_frequency_squared() / omega.powi(2)
     }
 
     /// Load vector with the nodal axial forces `forces`, given as (node, N).
