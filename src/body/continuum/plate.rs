@@ -165,7 +165,11 @@ pub fn plate(
 /// # Errors
 /// [`Error::Solver`] if the numerics fail.
 pub fn eigenfrequencies(plate: &Plate, count: usize) -> Result<Vec<PlateMode>> {
-    let mesh = plate_mesh(plate, None, count, &MeshOptions::default().refined(1.5));
+    let options = MeshOptions {
+        order: 4,
+        ..MeshOptions::default().refined(1.5)
+    };
+    let mesh = plate_mesh(plate, None, count, &options);
     let rigid = PlateMode {
         frequency: 0.0,
         longitudinal: false,
