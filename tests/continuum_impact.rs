@@ -54,9 +54,9 @@ fn assert_close(result: ImpactResult, expected: ImpactResult, efficiency: f64, f
 fn both_scenes_of_table_1_agree_with_converged_finite_elements() {
     let mesh = MeshOptions::default();
     let fe = ImpactResult { efficiency: 0.6946, peak: [443.1, 352.1], end: [180.5e-6, 84.5e-6] };
-    assert_close(run(&A, 16, 1.0, &mesh), fe, 0.001, 2.5e-3, 0.5e-6);
+    assert_close(run(&A, 16, 1.0, &mesh), fe, 0.001, 2.5e-3, 3e-3);
     let fe = ImpactResult { efficiency: 0.3868, peak: [142.9, 85.35], end: [62.4e-6, 52.2e-6] };
-    assert_close(run(&B, 16, 1.0, &mesh), fe, 0.001, 2.5e-3, 0.2e-6);
+    assert_close(run(&B, 16, 1.0, &mesh), fe, 0.001, 2.5e-3, 3e-3);
 }
 
 #[test]
@@ -64,11 +64,12 @@ fn patch_radius_and_number_of_modes_hardly_matter() {
     let mesh = MeshOptions::default();
     for scene in [&A, &B] {
         let normal = run(scene, 16, 1.0, &mesh);
-        for (modes, patch_factor) in [(4, 1.0), (6, 1.0), (64, 1.0), (16, 0.5), (16, 2.0)] {
+        // Bound on the forces. Four modes end below the contact's frequencies; a patch twice as wide
+        // as the contact ever is sees less of the plate's local compliance.
+        let cases = [(4, 1.0, 6e-3), (6, 1.0, 4e-3), (64, 1.0, 1e-3), (16, 0.5, 2e-3), (16, 2.0, 5e-3)];
+        for (modes, patch_factor, force) in cases {
             let other = run(scene, modes, patch_factor, &mesh);
-            // A patch twice as wide as the contact ever is sees less of the plate's local compliance.
-            let force = if modes < 16 || patch_factor > 1.0 { 5e-3 } else { 2e-3 };
-            assert_close(other, normal, 0.001, force, 0.3e-6);
+            assert_close(other, normal, 0.001, force, 3e-3);
         }
     }
 }
@@ -79,6 +80,6 @@ fn the_mesh_does_not_matter() {
     for scene in [&A, &B] {
         let normal = run(scene, 16, 1.0, &MeshOptions::default());
         let refined = run(scene, 16, 1.0, &fine);
-        assert_close(normal, refined, 1e-4, 5e-4, 0.1e-6);
+        assert_close(normal, refined, 1e-4, 5e-4, 5e-4);
     }
 }

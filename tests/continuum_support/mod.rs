@@ -70,18 +70,17 @@ impl Impact {
                 force = self.forces(&at, force);
                 stages.push((at.velocity.clone(), self.acceleration(&at, force)));
             }
-            for j in 0..n {
-                let mean = |pick: &dyn Fn(&(Vec<f64>, Vec<f64>)) -> f64| {
-                    (pick(&stages[0]) + 2.0 * pick(&stages[1]) + 2.0 * pick(&stages[2]) + pick(&stages[3]))
-                        / 6.0
-                };
-                state.position[j] += step * mean(&|s| s.0[j]);
-                state.velocity[j] += step * mean(&|s| s.1[j]);
+            let weights = [1.0, 2.0, 2.0, 1.0].map(|w| w * step / 6.0);
+            for ((velocity, acceleration), weight) in stages.iter().zip(weights) {
+                for j in 0..n {
+                    state.position[j] += weight * velocity[j];
+                    state.velocity[j] += weight * acceleration[j];
+                }
             }
             force = self.forces(&state, force);
-            for c in 0..2 {
-                result.peak[c] = result.peak[c].max(force[c]);
-                if force[c] > 0.0 {
+            for (c, &force) in force.iter().enumerate() {
+                result.peak[c] = result.peak[c].max(force);
+                if force > 0.0 {
                     result.end[c] = (i + 1) as f64 * step;
                 }
             }

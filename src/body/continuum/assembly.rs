@@ -94,6 +94,18 @@ impl Matrices {
         Ok(SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, start, None, rows), values))
     }
 
+    /// Largest ratio of a diagonal entry of the stiffness to that of the mass, in rad^2/s^2.
+    pub fn largest_nodal_frequency_squared(&self) -> f64 {
+        let mut largest = 0.0f64;
+        for (node, range) in self.row_start.windows(2).enumerate() {
+            for entry in (range[0]..range[1]).filter(|&e| self.column[e] == node) {
+                let block = self.stiffness[entry];
+                largest = largest.max(block[0].max(block[3]) / self.mass[entry]);
+            }
+        }
+        largest
+    }
+
     /// Mass matrix times the nodal displacements `x` (u_r, u_z). Shape (nodes, 2).
     pub fn mass_times(&self, x: &[[f64; 2]]) -> Vec<[f64; 2]> {
         self.row_start

@@ -184,3 +184,59 @@ impl SplitMix {
             .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::assembly::Matrices;
+    use super::super::mesh;
+    use super::super::mirror::Parity;
+    use super::*;
+    use crate::scene::Material;
+    use approx::assert_relative_eq;
+    use std::rc::Rc;
+
+    /// All elastic eigenfrequencies of a small body from dense matrices: M = C C^T, C^T K^-1 C.
+    fn dense(body: &HalfBody) -> Vec<f64> {
+        let n = body.size();
+        let unit = |j: usize| (0..n).map(|i| f64::from(u8::from(i == j))).collect::<Vec<f64>>();
+        let (mut mass, mut flexibility) = (Mat::zeros(n, n), Mat::zeros(n, n));
+        for j in 0..n {
+            let mut u = unit(j);
+            for (i, m) in body.mass_times(&u).into_iter().enumerate() {
+                mass[(i, j)] = m;
+            }
+            body.solve(&mut u);
+            u.into_iter().enumerate().for_each(|(i, u)| flexibility[(i, j)] = u);
+        }
+        let c = mass.llt(Side::Lower).unwrap().L().to_owned();
+        let theta = (c.transpose() * flexibility * &c).self_adjoint_eigenvalues(Side::Lower).unwrap();
+        theta.iter().rev().map(|t| 1.0 / t.sqrt()).collect()
+    }
+
+    #[test]
+    fn no_mode_is_missed_or_found_twice_against_a_dense_solution() {
+        let material = Material { name: "m".into(), youngs_modulus: 1.0, poisson_ratio: 0.3, density: 1.0 };
+        let plate = mesh::plate(2, &[0.0, 0.2, 0.5, 1.0], &[0.0, 0.1, 0.25]);
+        let matrices = Rc::new(Matrices::new(&plate, &material).unwrap());
+        for (parity, free) in
+            [(Parity::Bending, true), (Parity::Bending, false), (Parity::Longitudinal, false)]
+        {
+            let held = |[r, _]: [f64; 2]| [!free && r == 1.0; 2];
+            let body = HalfBody::new(&plate, &matrices, parity, held, free).unwrap();
+            let modes = lowest_modes(&body, 15, f64::INFINITY).unwrap();
+            for (found, expected) in modes.omega.iter().zip(dense(&body)) {
+                assert_relative_eq!(*found, expected, max_relative = 1e-9);
+            }
+            for (i, v) in modes.shape.iter().enumerate() {
+                let momentum = body.mass_times(v);
+                for (j, w) in modes.shape.iter().enumerate() {
+                    let expected = f64::from(u8::from(i == j));
+                    assert!((dot(w, &momentum) - expected).abs() < 1e-9);
+                }
+            }
+            let limit = 0.5 * (modes.omega[4] + modes.omega[5]);
+            assert_eq!(lowest_modes(&body, 15, limit).unwrap().omega.len(), 6);
+            assert!(lowest_modes(&body, body.size(), f64::INFINITY).is_err());
+        }
+    }
+}

@@ -88,7 +88,7 @@ impl HalfBody {
             .and_then(|symbolic| {
                 Llt::try_new_with_symbolic(symbolic, stiffness.as_ref(), Side::Lower).map_err(|e| {
                     Error::Solver(format!(
-                        "the stiffness of the continuum mesh ({size} degrees of freedom) is not positive definite: {e:?}"
+                        "the stiffness of the continuum mesh ({size} degrees of freedom) is not positive definite ({e:?}): the body is too thin or too nearly incompressible for double precision"
                     ))
                 })
             })?;
@@ -111,6 +111,14 @@ impl HalfBody {
     /// Number of elastic modes the mesh has.
     pub fn elastic_size(&self) -> usize {
         self.size - usize::from(self.rigid.is_some())
+    }
+
+    /// Relative error that rounding in the assembled stiffness can leave in the square of the frequency
+    /// `omega` (rad/s): machine precision times the largest nodal frequency squared over omega squared.
+    ///
+    /// It grows as (R/t)^4 for thin plates and without bound towards nu = 1/2.
+    pub fn rounding_error(&self, omega: f64) -> f64 {
+        f64::EPSILON * self.matrices.largest_nodal_frequency_squared() / omega.powi(2)
     }
 
     /// Load vector with the nodal axial forces `forces`, given as (node, N).
@@ -176,5 +184,72 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 pub(super) fn axpy(factor: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += factor * x;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mesh;
+    use super::*;
+    use crate::scene::Material;
+    use approx::assert_relative_eq;
+
+    fn material() -> Material {
+        Material { name: "m".into(), youngs_modulus: 2e11, poisson_ratio: 0.3, density: 7780.0 }
+    }
+
+    fn free_half(mesh: &Mesh, parity: Parity) -> HalfBody {
+        let matrices = Rc::new(Matrices::new(mesh, &material()).unwrap());
+        HalfBody::new(mesh, &matrices, parity, |_| [false, false], true).unwrap()
+    }
+
+    #[test]
+    fn mass_of_the_half_body_is_exact() {
+        let plate = mesh::plate(3, &[0.0, 0.01, 0.033], &[0.0, 0.0004, 0.001]);
+        let rigid = free_half(&plate, Parity::Bending).rigid.unwrap();
+        let exact = 7780.0 * std::f64::consts::PI * 0.033f64.powi(2) * 0.001;
+        assert_relative_eq!(rigid.mass, exact, max_relative = 1e-13);
+        let sphere = mesh::half_sphere(4, 0.01, 0.0005, 0.0002, 1.4, 0.002);
+        let rigid = free_half(&sphere, Parity::Bending).rigid.unwrap();
+        let exact = 7780.0 * 2.0 / 3.0 * std::f64::consts::PI * 1e-6;
+        assert_relative_eq!(rigid.mass, exact, max_relative = 1e-8);
+    }
+
+    #[test]
+    fn rigid_motion_has_no_stiffness_and_uniform_strain_the_right_energy() {
+        let sphere = mesh::half_sphere(3, 1.0, 0.05, 0.02, 1.4, 0.3);
+        let matrices = Matrices::new(&sphere, &material()).unwrap();
+        let dof: Vec<[usize; 2]> = (0..sphere.nodes.len()).map(|n| [2 * n, 2 * n + 1]).collect();
+        let k = matrices.free_stiffness(&dof, 2 * dof.len(), None).unwrap();
+        let energy = |u: &dyn Fn(usize) -> [f64; 2]| -> f64 {
+            let u: Vec<f64> = (0..sphere.nodes.len()).flat_map(u).collect();
+            let lower = k.triplet_iter().map(|t| (t.row, t.col, *t.val));
+            lower.map(|(i, j, k)| if i == j { 0.5 } else { 1.0 } * u[i] * k * u[j]).sum()
+        };
+        let (r, z) = (|n: usize| sphere.nodes[n][0], |n: usize| sphere.nodes[n][1]);
+        // Uniaxial tension e: energy E e^2 / 2 per volume.
+        let tension = energy(&|n| [-0.3 * r(n), z(n)]);
+        let exact = 0.5 * 2e11 * 2.0 / 3.0 * std::f64::consts::PI;
+        assert_relative_eq!(tension, exact, max_relative = 1e-5);
+        assert!(energy(&|_| [0.0, 1.0]).abs() < 1e-12 * tension);
+    }
+
+    #[test]
+    fn inertia_relief_leaves_no_rigid_motion_and_balances_the_load() {
+        let plate = mesh::plate(2, &[0.0, 0.3, 1.0], &[0.0, 0.1, 0.2]);
+        let half = free_half(&plate, Parity::Bending);
+        let load = half.axial_load(&[(plate.surface[0][0], 1.0)]);
+        let mut u = load.clone();
+        half.solve(&mut u);
+        let rigid = half.rigid.as_ref().unwrap();
+        let scale = dot(&u, &half.mass_times(&u)).sqrt();
+        assert!(dot(&rigid.momentum, &u).abs() < 1e-10 * scale * rigid.mass.sqrt());
+        // A load without resultant gives the same displacement as with its inertia forces added.
+        let mut shifted = load;
+        axpy(-1.0 / rigid.mass, &rigid.momentum, &mut shifted);
+        half.solve(&mut shifted);
+        for (a, b) in u.iter().zip(&shifted) {
+            assert!((a - b).abs() < 1e-9 * u[rigid.pinned].abs(), "{a} {b}");
+        }
     }
 }

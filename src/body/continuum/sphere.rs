@@ -13,7 +13,8 @@ use std::rc::Rc;
 ///
 /// Static flexibility under the contact force and the inertia forces of the rigid acceleration, displacement
 /// relative to the mean of the sphere, without the half-space part. Negative: a small free sphere is a little stiffer
-/// than its half-space.
+/// than its half-space. It depends weakly on the patch: the surface stress of Boussinesq's solution acts on the
+/// sphere's slope and lifts the centre by (1 - 2 nu)^2 (1 + nu) / (2 pi E radius) per e-fold of the patch radius.
 ///
 /// # Errors
 /// [`crate::Error::Solver`] if the patch radius is not below half the sphere's radius or the numerics
