@@ -34,8 +34,8 @@ QUANTITIES = (
 )
 
 
-def quantities(scene: Scene, solution: Solution) -> dict[str, float | None]:
-    """The summary's physical quantities, SI."""
+def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
+    """The summary's physical quantities, SI; a contact that never closed ends at 0."""
     run = solution.run
     return {
         "efficiency": scene.inner.mass
@@ -45,8 +45,8 @@ def quantities(scene: Scene, solution: Solution) -> dict[str, float | None]:
         "inner_velocity_final": run.inner_velocity,
         "outer_force_peak": run.contacts[0].force_peak,
         "inner_force_peak": run.contacts[1].force_peak,
-        "outer_contact_end": run.contacts[0].end,
-        "inner_contact_end": run.contacts[1].end,
+        "outer_contact_end": run.contacts[0].end or 0.0,
+        "inner_contact_end": run.contacts[1].end or 0.0,
         "first_frequency": first_frequency(solution.system),
     }
 
@@ -55,7 +55,7 @@ def _summary(
     scene: Scene,
     solution: Solution,
     resolution_name: str,
-    uncertainty: dict[str, float | None],
+    uncertainty: dict[str, float],
     found: dict[str, str | None],
 ) -> dict[str, Any]:
     run, mesh, resolution = solution.run, solution.mesh, solution.resolution
@@ -146,12 +146,10 @@ def solve(
         )
         progress.report("writing", 0.0, "writing the results")
         fine, coarse = quantities(scene, solution), quantities(scene, coarser)
-        uncertainty: dict[str, float | None] = {}
-        for name in QUANTITIES:
-            a, b = fine[name], coarse[name]
-            uncertainty[name] = (
-                None if a is None or b is None else two_grid_uncertainty(a, b, COMPANION_RATIO)
-            )
+        uncertainty = {
+            name: two_grid_uncertainty(fine[name], coarse[name], COMPANION_RATIO)
+            for name in QUANTITIES
+        }
         found = versions()
         summary = _summary(scene, solution, resolution_name, uncertainty, found)
         table, interval = history(solution.run)
