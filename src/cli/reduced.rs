@@ -12,10 +12,10 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Scene file, or the name of a shipped scene
     scene: String,
-    /// Reduced model: A (one mode), B (Kirchhoff modes) [default: the scene's, else B]
+    /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility) [default: the scene's, else C]
     #[arg(long)]
     model: Option<Model>,
-    /// Number of modes [default: the scene's, else 16]
+    /// Number of modes [default: the scene's, else 16 for B and as many as needed for C]
     #[arg(long, value_name = "N")]
     modes: Option<usize>,
     /// Relative error of the efficiency that the time integration may have
@@ -31,7 +31,7 @@ pub struct Arguments {
 /// Runs the model and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
-    let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::B);
+    let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::C);
     let reduced = Reduced::new(&scene, model, arguments.modes)?;
     let summary = match &arguments.history {
         None => reduced.run(arguments.tolerance)?,

@@ -4,7 +4,7 @@ use super::integrator::{Integration, Options, integrate};
 use super::system::System;
 use super::{Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary};
 use crate::analytical::hertz::HertzImpact;
-use crate::body::continuum::{self, MeshOptions};
+use crate::body::continuum::{self, ContinuumPlate, MeshOptions};
 use crate::body::kirchhoff;
 use crate::error::{Error, Result};
 use crate::scene::{Material, Model, PlateImpact, Scene, Setup, Shape};
@@ -12,6 +12,10 @@ use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
 pub const DEFAULT_MODES: usize = 16;
+/// Relative error of the forces at which model C, left to choose, stops adding modes.
+const TRUNCATION: f64 = 5e-4;
+/// Most modes that model C chooses by itself.
+const MAX_CHOSEN_MODES: usize = 64;
 /// Samples of a history per duration of a Hertz contact.
 const SAMPLES_PER_CONTACT: f64 = 400.0;
 
@@ -26,7 +30,8 @@ pub struct Reduced {
 }
 
 impl Reduced {
-    /// Builds `model` of `scene`; `modes` overrides the scene's number of modes (model A always has one).
+    /// Builds `model` of `scene`; `modes` overrides the scene's number of modes (model A always has one); if
+    /// neither names one, model B takes [`DEFAULT_MODES`] and model C as many as its error estimate asks for.
     ///
     /// # Errors
     /// [`Error::Usage`] for a number of modes that makes no sense, [`Error::Solver`] for what no reduced model covers.
@@ -39,13 +44,12 @@ impl Reduced {
             )));
         }
         let modes = match (model, modes) {
-            (Model::A, None | Some(1)) => 1,
+            (Model::A, None | Some(1)) => Some(1),
             (Model::A, Some(n)) => {
                 return Err(Error::Usage(format!("--modes {n}: model A has exactly one mode; use model B")));
             }
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
-            (_, Some(n)) => n,
-            (_, None) => scene.reduced.modes.unwrap_or(DEFAULT_MODES),
+            (_, modes) => modes.or(scene.reduced.modes),
         };
         Ok(Self {
             model,
@@ -127,35 +131,67 @@ impl Reduced {
     }
 }
 
-/// The oscillators and contacts of `model`.
-fn system(setup: &PlateImpact, model: Model, modes: usize) -> Result<System> {
-    let kirchhoff = || Ok(System::new(setup, &kirchhoff::modes(&setup.plate, modes)?, [0.0; 2]));
+/// The oscillators and contacts of `model` with `modes` elastic modes; `None` lets model C choose.
+fn system(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<System> {
+    let kirchhoff = |modes| Ok(System::new(setup, &kirchhoff::modes(&setup.plate, modes)?, [0.0; 2]));
     match model {
-        Model::A | Model::B => kirchhoff(),
-        Model::C => {
-            let patch = patch_radii(&kirchhoff()?)?;
-            let mesh = MeshOptions::default();
-            let plate = continuum::plate(&setup.plate, patch, modes, &mesh)?;
-            let tip = |shape: &Shape, material: &Material, patch| match *shape {
-                Shape::Sphere { radius } => continuum::sphere_residual(radius, material, patch, &mesh),
-                // a compact body is rigid but for its Hertz contact
-                Shape::Compact { .. } => Ok(0.0),
-            };
-            let tips = [
-                tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
-                tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
-            ];
-            Ok(System::new(setup, &plate, tips))
-        }
+        Model::A | Model::B => kirchhoff(modes.unwrap_or(DEFAULT_MODES)),
+        Model::C => continuum(setup, modes, &Rough::of(&kirchhoff(DEFAULT_MODES)?)?),
     }
 }
 
-/// Radii in m of the contact patches over which model C weights loads: Hertz's at the force peaks of `system`, a
-/// model of the same impact without residual. The result hardly depends on them.
-fn patch_radii(system: &System) -> Result<[f64; 2]> {
-    let rough = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
-    let radius = |i: usize| system.laws[i].contact_radius(rough.contacts[i].force_peak);
-    let outer = radius(0);
-    // an inner body that is never reached takes the outer one's patch
-    Ok([outer, if rough.contacts[1].contacts > 0 { radius(1) } else { outer }])
+/// Model C: continuum plate with residual flexibility, residual flexibility of the spheres.
+fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result<System> {
+    let mesh = MeshOptions::default();
+    let build = |modes| ContinuumPlate::new(&setup.plate, rough.patch_radius, modes, &mesh);
+    let plate = match modes {
+        Some(modes) => build(modes)?.modal_body(modes),
+        None => {
+            let mut most = DEFAULT_MODES;
+            loop {
+                let plate = build(most)?;
+                let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
+                if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
+                    break plate.modal_body(modes);
+                }
+                most *= 2;
+            }
+        }
+    };
+    let tip = |shape: &Shape, material: &Material, patch| match *shape {
+        Shape::Sphere { radius } => continuum::sphere_residual(radius, material, patch, &mesh),
+        // a compact body is rigid but for its Hertz contact
+        Shape::Compact { .. } => Ok(0.0),
+    };
+    let tips = [
+        tip(&setup.outer.shape, &setup.outer.material, rough.patch_radius[0])?,
+        tip(&setup.inner.shape, &setup.inner.material, rough.patch_radius[1])?,
+    ];
+    Ok(System::new(setup, &plate, tips))
+}
+
+/// What model C has to know of the impact before it is solved, from a model without residual.
+struct Rough {
+    /// Radii in m of the patches over which loads are weighted: Hertz's at the force peaks. The result hardly
+    /// depends on them.
+    patch_radius: [f64; 2],
+    /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
+    contact_frequency: f64,
+}
+
+impl Rough {
+    fn of(system: &System) -> Result<Self> {
+        let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
+        let radius = |i: usize| system.laws[i].contact_radius(run.contacts[i].force_peak);
+        let frequency = |i: usize| 2.0 * run.contacts[i].force_peak / run.contacts[i].impulse;
+        let outer = (radius(0), frequency(0));
+        // an inner body that is never reached takes the outer one's patch
+        let inner = if run.contacts[1].contacts > 0 { (radius(1), frequency(1)) } else { outer };
+        Ok(Self { patch_radius: [outer.0, inner.0], contact_frequency: outer.1.max(inner.1) })
+    }
+
+    /// Relative error of a force when the modes from `omega_next` rad/s on follow statically.
+    fn truncation_error(&self, omega_next: f64) -> f64 {
+        (self.contact_frequency / omega_next).powi(2)
+    }
 }
