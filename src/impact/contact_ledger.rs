@@ -30,12 +30,23 @@ pub struct ContactLedger {
     pub contacts: u32,
     /// Whether the bodies touch now.
     pub closed: bool,
+    /// Impulse in N s below which a contact does not count as one.
+    negligible: f64,
+    /// Impulse when the present contact began, N s.
+    impulse_at_touch: f64,
 }
 
 impl ContactLedger {
+    /// An account that does not count contacts of less than `negligible` N s: a static residual flexibility lets
+    /// the far face answer before a wave can reach it, with a graze of no consequence.
+    pub fn new(negligible: f64) -> Self {
+        Self { negligible, ..Self::default() }
+    }
+
     /// Books a step.
     pub fn book(&mut self, collocation: &Collocation, course: &StepCourse) {
         let gauss: &Stages = course.force[1..=STAGES].try_into().expect("STAGES values");
+        let before = self.impulse;
         self.impulse += course.h * gauss.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
         let (highest, largest) = argmax(&course.force);
         if largest > self.force_peak {
@@ -45,8 +56,13 @@ impl ContactLedger {
             let closed = course.approach[point] > 0.0;
             if closed && !self.closed {
                 self.contacts += 1;
+                self.impulse_at_touch = before;
             } else if !closed && self.closed {
-                self.end = course.time + course.h * release(collocation, course, point);
+                if self.impulse - self.impulse_at_touch <= self.negligible {
+                    self.contacts -= 1;
+                } else {
+                    self.end = course.time + course.h * release(collocation, course, point);
+                }
             }
             self.closed = closed;
         }

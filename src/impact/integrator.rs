@@ -47,6 +47,8 @@ pub struct Integration {
 const MAX_STEPS: u64 = 5_000_000;
 /// Step lengths are the base length times 2^-level, level in this range.
 const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
+/// Impulse of a contact, over the initial momentum, below which it is not counted.
+const NEGLIGIBLE: f64 = 1e-8;
 /// Iterations for the forces of a step; more means that the step is too long.
 const MAX_ITERATIONS: usize = 30;
 
@@ -134,7 +136,7 @@ impl<'a> Run<'a> {
             force: [0.0; 2],
             q,
             v,
-            contacts: [ContactLedger::default(); 2],
+            contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
             steps: 0,
         }
     }
