@@ -76,19 +76,21 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
             .collect();
         reduced.push(outcomes?);
     }
-    let reports: Vec<SceneReport> = scenes
+    let reports = scenes
         .iter()
         .zip(&references)
         .zip(&reduced)
-        .map(|((scene, stored), reduced)| SceneReport {
-            scene,
-            comparison: compare_scene(scene, &stored.outcome, reduced),
-            reference: &stored.outcome,
-            reduced,
-            provenance: stored.provenance.clone(),
-            command: format!("impactcheck compare {}", scene.name),
+        .map(|((scene, stored), reduced)| {
+            Ok(SceneReport {
+                scene,
+                comparison: compare_scene(scene, &stored.outcome, reduced).with_budget(scene)?,
+                reference: &stored.outcome,
+                reduced,
+                provenance: stored.provenance.clone(),
+                command: format!("impactcheck compare {}", scene.name),
+            })
         })
-        .collect();
+        .collect::<Result<Vec<SceneReport>>>()?;
     let comparison = Comparison::new(reports.iter().map(|scene| scene.comparison.clone()).collect());
     let verdict = comparison.verdict;
     let report = Report { scenes: reports };

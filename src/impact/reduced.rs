@@ -93,7 +93,6 @@ impl Reduced {
 
     fn summary(&self, result: &Integration, solve_seconds: f64) -> Summary {
         let system = &self.system;
-        let energy = |i: usize| 0.5 * system.masses[i] * result.velocity[i].powi(2);
         Summary {
             schema_version: SCHEMA_VERSION,
             scene: self.scene.clone(),
@@ -101,18 +100,7 @@ impl Reduced {
             source: Source::Reduced,
             model: Some(self.model.to_string()),
             modes: Some(system.modes),
-            quantities: PlateQuantities {
-                efficiency: energy(1) / system.initial_energy(),
-                outer_velocity_final: result.velocity[0],
-                inner_velocity_final: result.velocity[1],
-                outer_force_peak: result.contacts[0].force_peak,
-                inner_force_peak: result.contacts[1].force_peak,
-                outer_contact_end: result.contacts[0].end,
-                inner_contact_end: result.contacts[1].end,
-                outer_contacts: result.contacts[0].contacts,
-                inner_contacts: result.contacts[1].contacts,
-                first_frequency: system.first_frequency,
-            },
+            quantities: quantities(system, result),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
@@ -126,6 +114,23 @@ impl Reduced {
     }
 }
 
+/// The physical results of an integration of `system`.
+pub(super) fn quantities(system: &System, result: &Integration) -> PlateQuantities {
+    let energy = |i: usize| 0.5 * system.masses[i] * result.velocity[i].powi(2);
+    PlateQuantities {
+        efficiency: energy(1) / system.initial_energy(),
+        outer_velocity_final: result.velocity[0],
+        inner_velocity_final: result.velocity[1],
+        outer_force_peak: result.contacts[0].force_peak,
+        inner_force_peak: result.contacts[1].force_peak,
+        outer_contact_end: result.contacts[0].end,
+        inner_contact_end: result.contacts[1].end,
+        outer_contacts: result.contacts[0].contacts,
+        inner_contacts: result.contacts[1].contacts,
+        first_frequency: system.first_frequency,
+    }
+}
+
 /// The oscillators and contacts of `model`.
 fn system(setup: &PlateImpact, model: Model, modes: usize) -> Result<System> {
     let kirchhoff = || Ok(System::new(setup, &kirchhoff::modes(&setup.plate, modes)?, [0.0; 2]));
@@ -135,23 +140,29 @@ fn system(setup: &PlateImpact, model: Model, modes: usize) -> Result<System> {
             let patch = patch_radii(&kirchhoff()?)?;
             let mesh = MeshOptions::default();
             let plate = continuum::plate(&setup.plate, patch, modes, &mesh)?;
-            let tip = |shape: &Shape, material: &Material, patch| match *shape {
-                Shape::Sphere { radius } => continuum::sphere_residual(radius, material, patch, &mesh),
-                // a compact body is rigid but for its Hertz contact
-                Shape::Compact { .. } => Ok(0.0),
-            };
-            let tips = [
-                tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
-                tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
-            ];
+            let tips = tip_residuals(setup, patch, &mesh)?;
             Ok(System::new(setup, &plate, tips))
         }
     }
 }
 
+/// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
+/// radii `patch` in m.
+pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOptions) -> Result<[f64; 2]> {
+    let tip = |shape: &Shape, material: &Material, patch| match *shape {
+        Shape::Sphere { radius } => continuum::sphere_residual(radius, material, patch, mesh),
+        // a compact body is rigid but for its Hertz contact
+        Shape::Compact { .. } => Ok(0.0),
+    };
+    Ok([
+        tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
+        tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
+    ])
+}
+
 /// Radii in m of the contact patches over which model C weights loads: Hertz's at the force peaks of `system`, a
 /// model of the same impact without residual. The result hardly depends on them.
-fn patch_radii(system: &System) -> Result<[f64; 2]> {
+pub(super) fn patch_radii(system: &System) -> Result<[f64; 2]> {
     let rough = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
     let radius = |i: usize| system.laws[i].contact_radius(rough.contacts[i].force_peak);
     let outer = radius(0);
