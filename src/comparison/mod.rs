@@ -70,7 +70,7 @@ pub struct SceneComparison {
     /// One entry per reduced model.
     pub models: Vec<ModelComparison>,
     /// What causes the difference between model B and the reference, one entry per quantity; empty unless
-    /// [`SceneComparison::with_budget`] was called and found models B and C.
+    /// [`SceneComparison::add_budget`] was called and found models B and C.
     pub budget: Vec<QuantityBudget>,
 }
 
@@ -79,7 +79,7 @@ impl SceneComparison {
     ///
     /// # Errors
     /// As [`budget::budget`].
-    pub fn with_budget(mut self, scene: &Scene) -> Result<Self> {
+    pub fn add_budget(&mut self, scene: &Scene) -> Result<()> {
         let summary = |model: Model| {
             let name = model.to_string();
             self.models.iter().find(|m| m.model == name).map(|m| &m.summary)
@@ -87,7 +87,7 @@ impl SceneComparison {
         if let (Some(b), Some(c)) = (summary(Model::B), summary(Model::C)) {
             self.budget = budget::budget(scene, &self.reference, b, c)?;
         }
-        Ok(self)
+        Ok(())
     }
 }
 

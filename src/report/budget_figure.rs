@@ -99,8 +99,6 @@ pub(super) fn budget_figure(rows: &[QuantityBudget]) -> Markup {
                 }
                 @if bars.is_empty() {
                     text.fig-text x=(x2(middle)) y=(x2(TOP + 0.6 * ROW)) text-anchor="middle" { "–" }
-                } @else {
-                    line.fig-frame x1=(x2(x_of(p, 0.0))) x2=(x2(x_of(p, 0.0))) y1=(TOP) y2=(x2(bottom)) {}
                 }
             }
         }
@@ -113,8 +111,8 @@ fn draw(bar: &Bar, zero: Point, x_of: impl Fn(f64) -> f64, middle: f64) -> Marku
     let (from, to) = (zero.0.min(x_of(bar.value)), zero.0.max(x_of(bar.value)));
     let (low, high) = (x_of(bar.value - bar.uncertainty), x_of(bar.value + bar.uncertainty));
     let number = match bar.bound {
-        Some(bound) => format!("{} (±{:.2})", percent(Some(bar.value)), 100.0 * bound),
-        None => percent(Some(bar.value)),
+        Some(bound) => format!("{} (±{:.2})", signed_percent(bar.value), 100.0 * bound),
+        None => signed_percent(bar.value),
     };
     html! {
         @if let Some(bound) = bar.bound {
@@ -122,6 +120,7 @@ fn draw(bar: &Bar, zero: Point, x_of: impl Fn(f64) -> f64, middle: f64) -> Marku
                 height=(x2(BAR + 4.0)) {}
         }
         rect class=(bar.class) x=(x2(from)) y=(x2(top)) width=(x2(to - from)) height=(BAR) {}
+        line.fig-frame x1=(x2(zero.0)) x2=(x2(zero.0)) y1=(x2(top - 3.0)) y2=(x2(top + BAR + 3.0)) {}
         @if high - low > 1.0 {
             line.fig-frame x1=(x2(low)) x2=(x2(high)) y1=(x2(top + 0.5 * BAR)) y2=(x2(top + 0.5 * BAR)) {}
         }
@@ -129,6 +128,11 @@ fn draw(bar: &Bar, zero: Point, x_of: impl Fn(f64) -> f64, middle: f64) -> Marku
             stroke-width="3" stroke-linejoin="round" aria-hidden="true" { (number) }
         text.fig-text x=(x2(middle)) y=(x2(zero.1 + ROW - 5.0)) text-anchor="middle" font-size=(SMALL) { (number) }
     }
+}
+
+/// Per cent with a sign unless it rounds to zero.
+fn signed_percent(value: f64) -> String {
+    if value.abs() < 5e-5 { "0.00 %".into() } else { percent(Some(value)) }
 }
 
 /// Coordinate with two decimals.

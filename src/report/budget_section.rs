@@ -9,7 +9,7 @@ const EXPLANATION: &str = "What each simplification of model B adds to its diffe
     given up from top to bottom, one at a time; the parts belong to this order, another one would share the \
     difference out otherwise. Parts and remainder add up to the difference. The remainder, the best model C less the \
     reference, is explained if it lies within its bound: the 95 % band of the reference and the uncertainty \
-    of model C, added as independent.";
+    of model C, added as independent. Reported, not gated.";
 
 /// Section of the page; nothing if there is no budget.
 pub(super) fn budget_html(rows: &[QuantityBudget]) -> Markup {
@@ -68,7 +68,11 @@ fn shown(row: &QuantityBudget, value: f64, uncertainty: Option<f64>) -> String {
     if !value.is_finite() {
         return "–".into();
     }
-    let fixed = |value: f64| format!("{:.decimals$}", value * to.factor).replace('-', "−");
+    let fixed = |value: f64| {
+        let text = format!("{:.decimals$}", value * to.factor);
+        let zero = text.bytes().all(|b| matches!(b, b'-' | b'.' | b'0'));
+        if zero { text.replace('-', "") } else { text.replace('-', "−") }
+    };
     let unit = if to.unit.is_empty() { String::new() } else { format!(" {}", to.unit) };
     match uncertainty {
         Some(u) => format!("{} ± {}{unit}", fixed(value), fixed(u)),
