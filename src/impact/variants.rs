@@ -14,6 +14,10 @@
 //! a limit for small patches, whereas Mindlin's deflection under a point force has none: shear spreads over
 //! the thickness, not over the patch. What the mean leaves out, R - P R P and the modes that change the
 //! thickness, is the error of taking a plate squeezed from both sides for two half-spaces.
+//!
+//! Border: under a patch wider than the plate is thick (a membrane under large spheres) the half-spaces yield more
+//! than the plate does, the mean's residual turns strongly negative and the contacts may have no equilibrium.
+//! [`Variants::run`] then fails; there is no plate theory with half-space contact to speak of.
 
 use super::integrator::{Options, integrate};
 use super::reduced::{patch_radii, quantities, tip_residuals};
