@@ -1,7 +1,7 @@
 //! `impactcheck compare` and `impactcheck gate`: the main job, scene to verdict.
 
 use super::{Context, JsonArgument, reference};
-use crate::comparison::{Comparison, Verdict, compare_scene};
+use crate::comparison::{Comparison, SceneComparison, Verdict, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Outcome;
 use crate::impact::reduced::Reduced;
@@ -82,7 +82,7 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
         .zip(&reduced)
         .map(|((scene, stored), reduced)| SceneReport {
             scene,
-            comparison: compare_scene(scene, &stored.outcome, reduced),
+            comparison: compared(context, scene, &stored.outcome, reduced),
             reference: &stored.outcome,
             reduced,
             provenance: stored.provenance.clone(),
@@ -109,6 +109,16 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
         arguments.out.join("index.html").display()
     ));
     Ok(verdict)
+}
+
+/// The comparison with its discrepancy budget. A budget that can't be drawn up is said to be missing: the comparison
+/// stands without it.
+fn compared(context: &Context, scene: &Scene, reference: &Outcome, reduced: &[Outcome]) -> SceneComparison {
+    let mut comparison = compare_scene(scene, reference, reduced);
+    if let Err(error) = comparison.add_budget(scene) {
+        context.note(format_args!("scene `{}` has no discrepancy budget: {error}", scene.name));
+    }
+    comparison
 }
 
 /// The scenes named, or all shipped ones.

@@ -7,6 +7,7 @@
 
 mod alignment;
 mod balance;
+pub mod budget;
 mod curve_metrics;
 mod discrepancy;
 mod dynamic_time_warping;
@@ -27,8 +28,10 @@ pub use russell::{Russell, russell};
 pub use sprague_geers::{SpragueGeers, sprague_geers};
 pub use verdict::Verdict;
 
+use crate::error::Result;
 use crate::impact::{CURVES, Outcome, PLATE_QUANTITIES, SCHEMA_VERSION, Summary};
 use crate::scene::{Model, Scene, Tolerances};
+use budget::QuantityBudget;
 use discrepancy::Scales;
 use serde::Serialize;
 
@@ -66,6 +69,26 @@ pub struct SceneComparison {
     pub window: Option<CommonAxis>,
     /// One entry per reduced model.
     pub models: Vec<ModelComparison>,
+    /// What causes the difference between model B and the reference, one entry per quantity; empty unless
+    /// [`SceneComparison::add_budget`] was called and found models B and C.
+    pub budget: Vec<QuantityBudget>,
+}
+
+impl SceneComparison {
+    /// Adds the discrepancy budget (see [`mod@budget`]) if models B and C are both compared.
+    ///
+    /// # Errors
+    /// As [`budget::budget`].
+    pub fn add_budget(&mut self, scene: &Scene) -> Result<()> {
+        let summary = |model: Model| {
+            let name = model.to_string();
+            self.models.iter().find(|m| m.model == name).map(|m| &m.summary)
+        };
+        if let (Some(b), Some(c)) = (summary(Model::B), summary(Model::C)) {
+            self.budget = budget::budget(scene, &self.reference, b, c)?;
+        }
+        Ok(())
+    }
 }
 
 /// One reduced model against the reference.
@@ -131,6 +154,7 @@ pub fn compare_scene(scene: &Scene, reference: &Outcome, reduced: &[Outcome]) ->
         integrity,
         window,
         models,
+        budget: Vec::new(),
     }
 }
 

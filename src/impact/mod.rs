@@ -10,6 +10,7 @@ mod recorder;
 pub mod reduced;
 mod summary;
 pub mod system;
+pub mod variants;
 
 pub use contact_ledger::ContactLedger;
 pub use history::{CURVES, History, Motion};

@@ -98,7 +98,6 @@ impl Reduced {
 
     fn summary(&self, result: &Integration, solve_seconds: f64) -> Summary {
         let system = &self.system;
-        let energy = |i: usize| 0.5 * system.masses[i] * result.velocity[i].powi(2);
         Summary {
             schema_version: SCHEMA_VERSION,
             scene: self.scene.clone(),
@@ -106,18 +105,7 @@ impl Reduced {
             source: Source::Reduced,
             model: Some(self.model.to_string()),
             modes: Some(system.modes),
-            quantities: PlateQuantities {
-                efficiency: energy(1) / system.initial_energy(),
-                outer_velocity_final: result.velocity[0],
-                inner_velocity_final: result.velocity[1],
-                outer_force_peak: result.contacts[0].force_peak,
-                inner_force_peak: result.contacts[1].force_peak,
-                outer_contact_end: result.contacts[0].end,
-                inner_contact_end: result.contacts[1].end,
-                outer_contacts: result.contacts[0].contacts,
-                inner_contacts: result.contacts[1].contacts,
-                first_frequency: system.first_frequency,
-            },
+            quantities: quantities(system, result),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
@@ -128,6 +116,23 @@ impl Reduced {
             samples: None,
             sample_interval: None,
         }
+    }
+}
+
+/// The physical results of an integration of `system`.
+pub(super) fn quantities(system: &System, result: &Integration) -> PlateQuantities {
+    let energy = |i: usize| 0.5 * system.masses[i] * result.velocity[i].powi(2);
+    PlateQuantities {
+        efficiency: energy(1) / system.initial_energy(),
+        outer_velocity_final: result.velocity[0],
+        inner_velocity_final: result.velocity[1],
+        outer_force_peak: result.contacts[0].force_peak,
+        inner_force_peak: result.contacts[1].force_peak,
+        outer_contact_end: result.contacts[0].end,
+        inner_contact_end: result.contacts[1].end,
+        outer_contacts: result.contacts[0].contacts,
+        inner_contacts: result.contacts[1].contacts,
+        first_frequency: system.first_frequency,
     }
 }
 
@@ -158,29 +163,35 @@ fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result
             }
         }
     };
-    let tip = |shape: &Shape, material: &Material, patch| match *shape {
-        Shape::Sphere { radius } => continuum::sphere_residual(radius, material, patch, &mesh),
-        // a compact body is rigid but for its Hertz contact
-        Shape::Compact { .. } => Ok(0.0),
-    };
-    let tips = [
-        tip(&setup.outer.shape, &setup.outer.material, rough.patch_radius[0])?,
-        tip(&setup.inner.shape, &setup.inner.material, rough.patch_radius[1])?,
-    ];
+    let tips = tip_residuals(setup, rough.patch_radius, &mesh)?;
     Ok(System::new(setup, &plate, tips))
 }
 
+/// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
+/// radii `patch` in m.
+pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOptions) -> Result<[f64; 2]> {
+    let tip = |shape: &Shape, material: &Material, patch| match *shape {
+        Shape::Sphere { radius } => continuum::sphere_residual(radius, material, patch, mesh),
+        // a compact body is rigid but for its Hertz contact
+        Shape::Compact { .. } => Ok(0.0),
+    };
+    Ok([
+        tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
+        tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
+    ])
+}
+
 /// What model C has to know of the impact before it is solved, from a model without residual.
-struct Rough {
+pub(super) struct Rough {
     /// Radii in m of the patches over which loads are weighted: Hertz's at the force peaks. The result hardly
     /// depends on them.
-    patch_radius: [f64; 2],
+    pub(super) patch_radius: [f64; 2],
     /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
     contact_frequency: f64,
 }
 
 impl Rough {
-    fn of(system: &System) -> Result<Self> {
+    pub(super) fn of(system: &System) -> Result<Self> {
         let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
         let radius = |i: usize| system.laws[i].contact_radius(run.contacts[i].force_peak);
         let frequency = |i: usize| 2.0 * run.contacts[i].force_peak / run.contacts[i].impulse;

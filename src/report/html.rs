@@ -120,6 +120,7 @@ pub fn scene_page(report: &SceneReport) -> String {
                 a href=(format!("{}.csv", comparison.scene)) { "curves as CSV" }
             }
         }
+        (super::budget_section::budget_html(&comparison.budget))
         @for model in &comparison.models { (model_section(model)) }
         h2 { "Mesh and solver" }
         (facts(&[

@@ -42,6 +42,7 @@ fn section(scene: &SceneReport) -> String {
         comparison.scene,
     );
     text += &failures("the reference", &comparison.integrity);
+    text += &super::budget_section::budget_markdown(&comparison.budget);
     for model in &comparison.models {
         text += &model_section(model);
     }

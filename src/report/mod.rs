@@ -3,6 +3,8 @@
 //! Nothing here computes physics, and nothing depends on the time of day: the same results give
 //! the same files.
 
+mod budget_figure;
+mod budget_section;
 mod curves_csv;
 mod efficiency_boxes;
 mod figure;
