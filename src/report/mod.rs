@@ -6,7 +6,7 @@
 mod curves_csv;
 mod efficiency_boxes;
 mod figure;
-mod format;
+pub(crate) mod format;
 mod html;
 mod json;
 mod junit;
