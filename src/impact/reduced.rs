@@ -4,7 +4,7 @@ use super::integrator::{Integration, Options, integrate};
 use super::system::System;
 use super::{Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary};
 use crate::analytical::hertz::HertzImpact;
-use crate::body::continuum::{self, MeshOptions};
+use crate::body::continuum::{MeshOptions, cached as continuum};
 use crate::body::kirchhoff;
 use crate::error::{Error, Result};
 use crate::scene::{Material, Model, PlateImpact, Scene, Setup, Shape};
@@ -150,11 +150,17 @@ fn system(setup: &PlateImpact, model: Model, modes: usize) -> Result<System> {
 }
 
 /// Radii in m of the contact patches over which model C weights loads: Hertz's at the force peaks of `system`, a
-/// model of the same impact without residual. The result hardly depends on them.
+/// model of the same impact without residual. The result hardly depends on them: they are rounded, so that an
+/// impact that is a little different finds its bodies in the cache.
 fn patch_radii(system: &System) -> Result<[f64; 2]> {
     let rough = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
-    let radius = |i: usize| system.laws[i].contact_radius(rough.contacts[i].force_peak);
+    let radius = |i: usize| rounded(system.laws[i].contact_radius(rough.contacts[i].force_peak));
     let outer = radius(0);
     // an inner body that is never reached takes the outer one's patch
     Ok([outer, if rough.contacts[1].contacts > 0 { radius(1) } else { outer }])
+}
+
+/// `value` with three significant digits: off by at most 0.5 %.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
 }
