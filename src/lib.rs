@@ -14,5 +14,6 @@ pub mod project;
 pub mod reference;
 pub mod report;
 pub mod scene;
+pub mod study;
 
 pub use error::{Error, ExitStatus, Result};

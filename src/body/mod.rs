@@ -1,9 +1,12 @@
 //! An elastic body as the impact sees it: modes, their participation at the contact points,
 //! residual flexibility.
 
+pub mod cache;
 pub mod continuum;
 pub mod kirchhoff;
 pub mod quadrature;
+
+use serde::{Deserialize, Serialize};
 
 /// Linear elastic body reduced to its modes, seen from its contact points.
 ///
@@ -12,7 +15,7 @@ pub mod quadrature;
 /// under forces `f_i` along +z at the contact points, and the displacement along +z of contact
 /// point i is `sum_k participation[k][i] q_k + sum_j residual[i][j] f_j`.
 /// Contact point 0 faces the outer body, contact point 1 the inner body.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModalBody {
     /// Eigenfrequencies omega_k in rad/s, ascending; 0 = rigid motion. Shape (n).
     pub omega: Vec<f64>,

@@ -6,6 +6,7 @@ mod progress;
 mod reduced;
 mod reference;
 mod schema;
+mod study;
 
 use crate::error::{Error, ExitStatus, Result};
 use clap::{Args, Parser, Subcommand};
@@ -44,6 +45,9 @@ enum Command {
     /// Compare, and let the scene's tolerances decide the exit status
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
     Gate(compare::GateArguments),
+    /// Compute one of the paper's tables or parameter studies
+    #[command(after_help = "Example: impactcheck study table2 --json")]
+    Study(study::Arguments),
     /// Tell what is installed, and the command that installs what is missing
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
@@ -95,6 +99,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Reference(arguments) => reference::run(&context, &arguments),
         Command::Compare(arguments) => compare::run(&context, &arguments),
         Command::Gate(arguments) => compare::gate(&context, &arguments),
+        Command::Study(arguments) => study::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),
     };

@@ -4,7 +4,7 @@ use super::integrator::{Integration, Options, integrate};
 use super::system::System;
 use super::{Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary};
 use crate::analytical::hertz::HertzImpact;
-use crate::body::continuum::{self, ContinuumPlate, MeshOptions};
+use crate::body::continuum::{MeshOptions, cached};
 use crate::body::kirchhoff;
 use crate::error::{Error, Result};
 use crate::scene::{Material, Model, PlateImpact, Scene, Setup, Shape};
@@ -148,7 +148,7 @@ fn system(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<Sys
 /// Model C: continuum plate with residual flexibility, residual flexibility of the spheres.
 fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result<System> {
     let mesh = MeshOptions::default();
-    let build = |modes| ContinuumPlate::new(&setup.plate, rough.patch_radius, modes, &mesh);
+    let build = |modes| cached::plate(&setup.plate, rough.patch_radius, modes, &mesh);
     let plate = match modes {
         Some(modes) => build(modes)?.modal_body(modes),
         None => {
@@ -171,7 +171,7 @@ fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result
 /// radii `patch` in m.
 pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOptions) -> Result<[f64; 2]> {
     let tip = |shape: &Shape, material: &Material, patch| match *shape {
-        Shape::Sphere { radius } => continuum::sphere_residual(radius, material, patch, mesh),
+        Shape::Sphere { radius } => cached::sphere_residual(radius, material, patch, mesh),
         // a compact body is rigid but for its Hertz contact
         Shape::Compact { .. } => Ok(0.0),
     };
@@ -184,7 +184,7 @@ pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOpt
 /// What model C has to know of the impact before it is solved, from a model without residual.
 pub(super) struct Rough {
     /// Radii in m of the patches over which loads are weighted: Hertz's at the force peaks. The result hardly
-    /// depends on them.
+    /// depends on them: they are rounded, so that an impact that is a little different finds its bodies in the cache.
     pub(super) patch_radius: [f64; 2],
     /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
     contact_frequency: f64,
@@ -193,7 +193,7 @@ pub(super) struct Rough {
 impl Rough {
     pub(super) fn of(system: &System) -> Result<Self> {
         let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
-        let radius = |i: usize| system.laws[i].contact_radius(run.contacts[i].force_peak);
+        let radius = |i: usize| rounded(system.laws[i].contact_radius(run.contacts[i].force_peak));
         let frequency = |i: usize| 2.0 * run.contacts[i].force_peak / run.contacts[i].impulse;
         let outer = (radius(0), frequency(0));
         // an inner body that is never reached takes the outer one's patch
@@ -205,4 +205,9 @@ impl Rough {
     fn truncation_error(&self, omega_next: f64) -> f64 {
         (self.contact_frequency / omega_next).powi(2)
     }
+}
+
+/// `value` with three significant digits: off by at most 0.5 %.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
 }

@@ -23,7 +23,7 @@ use super::integrator::{Options, integrate};
 use super::reduced::{Rough, quantities, tip_residuals};
 use super::summary::PlateQuantities;
 use super::system::System;
-use crate::body::continuum::{ContinuumPlate, MeshOptions};
+use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::{ModalBody, kirchhoff};
 use crate::error::Result;
 use crate::scene::{PlateImpact, Scene, Setup};
@@ -87,7 +87,7 @@ impl<'a> Variants<'a> {
         Ok(Self {
             setup,
             end_time: scene.run.end_time,
-            plate: ContinuumPlate::new(&setup.plate, patch, modes[1], &continuum.mesh)?,
+            plate: cached::plate(&setup.plate, patch, modes[1], &continuum.mesh)?,
             tips: tip_residuals(setup, patch, &continuum.mesh)?,
             kirchhoff,
         })

@@ -30,7 +30,7 @@ pub(super) fn prefixed(unit: &str, scale: f64) -> Prefixed {
 }
 
 /// `value` with `digits` significant digits; a dash if it is no number.
-pub(super) fn significant(value: f64, digits: usize) -> String {
+pub(crate) fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".into();
     }

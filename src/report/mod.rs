@@ -8,7 +8,7 @@ mod budget_section;
 mod curves_csv;
 mod efficiency_boxes;
 mod figure;
-mod format;
+pub(crate) mod format;
 mod html;
 mod json;
 mod junit;

@@ -16,7 +16,8 @@ impl Scene {
     }
 }
 
-fn drop_material_names(value: &mut Value) {
+/// Takes the names out of all materials below `value`: they change nothing.
+pub(crate) fn drop_material_names(value: &mut Value) {
     let Value::Object(map) = value else { return };
     for (key, child) in map.iter_mut() {
         if let (true, Value::Object(material)) = (key == "material", &mut *child) {

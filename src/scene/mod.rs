@@ -16,6 +16,7 @@ mod specification;
 mod tolerances;
 
 pub use find::{resolve, shipped};
+pub(crate) use problem::suggestion;
 pub use problem::{Problem, Problems, problems};
 pub use read::MAX_FILE_BYTES;
 pub use schema::schema;

@@ -8,6 +8,7 @@
 
 mod assembly;
 mod basis;
+pub mod cached;
 mod element;
 mod grading;
 mod lanczos;
@@ -24,7 +25,7 @@ pub use sphere::sphere_residual;
 use crate::error::{Error, Result};
 
 /// How finely a body is meshed; the defaults give Table 1's impacts within 0.02 %.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct MeshOptions {
     /// Polynomial order of the elements in both directions, 1 to 8.
     pub order: usize,

@@ -30,7 +30,7 @@ pub struct PlateMode {
 }
 
 /// Continuum plate seen from the contact points 0 (outer face, z = +t/2) and 1 (inner face), both at r = 0.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContinuumPlate {
     /// Elastic eigenfrequencies in rad/s, ascending, one more than asked for. Shape (n + 1).
     pub omega: Vec<f64>,

@@ -1,0 +1,160 @@
+//! Parameter studies and the paper's tables and figures: numbers in rows, and what the paper says about them.
+//!
+//! A study is one file with one function that returns a [`Study`], and one line in [`STUDIES`].
+
+pub mod table2;
+mod write;
+
+pub use write::{csv, json, markdown, write};
+
+use crate::error::{Error, Result};
+use crate::scene::suggestion;
+use serde::Serialize;
+
+/// Version of the study document.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// What a study tells a person while it runs.
+pub type Note<'a> = dyn FnMut(&str) + 'a;
+
+/// A study that can be asked for by name.
+#[derive(Debug, Clone, Copy)]
+pub struct Entry {
+    /// Name on the command line and of the files.
+    pub name: &'static str,
+    /// One line for people.
+    pub about: &'static str,
+    /// Runs it.
+    pub run: fn(&mut Note) -> Result<Study>,
+}
+
+/// All studies there are.
+pub const STUDIES: [Entry; 1] = [Entry {
+    name: "table2",
+    about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
+    run: table2::run,
+}];
+
+/// The study called `name`.
+///
+/// # Errors
+/// [`Error::Usage`] if there is none; it lists those there are.
+pub fn find(name: &str) -> Result<&'static Entry> {
+    STUDIES.iter().find(|entry| entry.name == name).ok_or_else(|| {
+        let names = STUDIES.map(|entry| entry.name);
+        let hint =
+            suggestion(name, names).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+        Error::Usage(format!("there is no study `{name}`{hint} (there: {})", names.join(", ")))
+    })
+}
+
+/// One value of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Cell {
+    /// A quantity in the column's SI unit.
+    Number(f64),
+    /// A number of something.
+    Count(usize),
+    /// Not known here, for example because a solver is not installed; null in JSON.
+    Missing,
+}
+
+impl<T: Into<Cell>> From<Option<T>> for Cell {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Cell::Missing, Into::into)
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(value: f64) -> Self {
+        Cell::Number(value)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(value: usize) -> Self {
+        Cell::Count(value)
+    }
+}
+
+/// What becomes of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Ours is within the bound.
+    Pass,
+    /// Ours differs by more than the bound.
+    Fail,
+    /// There is no value to judge, for example because a solver is not installed.
+    Unchecked,
+}
+
+/// Something the paper says, or two of our solvers have to agree on, and what was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Claim {
+    /// The claim in words.
+    pub claim: String,
+    /// Unit of the three numbers; "1" for pure numbers.
+    pub unit: &'static str,
+    /// The paper's value, if the claim is the paper's.
+    pub paper: Option<f64>,
+    /// What was found, if it was.
+    pub ours: Option<f64>,
+    /// How far ours may lie from the paper's value, or from zero if the paper gives none.
+    pub bound: f64,
+    /// The verdict.
+    pub verdict: Verdict,
+}
+
+impl Claim {
+    /// A claim whose verdict follows from |ours - paper| <= bound.
+    pub fn new(claim: String, unit: &'static str, paper: Option<f64>, ours: Option<f64>, bound: f64) -> Self {
+        let verdict = match ours.map(|ours| (ours - paper.unwrap_or(0.0)).abs() <= bound) {
+            Some(true) => Verdict::Pass,
+            Some(false) => Verdict::Fail,
+            None => Verdict::Unchecked,
+        };
+        Claim { claim, unit, paper, ours, bound, verdict }
+    }
+}
+
+/// The result of a study; the document that `study --json` prints.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Study {
+    /// [`SCHEMA_VERSION`].
+    pub schema_version: u32,
+    /// Name of the study.
+    pub study: &'static str,
+    /// What it is, in a sentence or two.
+    pub description: String,
+    /// Names of the columns.
+    pub columns: Vec<&'static str>,
+    /// SI units of the columns, "1" for pure numbers.
+    pub units: Vec<&'static str>,
+    /// The values. Shape (rows, columns).
+    pub rows: Vec<Vec<Cell>>,
+    /// What follows from them.
+    pub claims: Vec<Claim>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_claim_is_judged_by_its_bound_and_unchecked_without_a_value() {
+        let verdict = |paper, ours, bound| Claim::new(String::new(), "Hz", paper, ours, bound).verdict;
+        assert_eq!(verdict(Some(136e3), Some(133.5e3), 636.0), Verdict::Fail);
+        assert_eq!(verdict(Some(136e3), Some(135.5e3), 636.0), Verdict::Pass);
+        assert_eq!(verdict(None, Some(-2e-3), 1e-3), Verdict::Fail);
+        assert_eq!(verdict(None, Some(f64::NAN), 1e-3), Verdict::Fail);
+        assert_eq!(verdict(None, None, 1e-3), Verdict::Unchecked);
+    }
+
+    #[test]
+    fn an_unknown_study_is_a_usage_error_that_names_the_nearest() {
+        let said = find("tabel2").expect_err("unknown").to_string();
+        assert!(said.contains("did you mean `table2`?"), "{said}");
+    }
+}
