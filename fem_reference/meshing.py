@@ -205,8 +205,8 @@ def mesh_plate(plate: Plate, settings: MeshSettings) -> BodyMesh:
 
 def modal_plate_mesh(plate: Plate) -> BodyMesh:
     """Even mesh of the plate alone, fit for eigenmodes with quadratic elements."""
-    # The stress at a clamped rim's corners is singular and slows the convergence: with four elements
-    # over the thickness the first frequency is up to 0.2 % high, with twelve 0.03 %.
+    # The stress at a clamped rim's corners is singular and slows the convergence: with four
+    # elements over the thickness the first frequency is up to 0.2 % high, with twelve 0.03 %.
     size = min(plate.thickness / 12.0, plate.radius / 24.0)
     return mesh_plate(plate, MeshSettings(size, 1, size, size, 1.2, 1.2))
 
