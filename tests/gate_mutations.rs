@@ -94,7 +94,7 @@ fn gate(scene: &str, store: &Path) -> i32 {
     let out = tempfile::tempdir().unwrap();
     let output = Command::cargo_bin("impactcheck")
         .unwrap()
-        .args(["gate", scene, "--store"])
+        .args(["gate", scene, "--models", "B", "--store"])
         .arg(store)
         .arg("--out")
         .arg(out.path())

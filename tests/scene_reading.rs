@@ -4,7 +4,7 @@
 use impactcheck::scene::{self, Edge, Geometry, Model, PlateImpact, Problem, Scene, Setup, Shape, problems};
 use impactcheck::{Error, ExitStatus};
 
-const VALID: &str = include_str!("../scenes/scaled-plate-r10.toml");
+const VALID: &str = include_str!("fixtures/plate-impact.toml");
 
 fn parse(text: &str) -> Scene {
     Scene::parse("scene.toml", text).expect("valid scene")

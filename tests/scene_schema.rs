@@ -59,7 +59,7 @@ fn scene_json(text: &str) -> Value {
     serde_json::to_value(value).expect("JSON")
 }
 
-const VALID: &str = include_str!("../scenes/scaled-plate-r10.toml");
+const VALID: &str = include_str!("fixtures/plate-impact.toml");
 
 #[test]
 fn schema_accepts_the_shipped_scenes() {
