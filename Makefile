@@ -2,7 +2,7 @@
 # make setup     only the installation
 # make report    the report of the shipped scenes, into reports/
 # make solutions computes the stored references of the shipped scenes again
-# make evidence  slow evidence: convergence of the references over three meshes
+# make evidence  slow evidence: references over three meshes, model C on the validation scenes, Table 2 (an hour or more)
 
 # The python that has (or gets) FEniCSx; Debian's packages belong to /usr/bin/python3.
 PYTHON := $(or $(IMPACTCHECK_PYTHON),/usr/bin/python3)
@@ -59,3 +59,7 @@ solutions: setup
 evidence: setup
 	for scene in $(SCENES); do for resolution in coarse paper fine; do \
 	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution $$resolution || exit 1; done; done
+	for scene in scenes/validation/*.toml; do \
+	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution paper || exit 1; done
+	$(RUN) --store $(OUT)/evidence gate scenes/validation/*.toml --models B,C --out $(OUT)/evidence-report
+	$(RUN) study table2 --out $(OUT)/table2
