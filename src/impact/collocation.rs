@@ -54,6 +54,13 @@ impl Collocation {
         std::array::from_fn(|l| self.lagrange[l].iter().rev().fold(0.0, |sum, c| sum * u + c))
     }
 
+    /// Weights of the values at the Gauss points in the polynomial's derivative at `u`, per step.
+    pub fn derivative(&self, u: f64) -> Stages {
+        std::array::from_fn(|l| {
+            (1..STAGES).rev().fold(0.0, |sum, p| sum * u + p as f64 * self.lagrange[l][p])
+        })
+    }
+
     /// An oscillator's answer at time `t` of a step of length `h`.
     pub fn response(&self, oscillator: &Oscillator, t: f64, h: f64) -> Response {
         let moments = oscillator.moments(t);

@@ -22,6 +22,9 @@ pub struct StepCourse {
 pub struct ContactLedger {
     /// Impulse so far in N s.
     pub impulse: f64,
+    /// Work of the step's force polynomials along the approach so far in J: what the bodies lost to the contact. The
+    /// contact's strain energy differs from it by the error of the integration alone, damped bodies or not.
+    pub work: f64,
     /// Largest force so far in N.
     pub force_peak: f64,
     /// Time of the latest release in s.
@@ -48,6 +51,7 @@ impl ContactLedger {
         let gauss: &Stages = course.force[1..=STAGES].try_into().expect("STAGES values");
         let before = self.impulse;
         self.impulse += course.h * gauss.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
+        self.work += work(collocation, gauss, &course.approach);
         let (highest, largest) = argmax(&course.force);
         if largest > self.force_peak {
             self.force_peak = largest.max(self.interpolated_peak(collocation, course, highest));
@@ -82,6 +86,17 @@ impl ContactLedger {
         }
         value(0.5 * (low + high))
     }
+}
+
+/// Integral of the force polynomial over the approach in J, by parts: F delta at the ends less the integral of delta dF.
+fn work(collocation: &Collocation, force: &Stages, approach: &[f64; POINTS]) -> f64 {
+    let at = |weights: Stages| weights.iter().zip(force).map(|(w, f)| w * f).sum::<f64>();
+    let ends = at(collocation.interpolation(1.0)) * approach[POINTS - 1]
+        - at(collocation.interpolation(0.0)) * approach[0];
+    let inside: f64 = (0..STAGES)
+        .map(|j| collocation.weights[j] * approach[j + 1] * at(collocation.derivative(collocation.nodes[j])))
+        .sum();
+    ends - inside
 }
 
 /// Where in the step (0..1), before `point`, the approach passes zero.
