@@ -51,3 +51,19 @@ fn halving_the_tolerance_changes_the_efficiency_by_less_than_1e_6() {
         assert_abs_diff_eq!(coarse, fine, epsilon = 1e-6);
     }
 }
+
+#[test]
+fn contact_ends_of_model_c_are_where_its_forces_end() {
+    // with a residual flexibility the modal approach of one contact depends on the force of the other
+    for name in ["scaled-plate-r10", "scaled-plate-r6.35", "scenes/validation/titanium-sapphire.toml"] {
+        let scene = Scene::read(resolve(name).unwrap()).unwrap();
+        let outcome = Reduced::new(&scene, Model::C, None).unwrap().run_with_history(1e-7).unwrap();
+        let (q, history) = (&outcome.summary.quantities, &outcome.history);
+        for (force, end) in
+            [(&history.outer_force, q.outer_contact_end), (&history.inner_force, q.inner_contact_end)]
+        {
+            let last = force.iter().rposition(|f| *f > 0.0).unwrap();
+            assert!(history.time[last] <= end && end <= history.time[last + 1], "{name}: {end:e}");
+        }
+    }
+}

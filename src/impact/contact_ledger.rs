@@ -11,8 +11,10 @@ pub struct StepCourse {
     pub time: f64,
     /// Length of the step in s.
     pub h: f64,
-    /// Approach at start, Gauss points and end, m.
+    /// Modal approach, on which the force works, at start, Gauss points and end, m.
     pub approach: [f64; POINTS],
+    /// Local approach, positive where the bodies touch, at the same points, m.
+    pub local_approach: [f64; POINTS],
     /// Force at start, Gauss points and end, N.
     pub force: [f64; POINTS],
 }
@@ -57,7 +59,7 @@ impl ContactLedger {
             self.force_peak = largest.max(self.interpolated_peak(collocation, course, highest));
         }
         for point in 1..POINTS {
-            let closed = course.approach[point] > 0.0;
+            let closed = course.local_approach[point] > 0.0;
             if closed && !self.closed {
                 self.contacts += 1;
                 self.impulse_at_touch = before;
@@ -99,13 +101,13 @@ fn work(collocation: &Collocation, force: &Stages, approach: &[f64; POINTS]) -> 
     ends - inside
 }
 
-/// Where in the step (0..1), before `point`, the approach passes zero.
+/// Where in the step (0..1), before `point`, the local approach passes zero.
 fn release(collocation: &Collocation, course: &StepCourse, point: usize) -> f64 {
     let u = abscissae(collocation);
     let (mut low, mut high) = (u[point - 1], u[point]);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if interpolate(&u, &course.approach, middle) > 0.0 { low = middle } else { high = middle }
+        if interpolate(&u, &course.local_approach, middle) > 0.0 { low = middle } else { high = middle }
     }
     0.5 * (low + high)
 }

@@ -252,23 +252,25 @@ impl<'a> Run<'a> {
         if let Some(recorder) = &mut self.recorder {
             recorder.step(self.time, h, &self.q, &self.v, &trial.forces)?;
         }
-        for i in 0..2 {
-            let join = |start: f64, stages: &Stages, end: f64| {
-                std::array::from_fn(|p| match p {
-                    0 => start,
-                    _ if p == STAGES + 1 => end,
-                    _ => stages[p - 1],
-                })
+        // start, Gauss points and end of the step; rows of both contacts
+        let join = |start: [f64; 2], stages: &[Stages; 2], end: [f64; 2]| -> [[f64; 2]; STAGES + 2] {
+            std::array::from_fn(|p| match p {
+                0 => start,
+                _ if p == STAGES + 1 => end,
+                _ => [stages[0][p - 1], stages[1][p - 1]],
+            })
+        };
+        let approach = join(self.approach, &trial.approach, trial.end_approach);
+        let force = join(self.force, &trial.forces, trial.end_force);
+        for (i, contact) in self.contacts.iter_mut().enumerate() {
+            let course = StepCourse {
+                time: self.time,
+                h,
+                approach: approach.map(|y| y[i]),
+                local_approach: std::array::from_fn(|p| self.system.local_approach(approach[p], force[p])[i]),
+                force: force.map(|f| f[i]),
             };
-            self.contacts[i].book(
-                self.collocation,
-                &StepCourse {
-                    time: self.time,
-                    h,
-                    approach: join(self.approach[i], &trial.approach[i], trial.end_approach[i]),
-                    force: join(self.force[i], &trial.forces[i], trial.end_force[i]),
-                },
-            );
+            contact.book(self.collocation, &course);
         }
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);

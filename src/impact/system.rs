@@ -116,6 +116,11 @@ impl System {
         [0, 1].map(|i| dot(&self.approach[i], q) - self.gap[i])
     }
 
+    /// Approach of both contacts in m with the part of the residual flexibility: positive where the bodies touch.
+    pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
+        self.residual.map_or(y, |r| [0, 1].map(|i| y[i] - r[i][0] * f[0] - r[i][1] * f[1]))
+    }
+
     /// Forces of both contacts in N at the modal approach `y` in m; `None` if there is no equilibrium.
     #[inline]
     pub fn forces(&self, y: [f64; 2]) -> Option<[f64; 2]> {
