@@ -70,9 +70,9 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
     let references = references(context, arguments, &scenes)?;
     let mut reduced = Vec::new();
     for scene in &scenes {
-        let outcomes: Result<Vec<Outcome>> = models(arguments, scene)
+        let outcomes: Result<Vec<Outcome>> = models(arguments)
             .into_iter()
-            .map(|(model, modes)| Reduced::new(scene, model, modes)?.run_with_history(TOLERANCE))
+            .map(|model| Reduced::new(scene, model, None)?.run_with_history(TOLERANCE))
             .collect();
         reduced.push(outcomes?);
     }
@@ -168,9 +168,13 @@ fn computed(context: &Context, arguments: &Arguments, scene: &Scene, store: &Sto
     reference::compute(context, scene, arguments.resolution, store, &[])
 }
 
-/// The models to compare; the scene's number of modes belongs to model B (and C).
-fn models(arguments: &Arguments, _scene: &Scene) -> Vec<(Model, Option<usize>)> {
-    let mut models: Vec<_> = arguments.models.iter().map(|model| (*model, None)).collect();
-    models.dedup();
+/// The models to compare, each once, in the order asked for.
+fn models(arguments: &Arguments) -> Vec<Model> {
+    let mut models = Vec::new();
+    for model in &arguments.models {
+        if !models.contains(model) {
+            models.push(*model);
+        }
+    }
     models
 }
