@@ -44,7 +44,7 @@ fn a_patch_on_a_large_body_tends_to_the_half_space() {
     let body = plate_of(1.0, 2.0, Edge::Clamped, steel.clone());
     let relative = |patch: f64| {
         let plate = ContinuumPlate::new(&body, [patch; 2], 0, &MeshOptions::default()).unwrap();
-        plate.flexibility[0][0] / half_space_flexibility(&steel, patch)
+        plate.flexibility[0][0] / half_space_flexibility(&steel, patch, patch)
     };
     let values = [0.08, 0.04, 0.02, 0.01].map(relative);
     println!("{values:?}");

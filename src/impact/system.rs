@@ -1,13 +1,13 @@
 //! The bodies of a plate impact as one set of oscillators coupled by two contacts.
 //!
 //! Every body is a set of mass-normalised coordinates q_k: the rigid spheres (omega = 0), the modes
-//! of the plate. The approach of contact i is delta_i = sum_k b_ik q_k - gap_i - sum_j R_ij F_j and
+//! of the plate. The approach of contact i is delta_i = sum_k b_ik q_k - gap_i, less what the residual flexibility yields, and
 //! its force acts back as q_k'' + 2 alpha_k q_k' + omega_k^2 q_k = -sum_i b_ik F_i.
 //! Contact 0 joins outer body and plate, contact 1 plate and inner body.
 
 use super::duhamel::Oscillator;
 use crate::body::ModalBody;
-use crate::contact::Hertz;
+use crate::contact::{Hertz, Residual};
 use crate::scene::PlateImpact;
 
 /// Index of the outer body's rigid motion among the oscillators.
@@ -30,8 +30,8 @@ pub struct System {
     pub gap: [f64; 2],
     /// Contact laws.
     pub laws: [Hertz; 2],
-    /// Residual flexibility in terms of the approaches, m/N; `None` if it is zero.
-    pub residual: Option<[[f64; 2]; 2]>,
+    /// Residual flexibility in terms of the approaches; `None` if it is zero.
+    pub residual: Option<Residual>,
     /// Masses of outer and inner body in kg.
     pub masses: [f64; 2],
     /// Speed of the outer body towards the plate in m/s.
@@ -60,8 +60,17 @@ impl System {
             approach[1].push(-bottom);
             centre.push(0.5 * (top + bottom));
         }
-        let r = &plate.residual;
-        let residual = [[r[0][0] + tip_residual[0], -r[0][1]], [-r[1][0], r[1][1] + tip_residual[1]]];
+        // the inner contact closes when the plate moves down
+        let sign = |i: usize, j: usize| if i == j { 1.0 } else { -1.0 };
+        let tip_radius = [outer.shape.tip_radius(), inner.shape.tip_radius()];
+        let mut residual = Residual { flexibility: [[0.0; 2]; 2], growth: [[0.0; 2]; 2] };
+        for i in 0..2 {
+            for j in 0..2 {
+                residual.flexibility[i][j] = sign(i, j) * plate.residual[i][j];
+                residual.growth[i][j] = sign(i, j) * plate.patch_growth[i][j] * tip_radius[i];
+            }
+            residual.flexibility[i][i] += tip_residual[i];
+        }
         let law = |shape: &crate::scene::Shape, material| {
             Hertz::new(shape.tip_radius(), material, &setup.plate.material)
         };
@@ -71,7 +80,7 @@ impl System {
             centre,
             gap: [0.0, inner.gap],
             laws: [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)],
-            residual: residual.iter().flatten().any(|r| *r != 0.0).then_some(residual),
+            residual: (!residual.is_zero()).then_some(residual),
             masses,
             speed: outer.speed,
             first_frequency: elastic.clone().fold(f64::INFINITY, f64::min) / (2.0 * std::f64::consts::PI),
@@ -104,11 +113,8 @@ impl System {
 
     /// Strain energy of contacts and residual flexibility in J at the forces `f` in N.
     pub fn contact_energy(&self, f: [f64; 2]) -> f64 {
-        let hertz: f64 = (0..2).map(|i| 0.4 * f[i] * (f[i] / self.laws[i].stiffness).powf(2.0 / 3.0)).sum();
-        let residual = self.residual.map_or(0.0, |r| {
-            0.5 * (f[0] * (r[0][0] * f[0] + r[0][1] * f[1]) + f[1] * (r[1][0] * f[0] + r[1][1] * f[1]))
-        });
-        hertz + residual
+        let d = [0, 1].map(|i| self.laws[i].approach(f[i]));
+        0.4 * (f[0] * d[0] + f[1] * d[1]) + self.residual.map_or(0.0, |r| r.energy(f, d))
     }
 
     /// Approach of both contacts in m, without the part of the residual flexibility.
@@ -116,9 +122,10 @@ impl System {
         [0, 1].map(|i| dot(&self.approach[i], q) - self.gap[i])
     }
 
-    /// Approach of both contacts in m with the part of the residual flexibility: positive where the bodies touch.
+    /// Hertz approach of both contacts in m at the modal approach `y` in m and the forces `f` in N that go with it:
+    /// positive where the bodies touch.
     pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
-        self.residual.map_or(y, |r| [0, 1].map(|i| y[i] - r[i][0] * f[0] - r[i][1] * f[1]))
+        self.residual.map_or(y, |residual| residual.local_approach(&self.laws, y, f))
     }
 
     /// Forces of both contacts in N at the modal approach `y` in m; `None` if there is no equilibrium.
@@ -126,7 +133,7 @@ impl System {
     pub fn forces(&self, y: [f64; 2]) -> Option<[f64; 2]> {
         match &self.residual {
             None => Some([self.laws[0].force(y[0]), self.laws[1].force(y[1])]),
-            Some(residual) => crate::contact::residual::forces(&self.laws, residual, y, y),
+            Some(residual) => residual.forces(&self.laws, y),
         }
     }
 }

@@ -139,6 +139,7 @@ pub fn mean_of_faces(body: &ModalBody) -> ModalBody {
     ModalBody {
         participation: body.participation.iter().map(|phi| [0.5 * (phi[0] + phi[1]); 2]).collect(),
         residual: [[0.25 * (r[0][0] + r[0][1] + r[1][0] + r[1][1]); 2]; 2],
+        patch_growth: [[0.0; 2]; 2],
         ..body.clone()
     }
 }
