@@ -2,6 +2,7 @@
 
 use super::integrator::{Integration, Options, integrate};
 use super::system::System;
+use super::validity;
 use super::{Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::continuum::{MeshOptions, cached};
@@ -27,6 +28,7 @@ pub struct Reduced {
     end_time: Option<f64>,
     scene: String,
     scene_hash: String,
+    warnings: Vec<String>,
 }
 
 impl Reduced {
@@ -51,9 +53,11 @@ impl Reduced {
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
             (_, modes) => modes.or(scene.reduced.modes),
         };
+        let (system, warnings) = system(setup, model, modes)?;
         Ok(Self {
             model,
-            system: system(setup, model, modes)?,
+            system,
+            warnings,
             end_time: scene.run.end_time,
             scene: scene.name.clone(),
             scene_hash: scene.hash(),
@@ -113,6 +117,7 @@ impl Reduced {
             uncertainty: Default::default(),
             mesh: None,
             solver: None,
+            warnings: self.warnings.clone(),
             samples: None,
             sample_interval: None,
         }
@@ -136,12 +141,16 @@ pub(super) fn quantities(system: &System, result: &Integration) -> PlateQuantiti
     }
 }
 
-/// The oscillators and contacts of `model` with `modes` elastic modes; `None` lets model C choose.
-fn system(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<System> {
+/// The oscillators and contacts of `model` with `modes` elastic modes, and what the user has to be warned of; `None`
+/// lets model C choose.
+fn system(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<(System, Vec<String>)> {
     let kirchhoff = |modes| Ok(System::new(setup, &kirchhoff::modes(&setup.plate, modes)?, [0.0; 2]));
     match model {
-        Model::A | Model::B => kirchhoff(modes.unwrap_or(DEFAULT_MODES)),
-        Model::C => continuum(setup, modes, &Rough::of(&kirchhoff(DEFAULT_MODES)?)?),
+        Model::A | Model::B => Ok((kirchhoff(modes.unwrap_or(DEFAULT_MODES))?, Vec::new())),
+        Model::C => {
+            let rough = Rough::of(&kirchhoff(DEFAULT_MODES)?)?;
+            Ok((continuum(setup, modes, &rough)?, validity::warnings(setup, &rough)))
+        }
     }
 }
 
@@ -164,7 +173,7 @@ fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result
         }
     };
     let tips = tip_residuals(setup, rough.patch_radius, &mesh)?;
-    Ok(System::new(setup, &plate, tips))
+    Ok(System::new(setup, &validity::tempered(plate, setup, rough), tips))
 }
 
 /// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
@@ -182,10 +191,13 @@ pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOpt
 }
 
 /// What model C has to know of the impact before it is solved, from a model without residual.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Rough {
     /// Radii in m of the patches over which loads are weighted: Hertz's at the force peaks. The result hardly
     /// depends on them: they are rounded, so that an impact that is a little different finds its bodies in the cache.
     pub(super) patch_radius: [f64; 2],
+    /// Force peaks in N of the outer and the inner contact.
+    pub(super) force_peak: [f64; 2],
     /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
     contact_frequency: f64,
 }
@@ -195,10 +207,15 @@ impl Rough {
         let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
         let radius = |i: usize| rounded(system.laws[i].contact_radius(run.contacts[i].force_peak));
         let frequency = |i: usize| 2.0 * run.contacts[i].force_peak / run.contacts[i].impulse;
-        let outer = (radius(0), frequency(0));
+        let peak = |i: usize| run.contacts[i].force_peak;
+        let outer = (radius(0), frequency(0), peak(0));
         // an inner body that is never reached takes the outer one's patch
-        let inner = if run.contacts[1].contacts > 0 { (radius(1), frequency(1)) } else { outer };
-        Ok(Self { patch_radius: [outer.0, inner.0], contact_frequency: outer.1.max(inner.1) })
+        let inner = if run.contacts[1].contacts > 0 { (radius(1), frequency(1), peak(1)) } else { outer };
+        Ok(Self {
+            patch_radius: [outer.0, inner.0],
+            force_peak: [outer.2, inner.2],
+            contact_frequency: outer.1.max(inner.1),
+        })
     }
 
     /// Relative error of a force when the modes from `omega_next` rad/s on follow statically.

@@ -5,6 +5,7 @@
 //! its force acts back as q_k'' + 2 alpha_k q_k' + omega_k^2 q_k = -sum_i b_ik F_i.
 //! Contact 0 joins outer body and plate, contact 1 plate and inner body.
 
+use super::centre::LocalCentre;
 use super::duhamel::Oscillator;
 use crate::body::ModalBody;
 use crate::contact::{Hertz, Residual};
@@ -26,6 +27,8 @@ pub struct System {
     pub approach: [Vec<f64>; 2],
     /// Displacement along z of the plate's centre (mean of both faces) per unit of each coordinate. Shape (n).
     pub centre: Vec<f64>,
+    /// What the local deformation adds to it; `None` for a plate theory, which knows none.
+    pub local_centre: Option<LocalCentre>,
     /// Initial gap of each contact in m.
     pub gap: [f64; 2],
     /// Contact laws.
@@ -74,12 +77,15 @@ impl System {
         let law = |shape: &crate::scene::Shape, material| {
             Hertz::new(shape.tip_radius(), material, &setup.plate.material)
         };
+        let laws = [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)];
         let elastic = plate.omega.iter().copied().filter(|w| *w > 0.0);
         Self {
             approach,
             centre,
             gap: [0.0, inner.gap],
-            laws: [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)],
+            laws,
+            local_centre: (!residual.is_zero())
+                .then(|| LocalCentre::new(plate, &laws, setup.plate.material.plane_strain_modulus())),
             residual: (!residual.is_zero()).then_some(residual),
             masses,
             speed: outer.speed,
@@ -113,8 +119,10 @@ impl System {
 
     /// Strain energy of contacts and residual flexibility in J at the forces `f` in N.
     pub fn contact_energy(&self, f: [f64; 2]) -> f64 {
-        let d = [0, 1].map(|i| self.laws[i].approach(f[i]));
-        0.4 * (f[0] * d[0] + f[1] * d[1]) + self.residual.map_or(0.0, |r| r.energy(f, d))
+        match &self.residual {
+            None => (0..2).map(|i| 0.4 * f[i] * self.laws[i].approach(f[i])).sum(),
+            Some(residual) => residual.energy(&self.laws, f),
+        }
     }
 
     /// Approach of both contacts in m, without the part of the residual flexibility.
@@ -122,18 +130,19 @@ impl System {
         [0, 1].map(|i| dot(&self.approach[i], q) - self.gap[i])
     }
 
-    /// Hertz approach of both contacts in m at the modal approach `y` in m and the forces `f` in N that go with it:
+    /// Patches of both contacts, squared radius over tip radius in m, at the modal approach `y` in m and the forces `f` in N that go with it:
     /// positive where the bodies touch.
     pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
         self.residual.map_or(y, |residual| residual.local_approach(&self.laws, y, f))
     }
 
-    /// Forces of both contacts in N at the modal approach `y` in m; `None` if there is no equilibrium.
+    /// Patches (as [`Self::local_approach`]) and forces in N of both contacts at the modal approach `y` in m, `guess` being
+    /// the patches of a nearby state; `None` if there is no equilibrium.
     #[inline]
-    pub fn forces(&self, y: [f64; 2]) -> Option<[f64; 2]> {
+    pub fn contact(&self, y: [f64; 2], guess: [f64; 2]) -> Option<([f64; 2], [f64; 2])> {
         match &self.residual {
-            None => Some([self.laws[0].force(y[0]), self.laws[1].force(y[1])]),
-            Some(residual) => residual.forces(&self.laws, y),
+            None => Some((y, [self.laws[0].force(y[0]), self.laws[1].force(y[1])])),
+            Some(residual) => residual.solve(&self.laws, y, guess),
         }
     }
 }

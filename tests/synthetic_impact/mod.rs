@@ -173,6 +173,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         uncertainty: BTreeMap::new(),
         mesh: None,
         solver: None,
+        warnings: Vec::new(),
         samples: None,
         sample_interval: None,
     }
