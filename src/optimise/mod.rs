@@ -1,0 +1,3 @@
+//! Optimisation: the numbers of a scene that transmit most.
+
+pub mod search;
