@@ -7,6 +7,7 @@ mod reduced;
 mod reference;
 mod schema;
 mod study;
+mod sweep;
 
 use crate::error::{Error, ExitStatus, Result};
 use clap::{Args, Parser, Subcommand};
@@ -45,8 +46,10 @@ enum Command {
     /// Compare, and let the scene's tolerances decide the exit status
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
     Gate(compare::GateArguments),
-    /// Compute one of the paper's tables or parameter studies
-    #[command(after_help = "Example: impactcheck study table2 --json")]
+    /// Compute one of the paper's tables or parameter studies, or a sweep of one's own
+    #[command(
+        after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
+    )]
     Study(study::Arguments),
     /// Tell what is installed, and the command that installs what is missing
     Doctor(JsonArgument),

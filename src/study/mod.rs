@@ -9,6 +9,7 @@ pub mod fig17;
 pub mod half_period;
 pub mod parameter;
 mod plot;
+pub mod sweep;
 pub mod table2;
 mod write;
 
