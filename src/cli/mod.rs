@@ -2,6 +2,7 @@
 
 mod compare;
 mod doctor;
+mod optimise;
 mod progress;
 mod reduced;
 mod reference;
@@ -51,6 +52,11 @@ enum Command {
         after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
     )]
     Study(study::Arguments),
+    /// Find the numbers of a scene, within bounds, that transmit most energy
+    #[command(
+        after_help = "Example: impactcheck optimise scaled-plate-r10 --over plate.radius=15mm..60mm --over plate.thickness=1mm..3mm"
+    )]
+    Optimise(optimise::Arguments),
     /// Tell what is installed, and the command that installs what is missing
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
@@ -103,6 +109,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Compare(arguments) => compare::run(&context, &arguments),
         Command::Gate(arguments) => compare::gate(&context, &arguments),
         Command::Study(arguments) => study::run(&context, &arguments),
+        Command::Optimise(arguments) => optimise::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),
     };

@@ -18,6 +18,7 @@ pub struct Template {
     values: Values,
     tolerances: BTreeMap<Model, Tolerances>,
     scene: Scene,
+    text: String,
 }
 
 /// A numeric field of a scene file, such as `plate.thickness` or `materials.steel.density`.
@@ -123,7 +124,7 @@ impl Template {
     pub fn parse(source_name: &str, text: &str) -> Result<Self> {
         let (values, tolerances) = checked(source_name, text)?;
         let scene = assemble(&values, tolerances.clone())?;
-        Ok(Template { values, tolerances, scene })
+        Ok(Template { values, tolerances, scene, text: text.to_owned() })
     }
 
     /// The scene as it stands in the file.
@@ -170,6 +171,37 @@ impl Template {
             set(&mut values, &field.keys, checked);
         }
         assemble(&values, self.tolerances.clone()).map_err(|e| Rejected(e.to_string()))
+    }
+
+    /// The scene file with another name and other numbers, in SI. Comments are lost.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if it can't be written.
+    pub fn text_with(&self, name: &str, numbers: &[(&Field, f64)]) -> Result<String> {
+        let failed = |e: String| Error::Internal(format!("writing the scene file: {e}"));
+        let mut table: toml::Table = self.text.parse().map_err(|e: toml::de::Error| failed(e.to_string()))?;
+        table.insert("name".into(), name.into());
+        for (field, value) in numbers {
+            let number = if field.is_count() { (*value as i64).into() } else { (*value).into() };
+            write(&mut table, &field.keys, number);
+        }
+        toml::to_string(&table).map_err(|e| failed(e.to_string()))
+    }
+}
+
+/// Puts `number` under `keys` of a TOML table, making tables that are not there.
+fn write(table: &mut toml::Table, keys: &[String], number: toml::Value) {
+    match keys {
+        [] => {}
+        [key] => {
+            table.insert(key.clone(), number);
+        }
+        [key, rest @ ..] => {
+            let inner = table.entry(key.clone()).or_insert_with(|| toml::Table::new().into());
+            if let toml::Value::Table(inner) = inner {
+                write(inner, rest, number);
+            }
+        }
     }
 }
 
@@ -259,6 +291,9 @@ mod tests {
         assert_eq!([&setup.plate.material, &setup.outer.material].map(|m| m.youngs_modulus), [100e9; 2]);
         assert_eq!(template.with(&[]).expect("unchanged"), *template.scene());
         assert_eq!(*template.scene(), Scene::parse("base", BASE).expect("shipped scene"));
+        let text =
+            template.text_with("other", &[(&gap, 1e-5), (&modulus, 100e9), (&modes, 7.0)]).expect("text");
+        assert_eq!(Scene::parse("written", &text).expect("valid"), Scene { name: "other".into(), ..scene });
     }
 
     #[test]
