@@ -10,9 +10,11 @@ pub mod comparison;
 pub mod contact;
 pub mod error;
 pub mod impact;
+pub mod optimise;
 pub mod project;
 pub mod reference;
 pub mod report;
+pub mod sampling;
 pub mod scene;
 pub mod study;
 

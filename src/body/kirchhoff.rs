@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::scene::{Edge, Plate};
 use faer::{Mat, Side};
 use std::f64::consts::PI;
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// Degree of the polynomials in an element.
 const DEGREE: usize = 9;
@@ -108,6 +109,40 @@ impl UnitPlate {
 /// As [`UnitPlate::new`].
 pub fn modes(plate: &Plate, modes: usize) -> Result<ModalBody> {
     Ok(UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.scale(plate))
+}
+
+/// Most unit plates that [`UnitPlates`] keeps: a study of the other numbers needs a few, one of Poisson's ratio a
+/// new one each time.
+const KEPT: usize = 32;
+
+/// The unit plates that a series of impacts has needed so far; shared by its threads.
+#[derive(Debug, Default)]
+pub struct UnitPlates(RwLock<Vec<Arc<UnitPlate>>>);
+
+impl UnitPlates {
+    /// As [`modes`], without solving an eigenproblem again.
+    ///
+    /// # Errors
+    /// As [`UnitPlate::new`].
+    pub fn modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
+        let (edge, poisson_ratio) = (plate.edge, plate.material.poisson_ratio);
+        let count = modes + usize::from(edge == Edge::Free);
+        let fits = |unit: &&Arc<UnitPlate>| {
+            unit.edge == edge && unit.poisson_ratio == poisson_ratio && unit.omega.len() == count
+        };
+        // the list is whole after every change, whatever became of the thread that made it
+        let known = self.0.read().unwrap_or_else(PoisonError::into_inner).iter().find(fits).cloned();
+        if let Some(unit) = known {
+            return Ok(unit.scale(plate));
+        }
+        let unit = Arc::new(UnitPlate::new(edge, poisson_ratio, modes)?);
+        let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() >= KEPT {
+            kept.remove(0);
+        }
+        kept.push(Arc::clone(&unit));
+        Ok(unit.scale(plate))
+    }
 }
 
 /// Stiffness and mass of the unit plate on `elements` equal elements, constrained by symmetry at

@@ -6,7 +6,7 @@ use super::validity;
 use super::{Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::continuum::{MeshOptions, cached};
-use crate::body::kirchhoff;
+use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
 use crate::scene::{Material, Model, PlateImpact, Scene, Setup, Shape};
 use std::time::Instant;
@@ -25,10 +25,21 @@ const SAMPLES_PER_CONTACT: f64 = 400.0;
 pub struct Reduced {
     model: Model,
     system: System,
-    end_time: Option<f64>,
-    scene: String,
-    scene_hash: String,
     warnings: Vec<String>,
+    scene: Scene,
+}
+
+/// What one impact of a series gives: the results without what only identifies them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// The physical results.
+    pub quantities: PlateQuantities,
+    /// As in [`Summary`].
+    pub energy_residual: f64,
+    /// As in [`Summary`].
+    pub momentum_residual: f64,
+    /// Time steps taken.
+    pub steps: u64,
 }
 
 impl Reduced {
@@ -38,6 +49,14 @@ impl Reduced {
     /// # Errors
     /// [`Error::Usage`] for a number of modes that makes no sense, [`Error::Solver`] for what no reduced model covers.
     pub fn new(scene: &Scene, model: Model, modes: Option<usize>) -> Result<Self> {
+        Self::in_series(scene.clone(), model, modes, &UnitPlates::default())
+    }
+
+    /// As [`Reduced::new`], one of a series of impacts that share the eigenproblems in `plates`.
+    ///
+    /// # Errors
+    /// As [`Reduced::new`].
+    pub fn in_series(scene: Scene, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Self> {
         let Setup::PlateImpact(setup) = &scene.setup;
         if setup.fluid.is_some() {
             return Err(Error::Solver(format!(
@@ -53,15 +72,8 @@ impl Reduced {
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
             (_, modes) => modes.or(scene.reduced.modes),
         };
-        let (system, warnings) = system(setup, model, modes)?;
-        Ok(Self {
-            model,
-            system,
-            warnings,
-            end_time: scene.run.end_time,
-            scene: scene.name.clone(),
-            scene_hash: scene.hash(),
-        })
+        let (system, warnings) = system(setup, model, modes, plates)?;
+        Ok(Self { model, system, warnings, scene })
     }
 
     /// The oscillators and contacts the model consists of.
@@ -78,6 +90,20 @@ impl Reduced {
         let start = Instant::now();
         let result = integrate(&self.system, &self.options(tolerance))?;
         Ok(self.summary(&result, start.elapsed().as_secs_f64()))
+    }
+
+    /// Runs the impact for its results alone, as a series of many needs them.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub fn point(&self, tolerance: f64) -> Result<Point> {
+        let result = integrate(&self.system, &self.options(tolerance))?;
+        Ok(Point {
+            quantities: quantities(&self.system, &result),
+            energy_residual: result.energy_residual,
+            momentum_residual: result.momentum_residual,
+            steps: result.steps,
+        })
     }
 
     /// Runs the impact and keeps its history. The summary's time is that of a run without history.
@@ -97,15 +123,15 @@ impl Reduced {
     }
 
     fn options(&self, tolerance: f64) -> Options {
-        Options { tolerance, end_time: self.end_time, sample_interval: None }
+        Options { tolerance, end_time: self.scene.run.end_time, sample_interval: None }
     }
 
     fn summary(&self, result: &Integration, solve_seconds: f64) -> Summary {
         let system = &self.system;
         Summary {
             schema_version: SCHEMA_VERSION,
-            scene: self.scene.clone(),
-            scene_hash: self.scene_hash.clone(),
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash(),
             source: Source::Reduced,
             model: Some(self.model.to_string()),
             modes: Some(system.modes),
@@ -143,8 +169,13 @@ pub(super) fn quantities(system: &System, result: &Integration) -> PlateQuantiti
 
 /// The oscillators and contacts of `model` with `modes` elastic modes, and what the user has to be warned of; `None`
 /// lets model C choose.
-fn system(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<(System, Vec<String>)> {
-    let kirchhoff = |modes| Ok(System::new(setup, &kirchhoff::modes(&setup.plate, modes)?, [0.0; 2]));
+fn system(
+    setup: &PlateImpact,
+    model: Model,
+    modes: Option<usize>,
+    plates: &UnitPlates,
+) -> Result<(System, Vec<String>)> {
+    let kirchhoff = |modes| Ok(System::new(setup, &plates.modes(&setup.plate, modes)?, [0.0; 2]));
     match model {
         Model::A | Model::B => Ok((kirchhoff(modes.unwrap_or(DEFAULT_MODES))?, Vec::new())),
         Model::C => {
