@@ -2,12 +2,14 @@
 
 use super::integrator::{Integration, Options, integrate};
 use super::system::System;
-use super::{Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary};
+use super::{BenderSummary, OuterBody, Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::continuum::{MeshOptions, cached};
-use crate::body::kirchhoff;
+use crate::body::{ModalBody, kirchhoff};
 use crate::error::{Error, Result};
-use crate::scene::{Material, Model, PlateImpact, Scene, Setup, Shape};
+use crate::fluid::FluidForces;
+use crate::fluid::added_mass::{immersed, mass_factor};
+use crate::scene::{Edge, Material, Model, PlateImpact, Scene, Setup, Shape};
 use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
@@ -24,6 +26,8 @@ const SAMPLES_PER_CONTACT: f64 = 400.0;
 pub struct Reduced {
     model: Model,
     system: System,
+    /// Forces of the fluid; a dry impact has none and takes the dry integrator.
+    fluid: Option<FluidForces>,
     end_time: Option<f64>,
     scene: String,
     scene_hash: String,
@@ -37,12 +41,6 @@ impl Reduced {
     /// [`Error::Usage`] for a number of modes that makes no sense, [`Error::Solver`] for what no reduced model covers.
     pub fn new(scene: &Scene, model: Model, modes: Option<usize>) -> Result<Self> {
         let Setup::PlateImpact(setup) = &scene.setup;
-        if setup.fluid.is_some() {
-            return Err(Error::Solver(format!(
-                "scene `{}`: [fluid] is set, and this version's reduced models are dry; remove the table to run the dry scene",
-                scene.name
-            )));
-        }
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
             (Model::A, Some(n)) => {
@@ -51,9 +49,11 @@ impl Reduced {
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
             (_, modes) => modes.or(scene.reduced.modes),
         };
+        let (system, fluid) = build(setup, model, modes)?;
         Ok(Self {
             model,
-            system: system(setup, model, modes)?,
+            system,
+            fluid,
             end_time: scene.run.end_time,
             scene: scene.name.clone(),
             scene_hash: scene.hash(),
@@ -65,6 +65,13 @@ impl Reduced {
         &self.system
     }
 
+    fn integrate(&self, options: &Options) -> Result<Integration> {
+        match &self.fluid {
+            None => integrate(&self.system, options),
+            Some(fluid) => wet::integrate(&self.system, fluid, options),
+        }
+    }
+
     /// Runs the impact without keeping its history; `tolerance` bounds the efficiency's relative error from the
     /// time integration.
     ///
@@ -72,7 +79,7 @@ impl Reduced {
     /// As [`integrate`].
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let start = Instant::now();
-        let result = integrate(&self.system, &self.options(tolerance))?;
+        let result = self.integrate(&self.options(tolerance))?;
         Ok(self.summary(&result, start.elapsed().as_secs_f64()))
     }
 
@@ -86,7 +93,7 @@ impl Reduced {
         let hit =
             HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
         let sample_interval = Some(hit.duration() / SAMPLES_PER_CONTACT);
-        let result = integrate(system, &Options { sample_interval, ..self.options(tolerance) })?;
+        let result = self.integrate(&Options { sample_interval, ..self.options(tolerance) })?;
         let history = result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))?;
         summary.samples = Some(history.len());
         Ok(Outcome { summary, history })
@@ -110,6 +117,11 @@ impl Reduced {
             momentum_residual: result.momentum_residual,
             steps: result.steps,
             solve_seconds,
+            bender: system.drive.map(|drive| {
+                let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
+                BenderSummary { strain_energy_efficiency: transmitted / drive.strain_energy, drive }
+            }),
+            losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
             uncertainty: Default::default(),
             mesh: None,
             solver: None,
@@ -136,35 +148,76 @@ pub(super) fn quantities(system: &System, result: &Integration) -> PlateQuantiti
     }
 }
 
-/// The oscillators and contacts of `model` with `modes` elastic modes; `None` lets model C choose.
-fn system(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<System> {
-    let kirchhoff = |modes| Ok(System::new(setup, &kirchhoff::modes(&setup.plate, modes)?, [0.0; 2]));
+/// The oscillators and contacts of `model` with `modes` elastic modes, and the forces of the fluid; `None` lets model
+/// C choose the number of modes.
+fn build(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<(System, Option<FluidForces>)> {
+    let outer = OuterBody::new(&setup.outer)?;
+    let join = |plate: ModalBody, tips| {
+        let plate = match &setup.fluid {
+            Some(fluid) => immersed(plate, fluid),
+            None => plate,
+        };
+        System::with_outer(setup, outer.clone(), &plate, tips)
+    };
+    let kirchhoff = |modes| Ok(join(kirchhoff::modes(&setup.plate, modes)?, [0.0; 2]));
+    let rigid = usize::from(setup.plate.edge == Edge::Free);
     match model {
-        Model::A | Model::B => kirchhoff(modes.unwrap_or(DEFAULT_MODES)),
-        Model::C => continuum(setup, modes, &Rough::of(&kirchhoff(DEFAULT_MODES)?)?),
+        Model::A | Model::B => {
+            let modes = modes.unwrap_or(DEFAULT_MODES);
+            let shapes = |radii: &[f64]| kirchhoff::shapes(&setup.plate, modes, radii);
+            Ok((kirchhoff(modes)?, fluid_forces(setup, shapes)?))
+        }
+        Model::C => {
+            let rough = Rough::of(&kirchhoff(DEFAULT_MODES)?)?;
+            let plate = continuum(setup, modes, &rough)?;
+            let elastic = plate.omega.len() - rigid;
+            let mesh = MeshOptions::default();
+            let shapes = |radii: &[f64]| {
+                let mut shapes =
+                    cached::face_shapes(&setup.plate, rough.patch_radius, elastic, &mesh, radii)?;
+                for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
+                    let sign = (shape[0] * phi[1]).signum();
+                    shape.iter_mut().for_each(|value| *value *= sign);
+                }
+                Ok(shapes)
+            };
+            let fluid = fluid_forces(setup, shapes)?;
+            let tips = tip_residuals(setup, rough.patch_radius, &mesh)?;
+            Ok((join(plate, tips), fluid))
+        }
     }
 }
 
-/// Model C: continuum plate with residual flexibility, residual flexibility of the spheres.
-fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result<System> {
+/// Film and drag of the scene, if there are any. `shapes` gives the mass-normalised shapes of the dry plate's inner
+/// face at radii in m.
+fn fluid_forces(
+    setup: &PlateImpact,
+    shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
+) -> Result<Option<FluidForces>> {
+    let Some(fluid) = &setup.fluid else { return Ok(None) };
+    let per_mass = mass_factor(fluid.added_mass_frequency_ratio).sqrt().recip();
+    FluidForces::new(fluid, &setup.plate, &setup.inner, |radii| {
+        let scaled = |shape: &Vec<f64>| shape.iter().map(|value| value * per_mass).collect();
+        Ok(shapes(radii)?.iter().map(scaled).collect())
+    })
+}
+
+/// Plate of model C: continuum with residual flexibility.
+fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result<ModalBody> {
     let mesh = MeshOptions::default();
     let build = |modes| cached::plate(&setup.plate, rough.patch_radius, modes, &mesh);
-    let plate = match modes {
-        Some(modes) => build(modes)?.modal_body(modes),
-        None => {
-            let mut most = DEFAULT_MODES;
-            loop {
-                let plate = build(most)?;
-                let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
-                if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
-                    break plate.modal_body(modes);
-                }
-                most *= 2;
+    let Some(modes) = modes else {
+        let mut most = DEFAULT_MODES;
+        loop {
+            let plate = build(most)?;
+            let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
+            if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
+                return Ok(plate.modal_body(modes));
             }
+            most *= 2;
         }
     };
-    let tips = tip_residuals(setup, rough.patch_radius, &mesh)?;
-    Ok(System::new(setup, &plate, tips))
+    Ok(build(modes)?.modal_body(modes))
 }
 
 /// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
@@ -172,8 +225,8 @@ fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result
 pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOptions) -> Result<[f64; 2]> {
     let tip = |shape: &Shape, material: &Material, patch| match *shape {
         Shape::Sphere { radius } => cached::sphere_residual(radius, material, patch, mesh),
-        // a compact body is rigid but for its Hertz contact
-        Shape::Compact { .. } => Ok(0.0),
+        // a compact body and the tip of a bender are rigid but for their Hertz contact
+        Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
     };
     Ok([
         tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
