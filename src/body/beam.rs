@@ -53,15 +53,20 @@ impl Beam {
         self.omega.iter().zip(&self.slope).map(|(omega, slope)| slope / (omega * omega)).collect()
     }
 
-    /// Deflection of the tip in m and its rate in m/s at `time` s after the release from the amplitudes `bent`.
-    fn tip_motion(&self, bent: &[f64], time: f64) -> [f64; 2] {
-        let mut motion = [0.0; 2];
-        for ((omega, tip), amplitude) in self.omega.iter().zip(&self.tip).zip(bent) {
+    /// Amplitudes and rates of the modes at `time` > 0 s after the release from the amplitudes `bent`, when the moment
+    /// decays with the time constant `decay` s: q'' + omega^2 q = omega^2 q_0 e^(-t/decay). Shapes (n).
+    fn swing(&self, bent: &[f64], decay: f64, time: f64) -> (Vec<f64>, Vec<f64>) {
+        let rest = (-time / decay).exp();
+        let motion = |(omega, start): (&f64, &f64)| {
+            let x = omega * decay;
+            let share = start / (1.0 + x * x);
             let (sine, cosine) = (omega * time).sin_cos();
-            motion[0] += tip * amplitude * cosine;
-            motion[1] -= tip * amplitude * omega * sine;
-        }
-        motion
+            (
+                share * (cosine + x * sine + x * x * rest),
+                share * omega * (x * cosine - sine - x * rest),
+            )
+        };
+        self.omega.iter().zip(bent).map(motion).unzip()
     }
 }
 
@@ -87,26 +92,39 @@ impl Release {
     /// # Errors
     /// As [`Beam::new`].
     pub fn new(bender: &Bender) -> Result<Self> {
-        let beam = Beam::new(bender, MODES)?;
+        Self::with_modes(bender, MODES)
+    }
+
+    /// As [`Release::new`], with the lowest `modes` modes of the beam.
+    ///
+    /// # Errors
+    /// As [`Beam::new`].
+    pub fn with_modes(bender: &Bender, modes: usize) -> Result<Self> {
+        let beam = Beam::new(bender, modes)?;
         let bent = beam.bent();
-        // high modes are hardly bent, but a step that follows the quickest passes no zero of the sum
-        let step = 0.5 / beam.omega[beam.omega.len() - 1];
-        let mut late = step;
-        while beam.tip_motion(&bent, late)[0] > 0.0 {
-            late += step;
+        let swing = |time| beam.swing(&bent, bender.discharge_time, time);
+        let tip = |values: &[f64]| beam.tip.iter().zip(values).map(|(tip, value)| tip * value).sum::<f64>();
+        // |u''| of the tip is bounded, as |q''| = omega^2 |q_0 e^(-t/decay) - q| <= 3 omega^2 |q_0|: steps that
+        // provably pass no zero, and close to it are Newton's
+        let bound: f64 =
+            (0..modes).map(|k| 3.0 * (beam.tip[k] * bent[k]).abs() * beam.omega[k].powi(2)).sum();
+        let start = tip(&bent);
+        let mut time = (2.0 * start / bound).sqrt();
+        loop {
+            let (q, v) = swing(time);
+            let (deflection, rate) = (tip(&q), tip(&v));
+            if deflection <= 1e-14 * start {
+                break;
+            }
+            let root = (rate * rate + 2.0 * bound * deflection).sqrt();
+            let step = if rate >= 0.0 { (rate + root) / bound } else { 2.0 * deflection / (root - rate) };
+            if time + step == time {
+                break;
+            }
+            time += step;
         }
-        let mut early = late - step;
-        for _ in 0..60 {
-            let middle = 0.5 * (early + late);
-            if beam.tip_motion(&bent, middle)[0] > 0.0 { early = middle } else { late = middle }
-        }
-        let time = 0.5 * (early + late);
-        let phase = |(omega, amplitude): (&f64, &f64)| {
-            let (sine, cosine) = (omega * time).sin_cos();
-            (amplitude * cosine, -amplitude * omega * sine)
-        };
-        let (displacement, velocity) = beam.omega.iter().zip(&bent).map(phase).unzip();
-        let speed_per_moment = -beam.tip_motion(&bent, time)[1];
+        let (displacement, velocity) = swing(time);
+        let speed_per_moment = -tip(&velocity);
         Ok(Self { time, speed_per_moment, displacement, velocity, beam })
     }
 }

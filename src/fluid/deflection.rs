@@ -12,6 +12,8 @@ pub struct Deflection {
     step: f64,
     /// Shapes at r = -step, 0, step, ... , rim, rim + step, kg^(-1/2). Shape (modes, STEPS + 3).
     shapes: Vec<Vec<f64>>,
+    /// The same, one radius after the other. Shape (STEPS + 3, modes).
+    by_radius: Vec<f64>,
 }
 
 impl Deflection {
@@ -30,7 +32,9 @@ impl Deflection {
             extended.push(2.0 * shape[STEPS] - shape[STEPS - 1]);
             extended
         };
-        Self { step: rim / STEPS as f64, shapes: shapes.iter().map(extended).collect() }
+        let shapes: Vec<Vec<f64>> = shapes.iter().map(extended).collect();
+        let by_radius = (0..STEPS + 3).flat_map(|i| shapes.iter().map(move |shape| shape[i])).collect();
+        Self { step: rim / STEPS as f64, shapes, by_radius }
     }
 
     /// Number of modes.
@@ -79,8 +83,10 @@ impl Deflection {
                 *entry += weight * load;
             }
         }
-        for (force, shape) in forces.iter_mut().zip(&self.shapes) {
-            *force += shape.iter().zip(&table).map(|(a, b)| a * b).sum::<f64>();
+        for (load, shapes) in table.iter().zip(self.by_radius.chunks_exact(self.modes())) {
+            for (force, shape) in forces.iter_mut().zip(shapes) {
+                *force += load * shape;
+            }
         }
     }
 }

@@ -68,22 +68,16 @@ impl Film {
         self.rim
     }
 
-    /// Distance of the inner body's surface from its pole's tangent plane at radius `r`, m.
-    fn tip_height(&self, r: f64) -> f64 {
-        let square = r * r;
-        square / (self.tip_radius + (self.tip_radius * self.tip_radius - square).max(0.0).sqrt())
-    }
-
     /// Solves for the pressure and writes its loads into `forces`.
     pub fn solve(&self, profile: &impl Profile, forces: &mut FilmForces) {
         forces.radius.clear();
         forces.load.clear();
         forces.unit_load.clear();
         (forces.force, forces.resistance, forces.dissipation) = (0.0, 0.0, 0.0);
-        let gap = |square: f64| {
-            let r = square.sqrt();
-            profile.gap(r) + self.tip_height(r)
-        };
+        // the tip is a paraboloid, which is what lubrication theory resolves of a sphere: with the sphere's own
+        // shape the force would be further from Stokes flow (Brenner 1961), 2.4 % too low at a gap of R/700
+        let curvature = 0.5 / self.tip_radius;
+        let gap = |square: f64| profile.gap(square.sqrt()) + curvature * square;
         let end = self.rim * self.rim;
         let axis_gap = gap(0.0);
         let start = if axis_gap >= 0.0 { 0.0 } else { edge_of_overlap(gap, axis_gap, end) };

@@ -83,7 +83,8 @@ impl Plate {
 /// Piezo bender (section 4.3): a beam clamped at one end, with a point mass and a spherical tip at the other.
 ///
 /// It is bent away from the plate by a bending moment that is uniform along the beam, as a piezo layer gives it,
-/// released from rest, and strikes where its tip passes the straight position.
+/// and released from rest: the moment is gone at once or, as a piezo is discharged through a resistor (section 2.2.2),
+/// decays. It strikes where its tip passes the straight position.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Bender {
     /// Length L of the beam in m.
@@ -96,6 +97,8 @@ pub struct Bender {
     pub tip_mass: f64,
     /// Radius of curvature at the contact in m.
     pub tip_radius: f64,
+    /// Time constant in s with which the moment decays after the release; 0 = it is gone at once.
+    pub discharge_time: f64,
 }
 
 impl Bender {

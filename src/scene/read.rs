@@ -255,7 +255,14 @@ fn bender(outer: &Node) -> Result<Bender> {
         };
         (cantilever::bending_stiffness(length, stiffness), mass / length)
     };
-    Ok(Bender { length, bending_stiffness, line_mass, tip_mass, tip_radius: outer.number("tip_radius")? })
+    Ok(Bender {
+        length,
+        bending_stiffness,
+        line_mass,
+        tip_mass,
+        tip_radius: outer.number("tip_radius")?,
+        discharge_time: outer.number_or("discharge_time", 0.0)?,
+    })
 }
 
 fn fluid(fluid: &Node, plate: &Plate) -> Result<Fluid> {

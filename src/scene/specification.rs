@@ -218,7 +218,7 @@ const fn drive(set: &'static str, field: Field) -> Field {
     one_way(Some("bender"), "the drive", set, field)
 }
 
-static OUTER: [Field; 14] = [
+static OUTER: [Field; 15] = [
     required("kind", Kind::Choice(&[choice("sphere"), choice("compact"), choice("bender")]), SHAPE_KIND),
     SPHERE_RADIUS,
     COMPACT_MASS,
@@ -231,6 +231,14 @@ static OUTER: [Field; 14] = [
     beam("measured", bender("tip_stiffness", Dimension::STIFFNESS, "Measured force at the tip per deflection")),
     drive("torque", bender("torque", Dimension::TORQUE, "Bending moment, uniform along the beam, before the release")),
     drive("deflection", bender("tip_deflection", Dimension::LENGTH, "Deflection of the tip before the release")),
+    only(
+        &["bender"],
+        optional(
+            "discharge_time",
+            Kind::Quantity(Dimension::TIME, Bound::NOT_NEGATIVE),
+            "Time constant with which the drive's moment decays after the release; absent = it is gone at once",
+        ),
+    ),
     BODY_MATERIAL,
     drive("speed", required("speed", positive(Dimension::SPEED), "Speed towards the plate; of a bender that of its tip")),
 ];

@@ -8,7 +8,7 @@
 use super::table::{Motion, Table};
 use crate::fluid::{FluidForces, FluidLoad};
 use crate::impact::collocation::{STAGES, Stages};
-use crate::impact::system::{INNER, System, dot};
+use crate::impact::system::{INNER, System};
 
 /// Iterations for the forces of a step; more means that the step is too long.
 const MAX_ITERATIONS: usize = 30;
@@ -188,11 +188,6 @@ impl Wet<'_> {
             }
         }
         true
-    }
-
-    /// Work in J that the generalised forces of the fluid do at rate `v`, W; for tests and ledgers.
-    pub fn power(&self, load: &FluidLoad, v: &[f64]) -> f64 {
-        dot(&load.force, &v[INNER..INNER + load.force.len()])
     }
 }
 
