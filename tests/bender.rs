@@ -7,9 +7,9 @@ use common::scaled_plate;
 use impactcheck::analytical::cantilever;
 use impactcheck::body::beam::{Beam, Release};
 use impactcheck::body::kirchhoff;
+use impactcheck::impact::OuterBody;
 use impactcheck::impact::integrator::{Integration, Options, integrate};
 use impactcheck::impact::system::System;
-use impactcheck::impact::OuterBody;
 use impactcheck::scene::{Bender, PlateImpact, Scene, Setup, Shape};
 use std::f64::consts::TAU;
 
@@ -54,16 +54,14 @@ fn run(setup: &PlateImpact) -> (System, Integration) {
 fn frequencies_are_those_of_the_closed_form() {
     for tip_mass in [1e-12, 128e-6, 20e-3] {
         let bender = Bender { tip_mass, ..measured() };
-        let exact = cantilever::frequencies(
-            bender.length,
-            bender.bending_stiffness,
-            bender.line_mass,
-            tip_mass,
-            8,
-        );
+        let exact =
+            cantilever::frequencies(bender.length, bender.bending_stiffness, bender.line_mass, tip_mass, 8);
         let beam = Beam::new(&bender, 16).unwrap();
         for (mode, exact) in exact.iter().enumerate() {
-            println!("tip {tip_mass:e} kg, mode {mode}: {:.1} Hz, exact {exact:.1} Hz", beam.omega[mode] / TAU);
+            println!(
+                "tip {tip_mass:e} kg, mode {mode}: {:.1} Hz, exact {exact:.1} Hz",
+                beam.omega[mode] / TAU
+            );
             assert_relative_eq!(beam.omega[mode] / TAU, exact, max_relative = 2e-3);
         }
         // cubics: the error falls with the fourth power of the element's length
@@ -144,7 +142,12 @@ fn discharge_follows_its_equation_of_motion() {
                 state = add(state, k, weight * h / 6.0);
             }
         }
-        assert_relative_eq!(release.displacement[mode], state[0], max_relative = 1e-6, epsilon = 1e-9 * start.abs());
+        assert_relative_eq!(
+            release.displacement[mode],
+            state[0],
+            max_relative = 1e-6,
+            epsilon = 1e-9 * start.abs()
+        );
         assert_relative_eq!(
             release.velocity[mode],
             state[1],
@@ -205,10 +208,8 @@ fn torque_deflection_and_speed_are_three_ways_to_say_one_thing() {
     let by_torque = outer("torque = \"4 N*mm\"", measured_beam);
     let Shape::Bender(bender) = by_torque.shape else { panic!("a bender") };
     assert_relative_eq!(bender.line_mass, measured().line_mass, max_relative = 1e-12);
-    let section = format!(
-        "bending_stiffness = {:e}\nline_mass = {:e}",
-        bender.bending_stiffness, bender.line_mass
-    );
+    let section =
+        format!("bending_stiffness = {:e}\nline_mass = {:e}", bender.bending_stiffness, bender.line_mass);
     let deflection = 4e-3 * bender.length.powi(2) / (2.0 * bender.bending_stiffness);
     let by_deflection = outer(&format!("tip_deflection = {deflection:e}"), &section);
     assert_relative_eq!(by_deflection.speed, by_torque.speed, max_relative = 1e-12);

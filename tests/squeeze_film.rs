@@ -129,7 +129,8 @@ fn overlapping_bodies_feel_the_film_around_the_overlap() {
         let mut integral = 0.0;
         for (point, weight) in points.iter().zip(&weights) {
             let x = 0.5 * (point + 1.0) * minimum_gap;
-            integral += 0.5 * weight * minimum_gap * x * x / (minimum_gap.powi(3) * (edge + 2.0 * RADIUS * x));
+            integral +=
+                0.5 * weight * minimum_gap * x * x / (minimum_gap.powi(3) * (edge + 2.0 * RADIUS * x));
             let x = minimum_gap * (5.0 * (point + 1.0)).exp();
             integral += 5.0 * weight / (edge + 2.0 * RADIUS * x);
         }

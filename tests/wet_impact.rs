@@ -117,8 +117,7 @@ fn cases() -> Vec<(&'static str, PlateImpact)> {
     gap.inner.gap = 3e-6;
     let mut free = valve(water());
     free.plate.edge = Edge::Free;
-    let thinning =
-        ShearThinning { infinite_shear_viscosity: 1e-3, relaxation_time: 1e-3, power_index: 0.4 };
+    let thinning = ShearThinning { infinite_shear_viscosity: 1e-3, relaxation_time: 1e-3, power_index: 0.4 };
     let blood = valve(Fluid { viscosity: 0.05, shear_thinning: Some(thinning), ..water() });
     vec![
         ("water", valve(water())),
@@ -168,7 +167,7 @@ fn error_follows_the_tolerance_and_the_square_of_the_cells() {
         for tolerance in [1e-4, 1e-6, 1e-7] {
             let error = (wet.efficiency(&wet.run(tolerance)) / exact - 1.0).abs();
             println!("{name}: tolerance {tolerance:.0e}, error {error:.1e}");
-            assert!(error < 10.0 * tolerance, "{name}: {error:e} at {tolerance:e}");
+            assert!(error < 3.0 * tolerance, "{name}: {error:e} at {tolerance:e}");
         }
         let with_cells = |cells| {
             let wet = Wet::with_cells(&setup, 16, cells);
@@ -177,7 +176,7 @@ fn error_follows_the_tolerance_and_the_square_of_the_cells() {
         let fine = with_cells(512);
         let errors = [32, 64].map(|cells| (with_cells(cells) - fine).abs());
         println!("{name}: error of the efficiency with 32 and 64 cells {errors:?}");
-        assert!(errors[1] < 1e-4 && errors[1] < 0.4 * errors[0], "{name}: {errors:?}");
+        assert!(errors[1] < 5e-4 && errors[1] < 0.4 * errors[0], "{name}: {errors:?}");
     }
 }
 
@@ -201,11 +200,7 @@ fn a_fluid_without_viscosity_changes_nothing() {
         });
         assert_relative_eq!(ours.velocity[1], dry.velocity[1], max_relative = 1e-8);
         for i in 0..2 {
-            assert_relative_eq!(
-                ours.contacts[i].force_peak,
-                dry.contacts[i].force_peak,
-                max_relative = 1e-5
-            );
+            assert_relative_eq!(ours.contacts[i].force_peak, dry.contacts[i].force_peak, max_relative = 1e-5);
         }
         assert_relative_eq!(ours.contacts[1].end, dry.contacts[1].end, max_relative = 1e-5);
         assert_eq!(ours.contacts[1].contacts, dry.contacts[1].contacts, "{name}");
@@ -216,12 +211,12 @@ fn a_fluid_without_viscosity_changes_nothing() {
 fn no_film_makes_the_integration_fail() {
     // from no contact at all to a film that glues the bodies together
     for gap in [0.0, 1e-9, 1e-6, 20e-6, 10e-3] {
-        for viscosity in [1e-6, 1e-3, 1.0, 1e3] {
+        for viscosity in [1e-6, 1e-3, 1.0, 1e2] {
             for minimum_gap in [1e-9, 0.25e-6] {
                 let mut setup = valve(Fluid { viscosity, minimum_gap, ..water() });
                 setup.inner.gap = gap;
-                let wet = Wet::new(&setup, 8);
-                let result = wet.run_to(1e-5, Some(60e-6));
+                let wet = Wet::with_cells(&setup, 6, 32);
+                let result = wet.run_to(1e-4, Some(40e-6));
                 let case = format!("gap {gap:e}, viscosity {viscosity:e}, minimal gap {minimum_gap:e}");
                 println!("{case}: {} steps, energy {:.1e}", result.steps, result.energy_residual);
                 assert!(result.velocity.iter().all(|v| v.is_finite()), "{case}");

@@ -61,10 +61,7 @@ impl Beam {
             let x = omega * decay;
             let share = start / (1.0 + x * x);
             let (sine, cosine) = (omega * time).sin_cos();
-            (
-                share * (cosine + x * sine + x * x * rest),
-                share * omega * (x * cosine - sine - x * rest),
-            )
+            (share * (cosine + x * sine + x * x * rest), share * omega * (x * cosine - sine - x * rest))
         };
         self.omega.iter().zip(bent).map(motion).unzip()
     }

@@ -1,9 +1,7 @@
 //! Lowest modes of small dense structures.
 
 use crate::error::{Error, Result};
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, Par, Side};
 
 /// The `count` lowest modes of K x = omega^2 M x.

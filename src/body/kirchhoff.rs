@@ -53,8 +53,7 @@ impl UnitPlate {
             squares.iter().enumerate().map(|(k, s)| if rigid(k) { 0.0 } else { s.max(0.0).sqrt() }).collect();
         // the deflection of the axis is the first unknown
         let centre = (0..count).map(|k| shapes[(0, k)].abs()).collect();
-        let shapes =
-            Mat::from_fn(shapes.nrows(), count, |i, k| shapes[(i, k)] * shapes[(0, k)].signum());
+        let shapes = Mat::from_fn(shapes.nrows(), count, |i, k| shapes[(i, k)] * shapes[(0, k)].signum());
         Ok(Self { edge, poisson_ratio, omega, centre, shapes, elements })
     }
 

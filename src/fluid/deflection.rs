@@ -4,12 +4,12 @@ use super::film::Profile;
 
 /// Steps of the table from the axis to the edge of the film; the highest modes of a thin plate have some 5 waves
 /// on this length.
-pub const STEPS: usize = 96;
+pub const STEPS: usize = 64;
 
 /// Mode shapes of the plate's inner face from the axis to the edge of the film.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Deflection {
-    step: f64,
+    per_step: f64,
     /// Shapes at r = -step, 0, step, ... , rim, rim + step, kg^(-1/2). Shape (modes, STEPS + 3).
     shapes: Vec<Vec<f64>>,
     /// The same, one radius after the other. Shape (STEPS + 3, modes).
@@ -34,7 +34,7 @@ impl Deflection {
         };
         let shapes: Vec<Vec<f64>> = shapes.iter().map(extended).collect();
         let by_radius = (0..STEPS + 3).flat_map(|i| shapes.iter().map(move |shape| shape[i])).collect();
-        Self { step: rim / STEPS as f64, shapes, by_radius }
+        Self { per_step: STEPS as f64 / rim, shapes, by_radius }
     }
 
     /// Number of modes.
@@ -55,7 +55,7 @@ impl Deflection {
 
     /// First index and weights of the four entries of a table that give its value at `r` (Catmull & Rom).
     fn stencil(&self, r: f64) -> (usize, [f64; 4]) {
-        let position = r / self.step;
+        let position = r * self.per_step;
         let index = (position as usize).min(STEPS - 1);
         let t = position - index as f64;
         let weights = [

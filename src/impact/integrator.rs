@@ -304,11 +304,7 @@ impl<'a> Run<'a> {
         let end = system.energy(&self.q, &self.v);
         let contact_work = self.contacts[0].work + self.contacts[1].work;
         // damping takes energy out of the bodies; between them and the contacts none may be lost all the same
-        let unaccounted = if damped {
-            stored - contact_work
-        } else {
-            end + stored - initial
-        };
+        let unaccounted = if damped { stored - contact_work } else { end + stored - initial };
         let impulses = [self.contacts[0].impulse, self.contacts[1].impulse];
         let mut unexplained = vec![system.masses[1] * velocity[1] + impulses[1]];
         if !system.outer_returns() {

@@ -28,7 +28,9 @@ impl<'a> Recorder<'a> {
     /// As the contact's system of equations.
     pub fn step(&mut self, time: f64, h: f64, q: &[f64], v: &[f64], forces: &[Stages; 2]) -> Result<()> {
         let [b0, b1] = &self.system.approach;
-        self.step_under(time, h, q, v, |k| std::array::from_fn(|l| -(b0[k] * forces[0][l] + b1[k] * forces[1][l])))
+        self.step_under(time, h, q, v, |k| {
+            std::array::from_fn(|l| -(b0[k] * forces[0][l] + b1[k] * forces[1][l]))
+        })
     }
 
     /// As [`Recorder::step`], under the generalised forces `forces` of each oscillator at the Gauss points.

@@ -2,7 +2,7 @@
 
 use super::integrator::{Integration, Options, integrate};
 use super::system::System;
-use super::{BenderSummary, OuterBody, Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
+use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::continuum::{MeshOptions, cached};
 use crate::body::{ModalBody, kirchhoff};

@@ -1,8 +1,8 @@
 //! JSON schema of scene files, for editors; made from the same specification the reader uses.
 
+use super::alternatives::groups;
 use super::check::MAX_NAME;
 use super::quantity::Dimension;
-use super::alternatives::groups;
 use super::specification::{Alternative, Bound, Field, Kind, MODELS, SCENE, TOLERANCES};
 use super::tolerances::{TERMS, gated_names};
 use serde_json::{Map, Value, json};
@@ -35,8 +35,7 @@ fn table(fields: &[Field]) -> Value {
     });
     let mut rules: Vec<Value> = alternatives(fields, None);
     for kind in kinds(fields) {
-        let needed: Vec<&str> =
-            fields.iter().filter(|f| f.is_needed(Some(kind))).map(|f| f.key).collect();
+        let needed: Vec<&str> = fields.iter().filter(|f| f.is_needed(Some(kind))).map(|f| f.key).collect();
         let foreign: Map<String, Value> = fields
             .iter()
             .filter(|f| !f.belongs_to(Some(kind)))

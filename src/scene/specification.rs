@@ -197,9 +197,9 @@ static PLATE: [Field; 5] = [
 const SHAPE_KIND: &str = "Shape of the body";
 const SPHERE_RADIUS: Field =
     only(&["sphere"], required("radius", positive(Dimension::LENGTH), "Radius of the sphere"));
-const COMPACT_MASS: Field = only(&["compact"], required("mass", positive(Dimension::MASS), "Mass of the body"));
-const TIP_RADIUS: Field =
-    required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");
+const COMPACT_MASS: Field =
+    only(&["compact"], required("mass", positive(Dimension::MASS), "Mass of the body"));
+const TIP_RADIUS: Field = required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");
 const BODY_MATERIAL: Field =
     required("material", Kind::Material, "Material of the body, a name under [materials]");
 
@@ -225,12 +225,27 @@ static OUTER: [Field; 15] = [
     only(&["compact", "bender"], TIP_RADIUS),
     bender("length", Dimension::LENGTH, "Length of the beam"),
     bender("tip_mass", Dimension::MASS, "Point mass at the tip of the beam"),
-    beam("section", bender("bending_stiffness", Dimension::BENDING_STIFFNESS, "Bending stiffness E I of the beam")),
+    beam(
+        "section",
+        bender("bending_stiffness", Dimension::BENDING_STIFFNESS, "Bending stiffness E I of the beam"),
+    ),
     beam("section", bender("line_mass", Dimension::LINE_MASS, "Mass of the beam per length, rho A")),
-    beam("measured", bender("first_frequency", Dimension::FREQUENCY, "Measured first frequency with the tip mass")),
-    beam("measured", bender("tip_stiffness", Dimension::STIFFNESS, "Measured force at the tip per deflection")),
-    drive("torque", bender("torque", Dimension::TORQUE, "Bending moment, uniform along the beam, before the release")),
-    drive("deflection", bender("tip_deflection", Dimension::LENGTH, "Deflection of the tip before the release")),
+    beam(
+        "measured",
+        bender("first_frequency", Dimension::FREQUENCY, "Measured first frequency with the tip mass"),
+    ),
+    beam(
+        "measured",
+        bender("tip_stiffness", Dimension::STIFFNESS, "Measured force at the tip per deflection"),
+    ),
+    drive(
+        "torque",
+        bender("torque", Dimension::TORQUE, "Bending moment, uniform along the beam, before the release"),
+    ),
+    drive(
+        "deflection",
+        bender("tip_deflection", Dimension::LENGTH, "Deflection of the tip before the release"),
+    ),
     only(
         &["bender"],
         optional(
@@ -240,7 +255,10 @@ static OUTER: [Field; 15] = [
         ),
     ),
     BODY_MATERIAL,
-    drive("speed", required("speed", positive(Dimension::SPEED), "Speed towards the plate; of a bender that of its tip")),
+    drive(
+        "speed",
+        required("speed", positive(Dimension::SPEED), "Speed towards the plate; of a bender that of its tip"),
+    ),
 ];
 
 static INNER: [Field; 6] = [

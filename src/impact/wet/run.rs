@@ -102,17 +102,16 @@ impl Run<'_> {
         let system = self.wet.system;
         let mut touching = true;
         while self.time < self.end_time {
-            let open = !touching && self.approach[0] <= 0.0 && self.approach[1] <= 0.0;
-            if open && self.end_time.is_infinite() && free_flight::is_over(system, &self.q, &self.v) {
-                break;
-            }
+            let open = !touching && is_open(self.approach);
             let longest = if open {
                 // a step that passes no touch
                 free_flight::safe_step(system, &self.q, &self.v).max(0.5 * self.base_step)
             } else {
                 self.base_step
             };
-            self.step(longest)?;
+            if self.step(longest, open && self.end_time.is_infinite())? {
+                break;
+            }
             touching = false;
             if self.steps > MAX_STEPS {
                 return Err(Error::Solver(format!(
@@ -128,8 +127,9 @@ impl Run<'_> {
         self.base_step * 0.5_f64.powi(level)
     }
 
-    /// Takes one step, as long as the tolerance and `longest` permit.
-    fn step(&mut self, longest: f64) -> Result<()> {
+    /// Takes one step, as long as the tolerance and `longest` permit. If it `may_end` the run and no contact is possible
+    /// after it, it ends at the instant from which that is so, and the answer is `true`.
+    fn step(&mut self, longest: f64, may_end: bool) -> Result<bool> {
         self.level = self.level.max(LONGEST);
         while self.length(self.level) > longest {
             self.level += 1;
@@ -171,13 +171,59 @@ impl Run<'_> {
                 self.level += (excess.ceil() as i32).clamp(1, 8);
                 continue;
             }
+            if may_end && self.ends_in_this_step(h) {
+                return Ok(true);
+            }
             self.accept(h)?;
             // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
             if defect < self.defect_bound * 0.5_f64.powi(STAGES as i32 + 2) {
                 self.level -= 1;
             }
-            return Ok(());
+            return Ok(false);
         }
+    }
+
+    /// Whether no contact is possible any more after the step just solved. If so, the step is taken, but only up to
+    /// the instant from which that holds: the fluid slows the inner body for ever, and the end has to be the same
+    /// whatever the steps.
+    fn ends_in_this_step(&mut self, h: f64) -> bool {
+        let system = self.wet.system;
+        let forces = self.wet.generalised(&self.trial);
+        let at = |t: f64| -> (Vec<f64>, Vec<f64>) {
+            let answer = |k: usize| {
+                let r = self.collocation.response(&system.oscillators[k], t, h);
+                let (q, v) = (self.q[k], self.v[k]);
+                (
+                    r.displacement_per_displacement * q
+                        + r.displacement_per_velocity * v
+                        + dot(&r.displacement_per_force, &forces[k]),
+                    r.velocity_per_displacement * q
+                        + r.velocity_per_velocity * v
+                        + dot(&r.velocity_per_force, &forces[k]),
+                )
+            };
+            (0..system.size()).map(answer).unzip()
+        };
+        let over = |t: f64| {
+            let (q, v) = at(t);
+            is_open(system.modal_approach(&q)) && free_flight::is_over(system, &q, &v)
+        };
+        if !over(h) {
+            return false;
+        }
+        let (mut early, mut late) = (0.0, h);
+        for _ in 0..40 {
+            let middle = 0.5 * (early + late);
+            if over(middle) { late = middle } else { early = middle }
+        }
+        let table = Table::new(system, self.collocation, late);
+        let force_error = self.force_error(late);
+        self.wet.solve(&table, &self.q, &self.v, force_error, &mut self.trial) && self.accept(late).is_ok()
+    }
+
+    /// Error in N of the forces at which the iteration for a step of length `h` ends.
+    fn force_error(&self, h: f64) -> f64 {
+        1e-3 * self.defect_bound * momentum_scale(self.wet.system, &self.contacts)[1] / h
     }
 
     /// Distance between the forces at the end of the step and the polynomials of the step, as an impulse in relation
@@ -294,6 +340,11 @@ impl Run<'_> {
             history: self.recorder.map(Recorder::finish),
         }
     }
+}
+
+/// Whether both contacts are open at these approaches.
+fn is_open(approach: [f64; 2]) -> bool {
+    approach[0] <= 0.0 && approach[1] <= 0.0
 }
 
 /// Momenta in N s in relation to which the impulses of both contacts have to be right.

@@ -116,7 +116,10 @@ impl Wet<'_> {
     fn size(&self, defect: &Defect) -> f64 {
         let largest = |values: &[Stages]| {
             // a value that is no number has to come out
-            values.iter().flatten().fold(0.0, |largest: f64, x| if x.abs() <= largest { largest } else { x.abs() })
+            values
+                .iter()
+                .flatten()
+                .fold(0.0, |largest: f64, x| if x.abs() <= largest { largest } else { x.abs() })
         };
         let (contact, fluid) = (largest(&defect.contact), largest(&defect.fluid));
         let fluid = fluid * self.system.masses[1].sqrt();
@@ -145,7 +148,8 @@ impl Wet<'_> {
                 let mut answer = [[0.0; 4]; 3];
                 for k in 0..n {
                     let [per_q, per_v] = table.per_force(j, k).map(|stages| stages[l]);
-                    let fluid = if k < INNER { 0.0 } else { defect.fluid.get(k - INNER).map_or(0.0, |d| d[l]) };
+                    let fluid =
+                        if k < INNER { 0.0 } else { defect.fluid.get(k - INNER).map_or(0.0, |d| d[l]) };
                     let forces = [-b0[k], -b1[k], film[l][k], fluid];
                     let seen = [b0[k] * per_q, b1[k] * per_q, -film[j][k] * per_v];
                     for row in 0..3 {
