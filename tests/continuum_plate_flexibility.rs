@@ -44,7 +44,7 @@ fn a_patch_on_a_large_body_tends_to_the_half_space() {
     let body = plate_of(1.0, 2.0, Edge::Clamped, steel.clone());
     let relative = |patch: f64| {
         let plate = ContinuumPlate::new(&body, [patch; 2], 0, &MeshOptions::default()).unwrap();
-        plate.flexibility[0][0] / half_space_flexibility(&steel, patch)
+        plate.flexibility[0][0] / half_space_flexibility(&steel, patch, patch)
     };
     let values = [0.08, 0.04, 0.02, 0.01].map(relative);
     println!("{values:?}");
@@ -52,6 +52,29 @@ fn a_patch_on_a_large_body_tends_to_the_half_space() {
         assert_relative_eq!(pair[1] / pair[0], 0.5, max_relative = 0.05);
     }
     assert!(values[3].abs() < 0.01);
+}
+
+/// What a patch gives at its own radius and says of its growth is what smaller patches give.
+#[test]
+fn the_growth_with_the_patch_is_the_difference_between_plates_made_for_other_patches() {
+    let fine = MeshOptions { order: 5, ..MeshOptions::default().refined(1.5) };
+    let body = plate_of(10e-3, 1e-3, Edge::Clamped, steel());
+    let of = |outer: f64, inner: f64| ContinuumPlate::new(&body, [outer, inner], 0, &fine).unwrap();
+    let large = of(0.2e-3, 0.16e-3);
+    for (outer, inner) in [(0.1e-3, 0.16e-3), (0.2e-3, 0.08e-3), (0.14e-3, 0.12e-3)] {
+        let other = of(outer, inner);
+        let step = [outer * outer - 0.2e-3_f64.powi(2), inner * inner - 0.16e-3_f64.powi(2)];
+        let scale = half_space_flexibility(&steel(), 0.2e-3, 0.2e-3);
+        for i in 0..2 {
+            for j in 0..2 {
+                let predicted = large.patch_growth[i][j] * step[i] + large.patch_growth[j][i] * step[j];
+                let found = other.flexibility[i][j] - large.flexibility[i][j];
+                assert!((predicted - found).abs() < 1e-4 * scale, "{i}{j} {predicted:e} {found:e}");
+                let largest = step[i].abs().max(step[j].abs());
+                assert!(largest == 0.0 || found.abs() > 0.004 * scale, "{i}{j} {found:e}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -81,7 +81,8 @@ impl Wet {
         let mut load = FluidLoad::default();
         let mut rate = |state: &[f64]| -> Vec<f64> {
             let (q, v) = state.split_at(n);
-            let forces = system.forces(system.modal_approach(q)).expect("equilibrium");
+            let approach = system.modal_approach(q);
+            let (_, forces) = system.contact(approach, approach).expect("equilibrium");
             self.fluid.evaluate(q, v, &mut load);
             let acceleration = (0..n).map(|k| {
                 let o = system.oscillators[k];

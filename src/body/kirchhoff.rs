@@ -103,6 +103,7 @@ impl UnitPlate {
             damping_ratio: vec![plate.damping_ratio; self.omega.len()],
             participation: self.centre.iter().map(|c| [c * amplitude; 2]).collect(),
             residual: [[0.0; 2]; 2],
+            patch_growth: [[0.0; 2]; 2],
         }
     }
 }

@@ -25,6 +25,10 @@ pub struct ModalBody {
     pub damping_ratio: Vec<f64>,
     /// Mass-normalised mode shapes at the contact points, kg^(-1/2). Shape (n, 2).
     pub participation: Vec<[f64; 2]>,
-    /// Residual flexibility in m/N beyond the modes and beyond Hertz's half-spaces; zero for models A and B.
+    /// Residual flexibility in m/N beyond the modes and beyond Hertz's half-spaces, for contact patches of no extent;
+    /// zero for models A and B.
     pub residual: [[f64; 2]; 2],
+    /// How the residual flexibility grows with the contact patches: `residual[i][j]` gains `patch_growth[i][j]` times
+    /// the square of the patch radius of contact i, and `patch_growth[j][i]` times that of contact j. In m/N per m^2.
+    pub patch_growth: [[f64; 2]; 2],
 }

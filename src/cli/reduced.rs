@@ -42,6 +42,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             outcome.summary
         }
     };
+    for warning in &summary.warnings {
+        context.note(format_args!("warning: {warning}"));
+    }
     if arguments.json.json {
         super::print_json(&summary)?;
     } else {

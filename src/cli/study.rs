@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of the study: table2
+    /// Name of the study: table2, insensitivity
     name: String,
     /// Write the study as JSON, CSV and Markdown into this folder
     #[arg(long, value_name = "DIR")]

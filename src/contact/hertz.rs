@@ -25,6 +25,12 @@ impl Hertz {
         self.stiffness * d * d.sqrt()
     }
 
+    /// Approach in m under `force` N, not negative: (F/k)^(2/3).
+    #[inline]
+    pub fn approach(&self, force: f64) -> f64 {
+        (force / self.stiffness).powi(2).cbrt()
+    }
+
     /// Tangent stiffness dF/d(delta) in N/m.
     #[inline(always)]
     pub fn tangent(&self, delta: f64) -> f64 {
@@ -38,6 +44,6 @@ impl Hertz {
 
     /// Radius of the contact patch in m under `force` N: sqrt(r delta).
     pub fn contact_radius(&self, force: f64) -> f64 {
-        (self.tip_radius * (force.max(0.0) / self.stiffness).powf(2.0 / 3.0)).sqrt()
+        (self.tip_radius * self.approach(force.max(0.0))).sqrt()
     }
 }

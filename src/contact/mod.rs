@@ -1,6 +1,7 @@
 //! Contact laws: force as a function of the approach of two bodies.
 
 mod hertz;
-pub mod residual;
+mod residual;
 
 pub use hertz::Hertz;
+pub use residual::Residual;

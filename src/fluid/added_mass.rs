@@ -19,6 +19,6 @@ pub fn immersed(plate: ModalBody, fluid: &Fluid) -> ModalBody {
         omega: plate.omega.iter().map(|omega| omega * slower).collect(),
         damping_ratio: plate.omega.iter().map(|_| fluid.plate_damping_ratio).collect(),
         participation: plate.participation.iter().map(|phi| phi.map(|p| p * slower)).collect(),
-        residual: plate.residual,
+        ..plate
     }
 }

@@ -111,6 +111,8 @@ struct Run<'a> {
     next_v: Vec<f64>,
     /// Modal approach and force of both contacts at the present time.
     approach: [f64; 2],
+    /// Patches at the present time, see [`System::contact`].
+    local: [f64; 2],
     force: [f64; 2],
     contacts: [ContactLedger; 2],
     steps: u64,
@@ -119,8 +121,10 @@ struct Run<'a> {
 /// A solved step, not yet accepted.
 struct Trial {
     approach: [Stages; 2],
+    local: [Stages; 2],
     forces: [Stages; 2],
     end_approach: [f64; 2],
+    end_local: [f64; 2],
     end_force: [f64; 2],
 }
 
@@ -147,6 +151,7 @@ impl<'a> Run<'a> {
             next_q: q.clone(),
             next_v: v.clone(),
             approach: system.modal_approach(&q),
+            local: system.modal_approach(&q),
             force: [0.0; 2],
             q,
             v,
@@ -186,6 +191,7 @@ impl<'a> Run<'a> {
         free_flight::advance(self.system, flight, &mut self.q, &mut self.v);
         self.time += flight;
         self.approach = self.system.modal_approach(&self.q);
+        self.local = self.approach;
         self.force = [0.0; 2];
         self.level = self.level.max(8);
         Ok(more)
@@ -219,7 +225,7 @@ impl<'a> Run<'a> {
                 table,
                 &self.q,
                 &self.v,
-                self.force,
+                (self.approach, self.local, self.force),
                 impulse_error / table.h,
                 (&mut self.next_q, &mut self.next_v),
             );
@@ -275,20 +281,21 @@ impl<'a> Run<'a> {
             })
         };
         let approach = join(self.approach, &trial.approach, trial.end_approach);
+        let local = join(self.local, &trial.local, trial.end_local);
         let force = join(self.force, &trial.forces, trial.end_force);
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let course = StepCourse {
                 time: self.time,
                 h,
                 approach: approach.map(|y| y[i]),
-                local_approach: std::array::from_fn(|p| self.system.local_approach(approach[p], force[p])[i]),
+                local_approach: local.map(|p| p[i]),
                 force: force.map(|f| f[i]),
             };
             contact.book(self.collocation, &course);
         }
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);
-        (self.approach, self.force) = (trial.end_approach, trial.end_force);
+        (self.approach, self.local, self.force) = (trial.end_approach, trial.end_local, trial.end_force);
         self.time += h;
         self.steps += 1;
         Ok(())
@@ -346,13 +353,16 @@ fn solve(
     table: &StepTable,
     q: &[f64],
     v: &[f64],
-    start_force: [f64; 2],
+    (start_approach, start_local, start_force): ([f64; 2], [f64; 2], [f64; 2]),
     force_error: f64,
     (next_q, next_v): (&mut Vec<f64>, &mut Vec<f64>),
 ) -> Option<Trial> {
     let free = table.free_approach(system, q, v);
     let mut forces = [[start_force[0]; STAGES], [start_force[1]; STAGES]];
     let mut approach = free;
+    // what the residual flexibility yields hardly changes from iterate to iterate
+    let mut yielded = [0, 1].map(|i| [start_approach[i] - start_local[i]; STAGES]);
+    let mut local = free;
     let mut settled = false;
     for _ in 0..MAX_ITERATIONS {
         let mut change: f64 = 0.0;
@@ -363,11 +373,13 @@ fn solve(
                 y[0] -= row[0][l] * forces[0][l] + row[1][l] * forces[1][l];
                 y[1] -= row[1][l] * forces[0][l] + row[2][l] * forces[1][l];
             }
-            let f = system.forces(y)?;
+            let (p, f) = system.contact(y, [y[0] - yielded[0][j], y[1] - yielded[1][j]])?;
             for i in 0..2 {
                 change = change.max((f[i] - forces[i][j]).abs());
                 forces[i][j] = f[i];
                 approach[i][j] = y[i];
+                local[i][j] = p[i];
+                yielded[i][j] = y[i] - p[i];
             }
         }
         if change <= force_error {
@@ -383,6 +395,7 @@ fn solve(
     }
     table.advance(system, &forces, q, v, next_q, next_v);
     let end_approach = system.modal_approach(next_q);
-    let end_force = system.forces(end_approach)?;
-    Some(Trial { approach, forces, end_approach, end_force })
+    let guess = [0, 1].map(|i| end_approach[i] - yielded[i][STAGES - 1]);
+    let (end_local, end_force) = system.contact(end_approach, guess)?;
+    Some(Trial { approach, local, forces, end_approach, end_local, end_force })
 }

@@ -1,5 +1,6 @@
 //! The impact: from bodies and contacts to a [`History`] and a [`Summary`].
 
+mod centre;
 pub mod collocation;
 mod contact_ledger;
 pub mod duhamel;
@@ -11,6 +12,7 @@ mod recorder;
 pub mod reduced;
 mod summary;
 pub mod system;
+mod validity;
 pub mod variants;
 pub mod wet;
 

@@ -18,7 +18,7 @@ impl<'a> Recorder<'a> {
     pub fn new(system: &'a System, collocation: &'a Collocation, interval: f64) -> Self {
         let mut recorder = Self { system, collocation, interval, history: History::default() };
         let (q, v) = system.initial_state();
-        recorder.push(0.0, &q, &v, [0.0, 0.0]);
+        recorder.push(0.0, &q, &v);
         recorder
     }
 
@@ -59,8 +59,7 @@ impl<'a> Recorder<'a> {
                     + at.velocity_per_velocity * v[k]
                     + dot(&at.velocity_per_force, &force);
             }
-            let contact = self.system.forces(self.system.modal_approach(&q_at)).unwrap_or([f64::NAN; 2]);
-            self.push(time + t, &q_at, &v_at, contact);
+            self.push(time + t, &q_at, &v_at);
         }
         Ok(())
     }
@@ -70,20 +69,26 @@ impl<'a> Recorder<'a> {
         self.history
     }
 
-    fn push(&mut self, time: f64, q: &[f64], v: &[f64], forces: [f64; 2]) {
+    fn push(&mut self, time: f64, q: &[f64], v: &[f64]) {
+        let system = self.system;
         let history = &mut self.history;
         // a step too short to move the clock adds nothing
         if history.time.last().is_some_and(|last| *last >= time) {
             return;
         }
-        let inner = self.system.masses[1].sqrt();
+        let approach = system.modal_approach(q);
+        let (_, forces) = system.contact(approach, approach).unwrap_or(([f64::NAN; 2], [f64::NAN; 2]));
+        let rate = [0, 1].map(|i| dot(&system.approach[i], v));
+        let local =
+            system.local_centre.map_or([0.0; 2], |centre| centre.motion(system, approach, rate, forces));
+        let inner = system.masses[1].sqrt();
         history.time.push(time);
-        history.outer.displacement.push(dot(&self.system.outer, q));
-        history.outer.velocity.push(dot(&self.system.outer, v));
+        history.outer.displacement.push(dot(&system.outer, q));
+        history.outer.velocity.push(dot(&system.outer, v));
         history.inner.displacement.push(q[INNER] / inner);
         history.inner.velocity.push(v[INNER] / inner);
-        history.plate.displacement.push(dot(&self.system.centre, q));
-        history.plate.velocity.push(dot(&self.system.centre, v));
+        history.plate.displacement.push(dot(&system.centre, q) + local[0]);
+        history.plate.velocity.push(dot(&system.centre, v) + local[1]);
         history.outer_force.push(forces[0]);
         history.inner_force.push(forces[1]);
     }

@@ -2,6 +2,7 @@
 
 use super::integrator::{Integration, Options, integrate};
 use super::system::System;
+use super::validity;
 use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::continuum::{MeshOptions, cached};
@@ -31,6 +32,7 @@ pub struct Reduced {
     end_time: Option<f64>,
     scene: String,
     scene_hash: String,
+    warnings: Vec<String>,
 }
 
 impl Reduced {
@@ -49,11 +51,12 @@ impl Reduced {
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
             (_, modes) => modes.or(scene.reduced.modes),
         };
-        let (system, fluid) = build(setup, model, modes)?;
+        let Built { system, fluid, warnings } = build(setup, model, modes)?;
         Ok(Self {
             model,
             system,
             fluid,
+            warnings,
             end_time: scene.run.end_time,
             scene: scene.name.clone(),
             scene_hash: scene.hash(),
@@ -125,6 +128,7 @@ impl Reduced {
             uncertainty: Default::default(),
             mesh: None,
             solver: None,
+            warnings: self.warnings.clone(),
             samples: None,
             sample_interval: None,
         }
@@ -148,9 +152,18 @@ pub(super) fn quantities(system: &System, result: &Integration) -> PlateQuantiti
     }
 }
 
-/// The oscillators and contacts of `model` with `modes` elastic modes, and the forces of the fluid; `None` lets model
-/// C choose the number of modes.
-fn build(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<(System, Option<FluidForces>)> {
+/// A model of a scene.
+struct Built {
+    /// Oscillators and contacts.
+    system: System,
+    /// Forces of the fluid.
+    fluid: Option<FluidForces>,
+    /// What the user has to be warned of.
+    warnings: Vec<String>,
+}
+
+/// `model` with `modes` elastic modes; `None` lets model C choose.
+fn build(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<Built> {
     let outer = OuterBody::new(&setup.outer)?;
     let join = |plate: ModalBody, tips| {
         let plate = match &setup.fluid {
@@ -165,11 +178,11 @@ fn build(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<(Sys
         Model::A | Model::B => {
             let modes = modes.unwrap_or(DEFAULT_MODES);
             let shapes = |radii: &[f64]| kirchhoff::shapes(&setup.plate, modes, radii);
-            Ok((kirchhoff(modes)?, fluid_forces(setup, shapes)?))
+            Ok(Built { system: kirchhoff(modes)?, fluid: fluid_forces(setup, shapes)?, warnings: Vec::new() })
         }
         Model::C => {
             let rough = Rough::of(&kirchhoff(DEFAULT_MODES)?)?;
-            let plate = continuum(setup, modes, &rough)?;
+            let plate = validity::tempered(continuum(setup, modes, &rough)?, setup, &rough);
             let elastic = plate.omega.len() - rigid;
             let mesh = MeshOptions::default();
             let shapes = |radii: &[f64]| {
@@ -183,7 +196,7 @@ fn build(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<(Sys
             };
             let fluid = fluid_forces(setup, shapes)?;
             let tips = tip_residuals(setup, rough.patch_radius, &mesh)?;
-            Ok((join(plate, tips), fluid))
+            Ok(Built { system: join(plate, tips), fluid, warnings: validity::warnings(setup, &rough) })
         }
     }
 }
@@ -235,10 +248,13 @@ pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOpt
 }
 
 /// What model C has to know of the impact before it is solved, from a model without residual.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Rough {
     /// Radii in m of the patches over which loads are weighted: Hertz's at the force peaks. The result hardly
     /// depends on them: they are rounded, so that an impact that is a little different finds its bodies in the cache.
     pub(super) patch_radius: [f64; 2],
+    /// Force peaks in N of the outer and the inner contact.
+    pub(super) force_peak: [f64; 2],
     /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
     contact_frequency: f64,
 }
@@ -248,10 +264,15 @@ impl Rough {
         let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
         let radius = |i: usize| rounded(system.laws[i].contact_radius(run.contacts[i].force_peak));
         let frequency = |i: usize| 2.0 * run.contacts[i].force_peak / run.contacts[i].impulse;
-        let outer = (radius(0), frequency(0));
+        let peak = |i: usize| run.contacts[i].force_peak;
+        let outer = (radius(0), frequency(0), peak(0));
         // an inner body that is never reached takes the outer one's patch
-        let inner = if run.contacts[1].contacts > 0 { (radius(1), frequency(1)) } else { outer };
-        Ok(Self { patch_radius: [outer.0, inner.0], contact_frequency: outer.1.max(inner.1) })
+        let inner = if run.contacts[1].contacts > 0 { (radius(1), frequency(1), peak(1)) } else { outer };
+        Ok(Self {
+            patch_radius: [outer.0, inner.0],
+            force_peak: [outer.2, inner.2],
+            contact_frequency: outer.1.max(inner.1),
+        })
     }
 
     /// Relative error of a force when the modes from `omega_next` rad/s on follow statically.

@@ -126,6 +126,9 @@ pub struct Summary {
     /// Reference only: solver settings and versions, kept as written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solver: Option<serde_json::Value>,
+    /// What a user has to know before relying on the result, a sentence each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// Number of samples in the history, if one was kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<usize>,

@@ -1,14 +1,16 @@
 //! The bodies of a plate impact as one set of oscillators coupled by two contacts.
 //!
 //! Every body is a set of mass-normalised coordinates q_k: the rigid spheres (omega = 0), the modes
-//! of the plate, those of a bender. The approach of contact i is delta_i = sum_k b_ik q_k - gap_i - sum_j R_ij F_j and
+//! of the plate, those of a bender. The approach of contact i is delta_i = sum_k b_ik q_k - gap_i, less what the
+//! residual flexibility yields, and
 //! its force acts back as q_k'' + 2 alpha_k q_k' + omega_k^2 q_k = -sum_i b_ik F_i.
 //! Contact 0 joins outer body and plate, contact 1 plate and inner body.
 
+use super::centre::LocalCentre;
 use super::duhamel::Oscillator;
 use super::outer_body::{Drive, OuterBody};
 use crate::body::ModalBody;
-use crate::contact::Hertz;
+use crate::contact::{Hertz, Residual};
 use crate::scene::{PlateImpact, Shape};
 
 /// Index of the outer body's first coordinate among the oscillators: the rigid motion, or a bender's first mode. A
@@ -32,12 +34,14 @@ pub struct System {
     pub approach: [Vec<f64>; 2],
     /// Displacement along z of the plate's centre (mean of both faces) per unit of each coordinate. Shape (n).
     pub centre: Vec<f64>,
+    /// What the local deformation adds to it; `None` for a plate theory, which knows none.
+    pub local_centre: Option<LocalCentre>,
     /// Initial gap of each contact in m.
     pub gap: [f64; 2],
     /// Contact laws.
     pub laws: [Hertz; 2],
-    /// Residual flexibility in terms of the approaches, m/N; `None` if it is zero.
-    pub residual: Option<[[f64; 2]; 2]>,
+    /// Residual flexibility in terms of the approaches; `None` if it is zero.
+    pub residual: Option<Residual>,
     /// Masses of outer and inner body in kg; of a bender the mass that has its kinetic energy at the tip's speed.
     pub masses: [f64; 2],
     /// How the outer body was driven, if it is a bender.
@@ -95,9 +99,19 @@ impl System {
             start[0].push(outer_body.displacement[k]);
             start[1].push(outer_body.velocity[k]);
         }
-        let r = &plate.residual;
-        let residual = [[r[0][0] + tip_residual[0], -r[0][1]], [-r[1][0], r[1][1] + tip_residual[1]]];
+        // the inner contact closes when the plate moves down
+        let sign = |i: usize, j: usize| if i == j { 1.0 } else { -1.0 };
+        let tip_radius = [outer.shape.tip_radius(), inner.shape.tip_radius()];
+        let mut residual = Residual { flexibility: [[0.0; 2]; 2], growth: [[0.0; 2]; 2] };
+        for i in 0..2 {
+            for j in 0..2 {
+                residual.flexibility[i][j] = sign(i, j) * plate.residual[i][j];
+                residual.growth[i][j] = sign(i, j) * plate.patch_growth[i][j] * tip_radius[i];
+            }
+            residual.flexibility[i][i] += tip_residual[i];
+        }
         let law = |shape: &Shape, material| Hertz::new(shape.tip_radius(), material, &setup.plate.material);
+        let laws = [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)];
         let elastic = plate.omega.iter().copied().filter(|w| *w > 0.0);
         Self {
             approach,
@@ -105,8 +119,10 @@ impl System {
             start,
             centre,
             gap: [0.0, inner.gap],
-            laws: [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)],
-            residual: residual.iter().flatten().any(|r| *r != 0.0).then_some(residual),
+            laws,
+            local_centre: (!residual.is_zero())
+                .then(|| LocalCentre::new(plate, &laws, setup.plate.material.plane_strain_modulus())),
+            residual: (!residual.is_zero()).then_some(residual),
             masses,
             drive: outer_body.drive,
             speed: outer.speed,
@@ -121,18 +137,17 @@ impl System {
         self.oscillators.iter().any(|o| o.alpha > 0.0)
     }
 
-    /// Change of both contact forces in N per modal approach of both in m, at the modal approach `y` under the
-    /// forces `f`: (1 + T R)^-1 T with the tangents T of the laws and the residual flexibility R.
-    pub fn tangent(&self, y: [f64; 2], f: [f64; 2]) -> [[f64; 2]; 2] {
-        let local = self.local_approach(y, f);
-        let t = [self.laws[0].tangent(local[0]), self.laws[1].tangent(local[1])];
-        let Some(r) = &self.residual else {
-            return [[t[0], 0.0], [0.0, t[1]]];
-        };
-        let (a, b) = (1.0 + t[0] * r[0][0], t[0] * r[0][1]);
-        let (c, d) = (t[1] * r[1][0], 1.0 + t[1] * r[1][1]);
-        let determinant = a * d - b * c;
-        [[d * t[0] / determinant, -b * t[1] / determinant], [-c * t[0] / determinant, a * t[1] / determinant]]
+    /// Change of both contact forces in N per modal approach of both in m, with the patches `local` as
+    /// [`Self::local_approach`] gives them.
+    pub fn tangent(&self, local: [f64; 2]) -> [[f64; 2]; 2] {
+        match &self.residual {
+            None => [[self.laws[0].tangent(local[0]), 0.0], [0.0, self.laws[1].tangent(local[1])]],
+            Some(residual) => {
+                let per = |rate| residual.rates(&self.laws, local, rate).1;
+                let (first, second) = (per([1.0, 0.0]), per([0.0, 1.0]));
+                [[first[0], second[0]], [first[1], second[1]]]
+            }
+        }
     }
 
     /// Number of oscillators.
@@ -163,11 +178,10 @@ impl System {
 
     /// Strain energy of contacts and residual flexibility in J at the forces `f` in N.
     pub fn contact_energy(&self, f: [f64; 2]) -> f64 {
-        let hertz: f64 = (0..2).map(|i| 0.4 * f[i] * (f[i] / self.laws[i].stiffness).powf(2.0 / 3.0)).sum();
-        let residual = self.residual.map_or(0.0, |r| {
-            0.5 * (f[0] * (r[0][0] * f[0] + r[0][1] * f[1]) + f[1] * (r[1][0] * f[0] + r[1][1] * f[1]))
-        });
-        hertz + residual
+        match &self.residual {
+            None => (0..2).map(|i| 0.4 * f[i] * self.laws[i].approach(f[i])).sum(),
+            Some(residual) => residual.energy(&self.laws, f),
+        }
     }
 
     /// Approach of both contacts in m, without the part of the residual flexibility.
@@ -175,17 +189,19 @@ impl System {
         [0, 1].map(|i| dot(&self.approach[i], q) - self.gap[i])
     }
 
-    /// Approach of both contacts in m with the part of the residual flexibility: positive where the bodies touch.
+    /// Patches of both contacts, squared radius over tip radius in m, at the modal approach `y` in m and the forces `f` in N that go with it:
+    /// positive where the bodies touch.
     pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
-        self.residual.map_or(y, |r| [0, 1].map(|i| y[i] - r[i][0] * f[0] - r[i][1] * f[1]))
+        self.residual.map_or(y, |residual| residual.local_approach(&self.laws, y, f))
     }
 
-    /// Forces of both contacts in N at the modal approach `y` in m; `None` if there is no equilibrium.
+    /// Patches (as [`Self::local_approach`]) and forces in N of both contacts at the modal approach `y` in m, `guess` being
+    /// the patches of a nearby state; `None` if there is no equilibrium.
     #[inline]
-    pub fn forces(&self, y: [f64; 2]) -> Option<[f64; 2]> {
+    pub fn contact(&self, y: [f64; 2], guess: [f64; 2]) -> Option<([f64; 2], [f64; 2])> {
         match &self.residual {
-            None => Some([self.laws[0].force(y[0]), self.laws[1].force(y[1])]),
-            Some(residual) => crate::contact::residual::forces(&self.laws, residual, y, y),
+            None => Some((y, [self.laws[0].force(y[0]), self.laws[1].force(y[1])])),
+            Some(residual) => residual.solve(&self.laws, y, guess),
         }
     }
 }

@@ -23,6 +23,7 @@ use super::integrator::{Options, integrate};
 use super::reduced::{Rough, quantities, tip_residuals};
 use super::summary::PlateQuantities;
 use super::system::System;
+use super::validity;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::{ModalBody, kirchhoff};
 use crate::error::Result;
@@ -64,6 +65,7 @@ pub struct Variants<'a> {
     end_time: Option<f64>,
     kirchhoff: ModalBody,
     plate: ContinuumPlate,
+    rough: Rough,
     tips: [f64; 2],
 }
 
@@ -82,25 +84,28 @@ impl<'a> Variants<'a> {
         let Setup::PlateImpact(setup) = &scene.setup;
         let kirchhoff = kirchhoff::modes(&setup.plate, modes[0].max(patch_modes))?;
         let few = lowest(&kirchhoff, patch_modes);
-        let rough = Rough::of(&System::new(setup, &few, [0.0; 2]))?;
+        let mut rough = Rough::of(&System::new(setup, &few, [0.0; 2]))?;
         let patch = rough.patch_radius.map(|a| a * continuum.patch_factor);
+        rough.patch_radius = patch;
         Ok(Self {
             setup,
             end_time: scene.run.end_time,
             plate: cached::plate(&setup.plate, patch, modes[1], &continuum.mesh)?,
             tips: tip_residuals(setup, patch, &continuum.mesh)?,
             kirchhoff,
+            rough,
         })
     }
 
     /// The scene under `simplification` with `modes` elastic modes of the plate.
     pub fn system(&self, simplification: Simplification, modes: usize) -> System {
         let rigid = [0.0; 2];
+        let continuum = || validity::tempered(self.plate.modal_body(modes), self.setup, &self.rough);
         let (plate, tips) = match simplification {
             Simplification::KirchhoffPlate => (lowest(&self.kirchhoff, modes), rigid),
             Simplification::MeanOfFaces => (mean_of_faces(&self.plate.modal_body(modes)), rigid),
-            Simplification::RigidTips => (self.plate.modal_body(modes), rigid),
-            Simplification::None => (self.plate.modal_body(modes), self.tips),
+            Simplification::RigidTips => (continuum(), rigid),
+            Simplification::None => (continuum(), self.tips),
         };
         System::new(self.setup, &plate, tips)
     }
@@ -139,6 +144,7 @@ pub fn mean_of_faces(body: &ModalBody) -> ModalBody {
     ModalBody {
         participation: body.participation.iter().map(|phi| [0.5 * (phi[0] + phi[1]); 2]).collect(),
         residual: [[0.25 * (r[0][0] + r[0][1] + r[1][0] + r[1][1]); 2]; 2],
+        patch_growth: [[0.0; 2]; 2],
         ..body.clone()
     }
 }

@@ -150,6 +150,7 @@ pub fn scene_page(report: &SceneReport) -> String {
 fn model_section(model: &ModelComparison) -> Markup {
     html! {
         h2 { "Model " (model_name(&model.model, model.summary.modes)) " " (badge(model.verdict)) }
+        @for warning in &model.summary.warnings { p { strong { "Warning: " } (warning) } }
         (contradictions(&model.model, &model.integrity))
         h3 { "Discrepancies" }
         div.scroll { table.discrepancies data-model=(model.model) {

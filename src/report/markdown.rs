@@ -59,6 +59,9 @@ fn model_section(model: &ModelComparison) -> String {
     for row in &model.discrepancies {
         text += &format!("{}\n", discrepancy(row));
     }
+    for warning in &model.summary.warnings {
+        text += &format!("\nWarning: {}\n", escape(warning));
+    }
     text += "\n| curve | Sprague-Geers | Russell | ISO/TS 18571 | corridor | phase | magnitude | slope | grade | window | samples |\n|---|--:|--:|--:|--:|--:|--:|--:|---|--:|--:|\n";
     let score = |value: Option<f64>| value.map_or("–".into(), |v| format!("{v:.3}"));
     for curve in &model.curves {

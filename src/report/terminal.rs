@@ -32,6 +32,9 @@ pub fn terminal(report: &Report) -> String {
             text += &format!("  reference: {}\n", super::junit::integrity_failure(check));
         }
         for model in &comparison.models {
+            for warning in &model.summary.warnings {
+                text += &format!("  warning: {warning}\n");
+            }
             for row in model.discrepancies.iter().filter(|d| !d.verdict.passed()) {
                 text += &format!("  {}: {}\n", model.model, super::junit::failure(row));
             }

@@ -2,6 +2,7 @@
 //!
 //! A study is one file with one function that returns a [`Study`], and one line in [`STUDIES`].
 
+pub mod insensitivity;
 pub mod table2;
 mod write;
 
@@ -29,11 +30,18 @@ pub struct Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 1] = [Entry {
-    name: "table2",
-    about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
-    run: table2::run,
-}];
+pub const STUDIES: [Entry; 2] = [
+    Entry {
+        name: "table2",
+        about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
+        run: table2::run,
+    },
+    Entry {
+        name: "insensitivity",
+        about: "Model C with other numbers of modes, patch radii and meshes, both scenes of Table 1",
+        run: insensitivity::run,
+    },
+];
 
 /// The study called `name`.
 ///
@@ -56,6 +64,8 @@ pub enum Cell {
     Number(f64),
     /// A number of something.
     Count(usize),
+    /// A name.
+    Text(&'static str),
     /// Not known here, for example because a solver is not installed; null in JSON.
     Missing,
 }

@@ -175,6 +175,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         bender: None,
         losses: None,
         solver: None,
+        warnings: Vec::new(),
         samples: None,
         sample_interval: None,
     }

@@ -36,8 +36,14 @@ pub struct ContinuumPlate {
     pub omega: Vec<f64>,
     /// Mass-normalised shapes weighted over the patches, kg^(-1/2). Shape (n + 1, 2).
     pub participation: Vec<[f64; 2]>,
-    /// Static flexibility of all elastic modes in m/N, without Hertz's half-spaces on the diagonal.
+    /// Static flexibility of all elastic modes in m/N, without Hertz's half-spaces on the diagonal, for the patches the
+    /// plate was made for.
     pub flexibility: [[f64; 2]; 2],
+    /// How `flexibility[i][j]` changes with the square of the patch radius of contact i, that of j being held: m/N per
+    /// m^2. The half-spaces carry all that is singular in a small patch; the rest is even in its radius.
+    pub patch_growth: [[f64; 2]; 2],
+    /// Radii of the patches in m: outer, inner face.
+    pub patch_radius: [f64; 2],
     /// Mass of the plate in kg if it is free to move, otherwise `None`.
     pub free_mass: Option<f64>,
     /// Modal damping ratio.
@@ -63,22 +69,29 @@ impl ContinuumPlate {
         let halves = Halves::new(plate, &mesh)?;
         let spectrum = halves.spectrum(modes + 1)?;
         let forces = patch_radius.map(|a| nodal_forces(&mesh, a));
+        let inside = patch_radius.map(|a| nodal_forces(&mesh, INSIDE * a));
+        // flexibility between the inner part of patch i and the whole patch j
+        let mut inner_part = [[0.0; 2]; 2];
         let mut result = Self {
             omega: Vec::new(),
             participation: Vec::new(),
             flexibility: [[0.0; 2]; 2],
+            patch_growth: [[0.0; 2]; 2],
+            patch_radius,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
             damping_ratio: plate.damping_ratio,
             degrees_of_freedom: halves.bending.size() + halves.longitudinal.size(),
         };
         for (parity, half) in halves.each() {
             let load = [half.axial_load(&forces[0]), half.axial_load(&forces[1])];
+            let inner_load = [half.axial_load(&inside[0]), half.axial_load(&inside[1])];
             for (j, load_j) in load.iter().enumerate() {
                 let mut displacement = load_j.clone();
                 half.solve(&mut displacement);
-                for (i, load_i) in load.iter().enumerate() {
-                    result.flexibility[i][j] +=
-                        0.5 * sign(parity, i) * sign(parity, j) * dot(load_i, &displacement);
+                for i in 0..2 {
+                    let half_sign = 0.5 * sign(parity, i) * sign(parity, j);
+                    result.flexibility[i][j] += half_sign * dot(&load[i], &displacement);
+                    inner_part[i][j] += half_sign * dot(&inner_load[i], &displacement);
                 }
             }
             for entry in spectrum.iter().filter(|entry| entry.parity == parity) {
@@ -92,7 +105,14 @@ impl ContinuumPlate {
         result.omega = order.iter().map(|&i| result.omega[i]).collect();
         result.participation = order.iter().map(|&i| result.participation[i]).collect();
         for (i, a) in patch_radius.into_iter().enumerate() {
-            result.flexibility[i][i] -= half_space_flexibility(&plate.material, a);
+            result.flexibility[i][i] -= half_space_flexibility(&plate.material, a, a);
+            inner_part[i][i] -= half_space_flexibility(&plate.material, a, INSIDE * a);
+        }
+        for i in 0..2 {
+            for j in 0..2 {
+                result.patch_growth[i][j] = (result.flexibility[i][j] - inner_part[i][j])
+                    / ((1.0 - INSIDE.powi(2)) * patch_radius[i].powi(2));
+            }
         }
         let mean = 0.5 * (result.flexibility[0][1] + result.flexibility[1][0]);
         (result.flexibility[0][1], result.flexibility[1][0]) = (mean, mean);
@@ -108,7 +128,14 @@ impl ContinuumPlate {
             damping_ratio: Vec::with_capacity(modes + 1),
             participation: Vec::with_capacity(modes + 1),
             residual: self.flexibility,
+            patch_growth: self.patch_growth,
         };
+        for i in 0..2 {
+            for j in 0..2 {
+                body.residual[i][j] -= self.patch_growth[i][j] * self.patch_radius[i].powi(2)
+                    + self.patch_growth[j][i] * self.patch_radius[j].powi(2);
+            }
+        }
         if let Some(mass) = self.free_mass {
             body.omega.push(0.0);
             body.damping_ratio.push(0.0);
@@ -190,6 +217,9 @@ pub fn eigenfrequencies(plate: &Plate, count: usize) -> Result<Vec<PlateMode>> {
 
 /// Largest [`HalfBody::rounding_error`] that is accepted; the error observed is 2 to 50 times smaller.
 const ROUNDING_LIMIT: f64 = 0.05;
+
+/// Radius of the inner part of a patch over that of the whole, from which the growth with the patch is taken.
+const INSIDE: f64 = 0.5;
 
 /// +1, or -1 for the inner face in longitudinal motion.
 fn sign(parity: Parity, point: usize) -> f64 {

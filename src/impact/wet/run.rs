@@ -49,6 +49,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         level: 8,
         time: 0.0,
         approach: system.modal_approach(&q),
+        local: system.modal_approach(&q),
         force: [0.0; 2],
         load: start,
         q,
@@ -87,6 +88,7 @@ struct Run<'a> {
     q: Vec<f64>,
     v: Vec<f64>,
     approach: [f64; 2],
+    local: [f64; 2],
     force: [f64; 2],
     /// What the fluid does at the present time.
     load: FluidLoad,
@@ -255,22 +257,11 @@ impl Run<'_> {
                     _ => stages[p - 1],
                 })
             };
-            let approach = join(self.approach[i], &trial.approach[i], trial.end_approach[i]);
-            let local = |p: usize| {
-                let both = |start: [f64; 2], stages: &[[f64; STAGES]; 2], end: [f64; 2]| match p {
-                    0 => start,
-                    _ if p == STAGES + 1 => end,
-                    _ => [stages[0][p - 1], stages[1][p - 1]],
-                };
-                let approach = both(self.approach, &trial.approach, trial.end_approach);
-                let force = both(self.force, &trial.forces, trial.end_force);
-                self.wet.system.local_approach(approach, force)[i]
-            };
             let course = StepCourse {
                 time: self.time,
                 h,
-                approach,
-                local_approach: std::array::from_fn(local),
+                approach: join(self.approach[i], &trial.approach[i], trial.end_approach[i]),
+                local_approach: join(self.local[i], &trial.local[i], trial.end_local[i]),
                 force: join(self.force[i], &trial.forces[i], trial.end_force[i]),
             };
             contact.book(self.collocation, &course);
@@ -293,7 +284,7 @@ impl Run<'_> {
         std::mem::swap(&mut self.q, &mut trial.motion.q[STAGES]);
         std::mem::swap(&mut self.v, &mut trial.motion.v[STAGES]);
         std::mem::swap(&mut self.load, &mut trial.loads[STAGES]);
-        (self.approach, self.force) = (trial.end_approach, trial.end_force);
+        (self.approach, self.local, self.force) = (trial.end_approach, trial.end_local, trial.end_force);
         self.time += h;
         self.steps += 1;
         Ok(())

@@ -22,14 +22,18 @@ pub struct Trial {
     pub motion: Motion,
     /// Modal approach of both contacts at the Gauss points in m.
     pub approach: [Stages; 2],
+    /// Patches of both contacts at the Gauss points, see [`System::contact`].
+    pub local: [Stages; 2],
     /// Forces of both contacts at the Gauss points in N.
     pub forces: [Stages; 2],
     /// Generalised forces of the fluid at the Gauss points, from the inner body's on. Shape (size).
     pub fluid: Vec<Stages>,
     /// What the fluid does at the Gauss points and at the end.
     pub loads: Vec<FluidLoad>,
-    /// Approach and forces of the contacts at the end.
+    /// Modal approach of both contacts at the end in m.
     pub end_approach: [f64; 2],
+    /// Their patches at the end.
+    pub end_local: [f64; 2],
     /// Forces of both contacts at the end in N.
     pub end_force: [f64; 2],
 }
@@ -67,8 +71,8 @@ impl Wet<'_> {
         let (q, v) = (&trial.motion.q[STAGES], &trial.motion.v[STAGES]);
         self.fluid.evaluate(q, v, &mut trial.loads[STAGES]);
         trial.end_approach = self.system.modal_approach(q);
-        match self.system.forces(trial.end_approach) {
-            Some(force) => trial.end_force = force,
+        match self.system.contact(trial.end_approach, trial.end_approach) {
+            Some((local, force)) => (trial.end_local, trial.end_force) = (local, force),
             None => return false,
         }
         true
@@ -98,10 +102,11 @@ impl Wet<'_> {
         for j in 0..STAGES {
             let (q, v) = (&trial.motion.q[j], &trial.motion.v[j]);
             let approach = self.system.modal_approach(q);
-            let force = self.system.forces(approach)?;
-            defect.tangent[j] = self.system.tangent(approach, force);
+            let (local, force) = self.system.contact(approach, approach)?;
+            defect.tangent[j] = self.system.tangent(local);
             for i in 0..2 {
                 trial.approach[i][j] = approach[i];
+                trial.local[i][j] = local[i];
                 defect.contact[i][j] = force[i] - trial.forces[i][j];
             }
             self.fluid.evaluate(q, v, &mut trial.loads[j]);
