@@ -11,9 +11,11 @@ pub mod contact;
 pub mod error;
 pub mod fluid;
 pub mod impact;
+pub mod optimise;
 pub mod project;
 pub mod reference;
 pub mod report;
+pub mod sampling;
 pub mod scene;
 pub mod study;
 

@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::scene::{Edge, Plate};
 use faer::Mat;
 use std::f64::consts::PI;
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// Degree of the polynomials in an element.
 const DEGREE: usize = 9;
@@ -85,6 +86,15 @@ impl UnitPlate {
         (0..self.omega.len()).map(|mode| radii.iter().map(|r| at(mode, *r)).collect()).collect()
     }
 
+    /// Mass-normalised deflections of `plate` at `radii` in m, see [`shapes`].
+    fn shapes(&self, plate: &Plate, radii: &[f64]) -> Vec<Vec<f64>> {
+        let unit: Vec<f64> = radii.iter().map(|r| r / plate.radius).collect();
+        let amplitude = Self::amplitude(plate);
+        let mut shapes = self.deflection(&unit);
+        shapes.iter_mut().flatten().for_each(|value| *value *= amplitude);
+        shapes
+    }
+
     /// Amplitude of a mass-normalised mode of `plate` per that of the unit plate.
     fn amplitude(plate: &Plate) -> f64 {
         1.0 / (plate.radius * (plate.material.density * plate.thickness).sqrt())
@@ -122,11 +132,53 @@ pub fn modes(plate: &Plate, modes: usize) -> Result<ModalBody> {
 /// # Errors
 /// As [`UnitPlate::new`].
 pub fn shapes(plate: &Plate, modes: usize, radii: &[f64]) -> Result<Vec<Vec<f64>>> {
-    let unit: Vec<f64> = radii.iter().map(|r| r / plate.radius).collect();
-    let amplitude = UnitPlate::amplitude(plate);
-    let mut shapes = UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.deflection(&unit);
-    shapes.iter_mut().flatten().for_each(|value| *value *= amplitude);
-    Ok(shapes)
+    Ok(UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.shapes(plate, radii))
+}
+
+/// Most unit plates that [`UnitPlates`] keeps: a study of the other numbers needs a few, one of Poisson's ratio a
+/// new one each time.
+const KEPT: usize = 32;
+
+/// The unit plates that a series of impacts has needed so far; shared by its threads.
+#[derive(Debug, Default)]
+pub struct UnitPlates(RwLock<Vec<Arc<UnitPlate>>>);
+
+impl UnitPlates {
+    /// As [`modes`], without solving an eigenproblem again.
+    ///
+    /// # Errors
+    /// As [`UnitPlate::new`].
+    pub fn modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
+        Ok(self.unit(plate, modes)?.scale(plate))
+    }
+
+    /// As [`shapes`], without solving an eigenproblem again.
+    ///
+    /// # Errors
+    /// As [`UnitPlate::new`].
+    pub fn shapes(&self, plate: &Plate, modes: usize, radii: &[f64]) -> Result<Vec<Vec<f64>>> {
+        Ok(self.unit(plate, modes)?.shapes(plate, radii))
+    }
+
+    fn unit(&self, plate: &Plate, modes: usize) -> Result<Arc<UnitPlate>> {
+        let (edge, poisson_ratio) = (plate.edge, plate.material.poisson_ratio);
+        let count = modes + usize::from(edge == Edge::Free);
+        let fits = |unit: &&Arc<UnitPlate>| {
+            unit.edge == edge && unit.poisson_ratio == poisson_ratio && unit.omega.len() == count
+        };
+        // the list is whole after every change, whatever became of the thread that made it
+        let known = self.0.read().unwrap_or_else(PoisonError::into_inner).iter().find(fits).cloned();
+        if let Some(unit) = known {
+            return Ok(unit);
+        }
+        let unit = Arc::new(UnitPlate::new(edge, poisson_ratio, modes)?);
+        let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() >= KEPT {
+            kept.remove(0);
+        }
+        kept.push(Arc::clone(&unit));
+        Ok(unit)
+    }
 }
 
 /// Unknowns of a node stand before those of the element outside it: w, w', inner ...

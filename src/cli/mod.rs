@@ -2,11 +2,13 @@
 
 mod compare;
 mod doctor;
+mod optimise;
 mod progress;
 mod reduced;
 mod reference;
 mod schema;
 mod study;
+mod sweep;
 
 use crate::error::{Error, ExitStatus, Result};
 use clap::{Args, Parser, Subcommand};
@@ -45,9 +47,16 @@ enum Command {
     /// Compare, and let the scene's tolerances decide the exit status
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
     Gate(compare::GateArguments),
-    /// Compute one of the paper's tables or parameter studies
-    #[command(after_help = "Example: impactcheck study table2 --json")]
+    /// Compute one of the paper's tables or parameter studies, or a sweep of one's own
+    #[command(
+        after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
+    )]
     Study(study::Arguments),
+    /// Find the numbers of a scene, within bounds, that transmit most energy
+    #[command(
+        after_help = "Example: impactcheck optimise scaled-plate-r10 --over plate.radius=15mm..60mm --over plate.thickness=1mm..3mm"
+    )]
+    Optimise(optimise::Arguments),
     /// Tell what is installed, and the command that installs what is missing
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
@@ -100,6 +109,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Compare(arguments) => compare::run(&context, &arguments),
         Command::Gate(arguments) => compare::gate(&context, &arguments),
         Command::Study(arguments) => study::run(&context, &arguments),
+        Command::Optimise(arguments) => optimise::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),
     };

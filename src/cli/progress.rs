@@ -2,7 +2,9 @@
 
 use super::Context;
 use crate::reference::Progress;
+use crate::study::sweep;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Bar over the phases of a reference solution.
 pub struct Bar(ProgressBar);
@@ -33,5 +35,52 @@ impl Bar {
 impl Drop for Bar {
     fn drop(&mut self) {
         self.0.finish_and_clear();
+    }
+}
+
+/// Bar over the points of a sweep; shared by threads.
+pub struct Counter {
+    bar: ProgressBar,
+    /// Points of the shard, and how many were recorded by this run.
+    counted: [AtomicUsize; 2],
+}
+
+impl Counter {
+    /// A bar titled `title`; hidden when the context is quiet or standard error is no terminal.
+    pub fn new(context: &Context, title: &str) -> Self {
+        let bar = ProgressBar::new(0);
+        if context.quiet {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Ok(style) = ProgressStyle::with_template(
+            "{prefix} {bar:30} {pos} of {len} [{elapsed}, {eta} left, {per_sec}]",
+        ) {
+            bar.set_style(style);
+        }
+        bar.set_prefix(title.to_owned());
+        Self { bar, counted: Default::default() }
+    }
+
+    /// Shows how far the sweep is.
+    pub fn show(&self, progress: sweep::Progress) {
+        match progress {
+            sweep::Progress::Start { points, done } => {
+                self.counted[0].store(points, Relaxed);
+                self.bar.set_length(points as u64);
+                self.bar.set_position(done as u64);
+                self.bar.reset_eta();
+            }
+            sweep::Progress::Recorded(count) => {
+                self.counted[1].fetch_add(count, Relaxed);
+                self.bar.inc(count as u64);
+            }
+        }
+    }
+
+    /// Takes the bar away and gives the points of the shard and how many were recorded.
+    pub fn finish(self) -> (usize, usize) {
+        self.bar.finish_and_clear();
+        let [points, fresh] = self.counted;
+        (points.into_inner(), fresh.into_inner())
     }
 }

@@ -1,33 +1,73 @@
-//! `impactcheck study`: the paper's tables and parameter studies.
+//! `impactcheck study`: the paper's tables and parameter studies, and sweeps of one's own.
 
-use super::{Context, JsonArgument};
-use crate::error::{ExitStatus, Result};
+use super::{Context, JsonArgument, sweep};
+use crate::error::{Error, ExitStatus, Result};
+use crate::scene::Model;
 use crate::{report, study};
-use clap::Args;
+use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Arguments {
-    /// Name of the study: table2, insensitivity
-    name: String,
-    /// Write the study as JSON, CSV and Markdown into this folder
+    #[command(subcommand)]
+    own: Option<Own>,
+    #[command(flatten)]
+    named: Named,
+}
+
+#[derive(Debug, Subcommand)]
+enum Own {
+    /// Vary numbers of a scene as a sweep file says
+    #[command(after_help = sweep::EXAMPLE)]
+    Sweep(sweep::SweepArguments),
+    /// Join the records of a sweep's shards into one table
+    Merge(sweep::Arguments),
+}
+
+#[derive(Debug, Args)]
+struct Named {
+    /// Name of the study: table2, fig14, fig15, fig16, fig17, half-period (section 4.1),
+    /// insensitivity, rocker, fluid
+    #[arg(required = true)]
+    name: Option<String>,
+    /// Reduced model, for the studies of figures [default: B, with which the paper made them]
+    #[arg(long)]
+    model: Option<Model>,
+    /// Write the study as JSON, CSV, Markdown and, if it is a figure, SVG and PNG into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     json: JsonArgument,
 }
 
+/// Runs a study or a sweep.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    match &arguments.own {
+        Some(Own::Sweep(arguments)) => sweep::run(context, arguments),
+        Some(Own::Merge(arguments)) => sweep::merge(context, arguments),
+        None => named(context, &arguments.named),
+    }
+}
+
 /// Runs the study and prints it. Claims are judged in the document; the exit status tells only whether the job was
 /// done.
-pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let entry = study::find(&arguments.name)?;
+fn named(context: &Context, arguments: &Named) -> Result<ExitStatus> {
+    let entry = study::find(arguments.name.as_deref().unwrap_or_default())?;
+    if let (Some(model), false) = (arguments.model, entry.takes_model) {
+        return Err(Error::Usage(format!(
+            "--model {model}: the study {} runs no reduced model of choice",
+            entry.name
+        )));
+    }
+    let settings = study::Settings { model: arguments.model };
     if let Some(folder) = &arguments.out {
         // refused before anything is computed
         report::check_writable(folder)?;
     }
-    let study = (entry.run)(&mut |text| context.note(text))?;
+    let study = (entry.run)(&settings, &mut |text| context.note(text))?;
     if let Some(folder) = &arguments.out {
-        for path in study::write(&study, folder)? {
+        for path in study::write(&study, entry.panels, folder)? {
             context.note(format_args!("wrote {}", path.display()));
         }
     }

@@ -6,7 +6,8 @@ use super::validity;
 use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::continuum::{MeshOptions, cached};
-use crate::body::{ModalBody, kirchhoff};
+use crate::body::ModalBody;
+use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
 use crate::fluid::FluidForces;
 use crate::fluid::added_mass::{immersed, mass_factor};
@@ -29,10 +30,21 @@ pub struct Reduced {
     system: System,
     /// Forces of the fluid; a dry impact has none and takes the dry integrator.
     fluid: Option<FluidForces>,
-    end_time: Option<f64>,
-    scene: String,
-    scene_hash: String,
     warnings: Vec<String>,
+    scene: Scene,
+}
+
+/// What one impact of a series gives: the results without what only identifies them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// The physical results.
+    pub quantities: PlateQuantities,
+    /// As in [`Summary`].
+    pub energy_residual: f64,
+    /// As in [`Summary`].
+    pub momentum_residual: f64,
+    /// Time steps taken.
+    pub steps: u64,
 }
 
 impl Reduced {
@@ -42,6 +54,14 @@ impl Reduced {
     /// # Errors
     /// [`Error::Usage`] for a number of modes that makes no sense, [`Error::Solver`] for what no reduced model covers.
     pub fn new(scene: &Scene, model: Model, modes: Option<usize>) -> Result<Self> {
+        Self::in_series(scene.clone(), model, modes, &UnitPlates::default())
+    }
+
+    /// As [`Reduced::new`], one of a series of impacts that share the eigenproblems in `plates`.
+    ///
+    /// # Errors
+    /// As [`Reduced::new`].
+    pub fn in_series(scene: Scene, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Self> {
         let Setup::PlateImpact(setup) = &scene.setup;
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
@@ -51,16 +71,8 @@ impl Reduced {
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
             (_, modes) => modes.or(scene.reduced.modes),
         };
-        let Built { system, fluid, warnings } = build(setup, model, modes)?;
-        Ok(Self {
-            model,
-            system,
-            fluid,
-            warnings,
-            end_time: scene.run.end_time,
-            scene: scene.name.clone(),
-            scene_hash: scene.hash(),
-        })
+        let Built { system, fluid, warnings } = build(setup, model, modes, plates)?;
+        Ok(Self { model, system, fluid, warnings, scene })
     }
 
     /// The oscillators and contacts the model consists of.
@@ -86,6 +98,20 @@ impl Reduced {
         Ok(self.summary(&result, start.elapsed().as_secs_f64()))
     }
 
+    /// Runs the impact for its results alone, as a series of many needs them.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub fn point(&self, tolerance: f64) -> Result<Point> {
+        let result = self.integrate(&self.options(tolerance))?;
+        Ok(Point {
+            quantities: quantities(&self.system, &result),
+            energy_residual: result.energy_residual,
+            momentum_residual: result.momentum_residual,
+            steps: result.steps,
+        })
+    }
+
     /// Runs the impact and keeps its history. The summary's time is that of a run without history.
     ///
     /// # Errors
@@ -103,15 +129,15 @@ impl Reduced {
     }
 
     fn options(&self, tolerance: f64) -> Options {
-        Options { tolerance, end_time: self.end_time, sample_interval: None }
+        Options { tolerance, end_time: self.scene.run.end_time, sample_interval: None }
     }
 
     fn summary(&self, result: &Integration, solve_seconds: f64) -> Summary {
         let system = &self.system;
         Summary {
             schema_version: SCHEMA_VERSION,
-            scene: self.scene.clone(),
-            scene_hash: self.scene_hash.clone(),
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash(),
             source: Source::Reduced,
             model: Some(self.model.to_string()),
             modes: Some(system.modes),
@@ -163,7 +189,7 @@ struct Built {
 }
 
 /// `model` with `modes` elastic modes; `None` lets model C choose.
-fn build(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<Built> {
+fn build(setup: &PlateImpact, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Built> {
     let outer = OuterBody::new(&setup.outer)?;
     let join = |plate: ModalBody, tips| {
         let plate = match &setup.fluid {
@@ -172,12 +198,12 @@ fn build(setup: &PlateImpact, model: Model, modes: Option<usize>) -> Result<Buil
         };
         System::with_outer(setup, outer.clone(), &plate, tips)
     };
-    let kirchhoff = |modes| Ok(join(kirchhoff::modes(&setup.plate, modes)?, [0.0; 2]));
+    let kirchhoff = |modes| Ok(join(plates.modes(&setup.plate, modes)?, [0.0; 2]));
     let rigid = usize::from(setup.plate.edge == Edge::Free);
     match model {
         Model::A | Model::B => {
             let modes = modes.unwrap_or(DEFAULT_MODES);
-            let shapes = |radii: &[f64]| kirchhoff::shapes(&setup.plate, modes, radii);
+            let shapes = |radii: &[f64]| plates.shapes(&setup.plate, modes, radii);
             Ok(Built { system: kirchhoff(modes)?, fluid: fluid_forces(setup, shapes)?, warnings: Vec::new() })
         }
         Model::C => {

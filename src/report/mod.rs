@@ -5,6 +5,7 @@
 
 mod budget_figure;
 mod budget_section;
+mod chart;
 mod curves_csv;
 mod efficiency_boxes;
 mod figure;
@@ -20,6 +21,7 @@ mod terminal;
 mod ticks;
 mod write;
 
+pub use chart::{ChartPanel, Series, chart};
 pub use curves_csv::curves_csv;
 pub use figure::{Theme, figure};
 pub use html::{index_page, scene_page};

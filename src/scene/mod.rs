@@ -14,6 +14,7 @@ mod quantity;
 mod read;
 mod schema;
 mod specification;
+mod template;
 mod tolerances;
 
 pub use find::{resolve, shipped};
@@ -22,6 +23,7 @@ pub use problem::{Problem, Problems, problems};
 pub use read::MAX_FILE_BYTES;
 pub use schema::schema;
 pub(crate) use specification::unit_of;
+pub use template::{Field, Rejected, Template};
 
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -22,36 +22,7 @@ impl Scene {
     /// [`Error::Io`] if the system refuses to read it.
     pub fn read(path: impl AsRef<Path>) -> Result<Scene> {
         let path = path.as_ref();
-        let name = path.display().to_string();
-        let system = |source: std::io::Error| match source.kind() {
-            std::io::ErrorKind::NotFound => Error::Usage(format!("there is no scene file {name}")),
-            _ => Error::io("reading", path, source),
-        };
-        let metadata = std::fs::metadata(path).map_err(system)?;
-        if metadata.is_dir() {
-            return Err(refused(
-                &format!("{name} is a folder, not a scene file"),
-                "name the .toml file inside it",
-            ));
-        }
-        let too_large = |size: String| {
-            refused(
-                &format!("{name} has {size} bytes; a scene file has at most {MAX_FILE_BYTES} (1 MiB)"),
-                "give a scene file, such as one of the folder scenes/",
-            )
-        };
-        if metadata.is_file() && metadata.len() > MAX_FILE_BYTES {
-            return Err(too_large(metadata.len().to_string()));
-        }
-        let mut bytes = Vec::new();
-        let file = std::fs::File::open(path).map_err(system)?;
-        // A pipe or a device has no size to check beforehand.
-        file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(system)?;
-        if bytes.len() as u64 > MAX_FILE_BYTES {
-            return Err(too_large(format!("more than {MAX_FILE_BYTES}")));
-        }
-        let text = decode(&name, bytes)?;
-        Scene::parse(&name, &text)
+        Scene::parse(&path.display().to_string(), &read_text(path)?)
     }
 
     /// Checks `text`, the content of a scene file; `source_name` is what messages call the file.
@@ -59,21 +30,66 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with every fault, its place and what would be valid.
     pub fn parse(source_name: &str, text: &str) -> Result<Scene> {
-        let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
-        let root = tree.get_ref();
-        if root.is_empty() {
-            return Err(refused(
-                &format!("{source_name}, line 1: the scene file has no content"),
-                "copy a file of the folder scenes/ and change it",
-            ));
-        }
-        let mut checker = Checker::new(source_name, text, root);
-        let place = Place { path: "", span: 0..0 };
-        let checked = checker.table(&place, root, &SCENE).map(|values| (values, checker.tolerances(root)));
-        match checked {
-            Some((values, tolerances)) if checker.problems.is_empty() => assemble(&Node(&values), tolerances),
-            _ => Err(Error::Scene(checker.problems.into_report())),
-        }
+        let (values, tolerances) = checked(source_name, text)?;
+        assemble(&values, tolerances)
+    }
+}
+
+/// The text of the scene file at `path`.
+///
+/// # Errors
+/// As [`Scene::read`].
+pub(super) fn read_text(path: &Path) -> Result<String> {
+    let name = path.display().to_string();
+    let system = |source: std::io::Error| match source.kind() {
+        std::io::ErrorKind::NotFound => Error::Usage(format!("there is no scene file {name}")),
+        _ => Error::io("reading", path, source),
+    };
+    let metadata = std::fs::metadata(path).map_err(system)?;
+    if metadata.is_dir() {
+        return Err(refused(
+            &format!("{name} is a folder, not a scene file"),
+            "name the .toml file inside it",
+        ));
+    }
+    let too_large = |size: String| {
+        refused(
+            &format!("{name} has {size} bytes; a scene file has at most {MAX_FILE_BYTES} (1 MiB)"),
+            "give a scene file, such as one of the folder scenes/",
+        )
+    };
+    if metadata.is_file() && metadata.len() > MAX_FILE_BYTES {
+        return Err(too_large(metadata.len().to_string()));
+    }
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(system)?;
+    // A pipe or a device has no size to check beforehand.
+    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(system)?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        return Err(too_large(format!("more than {MAX_FILE_BYTES}")));
+    }
+    decode(&name, bytes)
+}
+
+/// The checked values of a scene file and its tolerances.
+///
+/// # Errors
+/// As [`Scene::parse`].
+pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap<Model, Tolerances>)> {
+    let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
+    let root = tree.get_ref();
+    if root.is_empty() {
+        return Err(refused(
+            &format!("{source_name}, line 1: the scene file has no content"),
+            "copy a file of the folder scenes/ and change it",
+        ));
+    }
+    let mut checker = Checker::new(source_name, text, root);
+    let place = Place { path: "", span: 0..0 };
+    let checked = checker.table(&place, root, &SCENE).map(|values| (values, checker.tolerances(root)));
+    match checked {
+        Some(checked) if checker.problems.is_empty() => Ok(checked),
+        _ => Err(Error::Scene(checker.problems.into_report())),
     }
 }
 
@@ -153,7 +169,9 @@ fn unknown(key: &str, word: &str) -> Error {
     Error::Internal(format!("the scene's `{key}` = `{word}` has no type"))
 }
 
-fn assemble(root: &Node, tolerances: BTreeMap<Model, Tolerances>) -> Result<Scene> {
+/// The scene that checked values describe.
+pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>) -> Result<Scene> {
+    let root = &Node(values);
     let materials = root.table("materials")?;
     let (plate, outer, inner) = (root.table("plate")?, root.table("outer")?, root.table("inner")?);
     let plate = Plate {

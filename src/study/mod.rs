@@ -2,14 +2,23 @@
 //!
 //! A study is one file with one function that returns a [`Study`], and one line in [`STUDIES`].
 
+pub mod fig14;
+pub mod fig15;
+pub mod fig16;
+pub mod fig17;
+pub mod half_period;
 pub mod insensitivity;
+pub mod parameter;
+mod plot;
+pub mod sweep;
 pub mod table2;
 mod write;
 
+pub use plot::{Axis, Panel, figure};
 pub use write::{csv, json, markdown, write};
 
 use crate::error::{Error, Result};
-use crate::scene::suggestion;
+use crate::scene::{Model, suggestion};
 use serde::Serialize;
 
 /// Version of the study document.
@@ -18,6 +27,13 @@ pub const SCHEMA_VERSION: u32 = 1;
 /// What a study tells a person while it runs.
 pub type Note<'a> = dyn FnMut(&str) + 'a;
 
+/// What the user may choose about a study.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Settings {
+    /// The reduced model; `None` = the study's own choice.
+    pub model: Option<Model>,
+}
+
 /// A study that can be asked for by name.
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
@@ -25,21 +41,64 @@ pub struct Entry {
     pub name: &'static str,
     /// One line for people.
     pub about: &'static str,
+    /// Whether the reduced model can be chosen.
+    pub takes_model: bool,
     /// Runs it.
-    pub run: fn(&mut Note) -> Result<Study>,
+    pub run: fn(&Settings, &mut Note) -> Result<Study>,
+    /// How it is drawn, from the columns of its table; empty = it is no figure.
+    pub panels: &'static [Panel],
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 2] = [
+pub const STUDIES: [Entry; 7] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
-        run: table2::run,
+        takes_model: false,
+        run: |_, note| table2::run(note),
+        panels: &[],
+    },
+    Entry {
+        name: "fig14",
+        about: "Fig. 14: efficiency over Young's modulus of plate and spheres",
+        takes_model: true,
+        run: fig14::run,
+        panels: &fig14::PANELS,
+    },
+    Entry {
+        name: "fig15",
+        about: "Fig. 15: efficiency over the plate's thickness, clamped and free",
+        takes_model: true,
+        run: fig15::run,
+        panels: &fig15::PANELS,
+    },
+    Entry {
+        name: "fig16",
+        about: "Fig. 16: efficiency over the plate's radius, and the best radius",
+        takes_model: true,
+        run: fig16::run,
+        panels: &fig16::PANELS,
+    },
+    Entry {
+        name: "fig17",
+        about: "Fig. 17: efficiency over the tip radius",
+        takes_model: true,
+        run: fig17::run,
+        panels: &fig17::PANELS,
+    },
+    Entry {
+        name: "half-period",
+        about: "Section 4.1: best when the contact lasts half the plate's first period",
+        takes_model: true,
+        run: half_period::run,
+        panels: &half_period::PANELS,
     },
     Entry {
         name: "insensitivity",
         about: "Model C with other numbers of modes, patch radii and meshes, both scenes of Table 1",
-        run: insensitivity::run,
+        takes_model: false,
+        run: |_, note| insensitivity::run(note),
+        panels: &[],
     },
 ];
 
@@ -64,7 +123,7 @@ pub enum Cell {
     Number(f64),
     /// A number of something.
     Count(usize),
-    /// A name.
+    /// A name of something.
     Text(&'static str),
     /// Not known here, for example because a solver is not installed; null in JSON.
     Missing,

@@ -4,15 +4,12 @@
 //! The paper does not name the material. Titanium (115 GPa, 0.37, 4430 kg/m^3; the plates of section 4.2.2), with
 //! both displacements zero on the whole rim, reproduces its values; steel does not.
 
+use super::parameter::{self, impact, titanium};
 use super::{Cell, Claim, Note, SCHEMA_VERSION, Study};
 use crate::body::continuum::{self, PlateMode};
 use crate::error::{Error, Result};
 use crate::reference;
-use crate::scene::{
-    Edge, Geometry, Inner, Material, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings, Run,
-    Scene, Setup, Shape,
-};
-use std::collections::BTreeMap;
+use crate::scene::{Edge, Plate, PlateImpact, Scene};
 use std::path::Path;
 
 /// Radius of the plate, m.
@@ -63,9 +60,7 @@ pub const PAPER: [(f64, Frequencies); 6] = [
 
 /// The plate of the table with `thickness` in m.
 pub fn plate(thickness: f64) -> Plate {
-    let material =
-        Material { name: "titanium".into(), youngs_modulus: 115e9, poisson_ratio: 0.37, density: 4430.0 };
-    Plate { radius: RADIUS, thickness, edge: Edge::Clamped, material, damping_ratio: 0.0 }
+    Plate { radius: RADIUS, thickness, edge: Edge::Clamped, material: titanium(), damping_ratio: 0.0 }
 }
 
 /// The table's frequencies from the continuum plate of model C.
@@ -185,22 +180,8 @@ fn first_longitudinal(
 /// The plate as a scene: what the finite-element side reads. The bodies that strike do not enter the modes.
 fn scene(thickness: f64) -> Scene {
     let plate = plate(thickness);
-    let material = plate.material.clone();
-    let shape = Shape::Sphere { radius: RADIUS };
-    Scene {
-        name: "table2".into(),
-        description: "Plate of Table 2".into(),
-        setup: Setup::PlateImpact(Box::new(PlateImpact {
-            plate,
-            outer: Outer { shape: shape.clone(), material: material.clone(), speed: 1.0 },
-            inner: Inner { shape, material, gap: 0.0 },
-            fluid: None,
-        })),
-        run: Run { end_time: None },
-        reduced: ReducedSettings { model: None, modes: None },
-        reference: ReferenceSettings { geometry: Geometry::Axisymmetric, elements_per_contact_radius: 12.0 },
-        tolerances: BTreeMap::new(),
-    }
+    let setup = impact(RADIUS, thickness, plate.edge, plate.material.clone(), RADIUS);
+    parameter::scene("table2", PlateImpact { plate, ..setup })
 }
 
 /// A thickness in mm as the paper prints it.

@@ -1,22 +1,34 @@
 //! A study as JSON, CSV and Markdown.
 
-use super::{Cell, Claim, Study, Verdict};
+use super::{Cell, Claim, Panel, Study, Verdict, figure};
 use crate::error::{Error, Result};
 use crate::report::format::significant;
-use crate::report::write_file;
+use crate::report::{png, write_file};
 use std::path::{Path, PathBuf};
 
-/// Writes `<study>.json`, `<study>.csv` and `<study>.md` into `dir`, which is made if it does not exist, each by
-/// way of a temporary file. Returns the paths.
+/// Pixels of the PNG per unit of the drawing, as in the report.
+const PNG_SCALE: f32 = 3.0;
+
+/// Writes `<study>.json`, `<study>.csv` and `<study>.md`, and drawn by `panels`, if there are any, `<study>.svg` and
+/// `<study>.png` into `dir`, which is made if it does not exist, each by way of a temporary file. Returns the paths.
 ///
 /// # Errors
 /// [`Error::Io`] naming the file.
-pub fn write(study: &Study, dir: &Path) -> Result<Vec<PathBuf>> {
-    let files = [("json", json(study)?), ("csv", csv(study)?), ("md", markdown(study))];
+pub fn write(study: &Study, panels: &[Panel], dir: &Path) -> Result<Vec<PathBuf>> {
+    let mut files = vec![
+        ("json", json(study)?.into_bytes()),
+        ("csv", csv(study)?.into_bytes()),
+        ("md", markdown(study).into_bytes()),
+    ];
+    if !panels.is_empty() {
+        let svg = figure(study, panels)?;
+        files.push(("png", png(&svg, PNG_SCALE)?));
+        files.push(("svg", svg.into_bytes()));
+    }
     let mut written = Vec::new();
-    for (extension, text) in files {
+    for (extension, bytes) in files {
         let path = dir.join(format!("{}.{extension}", study.study));
-        write_file(&path, text.as_bytes())?;
+        write_file(&path, &bytes)?;
         written.push(path);
     }
     Ok(written)
@@ -44,7 +56,7 @@ pub fn csv(study: &Study) -> Result<String> {
         let cells = row.iter().map(|cell| match cell {
             Cell::Number(value) => value.to_string(),
             Cell::Count(value) => value.to_string(),
-            Cell::Text(value) => (*value).to_owned(),
+            Cell::Text(text) => (*text).to_owned(),
             Cell::Missing => String::new(),
         });
         writer.write_record(cells).map_err(|e| failed(e.to_string()))?;
@@ -91,7 +103,7 @@ fn shown(cell: &Cell) -> String {
     match cell {
         Cell::Number(value) => digits(*value, 6),
         Cell::Count(value) => value.to_string(),
-        Cell::Text(value) => (*value).to_owned(),
+        Cell::Text(text) => (*text).to_owned(),
         Cell::Missing => "–".to_owned(),
     }
 }
@@ -173,7 +185,7 @@ mod tests {
     #[test]
     fn three_files_are_written_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
-        let written = write(&study(), &folder.path().join("new")).unwrap();
+        let written = write(&study(), &[], &folder.path().join("new")).unwrap();
         let mut names: Vec<_> =
             std::fs::read_dir(folder.path().join("new")).unwrap().map(|e| e.unwrap().file_name()).collect();
         names.sort();

@@ -1,0 +1,181 @@
+//! `impactcheck optimise`: the numbers of a scene that transmit most.
+
+use super::{Context, JsonArgument, reference};
+use crate::comparison::{ModelComparison, compare_scene};
+use crate::error::{Error, ExitStatus, Result};
+use crate::impact::Summary;
+use crate::optimise::{Optimum, Problem, Variable};
+use crate::reference::{Lookup, Resolution, Stored};
+use crate::report;
+use crate::scene::{self, Model, Scene, Template};
+use clap::Args;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file, or the name of a shipped scene
+    scene: String,
+    /// Field and bounds, such as plate.radius=2mm..10mm; fields that take the same value are joined by commas; repeat
+    /// for several variables
+    #[arg(long, required = true, value_name = "FIELD=LOW..HIGH")]
+    over: Vec<String>,
+    /// Reduced model [default: the scene's, else B, which needs no mesh at every point]
+    #[arg(long)]
+    model: Option<Model>,
+    /// Number of modes [default: as `reduced`]
+    #[arg(long, value_name = "N")]
+    modes: Option<usize>,
+    /// Seed of the samples of a search over several variables
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Hold the optimum against the finite-element reference: the stored one, else computed (needs FEniCSx)
+    #[arg(long)]
+    verify: bool,
+    /// Resolution of the reference of --verify
+    #[arg(long, default_value = "paper")]
+    resolution: Resolution,
+    /// Write the optimum (JSON, SVG, PNG) and its scene (TOML) into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// The document of `optimise --json`.
+#[derive(Debug, Serialize)]
+struct Document {
+    #[serde(flatten)]
+    optimum: Optimum,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verification: Option<Verification>,
+}
+
+/// The reference's verdict on the optimum.
+#[derive(Debug, Serialize)]
+struct Verification {
+    /// "pass" or "fail" of the comparison with the scene's tolerances, "missing" without a reference.
+    verdict: &'static str,
+    /// Why there is no reference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    missing: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reference: Option<Box<Summary>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    model: Option<Box<ModelComparison>>,
+}
+
+/// Searches the optimum, verifies it if asked to, prints it.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    let template = Template::read(scene::resolve(&arguments.scene)?)?;
+    let model = arguments.model.or(template.scene().reduced.model).unwrap_or(Model::B);
+    let variables =
+        arguments.over.iter().map(|text| Variable::parse(text, &template)).collect::<Result<Vec<_>>>()?;
+    if let Some(folder) = &arguments.out {
+        report::check_writable(folder)?;
+    }
+    let problem = Problem::new(template, variables, model, arguments.modes)?;
+    let optimum = problem.solve(arguments.seed)?;
+    let mut failure = None;
+    let verification = if arguments.verify {
+        let verification = verify(context, arguments, &problem, &optimum);
+        if let Err(error) = &verification {
+            context.note(format_args!("no verdict of the reference: {error}"));
+        }
+        Some(verification.unwrap_or_else(|error| {
+            let missing = Some(error.to_string());
+            failure = Some(error.exit_status());
+            Verification { verdict: "missing", missing, reference: None, model: None }
+        }))
+    } else {
+        None
+    };
+    let document = Document { optimum, verification };
+    if let Some(folder) = &arguments.out {
+        write(context, folder, &problem, &document)?;
+    }
+    if arguments.json.json {
+        super::print_json(&document)?;
+    } else {
+        super::print(&table(&document))?;
+    }
+    Ok(failure.unwrap_or(ExitStatus::Pass))
+}
+
+fn verify(
+    context: &Context,
+    arguments: &Arguments,
+    problem: &Problem,
+    optimum: &Optimum,
+) -> Result<Verification> {
+    let scene = problem.scene(&optimum.values())?;
+    let stored = reference_of(context, arguments, &scene)?;
+    let outcome = problem.outcome(&optimum.values())?;
+    let mut comparison = compare_scene(&scene, &stored.outcome, &[outcome]);
+    let model = comparison.models.pop().ok_or_else(|| Error::Internal("one model was compared".into()))?;
+    Ok(Verification {
+        verdict: if model.verdict.passed() { "pass" } else { "fail" },
+        missing: None,
+        reference: Some(Box::new(stored.outcome.summary)),
+        model: Some(Box::new(model)),
+    })
+}
+
+fn reference_of(context: &Context, arguments: &Arguments, scene: &Scene) -> Result<Stored> {
+    let store = context.store();
+    match store.find(scene, arguments.resolution) {
+        Lookup::Found(stored) => Ok(*stored),
+        _ => reference::compute(context, scene, arguments.resolution, &store, &[]),
+    }
+}
+
+fn write(context: &Context, folder: &Path, problem: &Problem, document: &Document) -> Result<()> {
+    let svg = document.optimum.figure();
+    let json = serde_json::to_string_pretty(document)
+        .map_err(|e| Error::Internal(format!("writing the optimum as JSON: {e}")))?;
+    let files = [
+        ("optimum.json", (json + "\n").into_bytes()),
+        ("optimum.toml", problem.scene_text(&document.optimum.values())?.into_bytes()),
+        ("optimum.png", report::png(&svg, 3.0)?),
+        ("optimum.svg", svg.into_bytes()),
+    ];
+    for (name, bytes) in files {
+        report::write_file(&folder.join(name), &bytes)?;
+    }
+    context.note(format_args!("wrote {}", folder.join("optimum.svg").display()));
+    Ok(())
+}
+
+fn table(document: &Document) -> String {
+    let optimum = &document.optimum;
+    let mut lines = vec![format!(
+        "{}: efficiency {:.5} (model {}, {} impacts{})",
+        optimum.scene,
+        optimum.efficiency,
+        optimum.model,
+        optimum.evaluations,
+        if optimum.failures > 0 { format!(", {} without result", optimum.failures) } else { String::new() }
+    )];
+    for variable in &optimum.variables {
+        let unit = if variable.unit == "1" { "" } else { variable.unit };
+        let [low, high] = variable.range_within_1_percent;
+        lines.push(format!("  {} = {:e} {unit}", variable.field, variable.optimum));
+        lines.push(format!("    within 1 % of the best from {low:.4e} to {high:.4e} {unit}"));
+        if let Some(curvature) = variable.curvature {
+            lines.push(format!("    second derivative of the efficiency {curvature:.3e} per ({unit})^2"));
+        }
+        if variable.on_bound {
+            lines.push("    on a bound: there may be a better one beyond".into());
+        }
+    }
+    if let Some(verification) = &document.verification {
+        lines.push(match (&verification.reference, &verification.missing) {
+            (Some(reference), _) => format!(
+                "  reference: efficiency {:.5}; verdict on the model there: {}",
+                reference.quantities.efficiency, verification.verdict
+            ),
+            (_, missing) => format!("  reference: missing; {}", missing.as_deref().unwrap_or_default()),
+        });
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,77 @@
+//! The figure of a study: curves over the columns of its table.
+
+use super::{Cell, Study};
+use crate::error::{Error, Result};
+use crate::report::{ChartPanel, Series, chart};
+
+/// A column as it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis {
+    /// Name of the column.
+    pub column: &'static str,
+    /// Label with unit; of a series the unit behind its number.
+    pub label: &'static str,
+    /// SI value times this factor is drawn.
+    pub factor: f64,
+}
+
+/// One coordinate system of the figure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Panel {
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Rows with the same value in this column are one curve; `None` = all rows are.
+    pub series: Option<Axis>,
+}
+
+/// The figure as a stand-alone SVG.
+///
+/// # Errors
+/// [`Error::Internal`] if a panel names a column that is not there.
+pub fn figure(study: &Study, panels: &[Panel]) -> Result<String> {
+    let panels = panels.iter().map(|panel| drawn(study, panel)).collect::<Result<Vec<_>>>()?;
+    Ok(chart(study.study, &panels))
+}
+
+fn drawn(study: &Study, panel: &Panel) -> Result<ChartPanel> {
+    let index = |axis: &Axis| {
+        let found = study.columns.iter().position(|column| *column == axis.column);
+        found.ok_or_else(|| Error::Internal(format!("study {} has no column {}", study.study, axis.column)))
+    };
+    let (x, y) = (index(&panel.x)?, index(&panel.y)?);
+    let by = panel.series.as_ref().map(index).transpose()?;
+    let mut series: Vec<Series> = Vec::new();
+    for row in &study.rows {
+        let name = match (by.map(|by| row[by]), panel.series) {
+            (Some(cell), Some(axis)) => name(cell, &axis),
+            _ => String::new(),
+        };
+        let point = (number(row[x]) * panel.x.factor, number(row[y]) * panel.y.factor);
+        match series.iter_mut().find(|series| series.name == name) {
+            Some(series) => series.points.push(point),
+            None => series.push(Series { name, points: vec![point], marks: false }),
+        }
+    }
+    Ok(ChartPanel { x_label: panel.x.label.into(), y_label: panel.y.label.into(), series, band: None })
+}
+
+fn number(cell: Cell) -> f64 {
+    match cell {
+        Cell::Number(value) => value,
+        Cell::Count(value) => value as f64,
+        Cell::Text(_) | Cell::Missing => f64::NAN,
+    }
+}
+
+fn name(cell: Cell, axis: &Axis) -> String {
+    match cell {
+        Cell::Text(text) => text.to_owned(),
+        other => {
+            // six digits hide what the factor's rounding leaves behind
+            let value = (number(other) * axis.factor * 1e6).round() / 1e6;
+            format!("{value} {}", axis.label).trim().to_owned()
+        }
+    }
+}

@@ -1,0 +1,382 @@
+//! What a sweep file asks for, as numbered points.
+
+use super::record::{Outcome, Record};
+use crate::body::kirchhoff::UnitPlates;
+use crate::error::{Error, Result};
+use crate::impact::reduced::Reduced;
+use crate::sampling::latin_hypercube;
+use crate::scene::hash::{canonical, drop_material_names, sha256_hex};
+use crate::scene::{self, Field, Model, Template};
+use serde::Deserialize;
+use serde_json::json;
+use std::path::Path;
+
+/// Relative error of the efficiency that the time integration may have when the file names none.
+pub const DEFAULT_TOLERANCE: f64 = 1e-5;
+/// Most points of a sweep.
+const MOST_POINTS: usize = 100_000_000;
+
+/// The keys of a sweep file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "snake_case")]
+struct File {
+    scene: String,
+    model: Option<String>,
+    modes: Option<usize>,
+    tolerance: Option<f64>,
+    #[serde(default)]
+    sampling: Sampling,
+    samples: Option<usize>,
+    seed: Option<u64>,
+    vary: Vec<Vary>,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Sampling {
+    #[default]
+    Grid,
+    LatinHypercube,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Vary {
+    field: Option<String>,
+    fields: Option<Vec<String>>,
+    from: Option<Number>,
+    to: Option<Number>,
+    count: Option<usize>,
+    #[serde(default)]
+    scale: Scale,
+    values: Option<Vec<Number>>,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Scale {
+    #[default]
+    Linear,
+    Log,
+}
+
+/// A number in SI or a text with unit.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Number(f64),
+    Text(String),
+}
+
+impl Number {
+    fn of(&self, field: &Field) -> Result<f64> {
+        match self {
+            Number::Number(value) => Ok(*value),
+            Number::Text(text) => field.parse(text),
+        }
+    }
+}
+
+/// What one number of a point does: the fields that take it and the values it has.
+#[derive(Debug)]
+struct Axis {
+    fields: Vec<Field>,
+    values: Values,
+}
+
+#[derive(Debug)]
+enum Values {
+    List(Vec<f64>),
+    Range { from: f64, to: f64, count: usize, scale: Scale },
+}
+
+impl Values {
+    fn len(&self) -> usize {
+        match self {
+            Values::List(values) => values.len(),
+            Values::Range { count, .. } => *count,
+        }
+    }
+
+    /// The value at `s` in 0..=1 of a range.
+    fn between(from: f64, to: f64, scale: Scale, s: f64) -> f64 {
+        match scale {
+            // the ends are met exactly
+            _ if s == 1.0 => to,
+            Scale::Linear => from + (to - from) * s,
+            Scale::Log => from * (to / from).powf(s),
+        }
+    }
+
+    /// Value number `k` of a grid.
+    fn of_grid(&self, k: usize) -> f64 {
+        match self {
+            Values::List(values) => values[k],
+            Values::Range { from, to, count, scale } => {
+                let s = if *count > 1 { k as f64 / (count - 1) as f64 } else { 0.0 };
+                Self::between(*from, *to, *scale, s)
+            }
+        }
+    }
+
+    /// The value at `s` in 0..1 of a sample.
+    fn of_sample(&self, s: f64) -> f64 {
+        match self {
+            Values::List(values) => values[((s * values.len() as f64) as usize).min(values.len() - 1)],
+            Values::Range { from, to, scale, .. } => Self::between(*from, *to, *scale, s),
+        }
+    }
+}
+
+/// A sweep: numbered points, each an impact.
+#[derive(Debug)]
+pub struct Plan {
+    template: Template,
+    model: Model,
+    modes: Option<usize>,
+    tolerance: f64,
+    axes: Vec<Axis>,
+    /// Points of the unit cube; `None` = a grid.
+    samples: Option<Vec<Vec<f64>>>,
+    hash: String,
+    plates: UnitPlates,
+}
+
+impl Plan {
+    /// Reads the sweep file at `path` and the scene it names: a path relative to it, or a shipped scene's name.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there is no such file, scene or field, [`Error::Scene`] if the file makes no sense or its
+    /// scene is not valid.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| match e.kind() {
+            std::io::ErrorKind::NotFound => {
+                Error::Usage(format!("there is no sweep file {}", path.display()))
+            }
+            std::io::ErrorKind::InvalidData => invalid(path, "is not a text in UTF-8"),
+            _ => Error::io("reading", path, e),
+        })?;
+        let file: File =
+            toml::from_str(&text).map_err(|e| invalid(path, &format!("is no sweep file: {e}")))?;
+        let beside = path.parent().unwrap_or(Path::new("")).join(&file.scene);
+        let scene = if beside.is_file() { beside } else { scene::resolve(&file.scene)? };
+        Self::new(path, file, Template::read(scene)?)
+    }
+
+    fn new(path: &Path, file: File, template: Template) -> Result<Self> {
+        let fault = |message: String| invalid(path, &message);
+        let model = match &file.model {
+            Some(name) => name.parse().map_err(|e| fault(format!("model: {e}")))?,
+            None => template.scene().reduced.model.unwrap_or(Model::B),
+        };
+        if file.modes == Some(0) || (model == Model::A && file.modes.is_some_and(|modes| modes != 1)) {
+            return Err(fault(format!(
+                "modes is {:?}: model A has one mode, others at least one",
+                file.modes
+            )));
+        }
+        let tolerance = file.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        if !(1e-12..=1e-2).contains(&tolerance) {
+            return Err(fault(format!("tolerance is {tolerance}, but it has to be within 1e-12 to 1e-2")));
+        }
+        if file.vary.is_empty() {
+            return Err(fault("varies nothing: add a table [[vary]]".into()));
+        }
+        let axes = file.vary.iter().enumerate();
+        let axes: Vec<Axis> = axes
+            .map(|(k, vary)| {
+                axis(vary, file.sampling, &template, &|m| fault(format!("[[vary]] number {}: {m}", k + 1)))
+            })
+            .collect::<Result<_>>()?;
+        let mut taken: Vec<&str> = axes.iter().flat_map(|a| &a.fields).map(Field::path).collect();
+        taken.sort_unstable();
+        if let Some(twice) = taken.windows(2).find(|w| w[0] == w[1]) {
+            return Err(fault(format!("`{}` is varied twice", twice[0])));
+        }
+        let samples = match (file.sampling, file.samples) {
+            (Sampling::Grid, None) if file.seed.is_none() => None,
+            (Sampling::Grid, _) => {
+                return Err(fault("samples and seed belong to sampling = \"latin-hypercube\"".into()));
+            }
+            (Sampling::LatinHypercube, Some(samples)) if (1..=MOST_POINTS / 10).contains(&samples) => {
+                Some(latin_hypercube(samples, axes.len(), file.seed.unwrap_or(1)))
+            }
+            (Sampling::LatinHypercube, samples) => {
+                let found = samples.map_or("missing".into(), |n| n.to_string());
+                return Err(fault(format!(
+                    "samples is {found}: a Latin hypercube needs 1 to {}",
+                    MOST_POINTS / 10
+                )));
+            }
+        };
+        let count = axes.iter().try_fold(1_usize, |n, a| n.checked_mul(a.values.len()));
+        if samples.is_none() && count.is_none_or(|n| n > MOST_POINTS) {
+            return Err(fault(format!("the grid has more than {MOST_POINTS} points")));
+        }
+        let mut plan = Plan {
+            template,
+            model,
+            modes: file.modes,
+            tolerance,
+            axes,
+            samples,
+            hash: String::new(),
+            plates: UnitPlates::default(),
+        };
+        plan.hash = plan.identity(&file);
+        Ok(plan)
+    }
+
+    /// SHA-256 over everything the results depend on.
+    fn identity(&self, file: &File) -> String {
+        let axis = |a: &Axis| {
+            let fields: Vec<&str> = a.fields.iter().map(Field::path).collect();
+            json!([fields, format!("{:?}", a.values)])
+        };
+        let mut identity = json!({
+            "version": env!("CARGO_PKG_VERSION"), "setup": self.template.scene().setup,
+            "run": self.template.scene().run, "reduced": self.template.scene().reduced,
+            "model": self.model, "modes": self.modes, "tolerance": self.tolerance,
+            "samples": file.samples, "seed": file.seed,
+            "axes": self.axes.iter().map(axis).collect::<Vec<_>>(),
+        });
+        drop_material_names(&mut identity);
+        sha256_hex(canonical(&identity).as_bytes())
+    }
+
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        let grid = || self.axes.iter().map(|axis| axis.values.len()).product();
+        self.samples.as_ref().map_or_else(grid, Vec::len)
+    }
+
+    /// Whether there is no point; never so for a plan that was read.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// SHA-256 (hexadecimal) of everything the results depend on.
+    pub fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// Name of the scene that is varied.
+    pub fn scene(&self) -> &str {
+        &self.template.scene().name
+    }
+
+    /// The reduced model that runs.
+    pub fn model(&self) -> Model {
+        self.model
+    }
+
+    /// The fields that are varied, in the order of [`Plan::numbers`].
+    pub fn fields(&self) -> impl Iterator<Item = &Field> {
+        self.axes.iter().flat_map(|axis| &axis.fields)
+    }
+
+    /// The numbers of point `index` in SI, one per field. The last axis of a grid changes fastest.
+    pub fn numbers(&self, index: usize) -> Vec<f64> {
+        let mut values = vec![0.0; self.axes.len()];
+        match &self.samples {
+            Some(samples) => {
+                for ((value, axis), s) in values.iter_mut().zip(&self.axes).zip(&samples[index]) {
+                    *value = axis.values.of_sample(*s);
+                }
+            }
+            None => {
+                let mut rest = index;
+                for (value, axis) in values.iter_mut().zip(&self.axes).rev() {
+                    *value = axis.values.of_grid(rest % axis.values.len());
+                    rest /= axis.values.len();
+                }
+            }
+        }
+        let counts = self.axes.iter().map(|axis| axis.fields.len());
+        values.iter().zip(counts).flat_map(|(value, count)| std::iter::repeat_n(*value, count)).collect()
+    }
+
+    /// Runs point `index`. A scene that is not valid and a solver that fails are results too.
+    pub fn evaluate(&self, index: usize) -> Record {
+        let numbers: Vec<(&Field, f64)> = self.fields().zip(self.numbers(index)).collect();
+        let outcome = match self.template.with(&numbers) {
+            Err(rejected) => Outcome::Invalid(rejected.to_string()),
+            Ok(scene) => {
+                let run = Reduced::in_series(scene, self.model, self.modes, &self.plates)
+                    .and_then(|reduced| reduced.point(self.tolerance));
+                match run {
+                    Ok(point) => Outcome::Done(point),
+                    Err(error) => Outcome::Failed(error.to_string()),
+                }
+            }
+        };
+        Record { index, outcome }
+    }
+}
+
+fn axis(
+    vary: &Vary,
+    sampling: Sampling,
+    template: &Template,
+    fault: &dyn Fn(String) -> Error,
+) -> Result<Axis> {
+    let names = match (&vary.field, &vary.fields) {
+        (Some(one), None) => vec![one.clone()],
+        (None, Some(several)) if !several.is_empty() => several.clone(),
+        _ => {
+            return Err(fault("name either one `field` or several `fields` that take the same value".into()));
+        }
+    };
+    let fields: Vec<Field> = names.iter().map(|name| template.field(name)).collect::<Result<_>>()?;
+    let lead = &fields[0];
+    if let Some(other) = fields.iter().find(|field| field.unit() != lead.unit()) {
+        return Err(fault(format!(
+            "`{}` ({}) and `{}` ({}) can't share values",
+            lead.path(),
+            lead.unit(),
+            other.path(),
+            other.unit()
+        )));
+    }
+    let values = match (&vary.values, &vary.from, &vary.to) {
+        (Some(list), None, None)
+            if !list.is_empty() && vary.count.is_none() && vary.scale == Scale::Linear =>
+        {
+            Values::List(list.iter().map(|value| value.of(lead)).collect::<Result<_>>()?)
+        }
+        (None, Some(from), Some(to)) => {
+            let (from, to) = (from.of(lead)?, to.of(lead)?);
+            let count = match (sampling, vary.count) {
+                (Sampling::Grid, Some(count)) if count >= 1 => count,
+                (Sampling::Grid, _) => {
+                    return Err(fault("a range of a grid needs a `count` of 1 or more".into()));
+                }
+                (Sampling::LatinHypercube, None) => 1,
+                (Sampling::LatinHypercube, Some(_)) => {
+                    return Err(fault("`count` belongs to a grid; a Latin hypercube has `samples`".into()));
+                }
+            };
+            if !(from.is_finite() && to.is_finite()) {
+                return Err(fault(format!("from {from} to {to} is no range")));
+            }
+            if vary.scale == Scale::Log && !(from > 0.0 && to > 0.0) {
+                return Err(fault(format!("from {from} to {to}: a logarithmic range has positive ends")));
+            }
+            Values::Range { from, to, count, scale: vary.scale }
+        }
+        _ => {
+            return Err(fault(
+                "give either `values = [...]` or `from`, `to` and, for a grid, `count`".into(),
+            ));
+        }
+    };
+    Ok(Axis { fields, values })
+}
+
+fn invalid(path: &Path, message: &str) -> Error {
+    Error::Scene(miette::miette!(
+        help = "`impactcheck study sweep --help` shows a sweep file",
+        "{}: {message}",
+        path.display()
+    ))
+}
