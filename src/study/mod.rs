@@ -6,10 +6,12 @@ pub mod fig14;
 pub mod fig15;
 pub mod fig16;
 pub mod fig17;
+pub mod fluid;
 pub mod half_period;
 pub mod insensitivity;
 pub mod parameter;
 mod plot;
+pub mod rocker;
 pub mod sweep;
 pub mod table2;
 mod write;
@@ -50,7 +52,7 @@ pub struct Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 7] = [
+pub const STUDIES: [Entry; 9] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
@@ -99,6 +101,20 @@ pub const STUDIES: [Entry; 7] = [
         takes_model: false,
         run: |_, note| insensitivity::run(note),
         panels: &[],
+    },
+    Entry {
+        name: "rocker",
+        about: "Section 4.3: membrane between sapphire spheres, and struck by a piezo bender",
+        takes_model: false,
+        run: |_, note| rocker::run(note),
+        panels: &rocker::PANELS,
+    },
+    Entry {
+        name: "fluid",
+        about: "Section 4.2.5: squeeze film, plate damping, added mass and drag, alone and together",
+        takes_model: true,
+        run: fluid::run,
+        panels: &fluid::PANELS,
     },
 ];
 
