@@ -9,6 +9,7 @@ pub mod cli;
 pub mod comparison;
 pub mod contact;
 pub mod error;
+pub mod fluid;
 pub mod impact;
 pub mod optimise;
 pub mod project;

@@ -277,12 +277,54 @@ fn words_are_checked() {
 #[test]
 fn what_this_version_lacks_is_said_in_its_own_sentence() {
     refuses(&edited("plate-impact", "seal-seat"), 3, &["this version has no seal-seat"]);
-    let bender =
-        edited("kind     = \"sphere\"\nradius   = \"10 mm\"", "kind = \"bender\"\nlength = \"13 mm\"");
-    refuses(&bender, 17, &["outer.kind", "this version has no bender", "sphere, compact"]);
     let at = VALID.rfind("\"sphere\"").expect("inner body");
     let inner = format!("{}\"bender\"{}", &VALID[..at], &VALID[at + 8..]);
     refuses(&inner, 23, &["inner.kind", "bender", "sphere, compact"]);
+}
+
+#[test]
+fn a_bender_is_given_in_exactly_one_way() {
+    let bender = |keys: &str| {
+        let fixed = "kind = \"bender\"\nlength = 0.0137\ntip_mass = 128e-6\ntip_radius = 0.004";
+        let text = edited("kind     = \"sphere\"\nradius   = \"10 mm\"", &format!("{fixed}\n{keys}"));
+        text.replacen("speed    = \"550 mm/s\"\n", "", 1)
+    };
+    let measured = "first_frequency = 500\ntip_stiffness = 2500";
+    assert!(Scene::parse("scene.toml", &bender(&format!("{measured}\nspeed = 0.55"))).is_ok());
+    refuses(
+        &bender(measured),
+        16,
+        &["the drive is missing", "outer.torque", "outer.tip_deflection", "outer.speed"],
+    );
+    refuses(
+        &bender(&format!("{measured}\ntorque = 4e-3\nspeed = 0.55")),
+        24,
+        &["outer.torque", "outer.speed", "both"],
+    );
+    refuses(&bender("first_frequency = 500\nspeed = 0.55"), 16, &["outer.tip_stiffness", "missing", "N/m"]);
+    refuses(&bender("speed = 0.55"), 16, &["stiffness and mass", "outer.line_mass", "outer.first_frequency"]);
+    let negative = bender(&format!("{measured}\nspeed = 0.55\ndischarge_time = -1"));
+    refuses(&negative, 24, &["outer.discharge_time", "at least 0 s"]);
+    let foreign = bender(&format!("{measured}\nspeed = 0.55\nradius = 1"));
+    refuses(&foreign, 24, &["outer.radius", "bender", "sphere"]);
+    // too heavy a tip for the frequency: the bound is k/omega^2
+    let heavy = bender("first_frequency = 500\ntip_stiffness = 1000\nspeed = 0.55");
+    let said = Scene::parse("scene.toml", &heavy).expect_err("no beam").to_string();
+    assert!(said.contains("outer.tip_mass") && said.contains("1.013212e-4 kg"), "{said}");
+}
+
+#[test]
+fn shear_thinning_is_given_in_full_or_not_at_all() {
+    let fluid = |keys: &str| {
+        let water = "[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6";
+        edited("[reduced]", &format!("{water}\n{keys}\n[reduced]"))
+    };
+    let law = "relaxation_time = 1\npower_index = 0.5";
+    assert!(Scene::parse("scene.toml", &fluid(&format!("infinite_shear_viscosity = 1e-4\n{law}"))).is_ok());
+    refuses(&fluid(law), 26, &["fluid.infinite_shear_viscosity", "missing"]);
+    let said = Scene::parse("scene.toml", &fluid(&format!("infinite_shear_viscosity = 1\n{law}")));
+    let said = said.expect_err("thickening").to_string();
+    assert!(said.contains("fluid.infinite_shear_viscosity") && said.contains("0.001 Pa*s"), "{said}");
 }
 
 #[test]

@@ -78,7 +78,20 @@ fn schema_and_reader_agree() {
     let fluid = "[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6\n[reduced]";
     let tolerances = "[tolerances.B]\nefficiency = 0.1\nouter_force_rms = { relative_to_peak = 0.1, bias = -1 }\n[reduced]";
     let sphere = "kind     = \"sphere\"\nradius   = \"10 mm\"";
+    let bender = "kind = \"bender\"\nlength = 0.01\ntip_mass = 1e-4\ntip_radius = 4e-3\nfirst_frequency = 500\ntip_stiffness = 2500";
+    let two_beams = format!("{bender}\nline_mass = 0.1");
+    let two_drives = format!("{bender}\ntorque = 1e-3");
+    let half_a_beam = bender.replace("\ntip_stiffness = 2500", "");
+    let whole_law = "infinite_shear_viscosity = 1e-4\nrelaxation_time = 1\npower_index = 0.5\n[reduced]";
+    let thinning = fluid.replace("[reduced]", whole_law);
+    let half_a_law = fluid.replace("[reduced]", "power_index = 0.5\n[reduced]");
     for (from, to, valid) in [
+        (sphere, bender, true),
+        (sphere, two_beams.as_str(), false),
+        (sphere, two_drives.as_str(), false),
+        (sphere, half_a_beam.as_str(), false),
+        ("[reduced]", thinning.as_str(), true),
+        ("[reduced]", half_a_law.as_str(), false),
         ("modes", "modes", true),
         ("\"33 mm\"", "0.033", true),
         (sphere, compact, true),

@@ -5,11 +5,11 @@
 //! Elements are C1: Hermite cubics for deflection and slope at the nodes, and inside the element
 //! twice integrated Legendre polynomials, which vanish with their slope at both ends.
 
-use super::ModalBody;
+use super::{ModalBody, eigenmodes};
 use crate::analytical::circular_plate::rigidity;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::{Edge, Plate};
-use faer::{Mat, Side};
+use faer::Mat;
 use std::f64::consts::PI;
 use std::sync::{Arc, PoisonError, RwLock};
 
@@ -30,6 +30,10 @@ pub struct UnitPlate {
     omega: Vec<f64>,
     /// Deflection of the centre in each mass-normalised mode.
     centre: Vec<f64>,
+    /// Mass-normalised mode shapes in the free unknowns of the elements, with positive deflection of the centre.
+    /// Shape (unknowns, modes).
+    shapes: Mat<f64>,
+    elements: usize,
 }
 
 impl UnitPlate {
@@ -43,36 +47,15 @@ impl UnitPlate {
         let (stiffness, mass) = assemble(edge, poisson_ratio, elements);
         // a free plate's stiffness is singular: shift by a part of its first elastic eigenvalue
         let shift = if edge == Edge::Free { 10.0 } else { 0.0 };
-        let failed = |what: &str| Error::Internal(format!("plate modes: {what} failed"));
-        let shifted = &stiffness + faer::Scale(shift) * &mass;
-        let factor = shifted.llt(Side::Lower).map_err(|_| failed("Cholesky factorisation"))?;
-        let lower = factor.L();
-        // mu = 1/(omega^2 + shift) are the eigenvalues of L^-1 M L^-T: the lowest modes come out sharpest
-        let mut half = mass.clone();
-        faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, half.as_mut(), faer::Par::Seq);
-        let mut both = half.transpose().to_owned();
-        faer::linalg::triangular_solve::solve_lower_triangular_in_place(lower, both.as_mut(), faer::Par::Seq);
-        let eigen = both.self_adjoint_eigen(Side::Lower).map_err(|_| failed("eigenvalue iteration"))?;
-        let (values, vectors) = (eigen.S().column_vector(), eigen.U());
-        let size = both.nrows();
         let count = modes + usize::from(edge == Edge::Free);
-        let mut omega = Vec::with_capacity(count);
-        let mut centre = Vec::with_capacity(count);
-        for mode in 0..count {
-            let column = size - 1 - mode;
-            let mu = values[column];
-            let square = 1.0 / mu - shift;
-            omega.push(if edge == Edge::Free && mode == 0 { 0.0 } else { square.max(0.0).sqrt() });
-            // x = L^-T y has x^T M x = mu; the deflection of the axis is the first unknown
-            let mut shape = Mat::from_fn(size, 1, |i, _| vectors[(i, column)]);
-            faer::linalg::triangular_solve::solve_upper_triangular_in_place(
-                lower.transpose(),
-                shape.as_mut(),
-                faer::Par::Seq,
-            );
-            centre.push((shape[(0, 0)] / mu.sqrt()).abs());
-        }
-        Ok(Self { edge, poisson_ratio, omega, centre })
+        let (squares, shapes) = eigenmodes::lowest(&stiffness, &mass, shift, count, "plate modes")?;
+        let rigid = |mode: usize| edge == Edge::Free && mode == 0;
+        let omega =
+            squares.iter().enumerate().map(|(k, s)| if rigid(k) { 0.0 } else { s.max(0.0).sqrt() }).collect();
+        // the deflection of the axis is the first unknown
+        let centre = (0..count).map(|k| shapes[(0, k)].abs()).collect();
+        let shapes = Mat::from_fn(shapes.nrows(), count, |i, k| shapes[(i, k)] * shapes[(0, k)].signum());
+        Ok(Self { edge, poisson_ratio, omega, centre, shapes, elements })
     }
 
     /// Eigenfrequencies of the unit plate, k^2 of the closed form; first 0 for a free plate.
@@ -85,6 +68,38 @@ impl UnitPlate {
         &self.centre
     }
 
+    /// Deflection in every mass-normalised mode at the `radii`, 0 to 1. Shape (modes, radii).
+    pub fn deflection(&self, radii: &[f64]) -> Vec<Vec<f64>> {
+        let fixed = fixed_unknowns(self.edge, self.elements);
+        let row = |unknown: usize| {
+            (!fixed.contains(&unknown)).then(|| unknown - fixed.iter().filter(|f| **f < unknown).count())
+        };
+        let length = 1.0 / self.elements as f64;
+        let at = |mode: usize, r: f64| -> f64 {
+            let element = ((r / length) as usize).min(self.elements - 1);
+            let shapes = shape_functions(2.0 * (r / length - element as f64) - 1.0, length);
+            let value = |(i, shape): (usize, &[f64; 3])| {
+                row(unknown(element, i)).map_or(0.0, |row| shape[0] * self.shapes[(row, mode)])
+            };
+            shapes.iter().enumerate().map(value).sum()
+        };
+        (0..self.omega.len()).map(|mode| radii.iter().map(|r| at(mode, *r)).collect()).collect()
+    }
+
+    /// Mass-normalised deflections of `plate` at `radii` in m, see [`shapes`].
+    fn shapes(&self, plate: &Plate, radii: &[f64]) -> Vec<Vec<f64>> {
+        let unit: Vec<f64> = radii.iter().map(|r| r / plate.radius).collect();
+        let amplitude = Self::amplitude(plate);
+        let mut shapes = self.deflection(&unit);
+        shapes.iter_mut().flatten().for_each(|value| *value *= amplitude);
+        shapes
+    }
+
+    /// Amplitude of a mass-normalised mode of `plate` per that of the unit plate.
+    fn amplitude(plate: &Plate) -> f64 {
+        1.0 / (plate.radius * (plate.material.density * plate.thickness).sqrt())
+    }
+
     /// The modes in the terms of `plate`, which must have this edge and Poisson's ratio.
     pub fn scale(&self, plate: &Plate) -> ModalBody {
         debug_assert!(plate.edge == self.edge && plate.material.poisson_ratio == self.poisson_ratio);
@@ -92,7 +107,7 @@ impl UnitPlate {
         let mass_per_area = material.density * plate.thickness;
         let bending = rigidity(material.youngs_modulus, material.poisson_ratio, plate.thickness);
         let frequency = (bending / mass_per_area).sqrt() / plate.radius.powi(2);
-        let amplitude = 1.0 / (plate.radius * mass_per_area.sqrt());
+        let amplitude = Self::amplitude(plate);
         ModalBody {
             omega: self.omega.iter().map(|w| w * frequency).collect(),
             damping_ratio: vec![plate.damping_ratio; self.omega.len()],
@@ -111,6 +126,15 @@ pub fn modes(plate: &Plate, modes: usize) -> Result<ModalBody> {
     Ok(UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.scale(plate))
 }
 
+/// Mass-normalised deflections of `plate` at `radii` in m in its lowest `modes` elastic modes (and before them in the
+/// rigid one of a free plate), kg^(-1/2); positive at the centre, as in [`modes`]. Shape (modes, radii).
+///
+/// # Errors
+/// As [`UnitPlate::new`].
+pub fn shapes(plate: &Plate, modes: usize, radii: &[f64]) -> Result<Vec<Vec<f64>>> {
+    Ok(UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.shapes(plate, radii))
+}
+
 /// Most unit plates that [`UnitPlates`] keeps: a study of the other numbers needs a few, one of Poisson's ratio a
 /// new one each time.
 const KEPT: usize = 32;
@@ -125,6 +149,18 @@ impl UnitPlates {
     /// # Errors
     /// As [`UnitPlate::new`].
     pub fn modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
+        Ok(self.unit(plate, modes)?.scale(plate))
+    }
+
+    /// As [`shapes`], without solving an eigenproblem again.
+    ///
+    /// # Errors
+    /// As [`UnitPlate::new`].
+    pub fn shapes(&self, plate: &Plate, modes: usize, radii: &[f64]) -> Result<Vec<Vec<f64>>> {
+        Ok(self.unit(plate, modes)?.shapes(plate, radii))
+    }
+
+    fn unit(&self, plate: &Plate, modes: usize) -> Result<Arc<UnitPlate>> {
         let (edge, poisson_ratio) = (plate.edge, plate.material.poisson_ratio);
         let count = modes + usize::from(edge == Edge::Free);
         let fits = |unit: &&Arc<UnitPlate>| {
@@ -133,7 +169,7 @@ impl UnitPlates {
         // the list is whole after every change, whatever became of the thread that made it
         let known = self.0.read().unwrap_or_else(PoisonError::into_inner).iter().find(fits).cloned();
         if let Some(unit) = known {
-            return Ok(unit.scale(plate));
+            return Ok(unit);
         }
         let unit = Arc::new(UnitPlate::new(edge, poisson_ratio, modes)?);
         let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
@@ -141,21 +177,36 @@ impl UnitPlates {
             kept.remove(0);
         }
         kept.push(Arc::clone(&unit));
-        Ok(unit.scale(plate))
+        Ok(unit)
+    }
+}
+
+/// Unknowns of a node stand before those of the element outside it: w, w', inner ...
+const PER_ELEMENT: usize = SHAPES - 2;
+
+/// Unknown that belongs to a function of an element.
+fn unknown(element: usize, shape: usize) -> usize {
+    match shape {
+        0 | 1 => element * PER_ELEMENT + shape,
+        2 | 3 => (element + 1) * PER_ELEMENT + shape - 2,
+        _ => element * PER_ELEMENT + shape - 2,
+    }
+}
+
+/// Unknowns that symmetry at the axis and the edge hold at zero.
+fn fixed_unknowns(edge: Edge, elements: usize) -> Vec<usize> {
+    let rim = elements * PER_ELEMENT;
+    match edge {
+        Edge::Clamped => vec![1, rim, rim + 1],
+        Edge::SimplySupported => vec![1, rim],
+        Edge::Free => vec![1],
     }
 }
 
 /// Stiffness and mass of the unit plate on `elements` equal elements, constrained by symmetry at
 /// the axis and by the edge. The first unknown is the deflection of the axis.
 fn assemble(edge: Edge, poisson_ratio: f64, elements: usize) -> (Mat<f64>, Mat<f64>) {
-    // unknowns of a node stand before those of the element outside it: w, w', inner ...
-    let per_element = SHAPES - 2;
-    let total = elements * per_element + 2;
-    let dof = |element: usize, shape: usize| match shape {
-        0 | 1 => element * per_element + shape,
-        2 | 3 => (element + 1) * per_element + shape - 2,
-        _ => element * per_element + shape - 2,
-    };
+    let total = elements * PER_ELEMENT + 2;
     let mut stiffness = Mat::<f64>::zeros(total, total);
     let mut mass = Mat::<f64>::zeros(total, total);
     let length = 1.0 / elements as f64;
@@ -170,18 +221,13 @@ fn assemble(edge: Edge, poisson_ratio: f64, elements: usize) -> (Mat<f64>, Mat<f
                     let (slope_a, slope_b) = (a[1] / r, b[1] / r);
                     let bending = (a[2] + slope_a) * (b[2] + slope_b)
                         - (1.0 - poisson_ratio) * (a[2] * slope_b + slope_a * b[2]);
-                    stiffness[(dof(element, i), dof(element, j))] += area * bending;
-                    mass[(dof(element, i), dof(element, j))] += area * a[0] * b[0];
+                    stiffness[(unknown(element, i), unknown(element, j))] += area * bending;
+                    mass[(unknown(element, i), unknown(element, j))] += area * a[0] * b[0];
                 }
             }
         }
     }
-    let rim = elements * per_element;
-    let fixed: &[usize] = match edge {
-        Edge::Clamped => &[1, rim, rim + 1],
-        Edge::SimplySupported => &[1, rim],
-        Edge::Free => &[1],
-    };
+    let fixed = fixed_unknowns(edge, elements);
     let free: Vec<usize> = (0..total).filter(|i| !fixed.contains(i)).collect();
     let reduce = |full: &Mat<f64>| Mat::from_fn(free.len(), free.len(), |i, j| full[(free[i], free[j])]);
     (reduce(&stiffness), reduce(&mass))

@@ -1,8 +1,10 @@
 //! An elastic body as the impact sees it: modes, their participation at the contact points,
 //! residual flexibility.
 
+pub mod beam;
 pub mod cache;
 pub mod continuum;
+mod eigenmodes;
 pub mod kirchhoff;
 pub mod quadrature;
 

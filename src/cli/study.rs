@@ -27,7 +27,8 @@ enum Own {
 
 #[derive(Debug, Args)]
 struct Named {
-    /// Name of the study: table2, insensitivity, fig14, fig15, fig16, fig17, half-period (section 4.1)
+    /// Name of the study: table2, fig14, fig15, fig16, fig17, half-period (section 4.1),
+    /// insensitivity, rocker, fluid
     #[arg(required = true)]
     name: Option<String>,
     /// Reduced model, for the studies of figures [default: B, with which the paper made them]

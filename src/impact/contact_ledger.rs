@@ -91,7 +91,7 @@ impl ContactLedger {
 }
 
 /// Integral of the force polynomial over the approach in J, by parts: F delta at the ends less the integral of delta dF.
-fn work(collocation: &Collocation, force: &Stages, approach: &[f64; POINTS]) -> f64 {
+pub(super) fn work(collocation: &Collocation, force: &Stages, approach: &[f64; POINTS]) -> f64 {
     let at = |weights: Stages| weights.iter().zip(force).map(|(w, f)| w * f).sum::<f64>();
     let ends = at(collocation.interpolation(1.0)) * approach[POINTS - 1]
         - at(collocation.interpolation(0.0)) * approach[0];

@@ -5,7 +5,7 @@
 //! shrink like Newton's iteration. When the bodies recede and the gap exceeds all the amplitudes together, no
 //! further contact is possible.
 
-use super::system::{PLATE, System};
+use super::system::{INNER, System};
 use crate::error::{Error, Result};
 
 /// What comes after a flight.
@@ -26,6 +26,9 @@ const MAX_EVALUATIONS: usize = 1_000_000;
 /// [`Error::Solver`] if the bodies neither touch nor recede within [`MAX_EVALUATIONS`] evaluations.
 pub fn next_touch(system: &System, q: &[f64], v: &[f64]) -> Result<Flight> {
     let bounds = [GapBounds::new(system, 0, q, v), GapBounds::new(system, 1, q, v)];
+    if system.outer_returns() && inner_is_out_of_reach(system, &bounds[1], q, v) {
+        return Ok(Flight::Over);
+    }
     let mut time = 0.0;
     for _ in 0..MAX_EVALUATIONS {
         let mut step = f64::INFINITY;
@@ -53,6 +56,25 @@ pub fn next_touch(system: &System, q: &[f64], v: &[f64]) -> Result<Flight> {
     )))
 }
 
+/// Whether no contact can touch any more in free flight from the state (`q`, `v`), both contacts open.
+pub fn is_over(system: &System, q: &[f64], v: &[f64]) -> bool {
+    let inner = GapBounds::new(system, 1, q, v);
+    if system.outer_returns() {
+        return inner_is_out_of_reach(system, &inner, q, v);
+    }
+    inner.horizon(0.0).is_none() && GapBounds::new(system, 0, q, v).horizon(0.0).is_none()
+}
+
+/// A time in s within which no contact can touch in free flight from the state (`q`, `v`).
+pub fn safe_step(system: &System, q: &[f64], v: &[f64]) -> f64 {
+    let safe = |contact: usize| {
+        let bounds = GapBounds::new(system, contact, q, v);
+        let (gap, rate) = bounds.gap(system, q, v, 0.0);
+        bounds.safe_step(gap.max(0.0), rate)
+    };
+    safe(0).min(safe(1))
+}
+
 /// The state after `time` s of free flight, in place.
 pub fn advance(system: &System, time: f64, q: &mut [f64], v: &mut [f64]) {
     for (oscillator, (q, v)) in system.oscillators.iter().zip(q.iter_mut().zip(v)) {
@@ -61,6 +83,18 @@ pub fn advance(system: &System, time: f64, q: &mut [f64], v: &mut [f64]) {
         *q = (slope + 2.0 * oscillator.alpha * impulse) * start + impulse * *v;
         *v = slope * *v - oscillator.omega.powi(2) * impulse * start;
     }
+}
+
+/// Whether the inner body recedes and is beyond what the plate can reach with all the energy there is.
+///
+/// A bender swings back to the plate for ever; what it does to the plate then can't concern the inner body any more.
+fn inner_is_out_of_reach(system: &System, bounds: &GapBounds, q: &[f64], v: &[f64]) -> bool {
+    let energy = system.energy(q, v) - 0.5 * v[INNER].powi(2);
+    let plate = system.oscillators.iter().zip(&system.approach[1]).enumerate().filter(|(k, _)| *k != INNER);
+    // |sum of b q|^2 <= (sum of b^2/omega^2) (sum of omega^2 q^2), infinite for a free plate
+    let flexibility: f64 =
+        plate.filter(|(_, (_, b))| **b != 0.0).map(|(_, (o, b))| (b / o.omega).powi(2)).sum();
+    bounds.rigid_rate >= 0.0 && bounds.rigid_gap > (2.0 * energy * flexibility).sqrt()
 }
 
 /// Bounds on the gap of one contact during free flight.
@@ -93,7 +127,6 @@ impl GapBounds {
                 bounds.rigid_rate -= b[k] * v[k];
                 continue;
             }
-            debug_assert!(k >= PLATE);
             // energy bound of the amplitude; it only decays when damped
             let omega = oscillator.omega;
             let amplitude = b[k].abs() * q[k].hypot(v[k] / omega);

@@ -7,16 +7,20 @@ pub mod duhamel;
 mod free_flight;
 mod history;
 pub mod integrator;
+mod outer_body;
 mod recorder;
 pub mod reduced;
 mod summary;
 pub mod system;
 mod validity;
 pub mod variants;
+pub mod wet;
 
 pub use contact_ledger::ContactLedger;
 pub use history::{CURVES, History, Motion};
-pub use summary::{PLATE_QUANTITIES, PlateQuantities, SCHEMA_VERSION, Source, Summary};
+pub use integrator::Losses;
+pub use outer_body::{Drive, OuterBody};
+pub use summary::{BenderSummary, PLATE_QUANTITIES, PlateQuantities, SCHEMA_VERSION, Source, Summary};
 
 /// What a run gives.
 #[derive(Debug, Clone, PartialEq)]

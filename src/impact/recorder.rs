@@ -2,7 +2,7 @@
 
 use super::collocation::{Collocation, Stages};
 use super::history::History;
-use super::system::{INNER, OUTER, System, dot};
+use super::system::{INNER, System, dot};
 use crate::error::Result;
 
 /// Collects a [`History`] with samples at most `interval` s apart and at the end of every step.
@@ -27,14 +27,31 @@ impl<'a> Recorder<'a> {
     /// # Errors
     /// As the contact's system of equations.
     pub fn step(&mut self, time: f64, h: f64, q: &[f64], v: &[f64], forces: &[Stages; 2]) -> Result<()> {
+        let [b0, b1] = &self.system.approach;
+        self.step_under(time, h, q, v, |k| {
+            std::array::from_fn(|l| -(b0[k] * forces[0][l] + b1[k] * forces[1][l]))
+        })
+    }
+
+    /// As [`Recorder::step`], under the generalised forces `forces` of each oscillator at the Gauss points.
+    ///
+    /// # Errors
+    /// As the contact's system of equations.
+    pub fn step_under(
+        &mut self,
+        time: f64,
+        h: f64,
+        q: &[f64],
+        v: &[f64],
+        forces: impl Fn(usize) -> Stages,
+    ) -> Result<()> {
         let count = (h / self.interval).ceil().max(1.0) as usize;
         let (mut q_at, mut v_at) = (vec![0.0; q.len()], vec![0.0; q.len()]);
         for sample in 1..=count {
             let t = h * sample as f64 / count as f64;
             for (k, oscillator) in self.system.oscillators.iter().enumerate() {
                 let at = self.collocation.response(oscillator, t, h);
-                let (b0, b1) = (self.system.approach[0][k], self.system.approach[1][k]);
-                let force: Stages = std::array::from_fn(|l| -(b0 * forces[0][l] + b1 * forces[1][l]));
+                let force = forces(k);
                 q_at[k] = at.displacement_per_displacement * q[k]
                     + at.displacement_per_velocity * v[k]
                     + dot(&at.displacement_per_force, &force);
@@ -64,12 +81,12 @@ impl<'a> Recorder<'a> {
         let rate = [0, 1].map(|i| dot(&system.approach[i], v));
         let local =
             system.local_centre.map_or([0.0; 2], |centre| centre.motion(system, approach, rate, forces));
-        let masses = system.masses.map(f64::sqrt);
+        let inner = system.masses[1].sqrt();
         history.time.push(time);
-        history.outer.displacement.push(q[OUTER] / masses[0]);
-        history.outer.velocity.push(v[OUTER] / masses[0]);
-        history.inner.displacement.push(q[INNER] / masses[1]);
-        history.inner.velocity.push(v[INNER] / masses[1]);
+        history.outer.displacement.push(dot(&system.outer, q));
+        history.outer.velocity.push(dot(&system.outer, v));
+        history.inner.displacement.push(q[INNER] / inner);
+        history.inner.velocity.push(v[INNER] / inner);
         history.plate.displacement.push(dot(&system.centre, q) + local[0]);
         history.plate.velocity.push(dot(&system.centre, v) + local[1]);
         history.outer_force.push(forces[0]);

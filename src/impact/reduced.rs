@@ -3,12 +3,15 @@
 use super::integrator::{Integration, Options, integrate};
 use super::system::System;
 use super::validity;
-use super::{Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary};
+use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
+use crate::body::ModalBody;
 use crate::body::continuum::{MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
-use crate::scene::{Material, Model, PlateImpact, Scene, Setup, Shape};
+use crate::fluid::FluidForces;
+use crate::fluid::added_mass::{immersed, mass_factor};
+use crate::scene::{Edge, Material, Model, PlateImpact, Scene, Setup, Shape};
 use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
@@ -25,6 +28,8 @@ const SAMPLES_PER_CONTACT: f64 = 400.0;
 pub struct Reduced {
     model: Model,
     system: System,
+    /// Forces of the fluid; a dry impact has none and takes the dry integrator.
+    fluid: Option<FluidForces>,
     warnings: Vec<String>,
     scene: Scene,
 }
@@ -58,12 +63,6 @@ impl Reduced {
     /// As [`Reduced::new`].
     pub fn in_series(scene: Scene, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Self> {
         let Setup::PlateImpact(setup) = &scene.setup;
-        if setup.fluid.is_some() {
-            return Err(Error::Solver(format!(
-                "scene `{}`: [fluid] is set, and this version's reduced models are dry; remove the table to run the dry scene",
-                scene.name
-            )));
-        }
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
             (Model::A, Some(n)) => {
@@ -72,13 +71,20 @@ impl Reduced {
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
             (_, modes) => modes.or(scene.reduced.modes),
         };
-        let (system, warnings) = system(setup, model, modes, plates)?;
-        Ok(Self { model, system, warnings, scene })
+        let Built { system, fluid, warnings } = build(setup, model, modes, plates)?;
+        Ok(Self { model, system, fluid, warnings, scene })
     }
 
     /// The oscillators and contacts the model consists of.
     pub fn system(&self) -> &System {
         &self.system
+    }
+
+    fn integrate(&self, options: &Options) -> Result<Integration> {
+        match &self.fluid {
+            None => integrate(&self.system, options),
+            Some(fluid) => wet::integrate(&self.system, fluid, options),
+        }
     }
 
     /// Runs the impact without keeping its history; `tolerance` bounds the efficiency's relative error from the
@@ -88,7 +94,7 @@ impl Reduced {
     /// As [`integrate`].
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let start = Instant::now();
-        let result = integrate(&self.system, &self.options(tolerance))?;
+        let result = self.integrate(&self.options(tolerance))?;
         Ok(self.summary(&result, start.elapsed().as_secs_f64()))
     }
 
@@ -97,7 +103,7 @@ impl Reduced {
     /// # Errors
     /// As [`integrate`].
     pub fn point(&self, tolerance: f64) -> Result<Point> {
-        let result = integrate(&self.system, &self.options(tolerance))?;
+        let result = self.integrate(&self.options(tolerance))?;
         Ok(Point {
             quantities: quantities(&self.system, &result),
             energy_residual: result.energy_residual,
@@ -116,7 +122,7 @@ impl Reduced {
         let hit =
             HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
         let sample_interval = Some(hit.duration() / SAMPLES_PER_CONTACT);
-        let result = integrate(system, &Options { sample_interval, ..self.options(tolerance) })?;
+        let result = self.integrate(&Options { sample_interval, ..self.options(tolerance) })?;
         let history = result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))?;
         summary.samples = Some(history.len());
         Ok(Outcome { summary, history })
@@ -140,6 +146,11 @@ impl Reduced {
             momentum_residual: result.momentum_residual,
             steps: result.steps,
             solve_seconds,
+            bender: system.drive.map(|drive| {
+                let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
+                BenderSummary { strain_energy_efficiency: transmitted / drive.strain_energy, drive }
+            }),
+            losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
             uncertainty: Default::default(),
             mesh: None,
             solver: None,
@@ -167,44 +178,85 @@ pub(super) fn quantities(system: &System, result: &Integration) -> PlateQuantiti
     }
 }
 
-/// The oscillators and contacts of `model` with `modes` elastic modes, and what the user has to be warned of; `None`
-/// lets model C choose.
-fn system(
-    setup: &PlateImpact,
-    model: Model,
-    modes: Option<usize>,
-    plates: &UnitPlates,
-) -> Result<(System, Vec<String>)> {
-    let kirchhoff = |modes| Ok(System::new(setup, &plates.modes(&setup.plate, modes)?, [0.0; 2]));
+/// A model of a scene.
+struct Built {
+    /// Oscillators and contacts.
+    system: System,
+    /// Forces of the fluid.
+    fluid: Option<FluidForces>,
+    /// What the user has to be warned of.
+    warnings: Vec<String>,
+}
+
+/// `model` with `modes` elastic modes; `None` lets model C choose.
+fn build(setup: &PlateImpact, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Built> {
+    let outer = OuterBody::new(&setup.outer)?;
+    let join = |plate: ModalBody, tips| {
+        let plate = match &setup.fluid {
+            Some(fluid) => immersed(plate, fluid),
+            None => plate,
+        };
+        System::with_outer(setup, outer.clone(), &plate, tips)
+    };
+    let kirchhoff = |modes| Ok(join(plates.modes(&setup.plate, modes)?, [0.0; 2]));
+    let rigid = usize::from(setup.plate.edge == Edge::Free);
     match model {
-        Model::A | Model::B => Ok((kirchhoff(modes.unwrap_or(DEFAULT_MODES))?, Vec::new())),
+        Model::A | Model::B => {
+            let modes = modes.unwrap_or(DEFAULT_MODES);
+            let shapes = |radii: &[f64]| plates.shapes(&setup.plate, modes, radii);
+            Ok(Built { system: kirchhoff(modes)?, fluid: fluid_forces(setup, shapes)?, warnings: Vec::new() })
+        }
         Model::C => {
             let rough = Rough::of(&kirchhoff(DEFAULT_MODES)?)?;
-            Ok((continuum(setup, modes, &rough)?, validity::warnings(setup, &rough)))
+            let plate = validity::tempered(continuum(setup, modes, &rough)?, setup, &rough);
+            let elastic = plate.omega.len() - rigid;
+            let mesh = MeshOptions::default();
+            let shapes = |radii: &[f64]| {
+                let mut shapes =
+                    cached::face_shapes(&setup.plate, rough.patch_radius, elastic, &mesh, radii)?;
+                for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
+                    let sign = (shape[0] * phi[1]).signum();
+                    shape.iter_mut().for_each(|value| *value *= sign);
+                }
+                Ok(shapes)
+            };
+            let fluid = fluid_forces(setup, shapes)?;
+            let tips = tip_residuals(setup, rough.patch_radius, &mesh)?;
+            Ok(Built { system: join(plate, tips), fluid, warnings: validity::warnings(setup, &rough) })
         }
     }
 }
 
-/// Model C: continuum plate with residual flexibility, residual flexibility of the spheres.
-fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result<System> {
+/// Film and drag of the scene, if there are any. `shapes` gives the mass-normalised shapes of the dry plate's inner
+/// face at radii in m.
+fn fluid_forces(
+    setup: &PlateImpact,
+    shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
+) -> Result<Option<FluidForces>> {
+    let Some(fluid) = &setup.fluid else { return Ok(None) };
+    let per_mass = mass_factor(fluid.added_mass_frequency_ratio).sqrt().recip();
+    FluidForces::new(fluid, &setup.plate, &setup.inner, |radii| {
+        let scaled = |shape: &Vec<f64>| shape.iter().map(|value| value * per_mass).collect();
+        Ok(shapes(radii)?.iter().map(scaled).collect())
+    })
+}
+
+/// Plate of model C: continuum with residual flexibility.
+fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result<ModalBody> {
     let mesh = MeshOptions::default();
     let build = |modes| cached::plate(&setup.plate, rough.patch_radius, modes, &mesh);
-    let plate = match modes {
-        Some(modes) => build(modes)?.modal_body(modes),
-        None => {
-            let mut most = DEFAULT_MODES;
-            loop {
-                let plate = build(most)?;
-                let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
-                if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
-                    break plate.modal_body(modes);
-                }
-                most *= 2;
+    let Some(modes) = modes else {
+        let mut most = DEFAULT_MODES;
+        loop {
+            let plate = build(most)?;
+            let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
+            if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
+                return Ok(plate.modal_body(modes));
             }
+            most *= 2;
         }
     };
-    let tips = tip_residuals(setup, rough.patch_radius, &mesh)?;
-    Ok(System::new(setup, &validity::tempered(plate, setup, rough), tips))
+    Ok(build(modes)?.modal_body(modes))
 }
 
 /// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
@@ -212,8 +264,8 @@ fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result
 pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOptions) -> Result<[f64; 2]> {
     let tip = |shape: &Shape, material: &Material, patch| match *shape {
         Shape::Sphere { radius } => cached::sphere_residual(radius, material, patch, mesh),
-        // a compact body is rigid but for its Hertz contact
-        Shape::Compact { .. } => Ok(0.0),
+        // a compact body and the tip of a bender are rigid but for their Hertz contact
+        Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
     };
     Ok([
         tip(&setup.outer.shape, &setup.outer.material, patch[0])?,

@@ -1,5 +1,6 @@
 //! The result of a run in a few numbers, the same type for reduced models and the reference.
 
+use super::{Drive, Losses};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -74,6 +75,16 @@ impl PlateQuantities {
     }
 }
 
+/// What is said about a bender besides the quantities; its eq. (1) efficiency relates to its kinetic energy.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BenderSummary {
+    /// Kinetic energy of the inner body over the strain energy of the bender before its release.
+    pub strain_energy_efficiency: f64,
+    /// How the bender was driven.
+    #[serde(flatten)]
+    pub drive: Drive,
+}
+
 /// Summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -100,6 +111,12 @@ pub struct Summary {
     pub steps: u64,
     /// Wall time of the time integration, s.
     pub solve_seconds: f64,
+    /// Of a bender only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bender: Option<BenderSummary>,
+    /// Energy lost to damping and fluid, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub losses: Option<Losses>,
     /// Reference only: half width of the 95 % band of each quantity, absolute, in its unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertainty: BTreeMap<String, f64>,

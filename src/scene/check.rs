@@ -33,7 +33,7 @@ impl Place<'_> {
         if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
     }
 
-    fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         if self.path.is_empty() { "a scene".to_owned() } else { format!("[{}]", self.path) }
     }
 }
@@ -83,16 +83,16 @@ impl<'a> Checker<'a> {
         let kind = kind.and_then(|(field, value)| Some(chosen(field, value)?.name));
         for field in fields {
             match table.get_key_value(field.key) {
-                Some((key, _)) if field.only.is_some_and(|o| kind.is_some_and(|k| k != o)) => {
-                    let (kind, owner) = (kind.unwrap_or_default(), field.only.unwrap_or_default());
+                Some((key, _)) if kind.is_some() && !field.belongs_to(kind) => {
+                    let (kind, owners) = (kind.unwrap_or_default(), field.only.join("` and `"));
                     self.problems.add(
                         key.span(),
                         format!(
-                            "`{}` does not belong to kind `{kind}`, only to `{owner}`",
+                            "`{}` does not belong to kind `{kind}`, only to `{owners}`",
                             place.key(field.key)
                         ),
                         "not for this kind",
-                        format!("remove it, or set kind = \"{owner}\""),
+                        format!("remove it, or set kind = \"{}\"", field.only.join("\" or \"")),
                     );
                 }
                 Some((key, value)) => {
@@ -102,24 +102,28 @@ impl<'a> Checker<'a> {
                         values.insert(field.key.to_owned(), value);
                     }
                 }
-                None if field.required && field.only.is_none_or(|o| kind == Some(o)) => {
-                    self.problems.add(
-                        place.span.clone(),
-                        format!("`{}` is missing in {}", place.key(field.key), place.name()),
-                        "incomplete",
-                        format!("add {}", example(place, field)),
-                    );
-                }
+                None if field.is_needed(kind) => self.missing(place, field),
                 None => {}
             }
         }
+        self.alternatives(place, table, fields, kind);
         self.refuse_unknown(
             place,
             table,
-            fields.iter().filter(|f| f.only.is_none_or(|o| kind.is_none_or(|k| k == o))).map(|f| f.key),
+            fields.iter().filter(|f| kind.is_none() || f.belongs_to(kind)).map(|f| f.key),
             fields,
         );
         Some(values)
+    }
+
+    /// Notes that a key is not there.
+    pub(super) fn missing(&mut self, place: &Place, field: &Field) {
+        self.problems.add(
+            place.span.clone(),
+            format!("`{}` is missing in {}", place.key(field.key), place.name()),
+            "incomplete",
+            format!("add {}", example(place, field)),
+        );
     }
 
     /// Notes the keys of `table` that are in none of `fields`, and names `valid` ones.

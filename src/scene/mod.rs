@@ -5,6 +5,7 @@
 //! the finite-element side receives, and its physical part is what [`Scene::hash`] identifies.
 
 mod advice;
+mod alternatives;
 mod check;
 mod find;
 pub(crate) mod hash;
@@ -81,6 +82,34 @@ impl Plate {
     }
 }
 
+/// Piezo bender (section 4.3): a beam clamped at one end, with a point mass and a spherical tip at the other.
+///
+/// It is bent away from the plate by a bending moment that is uniform along the beam, as a piezo layer gives it,
+/// and released from rest: the moment is gone at once or, as a piezo is discharged through a resistor (section 2.2.2),
+/// decays. It strikes where its tip passes the straight position.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Bender {
+    /// Length L of the beam in m.
+    pub length: f64,
+    /// Bending stiffness E I in N m^2.
+    pub bending_stiffness: f64,
+    /// Mass per length rho A in kg/m.
+    pub line_mass: f64,
+    /// Point mass at the tip in kg.
+    pub tip_mass: f64,
+    /// Radius of curvature at the contact in m.
+    pub tip_radius: f64,
+    /// Time constant in s with which the moment decays after the release; 0 = it is gone at once.
+    pub discharge_time: f64,
+}
+
+impl Bender {
+    /// Mass of beam and tip in kg.
+    pub fn mass(&self) -> f64 {
+        self.line_mass * self.length + self.tip_mass
+    }
+}
+
 /// Shape of a striking or struck body.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -97,14 +126,17 @@ pub enum Shape {
         /// Radius of the spherical tip in m.
         tip_radius: f64,
     },
+    /// Beam with a tip mass, an elastic body; outer body only.
+    Bender(Bender),
 }
 
 impl Shape {
-    /// Mass in kg of the body made of `material`.
+    /// Mass in kg of the body made of `material` (of a bender: beam and tip).
     pub fn mass(&self, material: &Material) -> f64 {
         match *self {
             Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * material.density,
             Shape::Compact { mass, .. } => mass,
+            Shape::Bender(bender) => bender.mass(),
         }
     }
 
@@ -113,6 +145,7 @@ impl Shape {
         match *self {
             Shape::Sphere { radius } => radius,
             Shape::Compact { tip_radius, .. } => tip_radius,
+            Shape::Bender(bender) => bender.tip_radius,
         }
     }
 }
@@ -125,7 +158,7 @@ pub struct Outer {
     pub shape: Shape,
     /// Material.
     pub material: Material,
-    /// Speed towards the plate in m/s, positive.
+    /// Speed towards the plate in m/s, positive; of a bender that of its tip when it strikes.
     pub speed: f64,
 }
 
@@ -144,7 +177,7 @@ pub struct Inner {
 /// Fluid on the inner side (section 3.5); absent = dry.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fluid {
-    /// Dynamic viscosity in Pa s.
+    /// Dynamic viscosity in Pa s (at rest, if the fluid is shear-thinning).
     pub viscosity: f64,
     /// Density in kg/m^3.
     pub density: f64,
@@ -158,6 +191,22 @@ pub struct Fluid {
     pub plate_damping_ratio: f64,
     /// c_W of eq. (2); 0 = no drag.
     pub drag_coefficient: f64,
+    /// Shear thinning of the viscosity; `None` = Newtonian.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shear_thinning: Option<ShearThinning>,
+}
+
+/// Carreau's law: mu = mu_inf + (mu_0 - mu_inf) (1 + (lambda rate)^2)^((n - 1)/2).
+///
+/// Between its two bounds it is the power law mu ~ rate^(n - 1).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ShearThinning {
+    /// mu_inf in Pa s; mu_0 is the fluid's `viscosity`.
+    pub infinite_shear_viscosity: f64,
+    /// lambda in s.
+    pub relaxation_time: f64,
+    /// n, 0 < n <= 1.
+    pub power_index: f64,
 }
 
 /// What strikes what.

@@ -27,6 +27,14 @@ impl Dimension {
     pub const VISCOSITY: Dimension = Dimension([-1, 1, -1, 0]);
     /// Force, N.
     pub const FORCE: Dimension = Dimension([1, 1, -2, 0]);
+    /// Torque, N m.
+    pub const TORQUE: Dimension = Dimension([2, 1, -2, 0]);
+    /// Stiffness, N/m.
+    pub const STIFFNESS: Dimension = Dimension([0, 1, -2, 0]);
+    /// Bending stiffness of a beam, N m^2.
+    pub const BENDING_STIFFNESS: Dimension = Dimension([3, 1, -2, 0]);
+    /// Mass per length, kg/m.
+    pub const LINE_MASS: Dimension = Dimension([-1, 1, 0, 0]);
     /// Frequency, Hz.
     pub const FREQUENCY: Dimension = Dimension([0, 0, -1, 0]);
 
@@ -42,6 +50,10 @@ impl Dimension {
             Dimension::DENSITY => ("a density", "kg/m^3", "7780 kg/m^3"),
             Dimension::VISCOSITY => ("a dynamic viscosity", "Pa*s", "1 mPa*s"),
             Dimension::FORCE => ("a force", "N", "440 N"),
+            Dimension::TORQUE => ("a torque", "N*m", "4 N*mm"),
+            Dimension::STIFFNESS => ("a stiffness", "N/m", "2.5 N/mm"),
+            Dimension::BENDING_STIFFNESS => ("a bending stiffness", "N*m^2", "2100 N*mm^2"),
+            Dimension::LINE_MASS => ("a mass per length", "kg/m", "40 g/m"),
             Dimension::FREQUENCY => ("a frequency", "Hz", "4.6 kHz"),
             _ => ("a quantity", "SI", "1"),
         }

@@ -4,6 +4,8 @@ use super::check::{Checked, Checker, Place, Values};
 use super::problem::Collector;
 use super::specification::{DEFAULT_ELEMENTS, SCENE};
 use super::*;
+use crate::analytical::cantilever;
+use crate::body::beam;
 use crate::{Error, Result};
 use std::io::Read;
 use std::path::Path;
@@ -187,11 +189,7 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>)
     let fluid = root.optional_table("fluid")?.map(|f| fluid(&f, &plate)).transpose()?;
     let setup = PlateImpact {
         fluid,
-        outer: Outer {
-            shape: shape(&outer)?,
-            material: material(&materials, outer.text("material")?)?,
-            speed: outer.number("speed")?,
-        },
+        outer: striker(&outer, material(&materials, outer.text("material")?)?)?,
         inner: Inner {
             shape: shape(&inner)?,
             material: material(&materials, inner.text("material")?)?,
@@ -235,7 +233,77 @@ fn shape(body: &Node) -> Result<Shape> {
     }
 }
 
+/// The outer body; the speed of a bender's tip follows from its drive.
+fn striker(outer: &Node, material: Material) -> Result<Outer> {
+    if outer.text("kind")? != "bender" {
+        return Ok(Outer { shape: shape(outer)?, material, speed: outer.number("speed")? });
+    }
+    let bender = bender(outer)?;
+    let speed = if outer.0.contains_key("speed") {
+        outer.number("speed")?
+    } else {
+        let torque = if outer.0.contains_key("torque") {
+            outer.number("torque")?
+        } else {
+            cantilever::moment_for_deflection(
+                bender.length,
+                bender.bending_stiffness,
+                outer.number("tip_deflection")?,
+            )
+        };
+        torque * beam::Release::new(&bender)?.speed_per_moment
+    };
+    Ok(Outer { shape: Shape::Bender(bender), material, speed })
+}
+
+fn bender(outer: &Node) -> Result<Bender> {
+    let (length, tip_mass) = (outer.number("length")?, outer.number("tip_mass")?);
+    let (bending_stiffness, line_mass) = if outer.0.contains_key("bending_stiffness") {
+        (outer.number("bending_stiffness")?, outer.number("line_mass")?)
+    } else {
+        let (frequency, stiffness) = (outer.number("first_frequency")?, outer.number("tip_stiffness")?);
+        let Some(mass) = cantilever::mass_from_frequency(frequency, stiffness, tip_mass) else {
+            let bound = cantilever::largest_tip_mass(frequency, stiffness);
+            return Err(refused(
+                &format!(
+                    "`outer.tip_mass` is {tip_mass} kg, but a massless beam of `outer.tip_stiffness` = {stiffness} N/m already swings below `outer.first_frequency` = {frequency} Hz with more than {bound:.6e} kg at its tip"
+                ),
+                "lower the tip mass or the frequency, or raise the stiffness",
+            ));
+        };
+        (cantilever::bending_stiffness(length, stiffness), mass / length)
+    };
+    Ok(Bender {
+        length,
+        bending_stiffness,
+        line_mass,
+        tip_mass,
+        tip_radius: outer.number("tip_radius")?,
+        discharge_time: outer.number_or("discharge_time", 0.0)?,
+    })
+}
+
 fn fluid(fluid: &Node, plate: &Plate) -> Result<Fluid> {
+    let shear_thinning = fluid.0.contains_key("power_index").then(|| -> Result<ShearThinning> {
+        Ok(ShearThinning {
+            infinite_shear_viscosity: fluid.number("infinite_shear_viscosity")?,
+            relaxation_time: fluid.number("relaxation_time")?,
+            power_index: fluid.number("power_index")?,
+        })
+    });
+    let shear_thinning = shear_thinning.transpose()?;
+    if let Some(law) = &shear_thinning
+        && law.infinite_shear_viscosity > fluid.number("viscosity")?
+    {
+        return Err(refused(
+            &format!(
+                "`fluid.infinite_shear_viscosity` is {} Pa*s, but it has to be at most `fluid.viscosity`, {} Pa*s",
+                law.infinite_shear_viscosity,
+                fluid.number("viscosity")?
+            ),
+            "a shear-thinning fluid is the thinner the faster it is sheared",
+        ));
+    }
     Ok(Fluid {
         viscosity: fluid.number("viscosity")?,
         density: fluid.number("density")?,
@@ -244,6 +312,7 @@ fn fluid(fluid: &Node, plate: &Plate) -> Result<Fluid> {
         added_mass_frequency_ratio: fluid.number_or("added_mass_frequency_ratio", 1.0)?,
         plate_damping_ratio: fluid.number_or("plate_damping_ratio", plate.damping_ratio)?,
         drag_coefficient: fluid.number_or("drag_coefficient", 0.0)?,
+        shear_thinning,
     })
 }
 

@@ -1,8 +1,9 @@
 //! JSON schema of scene files, for editors; made from the same specification the reader uses.
 
+use super::alternatives::groups;
 use super::check::MAX_NAME;
 use super::quantity::Dimension;
-use super::specification::{Bound, Field, Kind, MODELS, SCENE, TOLERANCES};
+use super::specification::{Alternative, Bound, Field, Kind, MODELS, SCENE, TOLERANCES};
 use super::tolerances::{TERMS, gated_names};
 use serde_json::{Map, Value, json};
 
@@ -28,31 +29,65 @@ fn table(fields: &[Field]) -> Value {
     let properties: Map<String, Value> =
         fields.iter().map(|f| (f.key.to_owned(), described(value(&f.kind), f.doc))).collect();
     let required: Vec<&str> =
-        fields.iter().filter(|f| f.required && f.only.is_none()).map(|f| f.key).collect();
+        fields.iter().filter(|f| f.is_needed(None) && f.alternative.is_none()).map(|f| f.key).collect();
     let mut schema = json!({
         "type": "object", "properties": properties, "required": required, "additionalProperties": false,
     });
-    let mut owners: Vec<&str> = fields.iter().filter_map(|f| f.only).collect();
-    owners.sort_unstable();
-    owners.dedup();
-    let rules: Vec<Value> = owners
-        .iter()
-        .map(|owner| {
-            let keys = |own: bool| {
-                fields.iter().filter(move |f| f.only.is_some_and(|o| (o == *owner) == own)).map(|f| f.key)
-            };
-            let needed: Vec<&str> = keys(true).collect();
-            let foreign: Map<String, Value> = keys(false).map(|k| (k.to_owned(), json!(false))).collect();
-            json!({
-                "if": { "properties": { "kind": { "const": owner } }, "required": ["kind"] },
-                "then": { "required": needed, "properties": foreign },
-            })
-        })
-        .collect();
+    let mut rules: Vec<Value> = alternatives(fields, None);
+    for kind in kinds(fields) {
+        let needed: Vec<&str> = fields.iter().filter(|f| f.is_needed(Some(kind))).map(|f| f.key).collect();
+        let foreign: Map<String, Value> = fields
+            .iter()
+            .filter(|f| !f.belongs_to(Some(kind)))
+            .map(|f| (f.key.to_owned(), json!(false)))
+            .collect();
+        let mut then = json!({ "required": needed, "properties": foreign });
+        let ways = alternatives(fields, Some(kind));
+        if !ways.is_empty() {
+            then["allOf"] = json!(ways);
+        }
+        rules.push(json!({
+            "if": { "properties": { "kind": { "const": kind } }, "required": ["kind"] },
+            "then": then,
+        }));
+    }
     if !rules.is_empty() {
         schema["allOf"] = json!(rules);
     }
     schema
+}
+
+/// The kinds of a table whose keys depend on them.
+fn kinds(fields: &[Field]) -> Vec<&'static str> {
+    let depends = |f: &Field| !f.only.is_empty() || f.alternative.is_some_and(|a| a.kind.is_some());
+    let kind = fields.iter().find(|f| f.key == "kind" && fields.iter().any(depends));
+    match kind.map(|f| &f.kind) {
+        Some(Kind::Choice(choices)) => {
+            choices.iter().filter(|c| c.refused.is_none()).map(|c| c.name).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// For each group of alternatives: one of its sets in full and none of the others.
+fn alternatives(fields: &[Field], kind: Option<&str>) -> Vec<Value> {
+    let rule = |sets: &Vec<(Alternative, Vec<&Field>)>| {
+        let without = |chosen: Option<usize>| -> Map<String, Value> {
+            let others = sets.iter().enumerate().filter(|(i, _)| Some(*i) != chosen);
+            others.flat_map(|(_, (_, set))| set).map(|f| (f.key.to_owned(), json!(false))).collect()
+        };
+        let mut ways: Vec<Value> = (0..sets.len())
+            .map(|i| {
+                let needed: Vec<&str> = sets[i].1.iter().map(|f| f.key).collect();
+                json!({ "required": needed, "properties": without(Some(i)) })
+            })
+            .collect();
+        if !sets.iter().any(|(_, set)| set.iter().any(|f| f.required)) {
+            ways.push(json!({ "properties": without(None) }));
+        }
+        json!({ "anyOf": ways })
+    };
+    groups(fields, kind).iter().map(rule).collect()
 }
 
 fn value(kind: &Kind) -> Value {

@@ -82,21 +82,56 @@ pub(super) struct Field {
     pub(super) key: &'static str,
     pub(super) kind: Kind,
     pub(super) required: bool,
-    /// The key belongs to this `kind` of its table only.
-    pub(super) only: Option<&'static str>,
+    /// The key belongs to these `kind`s of its table only; empty = to all.
+    pub(super) only: &'static [&'static str],
+    /// The key is part of one of several ways to say a thing.
+    pub(super) alternative: Option<Alternative>,
     pub(super) doc: &'static str,
 }
 
+/// Several sets of keys say the same thing: one set has to be there and complete, no other may be. If the keys are
+/// optional, all sets may be absent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Alternative {
+    /// The `kind` of the table for which this holds; `None` = for any.
+    pub(super) kind: Option<&'static str>,
+    /// What the sets say.
+    pub(super) group: &'static str,
+    /// The set the key belongs to.
+    pub(super) set: &'static str,
+}
+
+impl Field {
+    /// The alternative the key is part of in a table of this `kind`.
+    pub(super) fn alternative(&self, kind: Option<&str>) -> Option<Alternative> {
+        self.alternative.filter(|a| a.kind.is_none() || a.kind == kind)
+    }
+
+    /// Whether the key has to be there by itself in a table of this `kind`.
+    pub(super) fn is_needed(&self, kind: Option<&str>) -> bool {
+        self.required && self.alternative(kind).is_none() && self.belongs_to(kind)
+    }
+
+    /// Whether the key is one of a table of this `kind`.
+    pub(super) fn belongs_to(&self, kind: Option<&str>) -> bool {
+        self.only.is_empty() || kind.is_some_and(|k| self.only.contains(&k))
+    }
+}
+
 const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Field {
-    Field { key, kind, required: true, only: None, doc }
+    Field { key, kind, required: true, only: &[], alternative: None, doc }
 }
 
 const fn optional(key: &'static str, kind: Kind, doc: &'static str) -> Field {
-    Field { key, kind, required: false, only: None, doc }
+    Field { key, kind, required: false, only: &[], alternative: None, doc }
 }
 
-const fn only(kind_name: &'static str, field: Field) -> Field {
-    Field { only: Some(kind_name), ..field }
+const fn only(kinds: &'static [&'static str], field: Field) -> Field {
+    Field { only: kinds, ..field }
+}
+
+const fn one_way(kind: Option<&'static str>, group: &'static str, set: &'static str, field: Field) -> Field {
+    Field { alternative: Some(Alternative { kind, group, set }), ..field }
 }
 
 const fn positive(dimension: Dimension) -> Kind {
@@ -161,35 +196,76 @@ static PLATE: [Field; 5] = [
 
 const SHAPE_KIND: &str = "Shape of the body";
 const SPHERE_RADIUS: Field =
-    only("sphere", required("radius", positive(Dimension::LENGTH), "Radius of the sphere"));
-const COMPACT_MASS: Field = only("compact", required("mass", positive(Dimension::MASS), "Mass of the body"));
-const COMPACT_TIP: Field =
-    only("compact", required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip"));
+    only(&["sphere"], required("radius", positive(Dimension::LENGTH), "Radius of the sphere"));
+const COMPACT_MASS: Field =
+    only(&["compact"], required("mass", positive(Dimension::MASS), "Mass of the body"));
+const TIP_RADIUS: Field = required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");
 const BODY_MATERIAL: Field =
     required("material", Kind::Material, "Material of the body, a name under [materials]");
 
-static OUTER: [Field; 6] = [
-    required(
-        "kind",
-        Kind::Choice(&[
-            choice("sphere"),
-            choice("compact"),
-            refused("bender", "this version has no bender (beam with a tip mass) as outer body"),
-        ]),
-        SHAPE_KIND,
-    ),
+/// A key of the bender (section 4.3 of the paper).
+const fn bender(key: &'static str, dimension: Dimension, doc: &'static str) -> Field {
+    only(&["bender"], required(key, positive(dimension), doc))
+}
+
+/// A key of one of the two ways to give the bender's beam.
+const fn beam(set: &'static str, field: Field) -> Field {
+    one_way(Some("bender"), "the beam's stiffness and mass", set, field)
+}
+
+/// A key of one of the ways to give how far the bender is bent before it is released.
+const fn drive(set: &'static str, field: Field) -> Field {
+    one_way(Some("bender"), "the drive", set, field)
+}
+
+static OUTER: [Field; 15] = [
+    required("kind", Kind::Choice(&[choice("sphere"), choice("compact"), choice("bender")]), SHAPE_KIND),
     SPHERE_RADIUS,
     COMPACT_MASS,
-    COMPACT_TIP,
+    only(&["compact", "bender"], TIP_RADIUS),
+    bender("length", Dimension::LENGTH, "Length of the beam"),
+    bender("tip_mass", Dimension::MASS, "Point mass at the tip of the beam"),
+    beam(
+        "section",
+        bender("bending_stiffness", Dimension::BENDING_STIFFNESS, "Bending stiffness E I of the beam"),
+    ),
+    beam("section", bender("line_mass", Dimension::LINE_MASS, "Mass of the beam per length, rho A")),
+    beam(
+        "measured",
+        bender("first_frequency", Dimension::FREQUENCY, "Measured first frequency with the tip mass"),
+    ),
+    beam(
+        "measured",
+        bender("tip_stiffness", Dimension::STIFFNESS, "Measured force at the tip per deflection"),
+    ),
+    drive(
+        "torque",
+        bender("torque", Dimension::TORQUE, "Bending moment, uniform along the beam, before the release"),
+    ),
+    drive(
+        "deflection",
+        bender("tip_deflection", Dimension::LENGTH, "Deflection of the tip before the release"),
+    ),
+    only(
+        &["bender"],
+        optional(
+            "discharge_time",
+            Kind::Quantity(Dimension::TIME, Bound::NOT_NEGATIVE),
+            "Time constant with which the drive's moment decays after the release; absent = it is gone at once",
+        ),
+    ),
     BODY_MATERIAL,
-    required("speed", positive(Dimension::SPEED), "Speed towards the plate"),
+    drive(
+        "speed",
+        required("speed", positive(Dimension::SPEED), "Speed towards the plate; of a bender that of its tip"),
+    ),
 ];
 
 static INNER: [Field; 6] = [
     required("kind", Kind::Choice(&[choice("sphere"), choice("compact")]), SHAPE_KIND),
     SPHERE_RADIUS,
     COMPACT_MASS,
-    COMPACT_TIP,
+    only(&["compact"], TIP_RADIUS),
     BODY_MATERIAL,
     optional(
         "gap",
@@ -198,7 +274,12 @@ static INNER: [Field; 6] = [
     ),
 ];
 
-static FLUID: [Field; 7] = [
+/// A key of the shear-thinning viscosity law.
+const fn thinning(key: &'static str, kind: Kind, doc: &'static str) -> Field {
+    one_way(None, "shear thinning", "shear thinning", optional(key, kind, doc))
+}
+
+static FLUID: [Field; 10] = [
     required("viscosity", positive(Dimension::VISCOSITY), "Dynamic viscosity"),
     required("density", positive(Dimension::DENSITY), "Density of the fluid"),
     required("minimum_gap", positive(Dimension::LENGTH), "Minimal gap of eq. (4)"),
@@ -214,6 +295,13 @@ static FLUID: [Field; 7] = [
         "Modal damping ratio of the wet plate; absent = that of the dry plate",
     ),
     optional("drag_coefficient", pure(Bound::NOT_NEGATIVE), "c_W of eq. (2); absent = 0, no drag"),
+    thinning(
+        "infinite_shear_viscosity",
+        positive(Dimension::VISCOSITY),
+        "Carreau's law: viscosity at high shear rates, `viscosity` being that at rest; absent = Newtonian",
+    ),
+    thinning("relaxation_time", positive(Dimension::TIME), "Carreau's law: time lambda"),
+    thinning("power_index", pure(FRACTION), "Carreau's law: power n"),
 ];
 
 static RUN: [Field; 1] = [optional(

@@ -238,7 +238,9 @@ fn collect(
     };
     let kind = text("kind").map(str::to_owned);
     for field in specification {
-        if field.only.is_some_and(|owner| kind.as_deref() != Some(owner)) {
+        // of several ways to say a thing only the one the file takes
+        let absent = !values.is_some_and(|v| v.contains_key(field.key));
+        if !field.belongs_to(kind.as_deref()) || (field.alternative(kind.as_deref()).is_some() && absent) {
             continue;
         }
         keys.push(field.key.to_owned());
@@ -274,6 +276,18 @@ mod tests {
     use crate::scene::Setup;
 
     const BASE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
+    const BENDER: &str = include_str!("../../scenes/examples/rocker-bender.toml");
+
+    #[test]
+    fn only_the_way_the_file_takes_can_be_varied() {
+        let template = Template::parse("bender", BENDER).expect("shipped scene");
+        for there in ["outer.speed", "outer.first_frequency", "outer.discharge_time"] {
+            template.field(there).expect(there);
+        }
+        for absent in ["outer.torque", "outer.tip_deflection", "outer.line_mass", "outer.radius"] {
+            assert!(template.field(absent).is_err(), "{absent}");
+        }
+    }
 
     fn template() -> Template {
         Template::parse("base", BASE).expect("shipped scene")

@@ -6,10 +6,12 @@ pub mod fig14;
 pub mod fig15;
 pub mod fig16;
 pub mod fig17;
+pub mod fluid;
 pub mod half_period;
 pub mod insensitivity;
 pub mod parameter;
 mod plot;
+pub mod rocker;
 pub mod sweep;
 pub mod table2;
 mod write;
@@ -50,19 +52,12 @@ pub struct Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 7] = [
+pub const STUDIES: [Entry; 9] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
         takes_model: false,
         run: |_, note| table2::run(note),
-        panels: &[],
-    },
-    Entry {
-        name: "insensitivity",
-        about: "Model C with other numbers of modes, patch radii and meshes, both scenes of Table 1",
-        takes_model: false,
-        run: |_, note| insensitivity::run(note),
         panels: &[],
     },
     Entry {
@@ -100,6 +95,27 @@ pub const STUDIES: [Entry; 7] = [
         run: half_period::run,
         panels: &half_period::PANELS,
     },
+    Entry {
+        name: "insensitivity",
+        about: "Model C with other numbers of modes, patch radii and meshes, both scenes of Table 1",
+        takes_model: false,
+        run: |_, note| insensitivity::run(note),
+        panels: &[],
+    },
+    Entry {
+        name: "rocker",
+        about: "Section 4.3: membrane between sapphire spheres, and struck by a piezo bender",
+        takes_model: false,
+        run: |_, note| rocker::run(note),
+        panels: &rocker::PANELS,
+    },
+    Entry {
+        name: "fluid",
+        about: "Section 4.2.5: squeeze film, plate damping, added mass and drag, alone and together",
+        takes_model: true,
+        run: fluid::run,
+        panels: &fluid::PANELS,
+    },
 ];
 
 /// The study called `name`.
@@ -123,7 +139,7 @@ pub enum Cell {
     Number(f64),
     /// A number of something.
     Count(usize),
-    /// A name.
+    /// A name of something.
     Text(&'static str),
     /// Not known here, for example because a solver is not installed; null in JSON.
     Missing,

@@ -56,7 +56,7 @@ pub fn csv(study: &Study) -> Result<String> {
         let cells = row.iter().map(|cell| match cell {
             Cell::Number(value) => value.to_string(),
             Cell::Count(value) => value.to_string(),
-            Cell::Text(value) => (*value).to_owned(),
+            Cell::Text(text) => (*text).to_owned(),
             Cell::Missing => String::new(),
         });
         writer.write_record(cells).map_err(|e| failed(e.to_string()))?;
@@ -103,7 +103,7 @@ fn shown(cell: &Cell) -> String {
     match cell {
         Cell::Number(value) => digits(*value, 6),
         Cell::Count(value) => value.to_string(),
-        Cell::Text(value) => (*value).to_owned(),
+        Cell::Text(text) => (*text).to_owned(),
         Cell::Missing => "–".to_owned(),
     }
 }

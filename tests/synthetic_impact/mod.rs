@@ -172,6 +172,8 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         solve_seconds: 1.0,
         uncertainty: BTreeMap::new(),
         mesh: None,
+        bender: None,
+        losses: None,
         solver: None,
         warnings: Vec::new(),
         samples: None,

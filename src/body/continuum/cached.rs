@@ -69,6 +69,24 @@ pub fn plate_in(
     })
 }
 
+/// [`super::face_shapes`] through the user's cache.
+///
+/// # Errors
+/// As [`super::face_shapes`].
+pub fn face_shapes(
+    plate: &Plate,
+    patch_radius: [f64; 2],
+    modes: usize,
+    mesh: &MeshOptions,
+    radii: &[f64],
+) -> Result<Vec<Vec<f64>>> {
+    let mut content = plate_inputs(plate, patch_radius, modes, mesh);
+    content["body"] = "inner face of a plate".into();
+    content["radii"] = radii.into();
+    Cache::from_environment()
+        .get_or_build(&content, || super::face_shapes(plate, patch_radius, modes, mesh, radii))
+}
+
 /// [`super::sphere_residual`] through the user's cache.
 ///
 /// # Errors

@@ -47,6 +47,16 @@ pub(super) fn nodal_forces(mesh: &Mesh, patch_radius: f64) -> Vec<(usize, f64)> 
     forces
 }
 
+/// Nodal weights (node, weight) of the displacement of the mesh's surface at radius `r`.
+pub(super) fn point(mesh: &Mesh, r: f64) -> Vec<(usize, f64)> {
+    let basis = Basis::new(mesh.order);
+    let reaches = |edge: &&Vec<usize>| mesh.nodes[edge[mesh.order]][0] >= r;
+    let Some(edge) = mesh.surface.iter().find(reaches).or(mesh.surface.last()) else { return Vec::new() };
+    let radii: Vec<f64> = edge.iter().map(|&node| mesh.nodes[node][0]).collect();
+    let values = basis.values(local_coordinate(&basis, &radii, r));
+    edge.iter().copied().zip(values).collect()
+}
+
 /// Local coordinate in [-1, 1] of the point at radius `r` on an element edge with the node radii `radii`.
 fn local_coordinate(basis: &Basis, radii: &[f64], r: f64) -> f64 {
     let dot = |weights: Vec<f64>| weights.iter().zip(radii).map(|(w, r)| w * r).sum::<f64>();

@@ -12,7 +12,7 @@ use super::grading::Grading;
 use super::lanczos::{Modes, lowest_modes};
 use super::mesh::{self, Mesh, patch_then_graded};
 use super::mirror::{HalfBody, Parity, dot};
-use super::patch::{half_space_flexibility, nodal_forces};
+use super::patch::{half_space_flexibility, nodal_forces, point};
 use super::{MeshOptions, check_patch};
 use crate::body::ModalBody;
 use crate::error::{Error, Result};
@@ -170,6 +170,33 @@ impl ContinuumPlate {
 /// As [`ContinuumPlate::new`].
 pub fn plate(plate: &Plate, patch_radius: [f64; 2], modes: usize, mesh: &MeshOptions) -> Result<ModalBody> {
     Ok(ContinuumPlate::new(plate, patch_radius, modes, mesh)?.modal_body(modes))
+}
+
+/// Mass-normalised displacements along z of the inner face at `radii` in m, in the modes of [`plate`] with the same
+/// arguments, kg^(-1/2), up to their signs. Shape (modes, radii).
+///
+/// # Errors
+/// As [`ContinuumPlate::new`].
+pub fn face_shapes(
+    plate: &Plate,
+    patch_radius: [f64; 2],
+    modes: usize,
+    options: &MeshOptions,
+    radii: &[f64],
+) -> Result<Vec<Vec<f64>>> {
+    let mesh = plate_mesh(plate, Some(patch_radius[0].min(patch_radius[1])), modes, options);
+    let halves = Halves::new(plate, &mesh)?;
+    let points: Vec<_> = radii.iter().map(|r| point(&mesh, *r)).collect();
+    let mut shapes = Vec::new();
+    if plate.edge == Edge::Free {
+        shapes.push(vec![1.0 / plate.mass().sqrt(); radii.len()]);
+    }
+    for entry in halves.spectrum(modes + 1)?.iter().take(modes) {
+        let half = if entry.parity == Parity::Bending { &halves.bending } else { &halves.longitudinal };
+        let at = |nodal: &Vec<(usize, f64)>| dot(&half.axial_load(nodal), &entry.shape);
+        shapes.push(points.iter().map(|nodal| sign(entry.parity, 1) * at(nodal) / SQRT_2).collect());
+    }
+    Ok(shapes)
 }
 
 /// The `count` lowest axisymmetric modes of the plate, the rigid motion of a free one included.

@@ -1,0 +1,161 @@
+//! Squeeze film between the plate and the inner body: the modified Reynolds equation, eqs. (3) and (4) of the paper,
+//!     d/dr (r h^3/mu dp/dr) = 12 r dh/dt,
+//! by finite volumes in r.
+//!
+//! The pressure is that of the rim, 0, at the edge of the film, and nothing flows through the axis. Where the bodies
+//! overlap there is no film: its domain begins at the edge of the overlap, through which nothing flows either. The
+//! flow resistance is that of the gap h* = max(h, minimal gap): finite for every gap, with what is squeezed out
+//! being the true dh/dt. So the film takes power p dh/dt from the bodies at exactly the rate at which it
+//! dissipates it, h*^3/(12 mu) (dp/dr)^2, cell by cell: the film can't feed the motion, whatever the gap.
+//!
+//! In one dimension the flow through every cell face follows from the volume squeezed out inside of it, and the
+//! pressure from the flow: no system of equations, and the viscosity of a generalised Newtonian fluid follows from
+//! the flow without iteration. Cells are placed anew for every gap, their size is in relation to the width
+//! sqrt(2 R h) of the pressure and grows outwards, and the force is a smooth function of the motion.
+
+use super::viscosity::Viscosity;
+use std::f64::consts::PI;
+
+/// Gap of the film and its rate as functions of the radius r in m, without the curvature of the inner body.
+pub trait Profile {
+    /// Gap at r in m: negative where the bodies overlap.
+    fn gap(&self, r: f64) -> f64;
+    /// Rate of the gap at r in m/s.
+    fn rate(&self, r: f64) -> f64;
+}
+
+/// Film between the plate and an inner body with a spherical tip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Film {
+    viscosity: Viscosity,
+    minimum_gap: f64,
+    tip_radius: f64,
+    rim: f64,
+    cells: usize,
+}
+
+/// Loads of the film at the centres of its cells.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FilmForces {
+    /// Radius of the cell's centre in m. Shape (cells), or empty where there is no film.
+    pub radius: Vec<f64>,
+    /// Force of each cell that pushes the bodies apart, N. Shape (cells).
+    pub load: Vec<f64>,
+    /// The same per closing speed of 1 m/s that is equal everywhere, at the present viscosity, N s/m. Shape (cells).
+    pub unit_load: Vec<f64>,
+    /// Sum of `load`, N.
+    pub force: f64,
+    /// Sum of `unit_load`, N s/m.
+    pub resistance: f64,
+    /// Power dissipated in W.
+    pub dissipation: f64,
+}
+
+/// Cells of the film unless asked for otherwise.
+pub const CELLS: usize = 64;
+/// First length of the graded cells over the width of the pressure, both in r^2.
+const FINENESS: f64 = 1.0;
+
+impl Film {
+    /// Film of `viscosity` under a tip of radius `tip_radius` m that ends at the radius `rim` m (at most that of the
+    /// tip), with the minimal gap of eq. (4) in m, on `cells` cells.
+    pub fn new(viscosity: Viscosity, minimum_gap: f64, tip_radius: f64, rim: f64, cells: usize) -> Self {
+        Self { viscosity, minimum_gap, tip_radius, rim: rim.min(tip_radius), cells }
+    }
+
+    /// Radius of the film's edge in m.
+    pub fn rim(&self) -> f64 {
+        self.rim
+    }
+
+    /// Solves for the pressure and writes its loads into `forces`.
+    pub fn solve(&self, profile: &impl Profile, forces: &mut FilmForces) {
+        forces.radius.clear();
+        forces.load.clear();
+        forces.unit_load.clear();
+        (forces.force, forces.resistance, forces.dissipation) = (0.0, 0.0, 0.0);
+        // the tip is a paraboloid, which is what lubrication theory resolves of a sphere: with the sphere's own
+        // shape the force would be further from Stokes flow (Brenner 1961), 2.4 % too low at a gap of R/700
+        let curvature = 0.5 / self.tip_radius;
+        let gap = |square: f64| profile.gap(square.sqrt()) + curvature * square;
+        let end = self.rim * self.rim;
+        let axis_gap = gap(0.0);
+        let start = if axis_gap >= 0.0 { 0.0 } else { edge_of_overlap(gap, axis_gap, end) };
+        // nothing is wet, or nothing that matters
+        if start >= end * (1.0 - 1e-9) {
+            return;
+        }
+        // cell faces in r^2: start + first (growth^k - 1)
+        let scale = 2.0 * FINENESS * self.tip_radius * axis_gap.max(0.0).hypot(self.minimum_gap);
+        let growth = ((end - start) / scale).ln_1p() / self.cells as f64;
+        let (ratio, mut power) = (growth.exp(), 1.0);
+        let mut face = start;
+        let (mut flow, mut unit_flow) = (0.0, 0.0);
+        // pressure differences between a cell and the next further out
+        let mut falls: Vec<[f64; 2]> = Vec::with_capacity(self.cells);
+        let mut areas = Vec::with_capacity(self.cells);
+        for cell in 0..self.cells {
+            power *= ratio;
+            let next = if cell + 1 == self.cells { end } else { start + scale * (power - 1.0) };
+            let after = if cell + 1 == self.cells { end } else { start + scale * (power * ratio - 1.0) };
+            let (centre, next_centre) = (0.5 * (face + next), 0.5 * (next + after));
+            let area = PI * (next - face);
+            let radius = centre.sqrt();
+            // what is squeezed out inside of the outer face flows through it
+            flow -= profile.rate(radius) * area;
+            unit_flow += area;
+            let width = gap(next).max(self.minimum_gap);
+            let rate = 6.0 * flow.abs() / (2.0 * PI * next.sqrt() * width * width);
+            let viscosity = self.viscosity.at(rate);
+            // with x = r^2: flow = -2 pi r h^3/(12 mu) dp/dr = -pi x h^3/(3 mu) dp/dx
+            let resistance = 3.0 * viscosity * (next_centre - centre) / (PI * next * width.powi(3));
+            forces.dissipation += flow * flow * resistance;
+            falls.push([flow * resistance, unit_flow * resistance]);
+            areas.push(area);
+            forces.radius.push(radius);
+            face = next;
+        }
+        forces.load.resize(self.cells, 0.0);
+        forces.unit_load.resize(self.cells, 0.0);
+        let mut pressure = [0.0; 2];
+        for cell in (0..self.cells).rev() {
+            pressure = [pressure[0] + falls[cell][0], pressure[1] + falls[cell][1]];
+            forces.load[cell] = pressure[0] * areas[cell];
+            forces.unit_load[cell] = pressure[1] * areas[cell];
+            forces.force += forces.load[cell];
+            forces.resistance += forces.unit_load[cell];
+        }
+    }
+}
+
+/// Where in r^2, between 0 and `end`, the overlap ends: the gap, `axis_gap` < 0 on the axis, is zero. `end` if there
+/// is an overlap at the end as well.
+fn edge_of_overlap(gap: impl Fn(f64) -> f64, axis_gap: f64, end: f64) -> f64 {
+    // regula falsi after Illinois: the gap is nearly linear in r^2
+    let (mut low, mut high) = ((0.0, axis_gap), (end, gap(end)));
+    if high.1 <= 0.0 {
+        return end;
+    }
+    let mut last = 0;
+    for _ in 0..100 {
+        let at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        let value = gap(at);
+        if value.abs() <= 1e-14 * -axis_gap || high.0 - low.0 <= 1e-15 * end {
+            return at;
+        }
+        if value > 0.0 {
+            high = (at, value);
+            if last == 1 {
+                low.1 *= 0.5;
+            }
+            last = 1;
+        } else {
+            low = (at, value);
+            if last == -1 {
+                high.1 *= 0.5;
+            }
+            last = -1;
+        }
+    }
+    0.5 * (low.0 + high.0)
+}

@@ -1,0 +1,345 @@
+//! Steps of adapted length through a wet impact, and what is booked on the way.
+
+use super::solve::{Trial, Wet};
+use super::table::Table;
+use crate::analytical::hertz::HertzImpact;
+use crate::error::{Error, Result};
+use crate::fluid::{FluidForces, FluidLoad};
+use crate::impact::collocation::{Collocation, STAGES};
+use crate::impact::contact_ledger::{ContactLedger, StepCourse, work};
+use crate::impact::free_flight;
+use crate::impact::integrator::{Integration, Losses, NEGLIGIBLE, Options, defect_bound};
+use crate::impact::recorder::Recorder;
+use crate::impact::system::{INNER, PLATE, System, dot};
+use std::collections::BTreeMap;
+
+/// Steps after which a run counts as endless.
+const MAX_STEPS: u64 = 300_000;
+/// Step lengths are the base length times 2^-level, level from 0 to this.
+const LAST_LEVEL: i32 = 44;
+/// Longest step without a touch in sight, as a power of 2 of the base length.
+const LONGEST: i32 = -8;
+
+/// Integrates the impact of `system` in a `fluid`.
+///
+/// # Errors
+/// [`Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does
+/// not end.
+pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Result<Integration> {
+    let collocation = Collocation::default();
+    let recorder = options.sample_interval.map(|interval| Recorder::new(system, &collocation, interval));
+    let hit =
+        HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
+    let (q, v) = system.initial_state();
+    let mut start = FluidLoad::default();
+    fluid.evaluate(&q, &v, &mut start);
+    let trial = Trial {
+        fluid: vec![[0.0; STAGES]; fluid.size()],
+        loads: vec![FluidLoad::default(); STAGES + 1],
+        ..Trial::default()
+    };
+    let mut run = Run {
+        wet: Wet { system, fluid },
+        collocation: &collocation,
+        recorder,
+        end_time: options.end_time.unwrap_or(f64::INFINITY),
+        defect_bound: defect_bound(options.tolerance),
+        base_step: 0.25 * hit.duration(),
+        tables: BTreeMap::new(),
+        level: 8,
+        time: 0.0,
+        approach: system.modal_approach(&q),
+        local: system.modal_approach(&q),
+        force: [0.0; 2],
+        load: start,
+        q,
+        v,
+        trial,
+        contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+        booked: Booked::default(),
+        steps: 0,
+    };
+    run.go()?;
+    Ok(run.finish())
+}
+
+/// What the fluid did so far.
+#[derive(Debug, Clone, Copy, Default)]
+struct Booked {
+    /// Impulse of film and drag on the inner body in N s.
+    film_impulse: f64,
+    drag_impulse: f64,
+    /// Energy dissipated in film and by drag, J.
+    dissipated: [f64; 2],
+    /// Work of the fluid's force polynomials on the bodies, J.
+    work: f64,
+}
+
+struct Run<'a> {
+    wet: Wet<'a>,
+    collocation: &'a Collocation,
+    recorder: Option<Recorder<'a>>,
+    end_time: f64,
+    defect_bound: f64,
+    base_step: f64,
+    tables: BTreeMap<i32, Table>,
+    level: i32,
+    time: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    approach: [f64; 2],
+    local: [f64; 2],
+    force: [f64; 2],
+    /// What the fluid does at the present time.
+    load: FluidLoad,
+    /// The latest step; its vectors are used again.
+    trial: Trial,
+    contacts: [ContactLedger; 2],
+    booked: Booked,
+    steps: u64,
+}
+
+impl Run<'_> {
+    fn go(&mut self) -> Result<()> {
+        let system = self.wet.system;
+        let mut touching = true;
+        while self.time < self.end_time {
+            let open = !touching && is_open(self.approach);
+            let longest = if open {
+                // a step that passes no touch
+                free_flight::safe_step(system, &self.q, &self.v).max(0.5 * self.base_step)
+            } else {
+                self.base_step
+            };
+            if self.step(longest, open && self.end_time.is_infinite())? {
+                break;
+            }
+            touching = false;
+            if self.steps > MAX_STEPS {
+                return Err(Error::Solver(format!(
+                    "reduced model: no end after {MAX_STEPS} steps, at t = {:.6e} s; set `run.end_time`",
+                    self.time
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    fn length(&self, level: i32) -> f64 {
+        self.base_step * 0.5_f64.powi(level)
+    }
+
+    /// Takes one step, as long as the tolerance and `longest` permit. If it `may_end` the run and no contact is possible
+    /// after it, it ends at the instant from which that is so, and the answer is `true`.
+    fn step(&mut self, longest: f64, may_end: bool) -> Result<bool> {
+        self.level = self.level.max(LONGEST);
+        while self.length(self.level) > longest {
+            self.level += 1;
+        }
+        loop {
+            if self.level > LAST_LEVEL {
+                return Err(Error::Solver(format!(
+                    "reduced model: the time step fell below {:.1e} s at t = {:.6e} s without meeting the tolerance",
+                    self.length(LAST_LEVEL),
+                    self.time
+                )));
+            }
+            let (h, rest) = (self.length(self.level), self.end_time - self.time);
+            let system = self.wet.system;
+            let last;
+            let table = if rest < h {
+                last = Table::new(system, self.collocation, rest);
+                &last
+            } else {
+                self.tables.entry(self.level).or_insert_with(|| Table::new(system, self.collocation, h))
+            };
+            let h = table.h;
+            // the forces at the start are the first guess
+            for i in 0..2 {
+                self.trial.forces[i] = [self.force[i]; STAGES];
+            }
+            for (fluid, force) in self.trial.fluid.iter_mut().zip(&self.load.force) {
+                *fluid = [*force; STAGES];
+            }
+            let scale = momentum_scale(system, &self.contacts);
+            let force_error = 1e-3 * self.defect_bound * scale[1] / h;
+            if !self.wet.solve(table, &self.q, &self.v, force_error, &mut self.trial) {
+                self.level += 1;
+                continue;
+            }
+            let defect = self.defect(h, scale);
+            if defect > self.defect_bound {
+                let excess = (defect / self.defect_bound).log2() / (STAGES + 1) as f64;
+                self.level += (excess.ceil() as i32).clamp(1, 8);
+                continue;
+            }
+            if may_end && self.ends_in_this_step(h) {
+                return Ok(true);
+            }
+            self.accept(h)?;
+            // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
+            if defect < self.defect_bound * 0.5_f64.powi(STAGES as i32 + 2) {
+                self.level -= 1;
+            }
+            return Ok(false);
+        }
+    }
+
+    /// Whether no contact is possible any more after the step just solved. If so, the step is taken, but only up to
+    /// the instant from which that holds: the fluid slows the inner body for ever, and the end has to be the same
+    /// whatever the steps.
+    fn ends_in_this_step(&mut self, h: f64) -> bool {
+        let system = self.wet.system;
+        let forces = self.wet.generalised(&self.trial);
+        let at = |t: f64| -> (Vec<f64>, Vec<f64>) {
+            let answer = |k: usize| {
+                let r = self.collocation.response(&system.oscillators[k], t, h);
+                let (q, v) = (self.q[k], self.v[k]);
+                (
+                    r.displacement_per_displacement * q
+                        + r.displacement_per_velocity * v
+                        + dot(&r.displacement_per_force, &forces[k]),
+                    r.velocity_per_displacement * q
+                        + r.velocity_per_velocity * v
+                        + dot(&r.velocity_per_force, &forces[k]),
+                )
+            };
+            (0..system.size()).map(answer).unzip()
+        };
+        let over = |t: f64| {
+            let (q, v) = at(t);
+            is_open(system.modal_approach(&q)) && free_flight::is_over(system, &q, &v)
+        };
+        if !over(h) {
+            return false;
+        }
+        let (mut early, mut late) = (0.0, h);
+        for _ in 0..40 {
+            let middle = 0.5 * (early + late);
+            if over(middle) { late = middle } else { early = middle }
+        }
+        let table = Table::new(system, self.collocation, late);
+        let force_error = self.force_error(late);
+        self.wet.solve(&table, &self.q, &self.v, force_error, &mut self.trial) && self.accept(late).is_ok()
+    }
+
+    /// Error in N of the forces at which the iteration for a step of length `h` ends.
+    fn force_error(&self, h: f64) -> f64 {
+        1e-3 * self.defect_bound * momentum_scale(self.wet.system, &self.contacts)[1] / h
+    }
+
+    /// Distance between the forces at the end of the step and the polynomials of the step, as an impulse in relation
+    /// to the momenta.
+    fn defect(&self, h: f64, scale: [f64; 2]) -> f64 {
+        let extrapolation = self.collocation.interpolation(1.0);
+        let film = std::array::from_fn(|j| self.trial.loads[j].film_force);
+        let [outer, inner] = self.trial.forces;
+        let ends = [self.trial.end_force[0], self.trial.end_force[1], self.trial.loads[STAGES].film_force];
+        [outer, inner, film]
+            .iter()
+            .zip(ends)
+            .zip([scale[0], scale[1], scale[1]])
+            .map(|((stages, end), scale)| (end - dot(&extrapolation, stages)).abs() * h / scale)
+            .fold(0.0, f64::max)
+    }
+
+    fn accept(&mut self, h: f64) -> Result<()> {
+        let trial = &mut self.trial;
+        if let Some(recorder) = &mut self.recorder {
+            let forces = self.wet.generalised(trial);
+            recorder.step_under(self.time, h, &self.q, &self.v, |k| forces[k])?;
+        }
+        for (i, contact) in self.contacts.iter_mut().enumerate() {
+            let join = |start: f64, stages: &[f64; STAGES], end: f64| {
+                std::array::from_fn(|p| match p {
+                    0 => start,
+                    _ if p == STAGES + 1 => end,
+                    _ => stages[p - 1],
+                })
+            };
+            let course = StepCourse {
+                time: self.time,
+                h,
+                approach: join(self.approach[i], &trial.approach[i], trial.end_approach[i]),
+                local_approach: join(self.local[i], &trial.local[i], trial.end_local[i]),
+                force: join(self.force[i], &trial.forces[i], trial.end_force[i]),
+            };
+            contact.book(self.collocation, &course);
+        }
+        let weights = &self.collocation.weights;
+        let sum = |value: fn(&FluidLoad) -> f64| -> f64 {
+            h * weights.iter().zip(&trial.loads).map(|(w, load)| w * value(load)).sum::<f64>()
+        };
+        self.booked.film_impulse -= sum(|load| load.film_force);
+        self.booked.drag_impulse += sum(|load| load.drag_force);
+        self.booked.dissipated[0] += sum(|load| load.dissipation[0]);
+        self.booked.dissipated[1] += sum(|load| load.dissipation[1]);
+        for (k, stages) in trial.fluid.iter().enumerate() {
+            let course = std::array::from_fn(|p| match p {
+                0 => self.q[INNER + k],
+                _ => trial.motion.q[p - 1][INNER + k],
+            });
+            self.booked.work += work(self.collocation, stages, &course);
+        }
+        std::mem::swap(&mut self.q, &mut trial.motion.q[STAGES]);
+        std::mem::swap(&mut self.v, &mut trial.motion.v[STAGES]);
+        std::mem::swap(&mut self.load, &mut trial.loads[STAGES]);
+        (self.approach, self.local, self.force) = (trial.end_approach, trial.end_local, trial.end_force);
+        self.time += h;
+        self.steps += 1;
+        Ok(())
+    }
+
+    fn finish(self) -> Integration {
+        let system = self.wet.system;
+        let (contacts, booked) = (self.contacts, self.booked);
+        let velocity = [dot(&system.outer, &self.v), self.v[INNER] / system.masses[1].sqrt()];
+        let [start_q, start_v] = &system.start;
+        let initial = system.energy(start_q, start_v);
+        let stored = system.contact_energy(self.force);
+        let end = system.energy(&self.q, &self.v);
+        let dissipated = booked.dissipated[0] + booked.dissipated[1];
+        let contact_work = contacts[0].work + contacts[1].work;
+        let damped = system.is_damped();
+        let unaccounted = if damped {
+            stored - contact_work + dissipated + booked.work
+        } else {
+            end + stored - initial + dissipated
+        };
+        let fluid_impulse = booked.film_impulse + booked.drag_impulse;
+        let impulses = [contacts[0].impulse, contacts[1].impulse];
+        let mut unexplained = vec![system.masses[1] * velocity[1] + impulses[1] - fluid_impulse];
+        if !system.outer_returns() {
+            unexplained.push(system.masses[0] * (velocity[0] + system.speed) - impulses[0]);
+        }
+        if system.oscillators.get(PLATE).is_some_and(|o| o.omega == 0.0) {
+            let plate = self.v[PLATE] / system.centre[PLATE];
+            unexplained.push(plate + impulses[0] - impulses[1] + booked.film_impulse);
+        }
+        Integration {
+            velocity,
+            contacts,
+            energy_residual: unaccounted.abs() / initial,
+            momentum_residual: unexplained.into_iter().fold(0.0, |worst: f64, p| worst.max(p.abs()))
+                / (system.masses[0] * system.speed),
+            losses: Losses {
+                plate_damping: if damped { initial - end - contact_work + booked.work } else { 0.0 },
+                squeeze_film: booked.dissipated[0],
+                drag: booked.dissipated[1],
+            },
+            steps: self.steps,
+            history: self.recorder.map(Recorder::finish),
+        }
+    }
+}
+
+/// Whether both contacts are open at these approaches.
+fn is_open(approach: [f64; 2]) -> bool {
+    approach[0] <= 0.0 && approach[1] <= 0.0
+}
+
+/// Momenta in N s in relation to which the impulses of both contacts have to be right.
+fn momentum_scale(system: &System, contacts: &[ContactLedger; 2]) -> [f64; 2] {
+    let initial = system.masses[0] * system.speed;
+    [initial, contacts[1].impulse.max(0.01 * initial)]
+}

@@ -1,0 +1,233 @@
+//! The forces of one step: contacts and fluid at the Gauss points, by Newton's iteration.
+//!
+//! The film's answer to the rates is a matrix over inner body and modes. Nearly all of it is what it does
+//! against a uniform closing speed: D = g g^T/R with the generalised forces g per unit speed and their resultant R.
+//! With that in place of the full matrix a step has twelve unknowns (two contacts and the film's part along g,
+//! at four points) however many modes there are; what D leaves out is found by the iteration.
+
+use super::table::{Motion, Table};
+use crate::fluid::{FluidForces, FluidLoad};
+use crate::impact::collocation::{STAGES, Stages};
+use crate::impact::system::{INNER, System};
+
+/// Iterations for the forces of a step; more means that the step is too long.
+const MAX_ITERATIONS: usize = 30;
+/// Unknowns of Newton's step: both contact forces and the film's part along g at every Gauss point.
+const UNKNOWNS: usize = 3 * STAGES;
+
+/// A solved step, not yet accepted.
+#[derive(Debug, Clone, Default)]
+pub struct Trial {
+    /// Motion at the Gauss points and at the end.
+    pub motion: Motion,
+    /// Modal approach of both contacts at the Gauss points in m.
+    pub approach: [Stages; 2],
+    /// Patches of both contacts at the Gauss points, see [`System::contact`].
+    pub local: [Stages; 2],
+    /// Forces of both contacts at the Gauss points in N.
+    pub forces: [Stages; 2],
+    /// Generalised forces of the fluid at the Gauss points, from the inner body's on. Shape (size).
+    pub fluid: Vec<Stages>,
+    /// What the fluid does at the Gauss points and at the end.
+    pub loads: Vec<FluidLoad>,
+    /// Modal approach of both contacts at the end in m.
+    pub end_approach: [f64; 2],
+    /// Their patches at the end.
+    pub end_local: [f64; 2],
+    /// Forces of both contacts at the end in N.
+    pub end_force: [f64; 2],
+}
+
+/// The bodies and the fluid between them.
+#[derive(Clone, Copy)]
+pub struct Wet<'a> {
+    pub system: &'a System,
+    pub fluid: &'a FluidForces,
+}
+
+impl Wet<'_> {
+    /// Solves for the forces of a step from the state (`q`, `v`), from those in `trial` on; `false` if the iteration
+    /// does not settle within `force_error` N or the contact has no equilibrium.
+    pub fn solve(&self, table: &Table, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
+        let mut settled = false;
+        for _ in 0..MAX_ITERATIONS {
+            table.motion(q, v, &self.generalised(trial), &mut trial.motion);
+            let Some(defect) = self.defect(trial) else { return false };
+            let size = self.size(&defect);
+            if !size.is_finite() {
+                return false;
+            }
+            if size <= force_error {
+                settled = true;
+                break;
+            }
+            if !self.newton(table, &defect, trial) {
+                return false;
+            }
+        }
+        if !settled {
+            return false;
+        }
+        let (q, v) = (&trial.motion.q[STAGES], &trial.motion.v[STAGES]);
+        self.fluid.evaluate(q, v, &mut trial.loads[STAGES]);
+        trial.end_approach = self.system.modal_approach(q);
+        match self.system.contact(trial.end_approach, trial.end_approach) {
+            Some((local, force)) => (trial.end_local, trial.end_force) = (local, force),
+            None => return false,
+        }
+        true
+    }
+
+    /// Generalised forces of contacts and fluid at the Gauss points. Shape (n).
+    pub fn generalised(&self, trial: &Trial) -> Vec<Stages> {
+        let [b0, b1] = &self.system.approach;
+        let [f0, f1] = &trial.forces;
+        let mut force: Vec<Stages> =
+            b0.iter().zip(b1).map(|(b0, b1)| std::array::from_fn(|l| -b0 * f0[l] - b1 * f1[l])).collect();
+        for (force, fluid) in force[INNER..].iter_mut().zip(&trial.fluid) {
+            for l in 0..STAGES {
+                force[l] += fluid[l];
+            }
+        }
+        force
+    }
+
+    /// What contacts and fluid answer to the motion, less what was assumed.
+    fn defect(&self, trial: &mut Trial) -> Option<Defect> {
+        let mut defect = Defect {
+            contact: [[0.0; STAGES]; 2],
+            tangent: [[[0.0; 2]; 2]; STAGES],
+            fluid: vec![[0.0; STAGES]; trial.fluid.len()],
+        };
+        for j in 0..STAGES {
+            let (q, v) = (&trial.motion.q[j], &trial.motion.v[j]);
+            let approach = self.system.modal_approach(q);
+            let (local, force) = self.system.contact(approach, approach)?;
+            defect.tangent[j] = self.system.tangent(local);
+            for i in 0..2 {
+                trial.approach[i][j] = approach[i];
+                trial.local[i][j] = local[i];
+                defect.contact[i][j] = force[i] - trial.forces[i][j];
+            }
+            self.fluid.evaluate(q, v, &mut trial.loads[j]);
+            for (k, force) in trial.loads[j].force.iter().enumerate() {
+                defect.fluid[k][j] = force - trial.fluid[k][j];
+            }
+        }
+        Some(defect)
+    }
+
+    /// Largest force in N that is missing; generalised forces as if they acted on the inner body.
+    fn size(&self, defect: &Defect) -> f64 {
+        let largest = |values: &[Stages]| {
+            // a value that is no number has to come out
+            values
+                .iter()
+                .flatten()
+                .fold(0.0, |largest: f64, x| if x.abs() <= largest { largest } else { x.abs() })
+        };
+        let (contact, fluid) = (largest(&defect.contact), largest(&defect.fluid));
+        let fluid = fluid * self.system.masses[1].sqrt();
+        if contact >= fluid || contact.is_nan() { contact } else { fluid }
+    }
+
+    /// Improves the forces; `false` if the equations are singular.
+    fn newton(&self, table: &Table, defect: &Defect, trial: &mut Trial) -> bool {
+        let n = self.system.size();
+        // directions in which the forces at Gauss point l can change: contact 0, contact 1, film
+        let film: Vec<Vec<f64>> = (0..STAGES)
+            .map(|l| {
+                let mut full = vec![0.0; n];
+                for (k, force) in trial.loads[l].unit_force.iter().enumerate() {
+                    full[INNER + k] = -force;
+                }
+                full
+            })
+            .collect();
+        let [b0, b1] = &self.system.approach;
+        let mut matrix = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
+        for j in 0..STAGES {
+            let resistance = trial.loads[j].resistance;
+            for l in 0..STAGES {
+                // approaches of both contacts and closing force of the film, per direction and for the defect
+                let mut answer = [[0.0; 4]; 3];
+                for k in 0..n {
+                    let [per_q, per_v] = table.per_force(j, k).map(|stages| stages[l]);
+                    let fluid =
+                        if k < INNER { 0.0 } else { defect.fluid.get(k - INNER).map_or(0.0, |d| d[l]) };
+                    let forces = [-b0[k], -b1[k], film[l][k], fluid];
+                    let seen = [b0[k] * per_q, b1[k] * per_q, -film[j][k] * per_v];
+                    for row in 0..3 {
+                        for column in 0..4 {
+                            answer[row][column] += seen[row] * forces[column];
+                        }
+                    }
+                }
+                let tangent = defect.tangent[j];
+                for column in 0..4 {
+                    let at = if column == 3 { UNKNOWNS } else { column * STAGES + l };
+                    let sign = if column == 3 { 1.0 } else { -1.0 };
+                    for i in 0..2 {
+                        let force = tangent[i][0] * answer[0][column] + tangent[i][1] * answer[1][column];
+                        matrix[i * STAGES + j][at] += sign * force;
+                    }
+                    if resistance > 0.0 {
+                        matrix[2 * STAGES + j][at] += sign * answer[2][column] / resistance;
+                    }
+                }
+            }
+        }
+        for row in 0..UNKNOWNS {
+            matrix[row][row] += 1.0;
+        }
+        for i in 0..2 {
+            for j in 0..STAGES {
+                matrix[i * STAGES + j][UNKNOWNS] += defect.contact[i][j];
+            }
+        }
+        let Some(change) = eliminate(matrix) else { return false };
+        for i in 0..2 {
+            for j in 0..STAGES {
+                trial.forces[i][j] += change[i * STAGES + j];
+            }
+        }
+        for (k, fluid) in trial.fluid.iter_mut().enumerate() {
+            for j in 0..STAGES {
+                fluid[j] += defect.fluid[k][j] + film[j][INNER + k] * change[2 * STAGES + j];
+            }
+        }
+        true
+    }
+}
+
+/// Forces that are missing at the Gauss points.
+struct Defect {
+    contact: [Stages; 2],
+    /// Change of both contact forces per modal approach of both. Shape (STAGES, 2, 2).
+    tangent: [[[f64; 2]; 2]; STAGES],
+    fluid: Vec<Stages>,
+}
+
+/// Solution of the linear equations with the right-hand side in the last column, by Gauss with row pivots.
+fn eliminate(mut a: [[f64; UNKNOWNS + 1]; UNKNOWNS]) -> Option<[f64; UNKNOWNS]> {
+    for column in 0..UNKNOWNS {
+        let pivot = (column..UNKNOWNS).max_by(|i, j| a[*i][column].abs().total_cmp(&a[*j][column].abs()))?;
+        if !(a[pivot][column].is_finite() && a[pivot][column] != 0.0) {
+            return None;
+        }
+        a.swap(column, pivot);
+        let upper = a[column];
+        for row in a.iter_mut().skip(column + 1) {
+            let factor = row[column] / upper[column];
+            for (entry, above) in row.iter_mut().zip(&upper).skip(column) {
+                *entry -= factor * above;
+            }
+        }
+    }
+    let mut solution = [0.0; UNKNOWNS];
+    for row in (0..UNKNOWNS).rev() {
+        let known: f64 = (row + 1..UNKNOWNS).map(|k| a[row][k] * solution[k]).sum();
+        solution[row] = (a[row][UNKNOWNS] - known) / a[row][row];
+    }
+    Some(solution)
+}

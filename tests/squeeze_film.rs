@@ -1,0 +1,178 @@
+//! The squeeze film (section 3.5.2 of the paper) against closed forms of lubrication theory.
+
+use approx::assert_relative_eq;
+use impactcheck::body::quadrature::gauss_legendre;
+use impactcheck::fluid::{Film, FilmForces, Profile, Viscosity};
+use impactcheck::scene::{Fluid, ShearThinning};
+use std::f64::consts::PI;
+
+const MU: f64 = 1e-3;
+const RADIUS: f64 = 2e-3;
+
+/// Rigid plate: the same gap and rate at every radius.
+struct Rigid {
+    gap: f64,
+    rate: f64,
+}
+
+impl Profile for Rigid {
+    fn gap(&self, _: f64) -> f64 {
+        self.gap
+    }
+    fn rate(&self, _: f64) -> f64 {
+        self.rate
+    }
+}
+
+/// A plate that is curved and moves unevenly.
+struct Wavy {
+    gap: f64,
+    phase: f64,
+}
+
+impl Profile for Wavy {
+    fn gap(&self, r: f64) -> f64 {
+        self.gap + 1e-6 * ((4e3 * r + self.phase).cos() - self.phase.cos())
+    }
+    fn rate(&self, r: f64) -> f64 {
+        0.3 * (3e3 * r + 7.0 * self.phase).sin()
+    }
+}
+
+fn solve(film: &Film, profile: &impl Profile) -> FilmForces {
+    let mut forces = FilmForces::default();
+    film.solve(profile, &mut forces);
+    forces
+}
+
+fn sphere(minimum_gap: f64, cells: usize) -> Film {
+    Film::new(Viscosity::Newtonian(MU), minimum_gap, RADIUS, RADIUS, cells)
+}
+
+fn taylor(gap: f64, speed: f64) -> f64 {
+    6.0 * PI * MU * RADIUS * RADIUS * speed / gap
+}
+
+#[test]
+fn sphere_near_a_plate_feels_taylors_force() {
+    for gap in [0.25e-6, 1e-6, 3e-6] {
+        for speed in [0.5, -0.5] {
+            let force = solve(&sphere(1e-9, 64), &Rigid { gap, rate: -speed }).force;
+            println!("h/R = {:.1e}: {:.5} of Taylor's force", gap / RADIUS, force / taylor(gap, speed));
+            assert_relative_eq!(force, taylor(gap, speed), max_relative = 0.01);
+            // the film ends at r = R, where its pressure is zero
+            let edge = gap + 0.5 * RADIUS;
+            let finite = taylor(gap, speed) * (1.0 - gap / edge).powi(2);
+            assert_relative_eq!(force, finite, max_relative = 1e-3);
+            // exact Stokes flow (Brenner 1961, Cox & Brenner 1967): R/h + ln(R/h)/5 + 0.971
+            let stokes = taylor(gap, speed) * (1.0 + gap / RADIUS * (0.2 * (RADIUS / gap).ln() + 0.971));
+            assert_relative_eq!(force, stokes, max_relative = 0.015);
+        }
+    }
+}
+
+#[test]
+fn error_falls_with_the_square_of_the_cells() {
+    let force = |cells| solve(&sphere(1e-9, cells), &Rigid { gap: 1e-6, rate: -1.0 }).force;
+    let exact = force(16_384);
+    let errors = [32, 64, 128, 256].map(|cells| (force(cells) / exact - 1.0).abs());
+    println!("{errors:?}");
+    assert!(errors[1] < 3e-3, "{errors:?}");
+    for pair in errors.windows(2) {
+        assert!((3.5..4.5).contains(&(pair[0] / pair[1])), "{errors:?}");
+    }
+}
+
+#[test]
+fn parallel_discs_feel_stefans_force() {
+    // a tip so blunt that it is flat: 3 pi mu v a^4/(2 h^3)
+    let (rim, gap, speed) = (1e-3, 1e-4, 0.1);
+    let film = Film::new(Viscosity::Newtonian(MU), 1e-9, 1e4, rim, 256);
+    let force = solve(&film, &Rigid { gap, rate: -speed }).force;
+    assert_relative_eq!(force, 1.5 * PI * MU * speed * rim.powi(4) / gap.powi(3), max_relative = 1e-3);
+}
+
+#[test]
+fn parallel_discs_in_a_power_law_fluid_feel_scotts_force() {
+    // 2 pi K/h ((2 n + 1) v/(n h^2))^n a^(n + 3)/(n + 3)
+    let (rim, gap, speed, n, time) = (1e-3, 1e-5, 0.05, 0.5_f64, 10.0);
+    let shear_thinning =
+        Some(ShearThinning { infinite_shear_viscosity: 1e-12, relaxation_time: time, power_index: n });
+    let fluid = Fluid {
+        viscosity: MU,
+        density: 1e3,
+        minimum_gap: 1e-9,
+        squeeze_film: true,
+        added_mass_frequency_ratio: 1.0,
+        plate_damping_ratio: 0.0,
+        drag_coefficient: 0.0,
+        shear_thinning,
+    };
+    let film = Film::new(Viscosity::new(&fluid), 1e-9, 1e4, rim, 256);
+    let force = solve(&film, &Rigid { gap, rate: -speed }).force;
+    let consistency = MU * time.powf(n - 1.0);
+    let scott = 2.0 * PI * consistency / gap
+        * ((2.0 * n + 1.0) * speed / (n * gap * gap)).powf(n)
+        * rim.powf(n + 3.0)
+        / (n + 3.0);
+    assert_relative_eq!(force, scott, max_relative = 3e-3);
+}
+
+#[test]
+fn overlapping_bodies_feel_the_film_around_the_overlap() {
+    // outside the overlap, with x the gap there: 24 pi mu v R^3 * integral of x^2/(h*^3 (a^2 + 2 R x)) dx
+    let minimum_gap = 0.25e-6;
+    for depth in [1e-8, 1e-6, 5e-6] {
+        let edge = 2.0 * RADIUS * depth;
+        let (points, weights) = gauss_legendre(40);
+        // x = h_min e^s beyond the minimal gap
+        let mut integral = 0.0;
+        for (point, weight) in points.iter().zip(&weights) {
+            let x = 0.5 * (point + 1.0) * minimum_gap;
+            integral +=
+                0.5 * weight * minimum_gap * x * x / (minimum_gap.powi(3) * (edge + 2.0 * RADIUS * x));
+            let x = minimum_gap * (5.0 * (point + 1.0)).exp();
+            integral += 5.0 * weight / (edge + 2.0 * RADIUS * x);
+        }
+        let expected = 24.0 * PI * MU * RADIUS.powi(3) * integral;
+        let force = solve(&sphere(minimum_gap, 64), &Rigid { gap: -depth, rate: -1.0 }).force;
+        println!("overlap {depth:.0e} m: {force:.5} N, quadrature {expected:.5} N");
+        assert_relative_eq!(force, expected, max_relative = 0.01);
+    }
+}
+
+#[test]
+fn film_takes_from_the_motion_exactly_what_it_dissipates() {
+    for (i, gap) in [1e-2, 1e-4, 3e-6, 2e-7, 0.0, -1e-7, -3e-6].into_iter().enumerate() {
+        for phase in [0.0, 0.7, 2.0, 4.0] {
+            let profile = Wavy { gap, phase: phase + i as f64 };
+            let forces = solve(&sphere(0.25e-6, 64), &profile);
+            let taken: f64 =
+                forces.radius.iter().zip(&forces.load).map(|(r, load)| -load * profile.rate(*r)).sum();
+            assert!(forces.dissipation >= 0.0);
+            assert_relative_eq!(taken, forces.dissipation, max_relative = 1e-11);
+        }
+    }
+}
+
+#[test]
+fn force_is_finite_and_continuous_from_ten_millimetres_to_overlap_and_back() {
+    let film = sphere(0.25e-6, 64);
+    // gaps from 10 mm to 1e-12 m, through zero, to an overlap of the whole film
+    let outside = (0..=2000).map(|i| 1e-2 * 1e-10_f64.powf(f64::from(i) / 2000.0));
+    let inside = (0..=2000).map(|i| -1e-12 * 1e10_f64.powf(f64::from(i) / 2000.0));
+    let path: Vec<f64> = outside.chain([0.0]).chain(inside).collect();
+    let closing: Vec<f64> = path.iter().map(|&gap| solve(&film, &Rigid { gap, rate: -1.0 }).force).collect();
+    let opening: Vec<f64> =
+        path.iter().rev().map(|&gap| solve(&film, &Rigid { gap, rate: 1.0 }).force).collect();
+    let largest = closing.iter().copied().fold(0.0, f64::max);
+    // the minimal gap bounds the force: 18 pi mu R^2 v/h_min at the touch
+    assert_relative_eq!(largest, 3.0 * taylor(0.25e-6, 1.0), max_relative = 0.02);
+    for (closing, opening) in closing.iter().zip(opening.iter().rev()) {
+        assert!(closing.is_finite() && *closing >= 0.0, "{closing}");
+        assert_relative_eq!(*closing, -opening, max_relative = 1e-12);
+    }
+    for pair in closing.windows(2) {
+        assert!((pair[1] - pair[0]).abs() < 0.02 * largest, "{pair:?}");
+    }
+}

@@ -1,0 +1,261 @@
+//! Impacts in a fluid (section 3.5 of the paper): the implicit integrator against explicit Runge-Kutta, against the
+//! dry integrator, conservation and closed forms.
+
+mod common;
+
+use approx::assert_relative_eq;
+use common::scaled_plate;
+use impactcheck::body::kirchhoff;
+use impactcheck::fluid::added_mass::immersed;
+use impactcheck::fluid::{FluidForces, FluidLoad};
+use impactcheck::impact::integrator::{self, Integration, Options};
+use impactcheck::impact::system::{INNER, System};
+use impactcheck::impact::{OuterBody, wet};
+use impactcheck::scene::{Bender, Edge, Fluid, PlateImpact, Shape, ShearThinning};
+
+fn water() -> Fluid {
+    Fluid {
+        viscosity: 1e-3,
+        density: 1e3,
+        minimum_gap: 0.25e-6,
+        squeeze_film: true,
+        added_mass_frequency_ratio: 1.0,
+        plate_damping_ratio: 0.0,
+        drag_coefficient: 0.0,
+        shear_thinning: None,
+    }
+}
+
+/// Titanium plate of section 4.2.2 between steel spheres of 1.5 mm.
+fn valve(fluid: Fluid) -> PlateImpact {
+    let mut setup = scaled_plate(1.5e-3, 0.5);
+    let titanium = &mut setup.plate.material;
+    (titanium.youngs_modulus, titanium.poisson_ratio, titanium.density) = (115e9, 0.37, 4430.0);
+    (setup.plate.radius, setup.plate.thickness) = (5.5e-3, 0.3e-3);
+    setup.fluid = Some(fluid);
+    setup
+}
+
+struct Wet {
+    system: System,
+    fluid: FluidForces,
+}
+
+impl Wet {
+    fn new(setup: &PlateImpact, modes: usize) -> Self {
+        Self::with_cells(setup, modes, 64)
+    }
+
+    fn with_cells(setup: &PlateImpact, modes: usize, cells: usize) -> Self {
+        let fluid = setup.fluid.as_ref().expect("fluid");
+        assert_eq!(fluid.added_mass_frequency_ratio, 1.0, "the shapes below are those of the dry plate");
+        let plate = immersed(kirchhoff::modes(&setup.plate, modes).unwrap(), fluid);
+        let outer = OuterBody::new(&setup.outer).unwrap();
+        let shapes = |radii: &[f64]| kirchhoff::shapes(&setup.plate, modes, radii);
+        let forces = FluidForces::with_cells(fluid, &setup.plate, &setup.inner, cells, shapes);
+        Self {
+            system: System::with_outer(setup, outer, &plate, [0.0; 2]),
+            fluid: forces.unwrap().expect("film or drag"),
+        }
+    }
+
+    fn run(&self, tolerance: f64) -> Integration {
+        self.run_to(tolerance, None)
+    }
+
+    fn run_to(&self, tolerance: f64, end_time: Option<f64>) -> Integration {
+        let options = Options { tolerance, end_time, sample_interval: None };
+        wet::integrate(&self.system, &self.fluid, &options).unwrap()
+    }
+
+    fn efficiency(&self, result: &Integration) -> f64 {
+        let system = &self.system;
+        system.masses[1] * result.velocity[1].powi(2) / (system.masses[0] * system.speed.powi(2))
+    }
+
+    /// Velocity of the inner body after `steps` explicit steps of `h` s.
+    fn runge_kutta(&self, h: f64, steps: usize) -> f64 {
+        let (system, n) = (&self.system, self.system.size());
+        let (q, v) = system.initial_state();
+        let mut state: Vec<f64> = q.into_iter().chain(v).collect();
+        let mut load = FluidLoad::default();
+        let mut rate = |state: &[f64]| -> Vec<f64> {
+            let (q, v) = state.split_at(n);
+            let approach = system.modal_approach(q);
+            let (_, forces) = system.contact(approach, approach).expect("equilibrium");
+            self.fluid.evaluate(q, v, &mut load);
+            let acceleration = (0..n).map(|k| {
+                let o = system.oscillators[k];
+                let fluid = k.checked_sub(INNER).and_then(|i| load.force.get(i)).copied().unwrap_or(0.0);
+                fluid
+                    - 2.0 * o.alpha * v[k]
+                    - o.omega.powi(2) * q[k]
+                    - system.approach[0][k] * forces[0]
+                    - system.approach[1][k] * forces[1]
+            });
+            v.iter().copied().chain(acceleration).collect()
+        };
+        let add = |state: &[f64], k: &[f64], c: f64| -> Vec<f64> {
+            state.iter().zip(k).map(|(s, k)| s + c * k).collect()
+        };
+        for _ in 0..steps {
+            let k1 = rate(&state);
+            let k2 = rate(&add(&state, &k1, 0.5 * h));
+            let k3 = rate(&add(&state, &k2, 0.5 * h));
+            let k4 = rate(&add(&state, &k3, h));
+            for i in 0..2 * n {
+                state[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+            }
+        }
+        state[n + INNER] / system.masses[1].sqrt()
+    }
+}
+
+/// Impacts that differ in what they exercise.
+fn cases() -> Vec<(&'static str, PlateImpact)> {
+    let viscous = valve(Fluid { viscosity: 0.05, drag_coefficient: 0.4, ..water() });
+    let mut gap = valve(Fluid { plate_damping_ratio: 0.03, ..water() });
+    gap.inner.gap = 3e-6;
+    let mut free = valve(water());
+    free.plate.edge = Edge::Free;
+    let thinning = ShearThinning { infinite_shear_viscosity: 1e-3, relaxation_time: 1e-3, power_index: 0.4 };
+    let blood = valve(Fluid { viscosity: 0.05, shear_thinning: Some(thinning), ..water() });
+    vec![
+        ("water", valve(water())),
+        ("50 mPa s and drag", viscous),
+        ("gap, damped plate", gap),
+        ("free plate", free),
+        ("shear-thinning", blood),
+    ]
+}
+
+#[test]
+fn same_velocity_as_explicit_runge_kutta() {
+    for (name, setup) in cases() {
+        let wet = Wet::new(&setup, 4);
+        let (h, steps) = (4e-9, 10_000);
+        let ours = wet.run_to(1e-8, Some(h * steps as f64)).velocity[1];
+        let theirs = wet.runge_kutta(h, steps);
+        println!("{name}: {ours:.9} {theirs:.9}");
+        assert_relative_eq!(ours, theirs, max_relative = 3e-6);
+    }
+}
+
+#[test]
+fn energy_and_momentum_are_accounted_for() {
+    for (name, setup) in cases() {
+        let wet = Wet::new(&setup, 16);
+        let result = wet.run(1e-7);
+        let losses = result.losses;
+        println!(
+            "{name}: energy {:.1e}, momentum {:.1e}, {} steps, {losses:?}",
+            result.energy_residual, result.momentum_residual, result.steps
+        );
+        assert!(result.energy_residual < 2e-6, "{name}: {:e}", result.energy_residual);
+        assert!(result.momentum_residual < 1e-8, "{name}: {:e}", result.momentum_residual);
+        assert!(losses.squeeze_film > 1e-4 * wet.system.initial_energy(), "{name}");
+        let fluid = setup.fluid.as_ref().expect("fluid");
+        assert_eq!(losses.drag > 0.0, fluid.drag_coefficient > 0.0, "{name}");
+        assert_eq!(losses.plate_damping > 0.0, fluid.plate_damping_ratio > 0.0, "{name}");
+    }
+}
+
+#[test]
+fn error_follows_the_tolerance_and_the_square_of_the_cells() {
+    for (name, setup) in cases() {
+        let wet = Wet::new(&setup, 16);
+        let exact = wet.efficiency(&wet.run(1e-11));
+        for tolerance in [1e-4, 1e-6, 1e-7] {
+            let error = (wet.efficiency(&wet.run(tolerance)) / exact - 1.0).abs();
+            println!("{name}: tolerance {tolerance:.0e}, error {error:.1e}");
+            assert!(error < 3.0 * tolerance, "{name}: {error:e} at {tolerance:e}");
+        }
+        let with_cells = |cells| {
+            let wet = Wet::with_cells(&setup, 16, cells);
+            wet.efficiency(&wet.run(1e-8))
+        };
+        let fine = with_cells(512);
+        let errors = [32, 64].map(|cells| (with_cells(cells) - fine).abs());
+        println!("{name}: error of the efficiency with 32 and 64 cells {errors:?}");
+        assert!(errors[1] < 5e-4 && errors[1] < 0.4 * errors[0], "{name}: {errors:?}");
+    }
+}
+
+#[test]
+fn a_fluid_without_viscosity_changes_nothing() {
+    let mut bender = valve(water());
+    bender.outer.shape = Shape::Bender(Bender {
+        length: 14e-3,
+        bending_stiffness: 2.3e-3,
+        line_mass: 0.04,
+        tip_mass: 128e-6,
+        tip_radius: 4e-3,
+        discharge_time: 0.0,
+    });
+    for (name, mut setup) in [("sphere", valve(water())), ("bender", bender)] {
+        setup.fluid.as_mut().expect("fluid").viscosity = 1e-15;
+        let wet = Wet::new(&setup, 8);
+        let (ours, dry) = (wet.run(1e-9), {
+            let options = Options { tolerance: 1e-9, ..Options::default() };
+            integrator::integrate(&wet.system, &options).unwrap()
+        });
+        assert_relative_eq!(ours.velocity[1], dry.velocity[1], max_relative = 1e-8);
+        for i in 0..2 {
+            assert_relative_eq!(ours.contacts[i].force_peak, dry.contacts[i].force_peak, max_relative = 1e-5);
+        }
+        assert_relative_eq!(ours.contacts[1].end, dry.contacts[1].end, max_relative = 1e-5);
+        assert_eq!(ours.contacts[1].contacts, dry.contacts[1].contacts, "{name}");
+    }
+}
+
+#[test]
+fn no_film_makes_the_integration_fail() {
+    // from no contact at all to a film that glues the bodies together
+    for gap in [0.0, 1e-9, 1e-6, 20e-6, 10e-3] {
+        for viscosity in [1e-6, 1e-3, 1.0, 1e2] {
+            for minimum_gap in [1e-9, 0.25e-6] {
+                let mut setup = valve(Fluid { viscosity, minimum_gap, ..water() });
+                setup.inner.gap = gap;
+                let wet = Wet::with_cells(&setup, 6, 32);
+                let result = wet.run_to(1e-4, Some(40e-6));
+                let case = format!("gap {gap:e}, viscosity {viscosity:e}, minimal gap {minimum_gap:e}");
+                println!("{case}: {} steps, energy {:.1e}", result.steps, result.energy_residual);
+                assert!(result.velocity.iter().all(|v| v.is_finite()), "{case}");
+                assert!(result.energy_residual < 1e-3, "{case}: {:e}", result.energy_residual);
+                assert!(wet.efficiency(&result) < 1.0, "{case}");
+            }
+        }
+    }
+}
+
+#[test]
+fn drag_slows_the_inner_body_as_its_square_law_says() {
+    let setup = valve(Fluid { squeeze_film: false, drag_coefficient: 0.4, ..water() });
+    let wet = Wet::new(&setup, 8);
+    let (early, late) = (100e-6, 10e-3);
+    let [early_v, late_v] = [early, late].map(|end| wet.run_to(1e-9, Some(end)).velocity[1]);
+    // m v' = -c_W rho/2 pi R^2 v |v|: 1/v grows linearly
+    let rate = 0.4 * 500.0 * std::f64::consts::PI * 1.5e-3_f64.powi(2) / wet.system.masses[1];
+    assert_relative_eq!(1.0 / late_v.abs() - 1.0 / early_v.abs(), rate * (late - early), max_relative = 1e-6);
+}
+
+#[test]
+fn added_mass_is_a_heavier_plate() {
+    // the mass matrix times nine is a density times nine
+    let ratio = 1.0 / 3.0;
+    let setup = valve(Fluid { squeeze_film: false, added_mass_frequency_ratio: ratio, ..water() });
+    let fluid = setup.fluid.as_ref().expect("fluid");
+    let dry = kirchhoff::modes(&setup.plate, 16).unwrap();
+    let wet = immersed(dry.clone(), fluid);
+    assert_relative_eq!(wet.omega[0], ratio * dry.omega[0], max_relative = 1e-14);
+    let mut heavy = setup.clone();
+    heavy.plate.material.density *= 9.0;
+    heavy.fluid = None;
+    let run = |setup: &PlateImpact, plate| {
+        integrator::integrate(&System::new(setup, &plate, [0.0; 2]), &Options::default()).unwrap().velocity
+    };
+    let expected = run(&heavy, kirchhoff::modes(&heavy.plate, 16).unwrap());
+    let found = run(&setup, wet);
+    assert_relative_eq!(found[1], expected[1], max_relative = 1e-9);
+    assert_relative_eq!(found[0], expected[0], max_relative = 1e-9);
+}
