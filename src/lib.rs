@@ -10,6 +10,7 @@ pub mod comparison;
 pub mod contact;
 pub mod error;
 pub mod impact;
+pub mod measured;
 pub mod optimise;
 pub mod project;
 pub mod reference;
