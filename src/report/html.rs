@@ -121,6 +121,7 @@ pub fn scene_page(report: &SceneReport) -> String {
             }
         }
         (super::budget_section::budget_html(&comparison.budget))
+        (super::measured_section::measured_html(report))
         @for model in &comparison.models { (model_section(model)) }
         h2 { "Mesh and solver" }
         (facts(&[

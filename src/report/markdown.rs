@@ -43,6 +43,7 @@ fn section(scene: &SceneReport) -> String {
     );
     text += &failures("the reference", &comparison.integrity);
     text += &super::budget_section::budget_markdown(&comparison.budget);
+    text += &super::measured_section::measured_markdown(scene);
     for model in &comparison.models {
         text += &model_section(model);
     }
