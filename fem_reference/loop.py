@@ -8,19 +8,20 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
 
 from . import kernel
+from .levels import element_levels, level_matrices
 from .mesh import Floats
-from .system import System
+from .system import INNER, OUTER, System
 
 
 @dataclass(frozen=True)
 class Energies:
-    """Discrete energy of each body (1/2 v_{n+1/2} M v_{n+1/2} + 1/2 u_n K u_{n+1}), J.
+    """Discrete energy of each body (1/2 v_{n-1/2} M v_{n-1/2} + 1/2 u_{n-1} K u_n), J.
 
     Central differences without contact conserve it exactly (e.g. Hairer, Lubich & Wanner,
-    Geometric Numerical Integration).
+    Geometric Numerical Integration). With levels, u_{n-1} is one step of the level ago, and what
+    the interfaces of the levels exchange is missing; it is part of the ledger's residual.
     """
 
     total: tuple[float, float, float]
@@ -30,29 +31,18 @@ class Energies:
 
 _C_TYPES: dict[type[np.generic], Any] = {
     np.int32: ctypes.c_int32,
-    np.int64: ctypes.c_int64,
     np.float64: ctypes.c_double,
 }
-
-
-def _upper_blocks(stiffness: scipy.sparse.csr_matrix) -> scipy.sparse.bsr_matrix:
-    """The 2x2 blocks on and above the diagonal, the diagonal one first in each row."""
-    blocks = stiffness.tobsr((2, 2))
-    blocks.sort_indices()
-    rows = np.repeat(np.arange(blocks.indptr.size - 1), np.diff(blocks.indptr))
-    upper = blocks.indices >= rows
-    indptr = np.concatenate([[0], np.cumsum(np.bincount(rows[upper]))])
-    return scipy.sparse.bsr_matrix(
-        (blocks.data[upper], blocks.indices[upper], indptr), shape=blocks.shape
-    )
 
 
 class Loop:
     """The compiled loop's state together with the arrays it points to."""
 
-    def __init__(self, system: System, time_step: float, speed: float, split: int) -> None:
+    def __init__(
+        self, system: System, time_step: float, speed: float, split: int, most_levels: int = 1
+    ) -> None:
         self.system = system
-        blocks = _upper_blocks(system.stiffness)
+        self.levels = level_matrices(system, element_levels(system, time_step, most_levels))
         nodes = system.mass.size
         self._keep: list[object] = []
         self.u = np.zeros(2 * nodes)
@@ -60,18 +50,21 @@ class Loop:
         self.v[1 : 2 * int(system.first[1]) : 2] = -speed
         state = kernel.State()
         state.nodes = nodes
-        state.row = self._pointer(blocks.indptr, np.int64)
-        state.column = self._pointer(blocks.indices, np.int32)
-        state.block = self._pointer(blocks.data.transpose(0, 2, 1), np.float64)
         state.inverse = self._pointer(system.inverse_mass, np.float64)
-        state.mass = self._pointer(system.mass, np.float64)
         state.u = self._pointer(self.u, np.float64)
         state.v = self._pointer(self.v, np.float64)
         state.f = self._pointer(np.zeros(2 * nodes), np.float64)
         state.dt = time_step
-        state.supports = system.supports.size
-        state.support = self._pointer(system.supports, np.int32)
-        state.first[:] = system.first.tolist()
+        state.levels = len(self.levels)
+        for level, matrix in zip(state.level, self.levels, strict=False):
+            level.shared, level.shared_fixed = matrix.shared, matrix.shared_fixed
+            level.inner, level.rows = matrix.inner, matrix.nodes.size
+            level.node = self._pointer(matrix.nodes, np.int32)
+            level.row = self._pointer(matrix.indptr, np.int32)
+            level.column = self._pointer(matrix.columns, np.int32)
+            level.block = self._pointer(matrix.blocks.transpose(0, 2, 1), np.float64)
+        state.body_mass[:] = [system.body_mass(OUTER), system.body_mass(INNER)]
+        state.rigid_start[:] = [-speed, 0.0]
         state.centre[:] = list(system.centre)
         state.velocity_before = self._pointer(
             np.zeros(sum(pairs.radii.size for pairs in system.contacts)), np.float64
@@ -113,7 +106,7 @@ class Loop:
 
     def product(self, x: Floats) -> Floats:
         """K x with the compiled kernel, (2n,)."""
-        y = np.empty_like(x)
+        y = np.zeros_like(x)
         pointer = ctypes.POINTER(ctypes.c_double)
         self._kernel.stiffness_product(
             ctypes.byref(self.state), x.ctypes.data_as(pointer), y.ctypes.data_as(pointer)
@@ -122,11 +115,12 @@ class Loop:
 
     def energies(self) -> Energies:
         """Discrete energies between u_n and u_{n+1}."""
-        product = self.product(self.u)
         system = self.system
         mass = np.repeat(system.mass, 2)
-        before = self.u - self.state.dt * self.v
-        density = 0.5 * mass * self.v**2 + 0.5 * before * product
+        density = 0.5 * mass * self.v**2
+        for number, matrix in enumerate(self.levels):
+            before = self.u - 2**number * self.state.dt * self.v
+            density += 0.5 * before * (matrix.stiffness @ self.u)
         axial = mass * self.v
         total, rigid = [], []
         for body in range(3):

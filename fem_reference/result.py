@@ -39,10 +39,10 @@ def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
     run = solution.run
     return {
         "efficiency": scene.inner.mass
-        * run.inner_velocity**2
+        * run.balance.inner_velocity**2
         / (scene.outer.mass * scene.speed**2),
-        "outer_velocity_final": run.outer_velocity,
-        "inner_velocity_final": run.inner_velocity,
+        "outer_velocity_final": run.balance.outer_velocity,
+        "inner_velocity_final": run.balance.inner_velocity,
         "outer_force_peak": run.contacts[0].force_peak,
         "inner_force_peak": run.contacts[1].force_peak,
         "outer_contact_end": run.contacts[0].end or 0.0,
@@ -75,8 +75,8 @@ def _summary(
         "outer_contacts": run.contacts[0].count,
         "inner_contacts": run.contacts[1].count,
         "first_frequency": values["first_frequency"],
-        "energy_residual": run.energy_residual,
-        "momentum_residual": run.momentum_residual,
+        "energy_residual": run.balance.energy_residual,
+        "momentum_residual": run.balance.momentum_residual,
         "steps": run.steps,
         "solve_seconds": run.loop_seconds,
         "in_contact_at_end": run.in_contact_at_end,
@@ -103,10 +103,10 @@ def _summary(
             "courant": run.time_step / run.critical_time_step,
         },
         "residuals": {
-            "energy": run.energy_residual,
-            "momentum": run.momentum_residual,
-            "contact_energy_loss": run.contact_loss,
-            "support_impulse": run.support_impulse,
+            "energy": run.balance.energy_residual,
+            "momentum": run.balance.momentum_residual,
+            "contact_energy_loss": run.balance.contact_loss,
+            "support_impulse": run.balance.support_impulse,
         },
     }
 
@@ -207,9 +207,9 @@ def _provenance(
         },
         "versions": found,
         "residuals": {
-            "energy": solution.run.energy_residual,
-            "momentum": solution.run.momentum_residual,
-            "contact_energy_loss": solution.run.contact_loss,
+            "energy": solution.run.balance.energy_residual,
+            "momentum": solution.run.balance.momentum_residual,
+            "contact_energy_loss": solution.run.balance.contact_loss,
         },
         "contacts": {
             name: [list(interval) for interval in record.intervals]

@@ -40,6 +40,12 @@ class System:
     centre: tuple[int, int]
     """The plate's centre nodes on its two faces."""
     contacts: tuple[ContactPairs, ContactPairs]
+    element_nodes: Ints
+    """(m, 4) nodes of all elements."""
+    element_stiffness: Floats
+    """(m, 8, 8) their matrices, whose sum is ``stiffness``, N/m."""
+    element_time_steps: Floats
+    """(m,) critical time step of each element alone, s."""
 
     def body(self, index: int) -> slice:
         """Rows of a body's displacements."""
@@ -97,6 +103,7 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
         _axis_constraints(mesh.inner),
     )
     stiffness, mass, inverse, numbers = [], [], [], []
+    element_nodes, element_stiffness, element_steps = [], [], []
     first = np.zeros(4, dtype=np.int64)
     for index, (body, material, fixed) in enumerate(zip(bodies, materials, fixed_of, strict=True)):
         matrices = assemble(body, material)
@@ -116,6 +123,10 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
         body_inverse[fixed] = 0.0
         inverse.append(body_inverse[rows])
         numbers.append(number + first[index])
+        elements = matrices.elements
+        element_nodes.append(numbers[index][elements.nodes])
+        element_stiffness.append(elements.stiffness)
+        element_steps.append(elements.critical_time_steps())
         first[index + 1] = first[index] + order.size
     plate_fixed = fixed_of[1]
     supports = numbers[1][plate_fixed[plate_fixed % 2 == 1] // 2]
@@ -145,6 +156,9 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
         supports=np.sort(supports),
         centre=(int(contacts[0].plate_nodes[0]), int(contacts[1].plate_nodes[0])),
         contacts=(contacts[0], contacts[1]),
+        element_nodes=np.concatenate(element_nodes),
+        element_stiffness=np.concatenate(element_stiffness),
+        element_time_steps=np.concatenate(element_steps),
     )
 
 
