@@ -47,6 +47,8 @@ class MeshSettings:
     """Ratio of neighbouring elements away from the contact, along the plate."""
     through_growth: float
     """The same through the thickness, where every layer runs along the whole plate."""
+    rim_element: float | None = None
+    """Element length at the plate's rim, m; None: the rim is not refined."""
 
     @property
     def contact_zone(self) -> float:
@@ -87,12 +89,14 @@ def mesh_settings(
     """
     plate = scene.plate
     per_radius = scene.elements_per_contact_radius * factor
-    # Bilinear elements are too stiff in bending by some (1 - nu)/2 (length / thickness)^2: sixteen
-    # per thickness along the plate hold the frequency to 0.2 %. Across it eight are enough, with
-    # the fine layers at both faces. Thick plates need a fair number over the radius too.
-    along = min(plate.thickness / 16.0, plate.radius / 48.0) / factor
+    # Along the plate four elements per thickness carry the waves: the incompatible modes bend. The
+    # stress at a clamped rim's corners is singular and would make the plate too stiff by the
+    # length of the elements there: fine elements at the rim hold the first frequency to 0.01 %.
+    along = min(plate.thickness / 4.0, plate.radius / 48.0) / factor
     through = min(plate.thickness / 8.0, plate.radius / 48.0) / factor
-    size = min(min(outer_radius, inner_radius) / per_radius, along)
+    rim = None if plate.edge == "free" else min(plate.thickness / 32.0, plate.radius / 96.0) / factor
+    per_contact = min(outer_radius, inner_radius) / per_radius
+    size = min(per_contact, along / 2.0, through)
     zone = CONTACT_ZONE * max(outer_radius, inner_radius)
     for name, radius in (
         ("outer.radius", scene.outer.radius),
@@ -112,7 +116,7 @@ def mesh_settings(
             "contacts or contact and plate differ too much in size"
         )
     growth, through_growth = (ratio ** (1.0 / factor) for ratio in (1.2, 1.35))
-    return MeshSettings(size, count, along, through, growth, through_growth)
+    return MeshSettings(size, count, along, through, growth, through_growth, rim)
 
 
 @contextmanager
@@ -174,14 +178,26 @@ def _generate(name: str) -> BodyMesh:
     return BodyMesh(name, points, quads)
 
 
+def _rim(settings: MeshSettings) -> list[Segment]:
+    """Elements that shrink towards the rim, from the plate's largest on; none if not asked for."""
+    first, last, ratio = settings.rim_element, settings.plate_element, settings.growth**2
+    if first is None or last < 1.5 * first:
+        return []
+    count = max(2, round(math.log(last / first) / math.log(ratio)))
+    exact = (last / first) ** (1.0 / count)
+    length = first * (exact**count - 1.0) / (exact - 1.0)
+    return [Segment(length, count, exact).reversed]
+
+
 def mesh_plate(plate: Plate, settings: MeshSettings) -> BodyMesh:
     """Mesh of the plate, z = 0 at its midplane, fine at the axis and at both faces."""
     size, zone = settings.contact_element, settings.contact_zone
+    rim = _rim(settings)
+    rest = plate.radius - zone - sum(segment.length for segment in rim)
     radial = [
         Segment(zone, settings.contact_elements),
-        *graded(
-            plate.radius - zone, size * settings.growth, settings.plate_element, settings.growth
-        ),
+        *graded(rest, size * settings.growth, settings.plate_element, settings.growth),
+        *rim,
     ]
     half = graded(plate.thickness / 2.0, size, settings.through_element, settings.through_growth)
     through = [*half, *(segment.reversed for segment in reversed(half))]
