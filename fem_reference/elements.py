@@ -96,7 +96,9 @@ def _condense(raw: Floats, strain: Floats, volume: Floats, material: Material) -
     return np.asarray(0.5 * (stiffness + stiffness.transpose(0, 2, 1)))
 
 
-def element_matrices(body: BodyMesh, material: Material, strain_of: Any, form: Any) -> ElementMatrices:
+def element_matrices(
+    body: BodyMesh, material: Material, strain_of: Any, form: Any
+) -> ElementMatrices:
     """Integrate with dolfinx and condense.
 
     Args:

@@ -17,7 +17,7 @@ from .contact import (
     peak_force,
 )
 from .ending import EndCheck
-from .errors import SolverError
+from .errors import DivergedError, SolverError
 from .levels import MOST_LEVELS, element_levels
 from .loop import Energies, Loop
 from .mesh import Floats
@@ -151,7 +151,7 @@ def integrate(
         energies = loop.energies()
         total = sum(energies.total)
         if not total <= 10.0 * initial_energy:
-            raise SolverError(
+            raise DivergedError(
                 f"the solution diverged at {samples * interval:.4g} s: energy {total:.3g} J, "
                 f"at the start {initial_energy:.3g} J"
             )

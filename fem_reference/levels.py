@@ -95,7 +95,9 @@ def level_matrices(system: System, level: Ints) -> list[LevelMatrix]:
         touched = np.unique(system.element_nodes[chosen])
         shared = touched[fastest[touched] < number]
         own = touched[fastest[touched] == number]
-        groups = [part[mask] for part in (shared, own) for mask in (~supported[part], supported[part])]
+        groups = [
+            part[mask] for part in (shared, own) for mask in (~supported[part], supported[part])
+        ]
         ends = np.cumsum([part.size for part in groups])
         result.append(_layout(stiffness, np.concatenate(groups), ends))
     return result

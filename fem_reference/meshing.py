@@ -36,6 +36,7 @@ EDGE_REFINEMENT = 2.0
 INSIDE_COARSENING = 0.7
 EDGE_MARGINS = (0.85, 1.1)
 
+
 @dataclass(frozen=True)
 class MeshSettings:
     """Everything that decides the mesh."""
@@ -77,7 +78,9 @@ class MeshSettings:
         r = np.linspace(0.0, zone, 2001)
         # Elements per length: even, times a bump with smooth flanks.
         flank = 0.35 * low
-        bump = np.clip((r - low) / flank + 1.0, 0.0, 1.0) * np.clip((high - r) / flank + 1.0, 0.0, 1.0)
+        bump = np.clip((r - low) / flank + 1.0, 0.0, 1.0) * np.clip(
+            (high - r) / flank + 1.0, 0.0, 1.0
+        )
         density = 1.0 + (EDGE_REFINEMENT / INSIDE_COARSENING - 1.0) * bump
         count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]))])
         radii = np.interp(even / zone, count / count[-1], r)
@@ -123,7 +126,9 @@ def mesh_settings(
     # length of the elements there: fine elements at the rim hold the first frequency to 0.01 %.
     along = min(plate.thickness / 4.0, plate.radius / 48.0) / factor
     through = min(plate.thickness / 8.0, plate.radius / 48.0) / factor
-    rim = None if plate.edge == "free" else min(plate.thickness / 32.0, plate.radius / 96.0) / factor
+    rim = (
+        None if plate.edge == "free" else min(plate.thickness / 32.0, plate.radius / 96.0) / factor
+    )
     per_contact = min(outer_radius, inner_radius) / per_radius
     size = min(per_contact, along / 2.0, through)
     zone = CONTACT_ZONE * max(outer_radius, inner_radius)
@@ -383,7 +388,9 @@ def _mesh_sphere(
     fade = np.clip((3.0 * zone - z) / (2.0 * zone), 0.0, 1.0)
     moved = r + fade * (_moved_radius(settings, r) - r)
     points[inside, 0] = moved
-    points[inside, 1] += fade * (sphere_profile(sphere.radius, moved) - sphere_profile(sphere.radius, r))
+    points[inside, 1] += fade * (
+        sphere_profile(sphere.radius, moved) - sphere_profile(sphere.radius, r)
+    )
     raw = BodyMesh(name, points, original.quads)
     return _with_exact_volume(raw, sphere, surface, radii), surface
 

@@ -34,7 +34,9 @@ class GridConvergence:
     """GCI of the finest mesh over its value, with the safety factor 1.25."""
 
 
-def grid_convergence_index(values: tuple[float, float, float], r21: float, r32: float) -> GridConvergence:
+def grid_convergence_index(
+    values: tuple[float, float, float], r21: float, r32: float
+) -> GridConvergence:
     """Celik's grid convergence index.
 
     Args:
@@ -96,11 +98,13 @@ def _fit(basis: list[Floats], values: Floats, weights: Floats) -> tuple[Floats, 
 def least_squares(values: Floats, sizes: Floats) -> Estimate:
     """Error estimate and 95 % band of the value on the finest mesh.
 
-    phi_0 + alpha h^p is fitted with weights 1 and 1/h; the fit of smaller scatter counts. If its
-    order is below `LOWEST_ORDER` or above `HIGHEST_ORDER`, the best of alpha h, alpha h^2 and
-    alpha h + beta h^2 takes its place. With s the scatter and D the mean step between values, the
-    band is F |phi_1 - phi_0| + s + |phi_1 - fit|, F = 1.25 for a believable order, else 3, and
-    3 s/D (|phi_1 - phi_0| + s + |phi_1 - fit|) if s exceeds D.
+    phi_0 + alpha h^p is fitted with weights 1 and 1/h; the fit of smaller scatter counts. Where
+    its order is not between `LOWEST_ORDER` and `HIGHEST_ORDER`, the best of alpha h and alpha h^2
+    takes its place, below `LOWEST_ORDER` also alpha h + beta h^2. With s the scatter and D the mean
+    step between values, the band is F |fit - phi_0| + s + |phi_1 - fit|; F = 1.25, but 3 for an
+    order below `LOWEST_ORDER`. (The published rule takes 3 above the formal order too; the fit
+    of second order then overestimates the error already.) If s exceeds D, it is
+    3 s/D (|fit - phi_0| + s + |phi_1 - fit|).
 
     Args:
         values: (n,) finest mesh first, n >= 4.
@@ -129,19 +133,19 @@ def least_squares(values: Floats, sizes: Floats) -> Estimate:
     deviation, order, basis, coefficients = min(candidates, key=lambda c: c[0])
     believed = LOWEST_ORDER <= order <= HIGHEST_ORDER
     if not believed:
-        fixed = []
-        for weights in weightings:
-            for terms in ([h], [h**2], [h, h**2]):
-                c, d = _fit(terms, values, weights)
-                fixed.append((d, terms, c))
-        deviation, basis, coefficients = min(fixed, key=lambda f: f[0])
-    fitted = float(coefficients[0] + sum(c * b[0] for c, b in zip(coefficients[1:], basis, strict=True)))
+        # Two terms only where the data fall more slowly than any single one believed.
+        terms = [[h], [h**2], [h, h**2]] if order < LOWEST_ORDER else [[h], [h**2]]
+        fixed = [(*_fit(t, values, w), t) for w in weightings for t in terms]
+        coefficients, deviation, basis = min(fixed, key=lambda f: f[1])
+    fitted = float(
+        coefficients[0] + sum(c * b[0] for c, b in zip(coefficients[1:], basis, strict=True))
+    )
     extrapolated = float(coefficients[0])
     error = abs(fitted - extrapolated)
     miss = abs(float(values[0]) - fitted)
     step = spread / (values.size - 1)
     if deviation < step:
-        factor = SAFETY_FACTOR if believed else CAUTIOUS_SAFETY_FACTOR
+        factor = SAFETY_FACTOR if order >= LOWEST_ORDER else CAUTIOUS_SAFETY_FACTOR
         band = factor * error + deviation + miss
     else:
         band = CAUTIOUS_SAFETY_FACTOR * deviation / step * (error + deviation + miss)
