@@ -7,11 +7,21 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from .convergence import QUANTITIES, Sequence, refine, solve_sequence
 from .errors import SceneError
 from .meshing import RESOLUTIONS
-from .output import history, result_folder, write_history, write_json, write_mesh, write_stress
+from .output import (
+    HISTORY_COLUMNS,
+    history,
+    result_folder,
+    write_history,
+    write_json,
+    write_mesh,
+    write_stress,
+)
 from .progress import Progress
 from .scene import Scene
 from .solve import WAVE_FREQUENCY, Solution
@@ -149,7 +159,11 @@ def solve(
         table, interval = history(solution.run)
         summary["samples"] = table.shape[0]
         summary["sample_interval"] = interval
-        write_history(folder / "history.csv", table, sequence.curve_bands())
+        bands = sequence.curve_bands()
+        for column, name in enumerate(HISTORY_COLUMNS[1:]):
+            summary["uncertainty"][f"{name}_rms"] = float(np.sqrt(np.mean(bands[:, column] ** 2)))
+            summary["uncertainty"][f"{name}_max"] = float(bands[:, column].max())
+        write_history(folder / "history.csv", table, bands)
         write_mesh(folder / "mesh.vtu", solution.mesh)
         for number, snapshot in enumerate(solution.run.snapshots):
             write_stress(

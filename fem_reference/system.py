@@ -181,11 +181,11 @@ def critical_time_step(system: System) -> float:
 def hertz_weights(radii: Floats) -> Floats:
     """Nodal shares (n,) of a unit Hertz pressure over the zone of the nodes at ``radii`` (m).
 
-    Each node gets the pressure sqrt(1 - (r/a)^2) at its radius times the area of its ring.
+    Each node gets the pressure sqrt(1 - (r/a)^2) integrated over its ring, whose edges lie midway
+    to its neighbours.
     """
     edges = np.concatenate([[0.0], 0.5 * (radii[1:] + radii[:-1]), radii[-1:]])
-    weights = np.sqrt(1.0 - (radii / radii[-1]) ** 2) * np.diff(edges**2)
-    return np.asarray(weights / weights.sum())
+    return np.asarray(-np.diff((1.0 - (edges / radii[-1]) ** 2) ** 1.5))
 
 
 def patch_flexibility(system: System, body: int, nodes: Ints, weights: Floats) -> float:

@@ -20,8 +20,8 @@ Floats = NDArray[np.float64]
 
 SAFETY_FACTOR = 1.25
 CAUTIOUS_SAFETY_FACTOR = 3.0
-LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
-"""Orders believed; the formal one is 2."""
+LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.1
+"""Orders believed; the formal one is 2, a fit may miss it by a little."""
 
 
 @dataclass(frozen=True)

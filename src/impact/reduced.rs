@@ -111,6 +111,7 @@ impl Reduced {
             steps: result.steps,
             solve_seconds,
             uncertainty: Default::default(),
+            convergence: None,
             mesh: None,
             solver: None,
             samples: None,
