@@ -46,6 +46,9 @@ def _parser() -> argparse.ArgumentParser:
     bands = commands.add_parser("bands", help="bands of a middling mesh against a finer one")
     bands.add_argument("--scene", type=Path, nargs="+", required=True, help="or provenance.json")
     bands.add_argument("--out", type=Path, required=True, help="JSON; a table .md beside it")
+    cost = commands.add_parser("cost", help="cost against error over meshes, limits of the machine")
+    cost.add_argument("--scene", type=Path, required=True)
+    cost.add_argument("--out", type=Path, required=True, help="JSON; a figure .svg beside it")
     commands.add_parser("versions", help="versions of everything a result depends on")
     return parser
 
@@ -67,7 +70,11 @@ def _run(arguments: argparse.Namespace) -> None:
                 raise SolverError("in some quantity fewer than nine of ten scenes keep their band")
             return
         scene = read_scene(arguments.scene)
-        if arguments.command == "modes":
+        if arguments.command == "cost":
+            from .cost import cost
+
+            print(json.dumps(cost(scene, arguments.out, Progress(sys.stderr))["limits"], indent=2))
+        elif arguments.command == "modes":
             from .meshing import modal_plate_mesh
             from .modal import plate_modes
 

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from .errors import SolverError
+from .explicit import Run
 from .mesh import Floats
 from .modal import first_frequency
 from .output import HISTORY_COLUMNS, history, resampled
 from .progress import Progress
 from .scene import Scene
 from .solve import Solution, compute
+from .system import System
 from .uncertainty import Estimate, curve_band, least_squares
 
 RATIO = 0.84
@@ -37,9 +39,9 @@ MOST_REFINED = 8.0
 """`refine` gives up beyond this factor on the number of elements."""
 
 
-def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
+def quantities(scene: Scene, run: Run, system: System) -> dict[str, float]:
     """The summary's physical quantities, SI; a contact that never closed ends at 0."""
-    run, balance = solution.run, solution.run.balance
+    balance = run.balance
     return {
         "efficiency": scene.inner.mass
         * balance.inner_velocity**2
@@ -50,7 +52,7 @@ def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
         "inner_force_peak": run.contacts[1].force_peak,
         "outer_contact_end": run.contacts[0].end or 0.0,
         "inner_contact_end": run.contacts[1].end or 0.0,
-        "first_frequency": first_frequency(solution.system),
+        "first_frequency": first_frequency(system),
     }
 
 
@@ -125,7 +127,7 @@ def solve_sequence(
         solutions.append(near)
     known.update({solution.factor: solution for solution in solutions})
     sizes = np.array([1.0 / solution.factor for solution in solutions])
-    found = [quantities(scene, solution) for solution in solutions]
+    found = [quantities(scene, solution.run, solution.system) for solution in solutions]
     values = {name: np.array([each[name] for each in found]) for name in QUANTITIES}
     estimates = {name: least_squares(values[name], sizes) for name in QUANTITIES}
     return Sequence(tuple(solutions), values, estimates)

@@ -81,7 +81,8 @@ def assemble(body: BodyMesh, material: Material) -> BodyMatrices:
     """Stiffness and lumped mass of a body: bilinear elements with incompatible modes."""
     elements = element_matrices(body, material, _strain, _stiffness_form)
     count = body.points.shape[0]
-    mass = np.bincount(elements.nodes.ravel(), elements.mass.ravel(), minlength=count)
+    shares = np.bincount(elements.nodes.ravel(), elements.mass.ravel(), minlength=count)
+    mass = np.asarray(shares, dtype=np.float64)
     return BodyMatrices(scatter(elements.nodes, elements.stiffness, count), mass, elements)
 
 

@@ -41,7 +41,7 @@ def least_clearance(
     """
     reach = float(np.abs(amplitudes).sum())
     if clearance > reach and opening_speed >= 0.0:
-        return clearance - reach
+        return float(clearance - reach)
     if not opening_speed > 0.0:
         return -math.inf
     # From here on the oscillations cannot follow any more.

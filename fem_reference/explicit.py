@@ -74,6 +74,8 @@ class Run:
     critical_time_step: float
     steps: int
     loop_seconds: float
+    processor_seconds: float
+    """As `loop_seconds`, without the time other programs had the processor."""
     levels: tuple[int, ...]
     """Nodes whose elements of each level of sub-cycling act."""
     balance: Balance
@@ -134,7 +136,7 @@ def integrate(
     rows: list[Floats] = []
     samples = 0
     started = time.perf_counter()
-    seconds = 0.0
+    seconds = processor = 0.0
     while True:
         while pending and pending[0] == samples:
             pending.pop(0)
@@ -144,9 +146,10 @@ def integrate(
         count = min(CHUNK_SAMPLES, samples_wanted - samples)
         if pending:
             count = min(count, pending[0] - samples)
-        chunk_started = time.perf_counter()
+        chunk_started = time.perf_counter(), time.process_time()
         rows.append(loop.run(count, stride))
-        seconds += time.perf_counter() - chunk_started
+        seconds += time.perf_counter() - chunk_started[0]
+        processor += time.process_time() - chunk_started[1]
         samples += count
         energies = loop.energies()
         total = sum(energies.total)
@@ -184,6 +187,7 @@ def integrate(
         critical_time_step=critical,
         steps=state.step,
         loop_seconds=seconds,
+        processor_seconds=processor,
         levels=tuple(int(matrix.nodes.size) for matrix in loop.levels),
         balance=balance,
         snapshots=tuple(snapshots),

@@ -92,7 +92,7 @@ class Domain:
             corner = np.array([links.links(c) for c in range(cells)])
         else:
             corner = np.asarray(links)
-        return np.asarray(geometry.input_global_indices, dtype=np.int64)[corner]
+        return np.asarray(np.asarray(geometry.input_global_indices, dtype=np.int64)[corner])
 
     def body_cells(self) -> Ints:
         """(m,) for each dolfinx cell the number of the same element in the body."""

@@ -247,4 +247,13 @@ void run(State *s, int64_t samples, int64_t stride, double *row) {
     }
 }
 
+/* The STREAM triad a = b + s c, repeated: what the memory that n numbers fit into delivers. */
+void triad(double *restrict a, const double *restrict b, const double *restrict c, int64_t n,
+           int64_t repetitions) {
+    for (int64_t k = 0; k < repetitions; ++k) {
+        for (int64_t i = 0; i < n; ++i) a[i] = b[i] + 0.5 * c[i];
+        __asm__ volatile("" : : "r"(a) : "memory"); /* every repetition counts */
+    }
+}
+
 int64_t state_size(void) { return (int64_t)sizeof(State); }

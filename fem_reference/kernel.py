@@ -175,6 +175,8 @@ def load() -> ctypes.CDLL:
     kernel.run.restype = None
     kernel.stiffness_product.argtypes = [ctypes.POINTER(State), _DOUBLE, _DOUBLE]
     kernel.stiffness_product.restype = None
+    kernel.triad.argtypes = [_DOUBLE, _DOUBLE, _DOUBLE, ctypes.c_int64, ctypes.c_int64]
+    kernel.triad.restype = None
     if kernel.state_size() != ctypes.sizeof(State):
         raise SolverError("the compiled time loop and its Python side disagree on their layout")
     return kernel

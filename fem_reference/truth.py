@@ -28,6 +28,8 @@ class Trial:
     value: float
     band: float
     finer: float
+    sequence: tuple[float, ...]
+    """Values the band is made from, the tried one first."""
 
     @property
     def holds(self) -> bool:
@@ -46,7 +48,7 @@ def try_bands(scene: Scene, progress: Progress) -> tuple[list[Trial], dict[str, 
     """Trials of all quantities, and of the curves the share of samples within the band."""
     sequence = solve_sequence(scene, MIDDLE, progress=progress)
     finer = compute(scene, FINE, progress=progress, label="finer mesh: ")
-    found = quantities(scene, finer)
+    found = quantities(scene, finer.run, finer.system)
     trials = [
         Trial(
             scene.name,
@@ -54,6 +56,7 @@ def try_bands(scene: Scene, progress: Progress) -> tuple[list[Trial], dict[str, 
             float(sequence.values[name][0]),
             sequence.estimates[name].band,
             found[name],
+            tuple(float(v) for v in sequence.values[name]),
         )
         for name in QUANTITIES
     ]

@@ -18,12 +18,20 @@ def test_grid_convergence_index_of_the_published_example() -> None:
     assert found.relative_index == pytest.approx(0.021750, abs=1e-6)
 
 
-@pytest.mark.parametrize("order", [0.8, 1.5, 2.0])
+@pytest.mark.parametrize("order", [1.1, 1.5, 1.9])
 def test_order_and_limit_of_a_clean_sequence(order: float) -> None:
     estimate = least_squares(7.0 + 0.3 * SIZES**order, SIZES)
     assert estimate.order == pytest.approx(order, abs=1e-4)
     assert estimate.extrapolated == pytest.approx(7.0, abs=1e-4)
     assert estimate.band == pytest.approx(1.25 * 0.3, rel=1e-3)
+
+
+@pytest.mark.parametrize(("order", "nearer"), [(0.7, 1.0), (3.0, 2.0)])
+def test_an_impossible_order_is_not_believed(order: float, nearer: float) -> None:
+    estimate = least_squares(7.0 + 0.3 * SIZES**order, SIZES)
+    assert estimate.order is None
+    slope = 0.3 * (SIZES[-1] ** order - 1.0) / (SIZES[-1] ** nearer - 1.0)
+    assert estimate.extrapolated == pytest.approx(7.3 - slope, abs=0.1)
 
 
 def test_two_meshes_that_agree_by_chance_do_not_make_the_band_vanish() -> None:
