@@ -17,10 +17,11 @@ from .convergence import RATIO, TARGETED, quantities
 from .estimate import estimate_contact
 from .explicit import integrate
 from .loop import Loop
-from .meshing import mesh_impact, mesh_settings
+from .meshing import mesh_impact
 from .output import write_json
 from .progress import Progress
 from .scene import Scene
+from .settings import mesh_settings
 from .solve import compute
 from .system import System, build_system, critical_time_step
 

@@ -55,7 +55,7 @@ def least_clearance(
     # Between two instants a curve lies below its chord by at most its curvature times step^2/8.
     curvature = float((np.abs(amplitudes) * frequencies**2).sum())
     sag = curvature * (t[1] - t[0]) ** 2 / 8.0
-    return float((clearance + opening_speed * t - plate).min()) - sag
+    return float((clearance + opening_speed * t - plate).min() - sag)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,6 @@ import numpy as np
 from .contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from .convergence import QUANTITIES, Sequence, refine, solve_sequence
 from .errors import SceneError
-from .meshing import RESOLUTIONS
 from .output import (
     HISTORY_COLUMNS,
     history,
@@ -24,6 +23,7 @@ from .output import (
 )
 from .progress import Progress
 from .scene import Scene
+from .settings import RESOLUTIONS
 from .solve import WAVE_FREQUENCY, Solution
 from .versions import versions
 

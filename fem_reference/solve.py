@@ -19,9 +19,10 @@ from .estimate import (
 )
 from .explicit import Run, integrate
 from .mesh import edge_lengths
-from .meshing import ImpactMesh, mesh_impact, mesh_settings
+from .meshing import ImpactMesh, mesh_impact
 from .progress import Progress
 from .scene import Material, Scene
+from .settings import mesh_settings
 from .system import System, build_system
 
 ACCEPTED_SHARE = 0.9
@@ -168,7 +169,7 @@ def compute(
     label: str = "",
     like: Solution | None = None,
 ) -> Solution:
-    """Solve a scene with ``factor`` (see `meshing.RESOLUTIONS`) times the asked elements.
+    """Solve a scene with ``factor`` (see `settings.RESOLUTIONS`) times the asked elements.
 
     The mesh is made for estimated contact radii. If the radii found from the peak forces leave
     fewer than `ACCEPTED_SHARE` of the elements asked for, or contact reached the last pair of

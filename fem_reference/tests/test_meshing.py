@@ -12,8 +12,9 @@ from fem_reference.errors import SceneError, SolverError
 from fem_reference.estimate import estimate_contact
 from fem_reference.grading import graded
 from fem_reference.mesh import BodyMesh, check_elements, edge_lengths, element_volumes
-from fem_reference.meshing import ImpactMesh, mesh_impact, mesh_settings
+from fem_reference.meshing import ImpactMesh, mesh_impact
 from fem_reference.scene import Scene, parse_scene
+from fem_reference.settings import mesh_settings
 
 from .conftest import document
 
