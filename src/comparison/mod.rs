@@ -21,7 +21,7 @@ mod verdict;
 
 pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
 pub use curve_metrics::CurveMetrics;
-pub use discrepancy::Discrepancy;
+pub use discrepancy::{BandVerdict, Discrepancy};
 pub use integrity::Check;
 pub(crate) use interpolation::MonotoneCubic;
 pub use iso18571::{Grade, Iso18571, iso18571};
