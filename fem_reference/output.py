@@ -163,3 +163,16 @@ def write_stress(
         field_data={},
     )
     meshio.vtu.write(path, grid, binary=True, compression=None)
+
+
+def write_series(path: Path, times: list[float], names: list[str]) -> None:
+    """A .pvd file: the .vtu files ``names`` beside it at ``times`` (s), for ParaView."""
+    entries = "".join(
+        f'    <DataSet timestep="{instant:.10g}" part="0" file="{name}"/>\n'
+        for instant, name in zip(times, names, strict=True)
+    )
+    path.write_text(
+        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" '
+        f'byte_order="LittleEndian">\n  <Collection>\n{entries}  </Collection>\n</VTKFile>\n',
+        encoding="ascii",
+    )
