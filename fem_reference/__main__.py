@@ -23,6 +23,12 @@ def _times(text: str) -> tuple[float, ...]:
         ) from None
 
 
+def _count(text: str) -> int:
+    if not text.isdecimal() or not 0 <= int(text) <= 100000:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 100000")
+    return int(text)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="fem_reference", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
@@ -33,6 +39,16 @@ def _parser() -> argparse.ArgumentParser:
     solve.add_argument("--stress-at", type=_times, default=(), metavar="T1,T2", help="seconds")
     solve.add_argument(
         "--courant", type=float, default=0.9, help="time step over the critical one (0.9)"
+    )
+    solve.add_argument(
+        "--fields", type=_count, default=0, metavar="N", help="fields at N or more instants"
+    )
+    solve.add_argument("--np", type=_count, default=1, metavar="N", help="processes (solid only)")
+    solve.add_argument(
+        "--checkpoint", type=Path, metavar="DIR", help="states of a solid run, to go on from"
+    )
+    solve.add_argument(
+        "--checkpoint-interval", type=float, default=60.0, metavar="S", help="seconds (60)"
     )
     modes = commands.add_parser("modes", help="axisymmetric eigenfrequencies of the plate")
     modes.add_argument("--scene", type=Path, required=True)
@@ -73,7 +89,15 @@ def _run(arguments: argparse.Namespace) -> None:
                     indent=2,
                 )
             )
+        elif scene.geometry == "solid":
+            from .solid.command import solve_solid
+
+            solve_solid(scene, arguments)
         else:
+            if arguments.np > 1:
+                raise SolverError(
+                    f"--np is {arguments.np}; an axisymmetric reference runs as one process"
+                )
             from .result import solve
 
             solve(
