@@ -4,7 +4,7 @@
 
 mod store_fixture;
 
-use impactcheck::reference::{Lookup, Progress, Resolution, Store, solve_with};
+use impactcheck::reference::{Lookup, Progress, Resolution, Store, Wish, solve_with};
 use impactcheck::{Error, ExitStatus, Result};
 use serde_json::json;
 use std::fs::{self, File};
@@ -45,7 +45,7 @@ impl Bench {
 
     fn solve(&self, script: &str) -> Result<Vec<Progress>> {
         let mut steps = Vec::new();
-        solve_with(&self.solver(script), &scene(), PAPER, &self.store, &[], &mut |p| steps.push(p.clone()))?;
+        solve_with(&self.solver(script), &scene(), PAPER, &self.store, &Wish::default(), &mut |p| steps.push(p.clone()))?;
         Ok(steps)
     }
 
@@ -211,7 +211,7 @@ fn runs_at_once_leave_one_complete_entry() {
     let bench = Bench::new();
     let python = bench.solver(COPY);
     std::thread::scope(|scope| {
-        let run = || solve_with(&python, &scene(), PAPER, &bench.store, &[], &mut |_| ());
+        let run = || solve_with(&python, &scene(), PAPER, &bench.store, &Wish::default(), &mut |_| ());
         let workers: Vec<_> = (0..6).map(|_| scope.spawn(move || (0..5).all(|_| run().is_ok()))).collect();
         for worker in workers {
             assert!(worker.join().expect("thread"));
@@ -228,7 +228,7 @@ fn the_solver_does_not_outlive_its_caller() {
     let python = bench.solver(&format!("{step}; sleep 4; touch \"$here/survived\""));
     let store = bench.store.clone();
     let stopped = std::thread::spawn(move || {
-        let _ = solve_with(&python, &scene(), PAPER, &store, &[], &mut |_| panic!("the caller stops"));
+        let _ = solve_with(&python, &scene(), PAPER, &store, &Wish::default(), &mut |_| panic!("the caller stops"));
     });
     // The caller waits for its child's end: one that was not killed has left its mark by then.
     assert!(stopped.join().is_err());
@@ -271,7 +271,7 @@ fn an_interpreter_that_is_not_there_is_named() {
     let bench = Bench::new();
     let none = bench.path("none");
     let error =
-        solve_with(&none, &scene(), PAPER, &bench.store, &[], &mut |_| ()).expect_err("no interpreter");
+        solve_with(&none, &scene(), PAPER, &bench.store, &Wish::default(), &mut |_| ()).expect_err("no interpreter");
     assert_eq!(error.exit_status(), ExitStatus::Solver);
     assert!(
         flat(&error).contains(&*none.to_string_lossy()) && flat(&error).contains("can't be run"),

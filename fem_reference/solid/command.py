@@ -12,8 +12,15 @@ from ..errors import RunError, SolverError
 from ..progress import Progress
 from ..scene import Scene
 
-LAUNCHED = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "PMI_RANK")
-"""Set by MPI's launchers in the processes they start."""
+SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS")
+"""Number of processes, set by MPI's launchers in the processes they start."""
+INHERITED = ("PMIX_", "PMI_", "OMPI_COMM_", "OMPI_UNIVERSE", "OMPI_MCA_ess", "OMPI_MCA_orte")
+"""What a process that has used MPI leaves in the environment of those it starts."""
+
+
+def _launched() -> bool:
+    sizes = (os.environ.get(name, "") for name in SIZES)
+    return any(size.isdecimal() and int(size) > 1 for size in sizes)
 
 
 def _launch(processes: int) -> None:
@@ -25,13 +32,19 @@ def _launch(processes: int) -> None:
     program = shutil.which("mpirun") or shutil.which("mpiexec")
     if program is None:
         raise SolverError("mpirun is missing; --np needs it: install openmpi-bin")
-    # One thread per process, and no refusal for root: who may start the solver may start it so.
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
-    for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
-        os.environ.setdefault(name, "1")
+    kept = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
+    # One thread per process; no refusal for root: who may start the solver may start it so.
+    settings = {
+        "OMP_NUM_THREADS": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    }
+    if processes >= (os.cpu_count() or 1):
+        # Somebody else needs a processor too: waiting must not keep it busy.
+        settings["OMPI_MCA_mpi_yield_when_idle"] = "1"
     sys.stdout.flush()
     command = [program, "-n", str(processes), sys.executable, "-m", "fem_reference", *sys.argv[1:]]
-    os.execv(program, command)
+    os.execve(program, command, {**settings, **kept})
 
 
 def solve_solid(scene: Scene, arguments: argparse.Namespace) -> None:
@@ -40,7 +53,7 @@ def solve_solid(scene: Scene, arguments: argparse.Namespace) -> None:
     Raises:
         RunError: in a run of one process; several are ended together with its exit status.
     """
-    if not any(name in os.environ for name in LAUNCHED) and arguments.np > 1:
+    if arguments.np > 1 and not _launched():
         _launch(arguments.np)
     from ..fenicsx import world
     from .result import solve

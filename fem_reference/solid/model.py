@@ -69,6 +69,8 @@ class SphereContact:
     centre: tuple[float, float, float]
     """At the start, m."""
     radius: float
+    places: Floats | None = None
+    """(n, 3) where the exact body has its candidates, if not where its mesh has them, m."""
 
 
 @dataclass(frozen=True)

@@ -87,7 +87,9 @@ class ContactProblem:
         structure.compliance = pointer(np.zeros(count), np.float64)
         structure.active = pointer(np.zeros(count), np.int32)
         if isinstance(contact, SphereContact):
-            points = model.elastic[contact.body].mesh.points[contact.nodes]
+            points = contact.places
+            if points is None:
+                points = model.elastic[contact.body].mesh.points[contact.nodes]
             structure.kind = kernel.AGAINST_SPHERE
             structure.normal = pointer(np.zeros((count, 3)), np.float64)
             structure.gap = pointer(np.zeros(count), np.float64)

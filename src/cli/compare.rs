@@ -5,7 +5,7 @@ use crate::comparison::{Comparison, SceneComparison, Verdict, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Outcome;
 use crate::impact::reduced::Reduced;
-use crate::reference::{Lookup, Resolution, Store, Stored};
+use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
 use crate::report::{self, Report, SceneReport};
 use crate::scene::{self, Model, Scene};
 use clap::Args;
@@ -165,7 +165,7 @@ fn references(context: &Context, arguments: &Arguments, scenes: &[Scene]) -> Res
 }
 
 fn computed(context: &Context, arguments: &Arguments, scene: &Scene, store: &Store) -> Result<Stored> {
-    reference::compute(context, scene, arguments.resolution, store, &[])
+    reference::compute(context, scene, arguments.resolution, store, &Wish::default())
 }
 
 /// The models to compare, each once, in the order asked for.

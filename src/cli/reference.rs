@@ -3,7 +3,7 @@
 use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
-use crate::reference::{Lookup, Resolution, Store, Stored};
+use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
 use crate::scene::{self, Geometry, Scene};
 use clap::Args;
 
@@ -15,14 +15,17 @@ pub struct Arguments {
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
     /// Number of processes (three-dimensional references only)
-    #[arg(long, default_value_t = 1, value_name = "N")]
-    np: usize,
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    np: u32,
     /// Compute even if there is a stored solution
     #[arg(long)]
     fresh: bool,
     /// Write stress fields (.vtu) at these times, in s
     #[arg(long, value_delimiter = ',', value_name = "T,…")]
     stress_at: Vec<f64>,
+    /// Write fields (.vtu and a .pvd series) at this many instants over the run, or somewhat more
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    fields: u32,
     #[command(flatten)]
     json: JsonArgument,
 }
@@ -37,7 +40,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         )));
     }
     let store = context.store();
-    let wanted = !arguments.fresh && arguments.stress_at.is_empty();
+    let wanted = !arguments.fresh && arguments.stress_at.is_empty() && arguments.fields == 0;
     let stored = match wanted.then(|| store.find(&scene, arguments.resolution)) {
         Some(Lookup::Found(stored)) => {
             context.note(format_args!("found {}", stored.folder.display()));
@@ -50,7 +53,12 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
                     problem(&scene, arguments.resolution, lookup)
                 ));
             }
-            compute(context, &scene, arguments.resolution, &store, &arguments.stress_at)?
+            let wish = Wish {
+                stress_at: arguments.stress_at.clone(),
+                fields: arguments.fields,
+                processes: arguments.np,
+            };
+            compute(context, &scene, arguments.resolution, &store, &wish)?
         }
     };
     if arguments.json.json {
@@ -78,11 +86,11 @@ pub fn compute(
     scene: &Scene,
     resolution: Resolution,
     store: &Store,
-    stress_at: &[f64],
+    wish: &Wish,
 ) -> Result<Stored> {
     let bar = Bar::new(context, &format!("{} ({resolution})", scene.name));
     let stored =
-        crate::reference::solve(scene, resolution, store, stress_at, &mut |progress| bar.show(progress))?;
+        crate::reference::solve(scene, resolution, store, wish, &mut |progress| bar.show(progress))?;
     drop(bar);
     context.note(format_args!("computed {}", stored.folder.display()));
     Ok(stored)

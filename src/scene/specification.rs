@@ -227,7 +227,7 @@ static REDUCED: [Field; 2] = [
     optional("modes", Kind::Count(1, 1024), "Number of modes of the plate"),
 ];
 
-static REFERENCE: [Field; 2] = [
+static REFERENCE: [Field; 4] = [
     optional(
         "geometry",
         Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
@@ -236,12 +236,24 @@ static REFERENCE: [Field; 2] = [
     optional(
         "elements_per_contact_radius",
         pure(ELEMENTS),
-        "Elements across the contact radius at `paper` resolution; absent = 12",
+        "Elements across the contact radius at `paper` resolution; absent = 12, with solid geometry 3",
+    ),
+    optional(
+        "element_order",
+        Kind::Count(1, 2),
+        "Solid geometry: 1 linear, 2 quadratic tetrahedra; absent = 2",
+    ),
+    optional(
+        "rigid",
+        Kind::Choice(&[choice("none"), choice("outer"), choice("inner"), choice("both")]),
+        "Solid geometry: spheres that are rigid; absent = none",
     ),
 ];
 
-/// Default of `reference.elements_per_contact_radius`.
+/// Default of `reference.elements_per_contact_radius` with axisymmetric geometry (bilinear elements).
 pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;
+/// The same with solid geometry (quadratic elements).
+pub(super) const DEFAULT_SOLID_ELEMENTS: f64 = 3.0;
 
 /// The SI unit of the quantity at `path` in a scene's JSON form, such as `plate.material.density`.
 pub(crate) fn unit_of(path: &str) -> Option<&'static str> {

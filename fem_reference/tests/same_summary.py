@@ -1,0 +1,29 @@
+"""Compares two result folders: ``same_summary ONE OTHER SHARE``; exit status 1 if they differ.
+
+Every quantity has to agree within SHARE of its band.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+
+def main(one: Path, other: Path, share: float) -> int:
+    """Print the differences; 0 if all are small enough."""
+    a, b = (
+        json.loads((folder / "summary.json").read_text(encoding="utf-8")) for folder in (one, other)
+    )
+    meshes = a["mesh"]["nodes"], b["mesh"]["nodes"]
+    worst = 0.0
+    for name, bound in a["uncertainty"].items():
+        part = abs(a[name] - b[name]) / bound if bound > 0.0 else float(a[name] != b[name])
+        worst = max(worst, part)
+        print(f"{name:22} {a[name]: .10g} {b[name]: .10g}  difference {part:.2g} of the band")
+    print(f"nodes {meshes[0]} and {meshes[1]}; largest difference {worst:.2g}, allowed {share:g}")
+    return 0 if worst <= share else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3])))
