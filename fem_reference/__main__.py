@@ -98,6 +98,7 @@ def _run(arguments: argparse.Namespace) -> None:
                 raise SolverError(
                     f"--np is {arguments.np}; an axisymmetric reference runs as one process"
                 )
+            from .estimate import field_times
             from .result import solve
 
             solve(
@@ -105,7 +106,7 @@ def _run(arguments: argparse.Namespace) -> None:
                 arguments.out,
                 arguments.resolution,
                 courant=arguments.courant,
-                stress_times=arguments.stress_at,
+                stress_times=(*arguments.stress_at, *field_times(scene, arguments.fields)),
             )
     except ImportError as error:
         raise SolverError(

@@ -11,7 +11,15 @@ from .contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from .errors import SceneError
 from .meshing import RESOLUTIONS
 from .modal import first_frequency
-from .output import history, result_folder, write_history, write_json, write_mesh, write_stress
+from .output import (
+    history,
+    result_folder,
+    write_history,
+    write_json,
+    write_mesh,
+    write_series,
+    write_stress,
+)
 from .progress import Progress
 from .scene import Scene
 from .solve import WAVE_FREQUENCY, Solution, compute
@@ -161,7 +169,11 @@ def solve(
             write_stress(
                 folder / f"stress_{number:03d}.vtu", scene, solution.mesh, solution.system, snapshot
             )
-        summary["stress_times"] = [snapshot.time for snapshot in solution.run.snapshots]
+        instants = [snapshot.time for snapshot in solution.run.snapshots]
+        if instants:
+            names = [f"stress_{number:03d}.vtu" for number in range(len(instants))]
+            write_series(folder / "stress.pvd", instants, names)
+        summary["stress_times"] = instants
         write_json(folder / "summary.json", summary)
         write_json(
             folder / "provenance.json",

@@ -12,7 +12,12 @@ from .errors import SceneError
 
 EDGES = ("clamped", "simply-supported", "free")
 GEOMETRIES = ("axisymmetric", "solid")
-RIGID: dict[str, tuple[str, ...]] = {"none": (), "outer": ("outer",), "inner": ("inner",), "both": ("outer", "inner")}
+RIGID: dict[str, tuple[str, ...]] = {
+    "none": (),
+    "outer": ("outer",),
+    "inner": ("inner",),
+    "both": ("outer", "inner"),
+}
 
 
 @dataclass(frozen=True)

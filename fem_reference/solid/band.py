@@ -26,7 +26,7 @@ def band(fine: float, medium: float, coarse: float, ratio: float) -> float:
     """Absolute 95 % bound of the discretisation error of ``fine``; ratio of element sizes > 1."""
     order = observed_order(fine, medium, coarse, ratio)
     if order is not None and LEAST_ORDER <= order <= LARGEST_ORDER:
-        return 1.25 * abs(medium - fine) / (ratio ** min(order, 2.0) - 1.0)
-    growth = ratio**EXPECTED_ORDER
+        return 1.25 * abs(medium - fine) / (math.pow(ratio, min(order, 2.0)) - 1.0)
+    growth = math.pow(ratio, EXPECTED_ORDER)
     change = max(abs(medium - fine), abs(coarse - medium) / growth)
     return 3.0 * change / (growth - 1.0)

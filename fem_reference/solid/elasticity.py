@@ -13,7 +13,7 @@ from ..errors import SolverError
 from ..fenicsx import TetDomain
 from ..mesh import Floats, Ints
 from ..scene import Material
-from .mesh import TetMesh, volumes
+from .mesh import TetMesh, scatter_sum, volumes
 
 STRESS_COMPONENTS = (
     "stress_xx",
@@ -38,7 +38,7 @@ def lumped_mass(mesh: TetMesh, density: float) -> Floats:
     corner, midside = LUMPED_SHARES[mesh.order]
     shares = np.array([corner] * 4 + [midside] * (mesh.cells.shape[1] - 4))
     masses = density * volumes(mesh.points, mesh.corners)[:, None] * shares
-    return np.bincount(mesh.cells.ravel(), masses.ravel(), minlength=mesh.points.shape[0])
+    return scatter_sum(mesh.cells, masses, mesh.points.shape[0])
 
 
 def _stress(u: Any, lame: Any, shear: Any) -> Any:

@@ -18,6 +18,7 @@ from ..fenicsx import block_matrix, petsc_rows, petsc_vectors
 from ..mesh import Floats, Ints
 from . import kernel
 from .elasticity import Assembly, lumped_mass
+from .mesh import scatter_sum
 from .model import Model
 from .problem import Arrays, ContactProblem
 
@@ -36,7 +37,7 @@ class Energies:
 
     @property
     def total(self) -> float:
-        """J"""
+        """Of all bodies, J."""
         return sum(self.elastic) + sum(self.rigid)
 
 
@@ -128,8 +129,8 @@ class Loop:
         mass = np.repeat(self.mass, 3)
         density = 0.5 * mass * self.v**2 + 0.5 * before * self.product(self.u)
         count = len(self.model.elastic)
-        each = np.bincount(self.body, density.reshape(-1, 3).sum(axis=1), minlength=count)
-        elastic = self.total(each)
+        each = density.reshape(-1, 3).sum(axis=1)
+        elastic = self.total(scatter_sum(self.body, each, count))
         mean = (self.momenta() ** 2).sum(axis=1) / (2.0 * self.body_masses())
         rigid = [
             0.5 * r.mass * sum(x * x for x in r.v) for r in self.problem.rigids[: self.rigid_count]

@@ -40,7 +40,7 @@ class TetMesh:
         return self.cells[:, :4]
 
     def volume(self) -> float:
-        """m^3"""
+        """Of the body, m^3."""
         return float(volumes(self.points, self.corners).sum())
 
 
@@ -114,6 +114,13 @@ def surface(mesh: TetMesh) -> Ints:
         np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True
     )
     return np.asarray(faces[np.sort(index[count == 1])])
+
+
+def scatter_sum(nodes: Ints, values: Floats, count: int) -> Floats:
+    """(count,) sums of the values that belong to each node."""
+    sums = np.zeros(count)
+    np.add.at(sums, nodes.ravel(), np.broadcast_to(values, nodes.shape).ravel())
+    return sums
 
 
 def shape_functions(barycentric: Floats, order: int) -> Floats:

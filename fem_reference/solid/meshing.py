@@ -24,8 +24,10 @@ DELAUNAY = 1
 
 @dataclass(frozen=True)
 class SizeField:
-    """Element size h = min(largest, least + slope * max(0, d - zone)), d the distance from the
-    nearest of the centres."""
+    """Element size h = min(largest, least + slope * max(0, d - zone)).
+
+    d is the distance from the nearest of the centres.
+    """
 
     centres: tuple[tuple[float, float, float], ...]
     zone: float

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from ..errors import SolverError
 from ..mesh import Floats, Ints
 from ..scene import Material
-from .mesh import FACE_EDGES, TetMesh, shape_functions
+from .mesh import FACE_EDGES, TetMesh, scatter_sum, shape_functions
 
 FREE = np.eye(3)
 
@@ -166,6 +166,5 @@ def nodal_areas(mesh: TetMesh, facets: Ints) -> Floats:
     area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
     corner, midside = (1.0 / 3.0, 0.0) if mesh.order == 1 else (1.0 / 19.0, 16.0 / 57.0)
     shares = np.array([corner] * 3 + [midside] * (len(FACE_EDGES) * (mesh.order - 1)))
-    return np.bincount(
-        facets.ravel(), (area[:, None] * shares).ravel(), minlength=mesh.points.shape[0]
-    )
+    count = mesh.points.shape[0]
+    return scatter_sum(facets, area[:, None] * shares, count)

@@ -179,15 +179,11 @@ def plate_model(
             along = guided((0.0, 0.0, 1.0))
             rigid.append(RigidBody(name, FRACTION * sphere.mass, along, (0.0, 0.0, speed)))
             place = (0.0, 0.0, height + side * (sphere.radius + gap))
-            contacts.append(
-                SphereContact(name, 0, near, rigid_numbers[name], place, sphere.radius)
-            )
+            contacts.append(SphereContact(name, 0, near, rigid_numbers[name], place, sphere.radius))
             continue
         mesh = quarter_sphere(name, sphere, size, order, side)
         numbers[name] = len(elastic)
-        elastic.append(
-            ElasticBody(mesh, sphere.material, _symmetry(mesh), (0.0, 0.0, speed))
-        )
+        elastic.append(ElasticBody(mesh, sphere.material, _symmetry(mesh), (0.0, 0.0, speed)))
         contact, area = _sphere_on_plate(
             name, mesh, numbers[name], plate, face, sphere, side, gap, zone
         )

@@ -93,12 +93,12 @@ def _impulse(contact: kernel.Contact, rigid: bool, side: float) -> float:
     """Compressive impulse so far on the whole bodies, N s."""
     # Candidates are the sphere's nodes, or the plate's if the sphere is rigid.
     sign = -side if rigid else side
-    return sign * contact.impulse[2] / FRACTION
+    return float(sign * contact.impulse[2] / FRACTION)
 
 
 def _force(contact: kernel.Contact, rigid: bool, side: float) -> float:
     sign = -side if rigid else side
-    return sign * contact.force[2] / FRACTION
+    return float(sign * contact.force[2] / FRACTION)
 
 
 class _Ending:

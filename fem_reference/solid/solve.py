@@ -86,7 +86,9 @@ def _identity(scene: Scene, model: Any, courant: float) -> str:
     return digest.hexdigest()
 
 
-def _per_wavelength(plate: PlateModel, wavelengths: tuple[float, float, float]) -> tuple[float, float]:
+def _per_wavelength(
+    plate: PlateModel, wavelengths: tuple[float, float, float]
+) -> tuple[float, float]:
     """Least number of elements per wavelength in any elastic body, and that wavelength, m."""
     found = []
     for name, wavelength in zip(("outer", PLATE, "inner"), wavelengths, strict=True):

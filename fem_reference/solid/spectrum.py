@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import eigh_tridiagonal
 
 from ..errors import SolverError
-from ..mesh import Floats
+from ..mesh import Floats, Ints
 from .loop import Loop
 
 LANCZOS_STEPS = 400
@@ -141,7 +141,7 @@ def first_frequency(loop: Loop, body: int, axis: int = 2, tolerance: float = 1e-
     raise SolverError("the first eigenfrequency was not found")
 
 
-def patch_flexibility(loop: Loop, body: int, nodes: np.ndarray, weights: Floats) -> float:
+def patch_flexibility(loop: Loop, body: int, nodes: Ints, weights: Floats) -> float:
     """Flexibility of a body along z over a patch, p^T K^-1 p, m/N (of the part modelled).
 
     Static if the body is supported along z, otherwise that of the free body under the force

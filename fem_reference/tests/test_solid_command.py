@@ -91,7 +91,7 @@ def test_ledgers_close_and_the_folder_is_complete(whole: Path) -> None:
     assert set(found["uncertainty"]) >= set(PHYSICAL)
     assert found["outer_velocity_final"] < 0.0 < found["outer_force_peak"]
     history = np.loadtxt(whole / "history.csv", delimiter=",", skiprows=1)
-    impulse = np.trapz(history[:, 3], history[:, 0])
+    impulse = history[:, 3].sum() * (history[1, 0] - history[0, 0])
     mass = 7780.0 * 4.0 / 3.0 * np.pi * 0.005**3
     assert mass * (history[-1, 2] - history[0, 2]) == pytest.approx(impulse, rel=1e-2)
     assert not list(whole.parent.glob(".checkpoint*"))
@@ -168,9 +168,7 @@ def test_two_processes_give_what_one_gives(folder: Path, whole: Path) -> None:
     assert b["solver"]["processes"] == 2
     for name in PHYSICAL:
         assert b[name] == pytest.approx(a[name], rel=1e-7), name
-    one, two = (
-        np.loadtxt(x / "history.csv", delimiter=",", skiprows=1) for x in (whole, out)
-    )
+    one, two = (np.loadtxt(x / "history.csv", delimiter=",", skiprows=1) for x in (whole, out))
     assert np.abs(one - two).max(axis=0) / np.abs(one).max(axis=0) == pytest.approx(0.0, abs=1e-8)
 
 
