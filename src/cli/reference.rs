@@ -89,8 +89,7 @@ pub fn compute(
     wish: &Wish,
 ) -> Result<Stored> {
     let bar = Bar::new(context, &format!("{} ({resolution})", scene.name));
-    let stored =
-        crate::reference::solve(scene, resolution, store, wish, &mut |progress| bar.show(progress))?;
+    let stored = crate::reference::solve(scene, resolution, store, wish, &mut |progress| bar.show(progress))?;
     drop(bar);
     context.note(format_args!("computed {}", stored.folder.display()));
     Ok(stored)

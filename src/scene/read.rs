@@ -260,12 +260,5 @@ fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
         Some(Checked::Text(word)) if word == "both" => Some(Rigid::Both),
         _ => None,
     };
-    if geometry != Geometry::Solid && (element_order.is_some() || rigid.is_some()) {
-        let key = if rigid.is_some() { "rigid" } else { "element_order" };
-        return Err(refused(
-            &format!("`reference.{key}` belongs to solid geometry only"),
-            "remove it, or set geometry = \"solid\"",
-        ));
-    }
     Ok(ReferenceSettings { geometry, elements_per_contact_radius, element_order, rigid })
 }

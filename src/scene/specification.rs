@@ -82,7 +82,7 @@ pub(super) struct Field {
     pub(super) key: &'static str,
     pub(super) kind: Kind,
     pub(super) required: bool,
-    /// The key belongs to this `kind` of its table only.
+    /// The key belongs to this `kind` (or `geometry`) of its table only.
     pub(super) only: Option<&'static str>,
     pub(super) doc: &'static str,
 }
@@ -238,18 +238,26 @@ static REFERENCE: [Field; 4] = [
         pure(ELEMENTS),
         "Elements across the contact radius at `paper` resolution; absent = 12, with solid geometry 3",
     ),
-    optional(
-        "element_order",
-        Kind::Count(1, 2),
-        "Solid geometry: 1 linear, 2 quadratic tetrahedra; absent = 2",
+    only(
+        "solid",
+        optional(
+            "element_order",
+            Kind::Count(1, 2),
+            "Order of the tetrahedra: 1 linear, 2 quadratic; absent = 2",
+        ),
     ),
-    optional(
-        "rigid",
-        Kind::Choice(&[choice("none"), choice("outer"), choice("inner"), choice("both")]),
-        "Solid geometry: spheres that are rigid; absent = none",
+    only(
+        "solid",
+        optional(
+            "rigid",
+            Kind::Choice(&[choice("none"), choice("outer"), choice("inner"), choice("both")]),
+            "Spheres that are rigid; absent = none",
+        ),
     ),
 ];
 
+/// Default of `reference.geometry`.
+pub(super) const DEFAULT_GEOMETRY: &str = "axisymmetric";
 /// Default of `reference.elements_per_contact_radius` with axisymmetric geometry (bilinear elements).
 pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;
 /// The same with solid geometry (quadratic elements).
