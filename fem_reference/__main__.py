@@ -23,6 +23,12 @@ def _times(text: str) -> tuple[float, ...]:
         ) from None
 
 
+def _count(text: str) -> int:
+    if not text.isdecimal() or not 0 <= int(text) <= 100000:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 100000")
+    return int(text)
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="fem_reference", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
@@ -39,6 +45,16 @@ def _parser() -> argparse.ArgumentParser:
         type=float,
         metavar="X",
         help="refine until the relative 95 %% band of efficiency and force peaks is at most this",
+    )
+    solve.add_argument(
+        "--fields", type=_count, default=0, metavar="N", help="fields at N or more instants"
+    )
+    solve.add_argument("--np", type=_count, default=1, metavar="N", help="processes (solid only)")
+    solve.add_argument(
+        "--checkpoint", type=Path, metavar="DIR", help="states of a solid run, to go on from"
+    )
+    solve.add_argument(
+        "--checkpoint-interval", type=float, default=60.0, metavar="S", help="seconds (60)"
     )
     modes = commands.add_parser("modes", help="axisymmetric eigenfrequencies of the plate")
     modes.add_argument("--scene", type=Path, required=True)
@@ -95,7 +111,16 @@ def _run(arguments: argparse.Namespace) -> None:
                     indent=2,
                 )
             )
+        elif scene.geometry == "solid":
+            from .solid.command import solve_solid
+
+            solve_solid(scene, arguments)
         else:
+            if arguments.np > 1:
+                raise SolverError(
+                    f"--np is {arguments.np}; an axisymmetric reference runs as one process"
+                )
+            from .estimate import field_times
             from .result import solve
 
             solve(
@@ -103,7 +128,7 @@ def _run(arguments: argparse.Namespace) -> None:
                 arguments.out,
                 arguments.resolution,
                 courant=arguments.courant,
-                stress_times=arguments.stress_at,
+                stress_times=(*arguments.stress_at, *field_times(scene, arguments.fields)),
                 target_error=arguments.target_error,
             )
     except ImportError as error:

@@ -104,3 +104,15 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
         for k, body in zip(stiffness, bodies, strict=True)
     ]
     return ContactEstimate(radii[0], radii[1], min(durations))
+
+
+FIELD_DURATIONS = 2.5
+"""A run without end time is covered by fields over this many Hertz contact durations."""
+
+
+def field_times(scene: Scene, count: int) -> tuple[float, ...]:
+    """``count`` even instants over the run, s; those after its end are never reached."""
+    if count == 0:
+        return ()
+    end = scene.end_time or FIELD_DURATIONS * estimate_contact(scene).duration
+    return tuple(float(t) for t in np.linspace(0.0, end, count))

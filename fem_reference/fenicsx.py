@@ -29,13 +29,21 @@ for _name in ("FFCx", "UFL", "ffcx", "root"):
     logging.getLogger(_name if _name != "root" else None).setLevel(logging.ERROR)
 
 
-def _vector_element(degree: int) -> Any:
+def _coordinate_element(cell: str, dimension: int) -> Any:
     try:
         import basix.ufl
     except ImportError:
-        cell = ufl.Cell("quadrilateral", geometric_dimension=2)
-        return ufl.VectorElement("Lagrange", cell, degree)
-    return basix.ufl.element("Lagrange", "quadrilateral", degree, shape=(2,))
+        return ufl.VectorElement("Lagrange", ufl.Cell(cell, geometric_dimension=dimension), 1)
+    return basix.ufl.element("Lagrange", cell, 1, shape=(dimension,))
+
+
+def _mesh(comm: Any, points: Floats, cells: Ints, cell: str) -> Any:
+    points, cells = np.ascontiguousarray(points), np.ascontiguousarray(cells)
+    domain = ufl.Mesh(_coordinate_element(cell, points.shape[1]))
+    try:
+        return create_mesh(comm, cells, points, domain)
+    except TypeError:  # since 0.10 the coordinate element comes before the points
+        return create_mesh(comm, cells, domain, points)
 
 
 def _function_space(mesh: Any, family: str, degree: int, shape: tuple[int, ...]) -> Any:
@@ -56,13 +64,7 @@ class Domain:
 
     def __init__(self, body: BodyMesh, degree: int = 1, *, discontinuous: bool = False) -> None:
         # dolfinx numbers the corners of a quadrilateral row by row.
-        cells = np.ascontiguousarray(body.quads[:, [0, 1, 3, 2]])
-        element = _vector_element(1)
-        points = np.ascontiguousarray(body.points)
-        try:
-            self.mesh = create_mesh(MPI.COMM_SELF, cells, points, ufl.Mesh(element))
-        except TypeError:  # since 0.10 the coordinate element comes before the points
-            self.mesh = create_mesh(MPI.COMM_SELF, cells, ufl.Mesh(element), points)
+        self.mesh = _mesh(MPI.COMM_SELF, body.points, body.quads[:, [0, 1, 3, 2]], "quadrilateral")
         family = "DQ" if discontinuous else "Lagrange"
         self.space = _function_space(self.mesh, family, degree, (2,))
         self.degree = degree
@@ -131,6 +133,94 @@ class Domain:
         function = fem.Function(space)
         function.interpolate(fem.Expression(expression, _interpolation_points(space)))
         return np.array(function.x.array, dtype=np.float64).reshape(-1, size)
+
+
+class TetDomain:
+    """Tetrahedra distributed over the processes of ``comm`` with a vector space of degree 1 or 2.
+
+    Process ``rank`` of ``size`` hands in its share of the elements, all points are handed in by
+    every process; dolfinx then partitions the mesh as it sees fit.
+    """
+
+    def __init__(self, points: Floats, corners: Ints, degree: int, comm: Any) -> None:
+        ranks, rank = comm.size, comm.rank
+        elements = _share(corners.shape[0], ranks, rank)
+        nodes = _share(points.shape[0], ranks, rank)
+        # dolfinx takes the points of process 0 as the first ones, and so on.
+        self.mesh = _mesh(comm, points[nodes], corners[elements], "tetrahedron")
+        self.space = _function_space(self.mesh, "Lagrange", degree, (3,))
+        self.comm = comm
+
+    def owned_points(self) -> Floats:
+        """(n, 3) the nodes whose rows this process owns, m."""
+        owned = self.space.dofmap.index_map.size_local
+        return np.asarray(self.space.tabulate_dof_coordinates()[:owned], dtype=np.float64)
+
+    def cell_constants(self, of_element: Floats) -> Any:
+        """A piecewise constant function from one value per element as handed in."""
+        space = _function_space(self.mesh, "DG", 0, ())
+        function = fem.Function(space)
+        # A scalar of degree 0 has its dofs in the order of the cells.
+        function.x.array[:] = of_element[self.local_cells()]
+        return function
+
+    def local_cells(self) -> Ints:
+        """For each element of this process, ghosts included, its number as handed in."""
+        return np.asarray(self.mesh.topology.original_cell_index, dtype=np.int64)
+
+    def petsc_matrix(self, form: Any) -> Any:
+        """Assemble a bilinear form: a PETSc matrix in blocks of 3, row 3 * node + component."""
+        matrix = fem_petsc.assemble_matrix(fem.form(form))
+        matrix.assemble()
+        return matrix
+
+    def function(self, values: Floats) -> Any:
+        """A function of the space with the values (n, 3) at its nodes (one process only)."""
+        function = fem.Function(self.space)
+        function.x.array[:] = values.ravel()
+        return function
+
+    def cell_values(self, expression: Any, size: int) -> Floats:
+        """(m, size) values of a vector expression at the elements' midpoints, as handed in."""
+        space = _function_space(self.mesh, "DG", 0, (size,))
+        function = fem.Function(space)
+        function.interpolate(fem.Expression(expression, _interpolation_points(space)))
+        values = np.empty((self.local_cells().size, size))
+        values[self.local_cells()] = np.asarray(function.x.array).reshape(-1, size)
+        return values
+
+
+def _share(count: int, ranks: int, rank: int) -> slice:
+    return slice(count * rank // ranks, count * (rank + 1) // ranks)
+
+
+def block_matrix(matrix: Any) -> Any:
+    """The PETSc matrix in 3x3 blocks: its product reads a ninth of the column numbers."""
+    return matrix.convert("baij")
+
+
+def petsc_rows(matrix: Any) -> scipy.sparse.csr_matrix:
+    """This process' rows; the PETSc matrix is destroyed."""
+    indptr, indices, values = matrix.getValuesCSR()
+    columns = matrix.getSize()[1]
+    matrix.destroy()
+    return scipy.sparse.csr_matrix((values, indices, indptr), shape=(indptr.size - 1, columns))
+
+
+def petsc_vectors(matrix: Any) -> tuple[Any, Any]:
+    """Vectors x and y of a product y = K x."""
+    x, y = matrix.createVecs()
+    return x, y
+
+
+def world() -> Any:
+    """The communicator of all processes."""
+    return MPI.COMM_WORLD
+
+
+def alone() -> Any:
+    """The communicator of this process only."""
+    return MPI.COMM_SELF
 
 
 def petsc_matrix(matrix: scipy.sparse.csr_matrix) -> Any:

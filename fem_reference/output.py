@@ -10,14 +10,14 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import meshio
 import numpy as np
 
 from .elasticity import STRESS_COMPONENTS, cell_stress, von_mises
 from .errors import SolverError
-from .explicit import Run, Snapshot
+from .explicit import Snapshot
 from .mesh import Floats
 from .meshing import ImpactMesh
 from .scene import Scene
@@ -87,7 +87,19 @@ def write_json(path: Path, document: dict[str, Any]) -> None:
     path.write_text(json.dumps(document, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def history(run: Run) -> tuple[Floats, float]:
+class Sampled(Protocol):
+    """What a history is made of: `explicit.Run`, or a solid run."""
+
+    @property
+    def times(self) -> Floats:
+        """(m,) raw sampling instants, s."""
+
+    @property
+    def rows(self) -> Floats:
+        """(m, 8) as `explicit.Run.rows`."""
+
+
+def history(run: Sampled) -> tuple[Floats, float]:
     """Table (samples, 9) of `HISTORY_COLUMNS`, and the sampling interval, s.
 
     Forces are impulse over interval, the interval centred on the sample; at both ends only its
@@ -179,3 +191,16 @@ def write_stress(
         field_data={},
     )
     meshio.vtu.write(path, grid, binary=True, compression=None)
+
+
+def write_series(path: Path, times: list[float], names: list[str]) -> None:
+    """A .pvd file: the .vtu files ``names`` beside it at ``times`` (s), for ParaView."""
+    entries = "".join(
+        f'    <DataSet timestep="{instant:.10g}" part="0" file="{name}"/>\n'
+        for instant, name in zip(times, names, strict=True)
+    )
+    path.write_text(
+        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" '
+        f'byte_order="LittleEndian">\n  <Collection>\n{entries}  </Collection>\n</VTKFile>\n',
+        encoding="ascii",
+    )

@@ -19,6 +19,7 @@ from .output import (
     write_history,
     write_json,
     write_mesh,
+    write_series,
     write_stress,
 )
 from .progress import Progress
@@ -169,7 +170,11 @@ def solve(
             write_stress(
                 folder / f"stress_{number:03d}.vtu", scene, solution.mesh, solution.system, snapshot
             )
-        summary["stress_times"] = [snapshot.time for snapshot in solution.run.snapshots]
+        instants = [snapshot.time for snapshot in solution.run.snapshots]
+        if instants:
+            names = [f"stress_{number:03d}.vtu" for number in range(len(instants))]
+            write_series(folder / "stress.pvd", instants, names)
+        summary["stress_times"] = instants
         write_json(folder / "summary.json", summary)
         provenance = _provenance(scene, solution, resolution_name, courant, found)
         provenance["settings"]["target_error"] = target_error

@@ -11,6 +11,13 @@ from typing import Any
 from .errors import SceneError
 
 EDGES = ("clamped", "simply-supported", "free")
+GEOMETRIES = ("axisymmetric", "solid")
+RIGID: dict[str, tuple[str, ...]] = {
+    "none": (),
+    "outer": ("outer",),
+    "inner": ("inner",),
+    "both": ("outer", "inner"),
+}
 
 
 @dataclass(frozen=True)
@@ -97,6 +104,12 @@ class Scene:
     end_time: float | None
     """s; None: until no further contact is possible."""
     elements_per_contact_radius: float
+    geometry: str
+    """One of `GEOMETRIES`."""
+    element_order: int
+    """1 linear, 2 quadratic; of solid geometry only."""
+    rigid: tuple[str, ...]
+    """Bodies ("outer", "inner") that are rigid; of solid geometry only."""
     raw: dict[str, Any]
     """The document as given, for the provenance."""
 
@@ -206,6 +219,24 @@ def _sphere(reader: _Reader, extra: str) -> Sphere:
     return Sphere(radius=reader.number("radius", "m"), material=_material(reader.child("material")))
 
 
+def _geometry(reference: _Reader) -> tuple[str, int, tuple[str, ...]]:
+    """Geometry, element order and rigid bodies of the table ``reference``."""
+    reference.allow("geometry", "elements_per_contact_radius", "element_order", "rigid")
+    geometry = reference.choice("geometry", GEOMETRIES)
+    order, rigid = 2, "none"
+    for key in ("element_order", "rigid"):
+        if reference.node.get(key) is not None and geometry != "solid":
+            raise SceneError(f"reference.{key} belongs to reference.geometry 'solid' only")
+    if reference.node.get("element_order") is not None:
+        number = reference.number("element_order", "(no unit)")
+        if number not in (1.0, 2.0):
+            raise SceneError(f"reference.element_order is {number:g}; it must be 1 or 2")
+        order = int(number)
+    if reference.node.get("rigid") is not None:
+        rigid = reference.choice("rigid", tuple(RIGID))
+    return geometry, order, RIGID[rigid]
+
+
 def parse_scene(document: Any) -> Scene:
     """Check a decoded ``scene.json``.
 
@@ -230,8 +261,7 @@ def parse_scene(document: Any) -> Scene:
     if root.node.get("fluid") is not None:
         raise SceneError("fluid is given; this solver is for dry impacts, it must be null")
     reference = root.child("reference")
-    reference.allow("geometry", "elements_per_contact_radius")
-    reference.choice("geometry", ("axisymmetric",))
+    geometry, element_order, rigid = _geometry(reference)
     end_time = None
     if root.node.get("run") is not None:
         run = root.child("run")
@@ -252,6 +282,9 @@ def parse_scene(document: Any) -> Scene:
         elements_per_contact_radius=reference.number(
             "elements_per_contact_radius", "(no unit)", above=2.0, below=65.0, inclusive=True
         ),
+        geometry=geometry,
+        element_order=element_order,
+        rigid=rigid,
         raw=document,
     )
 

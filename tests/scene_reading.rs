@@ -1,7 +1,9 @@
 //! Reading of scene files: what is valid arrives exactly, what is not is refused with field,
 //! value, valid range and line, and nothing else happens.
 
-use impactcheck::scene::{self, Edge, Geometry, Model, PlateImpact, Problem, Scene, Setup, Shape, problems};
+use impactcheck::scene::{
+    self, Edge, Geometry, Model, PlateImpact, Problem, Rigid, Scene, Setup, Shape, problems,
+};
 use impactcheck::{Error, ExitStatus};
 
 const VALID: &str = include_str!("fixtures/plate-impact.toml");
@@ -112,7 +114,7 @@ fn everything_optional_is_read() {
     let text = edited(sphere, "kind = \"compact\"\nmass = \"32 g\"\ntip_radius = \"4 mm\"")
         .replace("edge      = \"clamped\"", "edge = \"free\"\ndamping_ratio = 1.5")
         .replace("[reduced]", FLUID)
-        .replace("axisymmetric", "solid")
+        .replace("axisymmetric\"", "solid\"\nelement_order = 1\nrigid = \"inner\"")
         + TOLERANCES;
     let scene = parse(&text);
     let setup = plate_impact(&scene);
@@ -124,6 +126,7 @@ fn everything_optional_is_read() {
     assert_eq!((fluid.squeeze_film, fluid.added_mass_frequency_ratio), (false, 0.3333));
     assert_eq!((fluid.plate_damping_ratio, fluid.drag_coefficient), (0.03, 0.4));
     assert_eq!(scene.reference.geometry, Geometry::Solid);
+    assert_eq!((scene.reference.element_order, scene.reference.rigid), (Some(1), Some(Rigid::Inner)));
     let bounds = &scene.tolerances[&Model::B];
     assert_eq!(bounds["efficiency"].relative, Some(0.01));
     assert_eq!(bounds["outer_contact_end"].absolute, Some(0.5e-6));
@@ -132,6 +135,27 @@ fn everything_optional_is_read() {
     assert_eq!(bounds["inner_force_rms"].relative_to_peak, Some(0.03));
     assert_eq!(bounds["energy_residual"].absolute, Some(1e-6));
     assert_eq!(scene.tolerances[&Model::C]["first_frequency"].absolute, Some(1000.0));
+}
+
+#[test]
+fn settings_of_solid_elements_belong_to_solid_geometry() {
+    let solid = edited("geometry = \"axisymmetric\"", "geometry = \"solid\"");
+    let settings = parse(&solid).reference;
+    assert_eq!((settings.element_order, settings.rigid), (None, None));
+    // The default number of elements is that of quadratic ones.
+    let sparse = solid.replace("elements_per_contact_radius = 12", "rigid = \"none\"");
+    assert_eq!(parse(&sparse).reference.elements_per_contact_radius, 3.0);
+    assert_eq!(parse(&sparse).reference.rigid, None);
+    // Absent geometry is axisymmetric.
+    for geometry in ["geometry = \"axisymmetric\"", ""] {
+        let text = edited("geometry = \"axisymmetric\"", &format!("{geometry}\nrigid = \"both\""));
+        refuses(&text, 33, &["reference.rigid", "geometry `axisymmetric`", "only to `solid`"]);
+    }
+    refuses(
+        &edited("geometry = \"axisymmetric\"", "geometry = \"solid\"\nelement_order = 3"),
+        33,
+        &["element_order", "from 1 to 2"],
+    );
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 mod store_fixture;
 
-use impactcheck::reference::{Lookup, Progress, Resolution, Store, solve_with};
+use impactcheck::reference::{Lookup, Progress, Resolution, Store, Wish, solve_with};
 use impactcheck::{Error, ExitStatus, Result};
 use serde_json::json;
 use std::fs::{self, File};
@@ -45,7 +45,9 @@ impl Bench {
 
     fn solve(&self, script: &str) -> Result<Vec<Progress>> {
         let mut steps = Vec::new();
-        solve_with(&self.solver(script), &scene(), PAPER, &self.store, &[], &mut |p| steps.push(p.clone()))?;
+        solve_with(&self.solver(script), &scene(), PAPER, &self.store, &Wish::default(), &mut |p| {
+            steps.push(p.clone())
+        })?;
         Ok(steps)
     }
 
@@ -80,6 +82,26 @@ fn flat(error: &Error) -> String {
 const COPY: &str = "cp -r \"$here/prepared\" \"$out\"";
 
 #[test]
+fn a_solid_run_is_told_its_processes_and_where_its_states_are_kept() {
+    let bench = Bench::new();
+    let mut scene = scene();
+    scene.reference.geometry = impactcheck::scene::Geometry::Solid;
+    write_entry(&bench.path("solid"), &scene, PAPER);
+    let solver = bench.solver("echo \"$@\" > \"$here/arguments\"; cp -r \"$here/solid\" \"$out\"");
+    let wish = Wish { processes: 3, fields: 7, ..Wish::default() };
+    let stored = solve_with(&solver, &scene, PAPER, &bench.store, &wish, &mut |_| ()).expect("success");
+    let arguments = fs::read_to_string(bench.path("arguments")).expect("arguments");
+    let words: Vec<&str> = arguments.split_whitespace().collect();
+    let after = |key: &str| words[words.iter().position(|w| *w == key).expect(key) + 1];
+    assert_eq!((after("--np"), after("--fields")), ("3", "7"));
+    // Beside the entry, so that the next start of the same finds them.
+    let states = Path::new(after("--checkpoint"));
+    assert!(states.is_absolute());
+    assert_eq!(states.file_name().expect("name"), ".checkpoint-paper");
+    assert_eq!(states.parent(), stored.folder.canonicalize().expect("folder").parent());
+}
+
+#[test]
 fn success_enters_the_store_complete() {
     let bench = Bench::new();
     let steps = bench
@@ -102,6 +124,8 @@ fn success_enters_the_store_complete() {
     let words: Vec<&str> = arguments.split_whitespace().collect();
     assert_eq!(words[..4], ["-m", "fem_reference", "solve", "--scene"]);
     assert_eq!((words[5], words[7], words[8]), ("--out", "--resolution", "paper"));
+    // Neither processes nor checkpoints: the scene is axisymmetric.
+    assert_eq!(words.len(), 9);
     let root = read("cwd").trim().to_owned();
     assert!(Path::new(&root).join("scenes").is_dir());
     assert!(read("search").starts_with(&root));
@@ -211,7 +235,7 @@ fn runs_at_once_leave_one_complete_entry() {
     let bench = Bench::new();
     let python = bench.solver(COPY);
     std::thread::scope(|scope| {
-        let run = || solve_with(&python, &scene(), PAPER, &bench.store, &[], &mut |_| ());
+        let run = || solve_with(&python, &scene(), PAPER, &bench.store, &Wish::default(), &mut |_| ());
         let workers: Vec<_> = (0..6).map(|_| scope.spawn(move || (0..5).all(|_| run().is_ok()))).collect();
         for worker in workers {
             assert!(worker.join().expect("thread"));
@@ -228,7 +252,9 @@ fn the_solver_does_not_outlive_its_caller() {
     let python = bench.solver(&format!("{step}; sleep 4; touch \"$here/survived\""));
     let store = bench.store.clone();
     let stopped = std::thread::spawn(move || {
-        let _ = solve_with(&python, &scene(), PAPER, &store, &[], &mut |_| panic!("the caller stops"));
+        let _ = solve_with(&python, &scene(), PAPER, &store, &Wish::default(), &mut |_| {
+            panic!("the caller stops")
+        });
     });
     // The caller waits for its child's end: one that was not killed has left its mark by then.
     assert!(stopped.join().is_err());
@@ -270,8 +296,8 @@ fn a_store_that_can_not_be_written_is_named() {
 fn an_interpreter_that_is_not_there_is_named() {
     let bench = Bench::new();
     let none = bench.path("none");
-    let error =
-        solve_with(&none, &scene(), PAPER, &bench.store, &[], &mut |_| ()).expect_err("no interpreter");
+    let error = solve_with(&none, &scene(), PAPER, &bench.store, &Wish::default(), &mut |_| ())
+        .expect_err("no interpreter");
     assert_eq!(error.exit_status(), ExitStatus::Solver);
     assert!(
         flat(&error).contains(&*none.to_string_lossy()) && flat(&error).contains("can't be run"),

@@ -6,7 +6,7 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Outcome;
 use crate::impact::reduced::Reduced;
 use crate::measured::{self, Record, Speed};
-use crate::reference::{Lookup, Resolution, Store, Stored};
+use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
 use crate::report::{self, Report, SceneReport};
 use crate::scene::{self, Model, Scene};
 use clap::Args;
@@ -205,7 +205,7 @@ fn references(context: &Context, arguments: &Arguments, scenes: &[Scene]) -> Res
 }
 
 fn computed(context: &Context, arguments: &Arguments, scene: &Scene, store: &Store) -> Result<Stored> {
-    reference::compute(context, scene, arguments.resolution, store, &[])
+    reference::compute(context, scene, arguments.resolution, store, &Wish::default())
 }
 
 /// The models to compare, each once, in the order asked for.

@@ -5,7 +5,7 @@ use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Summary;
 use crate::optimise::{Optimum, Problem, Variable};
-use crate::reference::{Lookup, Resolution, Stored};
+use crate::reference::{Lookup, Resolution, Stored, Wish};
 use crate::report;
 use crate::scene::{self, Model, Scene, Template};
 use clap::Args;
@@ -125,7 +125,7 @@ fn reference_of(context: &Context, arguments: &Arguments, scene: &Scene) -> Resu
     let store = context.store();
     match store.find(scene, arguments.resolution) {
         Lookup::Found(stored) => Ok(*stored),
-        _ => reference::compute(context, scene, arguments.resolution, &store, &[]),
+        _ => reference::compute(context, scene, arguments.resolution, &store, &Wish::default()),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
-use crate::reference::{Lookup, Resolution, Store, Stored, TargetError};
+use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
 use crate::scene::{self, Geometry, Scene};
 use clap::Args;
 
@@ -18,14 +18,17 @@ pub struct Arguments {
     #[arg(long, value_name = "ERROR", conflicts_with = "resolution")]
     target_error: Option<TargetError>,
     /// Number of processes (three-dimensional references only)
-    #[arg(long, default_value_t = 1, value_name = "N")]
-    np: usize,
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    np: u32,
     /// Compute even if there is a stored solution
     #[arg(long)]
     fresh: bool,
     /// Write stress fields (.vtu) at these times, in s
     #[arg(long, value_delimiter = ',', value_name = "T,…")]
     stress_at: Vec<f64>,
+    /// Write fields (.vtu and a .pvd series) at this many instants over the run, or somewhat more
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    fields: u32,
     #[command(flatten)]
     json: JsonArgument,
 }
@@ -41,7 +44,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     let store = context.store();
     let resolution = arguments.target_error.map_or(arguments.resolution, Resolution::Within);
-    let wanted = !arguments.fresh && arguments.stress_at.is_empty();
+    let wanted = !arguments.fresh && arguments.stress_at.is_empty() && arguments.fields == 0;
     let stored = match wanted.then(|| store.find(&scene, resolution)) {
         Some(Lookup::Found(stored)) => {
             context.note(format_args!("found {}", stored.folder.display()));
@@ -54,7 +57,12 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
                     problem(&scene, resolution, lookup)
                 ));
             }
-            compute(context, &scene, resolution, &store, &arguments.stress_at)?
+            let wish = Wish {
+                stress_at: arguments.stress_at.clone(),
+                fields: arguments.fields,
+                processes: arguments.np,
+            };
+            compute(context, &scene, resolution, &store, &wish)?
         }
     };
     let convergence = stored.outcome.summary.convergence.as_ref();
@@ -86,11 +94,10 @@ pub fn compute(
     scene: &Scene,
     resolution: Resolution,
     store: &Store,
-    stress_at: &[f64],
+    wish: &Wish,
 ) -> Result<Stored> {
     let bar = Bar::new(context, &format!("{} ({resolution})", scene.name));
-    let stored =
-        crate::reference::solve(scene, resolution, store, stress_at, &mut |progress| bar.show(progress))?;
+    let stored = crate::reference::solve(scene, resolution, store, wish, &mut |progress| bar.show(progress))?;
     drop(bar);
     context.note(format_args!("computed {}", stored.folder.display()));
     Ok(stored)

@@ -19,7 +19,7 @@ pub use entry::Stored;
 pub use identity::settings_hash;
 pub use modes::plate_modes;
 pub use python::{python, versions};
-pub use solve::{solve, solve_with};
+pub use solve::{Wish, solve, solve_with};
 pub use store::{Lookup, Store};
 
 /// Fineness of the reference's mesh, relative to `reference.elements_per_contact_radius`.

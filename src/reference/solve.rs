@@ -3,16 +3,28 @@
 use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::{Resolution, Store, identity, python};
-use crate::scene::Scene;
+use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use std::ffi::OsStr;
 use std::path::Path;
+
+/// How a reference is computed and what is written beside its summary and history.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Wish {
+    /// Instants, in s, at which fields are written.
+    pub stress_at: Vec<f64>,
+    /// Fields are written at this many instants over the run, or somewhat more.
+    pub fields: u32,
+    /// Processes, for solid geometry; 0 is 1.
+    pub processes: u32,
+}
 
 /// Computes the reference of `scene` at `resolution` and puts it into `store`.
 ///
 /// The result is verified first: checksums, format, and that it is one of this scene with these
 /// settings. Until then an older entry stays, and a failed run leaves the store as it was.
-/// Stress fields are written for the times `stress_at` in s.
+/// The states of a solid run are kept beside its place in the store, and a run that was killed
+/// goes on from there.
 ///
 /// # Errors
 /// [`Error::Scene`] if the solver does not support the scene, [`Error::Solver`] if there is no
@@ -21,10 +33,10 @@ pub fn solve(
     scene: &Scene,
     resolution: Resolution,
     store: &Store,
-    stress_at: &[f64],
+    wish: &Wish,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
-    solve_with(&python::python()?, scene, resolution, store, stress_at, progress)
+    solve_with(&python::python()?, scene, resolution, store, wish, progress)
 }
 
 /// As [`solve`], with the interpreter `python`.
@@ -36,7 +48,7 @@ pub fn solve_with(
     scene: &Scene,
     resolution: Resolution,
     store: &Store,
-    stress_at: &[f64],
+    wish: &Wish,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
     let work = store.work_folder(scene)?;
@@ -52,9 +64,16 @@ pub fn solve_with(
     if let Resolution::Within(error) = resolution {
         command.args(["--target-error", &error.share().to_string()]);
     }
-    if !stress_at.is_empty() {
+    if !wish.stress_at.is_empty() {
         command.arg("--stress-at");
-        command.arg(stress_at.iter().map(f64::to_string).collect::<Vec<_>>().join(","));
+        command.arg(wish.stress_at.iter().map(f64::to_string).collect::<Vec<_>>().join(","));
+    }
+    if wish.fields > 0 {
+        command.args(["--fields", &wish.fields.to_string()]);
+    }
+    if scene.reference.geometry == Geometry::Solid {
+        command.arg("--checkpoint").arg(store.checkpoint_folder(scene, resolution)?);
+        command.args(["--np", &wish.processes.max(1).to_string()]);
     }
     let ending = child::run(command, progress)
         .map_err(|e| Error::Solver(format!("{} can't be run: {e}", python.display())))?;

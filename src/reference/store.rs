@@ -74,6 +74,16 @@ impl Store {
         self.root.join(&scene.name).join(resolution.to_string())
     }
 
+    /// Where the states of an unfinished run of this entry lie, so that it can go on; absolute.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the store can't be found.
+    pub(super) fn checkpoint_folder(&self, scene: &Scene, resolution: Resolution) -> Result<PathBuf> {
+        let parent = self.root.join(&scene.name);
+        let parent = parent.canonicalize().map_err(|e| Error::io("finding", &parent, e))?;
+        Ok(parent.join(format!(".checkpoint-{}", resolution)))
+    }
+
     /// Looks for the solution of `scene` at `resolution`. Every file is verified by its checksum.
     pub fn find(&self, scene: &Scene, resolution: Resolution) -> Lookup {
         let folder = self.folder(scene, resolution);

@@ -3,7 +3,7 @@
 use super::advice::{alternatives, chosen, example, needed};
 use super::problem::{Collector, did_you_mean};
 use super::quantity::{self, Dimension, QuantityError};
-use super::specification::{Bound, Choice, Field, Kind};
+use super::specification::{Bound, Choice, DEFAULT_GEOMETRY, Field, Kind};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -67,20 +67,24 @@ impl<'a> Checker<'a> {
     /// `None` if this version can't run its `kind`: then nothing else in it is looked at.
     pub(super) fn table(&mut self, place: &Place, table: &DeTable, fields: &[Field]) -> Option<Values> {
         let mut values = Values::new();
-        let kind = fields.iter().find(|f| f.key == "kind").zip(table.get("kind"));
+        // What some keys belong to: the kind of a body, or the geometry of the reference.
+        let selector = fields.iter().find(|f| f.key == "kind" || f.key == "geometry");
+        let word = selector.map_or("kind", |f| f.key);
+        let kind = selector.zip(table.get(word));
         if let Some((field, value)) = kind
             && let Some(Choice { refused: Some(sentence), .. }) = chosen(field, value)
         {
             let help = alternatives(field);
             self.problems.add(
                 value.span(),
-                format!("`{}`: {sentence}", place.key("kind")),
+                format!("`{}`: {sentence}", place.key(word)),
                 "not in this version",
                 help,
             );
             return None;
         }
-        let kind = kind.and_then(|(field, value)| Some(chosen(field, value)?.name));
+        let absent = (word == "geometry" && kind.is_none()).then_some(DEFAULT_GEOMETRY);
+        let kind = kind.and_then(|(field, value)| Some(chosen(field, value)?.name)).or(absent);
         for field in fields {
             match table.get_key_value(field.key) {
                 Some((key, _)) if kind.is_some() && !field.belongs_to(kind) => {
@@ -88,11 +92,11 @@ impl<'a> Checker<'a> {
                     self.problems.add(
                         key.span(),
                         format!(
-                            "`{}` does not belong to kind `{kind}`, only to `{owners}`",
+                            "`{}` does not belong to {word} `{kind}`, only to `{owners}`",
                             place.key(field.key)
                         ),
-                        "not for this kind",
-                        format!("remove it, or set kind = \"{}\"", field.only.join("\" or \"")),
+                        &format!("not for this {word}"),
+                        format!("remove it, or set {word} = \"{}\"", field.only.join("\" or \"")),
                     );
                 }
                 Some((key, value)) => {

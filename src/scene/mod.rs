@@ -294,6 +294,24 @@ pub struct ReferenceSettings {
     pub geometry: Geometry,
     /// Elements across the contact radius at `paper` resolution.
     pub elements_per_contact_radius: f64,
+    /// Order of the elements, solid geometry only; `None` = quadratic.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub element_order: Option<u64>,
+    /// Spheres that are rigid, solid geometry only; `None` = none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rigid: Option<Rigid>,
+}
+
+/// Spheres that the solid reference takes as rigid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rigid {
+    /// The outer one.
+    Outer,
+    /// The inner one.
+    Inner,
+    /// Both.
+    Both,
 }
 
 /// Bound on how far a reduced model's quantity may lie from the reference's.

@@ -2,7 +2,7 @@
 
 use super::check::{Checked, Checker, Place, Values};
 use super::problem::Collector;
-use super::specification::{DEFAULT_ELEMENTS, SCENE};
+use super::specification::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS, SCENE};
 use super::*;
 use crate::analytical::cantilever;
 use crate::body::beam;
@@ -335,6 +335,17 @@ fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
         Some(Checked::Text(word)) if word == "solid" => Geometry::Solid,
         _ => Geometry::Axisymmetric,
     };
-    let elements_per_contact_radius = settings.number_or("elements_per_contact_radius", DEFAULT_ELEMENTS)?;
-    Ok(ReferenceSettings { geometry, elements_per_contact_radius })
+    let default = if geometry == Geometry::Solid { DEFAULT_SOLID_ELEMENTS } else { DEFAULT_ELEMENTS };
+    let elements_per_contact_radius = settings.number_or("elements_per_contact_radius", default)?;
+    let element_order = match settings.0.get("element_order") {
+        Some(Checked::Count(order)) => Some(*order),
+        _ => None,
+    };
+    let rigid = match settings.0.get("rigid") {
+        Some(Checked::Text(word)) if word == "outer" => Some(Rigid::Outer),
+        Some(Checked::Text(word)) if word == "inner" => Some(Rigid::Inner),
+        Some(Checked::Text(word)) if word == "both" => Some(Rigid::Both),
+        _ => None,
+    };
+    Ok(ReferenceSettings { geometry, elements_per_contact_radius, element_order, rigid })
 }

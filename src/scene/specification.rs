@@ -82,7 +82,7 @@ pub(super) struct Field {
     pub(super) key: &'static str,
     pub(super) kind: Kind,
     pub(super) required: bool,
-    /// The key belongs to these `kind`s of its table only; empty = to all.
+    /// The key belongs to these `kind`s (or `geometry`s) of its table only; empty = to all.
     pub(super) only: &'static [&'static str],
     /// The key is part of one of several ways to say a thing.
     pub(super) alternative: Option<Alternative>,
@@ -315,7 +315,7 @@ static REDUCED: [Field; 2] = [
     optional("modes", Kind::Count(1, 1024), "Number of modes of the plate"),
 ];
 
-static REFERENCE: [Field; 2] = [
+static REFERENCE: [Field; 4] = [
     optional(
         "geometry",
         Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
@@ -324,12 +324,32 @@ static REFERENCE: [Field; 2] = [
     optional(
         "elements_per_contact_radius",
         pure(ELEMENTS),
-        "Elements across the contact radius at `paper` resolution; absent = 12",
+        "Elements across the contact radius at `paper` resolution; absent = 12, with solid geometry 3",
+    ),
+    only(
+        &["solid"],
+        optional(
+            "element_order",
+            Kind::Count(1, 2),
+            "Order of the tetrahedra: 1 linear, 2 quadratic; absent = 2",
+        ),
+    ),
+    only(
+        &["solid"],
+        optional(
+            "rigid",
+            Kind::Choice(&[choice("none"), choice("outer"), choice("inner"), choice("both")]),
+            "Spheres that are rigid; absent = none",
+        ),
     ),
 ];
 
-/// Default of `reference.elements_per_contact_radius`.
+/// Default of `reference.geometry`.
+pub(super) const DEFAULT_GEOMETRY: &str = "axisymmetric";
+/// Default of `reference.elements_per_contact_radius` with axisymmetric geometry (bilinear elements).
 pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;
+/// The same with solid geometry (quadratic elements).
+pub(super) const DEFAULT_SOLID_ELEMENTS: f64 = 3.0;
 
 /// The SI unit of the quantity at `path` in a scene's JSON form, such as `plate.material.density`.
 pub(crate) fn unit_of(path: &str) -> Option<&'static str> {

@@ -50,7 +50,12 @@ pub fn scene(name: &str, setup: PlateImpact) -> Scene {
         setup: Setup::PlateImpact(Box::new(setup)),
         run: Run { end_time: None },
         reduced: ReducedSettings { model: None, modes: None },
-        reference: ReferenceSettings { geometry: Geometry::Axisymmetric, elements_per_contact_radius: 12.0 },
+        reference: ReferenceSettings {
+            geometry: Geometry::Axisymmetric,
+            elements_per_contact_radius: 12.0,
+            element_order: None,
+            rigid: None,
+        },
         tolerances: BTreeMap::new(),
     }
 }

@@ -87,7 +87,12 @@ pub fn scene() -> Scene {
         })),
         run: Run { end_time: None },
         reduced: ReducedSettings { model: Some(Model::B), modes: Some(16) },
-        reference: ReferenceSettings { geometry: Geometry::Axisymmetric, elements_per_contact_radius: 12.0 },
+        reference: ReferenceSettings {
+            geometry: Geometry::Axisymmetric,
+            elements_per_contact_radius: 12.0,
+            element_order: None,
+            rigid: None,
+        },
         tolerances: BTreeMap::new(),
     }
 }

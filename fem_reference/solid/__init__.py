@@ -1,0 +1,1 @@
+"""Three-dimensional explicit reference: tetrahedra, rigid bodies, contact, MPI, checkpoints."""

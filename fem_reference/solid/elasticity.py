@@ -1,0 +1,122 @@
+"""Linear elasticity of tetrahedra: stiffness by dolfinx, lumped mass, stress."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import ufl
+from scipy.spatial import cKDTree
+
+from ..errors import SolverError
+from ..fenicsx import TetDomain
+from ..mesh import Floats, Ints
+from ..scene import Material
+from .mesh import TetMesh, scatter_sum, volumes
+
+STRESS_COMPONENTS = (
+    "stress_xx",
+    "stress_yy",
+    "stress_zz",
+    "stress_xy",
+    "stress_yz",
+    "stress_zx",
+)
+
+LUMPED_SHARES = {1: (0.25, 0.0), 2: (1.0 / 36.0, 4.0 / 27.0)}
+"""Share of an element's mass at a corner and at a midside node, by order.
+
+Hinton, Rock & Zienkiewicz 1976 (Earthquake Eng. Struct. Dyn. 4, 245): in proportion to the diagonal
+of the consistent mass, which for a straight quadratic tetrahedron is 6 : 32. Row sums would make
+the corners' masses negative.
+"""
+
+
+def lumped_mass(mesh: TetMesh, density: float) -> Floats:
+    """(n,) nodal masses, kg; all positive, their sum is the mesh's."""
+    corner, midside = LUMPED_SHARES[mesh.order]
+    shares = np.array([corner] * 4 + [midside] * (mesh.cells.shape[1] - 4))
+    masses = density * volumes(mesh.points, mesh.corners)[:, None] * shares
+    return scatter_sum(mesh.cells, masses, mesh.points.shape[0])
+
+
+def _stress(u: Any, lame: Any, shear: Any) -> Any:
+    strain = ufl.sym(ufl.grad(u))
+    return lame * ufl.tr(strain) * ufl.Identity(3) + 2.0 * shear * strain
+
+
+def stiffness_form(domain: TetDomain, lame: Any, shear: Any) -> Any:
+    """Bilinear form of the stiffness."""
+    u, v = ufl.TrialFunction(domain.space), ufl.TestFunction(domain.space)
+    return ufl.inner(_stress(u, lame, shear), ufl.sym(ufl.grad(v))) * ufl.dx
+
+
+def mass_form(domain: TetDomain, density: Any) -> Any:
+    """Bilinear form of the consistent mass."""
+    u, v = ufl.TrialFunction(domain.space), ufl.TestFunction(domain.space)
+    return density * ufl.inner(u, v) * ufl.dx
+
+
+class Assembly:
+    """Several bodies in one dolfinx mesh, distributed over the processes of ``comm``.
+
+    Nodes are numbered body after body in the order of their meshes.
+
+    Attributes:
+        owned: (n,) nodes whose rows this process owns, in dolfinx's order.
+    """
+
+    owned: Ints
+
+    def __init__(self, meshes: Sequence[TetMesh], materials: Sequence[Material], comm: Any) -> None:
+        order = meshes[0].order
+        self.first = np.cumsum([0, *(mesh.points.shape[0] for mesh in meshes)])
+        # Bodies that touch are moved apart, so that a place belongs to one node only.
+        height = max(float(np.ptp(mesh.points[:, 2])) for mesh in meshes)
+        lift = 2.0 * height * np.arange(len(meshes))
+        points = np.vstack(
+            [
+                mesh.points - [0.0, 0.0, mesh.points[:, 2].min() - z]
+                for mesh, z in zip(meshes, lift, strict=True)
+            ]
+        )
+        corners = np.vstack(
+            [mesh.corners + offset for mesh, offset in zip(meshes, self.first, strict=False)]
+        )
+        # Midside nodes are dolfinx's own: it gets the corners only, numbered without gaps.
+        used = np.unique(corners)
+        number = np.empty(points.shape[0], dtype=np.int64)
+        number[used] = np.arange(used.size)
+        self.domain = TetDomain(points[used], number[corners], order, comm)
+        counts = [mesh.cells.shape[0] for mesh in meshes]
+        self.lame = self._constants([m.lame_lambda for m in materials], counts)
+        self.shear = self._constants([m.shear_modulus for m in materials], counts)
+        distance, self.owned = cKDTree(points).query(self.domain.owned_points())
+        scale = float(np.ptp(points[:, 0]))
+        if distance.size and distance.max() > 1e-9 * scale:
+            raise SolverError("dolfinx's nodes are not those of the mesh")
+
+    def _constants(self, values: Sequence[float], counts: Sequence[int]) -> Any:
+        return self.domain.cell_constants(np.repeat(values, counts))
+
+    def stiffness(self) -> Any:
+        """PETSc matrix, N/m."""
+        return self.domain.petsc_matrix(stiffness_form(self.domain, self.lame, self.shear))
+
+
+def cell_stress(mesh: TetMesh, material: Material, displacement: Floats, comm: Any) -> Floats:
+    """(m, 6) `STRESS_COMPONENTS` at the elements' midpoints from the displacement (n, 3), Pa."""
+    assembly = Assembly([mesh], [material], comm)
+    domain = assembly.domain
+    u = domain.function(displacement[assembly.owned])
+    s = _stress(u, assembly.lame, assembly.shear)
+    vector = ufl.as_vector([s[0, 0], s[1, 1], s[2, 2], s[0, 1], s[1, 2], s[2, 0]])
+    return domain.cell_values(vector, 6)
+
+
+def von_mises(stress: Floats) -> Floats:
+    """(m,) von Mises stress from (m, 6) `STRESS_COMPONENTS`, Pa."""
+    xx, yy, zz, xy, yz, zx = stress.T
+    deviator = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * deviator + 3.0 * (xy**2 + yz**2 + zx**2)))

@@ -1,0 +1,54 @@
+"""Memory a run needs, stated before it starts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ..errors import SolverError
+
+BASE = 0.25e9
+"""Interpreter and modules, bytes per process."""
+PER_NODE = {1: 9.0e3, 2: 17.0e3}
+"""Largest use per node by element order, bytes: during assembly, K in four copies."""
+SHARE = 0.9
+"""Of the free memory that may be used."""
+
+
+def memory_needed(nodes: int, order: int, processes: int) -> float:
+    """Bytes, all processes together."""
+    return BASE * processes + PER_NODE[order] * nodes
+
+
+def memory_free() -> float | None:
+    """Bytes that a new program can use; None where the system does not say."""
+    try:
+        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                return float(line.split()[1]) * 1024.0
+    except (OSError, ValueError, IndexError):
+        pass
+    return None
+
+
+def require_memory(nodes: int, order: int, comm: Any, free: float | None = None) -> str:
+    """State the memory needed; all processes are taken to share one machine's.
+
+    Returns:
+        A sentence for the progress.
+
+    Raises:
+        SolverError: more than is free.
+    """
+    needed = memory_needed(nodes, order, comm.size)
+    free = free if free is not None else memory_free()
+    text = f"{nodes} nodes, {3 * nodes} dofs: about {needed / 1e9:.2g} GB"
+    if free is None:
+        return text
+    if needed > SHARE * free:
+        raise SolverError(
+            f"the run has {3 * nodes} dofs and needs about {needed / 1e9:.3g} GB of memory, "
+            f"{SHARE * free / 1e9:.3g} GB are free for it; lower "
+            "reference.elements_per_contact_radius or use a machine with more memory"
+        )
+    return f"{text} of {free / 1e9:.2g} GB free"

@@ -1,0 +1,142 @@
+"""Tetrahedral meshes of plate and spheres by gmsh's CAD kernel: a quarter of each body.
+
+The planes x = 0 and y = 0 are planes of symmetry. The element size grows linearly with the
+distance from the contact zone; a mesh refined by a factor is so everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import gmsh
+import numpy as np
+
+from ..errors import SolverError
+from ..mesh import Floats, Ints
+from ..scene import Plate, Sphere
+from .mesh import TetMesh, check_elements, tetrahedra
+
+DELAUNAY = 1
+"""gmsh's classic algorithm. HXT makes slightly better elements, but other ones at every call."""
+
+
+@dataclass(frozen=True)
+class SizeField:
+    """Element size h = min(largest, least + slope * max(0, d - zone)).
+
+    d is the distance from the nearest of the centres.
+    """
+
+    centres: tuple[tuple[float, float, float], ...]
+    zone: float
+    """m"""
+    least: float
+    """m"""
+    slope: float
+    largest: float
+    """m"""
+
+    def expression(self) -> str:
+        """For gmsh's MathEval."""
+        terms = [
+            f"Max(0,Sqrt((x-({x!r}))*(x-({x!r}))+(y-({y!r}))*(y-({y!r}))+(z-({z!r}))*(z-({z!r})))"
+            f"-{self.zone!r})"
+            for x, y, z in self.centres
+        ]
+        nearest = terms[0]
+        for term in terms[1:]:
+            nearest = f"Min({nearest},{term})"
+        return f"Min({self.largest!r},{self.least!r}+{self.slope!r}*{nearest})"
+
+
+def generate(name: str, build: Callable[[], None], size: SizeField) -> tuple[Floats, Ints]:
+    """Mesh what ``build`` adds to gmsh's OCC model; points (n, 3), corners (m, 4).
+
+    Raises:
+        SolverError: gmsh failed.
+    """
+    # Not interruptible: gmsh would replace the signal handlers of the process.
+    gmsh.initialize([], readConfigFiles=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", 1)
+        gmsh.model.add(name)
+        build()
+        gmsh.model.occ.synchronize()
+        field = gmsh.model.mesh.field.add("MathEval")
+        gmsh.model.mesh.field.setString(field, "F", size.expression())
+        gmsh.model.mesh.field.setAsBackgroundMesh(field)
+        for source in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
+            gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
+        gmsh.option.setNumber("Mesh.Algorithm3D", DELAUNAY)
+        gmsh.option.setNumber("Mesh.Optimize", 1)
+        gmsh.model.mesh.generate(3)
+        types, _, connectivity = gmsh.model.mesh.getElements(3)
+        if [int(kind) for kind in types] != [4]:
+            raise SolverError(f"gmsh made no tetrahedra of body '{name}'")
+        tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    except SolverError:
+        raise
+    except Exception as error:
+        raise SolverError(f"gmsh could not mesh body '{name}': {error}") from error
+    finally:
+        gmsh.finalize()
+    corner_tags = connectivity[0].astype(np.int64)
+    used = np.unique(corner_tags)
+    order = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
+    order[used] = np.arange(used.size)
+    points = np.empty((used.size, 3))
+    number = order[tags.astype(np.int64)]
+    points[number[number >= 0]] = coordinates.reshape(-1, 3)[number >= 0]
+    return points, order[corner_tags].reshape(-1, 4)
+
+
+def _snap(points: Floats, planes: Sequence[int], length: float) -> None:
+    """Put points that lie on a plane of symmetry up to rounding exactly on it."""
+    for axis in planes:
+        points[np.abs(points[:, axis]) < 1e-9 * length, axis] = 0.0
+
+
+def quarter_sphere(name: str, sphere: Sphere, size: SizeField, order: int, side: float) -> TetMesh:
+    """A quarter of a sphere that touches the origin from above (side +1) or below (-1).
+
+    The polyhedron is enlarged about the pole until its volume is exact.
+    """
+    radius = sphere.radius
+
+    def build() -> None:
+        half = 0.5 * math.pi
+        gmsh.model.occ.addSphere(0.0, 0.0, side * radius, radius, -1, -half, half, half)
+
+    points, corners = generate(name, build, size)
+    _snap(points, (0, 1), radius)
+    pole = int(np.argmin(np.linalg.norm(points, axis=1)))
+    points[pole] = 0.0
+    volume = TetMesh(name, points, corners).volume()
+    points *= math.cbrt(sphere.volume / 4.0 / volume)
+    mesh = tetrahedra(name, points, corners, order)
+    check_elements(mesh)
+    return mesh
+
+
+def quarter_plate(plate: Plate, size: SizeField, order: int) -> TetMesh:
+    """A quarter of the plate, z = 0 at its midplane, widened until its volume is exact."""
+    radius, thickness = plate.radius, plate.thickness
+
+    def build() -> None:
+        gmsh.model.occ.addCylinder(
+            0.0, 0.0, -0.5 * thickness, 0.0, 0.0, thickness, radius, -1, 0.5 * math.pi
+        )
+
+    points, corners = generate("plate", build, size)
+    _snap(points, (0, 1), radius)
+    for face in (-0.5, 0.5):
+        points[np.abs(points[:, 2] - face * thickness) < 1e-9 * thickness, 2] = face * thickness
+    volume = TetMesh("plate", points, corners).volume()
+    # Only the rim moves noticeably: the polygon's area is made that of the circle.
+    points[:, :2] *= math.sqrt(0.25 * math.pi * radius**2 * thickness / volume)
+    mesh = tetrahedra("plate", points, corners, order)
+    check_elements(mesh)
+    return mesh

@@ -1,0 +1,71 @@
+"""Solves a scene on a mesh that was made elsewhere: releases of FEniCSx, apart from gmsh's.
+
+fixed_mesh make SCENE MESH          mesh at coarse resolution, kept as a file
+fixed_mesh run SCENE MESH FOLDER    solve on it, FOLDER/summary.json with the quantities
+"""
+
+from __future__ import annotations
+
+import json
+import pickle
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+from fem_reference.estimate import estimate_contact
+from fem_reference.meshing import RESOLUTIONS, mesh_impact, mesh_settings
+from fem_reference.scene import Scene, read_scene
+from fem_reference.solve import shortest_wavelengths
+
+
+def make(scene: Scene) -> Any:
+    """The mesh, and the estimate it was made for."""
+    estimate = estimate_contact(scene)
+    factor = RESOLUTIONS["coarse"]
+    if scene.geometry == "solid":
+        from fem_reference.solid.plate import plate_model
+
+        waves = shortest_wavelengths(scene, estimate.duration)
+        return plate_model(scene, estimate, waves, factor), estimate
+    settings = mesh_settings(scene, estimate.outer_radius, estimate.inner_radius, factor)
+    return mesh_impact(scene, settings), estimate
+
+
+def run(scene: Scene, mesh: Any, estimate: Any) -> tuple[dict[str, float], int]:
+    """Quantities, and the number of nodes."""
+    if scene.geometry == "solid":
+        from fem_reference.fenicsx import alone
+        from fem_reference.solid.loop import make_loop
+        from fem_reference.solid.run import integrate as integrate_solid
+        from fem_reference.solid.solve import quantities as solid_quantities
+
+        loop = make_loop(mesh.model, alone())
+        result = integrate_solid(loop, mesh, scene, estimate.duration)
+        solid: Any = SimpleNamespace(run=result, loop=loop, plate=mesh)
+        return solid_quantities(scene, solid), loop.all_masses.size
+    from fem_reference.explicit import integrate
+    from fem_reference.result import quantities
+    from fem_reference.system import build_system
+
+    system = build_system(scene, mesh)
+    found = integrate(system, scene.speed, estimate.duration, end_time=scene.end_time)
+    plane: Any = SimpleNamespace(run=found, system=system)
+    return quantities(scene, plane), int(system.mass.size)
+
+
+def main(task: str, scene_path: Path, mesh_path: Path, *folder: str) -> None:
+    """Do one of the two tasks."""
+    scene = read_scene(scene_path)
+    if task == "make":
+        mesh_path.write_bytes(pickle.dumps(make(scene), protocol=4))
+        return
+    values, nodes = run(scene, *pickle.loads(mesh_path.read_bytes()))
+    out = Path(folder[0])
+    out.mkdir(parents=True, exist_ok=True)
+    document = {**values, "mesh": {"nodes": nodes}}
+    (out / "summary.json").write_text(json.dumps(document), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3]), *sys.argv[4:])

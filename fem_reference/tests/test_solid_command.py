@@ -1,0 +1,195 @@
+"""The solid path as a program: folder, fields, refusals, killed and resumed, several processes."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import meshio
+import numpy as np
+import pytest
+
+from fem_reference.tests.conftest import document
+
+ROOT = Path(__file__).resolve().parents[2]
+END = 2e-6
+
+
+def scene(folder: Path, **changes: Any) -> Path:
+    """A small plate, small spheres, linear elements, a short run."""
+    values: dict[str, Any] = {
+        "plate__radius": 0.012,
+        "outer__radius": 0.005,
+        "inner__radius": 0.005,
+        "outer__speed": 2.0,
+        "run": {"end_time": END},
+        "reference": {
+            "geometry": "solid",
+            "elements_per_contact_radius": 2,
+            "element_order": 1,
+        },
+    }
+    path = folder / "scene.json"
+    path.write_text(json.dumps(document(**{**values, **changes})), encoding="utf-8")
+    return path
+
+
+def command(path: Path, out: Path, *extra: str) -> list[str]:
+    base = [sys.executable, "-m", "fem_reference", "solve", "--resolution", "coarse"]
+    return [*base, "--scene", str(path), "--out", str(out), *extra]
+
+
+def solve(path: Path, out: Path, *extra: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        command(path, out, *extra), cwd=ROOT, capture_output=True, text=True, check=False
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("solid")
+
+
+@pytest.fixture(scope="module")
+def whole(folder: Path) -> Path:
+    """The result of an uninterrupted run of one process."""
+    out = folder / "whole"
+    done = solve(scene(folder), out, "--fields", "2")
+    assert done.returncode == 0, done.stderr
+    return out
+
+
+def summary(out: Path) -> dict[str, Any]:
+    return dict(json.loads((out / "summary.json").read_text(encoding="utf-8")))
+
+
+PHYSICAL = (
+    "efficiency",
+    "outer_velocity_final",
+    "inner_velocity_final",
+    "outer_force_peak",
+    "inner_force_peak",
+    "outer_contact_end",
+    "first_frequency",
+)
+
+
+def test_ledgers_close_and_the_folder_is_complete(whole: Path) -> None:
+    found = summary(whole)
+    assert found["energy_residual"] < 1e-11
+    assert found["momentum_residual"] < 1e-11
+    assert found["mesh"]["min_quality"] > 0.05
+    assert found["solver"]["contact_unconverged_steps"] == 0
+    assert set(found["uncertainty"]) >= set(PHYSICAL)
+    assert found["outer_velocity_final"] < 0.0 < found["outer_force_peak"]
+    history = np.loadtxt(whole / "history.csv", delimiter=",", skiprows=1)
+    force, interval = history[:, 3], history[1, 0] - history[0, 0]
+    impulse = (force.sum() - 0.5 * (force[0] + force[-1])) * interval
+    mass = 7780.0 * 4.0 / 3.0 * np.pi * 0.005**3
+    assert mass * (history[-1, 2] - history[0, 2]) == pytest.approx(impulse, rel=1e-2)
+    assert not list(whole.parent.glob(".checkpoint*"))
+
+
+def test_fields_are_a_series_that_meshio_reads(whole: Path) -> None:
+    entries = ElementTree.parse(whole / "stress.pvd").getroot().findall(".//DataSet")
+    times = [float(entry.attrib["timestep"]) for entry in entries]
+    assert 2 <= len(times) <= 5
+    assert times == sorted(times)
+    assert times[-1] > 0.5 * END
+    fields = meshio.read(whole / entries[-1].attrib["file"])
+    body = fields.cell_data["body"][0]
+    assert set(np.unique(body)) == {0, 1, 2}
+    history = np.loadtxt(whole / "history.csv", delimiter=",", skiprows=1)
+    at = np.interp(times[-1], history[:, 0], history[:, 1])
+    # Body 1 is the outer sphere; nodes far from the contact move with it.
+    top = fields.cells[0].data[body == 1].ravel()
+    top = top[fields.points[top, 2] > 0.005]
+    assert fields.point_data["displacement"][top, 2].mean() == pytest.approx(at, rel=0.02)
+    zz, mises = fields.cell_data["stress_zz"][0], fields.cell_data["von_mises"][0]
+    # Below the contact the plate is compressed, far more than anywhere else.
+    hardest = int(np.argmax(mises))
+    assert zz[hardest] < 0.0
+    place = fields.points[fields.cells[0].data[hardest]].mean(axis=0)
+    assert np.hypot(place[0], place[1]) < 1e-3
+
+
+def test_a_killed_run_goes_on_to_the_same_result(folder: Path, whole: Path) -> None:
+    out, kept = folder / "resumed", folder / "kept"
+    start = command(scene(folder), out, "--checkpoint", str(kept), "--checkpoint-interval", "0")
+    with subprocess.Popen(
+        start, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    ) as process:
+        deadline = time.monotonic() + 120.0
+        while not list(kept.glob("main-*.npz")) and time.monotonic() < deadline:
+            assert process.poll() is None, "ended before its first checkpoint"
+            time.sleep(0.005)
+        os.kill(process.pid, signal.SIGKILL)
+    assert not out.exists()
+    states = sorted(file.name for file in kept.glob("*.npz"))
+    assert any(name.startswith("main") for name in states)
+    again = solve(scene(folder), out, "--checkpoint", str(kept))
+    assert again.returncode == 0, again.stderr
+    # The coarser meshes are not run again, and the main one not from its start.
+    assert "for the uncertainty" not in again.stdout.replace("meshing", "")
+    a, b = summary(whole), summary(out)
+    for name in (*PHYSICAL, "momentum_residual", "steps"):
+        assert b[name] == pytest.approx(a[name], rel=1e-12, abs=1e-25), name
+    assert (out / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
+    assert not kept.exists()
+
+
+def test_a_checkpoint_of_another_scene_is_not_used(folder: Path) -> None:
+    from fem_reference.solid.checkpoint import Checkpoint
+
+    path = folder / "state.npz"
+    path.write_bytes(b"not a state")
+    assert Checkpoint(path, "a").load() is None
+    scalars = np.array(json.dumps({"identity": "a", "problem": {}}))
+    np.savez(path, scalars=scalars, u=np.zeros(3))
+    assert Checkpoint(path, "b").load() is None
+    loaded = Checkpoint(path, "a").load()
+    assert loaded is not None
+    assert loaded["problem"] == {}
+
+
+@pytest.mark.skipif(shutil.which("mpirun") is None, reason="no mpirun")
+def test_two_processes_give_what_one_gives(folder: Path, whole: Path) -> None:
+    out = folder / "two"
+    done = solve(scene(folder), out, "--np", "2")
+    assert done.returncode == 0, done.stderr
+    a, b = summary(whole), summary(out)
+    assert b["solver"]["processes"] == 2
+    for name in PHYSICAL:
+        assert b[name] == pytest.approx(a[name], rel=1e-7), name
+    one, two = (np.loadtxt(x / "history.csv", delimiter=",", skiprows=1) for x in (whole, out))
+    assert np.abs(one - two).max(axis=0) / np.abs(one).max(axis=0) == pytest.approx(0.0, abs=1e-8)
+
+
+def test_an_unstable_step_is_refused(folder: Path) -> None:
+    out = folder / "unstable"
+    done = solve(scene(folder), out, "--courant", "1.01")
+    assert done.returncode == 12
+    assert "critical time step" in done.stderr
+    assert not out.exists()
+
+
+def test_rigid_spheres_are_harder(folder: Path, whole: Path) -> None:
+    out = folder / "rigid"
+    reference = {"geometry": "solid", "elements_per_contact_radius": 2, "element_order": 1}
+    done = solve(scene(folder, reference={**reference, "rigid": "both"}), out)
+    assert done.returncode == 0, done.stderr
+    rigid, elastic = summary(out), summary(whole)
+    assert rigid["mesh"]["nodes"] < elastic["mesh"]["nodes"]
+    assert rigid["momentum_residual"] < 1e-11
+    assert rigid["energy_residual"] < 1e-11
+    # As long as the plate hardly moves, E* twice as large makes Hertz's force rise to twice.
+    ratio = rigid["outer_force_peak"] / elastic["outer_force_peak"]
+    assert 1.2 < ratio < 2.1
