@@ -13,11 +13,12 @@ from typing import Any
 
 from ..contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from ..errors import SceneError
-from ..meshing import RESOLUTIONS
 from ..output import history, result_folder, write_history, write_json
 from ..progress import Progress
-from ..result import QUANTITIES, SCHEMA_VERSION
+from ..convergence import QUANTITIES
+from ..result import SCHEMA_VERSION
 from ..scene import Scene
+from ..settings import RESOLUTIONS
 from ..versions import versions
 from .band import band
 from .fields import write_frames, write_mesh

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from ..contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION, ContactRecord, peak_force
-from ..ending import no_further_contact
 from ..errors import SolverError
 from ..mesh import Floats
 from ..scene import Scene
 from . import kernel
+from .ending import no_further_contact
 from .checkpoint import Checkpoint
 from .fields import Frames
 from .loop import Energies, Loop
