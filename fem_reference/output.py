@@ -122,7 +122,7 @@ def history(run: Sampled) -> tuple[Floats, float]:
     return table, interval
 
 
-def resampled(run: Run, times: Floats) -> Floats:
+def resampled(run: Sampled, times: Floats) -> Floats:
     """Table (samples, 9) of `HISTORY_COLUMNS` at ``times`` (evenly spaced, s) of another run."""
     table = np.empty((times.size, len(HISTORY_COLUMNS)))
     table[:, 0] = times
@@ -137,11 +137,13 @@ def resampled(run: Run, times: Floats) -> Floats:
     return table
 
 
-def write_history(path: Path, table: Floats, bands: Floats) -> None:
-    """Comma-separated: `HISTORY_COLUMNS`, then the half width of the band of each curve."""
-    names = [*HISTORY_COLUMNS, *(f"{name}_band" for name in HISTORY_COLUMNS[1:])]
-    formats = ["%.10g"] * table.shape[1] + ["%.3g"] * bands.shape[1]
-    rows = np.column_stack([table, bands])
+def write_history(path: Path, table: Floats, bands: Floats | None = None) -> None:
+    """Comma-separated: `HISTORY_COLUMNS`, then the half width of each band if known."""
+    names, formats, rows = [*HISTORY_COLUMNS], ["%.10g"] * table.shape[1], table
+    if bands is not None:
+        names += [f"{name}_band" for name in HISTORY_COLUMNS[1:]]
+        formats += ["%.3g"] * bands.shape[1]
+        rows = np.column_stack([table, bands])
     np.savetxt(path, rows, fmt=formats, delimiter=",", header=",".join(names), comments="")
 
 

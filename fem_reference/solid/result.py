@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from ..contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
+from ..convergence import QUANTITIES
 from ..errors import SceneError
 from ..output import history, result_folder, write_history, write_json
 from ..progress import Progress
-from ..convergence import QUANTITIES
 from ..result import SCHEMA_VERSION
 from ..scene import Scene
 from ..settings import RESOLUTIONS

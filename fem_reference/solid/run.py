@@ -15,8 +15,8 @@ from ..errors import SolverError
 from ..mesh import Floats
 from ..scene import Scene
 from . import kernel
-from .ending import no_further_contact
 from .checkpoint import Checkpoint
+from .ending import no_further_contact
 from .fields import Frames
 from .loop import Energies, Loop
 from .plate import FRACTION, INNER, OUTER, PLATE, PlateModel

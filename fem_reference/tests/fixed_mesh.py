@@ -14,8 +14,9 @@ from types import SimpleNamespace
 from typing import Any
 
 from fem_reference.estimate import estimate_contact
-from fem_reference.meshing import RESOLUTIONS, mesh_impact, mesh_settings
+from fem_reference.meshing import mesh_impact
 from fem_reference.scene import Scene, read_scene
+from fem_reference.settings import RESOLUTIONS, mesh_settings
 from fem_reference.solve import shortest_wavelengths
 
 
@@ -44,14 +45,13 @@ def run(scene: Scene, mesh: Any, estimate: Any) -> tuple[dict[str, float], int]:
         result = integrate_solid(loop, mesh, scene, estimate.duration)
         solid: Any = SimpleNamespace(run=result, loop=loop, plate=mesh)
         return solid_quantities(scene, solid), loop.all_masses.size
+    from fem_reference.convergence import quantities
     from fem_reference.explicit import integrate
-    from fem_reference.result import quantities
     from fem_reference.system import build_system
 
     system = build_system(scene, mesh)
     found = integrate(system, scene.speed, estimate.duration, end_time=scene.end_time)
-    plane: Any = SimpleNamespace(run=found, system=system)
-    return quantities(scene, plane), int(system.mass.size)
+    return quantities(scene, found, system), int(system.mass.size)
 
 
 def main(task: str, scene_path: Path, mesh_path: Path, *folder: str) -> None:
