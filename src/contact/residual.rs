@@ -82,6 +82,21 @@ impl Residual {
         [0, 1].map(|i| if f[i] > 0.0 { d[i] } else { y[i] - more[i] })
     }
 
+    /// One Newton step for the Hertz approaches in m at `y` in m, from `d`; `None` if there is no equilibrium near.
+    #[inline(always)]
+    pub fn newton(&self, laws: &[Hertz; 2], y: [f64; 2], d: [f64; 2]) -> Option<[f64; 2]> {
+        let (closed, forces) = ([d[0].max(0.0), d[1].max(0.0)], [laws[0].force(d[0]), laws[1].force(d[1])]);
+        let more = self.yielded(forces, closed);
+        let error = [d[0] + more[0] - y[0], d[1] + more[1] - y[1]];
+        let [[a, b], [c, e]] = self.jacobian(laws, forces, closed);
+        let determinant = a * e - b * c;
+        if determinant.is_nan() || determinant <= 0.0 {
+            return None;
+        }
+        let scale = 1.0 / determinant;
+        Some([d[0] - scale * (e * error[0] - b * error[1]), d[1] - scale * (a * error[1] - c * error[0])])
+    }
+
     /// Hertz approaches of both contacts in m, negative where a contact is open; `guess` is that of a nearby state.
     pub fn approaches(&self, laws: &[Hertz; 2], y: [f64; 2], guess: [f64; 2]) -> Option<[f64; 2]> {
         if y[0] <= 0.0 && y[1] <= 0.0 {

@@ -1,6 +1,8 @@
 //! The impact: from bodies and contacts to a [`History`] and a [`Summary`].
 
 pub mod collocation;
+mod bank;
+mod contact_forces;
 mod contact_ledger;
 pub mod duhamel;
 mod free_flight;
