@@ -190,10 +190,7 @@ fn sin_cos(x: f64x4) -> (f64x4, f64x4) {
     let one = u64x4::splat(1);
     let swap: f64x4 = cast(u64x4::splat(0) - (quarters & one));
     let sign = |turns: u64x4| -> f64x4 { cast((turns & u64x4::splat(2)) << 62) };
-    (
-        swap.select(cosine, sine) ^ sign(quarters),
-        swap.select(sine, cosine) ^ sign(quarters + one),
-    )
+    (swap.select(cosine, sine) ^ sign(quarters), swap.select(sine, cosine) ^ sign(quarters + one))
 }
 
 #[cfg(test)]

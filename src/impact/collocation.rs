@@ -85,14 +85,22 @@ fn lagrange<const N: usize>(nodes: &[f64; N]) -> [[f64; N]; N] {
 }
 
 /// Value of the polynomial with `coefficients` at `u`.
+#[inline(always)]
 pub fn horner(coefficients: &[f64], u: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * u + c)
 }
 
 impl Collocation {
     /// Coefficients of the polynomial through `values` at start, Gauss points and end.
+    #[inline(always)]
     pub fn through(&self, values: &Points) -> Points {
-        std::array::from_fn(|p| (0..POINTS).map(|l| self.through_points[l][p] * values[l]).sum())
+        let mut coefficients = [0.0; POINTS];
+        for l in 0..POINTS {
+            for p in 0..POINTS {
+                coefficients[p] += self.through_points[l][p] * values[l];
+            }
+        }
+        coefficients
     }
 
     /// Weights of the values at the Gauss points in the polynomial's value at `u` (in units of the step).
@@ -212,9 +220,12 @@ impl StepTable {
             }
             for (coupling, answers) in self.coupling.iter_mut().zip(answers) {
                 let answers = answers.map(f64x4::reduce_add);
-                coupling[j] = std::array::from_fn(|l| {
-                    (0..STAGES).map(|p| self.coefficients[p][l] * answers[p]).sum()
-                });
+                coupling[j] = [0.0; STAGES];
+                for p in 0..STAGES {
+                    for l in 0..STAGES {
+                        coupling[j][l] += self.coefficients[p][l] * answers[p];
+                    }
+                }
             }
         }
         let powers = powers(h);
@@ -226,6 +237,7 @@ impl StepTable {
     }
 
     /// Approaches at the Gauss points, in m, if no force acted during the step; `gap` in m.
+    #[inline]
     pub fn free_approach(&self, bank: &Bank, gap: [f64; 2], q: &[f64x4], v: &[f64x4]) -> [Stages; 2] {
         let n = q.len();
         let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
@@ -245,6 +257,7 @@ impl StepTable {
 
     /// Writes the state at the end of the step under the forces at the Gauss points and gives the approaches there,
     /// without the gaps.
+    #[inline]
     pub fn advance(
         &self,
         bank: &Bank,
@@ -257,8 +270,13 @@ impl StepTable {
         let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
         let (damping, stiffness) = (&bank.damping[..n], &bank.stiffness[..n]);
         let rows: [&[f64x4]; MOMENTS] = std::array::from_fn(|p| &self.end[p * n..][..n]);
-        let polynomial: [[f64; STAGES]; 2] =
-            forces.map(|f| std::array::from_fn(|p| super::system::dot(&self.coefficients[p], &f)));
+        let mut polynomial = [[0.0; STAGES]; 2];
+        for p in 0..STAGES {
+            for l in 0..STAGES {
+                polynomial[0][p] += self.coefficients[p][l] * forces[0][l];
+                polynomial[1][p] += self.coefficients[p][l] * forces[1][l];
+            }
+        }
         let mut sums = [f64x4::ZERO; 2];
         for k in 0..n {
             let (slope, impulse) = (rows[0][k], rows[1][k]);
@@ -278,6 +296,7 @@ impl StepTable {
 }
 
 /// t^p / p! for p < STAGES.
+#[inline(always)]
 fn powers(t: f64) -> [f64; STAGES] {
     let mut powers = [1.0; STAGES];
     for p in 1..STAGES {

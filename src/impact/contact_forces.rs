@@ -30,11 +30,13 @@ pub struct Course {
 
 impl Course {
     /// Values at the end: modal approaches in m, local approaches in m, forces in N.
+    #[inline(always)]
     pub fn end(&self) -> [[f64; 2]; 3] {
         [&self.approach, &self.local_approach, &self.force].map(|rows| rows.map(|row| row[POINTS - 1]))
     }
 
     /// Forces at the Gauss points in N.
+    #[inline(always)]
     pub fn stages(&self) -> [Stages; 2] {
         self.force.map(|row| std::array::from_fn(|j| row[j + 1]))
     }

@@ -102,7 +102,7 @@ fn release(collocation: &Collocation, course: &StepCourse, point: usize) -> f64 
 
 /// Where between `low` and `high` the condition ends to hold.
 pub fn bisect(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..48 {
+    for _ in 0..36 {
         let middle = 0.5 * (low + high);
         if holds(middle) { low = middle } else { high = middle }
     }

@@ -10,6 +10,7 @@ use super::recorder::Recorder;
 use super::system::{INNER, OUTER, PLATE, System, dot};
 use crate::analytical::hertz::HertzImpact;
 use crate::error::{Error, Result};
+use std::sync::LazyLock;
 use wide::f64x4;
 
 /// What the user may choose about the integration.
@@ -53,16 +54,16 @@ const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
 const NEGLIGIBLE: f64 = 1e-8;
 /// Level of the first step after a touch.
-const START_LEVEL: i32 = 6;
+const START_LEVEL: i32 = 4;
 
 /// Integrates the impact.
 ///
 /// # Errors
 /// [`Error::Solver`] if the contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does not end.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
-    let collocation = Collocation::default();
-    let recorder = options.sample_interval.map(|interval| Recorder::new(system, &collocation, interval));
-    Run::new(system, &collocation, options, recorder).go()
+    static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
+    let recorder = options.sample_interval.map(|interval| Recorder::new(system, &COLLOCATION, interval));
+    Run::new(system, &COLLOCATION, options, recorder).go()
 }
 
 /// Tables of the step lengths in use: a fixed number of places, taken over from the level farthest off when all are
@@ -239,11 +240,15 @@ impl<'a> Run<'a> {
             let mut event: Option<f64> = None;
             for i in 0..2 {
                 let defect = self.defect(&trial, i) / scale[i];
-                let kinked = is_kinked(&trial, i);
-                let bound = if kinked { self.bounds.kinked } else { self.bounds.smooth };
+                let change = if is_kinked(&trial, i) { change_inside(collocation, &trial, i) } else { None };
+                let bound = match change {
+                    Some(_) => self.bounds.kinked,
+                    None if is_kinked(&trial, i) => self.bounds.edge,
+                    None => self.bounds.smooth,
+                };
                 excess = excess.max(defect / bound);
-                if defect > bound
-                    && let Some(u) = change_inside(collocation, &trial, i)
+                if let Some(u) = change
+                    && defect > bound
                 {
                     event = Some(event.map_or(u, |e| e.min(u)));
                 }
@@ -344,6 +349,8 @@ impl<'a> Run<'a> {
 struct Bounds {
     /// Where the force is smooth.
     smooth: f64,
+    /// Where a contact touches or opens at the start or the end of the step.
+    edge: f64,
     /// Where a contact touches or opens within the step.
     kinked: f64,
     /// Error of a step's impulses from ending the sweeps.
@@ -355,10 +362,9 @@ impl Bounds {
     /// defect where the forces are smooth, so that the bound may fall more slowly than the tolerance; factors and
     /// exponents are measured over scenes and numbers of modes (tests/integrator_runge_kutta.rs).
     fn new(tolerance: f64) -> Self {
-        let var = |n: &str, d: f64| std::env::var(n).map_or(d, |v| v.parse().unwrap());
-        let smooth = var("SA", 0.05) * tolerance.powf(var("SP", 0.8));
-        let kinked = var("KA", 0.05) * tolerance.powf(var("KP", 0.8));
-        Self { smooth, kinked, impulse: var("IM", 1e-3) * smooth }
+        let smooth = 0.02 * tolerance.powf(0.7);
+        let kinked = 1e-3 * tolerance.powf(0.95);
+        Self { smooth, kinked, edge: 10.0 * kinked, impulse: 1e-3 * smooth }
     }
 }
 
@@ -372,7 +378,7 @@ fn at_rest(y: [f64; 2]) -> Course {
     course
 }
 
-/// Whether `contact` touches or opens at the start of, in or at the end of the step.
+/// Whether `contact` touches or opens at the start, in or at the end of the step.
 fn is_kinked(trial: &Course, contact: usize) -> bool {
     let forces = &trial.force[contact];
     forces.contains(&0.0) && forces.iter().any(|f| *f > 0.0)
@@ -382,7 +388,8 @@ fn is_kinked(trial: &Course, contact: usize) -> bool {
 fn change_inside(collocation: &Collocation, trial: &Course, contact: usize) -> Option<f64> {
     let local = &trial.local_approach[contact];
     let closed = |value: f64| value > 0.0;
-    let point = (1..POINTS).find(|p| closed(local[*p]) != closed(local[p - 1]) && (*p > 1 || local[0] != 0.0))?;
+    let point =
+        (1..POINTS).find(|p| closed(local[*p]) != closed(local[p - 1]) && (*p > 1 || local[0] != 0.0))?;
     let polynomial = collocation.through(local);
     let before = closed(local[point - 1]);
     let u = bisect(collocation.points[point - 1], collocation.points[point], |u| {

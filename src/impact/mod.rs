@@ -1,7 +1,7 @@
 //! The impact: from bodies and contacts to a [`History`] and a [`Summary`].
 
-pub mod collocation;
 mod bank;
+pub mod collocation;
 mod contact_forces;
 mod contact_ledger;
 pub mod duhamel;

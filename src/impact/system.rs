@@ -139,6 +139,7 @@ impl System {
 }
 
 /// Scalar product.
+#[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
