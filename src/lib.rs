@@ -14,6 +14,7 @@ pub mod project;
 pub mod reference;
 pub mod report;
 pub mod scene;
+pub mod stress;
 pub mod study;
 
 pub use error::{Error, ExitStatus, Result};

@@ -6,6 +6,7 @@ mod progress;
 mod reduced;
 mod reference;
 mod schema;
+mod stress;
 mod study;
 
 use crate::error::{Error, ExitStatus, Result};
@@ -48,6 +49,9 @@ enum Command {
     /// Compute one of the paper's tables or parameter studies
     #[command(after_help = "Example: impactcheck study table2 --json")]
     Study(study::Arguments),
+    /// Try the time integration on random scenes over the whole admissible range
+    #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
+    Stress(stress::Arguments),
     /// Tell what is installed, and the command that installs what is missing
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
@@ -100,6 +104,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Compare(arguments) => compare::run(&context, &arguments),
         Command::Gate(arguments) => compare::gate(&context, &arguments),
         Command::Study(arguments) => study::run(&context, &arguments),
+        Command::Stress(arguments) => stress::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),
     };

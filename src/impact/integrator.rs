@@ -39,6 +39,8 @@ pub struct Integration {
     pub contacts: [ContactLedger; 2],
     /// Energy that no strain energy, motion or damping accounts for, over the initial energy.
     pub energy_residual: f64,
+    /// The same with its sign: positive where energy came out of nothing.
+    pub energy_gained: f64,
     /// Largest momentum no impulse accounts for, over the initial momentum.
     pub momentum_residual: f64,
     /// Accepted steps.
@@ -274,8 +276,10 @@ impl<'a> Run<'a> {
 
     /// Momenta in N s in relation to which the impulses of both contacts have to be right.
     fn momentum_scale(&self) -> [f64; 2] {
-        let initial = self.solver.system.masses[0] * self.solver.system.speed;
-        [initial, self.contacts[1].impulse.max(0.01 * initial)]
+        let system = self.solver.system;
+        let initial = system.masses[0] * system.speed;
+        let light = initial.min(system.masses[1] * system.speed);
+        [initial, self.contacts[1].impulse.max(0.01 * light)]
     }
 
     /// Distance between the force at the end of the step and the polynomial of the step, as an impulse in N s.
@@ -337,6 +341,7 @@ impl<'a> Run<'a> {
             velocity,
             contacts: self.contacts,
             energy_residual: unaccounted.abs() / initial,
+            energy_gained: unaccounted / initial,
             momentum_residual: unexplained.into_iter().fold(0.0, |worst: f64, p| worst.max(p.abs()))
                 / momentum,
             steps: self.steps,

@@ -5,6 +5,7 @@ pub mod collocation;
 mod contact_forces;
 mod contact_ledger;
 pub mod duhamel;
+pub mod explicit_runge_kutta;
 mod free_flight;
 mod history;
 pub mod integrator;
