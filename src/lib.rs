@@ -4,6 +4,7 @@
 #![warn(missing_docs)]
 
 pub mod analytical;
+pub mod bench;
 pub mod body;
 pub mod cli;
 pub mod comparison;

@@ -1,5 +1,6 @@
 //! The command line: one file per command, no physics.
 
+mod bench;
 mod compare;
 mod doctor;
 mod progress;
@@ -49,6 +50,9 @@ enum Command {
     /// Compute one of the paper's tables or parameter studies
     #[command(after_help = "Example: impactcheck study table2 --json")]
     Study(study::Arguments),
+    /// Measure run time against error, with the peers in the same run
+    #[command(after_help = "Example: impactcheck bench --modes 16 --out my-bench")]
+    Bench(bench::Arguments),
     /// Try the time integration on random scenes over the whole admissible range
     #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
     Stress(stress::Arguments),
@@ -104,6 +108,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Compare(arguments) => compare::run(&context, &arguments),
         Command::Gate(arguments) => compare::gate(&context, &arguments),
         Command::Study(arguments) => study::run(&context, &arguments),
+        Command::Bench(arguments) => bench::run(&context, &arguments),
         Command::Stress(arguments) => stress::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),

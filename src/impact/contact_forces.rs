@@ -12,6 +12,8 @@ use wide::f64x4;
 
 /// Sweeps after which a step counts as too long.
 const MAX_SWEEPS: usize = 30;
+/// Relative error of a force at which sweeps end at the latest.
+const FORCE_ERROR: f64 = 1e-6;
 /// Sweeps after which the contacts' own system is solved fully at every visit.
 const MAX_NEWTON_SWEEPS: usize = 12;
 
@@ -145,7 +147,7 @@ impl<'a> StepSolver<'a> {
         let [own0, mutual, own1] = &table.coupling;
         let (mut contraction, mut earlier) = (self.contraction, f64::INFINITY);
         for _ in 0..max_sweeps {
-            let mut change: f64 = 0.0;
+            let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
             for j in 0..STAGES {
                 let [f0, f1] = &unknowns.force;
                 let (mut y0, mut y1) = (free[0][j], free[1][j]);
@@ -157,6 +159,7 @@ impl<'a> StepSolver<'a> {
                 let (d, f) = law([y0, y1], [unknowns.local[0][j], unknowns.local[1][j]])?;
                 for (i, y) in [y0, y1].into_iter().enumerate() {
                     change = change.max((f[i] - unknowns.force[i][j]).abs());
+                    largest = largest.max(f[i]);
                     unknowns.approach[i][j] = y;
                     unknowns.local[i][j] = d[i];
                     unknowns.force[i][j] = f[i];
@@ -168,7 +171,8 @@ impl<'a> StepSolver<'a> {
             if earlier.is_finite() {
                 contraction = change / earlier;
             }
-            if change * contraction.min(1.0) <= force_error {
+            // in a very short step any force gives the right impulse, but not the right energy
+            if change * contraction.min(1.0) <= force_error.min(FORCE_ERROR * largest) {
                 return Some((unknowns, contraction));
             }
             earlier = change;

@@ -85,7 +85,7 @@ impl ContactLedger {
 }
 
 /// Integral of the force polynomial over the approach in J, by parts: F delta at the ends less the integral of delta dF.
-fn work(collocation: &Collocation, force: &Stages, approach: &Points) -> f64 {
+pub fn work(collocation: &Collocation, force: &Stages, approach: &Points) -> f64 {
     let [start, end] = collocation.ends.map(|weights| dot(&weights, force));
     let inside: f64 = (0..STAGES)
         .map(|j| collocation.weights[j] * approach[j + 1] * dot(&collocation.slopes[j], force))

@@ -3,7 +3,7 @@
 use super::bank::{Bank, in_blocks};
 use super::collocation::{Collocation, POINTS, STAGES, StepTable, horner};
 use super::contact_forces::{Course, StepSolver};
-use super::contact_ledger::{ContactLedger, StepCourse, bisect};
+use super::contact_ledger::{ContactLedger, StepCourse, bisect, work};
 use super::free_flight::{self, Flight};
 use super::history::History;
 use super::recorder::Recorder;
@@ -55,6 +55,8 @@ const MAX_STEPS: u64 = 5_000_000;
 const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
 const NEGLIGIBLE: f64 = 1e-8;
+/// Rounding error of the energy of a step, over the energy of the impact.
+const ROUNDING: f64 = 1e-12;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
 
@@ -120,6 +122,11 @@ struct Run<'a> {
     next_v: Vec<f64x4>,
     /// The latest step.
     course: Course,
+    /// Strain energy of the contacts now, and energy of the impact, J.
+    stored: f64,
+    energy: f64,
+    /// Duration of the outer body's impact on a rigid wall, s.
+    contact_time: f64,
     contacts: [ContactLedger; 2],
     steps: u64,
 }
@@ -145,6 +152,9 @@ impl<'a> Run<'a> {
             end_time: options.end_time.unwrap_or(f64::INFINITY),
             bounds: Bounds::new(options.tolerance),
             base_step: 0.25 * hit.duration(),
+            stored: 0.0,
+            energy: system.initial_energy(),
+            contact_time: hit.duration(),
             tables: Ladder::new(q.len()),
             level: START_LEVEL,
             time: 0.0,
@@ -199,6 +209,7 @@ impl<'a> Run<'a> {
         );
         self.time += flight;
         self.course = at_rest(system.modal_approach(flat(&self.q)));
+        self.stored = 0.0;
         self.level = self.level.max(START_LEVEL);
         Ok(more)
     }
@@ -238,7 +249,9 @@ impl<'a> Run<'a> {
                 self.level += 1;
                 continue;
             };
-            let mut excess: f64 = 0.0;
+            let energy_bound = self.energy * (self.bounds.energy * h / self.contact_time + ROUNDING);
+            let energy_excess = self.energy_made(&trial).abs() / energy_bound;
+            let mut excess: f64 = energy_excess;
             let mut event: Option<f64> = None;
             for i in 0..2 {
                 let defect = self.defect(&trial, i) / scale[i];
@@ -250,7 +263,7 @@ impl<'a> Run<'a> {
                 };
                 excess = excess.max(defect / bound);
                 if let Some(u) = change
-                    && defect > bound
+                    && (defect > bound || energy_excess > 1.0)
                 {
                     event = Some(event.map_or(u, |e| e.min(u)));
                 }
@@ -274,12 +287,20 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// Energy in J that the step makes from nothing: what the contacts store beyond the work done on them.
+    fn energy_made(&self, trial: &Course) -> f64 {
+        let work = |i: usize| work(self.solver.collocation, &trial.stages()[i], &trial.approach[i]);
+        let [_, local, force] = trial.end();
+        self.solver.system.stored_energy(force, local) - self.stored - work(0) - work(1)
+    }
+
     /// Momenta in N s in relation to which the impulses of both contacts have to be right.
     fn momentum_scale(&self) -> [f64; 2] {
         let system = self.solver.system;
         let initial = system.masses[0] * system.speed;
         let light = initial.min(system.masses[1] * system.speed);
-        [initial, self.contacts[1].impulse.max(0.01 * light)]
+        // a light inner body feels an error that the heavy outer one would not
+        [initial.min(3.0 * light), self.contacts[1].impulse.max(0.01 * light)]
     }
 
     /// Distance between the force at the end of the step and the polynomial of the step, as an impulse in N s.
@@ -305,6 +326,8 @@ impl<'a> Run<'a> {
         }
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);
+        let [_, local, force] = trial.end();
+        self.stored = self.solver.system.stored_energy(force, local);
         self.time += trial.h;
         self.steps += 1;
         self.course = trial;
@@ -315,11 +338,10 @@ impl<'a> Run<'a> {
         let system = self.solver.system;
         let n = system.size();
         let (q, v) = (&flat(&self.q)[..n], &flat(&self.v)[..n]);
-        let force = self.course.force.map(|f| f[POINTS - 1]);
         let masses = system.masses.map(f64::sqrt);
         let velocity = [v[OUTER] / masses[0], v[INNER] / masses[1]];
         let initial = system.initial_energy();
-        let stored = system.contact_energy(force);
+        let stored = self.stored;
         let damped = system.oscillators.iter().any(|o| o.alpha > 0.0);
         // damping takes energy out of the bodies; between them and the contacts none may be lost all the same
         let unaccounted = if damped {
@@ -358,6 +380,8 @@ struct Bounds {
     edge: f64,
     /// Where a contact touches or opens within the step.
     kinked: f64,
+    /// Energy made from nothing per duration of a Hertz contact, over the energy of the impact.
+    energy: f64,
     /// Error of a step's impulses from ending the sweeps.
     impulse: f64,
 }
@@ -369,7 +393,7 @@ impl Bounds {
     fn new(tolerance: f64) -> Self {
         let smooth = 0.02 * tolerance.powf(0.7);
         let kinked = 1e-3 * tolerance.powf(0.95);
-        Self { smooth, kinked, edge: 10.0 * kinked, impulse: 1e-3 * smooth }
+        Self { smooth, kinked, edge: 10.0 * kinked, energy: tolerance, impulse: 1e-3 * smooth }
     }
 }
 

@@ -111,21 +111,17 @@ impl System {
         self.oscillators.iter().zip(q).zip(v).map(|((o, q), v)| 0.5 * (v * v + (o.omega * q).powi(2))).sum()
     }
 
-    /// Strain energy of contacts and residual flexibility in J at the forces `f` in N.
-    pub fn contact_energy(&self, f: [f64; 2]) -> f64 {
-        let d = [0, 1].map(|i| self.laws[i].approach(f[i]));
+    /// Strain energy of contacts and residual flexibility in J under the forces `f` in N at the Hertz approaches `d` in m
+    /// that go with them, negative where a contact is open.
+    #[inline(always)]
+    pub fn stored_energy(&self, f: [f64; 2], d: [f64; 2]) -> f64 {
+        let d = d.map(|d| d.max(0.0));
         0.4 * (f[0] * d[0] + f[1] * d[1]) + self.residual.map_or(0.0, |r| r.energy(f, d))
     }
 
     /// Approach of both contacts in m, without the part of the residual flexibility.
     pub fn modal_approach(&self, q: &[f64]) -> [f64; 2] {
         [0, 1].map(|i| dot(&self.approach[i], q) - self.gap[i])
-    }
-
-    /// Hertz approach of both contacts in m at the modal approach `y` in m and the forces `f` in N that go with it:
-    /// positive where the bodies touch.
-    pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
-        self.residual.map_or(y, |residual| residual.local_approach(&self.laws, y, f))
     }
 
     /// Forces of both contacts in N at the modal approach `y` in m; `None` if there is no equilibrium.

@@ -14,7 +14,7 @@ const TIERS: [usize; 3] = [16, 64, 256];
 /// Poisson's ratios of plates: each is an eigenproblem of its own.
 const PLATE_POISSON: [f64; 5] = [-0.9, -0.2, 0.0, 0.3, 0.499];
 /// Length of a run in durations of a Hertz contact.
-const DURATIONS: f64 = 12.0;
+const DURATIONS: f64 = 6.0;
 
 /// Modes of plates of unit radius, solved when they are first asked for.
 #[derive(Default)]
