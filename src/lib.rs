@@ -4,6 +4,7 @@
 #![warn(missing_docs)]
 
 pub mod analytical;
+pub mod bench;
 pub mod body;
 pub mod cli;
 pub mod comparison;
@@ -18,6 +19,7 @@ pub mod reference;
 pub mod report;
 pub mod sampling;
 pub mod scene;
+pub mod stress;
 pub mod study;
 
 pub use error::{Error, ExitStatus, Result};

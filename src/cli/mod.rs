@@ -1,5 +1,6 @@
 //! The command line: one file per command, no physics.
 
+mod bench;
 mod compare;
 mod doctor;
 mod optimise;
@@ -7,6 +8,7 @@ mod progress;
 mod reduced;
 mod reference;
 mod schema;
+mod stress;
 mod study;
 mod sweep;
 
@@ -57,6 +59,12 @@ enum Command {
         after_help = "Example: impactcheck optimise scaled-plate-r10 --over plate.radius=15mm..60mm --over plate.thickness=1mm..3mm"
     )]
     Optimise(optimise::Arguments),
+    /// Measure run time against error, with the peers in the same run
+    #[command(after_help = "Example: impactcheck bench --modes 16 --out my-bench")]
+    Bench(bench::Arguments),
+    /// Try the time integration on random scenes over the whole admissible range
+    #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
+    Stress(stress::Arguments),
     /// Tell what is installed, and the command that installs what is missing
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
@@ -110,6 +118,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Gate(arguments) => compare::gate(&context, &arguments),
         Command::Study(arguments) => study::run(&context, &arguments),
         Command::Optimise(arguments) => optimise::run(&context, &arguments),
+        Command::Bench(arguments) => bench::run(&context, &arguments),
+        Command::Stress(arguments) => stress::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),
     };

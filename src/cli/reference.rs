@@ -52,10 +52,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         }
         other => {
             if let Some(lookup @ (Lookup::Stale { .. } | Lookup::Damaged { .. })) = &other {
-                context.note(format_args!(
-                    "{}; computing it again",
-                    problem(&scene, resolution, lookup)
-                ));
+                context.note(format_args!("{}; computing it again", problem(&scene, resolution, lookup)));
             }
             let wish = Wish {
                 stress_at: arguments.stress_at.clone(),

@@ -87,16 +87,18 @@ impl Residual {
         [[own(0) + entry(0, 0), entry(0, 1)], [entry(1, 0), own(1) + entry(1, 1)]]
     }
 
-    /// Strain energy in J of the contacts under the forces `f` in N.
-    pub fn energy(&self, laws: &[Hertz; 2], f: [f64; 2]) -> f64 {
-        let (p, c) = self.patches(laws, f);
-        let work: f64 = (0..2).map(|i| f[i] * (c[i] * p[i] + self.yielded(p, f, i))).sum();
-        work - self.complementary_energy(laws, f)
+    /// Strain energy in J of the contacts under the forces `f` in N with the patches `p` in m that go with them.
+    #[inline(always)]
+    pub fn energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
+        let c = self.curvature(f);
+        let work = |i: usize| f[i] * (c[i] * p[i] + self.yielded(p, f, i));
+        work(0) + work(1) - self.complementary_energy(f, p)
     }
 
     /// U in J, see the module.
-    fn complementary_energy(&self, laws: &[Hertz; 2], f: [f64; 2]) -> f64 {
-        let (p, c) = self.patches(laws, f);
+    #[inline(always)]
+    fn complementary_energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
+        let c = self.curvature(f);
         let own = |i: usize| 0.6 * f[i] * c[i] * p[i];
         let pair = |i: usize, j: usize| 0.5 * f[i] * f[j] * self.flexibility[i][j];
         own(0) + own(1) + pair(0, 0) + pair(0, 1) + pair(1, 0) + pair(1, 1)
@@ -126,21 +128,44 @@ impl Residual {
         (p_rate, f_rate)
     }
 
+    /// Forces in N with the patches `p` in m.
+    #[inline(always)]
+    pub fn forces(&self, laws: &[Hertz; 2], p: [f64; 2]) -> [f64; 2] {
+        self.state(laws, p).f
+    }
+
+    /// One Newton step for the patches in m at `y` in m, from `p`; `None` if there is no equilibrium near.
+    #[inline(always)]
+    pub fn newton(&self, laws: &[Hertz; 2], y: [f64; 2], p: [f64; 2]) -> Option<[f64; 2]> {
+        let s = self.state(laws, p);
+        let error = self.error(&s, y, p);
+        let [[a, b], [c, e]] = self.jacobian(laws, &s);
+        let determinant = a * e - b * c;
+        if determinant.is_nan() || determinant <= 0.0 {
+            return None;
+        }
+        let scale = 1.0 / determinant;
+        Some([p[0] - scale * (e * error[0] - b * error[1]), p[1] - scale * (a * error[1] - c * error[0])])
+    }
+
+    /// What the state with the patches `p` misses of the approaches `y`, m.
+    #[inline(always)]
+    fn error(&self, s: &State, y: [f64; 2], p: [f64; 2]) -> [f64; 2] {
+        let own = |i: usize| if p[i] > 0.0 { s.c[i] * p[i] } else { p[i] };
+        [own(0) + self.yielded(s.p, s.f, 0) - y[0], own(1) + self.yielded(s.p, s.f, 1) - y[1]]
+    }
+
     /// Patches p in m, negative where a contact is open, and forces in N of both contacts at `y` in m; `guess` are the
     /// patches of a nearby state.
     pub fn solve(&self, laws: &[Hertz; 2], y: [f64; 2], guess: [f64; 2]) -> Option<([f64; 2], [f64; 2])> {
         if y[0] <= 0.0 && y[1] <= 0.0 {
             return Some((y, [0.0; 2]));
         }
-        let defect = |p: [f64; 2], s: &State| {
-            let own = |i: usize| if p[i] > 0.0 { s.c[i] * p[i] } else { p[i] };
-            [own(0) + self.yielded(s.p, s.f, 0) - y[0], own(1) + self.yielded(s.p, s.f, 1) - y[1]]
-        };
         let size = |e: [f64; 2]| e[0].abs().max(e[1].abs());
         let scale = y[0].abs().max(y[1].abs());
         let mut p = guess;
         let mut state = self.state(laws, p);
-        let mut error = defect(p, &state);
+        let mut error = self.error(&state, y, p);
         for _ in 0..MAX_ITERATIONS {
             if size(error) <= 4.0 * f64::EPSILON * scale {
                 return Some((p, state.f));
@@ -156,7 +181,7 @@ impl Residual {
             loop {
                 let trial = [p[0] - fraction * step[0], p[1] - fraction * step[1]];
                 let trial_state = self.state(laws, trial);
-                let trial_error = defect(trial, &trial_state);
+                let trial_error = self.error(&trial_state, y, trial);
                 if size(trial_error) < size(error) {
                     (p, state, error) = (trial, trial_state, trial_error);
                     break;
@@ -212,12 +237,16 @@ mod tests {
             flexibility: [[2e-9, -6e-10], [-6e-10, 1e-9]],
             growth: [[-3e-5, 4e-5], [-2e-5, 6e-5]],
         };
-        let energy = |f: [f64; 2]| residual.complementary_energy(&LAWS, f);
+        let energy = |f: [f64; 2]| residual.complementary_energy(f, residual.patches(&LAWS, f).0);
         for y in [[8e-6, 5e-6], [8e-6, -1e-6], [-1e-6, 3e-6]] {
             let (p, f) = residual.solve(&LAWS, y, y).unwrap();
             let local = residual.local_approach(&LAWS, y, f);
             let work = f[0] * y[0].max(0.0) + f[1] * y[1].max(0.0);
-            assert_relative_eq!(residual.energy(&LAWS, f) + energy(f), work, max_relative = 1e-9);
+            assert_relative_eq!(
+                residual.energy(f, residual.patches(&LAWS, f).0) + energy(f),
+                work,
+                max_relative = 1e-9
+            );
             for i in 0..2 {
                 assert_eq!(f[i] > 0.0, local[i] > 0.0);
                 if f[i] > 0.0 {

@@ -6,15 +6,22 @@
 //! Gauss points whose size does not depend on the number of modes. With smooth forces the velocities
 //! after the step are of order 2 STAGES (Gauss quadrature), the forces inside of order STAGES.
 
+use super::bank::Bank;
 use super::duhamel::{MOMENTS, Oscillator};
-use super::system::System;
 use crate::body::quadrature::gauss_legendre;
+use wide::f64x4;
 
 /// Gauss points of a step.
 pub const STAGES: usize = 4;
 
 /// Values at the Gauss points.
 pub type Stages = [f64; STAGES];
+
+/// Points of a step at which a contact is known: its start, the Gauss points, its end.
+pub const POINTS: usize = STAGES + 2;
+
+/// Values at start, Gauss points and end of a step.
+pub type Points = [f64; POINTS];
 
 /// Gauss points on 0..1 and their interpolation polynomials.
 #[derive(Debug, Clone)]
@@ -25,37 +32,84 @@ pub struct Collocation {
     pub weights: Stages,
     /// `lagrange[l][p]`: coefficient of u^p in the polynomial that is 1 at node l and 0 at the others.
     pub lagrange: [Stages; STAGES],
+    /// Start, Gauss points and end on 0..1.
+    pub points: Points,
+    /// The same as `lagrange` for the polynomials through all [`POINTS`] points.
+    through_points: [Points; POINTS],
+    /// Weights of the values at the Gauss points in the polynomial's value at the start and at the end.
+    pub ends: [Stages; 2],
+    /// `slopes[j]`: weights in the polynomial's derivative at Gauss point j, per step.
+    pub slopes: [Stages; STAGES],
 }
 
 impl Default for Collocation {
     fn default() -> Self {
         let (points, weights) = gauss_legendre(STAGES);
         let nodes: Stages = std::array::from_fn(|j| 0.5 * (1.0 + points[j]));
-        let lagrange = std::array::from_fn(|l| {
-            let mut polynomial = [0.0; STAGES];
-            polynomial[0] = 1.0;
-            for (degree, j) in (0..STAGES).filter(|j| *j != l).enumerate() {
-                let scale = 1.0 / (nodes[l] - nodes[j]);
-                for p in (0..=degree + 1).rev() {
-                    let below = if p > 0 { polynomial[p - 1] } else { 0.0 };
-                    let here = if p <= degree { polynomial[p] } else { 0.0 };
-                    polynomial[p] = scale * (below - nodes[j] * here);
-                }
-            }
-            polynomial
+        let lagrange = lagrange(&nodes);
+        let points: Points = std::array::from_fn(|i| match i {
+            0 => 0.0,
+            _ if i == POINTS - 1 => 1.0,
+            _ => nodes[i - 1],
         });
-        Self { nodes, weights: std::array::from_fn(|j| 0.5 * weights[j]), lagrange }
+        let mut collocation = Self {
+            nodes,
+            weights: std::array::from_fn(|j| 0.5 * weights[j]),
+            lagrange,
+            points,
+            through_points: self::lagrange(&points),
+            ends: Default::default(),
+            slopes: Default::default(),
+        };
+        collocation.ends = [0.0, 1.0].map(|u| collocation.interpolation(u));
+        collocation.slopes = nodes.map(|u| collocation.derivative(u));
+        collocation
     }
 }
 
+/// Coefficients of Lagrange's polynomials: `[l][p]` that of u^p in the one that is 1 at `nodes[l]`, 0 at the others.
+fn lagrange<const N: usize>(nodes: &[f64; N]) -> [[f64; N]; N] {
+    std::array::from_fn(|l| {
+        let mut polynomial = [0.0; N];
+        polynomial[0] = 1.0;
+        for (degree, j) in (0..N).filter(|j| *j != l).enumerate() {
+            let scale = 1.0 / (nodes[l] - nodes[j]);
+            for p in (0..=degree + 1).rev() {
+                let below = if p > 0 { polynomial[p - 1] } else { 0.0 };
+                let here = if p <= degree { polynomial[p] } else { 0.0 };
+                polynomial[p] = scale * (below - nodes[j] * here);
+            }
+        }
+        polynomial
+    })
+}
+
+/// Value of the polynomial with `coefficients` at `u`.
+#[inline(always)]
+pub fn horner(coefficients: &[f64], u: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * u + c)
+}
+
 impl Collocation {
+    /// Coefficients of the polynomial through `values` at start, Gauss points and end.
+    #[inline(always)]
+    pub fn through(&self, values: &Points) -> Points {
+        let mut coefficients = [0.0; POINTS];
+        for l in 0..POINTS {
+            for p in 0..POINTS {
+                coefficients[p] += self.through_points[l][p] * values[l];
+            }
+        }
+        coefficients
+    }
+
     /// Weights of the values at the Gauss points in the polynomial's value at `u` (in units of the step).
-    pub fn interpolation(&self, u: f64) -> Stages {
-        std::array::from_fn(|l| self.lagrange[l].iter().rev().fold(0.0, |sum, c| sum * u + c))
+    fn interpolation(&self, u: f64) -> Stages {
+        self.lagrange.map(|polynomial| horner(&polynomial, u))
     }
 
     /// Weights of the values at the Gauss points in the polynomial's derivative at `u`, per step.
-    pub fn derivative(&self, u: f64) -> Stages {
+    fn derivative(&self, u: f64) -> Stages {
         std::array::from_fn(|l| {
             (1..STAGES).rev().fold(0.0, |sum, p| sum * u + p as f64 * self.lagrange[l][p])
         })
@@ -109,133 +163,144 @@ pub struct Response {
     pub velocity_per_force: Stages,
 }
 
-/// Moments of one oscillator at the Gauss points and at the end of a step.
-type PointMoments = [[f64; MOMENTS]; STAGES + 1];
-
-/// Times of the Gauss points and of the end in a step of length `h`.
-fn times(collocation: &Collocation, h: f64) -> [f64; STAGES + 1] {
-    std::array::from_fn(|i| collocation.nodes.get(i).map_or(h, |node| node * h))
-}
-
 /// Everything about a step of one length that does not depend on the state.
 #[derive(Debug, Clone)]
 pub struct StepTable {
     /// Length of the step in s.
     pub h: f64,
-    /// Moments of every oscillator at the Gauss points and at the end. Shape (n).
-    moments: Vec<PointMoments>,
-    /// q at Gauss point j per q(0) and q'(0). Each of shape (STAGES, n), row by row.
-    node: [Vec<f64>; 2],
-    /// [q per q(0), q per q'(0), q' per q(0), q' per q'(0)] at the end. Each of shape (n).
-    end: [Vec<f64>; 4],
-    /// q and q' at the end per generalised force at Gauss point l. Each of shape (STAGES, n).
-    force: [Vec<f64>; 2],
+    /// s' and s of every oscillator at Gauss point j. Shape (STAGES, 2, blocks).
+    node: Vec<f64x4>,
+    /// Moments of every oscillator at the end. Shape (MOMENTS, blocks).
+    end: Vec<f64x4>,
     /// Approach at Gauss point j lost per force at Gauss point l: contacts (0,0), (0,1) = (1,0), (1,1).
     pub coupling: [[Stages; STAGES]; 3],
+    /// `coefficients[p][l]`: coefficient of tau^p / p! in the polynomial of a force per value at Gauss point l.
+    coefficients: [Stages; STAGES],
 }
 
 impl StepTable {
-    /// Tables of `system` for steps of length `h` s.
-    pub fn new(system: &System, collocation: &Collocation, h: f64) -> Self {
-        let times = times(collocation, h);
-        let moments = system.oscillators.iter().map(|o| times.map(|t| o.moments(t))).collect();
-        Self::from_moments(system, collocation, h, moments)
+    /// Room for the tables of `blocks` blocks.
+    pub fn empty(blocks: usize) -> Self {
+        Self {
+            h: 0.0,
+            node: bytemuck::zeroed_vec(STAGES * 2 * blocks),
+            end: bytemuck::zeroed_vec(MOMENTS * blocks),
+            coupling: Default::default(),
+            coefficients: Default::default(),
+        }
     }
 
-    /// Tables for steps of twice the length of these.
-    pub fn doubled(&self, system: &System, collocation: &Collocation) -> Self {
-        let times = times(collocation, self.h);
-        let double = |(o, moments): (&Oscillator, &PointMoments)| {
-            std::array::from_fn(|i| o.doubled(&moments[i], times[i]))
-        };
-        let moments = system.oscillators.iter().zip(&self.moments).map(double).collect();
-        Self::from_moments(system, collocation, 2.0 * self.h, moments)
-    }
-
-    fn from_moments(system: &System, collocation: &Collocation, h: f64, moments: Vec<PointMoments>) -> Self {
-        let n = system.size();
-        let zeros = |rows: usize| vec![0.0; rows * n];
-        let mut node = [zeros(STAGES), zeros(STAGES)];
-        let mut end = [zeros(1), zeros(1), zeros(1), zeros(1)];
-        let mut force = [zeros(STAGES), zeros(STAGES)];
-        let mut coupling = [[[0.0; STAGES]; STAGES]; 3];
-        for (k, (oscillator, moments)) in system.oscillators.iter().zip(&moments).enumerate() {
-            let (b0, b1) = (system.approach[0][k], system.approach[1][k]);
-            for j in 0..STAGES {
-                let [slope, impulse, ..] = moments[j];
-                node[0][j * n + k] = slope + 2.0 * oscillator.alpha * impulse;
-                node[1][j * n + k] = impulse;
-                let per_force = collocation.per_force(&moments[j][2..], h);
-                for (coupling, product) in coupling.iter_mut().zip([b0 * b0, b0 * b1, b1 * b1]) {
+    /// Makes these the tables of `bank` for steps of length `h` s.
+    pub fn fill(&mut self, bank: &Bank, collocation: &Collocation, h: f64) {
+        let n = bank.blocks();
+        self.h = h;
+        let mut scale = 1.0;
+        for p in 0..STAGES {
+            if p > 0 {
+                scale *= p as f64 / h;
+            }
+            self.coefficients[p] = std::array::from_fn(|l| scale * collocation.lagrange[l][p]);
+        }
+        let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
+        for j in 0..STAGES {
+            let t = collocation.nodes[j] * h;
+            let powers = powers(t);
+            let (slope, impulse) = self.node[2 * j * n..][..2 * n].split_at_mut(n);
+            // answers of the approaches to forces tau^p / p!
+            let mut answers = [[f64x4::ZERO; STAGES]; 3];
+            for k in 0..n {
+                let moments = bank.moments(k, t, &powers);
+                (slope[k], impulse[k]) = (moments[0], moments[1]);
+                for p in 0..STAGES {
+                    let (first, second) = (b0[k] * moments[p + 2], b1[k] * moments[p + 2]);
+                    answers[0][p] += b0[k] * first;
+                    answers[1][p] += b1[k] * first;
+                    answers[2][p] += b1[k] * second;
+                }
+            }
+            for (coupling, answers) in self.coupling.iter_mut().zip(answers) {
+                let answers = answers.map(f64x4::reduce_add);
+                coupling[j] = [0.0; STAGES];
+                for p in 0..STAGES {
                     for l in 0..STAGES {
-                        coupling[j][l] += product * per_force[l];
+                        coupling[j][l] += self.coefficients[p][l] * answers[p];
                     }
                 }
             }
-            let last = &moments[STAGES];
-            let [slope, impulse, ..] = *last;
-            end[0][k] = slope + 2.0 * oscillator.alpha * impulse;
-            end[1][k] = impulse;
-            end[2][k] = -oscillator.omega.powi(2) * impulse;
-            end[3][k] = slope;
-            for (part, force) in force.iter_mut().enumerate() {
-                let per_force = collocation.per_force(&last[2 - part..], h);
-                for l in 0..STAGES {
-                    force[l * n + k] = per_force[l];
-                }
+        }
+        let powers = powers(h);
+        for k in 0..n {
+            for (p, moment) in bank.moments(k, h, &powers).into_iter().enumerate() {
+                self.end[p * n + k] = moment;
             }
         }
-        Self { h, moments, node, end, force, coupling }
     }
 
-    /// Approaches at the Gauss points, in m, if no force acted during the step.
-    pub fn free_approach(&self, system: &System, q: &[f64], v: &[f64]) -> [Stages; 2] {
+    /// Approaches at the Gauss points, in m, if no force acted during the step; `gap` in m.
+    #[inline]
+    pub fn free_approach(&self, bank: &Bank, gap: [f64; 2], q: &[f64x4], v: &[f64x4]) -> [Stages; 2] {
         let n = q.len();
-        let mut approach = [[0.0; STAGES]; 2];
-        let (b0, b1) = (&system.approach[0][..n], &system.approach[1][..n]);
-        for j in 0..STAGES {
-            let (per_q, per_v) = (&self.node[0][j * n..][..n], &self.node[1][j * n..][..n]);
-            let (mut sum0, mut sum1) = ([0.0; LANES], [0.0; LANES]);
-            for k in 0..n {
-                let value = per_q[k] * q[k] + per_v[k] * v[k];
-                sum0[k % LANES] += b0[k] * value;
-                sum1[k % LANES] += b1[k] * value;
+        let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
+        let (damping, v) = (&bank.damping[..n], &v[..n]);
+        let rows: [&[f64x4]; 2 * STAGES] = std::array::from_fn(|row| &self.node[row * n..][..n]);
+        let mut sums = [[f64x4::ZERO; STAGES]; 2];
+        for k in 0..n {
+            let rate = v[k] + damping[k] * q[k];
+            for j in 0..STAGES {
+                let value = rows[2 * j][k] * q[k] + rows[2 * j + 1][k] * rate;
+                sums[0][j] += b0[k] * value;
+                sums[1][j] += b1[k] * value;
             }
-            approach[0][j] = sum0.iter().sum::<f64>() - system.gap[0];
-            approach[1][j] = sum1.iter().sum::<f64>() - system.gap[1];
         }
-        approach
+        std::array::from_fn(|i| sums[i].map(|sum| sum.reduce_add() - gap[i]))
     }
 
-    /// Writes the state at the end of the step under the forces at the Gauss points.
+    /// Writes the state at the end of the step under the forces at the Gauss points and gives the approaches there,
+    /// without the gaps.
+    #[inline]
     pub fn advance(
         &self,
-        system: &System,
+        bank: &Bank,
         forces: &[Stages; 2],
-        q: &[f64],
-        v: &[f64],
-        q_end: &mut [f64],
-        v_end: &mut [f64],
-    ) {
+        (q, v): (&[f64x4], &[f64x4]),
+        (q_end, v_end): (&mut [f64x4], &mut [f64x4]),
+    ) -> [f64; 2] {
         let n = q.len();
-        let (q_end, v_end) = (&mut q_end[..n], &mut v_end[..n]);
-        let [qq, qv, vq, vv] = [&self.end[0][..n], &self.end[1][..n], &self.end[2][..n], &self.end[3][..n]];
-        for k in 0..n {
-            q_end[k] = qq[k] * q[k] + qv[k] * v[k];
-            v_end[k] = vq[k] * q[k] + vv[k] * v[k];
-        }
-        let (b0, b1) = (&system.approach[0][..n], &system.approach[1][..n]);
-        for l in 0..STAGES {
-            let (f0, f1) = (forces[0][l], forces[1][l]);
-            let (per_q, per_v) = (&self.force[0][l * n..][..n], &self.force[1][l * n..][..n]);
-            for k in 0..n {
-                let force = -(b0[k] * f0 + b1[k] * f1);
-                q_end[k] += per_q[k] * force;
-                v_end[k] += per_v[k] * force;
+        let (v, q_end, v_end) = (&v[..n], &mut q_end[..n], &mut v_end[..n]);
+        let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
+        let (damping, stiffness) = (&bank.damping[..n], &bank.stiffness[..n]);
+        let rows: [&[f64x4]; MOMENTS] = std::array::from_fn(|p| &self.end[p * n..][..n]);
+        let mut polynomial = [[0.0; STAGES]; 2];
+        for p in 0..STAGES {
+            for l in 0..STAGES {
+                polynomial[0][p] += self.coefficients[p][l] * forces[0][l];
+                polynomial[1][p] += self.coefficients[p][l] * forces[1][l];
             }
         }
+        let mut sums = [f64x4::ZERO; 2];
+        for k in 0..n {
+            let (slope, impulse) = (rows[0][k], rows[1][k]);
+            let mut displacement = slope * q[k] + impulse * (v[k] + damping[k] * q[k]);
+            let mut rate = slope * v[k] - stiffness[k] * impulse * q[k];
+            for p in 0..STAGES {
+                let force = b0[k] * polynomial[0][p] + b1[k] * polynomial[1][p];
+                displacement -= rows[p + 2][k] * force;
+                rate -= rows[p + 1][k] * force;
+            }
+            (q_end[k], v_end[k]) = (displacement, rate);
+            sums[0] += b0[k] * displacement;
+            sums[1] += b1[k] * displacement;
+        }
+        sums.map(f64x4::reduce_add)
     }
 }
 
-/// Partial sums that the compiler can keep in vector registers.
-const LANES: usize = 8;
+/// t^p / p! for p < STAGES.
+#[inline(always)]
+fn powers(t: f64) -> [f64; STAGES] {
+    let mut powers = [1.0; STAGES];
+    for p in 1..STAGES {
+        powers[p] = powers[p - 1] * t / p as f64;
+    }
+    powers
+}

@@ -1,9 +1,7 @@
 //! What is booked about one contact: impulse, peak force, touches and releases.
 
-use super::collocation::{Collocation, STAGES, Stages};
-
-/// Points of a step at which a contact is known: its start, the Gauss points, its end.
-const POINTS: usize = STAGES + 2;
+use super::collocation::{Collocation, POINTS, Points, STAGES, Stages, horner};
+use super::system::dot;
 
 /// Course of one contact over one step.
 pub struct StepCourse {
@@ -12,11 +10,11 @@ pub struct StepCourse {
     /// Length of the step in s.
     pub h: f64,
     /// Modal approach, on which the force works, at start, Gauss points and end, m.
-    pub approach: [f64; POINTS],
+    pub approach: Points,
     /// Local approach, positive where the bodies touch, at the same points, m.
-    pub local_approach: [f64; POINTS],
+    pub local_approach: Points,
     /// Force at start, Gauss points and end, N.
-    pub force: [f64; POINTS],
+    pub force: Points,
 }
 
 /// Account of one contact.
@@ -79,52 +77,36 @@ impl ContactLedger {
         if highest == 0 || highest == POINTS - 1 || course.force.contains(&0.0) {
             return course.force[highest];
         }
-        let u = abscissae(collocation);
-        let value = |x: f64| interpolate(&u, &course.force, x);
-        let (mut low, mut high) = (u[highest - 1], u[highest + 1]);
-        for _ in 0..40 {
-            let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
-            if value(a) < value(b) { low = a } else { high = b }
-        }
-        value(0.5 * (low + high))
+        let polynomial = collocation.through(&course.force);
+        let slope: [f64; POINTS - 1] = std::array::from_fn(|p| (p + 1) as f64 * polynomial[p + 1]);
+        let u = &collocation.points;
+        horner(&polynomial, bisect(u[highest - 1], u[highest + 1], |u| horner(&slope, u) > 0.0))
     }
 }
 
 /// Integral of the force polynomial over the approach in J, by parts: F delta at the ends less the integral of delta dF.
-pub(super) fn work(collocation: &Collocation, force: &Stages, approach: &[f64; POINTS]) -> f64 {
-    let at = |weights: Stages| weights.iter().zip(force).map(|(w, f)| w * f).sum::<f64>();
-    let ends = at(collocation.interpolation(1.0)) * approach[POINTS - 1]
-        - at(collocation.interpolation(0.0)) * approach[0];
+pub fn work(collocation: &Collocation, force: &Stages, approach: &Points) -> f64 {
+    let [start, end] = collocation.ends.map(|weights| dot(&weights, force));
     let inside: f64 = (0..STAGES)
-        .map(|j| collocation.weights[j] * approach[j + 1] * at(collocation.derivative(collocation.nodes[j])))
+        .map(|j| collocation.weights[j] * approach[j + 1] * dot(&collocation.slopes[j], force))
         .sum();
-    ends - inside
+    end * approach[POINTS - 1] - start * approach[0] - inside
 }
 
 /// Where in the step (0..1), before `point`, the local approach passes zero.
 fn release(collocation: &Collocation, course: &StepCourse, point: usize) -> f64 {
-    let u = abscissae(collocation);
-    let (mut low, mut high) = (u[point - 1], u[point]);
-    for _ in 0..60 {
+    let polynomial = collocation.through(&course.local_approach);
+    let u = &collocation.points;
+    bisect(u[point - 1], u[point], |u| horner(&polynomial, u) > 0.0)
+}
+
+/// Where between `low` and `high` the condition ends to hold.
+pub fn bisect(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..36 {
         let middle = 0.5 * (low + high);
-        if interpolate(&u, &course.local_approach, middle) > 0.0 { low = middle } else { high = middle }
+        if holds(middle) { low = middle } else { high = middle }
     }
     0.5 * (low + high)
-}
-
-fn abscissae(collocation: &Collocation) -> [f64; POINTS] {
-    std::array::from_fn(|i| match i {
-        0 => 0.0,
-        _ if i == POINTS - 1 => 1.0,
-        _ => collocation.nodes[i - 1],
-    })
-}
-
-/// Lagrange's polynomial through (`u`, `y`) at `x`.
-fn interpolate(u: &[f64; POINTS], y: &[f64; POINTS], x: f64) -> f64 {
-    (0..POINTS)
-        .map(|i| y[i] * (0..POINTS).filter(|j| *j != i).map(|j| (x - u[j]) / (u[i] - u[j])).product::<f64>())
-        .sum()
 }
 
 fn argmax(values: &[f64]) -> (usize, f64) {

@@ -52,22 +52,6 @@ impl Oscillator {
         }
     }
 
-    /// The moments at time 2 t from those at `t`: the state reached at t flies on, and the force of the second
-    /// half is (t + tau)^p / p!. Much cheaper than [`Oscillator::moments`], and as accurate to a few roundings.
-    pub fn doubled(&self, moments: &[f64; MOMENTS], t: f64) -> [f64; MOMENTS] {
-        let [slope, impulse, ..] = *moments;
-        let cosine = slope + 2.0 * self.alpha * impulse;
-        let powers = powers(t);
-        let mut twice = [0.0; MOMENTS];
-        twice[0] = slope * slope - (self.omega * impulse).powi(2);
-        twice[1] = cosine * impulse + impulse * slope;
-        for p in 0..STAGES {
-            let second: f64 = (0..=p).map(|m| powers[p - m] * moments[m + 2]).sum();
-            twice[p + 2] = cosine * moments[p + 2] + impulse * moments[p + 1] + second;
-        }
-        twice
-    }
-
     /// Small omega t: power series for the two highest moments, recurrence downwards.
     fn series(&self, t: f64) -> [f64; MOMENTS] {
         let (w2, a2) = (self.omega * self.omega, 2.0 * self.alpha);
@@ -211,25 +195,6 @@ mod tests {
                         })
                         .sum();
                     assert_relative_eq!(moments[p + 2], integral, epsilon = 1e-13, max_relative = 1e-9);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn doubling_equals_the_moments_at_twice_the_time() {
-        for omega in [0.0, 0.3, 3.0, 200.0] {
-            for zeta in [0.0, 0.02, 1.0, 4.0] {
-                let oscillator = Oscillator { omega, alpha: zeta * omega };
-                let mut time = 0.01;
-                let mut moments = oscillator.moments(time);
-                for _ in 0..7 {
-                    moments = oscillator.doubled(&moments, time);
-                    time *= 2.0;
-                }
-                for (ours, direct) in moments.iter().zip(oscillator.moments(time)) {
-                    // relative to what the moment is at most, t^(p+2)/(p+2)! < 1
-                    assert_relative_eq!(*ours, direct, epsilon = 1e-13 * (1.0 + omega), max_relative = 1e-9);
                 }
             }
         }

@@ -1,9 +1,12 @@
 //! The impact: from bodies and contacts to a [`History`] and a [`Summary`].
 
+mod bank;
 mod centre;
 pub mod collocation;
+mod contact_forces;
 mod contact_ledger;
 pub mod duhamel;
+pub mod explicit_runge_kutta;
 mod free_flight;
 mod history;
 pub mod integrator;

@@ -176,11 +176,14 @@ impl System {
         self.oscillators.iter().zip(q).zip(v).map(|((o, q), v)| 0.5 * (v * v + (o.omega * q).powi(2))).sum()
     }
 
-    /// Strain energy of contacts and residual flexibility in J at the forces `f` in N.
-    pub fn contact_energy(&self, f: [f64; 2]) -> f64 {
+    /// Strain energy of contacts and residual flexibility in J under the forces `f` in N with the patches `p` in m that go
+    /// with them, negative where a contact is open.
+    #[inline(always)]
+    pub fn stored_energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
+        let p = p.map(|p| p.max(0.0));
         match &self.residual {
-            None => (0..2).map(|i| 0.4 * f[i] * self.laws[i].approach(f[i])).sum(),
-            Some(residual) => residual.energy(&self.laws, f),
+            None => 0.4 * (f[0] * p[0] + f[1] * p[1]),
+            Some(residual) => residual.energy(f, p),
         }
     }
 
@@ -189,10 +192,19 @@ impl System {
         [0, 1].map(|i| dot(&self.approach[i], q) - self.gap[i])
     }
 
-    /// Patches of both contacts, squared radius over tip radius in m, at the modal approach `y` in m and the forces `f` in N that go with it:
-    /// positive where the bodies touch.
+    /// Patches of both contacts, squared radius over tip radius in m, at the modal approach `y` in m and the forces `f` in
+    /// N that go with it; where a contact is open, the distance, negative.
     pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
         self.residual.map_or(y, |residual| residual.local_approach(&self.laws, y, f))
+    }
+
+    /// Forces of both contacts in N with the patches `p` in m.
+    #[inline(always)]
+    pub fn forces(&self, p: [f64; 2]) -> [f64; 2] {
+        match &self.residual {
+            None => [self.laws[0].force(p[0]), self.laws[1].force(p[1])],
+            Some(residual) => residual.forces(&self.laws, p),
+        }
     }
 
     /// Patches (as [`Self::local_approach`]) and forces in N of both contacts at the modal approach `y` in m, `guess` being
@@ -207,6 +219,7 @@ impl System {
 }
 
 /// Scalar product.
+#[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

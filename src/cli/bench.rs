@@ -1,0 +1,64 @@
+//! `impactcheck bench`: run time against error.
+
+use super::{Context, JsonArgument};
+use crate::bench::{self, Bench};
+use crate::error::{ExitStatus, Result};
+use crate::report;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Numbers of modes at which integrators are compared
+    #[arg(long, value_delimiter = ',', default_value = "1,16,64,256", value_name = "N,…")]
+    modes: Vec<usize>,
+    /// Write the document and the diagrams (JSON, SVG, PNG) into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// Runs the benchmark and prints its ratios.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    if let Some(folder) = &arguments.out {
+        // refused before anything is computed
+        report::check_writable(folder)?;
+    }
+    let bench = bench::run(&arguments.modes, &context.store(), &|text| context.note(text))?;
+    if let Some(folder) = &arguments.out {
+        let svg = bench::figure(&bench);
+        let text = serde_json::to_string_pretty(&bench)
+            .map_err(|e| crate::error::Error::Internal(format!("writing JSON: {e}")))?;
+        let png = report::png(&svg, 2.0)?;
+        for (name, bytes) in
+            [("bench.json", text.as_bytes()), ("bench.svg", svg.as_bytes()), ("bench.png", &png[..])]
+        {
+            report::write_file(&folder.join(name), bytes)?;
+            context.note(format_args!("wrote {}", folder.join(name).display()));
+        }
+    }
+    if arguments.json.json {
+        super::print_json(&bench)?;
+    } else {
+        super::print(&table(&bench))?;
+    }
+    Ok(ExitStatus::Pass)
+}
+
+fn table(bench: &Bench) -> String {
+    let mut lines = vec![bench.machine.clone()];
+    lines.push(format!("{:<64} {:>5} {:>8} {:>12} {:>10}", "peer", "modes", "error", "ours, s", "ratio"));
+    for ratio in &bench.ratios {
+        lines.push(format!(
+            "{:<64} {:>5} {:>8.0e} {:>12.3e} {:>10.1}",
+            ratio.peer,
+            ratio.modes.map_or_else(String::new, |n| n.to_string()),
+            ratio.relative_error,
+            ratio.seconds,
+            ratio.ratio
+        ));
+    }
+    lines.extend(bench.notes.iter().map(|note| format!("note: {note}")));
+    lines.join("\n")
+}

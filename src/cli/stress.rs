@@ -1,0 +1,55 @@
+//! `impactcheck stress`: numerical stability over random scenes.
+
+use super::{Context, JsonArgument};
+use crate::error::{ExitStatus, Result};
+use crate::stress::{self, StressReport};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Number of random scenes
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    cases: u64,
+    /// Seed of the first scene; the others follow
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// Runs the scenes; the exit status is that of a failed solver if an invariant does not hold.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    let bar = if context.quiet { ProgressBar::hidden() } else { ProgressBar::new(arguments.cases) };
+    if let Ok(style) = ProgressStyle::with_template("{pos}/{len} scenes, {elapsed}, {eta} left {bar:40}") {
+        bar.set_style(style);
+    }
+    let report = stress::run(arguments.cases, arguments.seed, &|| bar.inc(1))?;
+    bar.finish_and_clear();
+    if arguments.json.json {
+        super::print_json(&report)?;
+    } else {
+        super::print(&table(&report))?;
+    }
+    Ok(if report.failures.is_empty() { ExitStatus::Pass } else { ExitStatus::Solver })
+}
+
+fn table(report: &StressReport) -> String {
+    let mut lines = vec![format!(
+        "{} scenes from seed {}: {} failed; {} compared with an independent solution, {} with more than one contact",
+        report.cases,
+        report.seed,
+        report.failures.len(),
+        report.compared,
+        report.recontacts
+    )];
+    for (name, worst) in &report.worst {
+        let bound = worst.bound.map_or_else(String::new, |b| format!(" (bound {b:.0e})"));
+        lines.push(format!("  worst {name:<20} {:>9.2e}{bound}, seed {}", worst.value, worst.seed));
+    }
+    for failure in &report.failures {
+        lines.push(format!("  {}\n    {}", failure.reason, failure.case));
+        lines.push(format!("    impactcheck stress --cases 1 --seed {}", failure.seed));
+    }
+    lines.join("\n")
+}

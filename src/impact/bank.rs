@@ -1,0 +1,212 @@
+//! All oscillators of a system side by side, so that one instruction serves several of them.
+//!
+//! [`Oscillator`] holds the mathematics of one oscillator; here are the same moments for a block of [`LANES`] at a
+//! time. Nothing depends on the order of the oscillators; the last block is filled up with rigid coordinates no
+//! contact acts on, which stay at rest.
+
+use super::collocation::STAGES;
+use super::duhamel::{MOMENTS, Oscillator};
+use super::system::System;
+use bytemuck::cast;
+use wide::{f64x4, u64x4};
+
+/// Oscillators in a block.
+pub const LANES: usize = 4;
+/// Quarter turns up to which [`sin_cos`] reduces its argument exactly.
+const MAX_ANGLE: f64 = 1e8;
+/// omega t below which the power series is used (as in [`Oscillator::moments`]).
+const SERIES: f64 = 2.0;
+/// 1/n! for n = 0 ...
+const INVERSE_FACTORIAL: [f64; 27] = {
+    let mut table = [1.0; 27];
+    let mut n = 1;
+    while n < table.len() {
+        table[n] = table[n - 1] / n as f64;
+        n += 1;
+    }
+    table
+};
+
+/// The oscillators of a [`System`] and what the contacts see of them, in blocks. Each of shape (blocks).
+#[derive(Debug, Clone)]
+pub struct Bank {
+    oscillators: Vec<[Oscillator; LANES]>,
+    omega: Vec<f64x4>,
+    /// omega^2.
+    pub stiffness: Vec<f64x4>,
+    /// 1/omega^2; 0 for a rigid motion, whose moments never divide by it.
+    flexibility: Vec<f64x4>,
+    /// 2 alpha.
+    pub damping: Vec<f64x4>,
+    /// Whether a block has any damping.
+    damped: Vec<bool>,
+    /// Approach of each contact per unit of each coordinate.
+    pub approach: [Vec<f64x4>; 2],
+}
+
+impl Bank {
+    /// The oscillators of `system`.
+    pub fn new(system: &System) -> Self {
+        let rest = Oscillator { omega: 0.0, alpha: 0.0 };
+        let oscillators: Vec<[Oscillator; LANES]> = system
+            .oscillators
+            .chunks(LANES)
+            .map(|chunk| std::array::from_fn(|i| chunk.get(i).copied().unwrap_or(rest)))
+            .collect();
+        let each = |value: fn(&Oscillator) -> f64| -> Vec<f64x4> {
+            oscillators.iter().map(|block| f64x4::from(block.map(|o| value(&o)))).collect()
+        };
+        Self {
+            omega: each(|o| o.omega),
+            stiffness: each(|o| o.omega * o.omega),
+            flexibility: each(|o| if o.omega > 0.0 { 1.0 / (o.omega * o.omega) } else { 0.0 }),
+            damping: each(|o| 2.0 * o.alpha),
+            damped: oscillators.iter().map(|block| block.iter().any(|o| o.alpha > 0.0)).collect(),
+            approach: [in_blocks(&system.approach[0]), in_blocks(&system.approach[1])],
+            oscillators,
+        }
+    }
+
+    /// Number of blocks.
+    pub fn blocks(&self) -> usize {
+        self.omega.len()
+    }
+
+    /// The moments of block `k` at time `t` > 0, as [`Oscillator::moments`]; `powers` are t^p / p! for p < STAGES.
+    #[inline(always)]
+    pub fn moments(&self, k: usize, t: f64, powers: &[f64; STAGES]) -> [f64x4; MOMENTS] {
+        let angle = self.omega[k] * t;
+        if self.damped[k] || angle.simd_lt(f64x4::splat(MAX_ANGLE)).to_bitmask() != 0b1111 {
+            return self.one_by_one(k, t);
+        }
+        match angle.simd_lt(f64x4::splat(SERIES)).to_bitmask() {
+            0b1111 => self.series(k, t, powers, angle * angle),
+            0 => self.closed_form(k, powers, angle),
+            _ => {
+                let small = angle.simd_lt(f64x4::splat(SERIES));
+                let (near, far) =
+                    (self.series(k, t, powers, angle * angle), self.closed_form(k, powers, angle));
+                std::array::from_fn(|p| small.select(near[p], far[p]))
+            }
+        }
+    }
+
+    /// Small omega t: S_(p-2) = t^p c_p with Stumpff's functions c_p = sum of (-(omega t)^2)^m / (p + 2m)! for the two
+    /// highest, recurrence downwards.
+    #[inline(always)]
+    fn series(&self, k: usize, t: f64, powers: &[f64; STAGES], square: f64x4) -> [f64x4; MOMENTS] {
+        let stumpff = |p: usize| {
+            let mut sum = f64x4::ZERO;
+            for m in (0..=10).rev() {
+                sum = f64x4::splat(INVERSE_FACTORIAL[p + 2 * m]) - square * sum;
+            }
+            sum
+        };
+        let mut moments = [f64x4::ZERO; MOMENTS];
+        let high = powers[STAGES - 1] / INVERSE_FACTORIAL[STAGES - 1] * t;
+        moments[MOMENTS - 2] = stumpff(MOMENTS - 2) * high;
+        moments[MOMENTS - 1] = stumpff(MOMENTS - 1) * (high * t);
+        for p in (0..STAGES).rev() {
+            moments[p] = f64x4::splat(powers[p]) - self.stiffness[k] * moments[p + 2];
+        }
+        moments
+    }
+
+    /// Large omega t: impulse response in closed form, recurrence upwards.
+    #[inline(always)]
+    fn closed_form(&self, k: usize, powers: &[f64; STAGES], angle: f64x4) -> [f64x4; MOMENTS] {
+        let (sine, cosine) = sin_cos(angle);
+        let flexibility = self.flexibility[k];
+        let mut moments = [f64x4::ZERO; MOMENTS];
+        moments[0] = cosine;
+        moments[1] = sine * self.omega[k] * flexibility;
+        for p in 0..STAGES {
+            moments[p + 2] = (f64x4::splat(powers[p]) - moments[p]) * flexibility;
+        }
+        moments
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn one_by_one(&self, k: usize, t: f64) -> [f64x4; MOMENTS] {
+        let moments = self.oscillators[k].map(|oscillator| oscillator.moments(t));
+        std::array::from_fn(|p| f64x4::from(moments.map(|m| m[p])))
+    }
+
+    /// Approaches of both contacts, without their gaps, at the coordinates `q`.
+    #[inline]
+    pub fn approaches(&self, q: &[f64x4]) -> [f64; 2] {
+        let (b0, b1) = (&self.approach[0][..q.len()], &self.approach[1][..q.len()]);
+        let (mut first, mut second) = (f64x4::ZERO, f64x4::ZERO);
+        for k in 0..q.len() {
+            first += b0[k] * q[k];
+            second += b1[k] * q[k];
+        }
+        [first.reduce_add(), second.reduce_add()]
+    }
+}
+
+/// `values` in blocks, filled up with zeros.
+pub fn in_blocks(values: &[f64]) -> Vec<f64x4> {
+    values
+        .chunks(LANES)
+        .map(|chunk| f64x4::from(std::array::from_fn(|i| chunk.get(i).copied().unwrap_or(0.0))))
+        .collect()
+}
+
+/// Sine and cosine of 0 <= x < [`MAX_ANGLE`]: reduction by quarter turns in three parts (Cody and Waite), polynomials of
+/// Cephes. The library's own also treats signs, infinities and NaN, at twice the cost.
+#[inline(always)]
+fn sin_cos(x: f64x4) -> (f64x4, f64x4) {
+    const SINE: [f64; 6] = [
+        -1.66666666666666307295E-1,
+        8.33333333332211858878E-3,
+        -1.98412698295895385996E-4,
+        2.75573136213857245213E-6,
+        -2.50507477628578072866E-8,
+        1.58962301576546568060E-10,
+    ];
+    const COSINE: [f64; 6] = [
+        4.16666666666665929218E-2,
+        -1.38888888888730564116E-3,
+        2.48015872888517045348E-5,
+        -2.75573141792967388112E-7,
+        2.08757008419747316778E-9,
+        -1.13585365213876817300E-11,
+    ];
+    const QUARTER: [f64; 3] = [1.5707963109016418, 1.5893254712295857e-8, 6.123233995736766e-17];
+    // adding it rounds to an integer, which then stands in the lowest bits
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    let shifted = x * f64x4::splat(std::f64::consts::FRAC_2_PI) + f64x4::splat(ROUND);
+    let quarters: u64x4 = cast(shifted);
+    let n = shifted - f64x4::splat(ROUND);
+    let r = ((x - n * QUARTER[0]) - n * QUARTER[1]) - n * QUARTER[2];
+    let square = r * r;
+    let polynomial = |coefficients: &[f64; 6]| {
+        coefficients.iter().rev().fold(f64x4::ZERO, |sum, c| sum * square + f64x4::splat(*c))
+    };
+    let sine = r + r * square * polynomial(&SINE);
+    let cosine = (f64x4::ONE - square * 0.5) + square * square * polynomial(&COSINE);
+    let one = u64x4::splat(1);
+    let swap: f64x4 = cast(u64x4::splat(0) - (quarters & one));
+    let sign = |turns: u64x4| -> f64x4 { cast((turns & u64x4::splat(2)) << 62) };
+    (swap.select(cosine, sine) ^ sign(quarters), swap.select(sine, cosine) ^ sign(quarters + one))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn sine_and_cosine_to_the_last_places() {
+        for i in 0..4000 {
+            let x = 1.003_f64.powi(i) * 1e-3;
+            let (sine, cosine) = sin_cos(f64x4::splat(x));
+            if x < 1e8 {
+                assert_relative_eq!(sine.to_array()[0], x.sin(), epsilon = 4e-16);
+                assert_relative_eq!(cosine.to_array()[3], x.cos(), epsilon = 4e-16);
+            }
+        }
+    }
+}

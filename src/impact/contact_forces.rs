@@ -1,0 +1,188 @@
+//! The forces of a step: what both contacts answer at its Gauss points, by sweeps from the first to the last.
+//!
+//! The approach at Gauss point j depends on the forces at all of them, but hardly on the later ones (the bodies
+//! answer to the past), so that sweeps in the order of time, each with the newest forces, converge quickly. With a
+//! residual flexibility every visit of a point does one Newton step of the contacts' own small system, from
+//! the Hertz approaches of the visit before.
+
+use super::bank::Bank;
+use super::collocation::{Collocation, POINTS, Points, STAGES, Stages, StepTable, horner};
+use super::system::System;
+use wide::f64x4;
+
+/// Sweeps after which a step counts as too long.
+const MAX_SWEEPS: usize = 30;
+/// Relative error of a force at which sweeps end at the latest.
+const FORCE_ERROR: f64 = 1e-6;
+/// Sweeps after which the contacts' own system is solved fully at every visit.
+const MAX_NEWTON_SWEEPS: usize = 12;
+
+/// Course of both contacts over one step, at its start, Gauss points and end.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Course {
+    /// Length of the step in s; 0 before the first.
+    pub h: f64,
+    /// Modal approach, on which the force works, m.
+    pub approach: [Points; 2],
+    /// Patches (see [`System::contact`]), positive where the bodies touch, m.
+    pub local_approach: [Points; 2],
+    /// Force in N.
+    pub force: [Points; 2],
+}
+
+impl Course {
+    /// Values at the end: modal approaches in m, local approaches in m, forces in N.
+    #[inline(always)]
+    pub fn end(&self) -> [[f64; 2]; 3] {
+        [&self.approach, &self.local_approach, &self.force].map(|rows| rows.map(|row| row[POINTS - 1]))
+    }
+
+    /// Forces at the Gauss points in N.
+    #[inline(always)]
+    pub fn stages(&self) -> [Stages; 2] {
+        self.force.map(|row| std::array::from_fn(|j| row[j + 1]))
+    }
+}
+
+/// The solver of the steps of one run.
+#[derive(Debug)]
+pub struct StepSolver<'a> {
+    pub system: &'a System,
+    pub collocation: &'a Collocation,
+    pub bank: Bank,
+    /// Factor by which a sweep reduced the change of the forces lately.
+    contraction: f64,
+}
+
+/// Unknowns of a step at its Gauss points.
+struct Unknowns {
+    approach: [Stages; 2],
+    local: [Stages; 2],
+    force: [Stages; 2],
+}
+
+impl<'a> StepSolver<'a> {
+    /// For the contacts and bodies of `system`.
+    pub fn new(system: &'a System, collocation: &'a Collocation) -> Self {
+        Self { system, collocation, bank: Bank::new(system), contraction: 1.0 }
+    }
+
+    /// Solves a step of the length of `table` that follows on `before`, from the state `now` into `next`; `None` if
+    /// the sweeps do not settle within `force_error` N or the contact has no equilibrium.
+    pub fn solve(
+        &mut self,
+        table: &StepTable,
+        before: &Course,
+        now: (&[f64x4], &[f64x4]),
+        next: (&mut [f64x4], &mut [f64x4]),
+        force_error: f64,
+    ) -> Option<Course> {
+        let free = table.free_approach(&self.bank, self.system.gap, now.0, now.1);
+        let guess = self.guess(before, table.h).unwrap_or(free);
+        let solved = match self.system.residual {
+            None => self
+                .sweep(table, &free, guess, MAX_SWEEPS, force_error, |y, _| Some((y, self.system.forces(y)))),
+            Some(residual) => {
+                let laws = &self.system.laws;
+                let newton = |y: [f64; 2], p: [f64; 2]| {
+                    let p = residual.newton(laws, y, p)?;
+                    Some((p, residual.forces(laws, p)))
+                };
+                let full = |y: [f64; 2], _: [f64; 2]| residual.solve(laws, y, y);
+                self.sweep(table, &free, guess, MAX_NEWTON_SWEEPS, force_error, newton)
+                    .or_else(|| self.sweep(table, &free, free, MAX_SWEEPS, force_error, full))
+            }
+        };
+        let (unknowns, contraction) = solved?;
+        self.contraction = contraction;
+        let end = table.advance(&self.bank, &unknowns.force, now, next);
+        let end_approach = [end[0] - self.system.gap[0], end[1] - self.system.gap[1]];
+        let last = unknowns.local.map(|p| p[STAGES - 1]);
+        let (end_local, end_force) = self
+            .system
+            .contact(end_approach, last)
+            .or_else(|| self.system.contact(end_approach, end_approach))?;
+        let join = |start: [f64; 2], stages: &[Stages; 2], end: [f64; 2]| -> [Points; 2] {
+            std::array::from_fn(|i| {
+                std::array::from_fn(|p| match p {
+                    0 => start[i],
+                    _ if p == POINTS - 1 => end[i],
+                    _ => stages[i][p - 1],
+                })
+            })
+        };
+        let [approach, local, force] = before.end();
+        Some(Course {
+            h: table.h,
+            approach: join(approach, &unknowns.approach, end_approach),
+            local_approach: join(local, &unknowns.local, end_local),
+            force: join(force, &unknowns.force, end_force),
+        })
+    }
+
+    /// Sweeps until the forces are right to `force_error` N; `law` gives the local approaches and the forces at a modal
+    /// approach, from the local approaches of the visit before. Gives also the contraction of the last sweeps.
+    #[inline(always)]
+    fn sweep(
+        &self,
+        table: &StepTable,
+        free: &[Stages; 2],
+        local: [Stages; 2],
+        max_sweeps: usize,
+        force_error: f64,
+        law: impl Fn([f64; 2], [f64; 2]) -> Option<([f64; 2], [f64; 2])>,
+    ) -> Option<(Unknowns, f64)> {
+        let mut force = [[0.0; STAGES]; 2];
+        for j in 0..STAGES {
+            [force[0][j], force[1][j]] = self.system.forces([local[0][j], local[1][j]]);
+        }
+        let mut unknowns = Unknowns { approach: *free, local, force };
+        let [own0, mutual, own1] = &table.coupling;
+        let (mut contraction, mut earlier) = (self.contraction, f64::INFINITY);
+        for _ in 0..max_sweeps {
+            let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
+            for j in 0..STAGES {
+                let [f0, f1] = &unknowns.force;
+                let (mut y0, mut y1) = (free[0][j], free[1][j]);
+                // the newest force last: all else can be summed up before it is known
+                for l in (j..STAGES).chain(0..j) {
+                    y0 -= own0[j][l] * f0[l] + mutual[j][l] * f1[l];
+                    y1 -= mutual[j][l] * f0[l] + own1[j][l] * f1[l];
+                }
+                let (d, f) = law([y0, y1], [unknowns.local[0][j], unknowns.local[1][j]])?;
+                for (i, y) in [y0, y1].into_iter().enumerate() {
+                    change = change.max((f[i] - unknowns.force[i][j]).abs());
+                    largest = largest.max(f[i]);
+                    unknowns.approach[i][j] = y;
+                    unknowns.local[i][j] = d[i];
+                    unknowns.force[i][j] = f[i];
+                }
+            }
+            if !change.is_finite() {
+                return None;
+            }
+            if earlier.is_finite() {
+                contraction = change / earlier;
+            }
+            // in a very short step any force gives the right impulse, but not the right energy
+            if change * contraction.min(1.0) <= force_error.min(FORCE_ERROR * largest) {
+                return Some((unknowns, contraction));
+            }
+            earlier = change;
+        }
+        None
+    }
+
+    /// Local approaches at the Gauss points of a step of `h` s, extrapolated from the step before; `None` if there is
+    /// none, or none near enough.
+    fn guess(&self, before: &Course, h: f64) -> Option<[Stages; 2]> {
+        if h > 2.5 * before.h {
+            return None;
+        }
+        let ratio = h / before.h;
+        Some(before.local_approach.map(|values| {
+            let polynomial = self.collocation.through(&values);
+            self.collocation.nodes.map(|node| horner(&polynomial, 1.0 + node * ratio))
+        }))
+    }
+}

@@ -1,0 +1,154 @@
+//! A random impact over the whole admissible range.
+
+use crate::analytical::hertz::HertzImpact;
+use crate::body::ModalBody;
+use crate::body::kirchhoff::UnitPlate;
+use crate::error::Result;
+use crate::impact::system::System;
+use crate::scene::{Edge, Inner, Material, Outer, Plate, PlateImpact, Shape};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+/// Most modes of a case, and the numbers for which eigenproblems are solved; a case takes the lowest of the next.
+const TIERS: [usize; 3] = [16, 64, 256];
+/// Poisson's ratios of plates: each is an eigenproblem of its own.
+const PLATE_POISSON: [f64; 5] = [-0.9, -0.2, 0.0, 0.3, 0.499];
+/// Length of a run in durations of a Hertz contact.
+const DURATIONS: f64 = 6.0;
+
+/// Modes of plates of unit radius, solved when they are first asked for.
+#[derive(Default)]
+pub struct UnitPlates(Mutex<HashMap<(Edge, usize, usize), Arc<UnitPlate>>>);
+
+impl UnitPlates {
+    fn get(&self, edge: Edge, poisson: usize, tier: usize) -> Result<Arc<UnitPlate>> {
+        // a clamped plate's modes do not depend on Poisson's ratio beyond its rigidity, but the type checks it
+        let key = (edge, poisson, tier);
+        let mut plates = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(plate) = plates.get(&key) {
+            return Ok(plate.clone());
+        }
+        let plate = Arc::new(UnitPlate::new(edge, PLATE_POISSON[poisson], TIERS[tier])?);
+        plates.insert(key, plate.clone());
+        Ok(plate)
+    }
+}
+
+/// One impact.
+pub struct Case {
+    /// Seed it was drawn from.
+    pub seed: u64,
+    /// In words.
+    pub description: String,
+    /// The bodies.
+    pub system: System,
+    /// End of the run in s.
+    pub end_time: f64,
+}
+
+impl Case {
+    /// Draws the case of `seed`. Fluid: a scene's fluid changes frequencies and damping, which are drawn freely here, and
+    /// adds the squeeze film's force, which is to be drawn here as soon as a [`System`] has one.
+    ///
+    /// # Errors
+    /// If the plate's eigenproblem can't be solved.
+    pub fn draw(seed: u64, plates: &UnitPlates) -> Result<Self> {
+        let mut random = Random(fastrand::Rng::with_seed(seed));
+        let mut material = |name: &str, poisson_ratio: f64| Material {
+            name: name.into(),
+            youngs_modulus: random.log(1e6, 1e12),
+            poisson_ratio,
+            density: random.log(500.0, 2e4),
+        };
+        let (plate_material, outer_material, inner_material) =
+            (material("plate", 0.0), material("outer", 0.3), material("inner", 0.3));
+        let poisson = random.0.usize(0..PLATE_POISSON.len());
+        let mut body = |mut material: Material| {
+            material.poisson_ratio = random.uniform(-0.99, 0.499);
+            material
+        };
+        let (outer_material, inner_material) = (body(outer_material), body(inner_material));
+        let edge = [Edge::Clamped, Edge::SimplySupported, Edge::Free][random.0.usize(0..3)];
+        let radius = random.log(1e-3, 0.1);
+        let damping_ratio = match random.0.usize(0..4) {
+            0 => random.log(1e-4, 0.3),
+            1 => random.log(0.3, 20.0),
+            _ => 0.0,
+        };
+        let plate = Plate {
+            radius,
+            thickness: radius * random.log(0.002, 2.0),
+            edge,
+            material: Material { poisson_ratio: PLATE_POISSON[poisson], ..plate_material },
+            damping_ratio,
+        };
+        let outer_shape = Shape::Sphere { radius: radius * random.log(0.02, 2.0) };
+        let outer_mass = outer_shape.mass(&outer_material);
+        let mass_ratio = random.log(1e-4, 1e4);
+        let inner_shape = Shape::Compact {
+            mass: outer_mass * mass_ratio,
+            tip_radius: outer_shape.tip_radius() * random.log(0.05, 20.0),
+        };
+        let speed = random.log(1e-4, 50.0);
+        let outer = Outer { shape: outer_shape, material: outer_material, speed };
+        let modes = (random.log(1.0, 257.0) as usize).clamp(1, TIERS[2]);
+        let mut setup = PlateImpact {
+            plate,
+            outer,
+            inner: Inner { shape: inner_shape, material: inner_material, gap: 0.0 },
+            fluid: None,
+        };
+        let tier = TIERS.iter().position(|tier| *tier >= modes).unwrap_or(TIERS.len() - 1);
+        let mut body = lowest(plates.get(edge, poisson, tier)?.scale(&setup.plate), modes);
+        let dry = System::new(&setup, &body, [0.0; 2]);
+        let hit = HertzImpact { mass: outer_mass, speed, stiffness: dry.laws[0].stiffness };
+        let (approach, force) = (hit.approach_peak(), hit.force_peak());
+        if random.0.bool() {
+            setup.inner.gap = approach * random.log(1e-4, 10.0);
+        }
+        let mut tips = [0.0; 2];
+        if random.0.u8(0..3) == 0 {
+            // a residual flexibility up to that of the contacts themselves, positive definite
+            let flexibility = approach / force * random.log(1e-3, 1.0);
+            let mutual = random.uniform(-0.9, 0.9);
+            body.residual = [[flexibility, mutual * flexibility], [mutual * flexibility, flexibility]];
+            tips = [flexibility * random.uniform(0.0, 1.0), flexibility * random.uniform(0.0, 1.0)];
+        }
+        let system = System::new(&setup, &body, tips);
+        let end_time = DURATIONS * hit.duration() + setup.inner.gap / speed;
+        let description = format!(
+            "{edge:?} plate R {:.3e} m, t/R {:.3e}, E {:.1e} Pa, damping {:.2e}, {modes} modes; outer {:.2e} kg at {speed:.2e} m/s; inner {mass_ratio:.2e} of it, gap {:.1e} m; residual {}",
+            setup.plate.radius,
+            setup.plate.thickness / setup.plate.radius,
+            setup.plate.material.youngs_modulus,
+            setup.plate.damping_ratio,
+            outer_mass,
+            setup.inner.gap,
+            system.residual.is_some(),
+        );
+        Ok(Self { seed, description, system, end_time })
+    }
+}
+
+/// `body` with its rigid motion and the `modes` lowest elastic modes.
+fn lowest(mut body: ModalBody, modes: usize) -> ModalBody {
+    let rigid = body.omega.iter().filter(|w| **w == 0.0).count();
+    body.omega.truncate(rigid + modes);
+    body.damping_ratio.truncate(rigid + modes);
+    body.participation.truncate(rigid + modes);
+    body
+}
+
+/// Random numbers over ranges.
+struct Random(fastrand::Rng);
+
+impl Random {
+    fn uniform(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.0.f64()
+    }
+
+    /// Evenly over the logarithm.
+    fn log(&mut self, low: f64, high: f64) -> f64 {
+        (self.uniform(low.ln(), high.ln())).exp()
+    }
+}
