@@ -34,9 +34,21 @@ def _parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--courant", type=float, default=0.9, help="time step over the critical one (0.9)"
     )
+    solve.add_argument(
+        "--target-error",
+        type=float,
+        metavar="X",
+        help="refine until the relative 95 %% band of efficiency and force peaks is at most this",
+    )
     modes = commands.add_parser("modes", help="axisymmetric eigenfrequencies of the plate")
     modes.add_argument("--scene", type=Path, required=True)
     modes.add_argument("--count", type=int, default=8)
+    bands = commands.add_parser("bands", help="bands of a middling mesh against a finer one")
+    bands.add_argument("--scene", type=Path, nargs="+", required=True, help="or provenance.json")
+    bands.add_argument("--out", type=Path, required=True, help="JSON; a table .md beside it")
+    cost = commands.add_parser("cost", help="cost against error over meshes, limits of the machine")
+    cost.add_argument("--scene", type=Path, required=True)
+    cost.add_argument("--out", type=Path, required=True, help="JSON; a figure .svg beside it")
     commands.add_parser("versions", help="versions of everything a result depends on")
     return parser
 
@@ -50,9 +62,19 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     from .scene import read_scene
 
-    scene = read_scene(arguments.scene)
     try:
-        if arguments.command == "modes":
+        if arguments.command == "bands":
+            from .truth import report
+
+            if not report(arguments.scene, arguments.out, Progress()):
+                raise SolverError("in some quantity fewer than nine of ten scenes keep their band")
+            return
+        scene = read_scene(arguments.scene)
+        if arguments.command == "cost":
+            from .cost import cost
+
+            print(json.dumps(cost(scene, arguments.out, Progress(sys.stderr))["limits"], indent=2))
+        elif arguments.command == "modes":
             from .meshing import modal_plate_mesh
             from .modal import plate_modes
 
@@ -82,6 +104,7 @@ def _run(arguments: argparse.Namespace) -> None:
                 arguments.resolution,
                 courant=arguments.courant,
                 stress_times=arguments.stress_at,
+                target_error=arguments.target_error,
             )
     except ImportError as error:
         raise SolverError(

@@ -15,8 +15,9 @@ import numpy as np
 import scipy.sparse
 import ufl
 
+from .elements import ElementMatrices, element_matrices
 from .fenicsx import Domain
-from .mesh import BodyMesh, Floats
+from .mesh import BodyMesh, Floats, Ints
 from .scene import Material
 
 STRESS_COMPONENTS = ("stress_rr", "stress_tt", "stress_zz", "stress_rz")
@@ -36,43 +37,53 @@ def _stress(u: Any, r: Any, lame: Any, shear: Any) -> Any:
     )
 
 
-def _forms(domain: Domain, material: Material) -> tuple[Any, Any]:
+def _measure(domain: Domain, degree: int) -> Any:
+    # Gauss points, two per direction for bilinear elements: full integration, none on the axis.
+    return ufl.Measure("dx", domain=domain.mesh, metadata={"quadrature_degree": 2 * degree + 1})
+
+
+def _stiffness_form(domain: Domain, material: Material, degree: int = 1) -> Any:
     u, v = ufl.TrialFunction(domain.space), ufl.TestFunction(domain.space)
     r = ufl.SpatialCoordinate(domain.mesh)[0]
-    # Gauss points, two per direction for bilinear elements: full integration, none on the axis.
-    measure = ufl.Measure(
-        "dx", domain=domain.mesh, metadata={"quadrature_degree": 2 * domain.degree + 1}
-    )
-    weight = 2.0 * math.pi * r
     lame, shear = (domain.constant(material.lame_lambda), domain.constant(material.shear_modulus))
+    weight = 2.0 * math.pi * r
+    return ufl.inner(_stress(u, r, lame, shear), _strain(v, r)) * weight * _measure(domain, degree)
+
+
+def _mass_form(domain: Domain, material: Material, degree: int) -> Any:
+    u, v = ufl.TrialFunction(domain.space), ufl.TestFunction(domain.space)
+    r = ufl.SpatialCoordinate(domain.mesh)[0]
     density = domain.constant(material.density)
-    stiffness = ufl.inner(_stress(u, r, lame, shear), _strain(v, r)) * weight * measure
-    mass = density * ufl.inner(u, v) * weight * measure
-    return stiffness, mass
+    return density * ufl.inner(u, v) * 2.0 * math.pi * r * _measure(domain, degree)
 
 
 @dataclass(frozen=True)
 class BodyMatrices:
-    """Matrices of one body of bilinear elements, in the body's own node numbering."""
+    """Matrices of one body, in the body's own node numbering."""
 
     stiffness: scipy.sparse.csr_matrix
     """(2n, 2n), row 2 * node + component (r, z), N/m."""
     mass: Floats
     """(n,) row sums of the consistent mass matrix, kg; the same for both components."""
+    elements: ElementMatrices
+
+
+def scatter(nodes: Ints, stiffness: Floats, count: int) -> scipy.sparse.csr_matrix:
+    """(2 count, 2 count) sum of element matrices (m, 8, 8) over the elements' ``nodes`` (m, 4)."""
+    dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(-1, 8)
+    rows = np.repeat(dofs, 8, axis=1).ravel()
+    columns = np.tile(dofs, (1, 8)).ravel()
+    shape = (2 * count, 2 * count)
+    return scipy.sparse.coo_matrix((stiffness.ravel(), (rows, columns)), shape=shape).tocsr()
 
 
 def assemble(body: BodyMesh, material: Material) -> BodyMatrices:
-    """Assemble stiffness and lumped mass of a body with dolfinx."""
-    domain = Domain(body)
-    stiffness_form, mass_form = _forms(domain, material)
-    nodes = domain.body_nodes()
-    permutation = np.empty(2 * nodes.size, dtype=np.int64)
-    permutation[2 * nodes] = 2 * np.arange(nodes.size)
-    permutation[2 * nodes + 1] = 2 * np.arange(nodes.size) + 1
-    stiffness = domain.matrix(stiffness_form)[permutation][:, permutation]
-    row_sums = np.asarray(domain.matrix(mass_form).sum(axis=1)).ravel()
-    mass = row_sums[permutation][1::2]
-    return BodyMatrices(stiffness.tocsr(), np.ascontiguousarray(mass))
+    """Stiffness and lumped mass of a body: bilinear elements with incompatible modes."""
+    elements = element_matrices(body, material, _strain, _stiffness_form)
+    count = body.points.shape[0]
+    shares = np.bincount(elements.nodes.ravel(), elements.mass.ravel(), minlength=count)
+    mass = np.asarray(shares, dtype=np.float64)
+    return BodyMatrices(scatter(elements.nodes, elements.stiffness, count), mass, elements)
 
 
 def assemble_consistent(
@@ -83,8 +94,8 @@ def assemble_consistent(
     Rows 2 * node + component in dolfinx's numbering; for eigenmodes.
     """
     domain = Domain(body, degree)
-    stiffness, mass = _forms(domain, material)
-    return domain.matrix(stiffness), domain.matrix(mass), domain.points_of_nodes()
+    stiffness = domain.matrix(_stiffness_form(domain, material, degree))
+    return stiffness, domain.matrix(_mass_form(domain, material, degree)), domain.points_of_nodes()
 
 
 def cell_stress(body: BodyMesh, material: Material, displacement: Floats) -> Floats:

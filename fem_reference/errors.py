@@ -19,3 +19,7 @@ class SolverError(RunError):
     """The solver failed: unstable step, divergence, degenerate element, missing program."""
 
     exit_status = 12
+
+
+class DivergedError(SolverError):
+    """The time loop's energy grew without bound."""

@@ -17,15 +17,16 @@ from .contact import (
     peak_force,
 )
 from .ending import EndCheck
-from .errors import SolverError
+from .errors import DivergedError, SolverError
+from .levels import MOST_LEVELS, element_levels
 from .loop import Energies, Loop
 from .mesh import Floats
 from .system import BODIES, INNER, OUTER, System, critical_time_step
 
-PEAK_WINDOW_SAMPLES = 4
-"""Raw sampling intervals in the window of the peak force."""
+RAW_SAMPLES = 4
+"""Raw sampling intervals, about, in the window of the peak force."""
 
-CHUNK_SAMPLES = 64
+CHUNK_SAMPLES = 128
 """Raw samples between two looks at progress, energy and the end of the run."""
 
 LONGEST_RUN = 400.0
@@ -39,6 +40,23 @@ class Snapshot:
     time: float
     displacement: Floats
     """(n, 2), system numbering, m."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Velocities at the end of a run, and the ledger of momentum and energy."""
+
+    outer_velocity: float
+    inner_velocity: float
+    energies: Energies
+    initial_energy: float
+    energy_residual: float
+    """Energy that the ledger misses over the initial energy."""
+    contact_loss: float
+    """Energy the contact constraint took out over the initial energy."""
+    momentum_residual: float
+    """Momentum that the ledger misses over the initial momentum."""
+    support_impulse: float
 
 
 @dataclass(frozen=True)
@@ -56,17 +74,11 @@ class Run:
     critical_time_step: float
     steps: int
     loop_seconds: float
-    outer_velocity: float
-    inner_velocity: float
-    energies: Energies
-    initial_energy: float
-    energy_residual: float
-    """Energy that the ledger misses over the initial energy."""
-    contact_loss: float
-    """Energy the contact constraint took out over the initial energy."""
-    momentum_residual: float
-    """Momentum that the ledger misses over the initial momentum."""
-    support_impulse: float
+    processor_seconds: float
+    """As `loop_seconds`, without the time other programs had the processor."""
+    levels: tuple[int, ...]
+    """Nodes whose elements of each level of sub-cycling act."""
+    balance: Balance
     snapshots: tuple[Snapshot, ...]
 
 
@@ -77,6 +89,7 @@ def integrate(
     *,
     end_time: float | None = None,
     courant: float = 0.9,
+    most_levels: int = MOST_LEVELS,
     snapshot_times: tuple[float, ...] = (),
     on_progress: Callable[[float, str], None] = lambda done, message: None,
 ) -> Run:
@@ -88,6 +101,7 @@ def integrate(
         contact_duration: Hertz's, s; sets sampling and the chatter limit.
         end_time: s.
         courant: time step over the critical one.
+        most_levels: of sub-cycling (see `levels`); 1: every element at every step.
         snapshot_times: instants at which to keep all displacements, s.
         on_progress: called with the share done and a message.
 
@@ -101,9 +115,10 @@ def integrate(
             f"the time step {time_step:.6g} s is not between 0 and the critical time step "
             f"{critical:.6g} s; the Courant factor must be in (0, 1], it is {courant:g}"
         )
-    stride = max(
-        1, round(PEAK_WINDOW_FRACTION * contact_duration / PEAK_WINDOW_SAMPLES / time_step)
-    )
+    # Samples fall on steps at which all levels meet.
+    meeting = 2 ** int(element_levels(system, time_step, most_levels).max())
+    window = PEAK_WINDOW_FRACTION * contact_duration
+    stride = meeting * max(1, round(window / RAW_SAMPLES / time_step / meeting))
     if end_time is not None:
         # The last sample falls exactly on the end: the step shrinks by less than one part in 1000.
         samples_wanted = max(1, math.ceil(end_time / (stride * time_step) - 1e-9))
@@ -112,7 +127,7 @@ def integrate(
         samples_wanted = math.ceil(LONGEST_RUN * contact_duration / (stride * time_step))
     interval = stride * time_step
     split = max(1, round(CHATTER_FRACTION * contact_duration / time_step))
-    loop = Loop(system, time_step, speed, split)
+    loop = Loop(system, time_step, speed, split, most_levels)
     ended = EndCheck(system) if end_time is None else None
     initial_energy = 0.5 * system.body_mass(OUTER) * speed**2
     initial_momentum = -system.body_mass(OUTER) * speed
@@ -121,7 +136,7 @@ def integrate(
     rows: list[Floats] = []
     samples = 0
     started = time.perf_counter()
-    seconds = 0.0
+    seconds = processor = 0.0
     while True:
         while pending and pending[0] == samples:
             pending.pop(0)
@@ -131,14 +146,15 @@ def integrate(
         count = min(CHUNK_SAMPLES, samples_wanted - samples)
         if pending:
             count = min(count, pending[0] - samples)
-        chunk_started = time.perf_counter()
+        chunk_started = time.perf_counter(), time.process_time()
         rows.append(loop.run(count, stride))
-        seconds += time.perf_counter() - chunk_started
+        seconds += time.perf_counter() - chunk_started[0]
+        processor += time.process_time() - chunk_started[1]
         samples += count
         energies = loop.energies()
         total = sum(energies.total)
         if not total <= 10.0 * initial_energy:
-            raise SolverError(
+            raise DivergedError(
                 f"the solution diverged at {samples * interval:.4g} s: energy {total:.3g} J, "
                 f"at the start {initial_energy:.3g} J"
             )
@@ -153,68 +169,62 @@ def integrate(
         raise SolverError(
             f"a further contact is still possible at {samples * interval:.4g} s; set run.end_time"
         )
-    last_rows = loop.run(1, 1)
-    return _result(
-        loop,
-        np.vstack([*rows, last_rows]),
-        interval,
-        critical,
-        seconds,
-        initial_energy,
-        initial_momentum,
-        snapshots,
+    balance = _balance(loop, initial_energy, initial_momentum)
+    # The last sample needs one more step, which leaves the levels at different times.
+    in_contact = any(contact.force > 0.0 for contact in loop.state.contact)
+    all_rows = np.vstack([*rows, loop.run(1, 1)])
+    state, peak_window = loop.state, max(1, round(window / interval))
+    records = tuple(
+        _record(contact, pairs.radii, state.dt, all_rows[:, column], interval, peak_window)
+        for contact, pairs, column in zip(state.contact, system.contacts, (2, 7), strict=True)
+    )
+    return Run(
+        times=interval * np.arange(all_rows.shape[0]),
+        rows=all_rows,
+        contacts=(records[0], records[1]),
+        in_contact_at_end=in_contact,
+        time_step=state.dt,
+        critical_time_step=critical,
+        steps=state.step,
+        loop_seconds=seconds,
+        processor_seconds=processor,
+        levels=tuple(int(matrix.nodes.size) for matrix in loop.levels),
+        balance=balance,
+        snapshots=tuple(snapshots),
     )
 
 
-def _result(
-    loop: Loop,
-    rows: Floats,
-    interval: float,
-    critical: float,
-    seconds: float,
-    initial_energy: float,
-    initial_momentum: float,
-    snapshots: list[Snapshot],
-) -> Run:
+def _balance(loop: Loop, initial_energy: float, initial_momentum: float) -> Balance:
     system, state = loop.system, loop.state
     energies = loop.energies()
     work = sum(contact.work for contact in state.contact)
-    momenta = [
-        loop.mean_axial(loop.v, body) * system.body_mass(body) for body in range(len(BODIES))
-    ]
+    velocity = [loop.mean_axial(loop.v, body) for body in range(len(BODIES))]
+    momenta = [velocity[body] * system.body_mass(body) for body in range(len(BODIES))]
     # Three independent balances: all bodies against the support, each sphere against its contact.
     misses = [
         sum(momenta) - initial_momentum - state.support_impulse,
         momenta[OUTER] - initial_momentum - state.contact[0].impulse,
         momenta[INNER] + state.contact[1].impulse,
     ]
-    records = tuple(
-        _record(contact, pairs.radii, state.dt, rows[:, column], interval)
-        for contact, pairs, column in zip(state.contact, system.contacts, (2, 7), strict=True)
-    )
-    return Run(
-        times=interval * np.arange(rows.shape[0]),
-        rows=rows,
-        contacts=(records[0], records[1]),
-        in_contact_at_end=any(contact.force > 0.0 for contact in state.contact),
-        time_step=state.dt,
-        critical_time_step=critical,
-        steps=state.step,
-        loop_seconds=seconds,
-        outer_velocity=loop.mean_axial(loop.v, OUTER),
-        inner_velocity=loop.mean_axial(loop.v, INNER),
+    return Balance(
+        outer_velocity=velocity[OUTER],
+        inner_velocity=velocity[INNER],
         energies=energies,
         initial_energy=initial_energy,
         energy_residual=abs(sum(energies.total) - initial_energy - work) / initial_energy,
         contact_loss=-work / initial_energy,
         momentum_residual=max(abs(miss) for miss in misses) / abs(initial_momentum),
         support_impulse=state.support_impulse,
-        snapshots=tuple(snapshots),
     )
 
 
 def _record(
-    contact: kernel.Contact, radii: Floats, time_step: float, impulse: Floats, interval: float
+    contact: kernel.Contact,
+    radii: Floats,
+    time_step: float,
+    impulse: Floats,
+    interval: float,
+    peak_window: int,
 ) -> ContactRecord:
     stored = min(contact.intervals, kernel.MAX_INTERVALS)
     # The multiplier of step n acts from t_n - dt/2 to t_n + dt/2.
@@ -229,7 +239,7 @@ def _record(
         count=int(contact.intervals),
         end=intervals[-1][1] if intervals else None,
         intervals=intervals,
-        force_peak=peak_force(impulse, PEAK_WINDOW_SAMPLES, interval),
+        force_peak=peak_force(impulse, peak_window, interval),
         impulse=contact.impulse,
         work=contact.work,
         outermost_radius=float(radii[contact.outermost]) if contact.outermost >= 0 else 0.0,

@@ -54,7 +54,7 @@ def _interpolation_points(space: Any) -> Any:
 class Domain:
     """A body's mesh as dolfinx sees it, with its vector space of the given degree."""
 
-    def __init__(self, body: BodyMesh, degree: int = 1) -> None:
+    def __init__(self, body: BodyMesh, degree: int = 1, *, discontinuous: bool = False) -> None:
         # dolfinx numbers the corners of a quadrilateral row by row.
         cells = np.ascontiguousarray(body.quads[:, [0, 1, 3, 2]])
         element = _vector_element(1)
@@ -63,7 +63,8 @@ class Domain:
             self.mesh = create_mesh(MPI.COMM_SELF, cells, points, ufl.Mesh(element))
         except TypeError:  # since 0.10 the coordinate element comes before the points
             self.mesh = create_mesh(MPI.COMM_SELF, cells, ufl.Mesh(element), points)
-        self.space = _function_space(self.mesh, "Lagrange", degree, (2,))
+        family = "DQ" if discontinuous else "Lagrange"
+        self.space = _function_space(self.mesh, family, degree, (2,))
         self.degree = degree
 
     def points_of_nodes(self) -> Floats:
@@ -72,16 +73,26 @@ class Domain:
 
     def body_nodes(self) -> Ints:
         """(n,) for each node of a space of degree 1 the number of the same node in the body."""
-        geometry = self.mesh.geometry
-        cells = self.mesh.topology.index_map(2).size_local
-        links = geometry.dofmap
-        corner = np.array(
-            [links.links(c) if hasattr(links, "links") else links[c] for c in range(cells)]
-        )
-        dofs = np.array([self.space.dofmap.cell_dofs(c) for c in range(cells)])
+        dofs = self.cell_dofs()
         original = np.empty(dofs.max() + 1, dtype=np.int64)
-        original[dofs.ravel()] = np.asarray(geometry.input_global_indices)[corner.ravel()]
+        original[dofs.ravel()] = self.cell_corners().ravel()
         return original
+
+    def cell_dofs(self) -> Ints:
+        """(m, k) nodes of each cell, both in dolfinx's numbering."""
+        cells = self.mesh.topology.index_map(2).size_local
+        return np.array([self.space.dofmap.cell_dofs(c) for c in range(cells)], dtype=np.int64)
+
+    def cell_corners(self) -> Ints:
+        """(m, 4) the body's nodes at each dolfinx cell's corners, row by row."""
+        geometry = self.mesh.geometry
+        links = geometry.dofmap
+        if hasattr(links, "links"):
+            cells = self.mesh.topology.index_map(2).size_local
+            corner = np.array([links.links(c) for c in range(cells)])
+        else:
+            corner = np.asarray(links)
+        return np.asarray(np.asarray(geometry.input_global_indices, dtype=np.int64)[corner])
 
     def body_cells(self) -> Ints:
         """(m,) for each dolfinx cell the number of the same element in the body."""

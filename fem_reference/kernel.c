@@ -1,4 +1,5 @@
-/* Time loop of the explicit reference: central differences, lumped mass, kinematic contact.
+/* Time loop of the explicit reference: central differences, lumped mass, kinematic contact,
+ * sub-cycling by levels.
  *
  * One step, n -> n+1 (Carpenter, Taylor & Katona 1991, Int. J. Numer. Meth. Eng. 32, 103):
  *   predictor   v <- v_{n-1/2} - dt M^-1 K u_n,  u <- u_n + dt v
@@ -6,6 +7,12 @@
  *   multiplier  lambda = max(0, -g) / (dt^2 (1/m_s + 1/m_p))
  *   corrector   v_{n+1/2} = v + dt M^-1 G^T lambda,  u_{n+1} = u + dt^2 M^-1 G^T lambda
  * The multiplier is the contact force of the pair at t_n.
+ *
+ * Sub-cycling: every element has a level l, K = sum K_l, and K_l acts at every 2^l-th step only,
+ * with 2^l times the impulse (impulse form of the Verlet splitting: Tuckerman, Berne & Martyna
+ * 1992, J. Chem. Phys. 97, 1990; per element: Lew, Marsden, Ortiz & West 2003, Arch. Rational
+ * Mech. Anal. 167, 85). A node moves with the time step of its fastest element. Each K_l leaves a
+ * rigid motion alone, so momentum is kept to round-off whatever the levels.
  */
 #include <stdint.h>
 #include <string.h>
@@ -14,7 +21,6 @@ typedef double pair __attribute__((vector_size(16)));
 typedef int64_t pair_mask __attribute__((vector_size(16)));
 
 enum { MAX_INTERVALS = 256 };
-enum { OUTER = 0, PLATE = 1, INNER = 2 };
 
 typedef struct {
     int32_t pairs;
@@ -36,26 +42,40 @@ typedef struct {
     int32_t reserved2;
 } Contact;
 
+/* The elements of one level. Rows come in three groups: nodes that also have faster elements
+ * (they only receive the impulse), nodes that move with this level, and those of them on the
+ * support. Later rows never read the displacement of a row of the second and third group. */
+typedef struct {
+    int32_t shared;          /* end of the first group */
+    int32_t shared_fixed;    /* where in the first group the nodes on the support begin */
+    int32_t inner;           /* end of the second group */
+    int32_t rows;            /* end of the third group */
+    const int32_t *node;     /* (rows) */
+    const int32_t *row;      /* (rows + 1) first block of each row */
+    const int32_t *column;   /* node of each block: the row's own, then those of later rows */
+    const double *block;     /* (4 per block) 2x2, column by column; the upper half of K_l */
+} Level;
+
+enum { MAX_LEVELS = 16 };
+
 typedef struct {
     int64_t nodes;
-    const int64_t *row;      /* (nodes + 1) first block of each node */
-    const int32_t *column;   /* node of each block: the node itself, then its later neighbours */
-    const double *block;     /* (4 per block) 2x2, column by column; the upper half of K */
     const double *inverse;   /* (2 nodes) 1/m, zero where fixed */
     double *u;               /* (2 nodes) displacement */
     double *v;               /* (2 nodes) velocity at half steps */
-    double *f;               /* (2 nodes) K u of the last step */
-    double dt;
-    int64_t step;            /* steps done */
-    int32_t supports;
+    double *f;               /* (2 nodes) work space, zero between sweeps */
+    double dt;               /* of level 0, s */
+    int64_t step;            /* steps of level 0 done */
+    int32_t levels;
     int32_t contacts;
-    const int32_t *support;  /* nodes whose axial displacement is fixed */
     double support_impulse;  /* of the support on the bodies along z, N s */
     double *velocity_before; /* (all pairs) work space */
-    const double *mass;      /* (nodes) kg */
-    int64_t first[4];        /* first node of each body, then the number of nodes */
+    double body_mass[2];     /* of the spheres, kg */
+    double rigid_start[2];   /* their velocities at the start, m/s */
+    double rigid[2];         /* their rigid displacements, m: integrals of the impulse */
     int32_t centre[2];       /* the plate's centre nodes */
     Contact contact[2];
+    Level level[MAX_LEVELS];
 } State;
 
 static inline pair load(const double *x) {
@@ -78,32 +98,65 @@ static inline pair off_diagonal(const double *block, int64_t j, const double *x,
     return sum + first * x[2 * j] + second * x[2 * j + 1];
 }
 
-/* Row i of K x, complete once the rows before it have been done: adds the node's own and later
- * neighbours' part to what earlier rows left in y, and passes on to later rows what they need
- * (K is symmetric, only its upper half is stored and read). */
-static inline pair row_product(const int64_t *restrict row, const int32_t *restrict columns,
-                               const double *restrict blocks, const double *x, double *y,
-                               int64_t i) {
-    const double *block = blocks + 4 * row[i];
-    const int32_t *column = columns + row[i];
-    const int64_t count = row[i + 1] - row[i];
-    const pair xi = load(x + 2 * i);
-    pair sum = load(y + 2 * i) + load(block) * xi[0] + load(block + 2) * xi[1];
+/* Row i of K_l x for node n, complete once the rows before it have been done: adds the node's own
+ * and later neighbours' part to what earlier rows left in y, takes it out of y, and passes on to
+ * later rows what they need (K_l is symmetric, only its upper half is stored and read). */
+static inline pair row_product(const Level *l, const double *x, double *y, int64_t i, int64_t n) {
+    const double *block = l->block + 4 * (int64_t)l->row[i];
+    const int32_t *column = l->column + l->row[i];
+    const int32_t count = l->row[i + 1] - l->row[i];
+    const pair xi = load(x + 2 * n), zero = {0.0, 0.0};
+    pair sum = load(y + 2 * n) + load(block) * xi[0] + load(block + 2) * xi[1];
+    store(y + 2 * n, zero);
     if (count == 5) { /* inside a structured mesh: worth a loop without tests */
 #pragma GCC unroll 4
         for (int p = 1; p < 5; ++p) sum = off_diagonal(block + 4 * p, column[p], x, xi, y, sum);
     } else {
-        for (int64_t p = 1; p < count; ++p)
+        for (int32_t p = 1; p < count; ++p)
             sum = off_diagonal(block + 4 * p, column[p], x, xi, y, sum);
     }
-    store(y + 2 * i, sum);
     return sum;
 }
 
-/* y = K x */
-void stiffness_product(const State *s, const double *x, double *y) {
-    memset(y, 0, 2 * (size_t)s->nodes * sizeof *y);
-    for (int64_t i = 0; i < s->nodes; ++i) row_product(s->row, s->column, s->block, x, y, i);
+/* result += K x; needs f as work space. */
+void stiffness_product(const State *s, const double *x, double *result) {
+    for (int32_t k = 0; k < s->levels; ++k) {
+        const Level *l = &s->level[k];
+        for (int64_t i = 0; i < l->rows; ++i) {
+            const int64_t n = l->node[i];
+            store(result + 2 * n, load(result + 2 * n) + row_product(l, x, s->f, i, n));
+        }
+    }
+}
+
+/* The impulse of one level, and the motion of its nodes over the time step h of the level. */
+static void sweep(State *s, const Level *l, double h) {
+    const double *inverse = s->inverse;
+    double *u = s->u, *v = s->v, *f = s->f;
+    double reaction = 0.0;
+    int64_t i = 0;
+    for (; i < l->shared; ++i) {
+        const int64_t n = l->node[i];
+        const pair force = row_product(l, u, f, i, n);
+        store(v + 2 * n, load(v + 2 * n) - h * load(inverse + 2 * n) * force);
+        if (i >= l->shared_fixed) reaction += force[1];
+    }
+    for (; i < l->inner; ++i) {
+        const int64_t n = l->node[i];
+        const pair force = row_product(l, u, f, i, n);
+        const pair velocity = load(v + 2 * n) - h * load(inverse + 2 * n) * force;
+        store(v + 2 * n, velocity);
+        store(u + 2 * n, load(u + 2 * n) + h * velocity);
+    }
+    for (; i < l->rows; ++i) {
+        const int64_t n = l->node[i];
+        const pair force = row_product(l, u, f, i, n);
+        const pair velocity = load(v + 2 * n) - h * load(inverse + 2 * n) * force;
+        store(v + 2 * n, velocity);
+        store(u + 2 * n, load(u + 2 * n) + h * velocity);
+        reaction += force[1];
+    }
+    s->support_impulse += h * reaction;
 }
 
 /* Corrects the predicted displacements and velocities of a contact's nodes. */
@@ -140,15 +193,11 @@ static void correct(const State *s, Contact *c, const double *before) {
     }
 }
 
-/* One step: velocities to t_{n+1/2}, displacements to t_{n+1}. */
+/* One step of level 0: velocities to t_{n+1/2}, displacements to t_{n+1}; of higher levels too if
+ * theirs begins at t_n. Slower levels come first: they still need u_n of the faster nodes. */
 static void advance(State *s) {
     const double dt = s->dt;
-    const double *restrict inverse = s->inverse;
-    double *restrict u = s->u, *restrict v = s->v, *restrict f = s->f;
-    const int64_t nodes = s->nodes;
-    const int64_t *row = s->row;
-    const int32_t *column = s->column;
-    const double *block = s->block;
+    const double *v = s->v;
     double *before = s->velocity_before;
     for (int32_t c = 0; c < s->contacts; ++c) {
         const Contact *contact = &s->contact[c];
@@ -156,33 +205,19 @@ static void advance(State *s) {
             *before++ = contact->normal * (v[2 * (int64_t)contact->sphere[k] + 1]
                                            - v[2 * (int64_t)contact->plate[k] + 1]);
     }
-    memset(f, 0, 2 * (size_t)nodes * sizeof *f);
-    for (int64_t i = 0; i < nodes; ++i) {
-        const pair force = row_product(row, column, block, u, f, i);
-        /* No later row reads u of this node any more. */
-        const pair velocity = load(v + 2 * i) - dt * load(inverse + 2 * i) * force;
-        store(v + 2 * i, velocity);
-        store(u + 2 * i, load(u + 2 * i) + dt * velocity);
+    for (int32_t k = s->levels - 1; k >= 0; --k) {
+        const int64_t every = (int64_t)1 << k;
+        if (s->step % every == 0) sweep(s, &s->level[k], dt * (double)every);
     }
-    double reaction = 0.0;
-    for (int32_t k = 0; k < s->supports; ++k) reaction += f[2 * (int64_t)s->support[k] + 1];
-    s->support_impulse += dt * reaction;
     before = s->velocity_before;
     for (int32_t c = 0; c < s->contacts; ++c) {
-        correct(s, &s->contact[c], before);
-        before += s->contact[c].pairs;
+        Contact *contact = &s->contact[c];
+        correct(s, contact, before);
+        before += contact->pairs;
+        /* The mean velocity follows from the impulse alone; the ledger checks that. */
+        s->rigid[c] += dt * (s->rigid_start[c] + contact->normal * contact->impulse / s->body_mass[c]);
     }
     ++s->step;
-}
-
-/* Mass average of the axial component of x over the body's nodes. */
-static double mean(const State *s, const double *x, int32_t body) {
-    double sum = 0.0, mass = 0.0;
-    for (int64_t i = s->first[body]; i < s->first[body + 1]; ++i) {
-        sum += s->mass[i] * x[2 * i + 1];
-        mass += s->mass[i];
-    }
-    return sum / mass;
 }
 
 static double centre(const State *s, const double *x) {
@@ -190,23 +225,34 @@ static double centre(const State *s, const double *x) {
 }
 
 /* Advances by samples * stride steps and writes a row of 8 at the first step of each stride, all
- * at t_n: displacement, velocity and impulse so far of the outer sphere, displacement and velocity
- * of the plate's centre, and the inner sphere's three. Velocities are the mean of both half steps. */
+ * at t_n: rigid displacement, velocity and impulse so far of the outer sphere, displacement and
+ * velocity of the plate's centre, and the inner sphere's three. Velocities are the mean of both half
+ * steps. */
 void run(State *s, int64_t samples, int64_t stride, double *row) {
     for (int64_t j = 0; j < samples; ++j, row += 8) {
-        row[0] = mean(s, s->u, OUTER);
+        const double last[2] = {s->contact[0].impulse, s->contact[1].impulse};
+        row[0] = s->rigid[0];
         row[3] = centre(s, s->u);
-        row[5] = mean(s, s->u, INNER);
-        row[1] = mean(s, s->v, OUTER);
+        row[5] = s->rigid[1];
         row[4] = centre(s, s->v);
-        row[6] = mean(s, s->v, INNER);
         advance(s);
-        row[1] = 0.5 * (row[1] + mean(s, s->v, OUTER));
         row[4] = 0.5 * (row[4] + centre(s, s->v));
-        row[6] = 0.5 * (row[6] + mean(s, s->v, INNER));
-        row[2] = s->contact[0].impulse - 0.5 * s->dt * s->contact[0].force;
-        row[7] = s->contact[1].impulse - 0.5 * s->dt * s->contact[1].force;
+        for (int c = 0; c < 2; ++c) {
+            const Contact *contact = &s->contact[c];
+            const double impulse = 0.5 * (last[c] + contact->impulse);
+            row[c == 0 ? 2 : 7] = impulse;
+            row[c == 0 ? 1 : 6] = s->rigid_start[c] + contact->normal * impulse / s->body_mass[c];
+        }
         for (int64_t n = 1; n < stride; ++n) advance(s);
+    }
+}
+
+/* The STREAM triad a = b + s c, repeated: what the memory that n numbers fit into delivers. */
+void triad(double *restrict a, const double *restrict b, const double *restrict c, int64_t n,
+           int64_t repetitions) {
+    for (int64_t k = 0; k < repetitions; ++k) {
+        for (int64_t i = 0; i < n; ++i) a[i] = b[i] + 0.5 * c[i];
+        __asm__ volatile("" : : "r"(a) : "memory"); /* every repetition counts */
     }
 }
 

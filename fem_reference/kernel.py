@@ -20,9 +20,9 @@ from .errors import SolverError
 
 FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=fast", "-fPIC", "-shared")
 MAX_INTERVALS = 256
+MAX_LEVELS = 16
 _SOURCE = Path(__file__).with_name("kernel.c")
 _INT32 = ctypes.POINTER(ctypes.c_int32)
-_INT64 = ctypes.POINTER(ctypes.c_int64)
 _DOUBLE = ctypes.POINTER(ctypes.c_double)
 
 
@@ -50,29 +50,42 @@ class Contact(ctypes.Structure):
     )
 
 
+class Level(ctypes.Structure):
+    """Mirror of ``Level`` in kernel.c."""
+
+    _fields_ = (
+        ("shared", ctypes.c_int32),
+        ("shared_fixed", ctypes.c_int32),
+        ("inner", ctypes.c_int32),
+        ("rows", ctypes.c_int32),
+        ("node", _INT32),
+        ("row", _INT32),
+        ("column", _INT32),
+        ("block", _DOUBLE),
+    )
+
+
 class State(ctypes.Structure):
     """Mirror of ``State`` in kernel.c."""
 
     _fields_ = (
         ("nodes", ctypes.c_int64),
-        ("row", _INT64),
-        ("column", _INT32),
-        ("block", _DOUBLE),
         ("inverse", _DOUBLE),
         ("u", _DOUBLE),
         ("v", _DOUBLE),
         ("f", _DOUBLE),
         ("dt", ctypes.c_double),
         ("step", ctypes.c_int64),
-        ("supports", ctypes.c_int32),
+        ("levels", ctypes.c_int32),
         ("contacts", ctypes.c_int32),
-        ("support", _INT32),
         ("support_impulse", ctypes.c_double),
         ("velocity_before", _DOUBLE),
-        ("mass", _DOUBLE),
-        ("first", ctypes.c_int64 * 4),
+        ("body_mass", ctypes.c_double * 2),
+        ("rigid_start", ctypes.c_double * 2),
+        ("rigid", ctypes.c_double * 2),
         ("centre", ctypes.c_int32 * 2),
         ("contact", Contact * 2),
+        ("level", Level * MAX_LEVELS),
     )
 
 
@@ -162,6 +175,8 @@ def load() -> ctypes.CDLL:
     kernel.run.restype = None
     kernel.stiffness_product.argtypes = [ctypes.POINTER(State), _DOUBLE, _DOUBLE]
     kernel.stiffness_product.restype = None
+    kernel.triad.argtypes = [_DOUBLE, _DOUBLE, _DOUBLE, ctypes.c_int64, ctypes.c_int64]
+    kernel.triad.restype = None
     if kernel.state_size() != ctypes.sizeof(State):
         raise SolverError("the compiled time loop and its Python side disagree on their layout")
     return kernel

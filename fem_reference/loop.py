@@ -8,19 +8,22 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
 
 from . import kernel
+from .levels import element_levels, level_matrices
 from .mesh import Floats
-from .system import System
+from .system import INNER, OUTER, System
 
 
 @dataclass(frozen=True)
 class Energies:
-    """Discrete energy of each body (1/2 v_{n+1/2} M v_{n+1/2} + 1/2 u_n K u_{n+1}), J.
+    """Discrete energy of each body, J.
 
-    Central differences without contact conserve it exactly (e.g. Hairer, Lubich & Wanner,
-    Geometric Numerical Integration).
+    Over the step D at whose ends all levels meet, the loop without contact is the central
+    difference u_{n+1} - 2 u_n + u_{n-1} = -D^2 M^-1 K' u_n with a symmetric K' close to K (equal to
+    it without sub-cycling). It conserves 1/2 w M w + 1/2 u_n K' u_{n+1} exactly,
+    w = (u_{n+1} - u_n)/D (e.g. Hairer, Lubich & Wanner, Geometric Numerical Integration). K' u is
+    found by one step from rest, which leads to (u_{n+1} + u_{n-1})/2.
     """
 
     total: tuple[float, float, float]
@@ -30,29 +33,18 @@ class Energies:
 
 _C_TYPES: dict[type[np.generic], Any] = {
     np.int32: ctypes.c_int32,
-    np.int64: ctypes.c_int64,
     np.float64: ctypes.c_double,
 }
-
-
-def _upper_blocks(stiffness: scipy.sparse.csr_matrix) -> scipy.sparse.bsr_matrix:
-    """The 2x2 blocks on and above the diagonal, the diagonal one first in each row."""
-    blocks = stiffness.tobsr((2, 2))
-    blocks.sort_indices()
-    rows = np.repeat(np.arange(blocks.indptr.size - 1), np.diff(blocks.indptr))
-    upper = blocks.indices >= rows
-    indptr = np.concatenate([[0], np.cumsum(np.bincount(rows[upper]))])
-    return scipy.sparse.bsr_matrix(
-        (blocks.data[upper], blocks.indices[upper], indptr), shape=blocks.shape
-    )
 
 
 class Loop:
     """The compiled loop's state together with the arrays it points to."""
 
-    def __init__(self, system: System, time_step: float, speed: float, split: int) -> None:
+    def __init__(
+        self, system: System, time_step: float, speed: float, split: int, most_levels: int = 1
+    ) -> None:
         self.system = system
-        blocks = _upper_blocks(system.stiffness)
+        self.levels = level_matrices(system, element_levels(system, time_step, most_levels))
         nodes = system.mass.size
         self._keep: list[object] = []
         self.u = np.zeros(2 * nodes)
@@ -60,18 +52,21 @@ class Loop:
         self.v[1 : 2 * int(system.first[1]) : 2] = -speed
         state = kernel.State()
         state.nodes = nodes
-        state.row = self._pointer(blocks.indptr, np.int64)
-        state.column = self._pointer(blocks.indices, np.int32)
-        state.block = self._pointer(blocks.data.transpose(0, 2, 1), np.float64)
         state.inverse = self._pointer(system.inverse_mass, np.float64)
-        state.mass = self._pointer(system.mass, np.float64)
         state.u = self._pointer(self.u, np.float64)
         state.v = self._pointer(self.v, np.float64)
         state.f = self._pointer(np.zeros(2 * nodes), np.float64)
         state.dt = time_step
-        state.supports = system.supports.size
-        state.support = self._pointer(system.supports, np.int32)
-        state.first[:] = system.first.tolist()
+        state.levels = len(self.levels)
+        for level, matrix in zip(state.level, self.levels, strict=False):
+            level.shared, level.shared_fixed = matrix.shared, matrix.shared_fixed
+            level.inner, level.rows = matrix.inner, matrix.nodes.size
+            level.node = self._pointer(matrix.nodes, np.int32)
+            level.row = self._pointer(matrix.indptr, np.int32)
+            level.column = self._pointer(matrix.columns, np.int32)
+            level.block = self._pointer(matrix.blocks.transpose(0, 2, 1), np.float64)
+        state.body_mass[:] = [system.body_mass(OUTER), system.body_mass(INNER)]
+        state.rigid_start[:] = [-speed, 0.0]
         state.centre[:] = list(system.centre)
         state.velocity_before = self._pointer(
             np.zeros(sum(pairs.radii.size for pairs in system.contacts)), np.float64
@@ -113,7 +108,7 @@ class Loop:
 
     def product(self, x: Floats) -> Floats:
         """K x with the compiled kernel, (2n,)."""
-        y = np.empty_like(x)
+        y = np.zeros_like(x)
         pointer = ctypes.POINTER(ctypes.c_double)
         self._kernel.stiffness_product(
             ctypes.byref(self.state), x.ctypes.data_as(pointer), y.ctypes.data_as(pointer)
@@ -121,19 +116,40 @@ class Loop:
         return y
 
     def energies(self) -> Energies:
-        """Discrete energies between u_n and u_{n+1}."""
-        product = self.product(self.u)
+        """Discrete energies at an instant at which all levels meet."""
         system = self.system
         mass = np.repeat(system.mass, 2)
-        before = self.u - self.state.dt * self.v
-        density = 0.5 * mass * self.v**2 + 0.5 * before * product
-        axial = mass * self.v
+        meeting = 2 ** (len(self.levels) - 1)
+        long_step = meeting * self.state.dt
+        now = self.u.copy()
+        following = self._moved(now, self.v, meeting)
+        # From rest: half the impulses, which the step itself gives in full.
+        half = np.zeros_like(now)
+        for number, matrix in enumerate(self.levels):
+            half += 0.5 * 2**number * self.state.dt * (matrix.stiffness @ now)
+        mean = self._moved(now, half * system.inverse_mass, meeting)
+        velocity = (following - now) / long_step
+        force = 2.0 * mass * (now - mean) / long_step**2
+        density = 0.5 * mass * velocity**2 + 0.5 * following * force
+        axial = mass * velocity
         total, rigid = [], []
         for body in range(3):
             rows = system.body(body)
             total.append(float(density[rows].sum()))
             rigid.append(float(axial[rows][1::2].sum()) ** 2 / (2.0 * system.body_mass(body)))
         return Energies((total[0], total[1], total[2]), (rigid[0], rigid[1], rigid[2]))
+
+    def _moved(self, displacement: Floats, velocity: Floats, steps: int) -> Floats:
+        """Displacement after ``steps`` of the loop without contact; the state stays as it is."""
+        state = self.state
+        kept = (self.u.copy(), self.v.copy(), state.contacts, state.step, state.support_impulse)
+        self.u[:], self.v[:] = displacement, velocity
+        state.contacts = 0
+        self.run(1, steps)
+        moved = self.u.copy()
+        self.u[:], self.v[:] = kept[0], kept[1]
+        state.contacts, state.step, state.support_impulse = kept[2:]
+        return moved
 
     def mean_axial(self, values: Floats, body: int) -> float:
         """Mass average of the axial component over a body."""

@@ -19,39 +19,12 @@ from dataclasses import dataclass
 import gmsh
 import numpy as np
 
-from .errors import SceneError, SolverError
+from .contact import sphere_profile
+from .errors import SolverError
 from .grading import Segment, graded
 from .mesh import BodyMesh, Floats, Ints, check_elements
 from .scene import Plate, Scene, Sphere
-
-RESOLUTIONS = {"coarse": 2.0 / 3.0, "paper": 1.0, "fine": 1.5}
-"""Factor on the number of elements, in every direction and place."""
-
-CONTACT_ZONE = 1.3
-"""Radius with matching nodes over the largest contact radius expected."""
-
-
-@dataclass(frozen=True)
-class MeshSettings:
-    """Everything that decides the mesh."""
-
-    contact_element: float
-    """Element size in the contact zone, m."""
-    contact_elements: int
-    """Elements across the zone of matching nodes."""
-    plate_element: float
-    """Largest element of the plate in radial direction, m."""
-    through_element: float
-    """Largest element of the plate through the thickness, m."""
-    growth: float
-    """Ratio of neighbouring elements away from the contact, along the plate."""
-    through_growth: float
-    """The same through the thickness, where every layer runs along the whole plate."""
-
-    @property
-    def contact_zone(self) -> float:
-        """Radius of the zone of matching nodes, m."""
-        return self.contact_element * self.contact_elements
+from .settings import MeshSettings
 
 
 @dataclass(frozen=True)
@@ -75,44 +48,6 @@ class ImpactMesh:
     settings: MeshSettings
     min_quality: float
     """Least scaled Jacobian of all elements."""
-
-
-def mesh_settings(
-    scene: Scene, outer_radius: float, inner_radius: float, factor: float
-) -> MeshSettings:
-    """Settings for the contact radii (m) expected, with ``factor`` from `RESOLUTIONS`.
-
-    Raises:
-        SceneError: the contact is too large for plate or spheres, or the mesh too large.
-    """
-    plate = scene.plate
-    per_radius = scene.elements_per_contact_radius * factor
-    # Bilinear elements are too stiff in bending by some (1 - nu)/2 (length / thickness)^2: sixteen
-    # per thickness along the plate hold the frequency to 0.2 %. Across it eight are enough, with
-    # the fine layers at both faces. Thick plates need a fair number over the radius too.
-    along = min(plate.thickness / 16.0, plate.radius / 48.0) / factor
-    through = min(plate.thickness / 8.0, plate.radius / 48.0) / factor
-    size = min(min(outer_radius, inner_radius) / per_radius, along)
-    zone = CONTACT_ZONE * max(outer_radius, inner_radius)
-    for name, radius in (
-        ("outer.radius", scene.outer.radius),
-        ("inner.radius", scene.inner.radius),
-        ("plate.radius", plate.radius),
-    ):
-        if 4.0 * zone > radius:
-            raise SceneError(
-                f"{name} is {radius:g} m, but a contact radius of {zone / CONTACT_ZONE:.3g} m "
-                f"is expected; {4.0 * CONTACT_ZONE:g} times as much is the least"
-            )
-    # An even count at factor 1: then the zone is the same at 2/3 and 3/2 of it, up to rounding.
-    count = max(4, round(2.0 * math.ceil(zone / (2.0 * size * factor) - 1e-9) * factor))
-    if count > 400:
-        raise SceneError(
-            f"the scene needs {count} elements across the contact zone, more than 400: its two "
-            "contacts or contact and plate differ too much in size"
-        )
-    growth, through_growth = (ratio ** (1.0 / factor) for ratio in (1.2, 1.35))
-    return MeshSettings(size, count, along, through, growth, through_growth)
 
 
 @contextmanager
@@ -174,14 +109,32 @@ def _generate(name: str) -> BodyMesh:
     return BodyMesh(name, points, quads)
 
 
+def _moved_radius(settings: MeshSettings, r: Floats) -> Floats:
+    """Takes even radii in the contact zone to those of the matching nodes, m."""
+    even = settings.contact_element * np.arange(settings.contact_elements + 1)
+    return np.asarray(np.interp(r, even, settings.zone_radii()))
+
+
+def _rim(settings: MeshSettings) -> list[Segment]:
+    """Elements that shrink towards the rim, from the plate's largest on; none if not asked for."""
+    first, last, ratio = settings.rim_element, settings.plate_element, settings.growth**2
+    if first is None or last < 1.5 * first:
+        return []
+    count = max(2, round(math.log(last / first) / math.log(ratio)))
+    exact = (last / first) ** (1.0 / count)
+    length = first * (exact**count - 1.0) / (exact - 1.0)
+    return [Segment(length, count, exact).reversed]
+
+
 def mesh_plate(plate: Plate, settings: MeshSettings) -> BodyMesh:
     """Mesh of the plate, z = 0 at its midplane, fine at the axis and at both faces."""
     size, zone = settings.contact_element, settings.contact_zone
+    rim = _rim(settings)
+    rest = plate.radius - zone - sum(segment.length for segment in rim)
     radial = [
         Segment(zone, settings.contact_elements),
-        *graded(
-            plate.radius - zone, size * settings.growth, settings.plate_element, settings.growth
-        ),
+        *graded(rest, size * settings.growth, settings.plate_element, settings.growth),
+        *rim,
     ]
     half = graded(plate.thickness / 2.0, size, settings.through_element, settings.through_growth)
     through = [*half, *(segment.reversed for segment in reversed(half))]
@@ -200,7 +153,11 @@ def mesh_plate(plate: Plate, settings: MeshSettings) -> BodyMesh:
         for i in range(r.size - 1):
             for j in range(z.size - 1):
                 _block(across[i][j], up[i + 1][j], -across[i][j + 1], -up[i][j])
-        return _generate("plate")
+        mesh = _generate("plate")
+    points = mesh.points.copy()
+    inside = points[:, 0] < zone * (1.0 - 1e-9)
+    points[inside, 0] = _moved_radius(settings, points[inside, 0])
+    return BodyMesh(mesh.name, points, mesh.quads)
 
 
 def modal_plate_mesh(plate: Plate) -> BodyMesh:
@@ -311,6 +268,7 @@ def _mesh_sphere(
 ) -> tuple[BodyMesh, Ints]:
     """Sphere above z = 0, and its contact nodes by increasing radius."""
     raw = _half_disc(sphere, settings, name)
+    original = raw
     on_surface = (
         np.abs(np.hypot(raw.points[:, 0], raw.points[:, 1] - sphere.radius) - sphere.radius)
         < 1e-9 * sphere.radius
@@ -318,6 +276,18 @@ def _mesh_sphere(
     near = on_surface & (raw.points[:, 1] < sphere.radius)
     candidates = np.flatnonzero(near)
     surface = candidates[np.argsort(raw.points[candidates, 0])][: radii.size]
+    # Below the surface the core's nodes move along with those on it, and less so further inside.
+    points = original.points.copy()
+    zone = settings.contact_zone
+    inside = (points[:, 0] < zone) & (points[:, 1] < 3.0 * zone)
+    r, z = points[inside].T
+    fade = np.clip((3.0 * zone - z) / (2.0 * zone), 0.0, 1.0)
+    moved = r + fade * (_moved_radius(settings, r) - r)
+    points[inside, 0] = moved
+    points[inside, 1] += fade * (
+        sphere_profile(sphere.radius, moved) - sphere_profile(sphere.radius, r)
+    )
+    raw = BodyMesh(name, points, original.quads)
     return _with_exact_volume(raw, sphere, surface, radii), surface
 
 
@@ -328,7 +298,7 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
         SolverError: gmsh failed or an element is degenerate.
     """
     plate = mesh_plate(scene.plate, settings)
-    radii = settings.contact_element * np.arange(settings.contact_elements + 1)
+    radii = settings.zone_radii()
     half = scene.plate.thickness / 2.0
     upper, upper_nodes = _mesh_sphere(scene.outer, settings, "outer", radii)
     lower, lower_nodes = _mesh_sphere(scene.inner, settings, "inner", radii)

@@ -31,6 +31,31 @@ def first_frequency(system: System) -> float:
     return math.sqrt(float(values.max())) / (2.0 * math.pi)
 
 
+def elastic_modes(system: System, count: int) -> tuple[Floats, Floats]:
+    """Lowest elastic modes of the plate of the time loop, rigid motion left out.
+
+    Returns:
+        (k,) angular frequencies, rad/s, and (2n, k) shapes of unit modal mass, 1/sqrt(kg), rows
+        of the plate's part of the system.
+    """
+    rows = system.body(1)
+    inverse = system.inverse_mass[rows]
+    free = np.flatnonzero(inverse > 0.0)
+    stiffness = system.stiffness[rows, rows].tocsc()[free][:, free]
+    mass = scipy.sparse.diags(1.0 / inverse[free]).tocsc()
+    scale = float(np.median(stiffness.diagonal() * inverse[free]))
+    rigid = 1 if system.supports.size == 0 else 0
+    count = min(count, free.size // 4)
+    start = np.random.default_rng(2).standard_normal(free.size)
+    values, vectors = scipy.sparse.linalg.eigsh(
+        stiffness, k=count + rigid, M=mass, sigma=-1e-9 * scale, which="LM", v0=start
+    )
+    order = np.argsort(values)[rigid:]
+    shapes = np.zeros((inverse.size, order.size))
+    shapes[free] = vectors[:, order]
+    return np.sqrt(values[order]), shapes
+
+
 @dataclass(frozen=True)
 class PlateMode:
     """One axisymmetric eigenmode of the plate."""

@@ -110,11 +110,27 @@ def history(run: Run) -> tuple[Floats, float]:
     return table, interval
 
 
-def write_history(path: Path, table: Floats) -> None:
-    """Comma-separated, header `HISTORY_COLUMNS`; the last row ends with a newline."""
-    np.savetxt(
-        path, table, fmt="%.10g", delimiter=",", header=",".join(HISTORY_COLUMNS), comments=""
-    )
+def resampled(run: Run, times: Floats) -> Floats:
+    """Table (samples, 9) of `HISTORY_COLUMNS` at ``times`` (evenly spaced, s) of another run."""
+    table = np.empty((times.size, len(HISTORY_COLUMNS)))
+    table[:, 0] = times
+    for column, source in ((1, 0), (2, 1), (4, 3), (5, 4), (6, 5), (7, 6)):
+        table[:, column] = np.interp(times, run.times, run.rows[:, source])
+    half = 0.5 * (times[1] - times[0]) if times.size > 1 else 0.0
+    low, high = np.maximum(times - half, times[0]), np.minimum(times + half, times[-1])
+    for column, source in ((3, 2), (8, 7)):
+        impulse = np.interp(high, run.times, run.rows[:, source])
+        impulse -= np.interp(low, run.times, run.rows[:, source])
+        table[:, column] = impulse / np.maximum(high - low, np.finfo(float).tiny)
+    return table
+
+
+def write_history(path: Path, table: Floats, bands: Floats) -> None:
+    """Comma-separated: `HISTORY_COLUMNS`, then the half width of the band of each curve."""
+    names = [*HISTORY_COLUMNS, *(f"{name}_band" for name in HISTORY_COLUMNS[1:])]
+    formats = ["%.10g"] * table.shape[1] + ["%.3g"] * bands.shape[1]
+    rows = np.column_stack([table, bands])
+    np.savetxt(path, rows, fmt=formats, delimiter=",", header=",".join(names), comments="")
 
 
 def _bodies(mesh: ImpactMesh) -> tuple[Floats, np.ndarray[Any, Any], np.ndarray[Any, Any]]:

@@ -7,61 +7,65 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
+from .convergence import QUANTITIES, Sequence, refine, solve_sequence
 from .errors import SceneError
-from .meshing import RESOLUTIONS
-from .modal import first_frequency
-from .output import history, result_folder, write_history, write_json, write_mesh, write_stress
+from .output import (
+    HISTORY_COLUMNS,
+    history,
+    result_folder,
+    write_history,
+    write_json,
+    write_mesh,
+    write_stress,
+)
 from .progress import Progress
 from .scene import Scene
-from .solve import WAVE_FREQUENCY, Solution, compute
-from .uncertainty import two_grid_uncertainty
+from .settings import RESOLUTIONS
+from .solve import WAVE_FREQUENCY, Solution
 from .versions import versions
 
 SCHEMA_VERSION = 1
-COMPANION_RATIO = 1.5
-"""Element size of the mesh that gives the uncertainty over that of the main one."""
-
-QUANTITIES = (
-    "efficiency",
-    "outer_velocity_final",
-    "inner_velocity_final",
-    "outer_force_peak",
-    "inner_force_peak",
-    "outer_contact_end",
-    "inner_contact_end",
-    "first_frequency",
-)
 
 
-def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
-    """The summary's physical quantities, SI; a contact that never closed ends at 0."""
-    run = solution.run
+def _convergence(sequence: Sequence) -> dict[str, Any]:
+    """What the meshes say together, per quantity; finest mesh first."""
     return {
-        "efficiency": scene.inner.mass
-        * run.inner_velocity**2
-        / (scene.outer.mass * scene.speed**2),
-        "outer_velocity_final": run.outer_velocity,
-        "inner_velocity_final": run.inner_velocity,
-        "outer_force_peak": run.contacts[0].force_peak,
-        "inner_force_peak": run.contacts[1].force_peak,
-        "outer_contact_end": run.contacts[0].end or 0.0,
-        "inner_contact_end": run.contacts[1].end or 0.0,
-        "first_frequency": first_frequency(solution.system),
+        "rule": "least squares after Eca & Hoekstra 2014",
+        "meshes": [
+            {
+                "factor": solution.factor,
+                "dofs": 2 * int(solution.system.mass.size),
+                "steps": solution.run.steps,
+                "seconds": solution.run.loop_seconds,
+                "energy_residual": solution.run.balance.energy_residual,
+            }
+            for solution in sequence.solutions
+        ],
+        "quantities": {
+            name: {
+                "values": [float(value) for value in sequence.values[name]],
+                "order": estimate.order,
+                "extrapolated": estimate.extrapolated,
+                "scatter": estimate.scatter,
+                "band": estimate.band,
+            }
+            for name, estimate in sequence.estimates.items()
+        },
+        "relative_error": sequence.relative_error(),
     }
 
 
 def _summary(
-    scene: Scene,
-    solution: Solution,
-    resolution_name: str,
-    uncertainty: dict[str, float],
-    found: dict[str, str | None],
+    scene: Scene, sequence: Sequence, resolution_name: str, found: dict[str, str | None]
 ) -> dict[str, Any]:
+    solution = sequence.finest
     run, mesh, resolution = solution.run, solution.mesh, solution.resolution
     nodes = int(solution.system.mass.size)
     bodies = (mesh.outer, mesh.plate, mesh.inner)
-    values = quantities(scene, solution)
+    values = {name: float(sequence.values[name][0]) for name in QUANTITIES}
     return {
         "schema_version": SCHEMA_VERSION,
         "scene": scene.name,
@@ -75,13 +79,14 @@ def _summary(
         "outer_contacts": run.contacts[0].count,
         "inner_contacts": run.contacts[1].count,
         "first_frequency": values["first_frequency"],
-        "energy_residual": run.energy_residual,
-        "momentum_residual": run.momentum_residual,
+        "energy_residual": run.balance.energy_residual,
+        "momentum_residual": run.balance.momentum_residual,
         "steps": run.steps,
         "solve_seconds": run.loop_seconds,
         "in_contact_at_end": run.in_contact_at_end,
         "end_time": float(run.times[-1]),
-        "uncertainty": uncertainty,
+        "uncertainty": {name: sequence.estimates[name].band for name in QUANTITIES},
+        "convergence": _convergence(sequence),
         "mesh": {
             "nodes": nodes,
             "dofs": 2 * nodes,
@@ -101,12 +106,13 @@ def _summary(
             "time_step": run.time_step,
             "critical_time_step": run.critical_time_step,
             "courant": run.time_step / run.critical_time_step,
+            "nodes_per_level": list(run.levels),
         },
         "residuals": {
-            "energy": run.energy_residual,
-            "momentum": run.momentum_residual,
-            "contact_energy_loss": run.contact_loss,
-            "support_impulse": run.support_impulse,
+            "energy": run.balance.energy_residual,
+            "momentum": run.balance.momentum_residual,
+            "contact_energy_loss": run.balance.contact_loss,
+            "support_impulse": run.balance.support_impulse,
         },
     }
 
@@ -118,44 +124,46 @@ def solve(
     *,
     courant: float = 0.9,
     stress_times: tuple[float, ...] = (),
+    target_error: float | None = None,
     progress: Progress | None = None,
 ) -> None:
     """Solve a scene and write the result folder ``target``; see the package's README.
 
-    A second run on a mesh with 2/3 of the elements in each direction gives the uncertainty.
+    Coarser meshes give the uncertainty. With ``target_error`` the mesh is refined from
+    ``resolution_name`` on until the relative band of efficiency and force peaks is that small.
 
     Raises:
-        RunError: see `compute` and `output.result_folder`.
+        RunError: see `compute`, `refine` and `output.result_folder`.
     """
     progress = progress if progress is not None else Progress()
     factor = RESOLUTIONS[resolution_name]
     for instant in stress_times:
         if not 0.0 <= instant < math.inf or (scene.end_time and instant > scene.end_time):
             raise SceneError(f"--stress-at is {instant:g} s; it must lie between 0 and the end")
+    if target_error is not None and not 0.0 < target_error < 1.0:
+        raise SceneError(f"--target-error is {target_error:g}; it must lie between 0 and 1")
     with result_folder(target) as folder:
-        coarser = compute(
-            scene,
-            factor / COMPANION_RATIO,
-            courant=courant,
-            progress=progress,
-            label="coarser mesh for the uncertainty: ",
-            verify_waves=False,
-        )
-        solution = compute(
-            scene, factor, courant=courant, snapshot_times=stress_times, progress=progress
-        )
-        progress.report("writing", 0.0, "writing the results")
-        fine, coarse = quantities(scene, solution), quantities(scene, coarser)
-        uncertainty = {
-            name: two_grid_uncertainty(fine[name], coarse[name], COMPANION_RATIO)
-            for name in QUANTITIES
+        options: dict[str, Any] = {
+            "courant": courant,
+            "snapshot_times": stress_times,
+            "progress": progress,
         }
+        if target_error is None:
+            sequence = solve_sequence(scene, factor, **options)
+        else:
+            sequence = refine(scene, factor, target_error, **options)
+        solution = sequence.finest
+        progress.report("writing", 0.0, "writing the results")
         found = versions()
-        summary = _summary(scene, solution, resolution_name, uncertainty, found)
+        summary = _summary(scene, sequence, resolution_name, found)
         table, interval = history(solution.run)
         summary["samples"] = table.shape[0]
         summary["sample_interval"] = interval
-        write_history(folder / "history.csv", table)
+        bands = sequence.curve_bands()
+        for column, name in enumerate(HISTORY_COLUMNS[1:]):
+            summary["uncertainty"][f"{name}_rms"] = float(np.sqrt(np.mean(bands[:, column] ** 2)))
+            summary["uncertainty"][f"{name}_max"] = float(bands[:, column].max())
+        write_history(folder / "history.csv", table, bands)
         write_mesh(folder / "mesh.vtu", solution.mesh)
         for number, snapshot in enumerate(solution.run.snapshots):
             write_stress(
@@ -163,10 +171,9 @@ def solve(
             )
         summary["stress_times"] = [snapshot.time for snapshot in solution.run.snapshots]
         write_json(folder / "summary.json", summary)
-        write_json(
-            folder / "provenance.json",
-            _provenance(scene, solution, resolution_name, courant, found),
-        )
+        provenance = _provenance(scene, solution, resolution_name, courant, found)
+        provenance["settings"]["target_error"] = target_error
+        write_json(folder / "provenance.json", provenance)
         progress.report("writing", 1.0, "done")
 
 
@@ -186,7 +193,7 @@ def _provenance(
         "settings_hash": scene.settings_hash,
         "settings": {
             "resolution": resolution_name,
-            "resolution_factor": RESOLUTIONS[resolution_name],
+            "resolution_factor": solution.factor,
             "courant": courant,
             "contact_element": settings.contact_element,
             "contact_elements": settings.contact_elements,
@@ -203,13 +210,12 @@ def _provenance(
             "wave_frequency": WAVE_FREQUENCY / solution.estimate.duration,
             "peak_window": PEAK_WINDOW_FRACTION * solution.estimate.duration,
             "chatter_limit": CHATTER_FRACTION * solution.estimate.duration,
-            "uncertainty_companion_ratio": COMPANION_RATIO,
         },
         "versions": found,
         "residuals": {
-            "energy": solution.run.energy_residual,
-            "momentum": solution.run.momentum_residual,
-            "contact_energy_loss": solution.run.contact_loss,
+            "energy": solution.run.balance.energy_residual,
+            "momentum": solution.run.balance.momentum_residual,
+            "contact_energy_loss": solution.run.balance.contact_loss,
         },
         "contacts": {
             name: [list(interval) for interval in record.intervals]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from .errors import SolverError
+from .errors import DivergedError, SolverError
 from .estimate import (
     MINOR_FORCE,
     ContactEstimate,
@@ -18,9 +19,10 @@ from .estimate import (
 )
 from .explicit import Run, integrate
 from .mesh import edge_lengths
-from .meshing import ImpactMesh, mesh_impact, mesh_settings
+from .meshing import ImpactMesh, mesh_impact
 from .progress import Progress
 from .scene import Material, Scene
+from .settings import mesh_settings
 from .system import System, build_system
 
 ACCEPTED_SHARE = 0.9
@@ -33,6 +35,10 @@ WAVE_FREQUENCY = 3.0
 The spectrum of Hertz's pulse (about a half sine to the power 3/2) is below 1 % of its value at
 zero from there on.
 """
+
+
+LARGEST_ENERGY_RESIDUAL = 1e-5
+"""Of a run with sub-cycling; beyond it levels have resonated, and the run is made without them."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,10 @@ class Solution:
     resolution: Resolution
     estimate: ContactEstimate
     meshes_tried: int
+    factor: float
+    """On the number of elements asked for."""
+    radii: tuple[float, float]
+    """Contact radii the mesh is made for, outer and inner, m."""
 
 
 def shortest_wavelengths(scene: Scene, duration: float) -> tuple[float, float, float]:
@@ -126,6 +136,29 @@ def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Re
     )
 
 
+def _stable_run(scene: Scene, system: System, duration: float, **options: Any) -> Run:
+    """Step with sub-cycling, and without it where that fails or its ledger cannot be read.
+
+    The discrete energy of a run with levels is exact only while bodies do not touch; a run that
+    the scene cuts short may end in the middle of a contact.
+    """
+    if scene.end_time is None:
+        try:
+            run = integrate(system, scene.speed, duration, **options)
+        except DivergedError as error:
+            print(f"{error}; stepping again without sub-cycling", file=sys.stderr)
+        else:
+            residual = run.balance.energy_residual
+            if residual <= LARGEST_ENERGY_RESIDUAL or len(run.levels) == 1:
+                return run
+            print(
+                f"energy residual {residual:.2g} with sub-cycling, {LARGEST_ENERGY_RESIDUAL:g} is "
+                "allowed; stepping again without it",
+                file=sys.stderr,
+            )
+    return integrate(system, scene.speed, duration, most_levels=1, **options)
+
+
 def compute(
     scene: Scene,
     factor: float,
@@ -134,14 +167,23 @@ def compute(
     snapshot_times: tuple[float, ...] = (),
     progress: Progress | None = None,
     label: str = "",
-    verify_waves: bool = True,
+    like: Solution | None = None,
 ) -> Solution:
-    """Solve a scene with ``factor`` (see `meshing.RESOLUTIONS`) times the asked elements.
+    """Solve a scene with ``factor`` (see `settings.RESOLUTIONS`) times the asked elements.
 
     The mesh is made for estimated contact radii. If the radii found from the peak forces leave
     fewer than `ACCEPTED_SHARE` of the elements asked for, or contact reached the last pair of
-    matching nodes, it is made again with the radii found. ``verify_waves`` is for meshes that
-    only serve to estimate the error of another one.
+    matching nodes, it is made again with the radii found.
+
+    Args:
+        scene: what to solve.
+        factor: on the number of elements.
+        courant: time step over the critical one.
+        snapshot_times: instants at which to keep all displacements, s.
+        progress: where to report.
+        label: put before the messages.
+        like: a solution with more elements, for which this one's mesh is the same but for
+            ``factor``, and its run as long; it serves to estimate the error and is not verified.
 
     Raises:
         SceneError: the scene is outside the method.
@@ -153,14 +195,15 @@ def compute(
             progress.report(phase, done, f"{label}{message}")
 
     estimate = estimate_contact(scene)
-    radii = (estimate.outer_radius, estimate.inner_radius)
+    radii = (estimate.outer_radius, estimate.inner_radius) if like is None else like.radii
+    end_time = scene.end_time if like is None else float(like.run.times[-1])
     asked = scene.elements_per_contact_radius * factor
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
         settings = mesh_settings(scene, *radii, factor)
         mesh = mesh_impact(scene, settings)
         per_wavelength, wavelength = elements_per_wavelength(scene, mesh, estimate.duration)
-        if verify_waves and per_wavelength < LEAST_ELEMENTS_PER_WAVELENGTH:
+        if like is None and per_wavelength < LEAST_ELEMENTS_PER_WAVELENGTH:
             raise SolverError(
                 f"only {per_wavelength:.3g} elements per wavelength of {wavelength:.3g} m, "
                 f"at least {LEAST_ELEMENTS_PER_WAVELENGTH:g} are required; raise "
@@ -169,11 +212,11 @@ def compute(
         nodes = sum(body.points.shape[0] for body in (mesh.outer, mesh.plate, mesh.inner))
         report("assembly", 0.0, f"{nodes} nodes")
         system = build_system(scene, mesh)
-        run = integrate(
+        run = _stable_run(
+            scene,
             system,
-            scene.speed,
             estimate.duration,
-            end_time=scene.end_time,
+            end_time=end_time,
             courant=courant,
             snapshot_times=snapshot_times,
             on_progress=lambda done, message: report("stepping", done, message),
@@ -182,8 +225,9 @@ def compute(
         zone_left = all(
             contact.outermost_radius < 0.999 * settings.contact_zone for contact in run.contacts
         )
-        if min(resolution.outer, resolution.inner) >= ACCEPTED_SHARE * asked and zone_left:
-            return Solution(run, mesh, system, resolution, estimate, attempt)
+        enough = min(resolution.outer, resolution.inner) >= ACCEPTED_SHARE * asked
+        if like is not None or (enough and zone_left):
+            return Solution(run, mesh, system, resolution, estimate, attempt, factor, radii)
         size = settings.contact_element
         grow = 1.0 if zone_left else 1.3
         radii = (

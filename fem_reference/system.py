@@ -40,6 +40,12 @@ class System:
     centre: tuple[int, int]
     """The plate's centre nodes on its two faces."""
     contacts: tuple[ContactPairs, ContactPairs]
+    element_nodes: Ints
+    """(m, 4) nodes of all elements."""
+    element_stiffness: Floats
+    """(m, 8, 8) their matrices, whose sum is ``stiffness``, N/m."""
+    element_time_steps: Floats
+    """(m,) critical time step of each element alone, s."""
 
     def body(self, index: int) -> slice:
         """Rows of a body's displacements."""
@@ -97,6 +103,7 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
         _axis_constraints(mesh.inner),
     )
     stiffness, mass, inverse, numbers = [], [], [], []
+    element_nodes, element_stiffness, element_steps = [], [], []
     first = np.zeros(4, dtype=np.int64)
     for index, (body, material, fixed) in enumerate(zip(bodies, materials, fixed_of, strict=True)):
         matrices = assemble(body, material)
@@ -116,6 +123,10 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
         body_inverse[fixed] = 0.0
         inverse.append(body_inverse[rows])
         numbers.append(number + first[index])
+        elements = matrices.elements
+        element_nodes.append(numbers[index][elements.nodes])
+        element_stiffness.append(elements.stiffness)
+        element_steps.append(elements.critical_time_steps())
         first[index + 1] = first[index] + order.size
     plate_fixed = fixed_of[1]
     supports = numbers[1][plate_fixed[plate_fixed % 2 == 1] // 2]
@@ -145,6 +156,9 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
         supports=np.sort(supports),
         centre=(int(contacts[0].plate_nodes[0]), int(contacts[1].plate_nodes[0])),
         contacts=(contacts[0], contacts[1]),
+        element_nodes=np.concatenate(element_nodes),
+        element_stiffness=np.concatenate(element_stiffness),
+        element_time_steps=np.concatenate(element_steps),
     )
 
 
@@ -167,11 +181,11 @@ def critical_time_step(system: System) -> float:
 def hertz_weights(radii: Floats) -> Floats:
     """Nodal shares (n,) of a unit Hertz pressure over the zone of the nodes at ``radii`` (m).
 
-    Each node gets the pressure sqrt(1 - (r/a)^2) at its radius times the area of its ring.
+    Each node gets the pressure sqrt(1 - (r/a)^2) integrated over its ring, whose edges lie midway
+    to its neighbours.
     """
     edges = np.concatenate([[0.0], 0.5 * (radii[1:] + radii[:-1]), radii[-1:]])
-    weights = np.sqrt(1.0 - (radii / radii[-1]) ** 2) * np.diff(edges**2)
-    return np.asarray(weights / weights.sum())
+    return np.asarray(-np.diff((1.0 - (edges / radii[-1]) ** 2) ** 1.5))
 
 
 def patch_flexibility(system: System, body: int, nodes: Ints, weights: Floats) -> float:

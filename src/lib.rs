@@ -11,6 +11,7 @@ pub mod contact;
 pub mod error;
 pub mod fluid;
 pub mod impact;
+pub mod measured;
 pub mod optimise;
 pub mod project;
 pub mod reference;

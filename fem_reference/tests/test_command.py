@@ -17,7 +17,6 @@ import numpy as np
 import pytest
 
 from fem_reference.output import PARTIAL_PREFIX, result_folder
-from fem_reference.uncertainty import two_grid_uncertainty
 
 from .conftest import document
 
@@ -311,10 +310,3 @@ def test_modes_command(tmp_path: Path) -> None:
     frequencies = [mode["frequency"] for mode in modes]
     assert frequencies == sorted(frequencies)
     assert [mode["longitudinal"] for mode in modes] == [False] * 5 + [True]
-
-
-def test_two_grid_uncertainty_is_three_times_the_error_at_its_assumed_order() -> None:
-    exact, fine, coarse = 1.0, 1.0 + 0.01, 1.0 + 0.01 * 1.5**1.5
-    assert two_grid_uncertainty(fine, coarse, 1.5) == pytest.approx(3.0 * (fine - exact))
-    # And it is on the safe side for a method of second order.
-    assert two_grid_uncertainty(fine, 1.0 + 0.01 * 1.5**2, 1.5) > 3.0 * (fine - exact)

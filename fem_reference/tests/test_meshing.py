@@ -12,8 +12,9 @@ from fem_reference.errors import SceneError, SolverError
 from fem_reference.estimate import estimate_contact
 from fem_reference.grading import graded
 from fem_reference.mesh import BodyMesh, check_elements, edge_lengths, element_volumes
-from fem_reference.meshing import ImpactMesh, mesh_impact, mesh_settings
+from fem_reference.meshing import ImpactMesh, mesh_impact
 from fem_reference.scene import Scene, parse_scene
+from fem_reference.settings import mesh_settings
 
 from .conftest import document
 
@@ -71,7 +72,13 @@ def test_contact_zone_has_the_elements_asked_for(scene: Scene, mesh: ImpactMesh)
     smallest = min(estimate_contact(scene).inner_radius, estimate_contact(scene).outer_radius)
     size = mesh.settings.contact_element
     assert smallest / size == pytest.approx(4.0, rel=1e-12)
-    assert np.allclose(np.diff(mesh.outer_contact.radii), size)
+    radii = mesh.outer_contact.radii
+    assert radii[-1] == pytest.approx(mesh.settings.contact_zone, rel=1e-12)
+    # Finest where the edge of contact stands at the peaks, nowhere twice as coarse as asked.
+    gaps, middles = np.diff(radii), 0.5 * (radii[1:] + radii[:-1])
+    low, high = mesh.settings.edge or (0.0, 0.0)
+    assert gaps[(middles > low) & (middles < high)].max() < 0.8 * size
+    assert gaps.max() < 2.0 * size
     # At least eight elements through the thickness, also at the rim.
     rim = mesh.plate.points[:, 0] > 0.033 * (1 - 1e-9)
     assert rim.sum() - 1 >= 8
@@ -96,6 +103,43 @@ def test_graded_division_adds_up() -> None:
         first = segments[0]
         total = sum(first.ratio**k for k in range(first.count))
         assert first.length / total == pytest.approx(0.01, rel=0.35)
+
+
+def test_patch_test_of_constant_stress_on_distorted_elements(scene: Scene) -> None:
+    """U = (a r, b z) strains every element alike: no residual force inside, whatever its shape."""
+    grid = np.linspace(0.0, 1.0, 6)
+    points = np.array([(r, z) for r in grid for z in grid])
+    inside = (points > 0.0).all(axis=1) & (points < 1.0).all(axis=1)
+    points[inside] += 0.05 * np.random.default_rng(4).standard_normal((inside.sum(), 2))
+    quads = np.array(
+        [
+            (6 * i + j, 6 * i + j + 6, 6 * i + j + 7, 6 * i + j + 1)
+            for i in range(5)
+            for j in range(5)
+        ]
+    )
+    body = BodyMesh("plate", points * 1e-3, quads)
+    check_elements(body)
+    matrices = assemble(body, scene.plate.material)
+    force = (matrices.stiffness @ (body.points * np.array([2.0, -0.7])).ravel()).reshape(-1, 2)
+    largest = np.abs(force).max()
+    assert np.abs(force[inside]).max() < 1e-12 * largest
+    # And a rigid motion along the axis costs nothing.
+    rigid = matrices.stiffness @ np.tile([0.0, 1e-3], points.shape[0])
+    assert np.abs(rigid).max() < 1e-12 * largest
+
+
+def test_long_elements_bend_without_parasitic_shear(scene: Scene) -> None:
+    """Clamped plate, elements half as long as it is thick: 4655 Hz, quadratic continuum elements.
+
+    Bilinear elements of this length without incompatible modes are 4 % too stiff.
+    """
+    from fem_reference.modal import first_frequency
+
+    from .conftest import make_system
+
+    system, _ = make_system(scene, 0.5)
+    assert first_frequency(system) == pytest.approx(4655.0, rel=5e-4)
 
 
 def test_degenerate_element_is_refused_with_number_and_place() -> None:

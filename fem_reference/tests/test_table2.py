@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import pytest
 
-from fem_reference.meshing import MeshSettings, mesh_plate, modal_plate_mesh
+from fem_reference.meshing import mesh_plate, modal_plate_mesh
 from fem_reference.modal import plate_modes
 from fem_reference.scene import Plate, parse_scene
+from fem_reference.settings import MeshSettings
 
 from .conftest import document
 

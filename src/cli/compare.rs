@@ -5,6 +5,7 @@ use crate::comparison::{Comparison, SceneComparison, Verdict, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Outcome;
 use crate::impact::reduced::Reduced;
+use crate::measured::{self, Record, Speed};
 use crate::reference::{Lookup, Resolution, Store, Stored};
 use crate::report::{self, Report, SceneReport};
 use crate::scene::{self, Model, Scene};
@@ -28,6 +29,16 @@ pub struct Arguments {
     /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
     #[arg(long)]
     compute: bool,
+    /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
+    /// repeated impacts
+    #[arg(long, value_delimiter = ',', value_name = "FILE")]
+    measured: Vec<PathBuf>,
+    /// Bandwidth of the instrument, to which the models' curves are filtered
+    #[arg(long, default_value = "100 kHz", value_name = "FREQUENCY", value_parser = bandwidth)]
+    bandwidth: f64,
+    /// Where the outer body's measured speed comes from: scene (the signal may have an offset) or measured (it has none)
+    #[arg(long, default_value = "scene", value_name = "SOURCE")]
+    speed: Speed,
     /// Folder the report is written to
     #[arg(long, default_value = "reports", value_name = "DIR")]
     out: PathBuf,
@@ -62,6 +73,7 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
     let start = Instant::now();
     let scenes = read(&arguments.scenes)?;
     // refused before anything is computed
+    let records = records(arguments, &scenes)?;
     report::check_writable(&arguments.out)?;
     if let Some(folder) = junit.and_then(|file| file.parent()).filter(|folder| !folder.as_os_str().is_empty())
     {
@@ -76,7 +88,7 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
             .collect();
         reduced.push(outcomes?);
     }
-    let reports: Vec<SceneReport> = scenes
+    let mut reports: Vec<SceneReport> = scenes
         .iter()
         .zip(&references)
         .zip(&reduced)
@@ -89,6 +101,13 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
             command: format!("impactcheck compare {}", scene.name),
         })
         .collect();
+    if let (Some(report), false) = (reports.first_mut(), records.is_empty()) {
+        let how = (arguments.bandwidth, arguments.speed);
+        let measured = measured::compare(report.scene, &records, report.reference, report.reduced, how)?;
+        report.comparison.measured = Some(measured);
+        report.command +=
+            &arguments.measured.iter().map(|f| format!(" --measured {}", f.display())).collect::<String>();
+    }
     let comparison = Comparison::new(reports.iter().map(|scene| scene.comparison.clone()).collect());
     let verdict = comparison.verdict;
     let report = Report { scenes: reports };
@@ -109,6 +128,27 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
         arguments.out.join("index.html").display()
     ));
     Ok(verdict)
+}
+
+/// The measured files; they belong to one scene.
+fn records(arguments: &Arguments, scenes: &[Scene]) -> Result<Vec<Record>> {
+    if !arguments.measured.is_empty() && scenes.len() != 1 {
+        return Err(Error::Usage(format!(
+            "--measured needs exactly one scene, to which the files belong; there are {}",
+            scenes.len()
+        )));
+    }
+    arguments.measured.iter().map(|file| Record::read(file)).collect()
+}
+
+/// Parses a bandwidth that a filter can be made for.
+fn bandwidth(text: &str) -> std::result::Result<f64, String> {
+    let value = scene::quantity_in(text, "Hz")?;
+    if (1e3..=1e8).contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("{value} Hz is not within 1 kHz to 100 MHz"))
+    }
 }
 
 /// The comparison with its discrepancy budget. A budget that can't be drawn up is said to be missing: the comparison

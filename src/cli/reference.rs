@@ -3,7 +3,7 @@
 use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
-use crate::reference::{Lookup, Resolution, Store, Stored};
+use crate::reference::{Lookup, Resolution, Store, Stored, TargetError};
 use crate::scene::{self, Geometry, Scene};
 use clap::Args;
 
@@ -14,6 +14,9 @@ pub struct Arguments {
     /// How fine the mesh is
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
+    /// Refine until the 95 % band of efficiency and force peaks is at most this, for example 0.2%
+    #[arg(long, value_name = "ERROR", conflicts_with = "resolution")]
+    target_error: Option<TargetError>,
     /// Number of processes (three-dimensional references only)
     #[arg(long, default_value_t = 1, value_name = "N")]
     np: usize,
@@ -37,8 +40,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         )));
     }
     let store = context.store();
+    let resolution = arguments.target_error.map_or(arguments.resolution, Resolution::Within);
     let wanted = !arguments.fresh && arguments.stress_at.is_empty();
-    let stored = match wanted.then(|| store.find(&scene, arguments.resolution)) {
+    let stored = match wanted.then(|| store.find(&scene, resolution)) {
         Some(Lookup::Found(stored)) => {
             context.note(format_args!("found {}", stored.folder.display()));
             *stored
@@ -47,12 +51,16 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             if let Some(lookup @ (Lookup::Stale { .. } | Lookup::Damaged { .. })) = &other {
                 context.note(format_args!(
                     "{}; computing it again",
-                    problem(&scene, arguments.resolution, lookup)
+                    problem(&scene, resolution, lookup)
                 ));
             }
-            compute(context, &scene, arguments.resolution, &store, &arguments.stress_at)?
+            compute(context, &scene, resolution, &store, &arguments.stress_at)?
         }
     };
+    let convergence = stored.outcome.summary.convergence.as_ref();
+    if let Some(reached) = convergence.and_then(|c| c["relative_error"].as_f64()) {
+        context.note(format_args!("95 % band of efficiency and force peaks: {:.2} %", 100.0 * reached));
+    }
     if arguments.json.json {
         super::print_json(&stored.outcome.summary)?;
     } else {

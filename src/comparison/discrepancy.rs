@@ -25,12 +25,43 @@ pub struct Discrepancy {
     pub relative: Option<f64>,
     /// Half width of the reference's 95 % band, absolute, if known.
     pub uncertainty: Option<f64>,
+    /// Whether the difference can be told from the reference's numerical error; `None` if its band is unknown.
+    pub band_verdict: Option<BandVerdict>,
     /// Bound on `|difference - bias|`, absolute; `None` = not gated.
     pub tolerance: Option<f64>,
     /// Known discrepancy of the model, absolute; `None` = none stated.
     pub bias: Option<f64>,
     /// Whether the checked value is within the bound.
     pub verdict: Verdict,
+}
+
+/// Comparison error |E| against the uncertainty u of the comparison (ASME V&V 20-2009, section 1-6). Here u is
+/// the reference's 95 % band: both sides solve the same scene, so no input is uncertain, and the reduced model's own
+/// numerical error is smaller by orders of magnitude.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BandVerdict {
+    /// |E| <= u: the model's error, if any, is hidden in the reference's.
+    Within,
+    /// |E| > u: the model differs, by about E.
+    Beyond,
+}
+
+impl BandVerdict {
+    /// `None` if one of them is not a number.
+    fn of(difference: f64, uncertainty: f64) -> Option<Self> {
+        let comparable = difference.is_finite() && uncertainty.is_finite();
+        let within = difference.abs() <= uncertainty;
+        comparable.then_some(if within { BandVerdict::Within } else { BandVerdict::Beyond })
+    }
+
+    /// For people.
+    pub fn words(self) -> &'static str {
+        match self {
+            BandVerdict::Within => "within the band",
+            BandVerdict::Beyond => "beyond the band",
+        }
+    }
 }
 
 /// Magnitudes that relative bounds refer to.
@@ -87,6 +118,7 @@ impl Discrepancy {
             difference,
             relative: Some(difference / scales.value).filter(|r| r.is_finite()),
             uncertainty,
+            band_verdict: uncertainty.and_then(|u| BandVerdict::of(difference, u)),
             tolerance: bound.map(|b| b.width),
             bias,
             verdict: Verdict::of(difference.is_finite() && within),
@@ -116,7 +148,7 @@ impl Discrepancy {
 
 #[cfg(test)]
 mod tests {
-    use super::{Discrepancy, Scales};
+    use super::{BandVerdict, Discrepancy, Scales};
     use crate::comparison::Verdict;
     use crate::scene::Tolerance;
 
@@ -150,6 +182,18 @@ mod tests {
         let passed = row(1e-9, 1e-12, either);
         assert_eq!((passed.verdict, passed.tolerance), (Verdict::Pass, Some(1e-6)));
         assert_eq!(row(0.0, 0.0, relative).relative, None);
+    }
+
+    #[test]
+    fn a_difference_smaller_than_the_band_of_the_reference_proves_no_error() {
+        let scales = Scales { value: 100.0, peak: 100.0 };
+        let verdict = |reduced, band| {
+            Discrepancy::new(("x", "N"), (reduced, 100.0), scales, None, band).band_verdict
+        };
+        assert_eq!(verdict(100.4, Some(0.5)), Some(BandVerdict::Within));
+        assert_eq!(verdict(99.4, Some(0.5)), Some(BandVerdict::Beyond));
+        assert_eq!(verdict(100.4, None), None);
+        assert_eq!(verdict(f64::NAN, Some(0.5)), None);
     }
 
     #[test]

@@ -21,8 +21,9 @@ mod verdict;
 
 pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
 pub use curve_metrics::CurveMetrics;
-pub use discrepancy::Discrepancy;
+pub use discrepancy::{BandVerdict, Discrepancy};
 pub use integrity::Check;
+pub(crate) use interpolation::MonotoneCubic;
 pub use iso18571::{Grade, Iso18571, iso18571};
 pub use russell::{Russell, russell};
 pub use sprague_geers::{SpragueGeers, sprague_geers};
@@ -30,6 +31,7 @@ pub use verdict::Verdict;
 
 use crate::error::Result;
 use crate::impact::{CURVES, Outcome, PLATE_QUANTITIES, SCHEMA_VERSION, Summary};
+use crate::measured::Measured;
 use crate::scene::{Model, Scene, Tolerances};
 use budget::QuantityBudget;
 use discrepancy::Scales;
@@ -72,6 +74,9 @@ pub struct SceneComparison {
     /// What causes the difference between model B and the reference, one entry per quantity; empty unless
     /// [`SceneComparison::add_budget`] was called and found models B and C.
     pub budget: Vec<QuantityBudget>,
+    /// Measured records beside reference and models, if there are any; reported, not gated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<Measured>,
 }
 
 impl SceneComparison {
@@ -155,6 +160,7 @@ pub fn compare_scene(scene: &Scene, reference: &Outcome, reduced: &[Outcome]) ->
         window,
         models,
         budget: Vec::new(),
+        measured: None,
     }
 }
 

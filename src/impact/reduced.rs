@@ -152,6 +152,7 @@ impl Reduced {
             }),
             losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
             uncertainty: Default::default(),
+            convergence: None,
             mesh: None,
             solver: None,
             warnings: self.warnings.clone(),

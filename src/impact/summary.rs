@@ -120,6 +120,9 @@ pub struct Summary {
     /// Reference only: half width of the 95 % band of each quantity, absolute, in its unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertainty: BTreeMap<String, f64>,
+    /// Reference only: values on all meshes, observed orders, extrapolated values and bands, kept as written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub convergence: Option<serde_json::Value>,
     /// Reference only: the mesh (nodes, dofs, elements per contact radius, ...), kept as written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<serde_json::Value>,

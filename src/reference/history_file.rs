@@ -16,6 +16,20 @@ const COLUMNS: [&str; 9] = [
     "inner_force",
 ];
 
+/// What the name of a band's column adds to that of its curve. Bands follow the columns above, one per curve.
+const BAND: &str = "_band";
+
+fn is_width(text: &str) -> bool {
+    text.parse::<f64>().is_ok_and(|width| width.is_finite() && width >= 0.0)
+}
+
+/// Whether these are the columns of a history, with or without bands.
+fn are_columns(found: &csv::StringRecord) -> bool {
+    let bands = COLUMNS[1..].iter().map(|name| format!("{name}{BAND}"));
+    let all: Vec<String> = COLUMNS.iter().map(|name| (*name).to_owned()).chain(bands).collect();
+    found.iter().eq(COLUMNS) || found.iter().eq(all.iter().map(String::as_str))
+}
+
 /// Reads a history: the columns above, finite numbers, strictly increasing time, one row at least.
 ///
 /// # Errors
@@ -31,10 +45,10 @@ pub(super) fn read(path: &Path) -> Result<History, String> {
         // The reader itself refuses a row with another number of columns than the first.
         let record = record.map_err(|e| format!("line {line}: {e}"))?;
         if index == 0 {
-            if record.iter().ne(COLUMNS) {
+            if !are_columns(&record) {
                 let found: Vec<&str> = record.iter().take(12).collect();
                 return Err(format!(
-                    "line 1: the columns are {}; expected {}",
+                    "line 1: the columns are {}; expected {} and perhaps the bands of the curves",
                     found.join(","),
                     COLUMNS.join(",")
                 ));
@@ -53,6 +67,9 @@ pub(super) fn read(path: &Path) -> Result<History, String> {
                 ));
             }
             column.push(number);
+        }
+        if let Some(text) = record.iter().skip(COLUMNS.len()).find(|text| !is_width(text)) {
+            return Err(format!("line {line}: a band is `{text}`, not a finite number of 0 or more"));
         }
     }
     if columns[0].is_empty() {

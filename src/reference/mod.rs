@@ -23,8 +23,7 @@ pub use solve::{solve, solve_with};
 pub use store::{Lookup, Store};
 
 /// Fineness of the reference's mesh, relative to `reference.elements_per_contact_radius`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Resolution {
     /// Two thirds of the elements in each direction.
     Coarse,
@@ -32,16 +31,18 @@ pub enum Resolution {
     Paper,
     /// Three halves of the elements in each direction.
     Fine,
+    /// As many as bring the 95 % band of efficiency and force peaks down to an error.
+    Within(TargetError),
 }
 
 impl Resolution {
-    /// All resolutions, coarse to fine.
+    /// The fixed resolutions, coarse to fine.
     pub const ALL: [Resolution; 3] = [Resolution::Coarse, Resolution::Paper, Resolution::Fine];
 
-    /// Its name on the command line and in the store.
-    pub fn name(self) -> &'static str {
+    /// The resolution the solver begins with, by its name on the command line.
+    pub fn first(self) -> &'static str {
         match self {
-            Resolution::Coarse => "coarse",
+            Resolution::Coarse | Resolution::Within(_) => "coarse",
             Resolution::Paper => "paper",
             Resolution::Fine => "fine",
         }
@@ -49,8 +50,18 @@ impl Resolution {
 }
 
 impl std::fmt::Display for Resolution {
+    /// Its name in the store; of a fixed resolution also that on the command line.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(self.name())
+        match self {
+            Resolution::Within(error) => f.pad(&format!("error-{}ppm", error.parts_per_million)),
+            fixed => f.pad(fixed.first()),
+        }
+    }
+}
+
+impl serde::Serialize for Resolution {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 
@@ -58,7 +69,55 @@ impl std::str::FromStr for Resolution {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = Resolution::ALL.into_iter().find(|r| r.name() == text);
+        let found = Resolution::ALL.into_iter().find(|r| r.first() == text);
         found.ok_or_else(|| format!("`{text}` is not a resolution; there are coarse, paper and fine"))
+    }
+}
+
+/// A relative error asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TargetError {
+    parts_per_million: u32,
+}
+
+impl TargetError {
+    /// The error as a share.
+    pub fn share(self) -> f64 {
+        f64::from(self.parts_per_million) * 1e-6
+    }
+}
+
+impl std::str::FromStr for TargetError {
+    type Err = String;
+
+    /// Reads `0.2%` or `0.002`, to one part in a million.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (number, scale) = text.strip_suffix('%').map_or((text, 1e6), |number| (number, 1e4));
+        let parts = number.trim().parse::<f64>().map(|n| (n * scale).round());
+        // At least 0.01 %: more is beyond what explicit time integration can show. NaN fails as well.
+        match parts {
+            Ok(parts) if (100.0..=500_000.0).contains(&parts) => {
+                // In the range checked, a whole number.
+                Ok(TargetError { parts_per_million: parts as u32 })
+            }
+            _ => Err(format!("`{text}` is not an error from 0.01% to 50%, like 0.2% or 0.002")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Resolution, TargetError};
+
+    #[test]
+    fn an_error_is_read_as_percent_or_share_and_names_its_entry() {
+        let read = |text: &str| text.parse::<TargetError>();
+        assert_eq!(read("0.2%"), read("0.002"));
+        let error = read("0.25%").expect("valid");
+        assert_eq!(error.share(), 0.0025);
+        assert_eq!(Resolution::Within(error).to_string(), "error-2500ppm");
+        for bad in ["", "0", "-1%", "NaN", "inf", "60%", "0.001%", "x%"] {
+            assert!(read(bad).is_err(), "{bad}");
+        }
     }
 }

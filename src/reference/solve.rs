@@ -48,7 +48,10 @@ pub fn solve_with(
     let mut command = python::fem_reference(python);
     command.args([OsStr::new("solve"), OsStr::new("--scene"), input.as_os_str()]);
     command.args([OsStr::new("--out"), output.as_os_str()]);
-    command.args(["--resolution", resolution.name()]);
+    command.args(["--resolution", resolution.first()]);
+    if let Resolution::Within(error) = resolution {
+        command.args(["--target-error", &error.share().to_string()]);
+    }
     if !stress_at.is_empty() {
         command.arg("--stress-at");
         command.arg(stress_at.iter().map(f64::to_string).collect::<Vec<_>>().join(","));

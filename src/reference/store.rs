@@ -71,7 +71,7 @@ impl Store {
 
     /// The folder of the entry of `scene` at `resolution`, whether it exists or not.
     pub fn folder(&self, scene: &Scene, resolution: Resolution) -> PathBuf {
-        self.root.join(&scene.name).join(resolution.name())
+        self.root.join(&scene.name).join(resolution.to_string())
     }
 
     /// Looks for the solution of `scene` at `resolution`. Every file is verified by its checksum.

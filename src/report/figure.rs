@@ -11,6 +11,7 @@ use super::label_placement::{Panel, Rect};
 use super::polyline::{Point, path, thinned};
 use super::ticks::{tick_label, ticks};
 use crate::comparison::{CommonAxis, SampledCurve, sample};
+use crate::measured::Measured;
 use maud::{Markup, PreEscaped, html};
 
 const WIDTH: f64 = 760.0;
@@ -36,7 +37,7 @@ pub enum Theme {
 const STYLE: &str = "\
 .fig-text{fill:#1a1a1a}.fig-frame{stroke:#444;fill:none}.fig-grid{stroke:#e3e3e3}\
 .fig-box{fill:#ececec;stroke:#bdbdbd}.fig-halo{stroke:#fff}\
-.fig-reference{stroke:#1a1a1a}.fig-A{stroke:#d55e00}.fig-B{stroke:#0072b2}.fig-C{stroke:#009e73}";
+.fig-reference{stroke:#1a1a1a}.fig-A{stroke:#d55e00}.fig-B{stroke:#0072b2}.fig-C{stroke:#009e73}.fig-measured{stroke:#cc79a7}";
 
 /// One of the three panels.
 struct Quantity {
@@ -60,6 +61,17 @@ const QUANTITIES: [Quantity; 3] = [
         bodies: &["outer", "plate", "inner"],
     },
     Quantity { suffix: "force", label: "Contact force in N", factor: 1.0, bodies: &["outer", "inner"] },
+];
+
+/// What can be measured: the bodies, by their motion.
+const MEASURED: [Quantity; 2] = [
+    Quantity {
+        suffix: "displacement",
+        label: "Displacement in µm",
+        factor: 1e6,
+        bodies: &["outer", "inner"],
+    },
+    Quantity { suffix: "velocity", label: "Velocity in mm/s", factor: 1e3, bodies: &["outer", "inner"] },
 ];
 
 /// Curves of one result, and how they are drawn.
@@ -106,6 +118,33 @@ fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
     std::iter::once(reference).chain(reduced).collect()
 }
 
+/// The first measured record and everything it is compared with, as the instrument shows it.
+fn measured_lines(measured: &Measured) -> Vec<Line> {
+    let record = Line {
+        name: "measured".into(),
+        short: "measured".into(),
+        class: "fig-measured".into(),
+        dash: "none",
+        width: 1.4,
+        efficiency: measured.records.first().and_then(|record| record.efficiency).unwrap_or(f64::NAN),
+        curves: measured.curves.clone(),
+    };
+    let partners = measured.partners.iter().map(|partner| {
+        let reference = partner.partner == "reference";
+        let name = if reference { "FE reference".into() } else { format!("model {}", partner.partner) };
+        Line {
+            name,
+            short: if reference { "FE".into() } else { partner.partner.clone() },
+            class: format!("fig-{}", partner.partner),
+            dash: if reference { "none" } else { dash(&partner.partner) },
+            width: if reference { 2.1 } else { 1.7 },
+            efficiency: partner.efficiency,
+            curves: partner.filtered.clone(),
+        }
+    });
+    std::iter::once(record).chain(partners).collect()
+}
+
 /// Width in px of `text` in DejaVu Sans, estimated from above.
 fn text_width(text: &str) -> f64 {
     0.62 * FONT_SIZE * text.chars().count() as f64
@@ -113,11 +152,30 @@ fn text_width(text: &str) -> f64 {
 
 /// The figure as SVG; without curves if the reference's history can't be used.
 pub fn figure(report: &SceneReport, theme: Theme) -> String {
-    let height = TOP + 3.0 * PANEL_HEIGHT + 2.0 * PANEL_GAP + BOTTOM;
     let axis = report.comparison.window;
     let lines = axis.map_or_else(Vec::new, |axis| lines(report, axis));
-    let end = axis.map_or(1.0, |a| a.end * 1e6);
     let title = format!("{}: reduced models and finite-element reference", report.scene.name);
+    drawing(&title, &QUANTITIES, &lines, axis, theme)
+}
+
+/// The figure of the first measured record beside reference and models (Fig. 12): displacement and velocity of the
+/// bodies, filtered to the instrument's bandwidth. `None` if nothing was measured.
+pub fn measured_figure(report: &SceneReport, theme: Theme) -> Option<String> {
+    let measured = report.comparison.measured.as_ref()?;
+    let title = format!("{}: measurement, reduced models and finite-element reference", report.scene.name);
+    Some(drawing(&title, &MEASURED, &measured_lines(measured), Some(measured.window), theme))
+}
+
+fn drawing(
+    title: &str,
+    quantities: &[Quantity],
+    lines: &[Line],
+    axis: Option<CommonAxis>,
+    theme: Theme,
+) -> String {
+    let panels = quantities.len() as f64;
+    let height = TOP + panels * PANEL_HEIGHT + (panels - 1.0) * PANEL_GAP + BOTTOM;
+    let end = axis.map_or(1.0, |a| a.end * 1e6);
     html! {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height}"))
             width=[(theme == Theme::Standalone).then_some(WIDTH)]
@@ -128,9 +186,9 @@ pub fn figure(report: &SceneReport, theme: Theme) -> String {
                 style { (PreEscaped(STYLE)) }
                 rect width=(WIDTH) height=(height) fill="#ffffff" {}
             }
-            (legend(&lines))
-            @for (k, quantity) in QUANTITIES.iter().enumerate() {
-                (panel(quantity, TOP + k as f64 * (PANEL_HEIGHT + PANEL_GAP), end, &lines, axis))
+            (legend(lines))
+            @for (k, quantity) in quantities.iter().enumerate() {
+                (panel(quantity, TOP + k as f64 * (PANEL_HEIGHT + PANEL_GAP), end, lines, axis))
             }
             (time_labels(end, height))
             @if lines.is_empty() {

@@ -3,7 +3,7 @@
 
 use super::format::{Prefixed, model_name, percent, prefixed, significant, with_unit, words};
 use super::{Report, SceneReport, Theme, figure};
-use crate::comparison::{Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
+use crate::comparison::{BandVerdict, Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 
@@ -121,6 +121,7 @@ pub fn scene_page(report: &SceneReport) -> String {
             }
         }
         (super::budget_section::budget_html(&comparison.budget))
+        (super::measured_section::measured_html(report))
         @for model in &comparison.models { (model_section(model)) }
         h2 { "Mesh and solver" }
         (facts(&[
@@ -156,14 +157,15 @@ fn model_section(model: &ModelComparison) -> Markup {
         div.scroll { table.discrepancies data-model=(model.model) {
             thead { tr {
                 th scope="col" { "quantity" } th.left scope="col" { "verdict" }
-                @for heading in ["reduced", "reference", "difference", "relative", "95 % band", "tolerance", "bias"] {
+                @for heading in ["reduced", "reference", "difference", "relative", "95 % band", "|E| against u", "tolerance", "bias"] {
                     th scope="col" { (heading) }
                 }
             } }
             tbody { @for row in &model.discrepancies { (discrepancy_row(row)) } }
         } }
         p.soft { "Difference is reduced minus reference. A row without tolerance is not gated. Bias is the known "
-            "discrepancy about which the tolerance lies. A distance of curves is relative to the reference's peak." }
+            "discrepancy about which the tolerance lies. A distance of curves is relative to the reference's peak. "
+            "|E| against u (ASME V&V 20): a difference within the reference's 95 % band proves no error of the model." }
         h3 { "Curve metrics" }
         div.scroll { table.curves data-model=(model.model) {
             thead { tr {
@@ -199,6 +201,7 @@ fn discrepancy_row(row: &Discrepancy) -> Markup {
                 (percent(row.relative))
             }
             (number("uncertainty", row.uncertainty, to, 2))
+            td.left data-field="band_verdict" { (row.band_verdict.map_or("–", BandVerdict::words)) }
             (number("tolerance", row.tolerance, to, 3))
             (number("bias", row.bias, to, 3))
         }

@@ -2,7 +2,7 @@
 
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::{Report, SceneReport};
-use crate::comparison::{Check, Discrepancy, ModelComparison};
+use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison};
 
 /// Markdown of the whole report.
 pub fn markdown(report: &Report) -> String {
@@ -43,6 +43,7 @@ fn section(scene: &SceneReport) -> String {
     );
     text += &failures("the reference", &comparison.integrity);
     text += &super::budget_section::budget_markdown(&comparison.budget);
+    text += &super::measured_section::measured_markdown(scene);
     for model in &comparison.models {
         text += &model_section(model);
     }
@@ -53,7 +54,7 @@ fn section(scene: &SceneReport) -> String {
 fn model_section(model: &ModelComparison) -> String {
     let name = escape(&model_name(&model.model, model.summary.modes));
     let mut text = format!(
-        "\n### Model {name}: {}\n\n| quantity | reduced | reference | difference | relative | 95 % band | tolerance | bias | verdict |\n|---|--:|--:|--:|--:|--:|--:|--:|---|\n",
+        "\n### Model {name}: {}\n\n| quantity | reduced | reference | difference | relative | 95 % band | \\|E\\| against u | tolerance | bias | verdict |\n|---|--:|--:|--:|--:|--:|---|--:|--:|---|\n",
         model.verdict
     );
     for row in &model.discrepancies {
@@ -89,13 +90,14 @@ fn discrepancy(row: &Discrepancy) -> String {
     let show = |value: f64, digits| with_unit(value, to, digits);
     let optional = |value: Option<f64>| value.map_or("–".into(), |v| show(v, 3));
     format!(
-        "| {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
         words(&row.quantity),
         show(row.reduced, 5),
         show(row.reference, 5),
         show(row.difference, 3),
         percent(row.relative),
         optional(row.uncertainty),
+        row.band_verdict.map_or("–", BandVerdict::words),
         optional(row.tolerance),
         optional(row.bias),
         row.verdict,

@@ -28,6 +28,9 @@ pub fn terminal(report: &Report) -> String {
             let row = cells(&model.summary.quantities, Some(reference));
             text += &format!("  {:<10}{row}  {}\n", model.model, model.verdict);
         }
+        if let Some(measured) = &comparison.measured {
+            text += &format!("  {}\n", super::measured_section::sentence(measured));
+        }
         for check in comparison.integrity.iter().filter(|c| !c.verdict.passed()) {
             text += &format!("  reference: {}\n", super::junit::integrity_failure(check));
         }

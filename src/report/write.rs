@@ -105,6 +105,12 @@ fn files(report: &Report) -> Result<Vec<(String, Vec<u8>)>> {
         let svg = super::figure(scene, Theme::Standalone);
         files.push((format!("{name}.png"), super::png(&svg, PNG_SCALE)?));
         files.push((format!("{name}.svg"), svg.into_bytes()));
+        let measured = super::measured_figure(scene, Theme::Standalone).map(|svg| ("measured", svg));
+        let efficiencies = super::efficiency_figure(scene).map(|svg| ("efficiencies", svg));
+        for (kind, svg) in measured.into_iter().chain(efficiencies) {
+            files.push((format!("{name}-{kind}.png"), super::png(&svg, PNG_SCALE)?));
+            files.push((format!("{name}-{kind}.svg"), svg.into_bytes()));
+        }
         files.push((format!("{name}.csv"), super::curves_csv(scene)?.into_bytes()));
         files.push((format!("{name}.html"), super::scene_page(scene).into_bytes()));
     }

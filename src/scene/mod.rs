@@ -20,6 +20,7 @@ mod tolerances;
 pub use find::{resolve, shipped};
 pub(crate) use problem::suggestion;
 pub use problem::{Problem, Problems, problems};
+pub(crate) use quantity::in_unit as quantity_in;
 pub use read::MAX_FILE_BYTES;
 pub use schema::schema;
 pub(crate) use specification::unit_of;

@@ -143,6 +143,25 @@ pub fn dimension_of(unit: &str) -> Option<Dimension> {
     parse_unit(unit).ok().map(|u| u.dimension)
 }
 
+/// Reads `text`, a decimal number with a unit of the same dimension as `unit`, in SI.
+///
+/// # Errors
+/// A clause that says what is wrong and what is needed.
+pub(crate) fn in_unit(text: &str, unit: &str) -> Result<f64, String> {
+    let dimension = dimension_of(unit).unwrap_or(Dimension::NONE);
+    parse(text, dimension).map_err(|error| match error {
+        QuantityError::NotANumber => format!("`{text}` is not a number with a unit of {unit}"),
+        QuantityError::UnknownUnit(u) => format!("`{u}` is not a known unit; one of {unit} is needed"),
+        QuantityError::MalformedUnit(u) => {
+            format!("`{u}` is not a product of units; one of {unit} is needed")
+        }
+        QuantityError::WrongDimension(u) => {
+            format!("`{u}` is not the unit that is needed, {unit} with any prefix")
+        }
+        QuantityError::OutOfRange => format!("double precision can't hold `{text}`"),
+    })
+}
+
 /// Splits a decimal number off the front: mantissa, decimal exponent, rest.
 fn split_number(text: &str) -> Option<(&str, i32, &str)> {
     let bytes = text.as_bytes();

@@ -1,0 +1,160 @@
+//! Measured records beside the models: the same metrics as between models and reference, and the efficiency of a series
+//! of repeated impacts.
+
+use super::RULE;
+use super::align::{AlignedRecord, Speed, align};
+use super::filter::{Filtered, SIGNALS};
+use super::record::Record;
+use crate::comparison::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
+use crate::error::{Error, Result};
+use crate::impact::{CURVES, Outcome};
+use crate::scene::{Scene, Setup};
+use serde::Serialize;
+
+/// Measured records of one scene beside its models; part of the comparison document.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measured {
+    /// The rule of alignment.
+    pub rule: &'static str,
+    /// Bandwidth in Hz to which the models' curves are filtered.
+    pub bandwidth: f64,
+    /// Where the outer body's speed before the impact comes from.
+    pub speed: Speed,
+    /// The records, in the order given.
+    pub records: Vec<AlignedRecord>,
+    /// Efficiency over the records; `None` if none of them shows one.
+    pub efficiency: Option<Series>,
+    /// Reference and models against the first record.
+    pub partners: Vec<Partner>,
+    /// Time axis of the curves.
+    pub window: CommonAxis,
+    /// The first record on it.
+    #[serde(skip)]
+    pub curves: Vec<SampledCurve>,
+}
+
+/// Mean and scatter of repeated impacts.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Series {
+    /// Number of impacts that show an efficiency.
+    pub count: usize,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation of the impacts; `None` for one.
+    pub standard_deviation: Option<f64>,
+    /// The efficiencies, in the order of the records.
+    pub values: Vec<f64>,
+}
+
+impl Series {
+    /// Mean and scatter of `values`; `None` without any.
+    pub fn of(values: Vec<f64>) -> Option<Self> {
+        let count = values.len();
+        if count == 0 {
+            return None;
+        }
+        let mean = values.iter().sum::<f64>() / count as f64;
+        let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+        let standard_deviation = (count > 1).then(|| (squares / (count - 1) as f64).sqrt());
+        Some(Series { count, mean, standard_deviation, values })
+    }
+}
+
+/// The reference or a model against the measurement.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Partner {
+    /// "reference" or the model's name.
+    pub partner: String,
+    /// Its efficiency.
+    pub efficiency: f64,
+    /// Its efficiency less the mean of the measured ones.
+    pub efficiency_difference: Option<f64>,
+    /// Curve metrics, the measurement as reference, the partner filtered.
+    pub curves: Vec<CurveMetrics>,
+    /// Its filtered curves on the window.
+    #[serde(skip)]
+    pub filtered: Vec<SampledCurve>,
+}
+
+/// Aligns `records` with the reference and compares reference and models with the first of them.
+///
+/// # Errors
+/// [`Error::Reference`] if the reference's history can't be used, [`Error::Scene`] if a record can't be aligned,
+/// [`Error::Usage`] if there is no record or the bandwidth is not usable.
+pub fn compare(
+    scene: &Scene,
+    records: &[Record],
+    reference: &Outcome,
+    reduced: &[Outcome],
+    (bandwidth, speed): (f64, Speed),
+) -> Result<Measured> {
+    let Setup::PlateImpact(setup) = &scene.setup;
+    let window = CommonAxis::of_reference(reference).ok_or_else(|| {
+        Error::Reference(format!("the history of the reference of `{}` can't be used", scene.name))
+    })?;
+    let model = Filtered::new(&reference.history, bandwidth)?;
+    let records = records
+        .iter()
+        .map(|record| align(record, &model, &reference.summary.quantities, setup, (bandwidth, speed)))
+        .collect::<Result<Vec<_>>>()?;
+    let first = records.first().ok_or_else(|| Error::Usage("no measured file is given".into()))?;
+    let window = CommonAxis { end: window.end.min(first.time.last().copied().unwrap_or(0.0)), ..window };
+    if window.end <= window.start {
+        return Err(Error::Scene(miette::miette!(
+            "{}: the record ends before the impact",
+            first.file.display()
+        )));
+    }
+    let curves = sampled(first, window);
+    let efficiency = Series::of(records.iter().filter_map(|record| record.efficiency).collect());
+    let outcomes = std::iter::once(("reference".to_owned(), reference))
+        .chain(reduced.iter().map(|outcome| (outcome.summary.model.clone().unwrap_or_default(), outcome)));
+    let partners = outcomes
+        .map(|(partner, outcome)| {
+            let filtered = Filtered::new(&outcome.history, bandwidth)?;
+            let filtered: Vec<SampledCurve> = SIGNALS
+                .into_iter()
+                .filter_map(|quantity| {
+                    let curve = filtered.curve(quantity)?;
+                    let values = (0..window.samples).map(|k| curve(window.time(k))).collect();
+                    Some(SampledCurve { quantity, values })
+                })
+                .collect();
+            let own = outcome.summary.quantities.efficiency;
+            Ok(Partner {
+                partner,
+                efficiency: own,
+                efficiency_difference: efficiency.as_ref().map(|series| own - series.mean),
+                curves: metrics(&curves, &filtered, window),
+                filtered,
+            })
+        })
+        .collect::<Result<Vec<_>>>()?;
+    Ok(Measured { rule: RULE, bandwidth, speed, efficiency, partners, window, curves, records })
+}
+
+/// The signals of a record at the instants of `window`.
+fn sampled(record: &AlignedRecord, window: CommonAxis) -> Vec<SampledCurve> {
+    let of = |channel: &super::Channel| {
+        let curve = MonotoneCubic::new(&record.time, &channel.values);
+        let values = (0..window.samples).map(|k| curve.at(window.time(k))).collect();
+        SampledCurve { quantity: channel.quantity, values }
+    };
+    record.signals.iter().map(of).collect()
+}
+
+fn metrics(measured: &[SampledCurve], filtered: &[SampledCurve], axis: CommonAxis) -> Vec<CurveMetrics> {
+    let pair = |curve: &SampledCurve| {
+        let (quantity, unit) = CURVES.into_iter().find(|(name, _)| *name == curve.quantity)?;
+        let partner = filtered.iter().find(|other| other.quantity == curve.quantity)?;
+        let aligned = AlignedCurve {
+            quantity,
+            unit,
+            axis,
+            reference: curve.values.clone(),
+            reduced: partner.values.clone(),
+        };
+        Some(CurveMetrics::of(&aligned))
+    };
+    measured.iter().filter_map(pair).collect()
+}

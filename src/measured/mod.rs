@@ -1,0 +1,28 @@
+//! Measured signals: histories from laser vibrometers beside the models (section 3.4, Figs. 12 and 13 of the paper).
+//!
+//! Two vibrometers see the outer and the inner body; each gives displacement, velocity or both. A record begins at any
+//! time, and its signals may carry an offset and a drift, a part that is linear in time. The rule by which both are taken out and
+//! the record is laid over the models is [`RULE`]; the report states it too.
+
+mod align;
+mod compare;
+mod filter;
+mod least_squares;
+mod record;
+
+pub use align::{AlignedRecord, ChannelCorrection, Speed, align};
+pub use compare::{Measured, Partner, Series, compare};
+pub use filter::{Filtered, low_pass};
+pub use record::{Channel, Record};
+
+/// Bandwidth in Hz of the paper's vibrometers.
+pub const BANDWIDTH: f64 = 100e3;
+
+/// The rule of alignment, as it stands in the report.
+pub const RULE: &str = "Offset and drift of a signal come from the free flight before the first and after the last contact, where the \
+velocity is constant: a velocity is fitted there with a step, an offset and a drift, a displacement with a straight line \
+on each side. Before the impact the inner body is at rest and the outer one has the scene's speed (with `--speed measured` \
+the speed is read from the signal, which then has no offset). A displacement is zero at the first touch. The shift in time \
+is the one that minimises the squared distance to the reference, filtered to the instrument's bandwidth, over the contact and \
+as much time before and after it; each signal over its noise in free flight (at least 1 % of its span) and with any offset, drift \
+and amplitude, so that another speed or efficiency does not move it. The efficiency is that of the measured velocities.";

@@ -1,0 +1,197 @@
+//! A record from a CSV file: times and signals with their units in the header.
+
+use crate::error::{Error, Result};
+use crate::impact::CURVES;
+use crate::scene::quantity_in;
+use std::path::{Path, PathBuf};
+
+/// Fewest samples of a record.
+const FEWEST: usize = 32;
+/// Most of them: a second at 20 MHz.
+const MOST: usize = 20_000_000;
+
+/// One measured signal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// Its name in [`CURVES`]: `outer_velocity`, `inner_displacement`, ...
+    pub quantity: &'static str,
+    /// Values in SI. Shape of the record's time.
+    pub values: Vec<f64>,
+}
+
+/// Measured signals over one time axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// Where they come from.
+    pub file: PathBuf,
+    /// Time in s, strictly increasing, with any zero.
+    pub time: Vec<f64>,
+    /// The signals, one at least.
+    pub channels: Vec<Channel>,
+}
+
+/// What a column can hold.
+const COLUMNS: [&str; 5] =
+    ["time", "outer_displacement", "outer_velocity", "inner_displacement", "inner_velocity"];
+
+impl Record {
+    /// Reads a CSV file whose header names quantity and unit, such as `time [us]`, `outer_velocity [mm/s]`; without unit a
+    /// column is in SI. Lines that begin with `#` are skipped.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there is no such file, [`Error::Scene`] if it is no record.
+    pub fn read(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).map_err(|e| match e.kind() {
+            std::io::ErrorKind::NotFound => {
+                Error::Usage(format!("there is no measured file {}", path.display()))
+            }
+            _ => Error::io("reading", path, e),
+        })?;
+        Self::parse(path, &bytes).map_err(|reason| {
+            Error::Scene(miette::miette!(
+                help = "a measured file is CSV with a header such as `time [us],outer_velocity [mm/s],inner_velocity [mm/s]`",
+                "{}: {reason}",
+                path.display()
+            ))
+        })
+    }
+
+    fn parse(path: &Path, bytes: &[u8]) -> std::result::Result<Self, String> {
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(true)
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .from_reader(bytes);
+        let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
+        let columns: Vec<(&'static str, f64)> =
+            header.iter().map(column).collect::<std::result::Result<_, _>>()?;
+        for (k, (name, _)) in columns.iter().enumerate() {
+            if columns[..k].iter().any(|(other, _)| other == name) {
+                return Err(format!("two columns are called `{name}`"));
+            }
+        }
+        let Some(clock) = columns.iter().position(|(name, _)| *name == "time") else {
+            return Err("there is no column `time`".into());
+        };
+        if columns.len() < 2 {
+            return Err("there is no signal beside the time".into());
+        }
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
+        for row in reader.records() {
+            let row = row.map_err(|e| e.to_string())?;
+            let line = row.position().map_or(0, csv::Position::line);
+            for ((values, (name, factor)), text) in values.iter_mut().zip(&columns).zip(row.iter()) {
+                let number: f64 = text
+                    .parse()
+                    .ok()
+                    .filter(|n: &f64| n.is_finite())
+                    .ok_or_else(|| format!("line {line}: {name} is `{text}`, not a finite number"))?;
+                values.push(number * factor);
+            }
+            if let [.., before, now] = values[clock][..]
+                && now <= before
+            {
+                return Err(format!("line {line}: time is {now} s, not after {before} s of the line before"));
+            }
+            if values[clock].len() > MOST {
+                return Err(format!("has more than {MOST} samples"));
+            }
+        }
+        let samples = values[clock].len();
+        if samples < FEWEST {
+            return Err(format!("has {samples} samples; at least {FEWEST} are needed"));
+        }
+        let time = std::mem::take(&mut values[clock]);
+        let signals = columns.iter().zip(values).filter(|((name, _), _)| *name != "time");
+        let channels = signals.map(|((quantity, _), values)| Channel { quantity, values }).collect();
+        Ok(Record { file: path.to_path_buf(), time, channels })
+    }
+
+    /// The signal called `quantity`.
+    pub fn channel(&self, quantity: &str) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.quantity == quantity)
+    }
+}
+
+/// Name and size in SI of the column with this heading.
+fn column(heading: &str) -> std::result::Result<(&'static str, f64), String> {
+    let (name, unit) = match heading.split_once('[') {
+        Some((name, unit)) => {
+            let unit = unit.strip_suffix(']').ok_or_else(|| format!("column `{heading}`: `]` is missing"))?;
+            (name.trim(), Some(unit.trim()))
+        }
+        None => (heading, None),
+    };
+    let Some(known) = COLUMNS.into_iter().find(|column| *column == name) else {
+        let hint = crate::scene::suggestion(name, COLUMNS).map(|near| format!("; did you mean `{near}`?"));
+        return Err(format!(
+            "`{name}` is no column of a measured file{} (there are: {})",
+            hint.unwrap_or_default(),
+            COLUMNS.join(", ")
+        ));
+    };
+    let si = CURVES.iter().find(|(curve, _)| *curve == known).map_or("s", |(_, unit)| unit);
+    let factor = match unit {
+        None => 1.0,
+        Some(unit) => {
+            quantity_in(&format!("1 {unit}"), si).map_err(|reason| format!("column `{heading}`: {reason}"))?
+        }
+    };
+    Ok((known, factor))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(header: &str, rows: impl Iterator<Item = String>) -> String {
+        std::iter::once(header.to_owned()).chain(rows).collect::<Vec<_>>().join("\n")
+    }
+
+    fn rows() -> impl Iterator<Item = String> {
+        (0..40).map(|k| format!("{k}, {}, {}", -550 + k, 2 * k))
+    }
+
+    fn parse(text: &str) -> std::result::Result<Record, String> {
+        Record::parse(Path::new("r.csv"), text.as_bytes())
+    }
+
+    #[test]
+    fn units_of_the_header_are_applied() {
+        let header = "# a comment\ntime [us], outer_velocity [mm/s], inner_displacement [um]";
+        let record = parse(&text(header, rows())).expect("record");
+        assert!((record.time[7] - 7e-6).abs() < 1e-18);
+        assert!((record.channel("outer_velocity").expect("there").values[0] + 0.55).abs() < 1e-15);
+        assert!((record.channel("inner_displacement").expect("there").values[3] - 6e-6).abs() < 1e-18);
+        let plain = parse(&text("time,outer_velocity,inner_velocity", rows())).expect("SI");
+        assert_eq!(plain.time[7], 7.0);
+    }
+
+    #[test]
+    fn what_is_no_record_is_told_with_its_place() {
+        let good = "time [us],outer_velocity [mm/s],inner_velocity [mm/s]";
+        let row = |k: usize, text: &str| {
+            let text = text.to_owned();
+            rows().enumerate().map(move |(i, row)| if i == k { text.clone() } else { row })
+        };
+        for (file, part) in [
+            (text("time [us],outer_speed,inner_velocity", rows()), "`outer_speed` is no column"),
+            (
+                text("time [um],outer_velocity,inner_velocity", rows()),
+                "`um` is not the unit that is needed, s",
+            ),
+            (text("time [us,outer_velocity,inner_velocity", rows()), "`]` is missing"),
+            (text("outer_displacement,outer_velocity,inner_velocity", rows()), "no column `time`"),
+            (text("time,time,inner_velocity", rows()), "two columns"),
+            (text(good, rows().take(5)), "has 5 samples"),
+            (text(good, row(3, "3,nan,0")), "line 5: outer_velocity is `nan`"),
+            (text(good, row(3, "2,0,0")), "line 5: time is"),
+            (text(good, row(3, "3,0")), "line"),
+            (String::new(), "no column `time`"),
+            ("time\n1\n2".into(), "no signal"),
+        ] {
+            let said = parse(&file).expect_err("no record");
+            assert!(said.contains(part), "{said}");
+        }
+    }
+}
