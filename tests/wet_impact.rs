@@ -243,9 +243,9 @@ fn drag_slows_the_inner_body_as_its_square_law_says() {
 #[test]
 fn shapes_of_both_plates_under_the_film_agree() {
     // on the patch the continuum plate's shapes are its participations, and a thin one moves as Kirchhoff's: shear and
-    // rotary inertia take 3 % off the centre of the fourth mode
+    // rotary inertia take 3 % off the centre of the third mode
     let plate = valve(water()).plate;
-    let (patch, modes, mesh) = ([40e-6; 2], 4, MeshOptions::default());
+    let (patch, modes, mesh) = ([40e-6; 2], 3, MeshOptions::default());
     let radii = [0.0, 0.5e-3, 1e-3, 1.5e-3];
     let continuum = continuum::face_shapes(&plate, patch, modes, &mesh, &radii).unwrap();
     let body = continuum::plate(&plate, patch, modes, &mesh).unwrap();
