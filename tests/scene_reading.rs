@@ -345,7 +345,7 @@ fn shear_thinning_is_given_in_full_or_not_at_all() {
     };
     let law = "relaxation_time = 1\npower_index = 0.5";
     assert!(Scene::parse("scene.toml", &fluid(&format!("infinite_shear_viscosity = 1e-4\n{law}"))).is_ok());
-    refuses(&fluid(law), 26, &["fluid.infinite_shear_viscosity", "missing"]);
+    refuses(&fluid(law), 27, &["fluid.infinite_shear_viscosity", "missing"]);
     let said = Scene::parse("scene.toml", &fluid(&format!("infinite_shear_viscosity = 1\n{law}")));
     let said = said.expect_err("thickening").to_string();
     assert!(said.contains("fluid.infinite_shear_viscosity") && said.contains("0.001 Pa*s"), "{said}");

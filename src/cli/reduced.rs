@@ -66,6 +66,27 @@ pub fn table(summary: &Summary) -> String {
         let band = summary.uncertainty.get(name).map_or_else(String::new, |u| format!(" +- {u:.2e}"));
         lines.push(format!("  {name:<22} {:>14}{band} {unit}", significant(value)));
     }
+    let bender = summary.bender.iter().flat_map(|bender| {
+        let drive = &bender.drive;
+        [
+            ("strain_energy_efficiency", bender.strain_energy_efficiency, ""),
+            ("torque", drive.torque, "N*m"),
+            ("tip_deflection", drive.tip_deflection, "m"),
+            ("strain_energy", drive.strain_energy, "J"),
+            ("kinetic_energy", drive.kinetic_energy, "J"),
+            ("strike_delay", drive.strike_delay, "s"),
+        ]
+    });
+    let losses = summary.losses.iter().flat_map(|losses| {
+        [
+            ("lost to plate damping", losses.plate_damping, "J"),
+            ("lost in squeeze film", losses.squeeze_film, "J"),
+            ("lost to drag", losses.drag, "J"),
+        ]
+    });
+    for (name, value, unit) in bender.chain(losses) {
+        lines.push(format!("  {name:<24} {:>12} {unit}", significant(value)));
+    }
     lines.push(format!("  {:<22} {:>14.1e}", "energy_residual", summary.energy_residual));
     lines.push(format!("  {:<22} {:>14.1e}", "momentum_residual", summary.momentum_residual));
     lines.push(format!("  {} steps in {:.3e} s", summary.steps, summary.solve_seconds));

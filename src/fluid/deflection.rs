@@ -26,10 +26,10 @@ impl Deflection {
     pub fn new(rim: f64, shapes: &[Vec<f64>]) -> Self {
         let extended = |shape: &Vec<f64>| {
             debug_assert_eq!(shape.len(), STEPS + 1);
-            // mirrored at the axis, straight on at the edge
+            // mirrored at the axis, a parabola on at the edge
             let mut extended = vec![shape[1]];
             extended.extend(shape);
-            extended.push(2.0 * shape[STEPS] - shape[STEPS - 1]);
+            extended.push(3.0 * (shape[STEPS] - shape[STEPS - 1]) + shape[STEPS - 2]);
             extended
         };
         let shapes: Vec<Vec<f64>> = shapes.iter().map(extended).collect();

@@ -167,7 +167,7 @@ fn row(name: &'static str, discharge: Option<f64>, length: Option<f64>, result: 
 
 fn bender_claims(time: f64, model: Model, result: &Summary) -> Vec<Claim> {
     let (speed, [_, kinetic, strain]) = PAPER;
-    let release = if time == 0.0 { "at once".into() } else { format!("over {} ms", time * 1e3) };
+    let release = if time == 0.0 { "at once".into() } else { format!("over {:.2} ms", time * 1e3) };
     let claim = |what: &str, unit, paper: f64, ours: Option<f64>, bound: f64| {
         let text = format!("bender released {release}, model {model}: {what}");
         Claim::new(text, unit, Some(paper), ours, bound)
