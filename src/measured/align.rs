@@ -320,7 +320,7 @@ impl Alignment<'_> {
                 time.partition_point(|t| *t < shift - end)..time.partition_point(|t| *t < shift + 2.0 * end);
             let points: Vec<(f64, f64)> = window.map(|i| (time[i] - shift, channel.values[i])).collect();
             let scale = flight.noise.hypot(LEAST_NOISE * self.span(channel.quantity));
-            signals.push((channel.quantity, scale, points));
+            signals.push(Signal { quantity: channel.quantity, scale, points });
         }
         let misfit = Misfit { model: self.model, signals: &signals };
         let solver = BrentOpt::new(-reach, reach).set_tolerance(1e-9, 1e-12);
@@ -332,10 +332,19 @@ impl Alignment<'_> {
     }
 }
 
+/// One signal around the impact.
+struct Signal {
+    quantity: &'static str,
+    /// What its distances are measured by.
+    scale: f64,
+    /// Time from the shift that is tried around, and value.
+    points: Vec<(f64, f64)>,
+}
+
 /// Squared distance of all signals from the model as a function of a further shift.
 struct Misfit<'a> {
     model: &'a Filtered,
-    signals: &'a [(&'static str, f64, Vec<(f64, f64)>)],
+    signals: &'a [Signal],
 }
 
 impl CostFunction for Misfit<'_> {
@@ -344,7 +353,7 @@ impl CostFunction for Misfit<'_> {
 
     fn cost(&self, further: &f64) -> std::result::Result<f64, argmin::core::Error> {
         let mut total = 0.0;
-        for (quantity, scale, points) in self.signals {
+        for Signal { quantity, scale, points } in self.signals {
             let Some(curve) = self.model.curve(quantity) else { continue };
             let row = |(t, y): &(f64, f64)| ([1.0, *t, curve(t - further)], *y);
             let rows: Vec<([f64; 3], f64)> = points.iter().map(row).collect();

@@ -54,7 +54,13 @@ fn drawn(study: &Study, panel: &Panel) -> Result<ChartPanel> {
             None => series.push(Series { name, points: vec![point], marks: false }),
         }
     }
-    Ok(ChartPanel { x_label: panel.x.label.into(), y_label: panel.y.label.into(), series, band: None })
+    Ok(ChartPanel {
+        x_label: panel.x.label.into(),
+        y_label: panel.y.label.into(),
+        series,
+        counted: false,
+        band: None,
+    })
 }
 
 fn number(cell: Cell) -> f64 {
