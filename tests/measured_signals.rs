@@ -82,27 +82,117 @@ fn aligned(record: &Record, partner: &Outcome, setup: &PlateImpact, speed: Speed
 fn shift_within_a_tenth_of_a_microsecond_and_efficiency_within_half_a_point() {
     for name in ["scaled-plate-r10", "scaled-plate-r6.35"] {
         let (scene, setup) = scene(name);
-        let (truth, partner) = (model(&scene, Model::C), reference(&scene));
-        for seed in 1..=8 {
-            let record = record(&truth, &SIGNALS, Disturbance { seed, ..DISTURBED });
-            let f0 = aligned(&record, &truth, &setup, Speed::Scene);
-            println!("  truth {:.4}", (f0.shift - 5e-6) * 1e6);
-            let found = aligned(&record, &partner, &setup, Speed::Scene);
-            let (efficiency, expected) = (found.efficiency.unwrap(), truth.summary.quantities.efficiency);
-            println!(
-                "{name} {seed}: shift error {:.4} us, efficiency error {:.3} points, band {:.3}",
-                (found.shift - 5e-6) * 1e6,
-                100.0 * (efficiency - expected),
-                100.0 * found.efficiency_uncertainty.unwrap()
-            );
-            if std::env::var("X").is_ok() {
-                continue;
+        let truth = model(&scene, Model::C);
+        let expected = truth.summary.quantities.efficiency;
+        // the model the record was made from, and the finite elements, which differ from it by a little
+        for (partner, seeds) in [(&truth, 1..=8), (&reference(&scene), 1..=3)] {
+            for seed in seeds {
+                let record = record(&truth, &SIGNALS, Disturbance { seed, ..DISTURBED });
+                let found = aligned(&record, partner, &setup, Speed::Scene);
+                let (efficiency, band) = (found.efficiency.unwrap(), found.efficiency_uncertainty.unwrap());
+                let case = format!("{name}, seed {seed}: {:e} s, {efficiency}", found.shift);
+                assert!((found.shift - 5e-6).abs() < 0.1e-6, "{case}");
+                assert!((efficiency - expected).abs() < 0.005, "{case}, expected {expected}");
+                assert!((efficiency - expected).abs() < 2.0 * band && band < 0.005, "{case} +- {band}");
             }
-            assert!((found.shift - 5e-6).abs() < 0.1e-6, "{name}, seed {seed}: shift {:e} s", found.shift);
-            assert!(
-                (efficiency - expected).abs() < 0.005,
-                "{name}, seed {seed}: {efficiency}, expected {expected}"
-            );
         }
     }
+}
+
+#[test]
+fn offset_and_drift_that_were_put_in_are_taken_out() {
+    let (scene, setup) = scene("scaled-plate-r10");
+    let truth = model(&scene, Model::C);
+    let record = record(&truth, &SIGNALS, Disturbance { noise: 1e-4, ..DISTURBED });
+    let found = aligned(&record, &truth, &setup, Speed::Scene);
+    let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
+    for signal in &found.signals {
+        let curve = filtered.curve(signal.quantity).unwrap();
+        let peak = found.time.iter().fold(0.0_f64, |p, t| p.max(curve(*t).abs()));
+        for (t, value) in found.time.iter().zip(&signal.values) {
+            assert!((value - curve(*t)).abs() < 1e-3 * peak, "{} at {t} s", signal.quantity);
+        }
+    }
+}
+
+#[test]
+fn speed_that_differs_from_the_scene_s_is_read_from_a_signal_without_offset() {
+    let (scene, setup) = scene("scaled-plate-r10");
+    let mut faster = setup.clone();
+    faster.outer.speed = 0.62;
+    let truth = model(&Scene { setup: Setup::PlateImpact(Box::new(faster)), ..scene.clone() }, Model::C);
+    let disturbance = Disturbance { offset: 0.0, drift: 0.0, ..DISTURBED };
+    let record = record(&truth, &SIGNALS, disturbance);
+    let found = aligned(&record, &reference(&scene), &setup, Speed::Measured);
+    assert!((found.outer_velocity_initial + 0.62).abs() < 0.003, "{}", found.outer_velocity_initial);
+    let expected = truth.summary.quantities.efficiency;
+    assert!((found.efficiency.unwrap() - expected).abs() < 0.01, "{:?}", found.efficiency);
+    // the partner is slower, so that its contacts last 2.4 % (4 us) longer; the shift follows by a part of that
+    assert!((found.shift - 5e-6).abs() < 2e-6, "{}", found.shift);
+    let trusting_the_scene = aligned(&record, &reference(&scene), &setup, Speed::Scene);
+    assert!((trusting_the_scene.efficiency.unwrap() - expected).abs() > 0.05);
+}
+
+#[test]
+fn one_signal_is_enough_and_missing_free_flight_is_told() {
+    let (scene, setup) = scene("scaled-plate-r10");
+    let truth = model(&scene, Model::C);
+    let expected = truth.summary.quantities.efficiency;
+    let quiet = Disturbance { noise: 0.002, ..DISTURBED };
+    for signals in
+        [&["inner_velocity"][..], &["inner_displacement"], &["outer_velocity", "inner_displacement"]]
+    {
+        let found = aligned(&record(&truth, signals, quiet), &truth, &setup, Speed::Scene);
+        assert!((found.shift - 5e-6).abs() < 0.2e-6, "{signals:?}: {}", found.shift);
+        assert!((found.efficiency.unwrap() - expected).abs() < 0.005, "{signals:?}: {:?}", found.efficiency);
+    }
+    let whole = record(&truth, &SIGNALS, quiet);
+    let part = |keep: &dyn Fn(f64) -> bool| {
+        let kept: Vec<usize> = (0..whole.time.len()).filter(|i| keep(whole.time[*i])).collect();
+        let pick = |values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+        let channels = whole
+            .channels
+            .iter()
+            .map(|c| Channel { quantity: c.quantity, values: pick(&c.values) })
+            .collect();
+        Record { file: "part.csv".into(), time: pick(&whole.time), channels }
+    };
+    let late = part(&|t| t > 0.0);
+    let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
+    let error =
+        align(&late, &filtered, &truth.summary.quantities, &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
+    assert_eq!(error.exit_status() as u8, 3);
+    assert!(error.to_string().contains("before the impact"), "{error}");
+    let cut = aligned(&part(&|t| t < 90e-6), &truth, &setup, Speed::Scene);
+    assert!(cut.efficiency.is_none() && cut.inner_velocity_final.is_none(), "no free flight to read it from");
+}
+
+#[test]
+fn models_are_measured_by_the_same_metrics_and_a_series_by_mean_and_scatter() {
+    let (scene, _) = scene("scaled-plate-r10");
+    let (truth, reference) = (model(&scene, Model::C), reference(&scene));
+    let records: Vec<Record> = (1..=3)
+        .map(|seed| record(&truth, &SIGNALS, Disturbance { seed, noise: 0.002, ..DISTURBED }))
+        .collect();
+    let reduced = [model(&scene, Model::A), model(&scene, Model::C)];
+    let found = compare(&scene, &records, &reference, &reduced, (BANDWIDTH, Speed::Scene)).unwrap();
+    let series = found.efficiency.unwrap();
+    assert_eq!(series, Series::of(series.values.clone()).unwrap());
+    assert!(series.count == 3 && (series.mean - truth.summary.quantities.efficiency).abs() < 0.005);
+    assert!(series.standard_deviation.unwrap() < 0.01);
+    assert_eq!(
+        found.partners.iter().map(|p| p.partner.as_str()).collect::<Vec<_>>(),
+        ["reference", "A", "C"]
+    );
+    for quantity in SIGNALS {
+        let scores: Vec<f64> = found
+            .partners
+            .iter()
+            .map(|p| p.curves.iter().find(|c| c.quantity == quantity).unwrap().sprague_geers.unwrap())
+            .collect();
+        assert!(scores[1] > 2.0 * scores[2], "{quantity}: model A {} against C {}", scores[1], scores[2]);
+        assert!(scores[0] < 0.05, "{quantity}: reference {}", scores[0]);
+    }
+    assert_eq!(Series::of(vec![1.0, 3.0]).unwrap().standard_deviation, Some(2.0_f64.sqrt()));
+    assert!(Series::of(Vec::new()).is_none());
 }

@@ -20,6 +20,10 @@ const ROUNDS: usize = 2;
 /// How much later than the model's the measured contact may end before its end counts as free flight.
 const LONGER_CONTACT: f64 = 1.1;
 
+/// Part of a contact that the record has to show.
+const RISE: f64 = 0.4;
+/// Distance from the model, root mean square over the span, beyond which a record does not show the scene's impact.
+const WORST_MISFIT: f64 = 0.25;
 /// Noise of a signal, relative to its span, that is assumed at least: models are not better than that.
 const LEAST_NOISE: f64 = 0.01;
 
@@ -127,7 +131,16 @@ pub fn align(
 
 impl Alignment<'_> {
     fn run(&self) -> Result<AlignedRecord> {
-        let mut shift = self.coarse();
+        let (mut shift, misfit) = self.coarse();
+        if misfit > WORST_MISFIT {
+            return Err(Error::Scene(miette::miette!(
+                help = "check columns, units, signs (z points from the inner to the outer side) and that the file belongs to this scene",
+                "{}: nowhere in the record is an impact like that of the scene: the signals are off by {:.0} % of their span at best, at most {:.0} % is taken for a match",
+                self.record.file.display(),
+                100.0 * misfit,
+                100.0 * WORST_MISFIT
+            )));
+        }
         for round in 0..ROUNDS {
             let flights = self.flights(shift)?;
             // the search narrows as the shift settles
@@ -203,17 +216,19 @@ impl Alignment<'_> {
         (high - low).max(f64::MIN_POSITIVE)
     }
 
-    /// The shift on a grid that fits best when every signal may have any offset and drift.
-    fn coarse(&self) -> f64 {
+    /// The shift on a grid that fits best when every signal may have any offset, and the distance that is left, root
+    /// mean square over the signals' spans. A drift could make up for an impact that is not there.
+    fn coarse(&self) -> (f64, f64) {
         let time = &self.record.time;
         let (first, last) = (time[0], time[time.len() - 1]);
         let step = 1.0 / (8.0 * self.bandwidth);
         let count = ((last - first) / step).ceil() as usize;
         let spans: Vec<f64> = self.record.channels.iter().map(|c| self.span(c.quantity)).collect();
-        let mut best = (f64::INFINITY, first);
+        // distance with and without what is missing, shift
+        let mut best = (f64::INFINITY, 1.0, first);
         for k in 1..count {
             let shift = first + step * k as f64;
-            let mut misfit = 0.0;
+            let (mut misfit, mut missing) = (0.0, 0.0);
             for (channel, span) in self.record.channels.iter().zip(&spans) {
                 let Some(curve) = self.model.curve(channel.quantity) else { continue };
                 let end = self.contact(channel.quantity).end;
@@ -221,34 +236,19 @@ impl Alignment<'_> {
                 let window = time.partition_point(|t| *t < shift - end)
                     ..time.partition_point(|t| *t < shift + 2.0 * end);
                 let stride = window.len().div_ceil(COARSE_SAMPLES).max(1);
-                let rows: Vec<([f64; 2], f64)> = window
+                let rows: Vec<([f64; 1], f64)> = window
                     .step_by(stride)
-                    .map(|i| ([1.0, (time[i] - shift) / end], channel.values[i] - curve(time[i] - shift)))
+                    .map(|i| ([1.0], channel.values[i] - curve(time[i] - shift)))
                     .collect();
-                // a window that sticks out of the record is as bad as a signal that is missed altogether
-                misfit += match fit(&rows) {
-                    Some(found) if rows.len() * stride >= 3 * FEWEST => {
-                        let rest = |(b, y): &([f64; 2], f64)| {
-                            y - found.coefficients[0] * b[0] - found.coefficients[1] * b[1]
-                        };
-                        let covered = (rows.len() * stride) as f64 / self.expected(3.0 * end);
-                        let mean = rows.iter().map(|row| rest(row).powi(2)).sum::<f64>() / rows.len() as f64;
-                        mean / (span * span) + (1.0 - covered).max(0.0)
-                    }
-                    _ => 1.0,
-                };
+                misfit += fit(&rows).map_or(1.0, |found| (found.scatter / span).powi(2));
+                // without its rise an impact looks like free flight, of which there is plenty
+                missing += 1.0 - ((last - shift) / (RISE * end)).min(1.0);
             }
-            if misfit < best.0 {
-                best = (misfit, shift);
+            if misfit + missing < best.0 {
+                best = (misfit + missing, misfit, shift);
             }
         }
-        best.1
-    }
-
-    /// Samples that a stretch of `duration` s has on average.
-    fn expected(&self, duration: f64) -> f64 {
-        let time = &self.record.time;
-        (duration / (time[time.len() - 1] - time[0]) * (time.len() - 1) as f64).min(time.len() as f64)
+        (best.2, (best.1 / self.record.channels.len() as f64).sqrt())
     }
 
     /// Offset, drift and velocities of every signal, from its free flight if the first touch is at `shift`.
@@ -320,7 +320,7 @@ impl Alignment<'_> {
                 time.partition_point(|t| *t < shift - end)..time.partition_point(|t| *t < shift + 2.0 * end);
             let points: Vec<(f64, f64)> = window.map(|i| (time[i] - shift, channel.values[i])).collect();
             let scale = flight.noise.hypot(LEAST_NOISE * self.span(channel.quantity));
-            signals.push((channel.quantity, scale, points));
+            signals.push(Signal { quantity: channel.quantity, scale, points });
         }
         let misfit = Misfit { model: self.model, signals: &signals };
         let solver = BrentOpt::new(-reach, reach).set_tolerance(1e-9, 1e-12);
@@ -332,10 +332,19 @@ impl Alignment<'_> {
     }
 }
 
+/// One signal around the impact.
+struct Signal {
+    quantity: &'static str,
+    /// What its distances are measured by.
+    scale: f64,
+    /// Time from the shift that is tried around, and value.
+    points: Vec<(f64, f64)>,
+}
+
 /// Squared distance of all signals from the model as a function of a further shift.
 struct Misfit<'a> {
     model: &'a Filtered,
-    signals: &'a [(&'static str, f64, Vec<(f64, f64)>)],
+    signals: &'a [Signal],
 }
 
 impl CostFunction for Misfit<'_> {
@@ -344,7 +353,7 @@ impl CostFunction for Misfit<'_> {
 
     fn cost(&self, further: &f64) -> std::result::Result<f64, argmin::core::Error> {
         let mut total = 0.0;
-        for (quantity, scale, points) in self.signals {
+        for Signal { quantity, scale, points } in self.signals {
             let Some(curve) = self.model.curve(quantity) else { continue };
             let row = |(t, y): &(f64, f64)| ([1.0, *t, curve(t - further)], *y);
             let rows: Vec<([f64; 3], f64)> = points.iter().map(row).collect();

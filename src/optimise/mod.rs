@@ -251,6 +251,7 @@ impl Optimum {
                     marks: true,
                 },
             ],
+            counted: false,
             band: None,
         };
         chart(&format!("{}: optimum", self.scene), &self.variables.iter().map(panel).collect::<Vec<_>>())

@@ -44,6 +44,8 @@ pub struct ChartPanel {
     pub y_label: String,
     /// What is drawn; equal places in the list look equal in every panel.
     pub series: Vec<Series>,
+    /// Whether the horizontal axis counts something: marks at whole numbers only.
+    pub counted: bool,
     /// A band of values across the panel (mean and scatter): middle and half width.
     pub band: Option<(f64, f64)>,
 }
@@ -134,7 +136,8 @@ fn draw(panel: &ChartPanel, top: f64) -> Markup {
     let width = WIDTH - LEFT - RIGHT;
     let x_of = |x: f64| LEFT + width * (x - left) / (right - left);
     let y_of = |y: f64| top + PANEL_HEIGHT * (high - y) / (high - low);
-    let (x_marks, y_marks) = (ticks(left, right, 9), ticks(low, high, 6));
+    let (mut x_marks, y_marks) = (ticks(left, right, 9), ticks(low, high, 6));
+    x_marks.retain(|x| !panel.counted || x.fract() == 0.0);
     let at = |value: f64| format!("{value:.2}");
     html! {
         @if let Some([from, to]) = band {
@@ -179,12 +182,14 @@ mod tests {
             x_label: "Radius in mm".into(),
             y_label: "Efficiency in %".into(),
             series: vec![series("a < b", false), series("measured", true)],
+            counted: true,
             band: Some((15.0, 1.0)),
         };
         let svg = chart("example", &[panel.clone(), panel]);
         assert_eq!(svg.matches("<path").count(), 1 + 2, "legend and both panels");
         assert_eq!(svg.matches("<circle").count(), 1 + 2 * 2);
         assert!(svg.contains("a &lt; b") && svg.contains("Radius in mm") && !svg.contains("NaN"), "{svg}");
+        assert!(!svg.contains(">1.5<") && svg.contains(">3<"), "whole numbers only: {svg}");
         assert!(super::super::png(&svg, 1.0).expect("PNG").starts_with(b"\x89PNG"));
     }
 

@@ -27,9 +27,10 @@ impl EfficiencyBoxes {
         EfficiencyBoxes { count: count as f64, first, step, corner: (0.0, 0.0) }
     }
 
-    /// Beside each other, the heading on their left.
+    /// Beside each other, the heading on their left if there is room for it.
     pub(super) fn row(count: usize) -> Self {
-        let (first, step) = ((76.0, 0.0), (WIDTH + GAP, 0.0));
+        let heading = if count <= 4 { 76.0 } else { 0.0 };
+        let (first, step) = ((heading, 0.0), (WIDTH + GAP, 0.0));
         EfficiencyBoxes { count: count as f64, first, step, corner: (0.0, 0.0) }
     }
 
@@ -51,7 +52,7 @@ impl EfficiencyBoxes {
         let (left, top) = self.corner;
         let heading = if self.first.1 > 0.0 { 12.0 } else { 15.6 };
         html! {
-            @if !lines.is_empty() {
+            @if !lines.is_empty() && self.first != (0.0, 0.0) {
                 text.fig-text x=(x2(left)) y=(x2(top + heading)) { "Efficiency" }
             }
             @for (k, line) in lines.iter().enumerate() {

@@ -122,7 +122,7 @@ fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
 fn measured_lines(measured: &Measured) -> Vec<Line> {
     let record = Line {
         name: "measured".into(),
-        short: "measured".into(),
+        short: "LDV".into(),
         class: "fig-measured".into(),
         dash: "none",
         width: 1.4,

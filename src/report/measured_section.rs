@@ -33,6 +33,7 @@ pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
         x_label: "Number of the impact".into(),
         y_label: "Efficiency in %".into(),
         series: series.collect(),
+        counted: true,
         band,
     };
     Some(chart(&format!("{}: efficiency of repeated impacts", report.scene.name), &[panel]))

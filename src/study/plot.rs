@@ -56,7 +56,13 @@ fn drawn(study: &Study, panel: &Panel) -> Result<ChartPanel> {
     }
     // a row without a place on the axes (an impact without the varied quantity) makes no curve
     series.retain(|series| series.points.iter().any(|(x, y)| x.is_finite() && y.is_finite()));
-    Ok(ChartPanel { x_label: panel.x.label.into(), y_label: panel.y.label.into(), series, band: None })
+    Ok(ChartPanel {
+        x_label: panel.x.label.into(),
+        y_label: panel.y.label.into(),
+        series,
+        counted: false,
+        band: None,
+    })
 }
 
 fn number(cell: Cell) -> f64 {
