@@ -89,6 +89,7 @@ def test_ledgers_close_and_the_folder_is_complete(whole: Path) -> None:
     assert found["mesh"]["min_quality"] > 0.05
     assert found["solver"]["contact_unconverged_steps"] == 0
     assert set(found["uncertainty"]) >= set(PHYSICAL)
+    assert found["solver"]["peak_memory"] < found["solver"]["memory_stated"]
     assert found["outer_velocity_final"] < 0.0 < found["outer_force_peak"]
     history = np.loadtxt(whole / "history.csv", delimiter=",", skiprows=1)
     force, interval = history[:, 3], history[1, 0] - history[0, 0]
