@@ -32,7 +32,7 @@ def test_valid_scene_is_read() -> None:
         ({"fluid": {"viscosity": 1e-3}}, "fluid"),
         ({"plate__damping_ratio": 0.01}, "plate.damping_ratio"),
         ({"plate__edge": "glued"}, "plate.edge"),
-        ({"reference__geometry": "solid"}, "reference.geometry"),
+        ({"reference__geometry": "shell"}, "reference.geometry"),
         ({"reference__elements_per_contact_radius": 1}, "elements_per_contact_radius"),
         ({"plate__radius": -1.0}, "plate.radius"),
         ({"plate__thickness": math.nan}, "plate.thickness"),

@@ -273,6 +273,28 @@ def test_contact_leaves_no_gap_violated_and_no_pull() -> None:
     assert most > 3
 
 
+def test_a_light_ball_that_overlaps_many_nodes_is_pushed_off_and_pulled_by_none() -> None:
+    mesh = quarter(2, 0.8e-3)
+    nodes, _ = near_pole(mesh, 5e-3)
+    depth = 4e-4
+    # Far lighter than a node: what corrects the deepest overlap lifts the ball off the others.
+    rigid = RigidBody("ball", 1e-9, guided((0.0, 0.0, 1.0)))
+    contact = SphereContact("ball", 0, nodes, 0, (0.0, 0.0, depth - RADIUS), RADIUS)
+    loop = SerialLoop(Model((body_of(mesh, 0.0),), (rigid,), (contact,)), alone())
+    loop.set_step(0.9 * critical_time_step(loop), 1)
+    overlap = np.linalg.norm(mesh.points[nodes] - contact.centre, axis=1) < RADIUS
+    assert np.count_nonzero(overlap) > 5
+    loop.advance(1)
+    moved = mesh.points + loop.gather(loop.u)
+    centre = np.array([0.0, 0.0, depth - RADIUS + loop.problem.rigids[0].u[2]])
+    gap = np.linalg.norm(moved[nodes] - centre, axis=1) - RADIUS
+    force = loop.problem.multipliers(0)
+    assert force.min() >= 0.0
+    assert 0 < np.count_nonzero(force) < np.count_nonzero(overlap)
+    # Normals are those of the predicted place: second order in the correction remains.
+    assert gap.min() > -0.05 * depth
+
+
 def test_order_one_and_two_have_the_same_corners() -> None:
     one, two = quarter(1, 1.2e-3), quarter(2, 1.2e-3)
     assert np.array_equal(one.cells, two.corners)
