@@ -49,10 +49,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         }
         other => {
             if let Some(lookup @ (Lookup::Stale { .. } | Lookup::Damaged { .. })) = &other {
-                context.note(format_args!(
-                    "{}; computing it again",
-                    problem(&scene, resolution, lookup)
-                ));
+                context.note(format_args!("{}; computing it again", problem(&scene, resolution, lookup)));
             }
             compute(context, &scene, resolution, &store, &arguments.stress_at)?
         }
