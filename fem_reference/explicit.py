@@ -200,7 +200,7 @@ def integrate(
 
 def _last_contact(loop: Loop) -> float:
     """End of the last contact so far, s; 0 before the first."""
-    return max(contact.last + 1 for contact in loop.state.contact) * float(loop.state.dt)
+    return float(max(contact.last + 1 for contact in loop.state.contact) * loop.state.dt)
 
 
 def _balance(loop: Loop, initial_energy: float, initial_momentum: float) -> Balance:

@@ -7,7 +7,7 @@ from typing import Any, cast
 import pytest
 
 from fem_reference import convergence
-from fem_reference.convergence import RATIO, Sequence, refine
+from fem_reference.convergence import RATIO, refine
 from fem_reference.errors import SolverError
 from fem_reference.scene import Scene
 
@@ -36,7 +36,7 @@ def tried(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 
 def refined(scene: Scene, target: float) -> Converging:
-    return cast(Converging, cast(Sequence, refine(scene, 1.0, target)))
+    return cast(Converging, refine(scene, 1.0, target))
 
 
 def test_a_mesh_that_is_fine_enough_is_not_refined(scene: Scene, tried: list[float]) -> None:
