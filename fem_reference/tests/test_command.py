@@ -16,7 +16,7 @@ import meshio
 import numpy as np
 import pytest
 
-from fem_reference.output import PARTIAL_PREFIX, result_folder
+from fem_reference.output import HISTORY_COLUMNS, PARTIAL_PREFIX, result_folder
 
 from .conftest import document
 
@@ -135,7 +135,8 @@ def test_summary_has_the_fixed_fields(solved: tuple[Path, str, str]) -> None:
     assert fixed <= set(summary)
     assert summary["source"] == "reference"
     assert summary["model"] is None
-    assert set(summary["uncertainty"]) == quantities
+    curves = {f"{name}_{kind}" for name in HISTORY_COLUMNS[1:] for kind in ("rms", "max")}
+    assert set(summary["uncertainty"]) == quantities | curves
     assert all(value >= 0.0 for value in summary["uncertainty"].values())
     assert summary["solver"]["time_step"] == pytest.approx(
         0.9 * summary["solver"]["critical_time_step"]
@@ -150,7 +151,7 @@ def test_history_agrees_with_the_summary(solved: tuple[Path, str, str]) -> None:
     summary = json.loads((solved[0] / "summary.json").read_text())
     with (solved[0] / "history.csv").open(newline="") as stream:
         rows = list(csv.reader(stream))
-    assert rows[0] == [
+    assert rows[0][:9] == [
         "time",
         "outer_displacement",
         "outer_velocity",
@@ -161,8 +162,10 @@ def test_history_agrees_with_the_summary(solved: tuple[Path, str, str]) -> None:
         "inner_velocity",
         "inner_force",
     ]
+    assert rows[0][9:] == [f"{name}_band" for name in rows[0][1:9]]
     table = np.array(rows[1:], dtype=float)
-    assert table.shape == (summary["samples"], 9)
+    assert np.all(table[:, 9:] >= 0.0)
+    assert table.shape == (summary["samples"], 17)
     assert 1200 <= table.shape[0] <= 3000
     interval = summary["sample_interval"]
     assert np.allclose(np.diff(table[:, 0]), interval, rtol=1e-6)
@@ -226,6 +229,19 @@ def test_failure_has_status_sentence_and_no_folder(
     assert words in last["message"]
     assert "Traceback" not in result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["scene.json"]
+
+
+def test_convergence_lists_all_meshes_and_explains_the_bands(
+    solved: tuple[Path, str, str],
+) -> None:
+    summary = json.loads((solved[0] / "summary.json").read_text())
+    convergence = summary["convergence"]
+    dofs = [mesh["dofs"] for mesh in convergence["meshes"]]
+    assert len(dofs) == 5
+    assert dofs == sorted(dofs, reverse=True)
+    for name, entry in convergence["quantities"].items():
+        assert entry["values"][0] == pytest.approx(summary[name], rel=1e-12)
+        assert entry["band"] == summary["uncertainty"][name]
 
 
 @pytest.mark.parametrize("deadly", [signal.SIGTERM, signal.SIGKILL])

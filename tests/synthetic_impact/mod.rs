@@ -176,6 +176,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         steps: 40_000,
         solve_seconds: 1.0,
         uncertainty: BTreeMap::new(),
+        convergence: None,
         mesh: None,
         bender: None,
         losses: None,
