@@ -2,7 +2,7 @@
 
 use super::bank::{Bank, in_blocks};
 use super::collocation::{Collocation, POINTS, STAGES, StepTable, horner};
-use super::contact_forces::{Course, StepSolver};
+use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse, bisect, work};
 use super::free_flight::{self, Flight};
 use super::history::History;
@@ -56,7 +56,7 @@ const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
 const NEGLIGIBLE: f64 = 1e-8;
 /// Rounding error of the energy of a step, over the energy of the impact.
-const ROUNDING: f64 = 1e-12;
+const ROUNDING: f64 = 1e-11;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
 
@@ -243,7 +243,7 @@ impl<'a> Run<'a> {
                 &self.course,
                 (&self.q, &self.v),
                 (&mut self.next_q, &mut self.next_v),
-                self.bounds.impulse * scale[1] / h,
+                ForceError { absolute: self.bounds.impulse * scale[1] / h, relative: self.bounds.force },
             );
             let Some(trial) = trial else {
                 self.level += 1;
@@ -384,6 +384,8 @@ struct Bounds {
     energy: f64,
     /// Error of a step's impulses from ending the sweeps.
     impulse: f64,
+    /// Relative error of its forces from the same.
+    force: f64,
 }
 
 impl Bounds {
@@ -393,7 +395,8 @@ impl Bounds {
     fn new(tolerance: f64) -> Self {
         let smooth = 0.02 * tolerance.powf(0.7);
         let kinked = 1e-3 * tolerance.powf(0.95);
-        Self { smooth, kinked, edge: 10.0 * kinked, energy: tolerance, impulse: 1e-3 * smooth }
+        let force = (10.0 * tolerance).clamp(1e-11, 1e-6);
+        Self { smooth, kinked, edge: 10.0 * kinked, energy: tolerance.max(1e-9), impulse: 1e-3 * smooth, force }
     }
 }
 
