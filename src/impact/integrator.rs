@@ -56,7 +56,7 @@ const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
 const NEGLIGIBLE: f64 = 1e-8;
 /// Rounding error of the energy of a step, over the energy of the impact.
-const ROUNDING: f64 = 1e-11;
+const ROUNDING: f64 = 1e-12;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
 
@@ -396,7 +396,14 @@ impl Bounds {
         let smooth = 0.02 * tolerance.powf(0.7);
         let kinked = 1e-3 * tolerance.powf(0.95);
         let force = (10.0 * tolerance).clamp(1e-11, 1e-6);
-        Self { smooth, kinked, edge: 10.0 * kinked, energy: tolerance.max(1e-9), impulse: 1e-3 * smooth, force }
+        Self {
+            smooth,
+            kinked,
+            edge: 10.0 * kinked,
+            energy: tolerance.max(1e-9),
+            impulse: 1e-3 * smooth,
+            force,
+        }
     }
 }
 

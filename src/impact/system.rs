@@ -116,7 +116,7 @@ impl System {
     #[inline(always)]
     pub fn stored_energy(&self, f: [f64; 2], d: [f64; 2]) -> f64 {
         let d = d.map(|d| d.max(0.0));
-        0.4 * (f[0] * d[0] + f[1] * d[1]) + self.residual.map_or(0.0, |r| r.energy(f, d))
+        0.4 * (f[0] * d[0] + f[1] * d[1]) + self.residual.map_or(0.0, |r| r.strain_energy(f, d))
     }
 
     /// Approach of both contacts in m, without the part of the residual flexibility.
