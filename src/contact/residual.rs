@@ -4,7 +4,7 @@
 //! spread: R_ij = R0_ij + b_ij a_i^2 + b_ji a_j^2 with Hertz's patch radii a_i^2 = r_i d_i under the Hertz approaches
 //! d_i = (F_i/k_i)^(2/3). With g_ij = b_ij r_i the complementary energy of the contacts is
 //!
-//!   U = sum_i 2/5 F_i d_i + 1/2 sum_ij F_i F_j (R0_ij + g_ij d_i + g_ji d_j),
+//!   U = sum_i 3/5 F_i d_i + 1/2 sum_ij F_i F_j (R0_ij + g_ij d_i + g_ji d_j),
 //!
 //! and its derivative by F_i, with dd_i/dF_i = 2/3 d_i/F_i, the approach that rigid motion and modes have to give:
 //!
@@ -38,8 +38,8 @@ impl Residual {
         self.flexibility.iter().chain(&self.growth).flatten().all(|r| *r == 0.0)
     }
 
-    /// Strain energy in J beyond that of Hertz's half-spaces under the forces `f` in N at the Hertz approaches `d` in m.
-    pub fn energy(&self, f: [f64; 2], d: [f64; 2]) -> f64 {
+    /// Complementary energy in J beyond that of Hertz's half-spaces under the forces `f` in N at the Hertz approaches `d` in m.
+    pub fn complementary_energy(&self, f: [f64; 2], d: [f64; 2]) -> f64 {
         let pair = |i: usize, j: usize| 0.5 * f[i] * f[j] * self.at(d, i, j);
         pair(0, 0) + pair(0, 1) + pair(1, 0) + pair(1, 1)
     }
@@ -196,7 +196,7 @@ mod tests {
         };
         let energy = |f: [f64; 2]| {
             let d = [LAWS[0].approach(f[0]), LAWS[1].approach(f[1])];
-            0.4 * (f[0] * d[0] + f[1] * d[1]) + residual.energy(f, d)
+            0.6 * (f[0] * d[0] + f[1] * d[1]) + residual.complementary_energy(f, d)
         };
         for y in [[8e-6, 5e-6], [8e-6, -1e-6], [-1e-6, 3e-6]] {
             let f = residual.forces(&LAWS, y).unwrap();
