@@ -60,16 +60,19 @@ pub(super) fn run(store: &Store, bench: &mut Bench) -> Result<()> {
     Ok(())
 }
 
+/// The time of a run that is meant.
+type Time = fn(&WorkPrecision) -> f64;
+
 /// Model C against the quickest mesh that is as good, per run and with set-up.
 fn ratios(problem: &str, runs: &[WorkPrecision]) -> Vec<Ratio> {
     let good = |start: &str| -> Vec<&WorkPrecision> {
         runs.iter().filter(|r| r.solver.starts_with(start) && r.relative_error <= ERROR).collect()
     };
-    let quickest = |runs: &[&WorkPrecision], time: fn(&WorkPrecision) -> f64| {
+    let quickest = |runs: &[&WorkPrecision], time: Time| {
         runs.iter().copied().min_by(|a, b| time(a).total_cmp(&time(b))).cloned()
     };
     let Some(mesh) = quickest(&good("FE reference"), |r| r.seconds) else { return Vec::new() };
-    let ways: [(&str, fn(&WorkPrecision) -> f64); 2] = [
+    let ways: [(&str, Time); 2] = [
         ("per run", |r| r.seconds),
         ("with set-up, nothing cached", |r| r.seconds_with_setup.unwrap_or(f64::INFINITY)),
     ];

@@ -12,8 +12,8 @@ use wide::f64x4;
 
 /// Sweeps after which a step counts as too long.
 const MAX_SWEEPS: usize = 30;
-/// Relative error of a force at which sweeps end at the latest.
-const FORCE_ERROR: f64 = 1e-6;
+/// Contraction that is relied upon at most: one sweep may have been lucky.
+const BEST_CONTRACTION: f64 = 1e-2;
 /// Sweeps after which the contacts' own system is solved fully at every visit.
 const MAX_NEWTON_SWEEPS: usize = 12;
 
@@ -44,6 +44,15 @@ impl Course {
     }
 }
 
+/// When sweeps may end: both bounds hold.
+#[derive(Debug, Clone, Copy)]
+pub struct ForceError {
+    /// In N, for the impulse of the step.
+    pub absolute: f64,
+    /// Over the largest force of the step, for its energy.
+    pub relative: f64,
+}
+
 /// The solver of the steps of one run.
 #[derive(Debug)]
 pub struct StepSolver<'a> {
@@ -68,14 +77,14 @@ impl<'a> StepSolver<'a> {
     }
 
     /// Solves a step of the length of `table` that follows on `before`, from the state `now` into `next`; `None` if
-    /// the sweeps do not settle within `force_error` N or the contact has no equilibrium.
+    /// the sweeps do not settle within `force_error` or the contact has no equilibrium.
     pub fn solve(
         &mut self,
         table: &StepTable,
         before: &Course,
         now: (&[f64x4], &[f64x4]),
         next: (&mut [f64x4], &mut [f64x4]),
-        force_error: f64,
+        force_error: ForceError,
     ) -> Option<Course> {
         let free = table.free_approach(&self.bank, self.system.gap, now.0, now.1);
         let guess = self.guess(before, table.h).unwrap_or(free);
@@ -120,7 +129,7 @@ impl<'a> StepSolver<'a> {
         })
     }
 
-    /// Sweeps until the forces are right to `force_error` N; `law` gives the local approaches and the forces at a modal
+    /// Sweeps until the forces are right to `force_error`; `law` gives the local approaches and the forces at a modal
     /// approach, from the local approaches of the visit before. Gives also the contraction of the last sweeps.
     #[inline(always)]
     fn sweep(
@@ -129,7 +138,7 @@ impl<'a> StepSolver<'a> {
         free: &[Stages; 2],
         local: [Stages; 2],
         max_sweeps: usize,
-        force_error: f64,
+        force_error: ForceError,
         law: impl Fn([f64; 2], [f64; 2]) -> Option<([f64; 2], [f64; 2])>,
     ) -> Option<(Unknowns, f64)> {
         let mut force = [[0.0; STAGES]; 2];
@@ -165,7 +174,9 @@ impl<'a> StepSolver<'a> {
                 contraction = change / earlier;
             }
             // in a very short step any force gives the right impulse, but not the right energy
-            if change * contraction.min(1.0) <= force_error.min(FORCE_ERROR * largest) {
+            if change * contraction.clamp(BEST_CONTRACTION, 1.0)
+                <= force_error.absolute.min(force_error.relative * largest)
+            {
                 return Some((unknowns, contraction));
             }
             earlier = change;

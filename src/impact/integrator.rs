@@ -2,7 +2,7 @@
 
 use super::bank::{Bank, in_blocks};
 use super::collocation::{Collocation, POINTS, STAGES, StepTable, horner};
-use super::contact_forces::{Course, StepSolver};
+use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse, bisect, work};
 use super::free_flight::{self, Flight};
 use super::history::History;
@@ -257,7 +257,7 @@ impl<'a> Run<'a> {
                 &self.course,
                 (&self.q, &self.v),
                 (&mut self.next_q, &mut self.next_v),
-                self.bounds.impulse * scale[1] / h,
+                ForceError { absolute: self.bounds.impulse * scale[1] / h, relative: self.bounds.force },
             );
             let Some(trial) = trial else {
                 self.level += 1;
@@ -400,6 +400,8 @@ struct Bounds {
     energy: f64,
     /// Error of a step's impulses from ending the sweeps.
     impulse: f64,
+    /// Relative error of its forces from the same.
+    force: f64,
 }
 
 impl Bounds {
@@ -409,7 +411,15 @@ impl Bounds {
     fn new(tolerance: f64) -> Self {
         let smooth = 0.02 * tolerance.powf(0.7);
         let kinked = 1e-3 * tolerance.powf(0.95);
-        Self { smooth, kinked, edge: 10.0 * kinked, energy: tolerance, impulse: 1e-3 * smooth }
+        let force = (10.0 * tolerance).clamp(1e-11, 1e-6);
+        Self {
+            smooth,
+            kinked,
+            edge: 10.0 * kinked,
+            energy: tolerance.max(1e-9),
+            impulse: 1e-3 * smooth,
+            force,
+        }
     }
 }
 
