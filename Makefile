@@ -2,7 +2,8 @@
 # make setup     only the installation
 # make report    the report of the shipped scenes, into reports/
 # make solutions computes the stored references of the shipped scenes again
-# make evidence  slow evidence: references over three meshes, model C on the validation scenes, Table 2 (an hour or more)
+# make evidence  slow evidence: references of all scenes and the truth of their bands, model C on the validation scenes,
+#                studies, run time against error, random impacts, FEniCSx 0.9 (an hour or more; the last needs root)
 
 # The python that has (or gets) FEniCSx; Debian's packages belong to /usr/bin/python3.
 PYTHON := $(or $(IMPACTCHECK_PYTHON),/usr/bin/python3)
@@ -63,4 +64,9 @@ evidence: setup
 	for scene in scenes/validation/*.toml; do \
 	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution paper || exit 1; done
 	$(RUN) --store $(OUT)/evidence gate scenes/validation/*.toml --models B,C --out $(OUT)/evidence-report
-	$(RUN) study table2 --out $(OUT)/table2
+	$(PYTHON) -m fem_reference bands --scene $(OUT)/evidence/*/paper/provenance.json --out $(OUT)/bands.json
+	for study in table2 rocker fluid insensitivity; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done
+	for study in fig14 fig15 fig16 fig17 half-period; do $(RUN) study $$study --model C --out $(OUT)/studies || exit 1; done
+	$(RUN) bench --modes 1,16 --out $(OUT)/bench
+	$(RUN) stress --cases 1000
+	.ci/fenicsx-0.9
