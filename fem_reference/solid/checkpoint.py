@@ -6,10 +6,13 @@ States are kept in the model's numbering: a run may go on with another number of
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import time
 import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +23,36 @@ from .loop import Loop
 
 INTERVAL = 60.0
 """Wall-clock time between checkpoints, s."""
+
+
+@contextmanager
+def exclusive(folder: Path, comm: Any, waiting: Callable[[], None]) -> Iterator[None]:
+    """Hold the checkpoints in ``folder`` for this run; another run of the same entry waits.
+
+    The lock is a file beside the folder; it goes with the process, however that ends.
+
+    Raises:
+        SolverError: the lock's file cannot be made.
+    """
+    lock = None
+    if comm.rank == 0:
+        path = folder.with_name(f"{folder.name}.lock")
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            lock = path.open("w")
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                waiting()
+                fcntl.flock(lock, fcntl.LOCK_EX)
+        except OSError as error:
+            raise SolverError(f"{path} cannot be locked: {error}") from error
+    comm.barrier()
+    try:
+        yield
+    finally:
+        if lock is not None:
+            lock.close()
 
 
 class Checkpoint:

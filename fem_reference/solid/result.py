@@ -21,6 +21,7 @@ from ..scene import Scene
 from ..settings import RESOLUTIONS
 from ..versions import versions
 from .band import band
+from .checkpoint import exclusive
 from .fields import write_frames, write_mesh
 from .solve import (
     REVISION,
@@ -86,7 +87,13 @@ def solve(
 
         return report
 
-    with result_folder(target) if comm.rank == 0 else nullcontext(target) as partial:
+    def waiting() -> None:
+        progress.report("waiting", 0.0, "another run of this solution is under way")
+
+    with (
+        exclusive(folder, comm, waiting),
+        result_folder(target) if comm.rank == 0 else nullcontext(target) as partial,
+    ):
         coarser = []
         for level in range(MESHES - 1, 0, -1):
             label = f"mesh {MESHES - level} of {MESHES}, for the uncertainty: "
@@ -106,9 +113,8 @@ def solve(
             }
             _write(partial, scene, solution, resolution_name, values, uncertainty, memory, comm)
             progress.report("writing", 1.0, "done")
-    if comm.rank == 0:
-        shutil.rmtree(folder, ignore_errors=True)
-    comm.barrier()
+            shutil.rmtree(folder, ignore_errors=True)
+        comm.barrier()
 
 
 def _finished(

@@ -1,12 +1,14 @@
 //! The time integration of a plate impact: steps of adapted length while bodies touch, exact flight between.
 
-use super::bank::{Bank, in_blocks};
-use super::collocation::{Collocation, POINTS, STAGES, StepTable, horner};
+use super::bank::in_blocks;
+use super::collocation::{Collocation, POINTS, STAGES, horner};
 use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse, bisect, work};
 use super::free_flight::{self, Flight};
 use super::history::History;
+use super::ladder::Ladder;
 use super::recorder::Recorder;
+use super::step_bounds::Bounds;
 use super::system::{INNER, PLATE, System, dot};
 use crate::analytical::hertz::HertzImpact;
 use crate::error::{Error, Result};
@@ -82,42 +84,6 @@ pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
     let recorder = options.sample_interval.map(|interval| Recorder::new(system, &COLLOCATION, interval));
     Run::new(system, &COLLOCATION, options, recorder).go()
-}
-
-/// Tables of the step lengths in use: a fixed number of places, taken over from the level farthest off when all are
-/// in use. One more serves steps of any other length.
-struct Ladder {
-    places: Vec<(i32, StepTable)>,
-    other: StepTable,
-    blocks: usize,
-}
-
-/// Places of a [`Ladder`].
-const PLACES: usize = 8;
-
-impl Ladder {
-    fn new(blocks: usize) -> Self {
-        Self { places: Vec::with_capacity(PLACES), other: StepTable::empty(blocks), blocks }
-    }
-
-    fn get(&mut self, bank: &Bank, collocation: &Collocation, level: i32, h: f64) -> &StepTable {
-        let place = match self.places.iter().position(|(l, _)| *l == level) {
-            Some(place) => return &self.places[place].1,
-            None if self.places.len() < PLACES => {
-                self.places.push((level, StepTable::empty(self.blocks)));
-                self.places.len() - 1
-            }
-            None => (0..PLACES).max_by_key(|p| (self.places[*p].0 - level).abs()).expect("places"),
-        };
-        self.places[place].0 = level;
-        self.places[place].1.fill(bank, collocation, h);
-        &self.places[place].1
-    }
-
-    fn other(&mut self, bank: &Bank, collocation: &Collocation, h: f64) -> &StepTable {
-        self.other.fill(bank, collocation, h);
-        &self.other
-    }
 }
 
 /// State of a run.
@@ -384,41 +350,6 @@ impl<'a> Run<'a> {
             },
             steps: self.steps,
             history: self.recorder.map(Recorder::finish),
-        }
-    }
-}
-
-/// Defects that a step may have, as impulses over the momentum.
-struct Bounds {
-    /// Where the force is smooth.
-    smooth: f64,
-    /// Where a contact touches or opens at the start or the end of the step.
-    edge: f64,
-    /// Where a contact touches or opens within the step.
-    kinked: f64,
-    /// Energy made from nothing per duration of a Hertz contact, over the energy of the impact.
-    energy: f64,
-    /// Error of a step's impulses from ending the sweeps.
-    impulse: f64,
-    /// Relative error of its forces from the same.
-    force: f64,
-}
-
-impl Bounds {
-    /// For a relative error `tolerance` of the efficiency. The error of a step is of about twice the order of its
-    /// defect where the forces are smooth, so that the bound may fall more slowly than the tolerance; factors and
-    /// exponents are measured over scenes and numbers of modes (tests/integrator_runge_kutta.rs).
-    fn new(tolerance: f64) -> Self {
-        let smooth = 0.02 * tolerance.powf(0.7);
-        let kinked = 1e-3 * tolerance.powf(0.95);
-        let force = (10.0 * tolerance).clamp(1e-11, 1e-6);
-        Self {
-            smooth,
-            kinked,
-            edge: 10.0 * kinked,
-            energy: tolerance.max(1e-9),
-            impulse: 1e-3 * smooth,
-            force,
         }
     }
 }
