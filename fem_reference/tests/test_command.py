@@ -80,6 +80,7 @@ def test_folder_is_complete_and_checksums_hold(solved: tuple[Path, str, str]) ->
         "mesh.vtu",
         "stress_000.vtu",
         "stress_001.vtu",
+        "stress.pvd",
         "provenance.json",
         "checksums.sha256",
     }

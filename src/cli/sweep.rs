@@ -14,7 +14,7 @@ pub const EXAMPLE: &str = r#"A sweep file (TOML):
   scene     = "scaled-plate-r10"     # a file beside this one, or a shipped scene
   model     = "B"                    # A, B or C; absent = the scene's, else B
   modes     = 16                     # absent = the scene's, else the model's
-  tolerance = 1e-5                   # relative error of the efficiency; absent = 1e-5
+  tolerance = 1e-4                   # relative error of the efficiency; absent = 1e-4
   sampling  = "grid"                 # or "latin-hypercube", with samples = 10000 and seed = 1
 
   [[vary]]
