@@ -12,7 +12,7 @@ INTERVAL = 0.2
 
 
 class Progress:
-    """Writes ``{"phase", "done", "message"}`` lines; a change of phase is always written."""
+    """Writes ``{"phase", "done", "message"}`` lines; each phase's start and end among them."""
 
     def __init__(self, stream: TextIO | None = None) -> None:
         self._stream = stream if stream is not None else sys.stdout
@@ -22,7 +22,7 @@ class Progress:
     def report(self, phase: str, done: float, message: str) -> None:
         """Report ``done`` (0..1) of ``phase`` (mesh, assembly, stepping, writing)."""
         now = time.monotonic()
-        if phase == self._phase and now - self._last < INTERVAL:
+        if phase == self._phase and done < 1.0 and now - self._last < INTERVAL:
             return
         self._phase, self._last = phase, now
         done = round(min(max(done, 0.0), 1.0), 4)

@@ -27,32 +27,31 @@ INTERVAL = 60.0
 
 @contextmanager
 def exclusive(folder: Path, comm: Any, waiting: Callable[[], None]) -> Iterator[None]:
-    """Hold the checkpoints in ``folder`` for this run; another run of the same entry waits.
+    """Hold the checkpoints in ``folder`` for this run; another run beside it waits.
 
-    The lock is a file beside the folder; it goes with the process, however that ends.
+    The lock is on the folder that holds ``folder``; it goes with the process, however that ends.
 
     Raises:
-        SolverError: the lock's file cannot be made.
+        SolverError: that folder cannot be locked.
     """
     lock = None
     if comm.rank == 0:
-        path = folder.with_name(f"{folder.name}.lock")
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            lock = path.open("w")
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            lock = os.open(folder.parent, os.O_RDONLY)
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
                 waiting()
                 fcntl.flock(lock, fcntl.LOCK_EX)
         except OSError as error:
-            raise SolverError(f"{path} cannot be locked: {error}") from error
+            raise SolverError(f"{folder.parent} cannot be locked: {error}") from error
     comm.barrier()
     try:
         yield
     finally:
         if lock is not None:
-            lock.close()
+            os.close(lock)
 
 
 class Checkpoint:

@@ -94,9 +94,10 @@ def test_sub_cycling_gives_the_answer_of_one_time_step(
     run: Run, system: System, scene: Scene, duration: float
 ) -> None:
     single = integrate(system, scene.speed, duration, most_levels=1)
-    # One level: a central difference, whose discrete energy is exact.
+    # One level: a central difference, whose discrete energy is exact but for the rounding of some
+    # 1e5 steps (1.2e-9); with levels it is not (1e-6).
     assert single.levels == (system.mass.size,)
-    assert single.balance.energy_residual < 1e-9
+    assert single.balance.energy_residual < 4e-9
     assert run.balance.inner_velocity == pytest.approx(single.balance.inner_velocity, rel=2e-4)
     assert run.balance.outer_velocity == pytest.approx(single.balance.outer_velocity, rel=5e-4)
     for a, b in zip(run.contacts, single.contacts, strict=True):

@@ -59,13 +59,13 @@ def test_thick_titanium_plate_table_2(
     assert first == pytest.approx(longitudinal, rel=5e-4)
 
 
-def test_time_loop_mesh_converges_to_the_continuum(scene: Scene) -> None:
-    """Bilinear elements and lumped mass against quadratic elements and consistent mass."""
+def test_time_loop_mesh_has_the_frequency_of_the_continuum(scene: Scene) -> None:
+    """Incompatible modes and lumped mass against quadratic elements and consistent mass."""
     exact = plate_modes(scene.plate, modal_plate_mesh(scene.plate), 1)[0].frequency
     errors = [first_frequency(make_system(scene, f)[0]) / exact - 1.0 for f in (1.0, 2.0)]
-    assert abs(errors[0]) < 4e-3
-    # Second order would be a quarter; the clamped edge's corner costs a little of it.
-    assert abs(errors[1]) < 0.35 * abs(errors[0])
+    # Without the parasitic shear of plain bilinear elements (4e-3) what is left is of the size of
+    # the error of the quadratic elements at the clamped edge's corner.
+    assert max(abs(error) for error in errors) < 1e-4
 
 
 def test_free_plate_has_no_rigid_mode_in_the_list() -> None:
