@@ -29,7 +29,7 @@ setup:
 rust:
 	cargo fmt --check
 	cargo clippy --release --all-targets -- -D warnings
-	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release; else cargo test --release; fi
+	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --no-fail-fast; else cargo test --release; fi
 	cargo test --release --doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --quiet
 
