@@ -40,7 +40,7 @@ impl UnitPlate {
     /// The lowest `modes` elastic modes, and the rigid one if the edge is free.
     ///
     /// # Errors
-    /// [`Error::Internal`] if the eigenproblem does not converge.
+    /// [`crate::Error::Internal`] if the eigenproblem does not converge.
     pub fn new(edge: Edge, poisson_ratio: f64, modes: usize) -> Result<Self> {
         // 4/3 half waves of the highest mode to an element of degree 9: shapes to 1e-8, frequencies beyond
         let elements = modes * 3 / 4 + 3;

@@ -28,7 +28,7 @@ const REFERENCE_WORK: f64 = 3e6;
 /// The largest value of an invariant, and where it came from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Worst {
-    /// The value, in relation to what [`BOUNDS`] names.
+    /// The value, in relation to what `BOUNDS` names.
     pub value: f64,
     /// Its bound; `None` if it is only watched.
     pub bound: Option<f64>,

@@ -1,6 +1,6 @@
 //! Sweeps of one's own: any numeric fields of a scene over ranges or lists, from a file.
 //!
-//! A [`Plan`] numbers the points; every point's result is a line in an append-only log ([`record`]) as soon as it is
+//! A [`Plan`] numbers the points; every point's result is a line in an append-only log (`record`) as soon as it is
 //! known, so that an interrupted sweep goes on where it stopped, and shards run side by side; a [`Table`] joins what the
 //! logs hold.
 

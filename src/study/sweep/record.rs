@@ -46,7 +46,7 @@ impl Outcome {
         }
     }
 
-    /// The numbers of [`NUMBERS`].
+    /// The numbers of `NUMBERS`.
     pub fn numbers(&self) -> Option<[f64; NUMBERS.len()]> {
         let Outcome::Done(point) = self else { return None };
         let mut numbers = [0.0; NUMBERS.len()];
