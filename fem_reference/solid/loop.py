@@ -7,6 +7,7 @@ processes. Every process solves the contact problem with all surface nodes, redu
 from __future__ import annotations
 
 import ctypes
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,7 +42,7 @@ class Energies:
         return sum(self.elastic) + sum(self.rigid)
 
 
-class Loop:
+class Loop(ABC):
     """What serial and parallel runs have in common.
 
     Attributes:
@@ -85,13 +86,13 @@ class Loop:
         """Time step, s."""
         return float(self.problem.state.dt)
 
+    @abstractmethod
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
-        raise NotImplementedError
 
+    @abstractmethod
     def product(self, x: Floats) -> Floats:
         """K x."""
-        raise NotImplementedError
 
     def total(self, values: Floats) -> Floats:
         """Sum over the processes."""
