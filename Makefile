@@ -8,7 +8,7 @@
 # The python that has (or gets) FEniCSx; Debian's packages belong to /usr/bin/python3.
 PYTHON := $(or $(IMPACTCHECK_PYTHON),/usr/bin/python3)
 SUDO   := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
-DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc
+DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc openmpi-bin
 VENV   := target/python-tools
 TOOL   := $(VENV)/bin/python
 RUN    := cargo run --release --quiet --
@@ -21,7 +21,7 @@ test: setup rust python live gate
 	@echo "all checks passed"
 
 setup:
-	@$(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" 2>/dev/null || \
+	@{ $(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" && command -v mpirun; } >/dev/null 2>&1 || \
 	    { $(SUDO) apt-get update && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y $(DEBIAN); }
 	@[ -x $(VENV)/bin/ruff ] && [ -x $(VENV)/bin/mypy ] || \
 	    { $(PYTHON) -m venv --system-site-packages $(VENV) && $(TOOL) -m pip install --quiet ruff mypy; }

@@ -138,38 +138,48 @@ def _cache_folder() -> Path:
     return fallback
 
 
+def compiled(source: Path, name: str) -> ctypes.CDLL:
+    """The library built from ``source``, once per source, flags, compiler and processor.
+
+    Args:
+        source: C source, one file.
+        name: how the library's name in the cache begins.
+
+    Raises:
+        SolverError: no compiler, or it failed.
+    """
+    program = compiler()
+    parts = (" ".join(FLAGS), compiler_version(), _processor())
+    content = b"\0".join([source.read_bytes(), *(part.encode() for part in parts)])
+    folder = _cache_folder()
+    library = folder / f"{name}-{hashlib.sha256(content).hexdigest()[:24]}.so"
+    if library.exists():
+        return ctypes.CDLL(str(library))
+    handle, temporary = tempfile.mkstemp(suffix=".so", prefix=".build-", dir=folder)
+    os.close(handle)
+    try:
+        result = subprocess.run(
+            [program, *FLAGS, "-o", temporary, str(source), "-lm"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if result.returncode != 0:
+            detail = (result.stderr.strip().splitlines() or ["no message"])[0]
+            raise SolverError(f"{program} could not compile the time loop: {detail}")
+        Path(temporary).replace(library)
+    finally:
+        Path(temporary).unlink(missing_ok=True)
+    return ctypes.CDLL(str(library))
+
+
 def load() -> ctypes.CDLL:
     """The compiled kernel.
 
     Raises:
         SolverError: no compiler, or it failed.
     """
-    program = compiler()
-    source = _SOURCE.read_bytes()
-    key = hashlib.sha256(
-        b"\0".join(
-            [source, " ".join(FLAGS).encode(), compiler_version().encode(), _processor().encode()]
-        )
-    ).hexdigest()[:24]
-    folder = _cache_folder()
-    library = folder / f"kernel-{key}.so"
-    if not library.exists():
-        handle, temporary = tempfile.mkstemp(suffix=".so", prefix=".build-", dir=folder)
-        os.close(handle)
-        try:
-            result = subprocess.run(
-                [program, *FLAGS, "-o", temporary, str(_SOURCE)],
-                capture_output=True,
-                text=True,
-                check=False,
-            )
-            if result.returncode != 0:
-                detail = (result.stderr.strip().splitlines() or ["no message"])[0]
-                raise SolverError(f"{program} could not compile the time loop: {detail}")
-            Path(temporary).replace(library)
-        finally:
-            Path(temporary).unlink(missing_ok=True)
-    kernel = ctypes.CDLL(str(library))
+    kernel = compiled(_SOURCE, "kernel")
     kernel.state_size.restype = ctypes.c_int64
     kernel.run.argtypes = [ctypes.POINTER(State), ctypes.c_int64, ctypes.c_int64, _DOUBLE]
     kernel.run.restype = None

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import ctypes
-import hashlib
-import os
-import subprocess
-import tempfile
 from pathlib import Path
 from typing import Any
 
 from ..errors import SolverError
-from ..kernel import FLAGS, _cache_folder, _processor, compiler, compiler_version
+from ..kernel import compiled
 
 MAX_INTERVALS = 256
 FACET_NODES = 6
@@ -107,37 +103,13 @@ class State(ctypes.Structure):
     )
 
 
-def _build(library: Path) -> None:
-    program = compiler()
-    handle, temporary = tempfile.mkstemp(suffix=".so", prefix=".build-", dir=library.parent)
-    os.close(handle)
-    try:
-        result = subprocess.run(
-            [program, *FLAGS, "-o", temporary, str(_SOURCE), "-lm"],
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        if result.returncode != 0:
-            detail = (result.stderr.strip().splitlines() or ["no message"])[0]
-            raise SolverError(f"{program} could not compile the time loop: {detail}")
-        Path(temporary).replace(library)
-    finally:
-        Path(temporary).unlink(missing_ok=True)
-
-
 def load() -> Any:
     """The compiled kernel.
 
     Raises:
         SolverError: no compiler, or it failed.
     """
-    parts = [" ".join(FLAGS).encode(), compiler_version().encode(), _processor().encode()]
-    key = hashlib.sha256(b"\0".join([_SOURCE.read_bytes(), *parts])).hexdigest()[:24]
-    library = _cache_folder() / f"solid-{key}.so"
-    if not library.exists():
-        _build(library)
-    kernel = ctypes.CDLL(str(library))
+    kernel = compiled(_SOURCE, "solid")
     kernel.layout.restype = ctypes.c_int64
     kernel.advance.argtypes = [ctypes.POINTER(State), ctypes.c_int64]
     kernel.advance.restype = None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -169,7 +168,6 @@ def test_a_checkpoint_of_another_scene_is_not_used(folder: Path) -> None:
     assert loaded["problem"] == {}
 
 
-@pytest.mark.skipif(shutil.which("mpirun") is None, reason="no mpirun")
 def test_two_processes_step_as_one(folder: Path) -> None:
     # Few steps: where processors are scarce, every exchange waits for the other process' turn.
     module = [sys.executable, "-m", "fem_reference.tests.parallel_steps", str(scene(folder)), "150"]
@@ -190,7 +188,6 @@ def test_two_processes_step_as_one(folder: Path) -> None:
         assert np.abs(two[name] - values).max() <= 1e-9 * np.abs(values).max(), name
 
 
-@pytest.mark.skipif(shutil.which("mpirun") is None, reason="no mpirun")
 def test_several_processes_fail_together_with_the_right_status(folder: Path) -> None:
     out = folder / "unstable-2"
     done = solve(scene(folder), out, "--np", "2", "--courant", "1.01")
