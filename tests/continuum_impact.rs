@@ -46,7 +46,7 @@ fn a_contact_wider_than_the_plate_is_thick_is_warned_of() {
     let text = std::fs::read_to_string(resolve("scenes/validation/titanium-membrane.toml").unwrap()).unwrap();
     let run = |thickness: &str| {
         let scene = Scene::parse("scene.toml", &text.replace("\"0.1 mm\"", thickness)).unwrap();
-        Reduced::new(&scene, Model::C, None).unwrap().run(1e-6).unwrap()
+        Reduced::new(&scene, Model::C, None).unwrap().run(1e-8).unwrap()
     };
     assert!(run("\"0.1 mm\"").warnings.is_empty());
     let thin = run("\"0.05 mm\"");

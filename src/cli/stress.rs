@@ -43,6 +43,12 @@ fn table(report: &StressReport) -> String {
         report.compared,
         report.recontacts
     )];
+    if !report.undecided.is_empty() {
+        lines.push(format!(
+            "  independent solution too uncertain to compare with, seeds {}",
+            report.undecided.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")
+        ));
+    }
     for (name, worst) in &report.worst {
         let bound = worst.bound.map_or_else(String::new, |b| format!(" (bound {b:.0e})"));
         lines.push(format!("  worst {name:<20} {:>9.2e}{bound}, seed {}", worst.value, worst.seed));

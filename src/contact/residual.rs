@@ -47,6 +47,13 @@ impl Residual {
         self.flexibility.iter().chain(&self.growth).flatten().all(|r| *r == 0.0)
     }
 
+    /// The same with a further `flexibility` (0,0), (0,1) = (1,0), (1,1) in m/N.
+    #[inline(always)]
+    pub fn with(&self, [own0, mutual, own1]: [f64; 3]) -> Self {
+        let [[a, b], [c, e]] = self.flexibility;
+        Self { flexibility: [[a + own0, b + mutual], [c + mutual, e + own1]], growth: self.growth }
+    }
+
     /// Relative curvatures under the forces `f` in N.
     #[inline(always)]
     fn curvature(&self, f: [f64; 2]) -> [f64; 2] {

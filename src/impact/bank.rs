@@ -95,9 +95,11 @@ impl Bank {
     /// highest, recurrence downwards.
     #[inline(always)]
     fn series(&self, k: usize, t: f64, powers: &[f64; STAGES], square: f64x4) -> [f64x4; MOMENTS] {
+        // up to (omega t)^2 = 4, or 0.25
+        let terms = if square.simd_lt(f64x4::splat(0.25)).to_bitmask() == 0b1111 { 6 } else { 10 };
         let stumpff = |p: usize| {
             let mut sum = f64x4::ZERO;
-            for m in (0..=10).rev() {
+            for m in (0..=terms).rev() {
                 sum = f64x4::splat(INVERSE_FACTORIAL[p + 2 * m]) - square * sum;
             }
             sum

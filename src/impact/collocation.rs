@@ -103,6 +103,13 @@ impl Collocation {
         coefficients
     }
 
+    /// Weights of the values at all points of a step in the polynomial's values at the Gauss points of the next step,
+    /// which is `ratio` times as long. Shape (POINTS, STAGES).
+    pub fn extrapolation(&self, ratio: f64) -> [f64x4; POINTS] {
+        self.through_points
+            .map(|polynomial| f64x4::from(self.nodes.map(|node| horner(&polynomial, 1.0 + node * ratio))))
+    }
+
     /// Weights of the values at the Gauss points in the polynomial's value at `u` (in units of the step).
     fn interpolation(&self, u: f64) -> Stages {
         self.lagrange.map(|polynomial| horner(&polynomial, u))
@@ -172,8 +179,9 @@ pub struct StepTable {
     node: Vec<f64x4>,
     /// Moments of every oscillator at the end. Shape (MOMENTS, blocks).
     end: Vec<f64x4>,
-    /// Approach at Gauss point j lost per force at Gauss point l: contacts (0,0), (0,1) = (1,0), (1,1).
-    pub coupling: [[Stages; STAGES]; 3],
+    /// `coupling[c][l]`: approaches at all Gauss points lost per force at Gauss point l, in m/N; c is the pair of contacts
+    /// (0,0), (0,1) = (1,0), (1,1).
+    pub coupling: [[f64x4; STAGES]; 3],
     /// `coefficients[p][l]`: coefficient of tau^p / p! in the polynomial of a force per value at Gauss point l.
     coefficients: [Stages; STAGES],
 }
@@ -185,7 +193,7 @@ impl StepTable {
             h: 0.0,
             node: bytemuck::zeroed_vec(STAGES * 2 * blocks),
             end: bytemuck::zeroed_vec(MOMENTS * blocks),
-            coupling: Default::default(),
+            coupling: [[f64x4::ZERO; STAGES]; 3],
             coefficients: Default::default(),
         }
     }
@@ -202,6 +210,7 @@ impl StepTable {
             self.coefficients[p] = std::array::from_fn(|l| scale * collocation.lagrange[l][p]);
         }
         let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
+        let mut rows = [[[0.0; STAGES]; STAGES]; 3];
         for j in 0..STAGES {
             let t = collocation.nodes[j] * h;
             let powers = powers(t);
@@ -218,16 +227,16 @@ impl StepTable {
                     answers[2][p] += b1[k] * second;
                 }
             }
-            for (coupling, answers) in self.coupling.iter_mut().zip(answers) {
+            for (rows, answers) in rows.iter_mut().zip(answers) {
                 let answers = answers.map(f64x4::reduce_add);
-                coupling[j] = [0.0; STAGES];
                 for p in 0..STAGES {
                     for l in 0..STAGES {
-                        coupling[j][l] += self.coefficients[p][l] * answers[p];
+                        rows[l][j] += self.coefficients[p][l] * answers[p];
                     }
                 }
             }
         }
+        self.coupling = rows.map(|columns| columns.map(f64x4::from));
         let powers = powers(h);
         for k in 0..n {
             for (p, moment) in bank.moments(k, h, &powers).into_iter().enumerate() {
@@ -238,7 +247,7 @@ impl StepTable {
 
     /// Approaches at the Gauss points, in m, if no force acted during the step; `gap` in m.
     #[inline]
-    pub fn free_approach(&self, bank: &Bank, gap: [f64; 2], q: &[f64x4], v: &[f64x4]) -> [Stages; 2] {
+    pub fn free_approach(&self, bank: &Bank, gap: [f64; 2], q: &[f64x4], v: &[f64x4]) -> [f64x4; 2] {
         let n = q.len();
         let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
         let (damping, v) = (&bank.damping[..n], &v[..n]);
@@ -252,11 +261,11 @@ impl StepTable {
                 sums[1][j] += b1[k] * value;
             }
         }
-        std::array::from_fn(|i| sums[i].map(|sum| sum.reduce_add() - gap[i]))
+        std::array::from_fn(|i| f64x4::from(sums[i].map(f64x4::reduce_add)) - f64x4::splat(gap[i]))
     }
 
     /// Writes the state at the end of the step under the forces at the Gauss points and gives the approaches there,
-    /// without the gaps.
+    /// without the gaps, and the energy of the oscillators there in J.
     #[inline]
     pub fn advance(
         &self,
@@ -264,7 +273,7 @@ impl StepTable {
         forces: &[Stages; 2],
         (q, v): (&[f64x4], &[f64x4]),
         (q_end, v_end): (&mut [f64x4], &mut [f64x4]),
-    ) -> [f64; 2] {
+    ) -> ([f64; 2], f64) {
         let n = q.len();
         let (v, q_end, v_end) = (&v[..n], &mut q_end[..n], &mut v_end[..n]);
         let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
@@ -277,7 +286,7 @@ impl StepTable {
                 polynomial[1][p] += self.coefficients[p][l] * forces[1][l];
             }
         }
-        let mut sums = [f64x4::ZERO; 2];
+        let (mut sums, mut energy) = ([f64x4::ZERO; 2], f64x4::ZERO);
         for k in 0..n {
             let (slope, impulse) = (rows[0][k], rows[1][k]);
             let mut displacement = slope * q[k] + impulse * (v[k] + damping[k] * q[k]);
@@ -290,8 +299,9 @@ impl StepTable {
             (q_end[k], v_end[k]) = (displacement, rate);
             sums[0] += b0[k] * displacement;
             sums[1] += b1[k] * displacement;
+            energy += rate * rate + stiffness[k] * (displacement * displacement);
         }
-        sums.map(f64x4::reduce_add)
+        (sums.map(f64x4::reduce_add), 0.5 * energy.reduce_add())
     }
 }
 

@@ -6,7 +6,9 @@
 //! the Hertz approaches of the visit before.
 
 use super::bank::Bank;
-use super::collocation::{Collocation, POINTS, Points, STAGES, Stages, StepTable, horner};
+use super::collocation::{Collocation, POINTS, Points, STAGES, Stages, StepTable};
+use super::contact_ledger::work;
+use super::point_laws::{HertzPoints, PointLaw, ResidualPoints, Visit};
 use super::system::System;
 use wide::f64x4;
 
@@ -28,6 +30,12 @@ pub struct Course {
     pub local_approach: [Points; 2],
     /// Force in N.
     pub force: [Points; 2],
+    /// Work of the force polynomials along the approaches in J.
+    pub work: [f64; 2],
+    /// Strain energy of the contacts at the end in J.
+    pub stored: f64,
+    /// Kinetic and strain energy of the bodies at the end in J.
+    pub motion: f64,
 }
 
 impl Course {
@@ -61,11 +69,13 @@ pub struct StepSolver<'a> {
     pub bank: Bank,
     /// Factor by which a sweep reduced the change of the forces lately.
     contraction: f64,
+    /// The latest extrapolation: ratio of the steps, weights of the points of the step before at each Gauss point.
+    extrapolation: (f64, [f64x4; POINTS]),
 }
 
 /// Unknowns of a step at its Gauss points.
 struct Unknowns {
-    approach: [Stages; 2],
+    approach: [f64x4; 2],
     local: [Stages; 2],
     force: [Stages; 2],
 }
@@ -73,7 +83,13 @@ struct Unknowns {
 impl<'a> StepSolver<'a> {
     /// For the contacts and bodies of `system`.
     pub fn new(system: &'a System, collocation: &'a Collocation) -> Self {
-        Self { system, collocation, bank: Bank::new(system), contraction: 1.0 }
+        Self {
+            system,
+            collocation,
+            bank: Bank::new(system),
+            contraction: 1.0,
+            extrapolation: (0.0, [f64x4::ZERO; POINTS]),
+        }
     }
 
     /// Solves a step of the length of `table` that follows on `before`, from the state `now` into `next`; `None` if
@@ -87,24 +103,20 @@ impl<'a> StepSolver<'a> {
         force_error: ForceError,
     ) -> Option<Course> {
         let free = table.free_approach(&self.bank, self.system.gap, now.0, now.1);
-        let guess = self.guess(before, table.h).unwrap_or(free);
+        let unforced = free.map(f64x4::to_array);
+        let guess = self.guess(before, table.h).unwrap_or(unforced);
+        let laws = &self.system.laws;
         let solved = match self.system.residual {
-            None => self
-                .sweep(table, &free, guess, MAX_SWEEPS, force_error, |y, _| Some((y, self.system.forces(y)))),
+            None => self.sweep(table, &free, guess, MAX_SWEEPS, force_error, HertzPoints::new(laws, table)),
             Some(residual) => {
-                let laws = &self.system.laws;
-                let newton = |y: [f64; 2], p: [f64; 2]| {
-                    let p = residual.newton(laws, y, p)?;
-                    Some((p, residual.forces(laws, p)))
-                };
-                let full = |y: [f64; 2], _: [f64; 2]| residual.solve(laws, y, y);
-                self.sweep(table, &free, guess, MAX_NEWTON_SWEEPS, force_error, newton)
-                    .or_else(|| self.sweep(table, &free, free, MAX_SWEEPS, force_error, full))
+                let points = |full| ResidualPoints::new(laws, residual, table, full);
+                self.sweep(table, &free, guess, MAX_NEWTON_SWEEPS, force_error, points(false))
+                    .or_else(|| self.sweep(table, &free, unforced, MAX_SWEEPS, force_error, points(true)))
             }
         };
         let (unknowns, contraction) = solved?;
         self.contraction = contraction;
-        let end = table.advance(&self.bank, &unknowns.force, now, next);
+        let (end, motion) = table.advance(&self.bank, &unknowns.force, now, next);
         let end_approach = [end[0] - self.system.gap[0], end[1] - self.system.gap[1]];
         let last = unknowns.local.map(|p| p[STAGES - 1]);
         let (end_local, end_force) = self
@@ -121,52 +133,64 @@ impl<'a> StepSolver<'a> {
             })
         };
         let [approach, local, force] = before.end();
+        let approach = join(approach, &unknowns.approach.map(f64x4::to_array), end_approach);
         Some(Course {
             h: table.h,
-            approach: join(approach, &unknowns.approach, end_approach),
+            approach,
+            work: [0, 1].map(|i| work(self.collocation, &unknowns.force[i], &approach[i])),
+            stored: self.system.stored_energy(end_force, end_local),
+            motion,
             local_approach: join(local, &unknowns.local, end_local),
             force: join(force, &unknowns.force, end_force),
         })
     }
 
-    /// Sweeps until the forces are right to `force_error`; `law` gives the local approaches and the forces at a modal
-    /// approach, from the local approaches of the visit before. Gives also the contraction of the last sweeps.
+    /// Sweeps, each point by `law`, until the forces are right to `force_error`. Gives also the contraction of the last
+    /// sweeps.
     #[inline(always)]
     fn sweep(
         &self,
         table: &StepTable,
-        free: &[Stages; 2],
+        free: &[f64x4; 2],
         local: [Stages; 2],
         max_sweeps: usize,
         force_error: ForceError,
-        law: impl Fn([f64; 2], [f64; 2]) -> Option<([f64; 2], [f64; 2])>,
+        mut law: impl PointLaw,
     ) -> Option<(Unknowns, f64)> {
         let mut force = [[0.0; STAGES]; 2];
+        let [own0, mutual, own1] = &table.coupling;
+        // the approaches under the newest forces
+        let [mut y0, mut y1] = *free;
         for j in 0..STAGES {
-            [force[0][j], force[1][j]] = self.system.forces([local[0][j], local[1][j]]);
+            let f = self.system.forces([local[0][j], local[1][j]]);
+            y0 -= own0[j] * f[0] + mutual[j] * f[1];
+            y1 -= mutual[j] * f[0] + own1[j] * f[1];
+            [force[0][j], force[1][j]] = f;
         }
         let mut unknowns = Unknowns { approach: *free, local, force };
-        let [own0, mutual, own1] = &table.coupling;
         let (mut contraction, mut earlier) = (self.contraction, f64::INFINITY);
         for _ in 0..max_sweeps {
             let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
+            law.prepare(&unknowns.local);
             for j in 0..STAGES {
-                let [f0, f1] = &unknowns.force;
-                let (mut y0, mut y1) = (free[0][j], free[1][j]);
-                // the newest force last: all else can be summed up before it is known
-                for l in (j..STAGES).chain(0..j) {
-                    y0 -= own0[j][l] * f0[l] + mutual[j][l] * f1[l];
-                    y1 -= mutual[j][l] * f0[l] + own1[j][l] * f1[l];
-                }
-                let (d, f) = law([y0, y1], [unknowns.local[0][j], unknowns.local[1][j]])?;
-                for (i, y) in [y0, y1].into_iter().enumerate() {
-                    change = change.max((f[i] - unknowns.force[i][j]).abs());
+                let visit = Visit {
+                    point: j,
+                    approach: [y0.as_array()[j], y1.as_array()[j]],
+                    local: [unknowns.local[0][j], unknowns.local[1][j]],
+                    force: [unknowns.force[0][j], unknowns.force[1][j]],
+                };
+                let (d, f) = law.visit(visit)?;
+                let step = [f[0] - visit.force[0], f[1] - visit.force[1]];
+                y0 -= own0[j] * step[0] + mutual[j] * step[1];
+                y1 -= mutual[j] * step[0] + own1[j] * step[1];
+                for i in 0..2 {
+                    change = change.max(step[i].abs());
                     largest = largest.max(f[i]);
-                    unknowns.approach[i][j] = y;
                     unknowns.local[i][j] = d[i];
                     unknowns.force[i][j] = f[i];
                 }
             }
+            unknowns.approach = [y0, y1];
             if !change.is_finite() {
                 return None;
             }
@@ -186,14 +210,21 @@ impl<'a> StepSolver<'a> {
 
     /// Local approaches at the Gauss points of a step of `h` s, extrapolated from the step before; `None` if there is
     /// none, or none near enough.
-    fn guess(&self, before: &Course, h: f64) -> Option<[Stages; 2]> {
+    fn guess(&mut self, before: &Course, h: f64) -> Option<[Stages; 2]> {
         if h > 2.5 * before.h {
             return None;
         }
         let ratio = h / before.h;
+        if ratio != self.extrapolation.0 {
+            self.extrapolation = (ratio, self.collocation.extrapolation(ratio));
+        }
+        let (_, weights) = &self.extrapolation;
         Some(before.local_approach.map(|values| {
-            let polynomial = self.collocation.through(&values);
-            self.collocation.nodes.map(|node| horner(&polynomial, 1.0 + node * ratio))
+            let mut guess = f64x4::ZERO;
+            for p in 0..POINTS {
+                guess += weights[p] * values[p];
+            }
+            guess.to_array()
         }))
     }
 }

@@ -9,12 +9,12 @@ pub struct StepCourse {
     pub time: f64,
     /// Length of the step in s.
     pub h: f64,
-    /// Modal approach, on which the force works, at start, Gauss points and end, m.
-    pub approach: Points,
-    /// Local approach, positive where the bodies touch, at the same points, m.
+    /// Local approach, positive where the bodies touch, at start, Gauss points and end, m.
     pub local_approach: Points,
     /// Force at start, Gauss points and end, N.
     pub force: Points,
+    /// Work of the force polynomial along the approach, J (see [`work`]).
+    pub work: f64,
 }
 
 /// Account of one contact.
@@ -51,7 +51,7 @@ impl ContactLedger {
         let gauss: &Stages = course.force[1..=STAGES].try_into().expect("STAGES values");
         let before = self.impulse;
         self.impulse += course.h * gauss.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
-        self.work += work(collocation, gauss, &course.approach);
+        self.work += course.work;
         let (highest, largest) = argmax(&course.force);
         if largest > self.force_peak {
             self.force_peak = largest.max(self.interpolated_peak(collocation, course, highest));

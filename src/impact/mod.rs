@@ -12,6 +12,7 @@ mod history;
 pub mod integrator;
 mod ladder;
 mod outer_body;
+mod point_laws;
 mod recorder;
 pub mod reduced;
 mod step_bounds;

@@ -21,15 +21,15 @@ impl Bounds {
     /// defect where the forces are smooth, so that the bound may fall more slowly than the tolerance; factors and
     /// exponents are measured over scenes and numbers of modes (tests/integrator_runge_kutta.rs).
     pub(super) fn new(tolerance: f64) -> Self {
-        let smooth = 0.02 * tolerance.powf(0.7);
+        let smooth = tolerance.powf(0.7);
         let kinked = 1e-3 * tolerance.powf(0.95);
-        let force = (10.0 * tolerance).clamp(1e-11, 1e-6);
+        let force = (300.0 * tolerance).clamp(1e-11, 1e-4);
         Self {
             smooth,
             kinked,
             edge: 10.0 * kinked,
-            energy: tolerance.max(1e-9),
-            impulse: 1e-3 * smooth,
+            energy: (5.0 * tolerance).max(1e-9),
+            impulse: 0.02 * smooth,
             force,
         }
     }

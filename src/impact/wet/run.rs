@@ -257,10 +257,11 @@ impl Run<'_> {
                     _ => stages[p - 1],
                 })
             };
+            let approach = join(self.approach[i], &trial.approach[i], trial.end_approach[i]);
             let course = StepCourse {
                 time: self.time,
                 h,
-                approach: join(self.approach[i], &trial.approach[i], trial.end_approach[i]),
+                work: work(self.collocation, &trial.forces[i], &approach),
                 local_approach: join(self.local[i], &trial.local[i], trial.end_local[i]),
                 force: join(self.force[i], &trial.forces[i], trial.end_force[i]),
             };
