@@ -54,7 +54,8 @@ impl Check {
 
 /// All checks of one result.
 pub(super) fn check(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
-    let Setup::PlateImpact(setup) = &scene.setup;
+    // These are results of a plate impact: a scene of another kind has none such.
+    let Setup::PlateImpact(setup) = &scene.setup else { return vec![Check::count("kind_of_scene", 1)] };
     let (summary, history) = (&outcome.summary, &outcome.history);
     let mut checks = form(summary, history);
     if can_be_sampled(history) {

@@ -1,5 +1,17 @@
 //! The course of an impact over time, the same type for reduced models and the reference.
 
+/// The course over time of one kind of scene: curves by name over one time axis.
+pub trait Curves: Clone + std::fmt::Debug + PartialEq {
+    /// Name and unit of every curve.
+    const NAMES: &'static [(&'static str, &'static str)];
+
+    /// Time in s, strictly increasing.
+    fn time(&self) -> &[f64];
+
+    /// The curve called `name` in [`Curves::NAMES`].
+    fn values(&self, name: &str) -> Option<&[f64]>;
+}
+
 /// Motion of one body along z.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Motion {
@@ -62,5 +74,17 @@ impl History {
     /// Whether there is no sample.
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
+    }
+}
+
+impl Curves for History {
+    const NAMES: &'static [(&'static str, &'static str)] = &CURVES;
+
+    fn time(&self) -> &[f64] {
+        &self.time
+    }
+
+    fn values(&self, name: &str) -> Option<&[f64]> {
+        self.curve(name)
     }
 }

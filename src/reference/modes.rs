@@ -2,7 +2,7 @@
 
 use super::{Resolution, identity, python};
 use crate::body::continuum::PlateMode;
-use crate::scene::{Scene, Setup};
+use crate::scene::Scene;
 use crate::{Error, Result};
 use serde::Deserialize;
 use std::path::Path;
@@ -26,7 +26,7 @@ struct Mode {
 /// [`Error::Solver`] if the solver fails or its answer can't be read, [`Error::Io`] if no temporary file can be
 /// written.
 pub fn plate_modes(python: &Path, scene: &Scene, count: usize) -> Result<Vec<PlateMode>> {
-    let Setup::PlateImpact(setup) = &scene.setup;
+    let setup = scene.plate_impact()?;
     let thickness = setup.plate.thickness;
     let failed = |what: String| {
         Error::Solver(format!("modes of the plate of thickness {thickness} m by SLEPc: {what}"))
