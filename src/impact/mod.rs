@@ -14,6 +14,7 @@ mod ladder;
 mod outer_body;
 mod recorder;
 pub mod reduced;
+pub mod seal_seat;
 mod seat_result;
 mod step_bounds;
 mod summary;
