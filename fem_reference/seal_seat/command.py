@@ -1,0 +1,27 @@
+"""The commands of ``fem_reference`` for scenes of kind seal-seat."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+from ..errors import SceneError
+from .scene import parse_seat_scene
+
+
+def run(document: Any, arguments: argparse.Namespace) -> None:
+    """Run a command for a decoded ``scene.json``.
+
+    Raises:
+        SceneError: the scene is not valid, or the command is not for this kind.
+        RunError: the command failed.
+    """
+    scene = parse_seat_scene(document)
+    if arguments.command == "mesh":
+        from .mesh_file import write_seat_mesh
+
+        write_seat_mesh(arguments.out, scene, arguments.resolution, arguments.size_factor)
+        print(json.dumps({"mesh": str(arguments.out)}))
+        return
+    raise SceneError(f"{arguments.command} is not for scenes of kind 'seal-seat'")
