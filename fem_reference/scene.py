@@ -135,20 +135,24 @@ class Reader:
                 )
 
     def get(self, key: str) -> Any:
+        """The value of a key that has to be there."""
         if key not in self.node:
             raise SceneError(f"{self._name(key)} is missing")
         return self.node[key]
 
     def child(self, key: str) -> Reader:
+        """The object under a key."""
         return Reader(self.get(key), self._name(key))
 
     def text(self, key: str) -> str:
+        """The text under a key."""
         value = self.get(key)
         if not isinstance(value, str):
             raise SceneError(f"{self._name(key)} must be a text, not {_show(value)}")
         return value
 
     def choice(self, key: str, allowed: tuple[str, ...]) -> str:
+        """A text that is one of ``allowed``."""
         value = self.text(key)
         if value not in allowed:
             raise SceneError(
@@ -188,6 +192,7 @@ def _show(value: Any) -> str:
 
 
 def read_material(reader: Reader) -> Material:
+    """The material an object describes."""
     reader.allow("name", "youngs_modulus", "poisson_ratio", "density")
     return Material(
         name=reader.text("name"),
@@ -216,7 +221,9 @@ def _plate(reader: Reader) -> Plate:
 def _sphere(reader: Reader, extra: str) -> Sphere:
     reader.choice("kind", ("sphere",))
     reader.allow("kind", "radius", "material", extra)
-    return Sphere(radius=reader.number("radius", "m"), material=read_material(reader.child("material")))
+    return Sphere(
+        radius=reader.number("radius", "m"), material=read_material(reader.child("material"))
+    )
 
 
 def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:

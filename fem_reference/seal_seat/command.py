@@ -7,7 +7,7 @@ import json
 from typing import Any
 
 from ..errors import SceneError
-from .scene import parse_seat_scene
+from .scene import SeatScene, parse_seat_scene
 
 
 def run(document: Any, arguments: argparse.Namespace) -> None:
@@ -24,4 +24,31 @@ def run(document: Any, arguments: argparse.Namespace) -> None:
         write_seat_mesh(arguments.out, scene, arguments.resolution, arguments.size_factor)
         print(json.dumps({"mesh": str(arguments.out)}))
         return
+    if arguments.command == "solve":
+        _solve(scene, arguments)
+        return
     raise SceneError(f"{arguments.command} is not for scenes of kind 'seal-seat'")
+
+
+def _solve(scene: SeatScene, arguments: argparse.Namespace) -> None:
+    from ..solid.command import in_processes
+
+    if arguments.target_error is not None:
+        raise SceneError("--target-error is not for scenes of kind 'seal-seat'")
+
+    def work(comm: Any) -> None:
+        from .result import solve
+
+        solve(
+            scene,
+            arguments.out,
+            arguments.resolution,
+            comm,
+            courant=arguments.courant,
+            stress_times=arguments.stress_at,
+            frames=arguments.fields,
+            checkpoint=arguments.checkpoint,
+            checkpoint_interval=arguments.checkpoint_interval,
+        )
+
+    in_processes(arguments, work)

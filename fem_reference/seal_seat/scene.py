@@ -83,7 +83,7 @@ class Ring:
         return s, rho
 
     def cone(self, s: Floats) -> Floats:
-        """rho of the cone at s, m."""
+        """Radius rho of the cone at s, m."""
         return np.asarray(self.radius + (s - self.offset) * math.tan(self.half_angle))
 
     def on_cone(self, points: Floats) -> Floats:
