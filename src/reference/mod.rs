@@ -20,7 +20,7 @@ pub use entry::Stored;
 pub use identity::settings_hash;
 pub use modes::plate_modes;
 pub use python::{python, versions};
-pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_meshes};
+pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_meshes};
 pub use solve::{Wish, solve, solve_with};
 pub use store::{Lookup, Store};
 

@@ -17,6 +17,15 @@ use elasticity::{FIXED, Matrices};
 use factor::Factor;
 use serde::{Deserialize, Serialize};
 
+/// Sources of the method, for the cache's sake.
+pub const SOURCES: [&[u8]; 5] = [
+    include_bytes!("elasticity.rs"),
+    include_bytes!("factor.rs"),
+    include_bytes!("mesh.rs"),
+    include_bytes!("mod.rs"),
+    include_bytes!("../continuum/lanczos.rs"),
+];
+
 /// Factorised elastic body on supports.
 pub struct Solid {
     /// Numbers of (u_x, u_y, u_z) of each node, or [`FIXED`]. Shape (nodes, 3).

@@ -1,5 +1,6 @@
 //! Contact candidates: the nodes of the seat's mesh that the sphere and the actuator's tips may touch.
 
+use crate::analytical::hertz::HertzImpact;
 use crate::body::solid::TetMesh;
 use crate::scene::SealSeat;
 use serde::{Deserialize, Serialize};
@@ -7,6 +8,9 @@ use serde::{Deserialize, Serialize};
 /// How far from a surface the corners of a face may lie that belongs to it, over the sphere's radius. A mesh has its
 /// corners on the surfaces up to rounding, in files of a few digits too.
 const ON_SURFACE: f64 = 1e-6;
+
+/// Share of a zone that contact may fill.
+const ROOM: f64 = 0.85;
 
 /// Which rigid body a candidate can meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,8 +32,8 @@ pub struct Candidate {
     pub partner: Partner,
     /// Distance in m from where the partner touches first: from the ring along the cone, from the tip's axis.
     pub offset: f64,
-    /// Share of the flank at the +x side of the seat's axis in the node: 1, 0, or 1/2 between the flanks.
-    pub right_flank: f64,
+    /// Whether it lies on the flank at the +x side of the seat's axis.
+    pub right_flank: bool,
 }
 
 /// Half widths in m of the zones in which contact is looked for.
@@ -42,20 +46,37 @@ pub struct Zones {
 }
 
 impl Zones {
-    /// Widths for forces in N on the sphere and on one tip, twice as wide as Hertz has the contacts.
+    /// Widths for the forces that are to be expected, from above: the actuator's as if the seat were a heavy half-space
+    /// (Hertz), the sphere's as it takes twice the actuator's speed in the same time.
     ///
-    /// Sphere in cone: a line contact of a cylinder of the sphere's radius with the force's share per length of the
-    /// ring, whose normals have the inclination of the flanks (Johnson, Contact Mechanics, eq. 4.43); tip: eq. 4.22.
-    /// Sphere and tips are rigid. The sphere slides on the flanks: it may leave the ring by `sliding` in m.
-    pub fn for_forces(scene: &SealSeat, sphere: f64, tip: f64, sliding: f64) -> Self {
+    /// Tip: the radius of the Hertz contact (Johnson 1985, Contact Mechanics, eq. 4.22). Cone: three half widths of
+    /// the line contact (eq. 4.43) with the force spread over the ring; the flanks share it unequally, and the sphere slides on
+    /// them.
+    pub fn expected(scene: &SealSeat) -> Self {
+        let (actuator, ring) = (&scene.actuator, scene.ring());
         let modulus = scene.seat.material.plane_strain_modulus();
-        let ring = scene.ring();
+        let stiffness = 4.0 / 3.0 * modulus * actuator.tip_radius.sqrt();
+        let hit = HertzImpact { mass: actuator.mass, speed: actuator.speed, stiffness };
+        let patch = (actuator.tip_radius * hit.approach_peak()).sqrt();
+        let force = 2.0 * hit.force_peak() * scene.sphere.mass / actuator.mass;
         let length = 2.0 * std::f64::consts::PI * ring.radius;
-        let line_load = sphere / (length * (0.5 * scene.seat.aperture_angle).sin());
+        let line_load = force / (length * (0.5 * scene.seat.aperture_angle).sin());
         let half_width = (4.0 * line_load * scene.sphere.radius / (std::f64::consts::PI * modulus)).sqrt();
-        let patch = (0.75 * tip * scene.actuator.tip_radius / modulus).cbrt();
-        Self { ring: 2.0 * half_width + sliding, tip: 2.0 * patch }
+        Self { ring: rounded(3.0 * half_width), tip: rounded(patch) }
     }
+
+    /// Zones that hold contact up to `reach` in m from where sphere and tips touch first, with room beyond it; `None`
+    /// if these do.
+    pub fn widened(&self, reach: [f64; 2]) -> Option<Self> {
+        let wider = |zone: f64, reach: f64| if reach > ROOM * zone { rounded(1.5 * zone) } else { zone };
+        let wide = Self { ring: wider(self.ring, reach[0]), tip: wider(self.tip, reach[1]) };
+        (wide != *self).then_some(wide)
+    }
+}
+
+/// `value` with two significant digits, so that zones of scenes that are a little different find the same body.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 /// All nodes of the outer faces on the cone and on the underside within `zones`, ascending by node.
@@ -94,7 +115,7 @@ fn under_tip(scene: &SealSeat, node: usize, place: [f64; 3], zone: f64) -> Optio
         place: [place[0], place[1], 0.0],
         partner: Partner::Tip(tip),
         offset,
-        right_flank: 0.0,
+        right_flank: false,
     })
 }
 
@@ -145,18 +166,17 @@ impl Cone {
     fn candidate(&self, node: usize, p: [f64; 3]) -> Candidate {
         let (sin, cos) = self.half_angle.sin_cos();
         let [axis_x, axis_z] = self.axis;
-        let (behind, (_, _, across)) = (self.height(p), self.meridian(p));
-        // The cone's normal, away from the sphere.
-        let normal =
-            [across[0] * cos - axis_x * sin, across[1] * cos, across[2] * cos - axis_z * sin];
+        let (radius, along, across) = self.meridian(p);
+        // Along the radius from the seat's axis onto the cone, as the reference moves it.
+        let exact = (self.radius + along * sin) / cos;
         // The seat's +x flank is where the unit vector across has a positive component along (cos, 0, -sin).
         let side = across[0] * axis_z - across[2] * axis_x;
         Candidate {
             node,
-            place: std::array::from_fn(|c| p[c] - behind * normal[c]),
+            place: std::array::from_fn(|c| p[c] + (exact - radius) * across[c]),
             partner: Partner::Sphere,
             offset: self.along(p).abs(),
-            right_flank: if side.abs() < 1e-9 { 0.5 } else { f64::from(u8::from(side > 0.0)) },
+            right_flank: side >= 0.0,
         }
     }
 }

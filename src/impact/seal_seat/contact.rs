@@ -9,12 +9,15 @@
 //! symmetric positive definite: its solution is unique. It is found by exchanging the wrong nodes of the last step's
 //! contact set all at once, each time with a Newton step on the set; if that makes no progress only the last wrong one
 //! is exchanged, which ends after a finite number of exchanges (Judice & Pires 1994, Computers Ops Res. 21, 587).
+//!
+//! From one instant to the next only candidates with a small gap are watched; [`Contact::survey`] looks at all and tells
+//! whether one has been missed.
 
 use super::cholesky::Cholesky;
 use crate::error::{Error, Result};
 
 /// Largest gap in m, over the radius of the partner, that a closed contact may have.
-const CLOSED: f64 = 1e-11;
+const CLOSED: f64 = 1e-9;
 /// Newton's method keeps its factor as long as a step shrinks the gaps to this share.
 const CHORD: f64 = 0.05;
 /// Exchanges of all wrong nodes at once without progress before they are exchanged singly.
@@ -31,21 +34,56 @@ pub struct Ball {
     pub radius: f64,
 }
 
-/// The contact problem and its last solution, from which the next one starts.
+/// The nodes that may be touched.
 #[derive(Debug, Clone)]
-pub struct Contact {
-    /// Places of the candidates at rest in m. Shape (n).
+pub struct Nodes {
+    /// Places at rest in m. Shape (n).
     place: Vec<[f64; 3]>,
-    /// Number of the ball each candidate meets. Shape (n).
+    /// Number of the ball each one meets. Shape (n).
     ball: Vec<usize>,
     /// Residual flexibility R_ij in m/N, 3 x 3 blocks row by row. Shape (n, n).
     residual: Vec<[f64; 9]>,
+}
+
+impl Nodes {
+    /// Candidates at `place`, each against the ball of the number in `ball`, with the `residual` flexibility
+    /// (x, y, z of each candidate; shape (3 n, 3 n), row by row) in m/N.
+    pub fn new(place: Vec<[f64; 3]>, ball: Vec<usize>, residual: &[f64]) -> Self {
+        let n = place.len();
+        let entry = |i: usize, j: usize, k: usize| residual[(3 * i + k / 3) * 3 * n + 3 * j + k % 3];
+        let residual = (0..n * n).map(|ij| std::array::from_fn(|k| entry(ij / n, ij % n, k))).collect();
+        Self { place, ball, residual }
+    }
+
+    /// Number of candidates.
+    pub fn len(&self) -> usize {
+        self.place.len()
+    }
+
+    /// Whether there is no candidate.
+    pub fn is_empty(&self) -> bool {
+        self.place.is_empty()
+    }
+}
+
+/// A solution, from which the next one starts.
+#[derive(Debug, Clone, Default)]
+pub struct Loads {
     /// Candidates in contact, ascending.
     active: Vec<usize>,
     /// Force of each candidate in N. Shape (n).
     force: Vec<f64>,
     /// Normals from the balls to the candidates. Shape (n).
     normal: Vec<[f64; 3]>,
+    /// Candidates that are looked at, ascending.
+    watched: Vec<usize>,
+}
+
+/// The contact problem and its last solution.
+#[derive(Debug, Clone)]
+pub struct Contact<'a> {
+    nodes: &'a Nodes,
+    loads: Loads,
     /// Displacements by the residual in m. Shape (n).
     yielding: Vec<[f64; 3]>,
     gap: Vec<f64>,
@@ -56,7 +94,7 @@ pub struct Contact {
     factored: Vec<usize>,
     previous: Vec<usize>,
     step: Vec<f64>,
-    /// Iterations and factorisations so far.
+    /// What it has cost so far.
     pub work: Work,
 }
 
@@ -69,60 +107,64 @@ pub struct Work {
     pub iterations: u64,
     /// Factorisations.
     pub factorisations: u64,
+    /// Nodes in contact, summed over the factorisations.
+    pub factored: u64,
 }
 
-impl Contact {
-    /// Candidates at `place`, each against the ball of the number in `ball`, with the `residual` flexibility
-    /// (x, y, z of each candidate; shape (3 n, 3 n), row by row) in m/N.
-    pub fn new(place: Vec<[f64; 3]>, ball: Vec<usize>, residual: &[f64]) -> Self {
-        let n = place.len();
-        let entry = |i: usize, j: usize, k: usize| residual[(3 * i + k / 3) * 3 * n + 3 * j + k % 3];
-        let blocks = (0..n * n).map(|ij| std::array::from_fn(|k| entry(ij / n, ij % n, k))).collect();
+impl<'a> Contact<'a> {
+    /// The problem of `nodes`, without forces and with all of them watched.
+    pub fn new(nodes: &'a Nodes) -> Self {
+        let n = nodes.len();
         Self {
-            ball,
-            residual: blocks,
-            active: Vec::with_capacity(n),
-            force: vec![0.0; n],
-            normal: vec![[0.0; 3]; n],
+            nodes,
+            loads: Loads {
+                active: Vec::with_capacity(n),
+                force: vec![0.0; n],
+                normal: vec![[0.0; 3]; n],
+                watched: (0..n).collect(),
+            },
             yielding: vec![[0.0; 3]; n],
             gap: vec![0.0; n],
             wrong: vec![false; n],
-            previous: Vec::with_capacity(n),
             factor: Cholesky::with_capacity(n),
             factored: Vec::with_capacity(n),
+            previous: Vec::with_capacity(n),
             step: Vec::with_capacity(n),
             work: Work::default(),
-            place,
         }
     }
 
     /// Candidates that carry force, ascending.
     pub fn active(&self) -> &[usize] {
-        &self.active
+        &self.loads.active
     }
 
     /// Force in N of a candidate, positive in compression.
     pub fn force(&self, candidate: usize) -> f64 {
-        self.force[candidate]
+        self.loads.force[candidate]
     }
 
     /// Force vector in N on the elastic body at a candidate.
     pub fn force_vector(&self, candidate: usize) -> [f64; 3] {
-        self.normal[candidate].map(|n| n * self.force[candidate])
+        self.loads.normal[candidate].map(|n| n * self.loads.force[candidate])
     }
 
     /// Elastic energy in J that the residual flexibility holds.
     pub fn energy(&self) -> f64 {
         let work = |&i: &usize| dot(self.force_vector(i), self.yielding[i]);
-        0.5 * self.active.iter().map(work).sum::<f64>()
+        0.5 * self.loads.active.iter().map(work).sum::<f64>()
     }
 
-    /// Forgets the last solution.
-    pub fn reset(&mut self) {
-        self.active.clear();
-        self.factored.clear();
-        self.force.fill(0.0);
-        self.work = Work::default();
+    /// Copies the present solution.
+    pub fn keep(&self, kept: &mut Loads) {
+        kept.clone_from(&self.loads);
+    }
+
+    /// Goes back to a solution that was kept; what is watched stays as it is.
+    pub fn go_back(&mut self, kept: &Loads) {
+        self.loads.active.clone_from(&kept.active);
+        self.loads.force.clone_from(&kept.force);
+        self.loads.normal.clone_from(&kept.normal);
     }
 
     /// Finds the forces for candidates displaced by `modal` in m (shape (3 n)) without the residual's part.
@@ -136,12 +178,11 @@ impl Contact {
             let worst = self.evaluate_set(modal, balls);
             let closed = worst <= CLOSED;
             if !closed {
-                if self.factored != self.active || worst > CHORD * last {
+                if self.factored != self.loads.active || worst > CHORD * last {
                     self.factorise()?;
                 }
                 last = worst;
                 self.correct();
-                self.work.iterations += 1;
             }
             // A set that is sure to change is not solved to the end.
             let wrong = match closed {
@@ -164,50 +205,70 @@ impl Contact {
         }
         Err(Error::Solver(format!(
             "the contact forces of the seal seat did not converge in {MOST} iterations with {} of {} candidates in contact",
-            self.active.len(),
-            self.place.len()
+            self.loads.active.len(),
+            self.nodes.len()
         )))
+    }
+
+    /// Looks at all candidates after [`Contact::solve`] and watches those with gaps below `margin` in m from now on;
+    /// whether one that was not watched has been missed.
+    pub fn survey(&mut self, modal: &[f64], balls: &[Ball], margin: f64) -> bool {
+        let mut missed = false;
+        let (mut active, mut watched) = (0, 0);
+        let before = std::mem::take(&mut self.loads.watched);
+        self.previous.clear();
+        for i in 0..self.nodes.len() {
+            let was_watched = before.get(watched) == Some(&i);
+            watched += usize::from(was_watched);
+            if self.loads.active.get(active) == Some(&i) {
+                active += 1;
+                self.previous.push(i);
+                continue;
+            }
+            self.yielding[i] = self.displaced_by_residual(i);
+            self.look(i, modal, balls);
+            missed |= !was_watched && self.gap[i] < -CLOSED * balls[self.nodes.ball[i]].radius;
+            if self.gap[i] < margin {
+                self.previous.push(i);
+            }
+        }
+        self.loads.watched = before;
+        std::mem::swap(&mut self.loads.watched, &mut self.previous);
+        missed
     }
 
     /// Displacements, normals and gaps of the contact set; its largest gap in magnitude, over the radius.
     fn evaluate_set(&mut self, modal: &[f64], balls: &[Ball]) -> f64 {
-        let mut worst = 0.0f64;
-        for a in 0..self.active.len() {
-            let i = self.active[a];
-            // a node that has just come in has no normal yet
-            if self.normal[i] == [0.0; 3] {
-                self.look(i, modal, balls);
-            }
-        }
-        for a in 0..self.active.len() {
-            let i = self.active[a];
+        for a in 0..self.loads.active.len() {
+            let i = self.loads.active[a];
             self.yielding[i] = self.displaced_by_residual(i);
         }
-        for a in 0..self.active.len() {
-            let i = self.active[a];
+        let mut worst = 0.0f64;
+        for a in 0..self.loads.active.len() {
+            let i = self.loads.active[a];
             self.look(i, modal, balls);
-            worst = worst.max(self.gap[i].abs() / balls[self.ball[i]].radius);
+            worst = worst.max(self.gap[i].abs() / balls[self.nodes.ball[i]].radius);
         }
         worst
     }
 
     /// Gap and normal of candidate `i` from its displacements.
     fn look(&mut self, i: usize, modal: &[f64], balls: &[Ball]) {
-        let ball = balls[self.ball[i]];
+        let ball = balls[self.nodes.ball[i]];
         let d: [f64; 3] = std::array::from_fn(|c| {
-            self.place[i][c] + modal[3 * i + c] + self.yielding[i][c] - ball.centre[c]
+            self.nodes.place[i][c] + modal[3 * i + c] + self.yielding[i][c] - ball.centre[c]
         });
         let distance = dot(d, d).sqrt();
         self.gap[i] = distance - ball.radius;
-        self.normal[i] = d.map(|d| d / distance);
+        self.loads.normal[i] = d.map(|d| d / distance);
     }
 
     fn displaced_by_residual(&self, i: usize) -> [f64; 3] {
-        let row = &self.residual[i * self.place.len()..(i + 1) * self.place.len()];
+        let n = self.nodes.len();
+        let row = &self.nodes.residual[i * n..(i + 1) * n];
         let mut u = [0.0; 3];
-        for &j in &self.active {
-            let (r, n, f) = (&row[j], self.normal[j], self.force[j]);
-            let [x, y, z] = n.map(|n| n * f);
+        for &j in &self.loads.active {
+            let (r, [x, y, z]) = (&row[j], self.force_vector(j));
             u[0] += r[0] * x + r[1] * y + r[2] * z;
             u[1] += r[3] * x + r[4] * y + r[5] * z;
             u[2] += r[6] * x + r[7] * y + r[8] * z;
@@ -216,15 +277,17 @@ impl Contact {
     }
 
     fn factorise(&mut self) -> Result<()> {
-        let n = self.place.len();
-        self.factored.clear();
-        self.factored.extend(&self.active);
+        let n = self.nodes.len();
+        self.factored.clone_from(&self.loads.active);
         self.work.factorisations += 1;
-        let (active, normal, residual) = (&self.active, &self.normal, &self.residual);
+        self.work.factored += self.factored.len() as u64;
+        let (active, normal, residual) = (&self.factored, &self.loads.normal, &self.nodes.residual);
         let fine = self.factor.factorise(active.len(), |a, b| {
             let (i, j) = (active[a], active[b]);
             let (r, p, q) = (&residual[i * n + j], normal[i], normal[j]);
-            (0..3).map(|c| p[c] * (r[3 * c] * q[0] + r[3 * c + 1] * q[1] + r[3 * c + 2] * q[2])).sum()
+            p[0] * (r[0] * q[0] + r[1] * q[1] + r[2] * q[2])
+                + p[1] * (r[3] * q[0] + r[4] * q[1] + r[5] * q[2])
+                + p[2] * (r[6] * q[0] + r[7] * q[1] + r[8] * q[2])
         });
         if fine {
             return Ok(());
@@ -237,11 +300,12 @@ impl Contact {
 
     /// Newton step on the contact set.
     fn correct(&mut self) {
+        self.work.iterations += 1;
         self.step.clear();
-        self.step.extend(self.active.iter().map(|&i| -self.gap[i]));
+        self.step.extend(self.loads.active.iter().map(|&i| -self.gap[i]));
         self.factor.solve(&mut self.step);
-        for (&i, step) in self.active.iter().zip(&self.step) {
-            self.force[i] += step;
+        for (&i, step) in self.loads.active.iter().zip(&self.step) {
+            self.loads.force[i] += step;
         }
     }
 
@@ -249,25 +313,30 @@ impl Contact {
     fn mark_tensile(&mut self) -> usize {
         self.wrong.fill(false);
         let mut count = 0;
-        for &i in &self.active {
-            self.wrong[i] = self.force[i] < 0.0;
+        for &i in &self.loads.active {
+            self.wrong[i] = self.loads.force[i] < 0.0;
             count += usize::from(self.wrong[i]);
         }
         count
     }
 
-    /// Marks the nodes that pull and the open ones that are too deep; their number.
+    /// Marks the nodes that pull and the open watched ones that are too deep; their number.
     fn mark_wrong(&mut self, modal: &[f64], balls: &[Ball]) -> usize {
         let mut count = self.mark_tensile();
-        let mut next = 0;
-        for i in 0..self.place.len() {
-            if self.active.get(next) == Some(&i) {
-                next += 1;
+        let mut active = 0;
+        for w in 0..self.loads.watched.len() {
+            let i = self.loads.watched[w];
+            // a solution that was gone back to may have nodes in contact that are not watched
+            while self.loads.active.get(active).is_some_and(|a| *a < i) {
+                active += 1;
+            }
+            if self.loads.active.get(active) == Some(&i) {
+                active += 1;
                 continue;
             }
             self.yielding[i] = self.displaced_by_residual(i);
             self.look(i, modal, balls);
-            self.wrong[i] = self.gap[i] < -CLOSED * balls[self.ball[i]].radius;
+            self.wrong[i] = self.gap[i] < -CLOSED * balls[self.nodes.ball[i]].radius;
             count += usize::from(self.wrong[i]);
         }
         count
@@ -278,18 +347,17 @@ impl Contact {
         if single && let Some(last) = self.wrong.iter().rposition(|wrong| *wrong) {
             self.wrong[..last].fill(false);
         }
-        for &i in self.active.iter().filter(|&&i| self.wrong[i]) {
-            self.force[i] = 0.0;
+        for &i in self.loads.active.iter().filter(|&&i| self.wrong[i]) {
+            self.loads.force[i] = 0.0;
         }
-        self.previous.clear();
-        self.previous.extend(&self.active);
-        self.active.clear();
+        self.previous.clone_from(&self.loads.active);
+        self.loads.active.clear();
         let mut next = 0;
         for (i, &wrong) in self.wrong.iter().enumerate() {
             let was = self.previous.get(next) == Some(&i);
             next += usize::from(was);
             if was != wrong {
-                self.active.push(i);
+                self.loads.active.push(i);
             }
         }
     }

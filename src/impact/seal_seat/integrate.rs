@@ -4,13 +4,17 @@
 //! modes need no small steps. Symmetric, symplectic and of second order; the contact forces derive from an energy and are
 //! continuous, with kinks where a node touches or lets go.
 
+use super::contact::{Loads, Work};
 use super::system::{Forces, State, System, Workspace};
 use crate::error::{Error, Result};
 
 /// Most time steps of a run.
 const MOST_STEPS: u64 = 2_000_000;
-/// Steps between two looks whether contact is still possible.
-const LOOK: u64 = 16;
+/// Steps between two surveys of all candidates, and between two looks whether contact is still possible.
+const INTERVAL: u64 = 8;
+/// Gap below which an open candidate is watched until the next survey, over the actuator's way in between. Should a
+/// candidate be missed, the steps since the last survey are done again with twice the margin.
+const MARGIN: f64 = 0.05;
 
 /// Settings of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,11 +46,9 @@ pub struct Sample {
     pub actuator_force: f64,
 }
 
-/// Result of a run; of whole bodies.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Integration {
-    /// State at the end.
-    pub state: State,
+/// What a run adds up; of whole bodies.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tally {
     /// Largest forces in N of sphere (magnitude) and actuator.
     pub force_peak: [f64; 2],
     /// Times in s of the last release of sphere and actuator.
@@ -55,16 +57,31 @@ pub struct Integration {
     pub flank_impulse: [f64; 2],
     /// Largest distance in m of loaded candidates from where sphere and tips touch first.
     pub reach: [f64; 2],
+    /// Time steps.
+    pub steps: u64,
+    /// Impulse along z on the seat in N s, from the nodal forces.
+    seat_impulse: f64,
+    /// Magnitudes of the forces of sphere and actuator at the last sample and the one before.
+    before: [[f64; 2]; 2],
+}
+
+/// Result of a run; of whole bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Integration {
+    /// State at the end.
+    pub state: State,
+    /// What was added up.
+    pub tally: Tally,
     /// |energy at the end - energy at the start| over the energy at the start.
     pub energy_residual: f64,
     /// Momentum of sphere and actuator that the impulse on the seat does not account for, over that at the start.
     pub momentum_residual: f64,
-    /// Time steps.
-    pub steps: u64,
     /// End of the run in s.
     pub time: f64,
     /// Samples, if asked for.
     pub samples: Vec<Sample>,
+    /// What the contact forces have cost.
+    pub work: Work,
 }
 
 /// Exact motion of the modes over one step.
@@ -94,21 +111,11 @@ pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     let mut run = Running::new(system, options);
     run.workspace.forces(system, &run.state, &mut run.forces)?;
     run.sample();
-    loop {
-        if let Some(end) = options.end_time {
-            if run.result.time >= end - 0.5 * options.step {
-                break;
-            }
-        } else if run.result.steps % LOOK == 0 && run.result.steps > 0 && run.is_over() {
-            break;
+    while !run.is_over() {
+        if run.tally.steps >= MOST_STEPS {
+            return Err(Error::Solver(format!("contact of the seal seat is still possible after {:e} s", run.time())));
         }
-        if run.result.steps == MOST_STEPS {
-            return Err(Error::Solver(format!(
-                "contact of the seal seat is still possible after {:e} s",
-                run.result.time
-            )));
-        }
-        run.step()?;
+        run.interval()?;
     }
     Ok(run.finish())
 }
@@ -117,45 +124,87 @@ struct Running<'a> {
     system: &'a System,
     options: Options,
     rotation: Rotation,
-    workspace: Workspace,
+    workspace: Workspace<'a>,
     state: State,
     forces: Forces,
-    /// Magnitudes of the forces of sphere and actuator, one and two steps ago.
-    before: [[f64; 2]; 2],
-    /// Impulse on the seat along z, from the nodal forces.
-    seat_impulse: f64,
+    tally: Tally,
+    samples: Vec<Sample>,
     start_energy: f64,
-    result: Integration,
+    /// Present value of [`MARGIN`].
+    margin: f64,
+    kept: Kept,
+}
+
+/// Where a run can go back to.
+struct Kept {
+    state: State,
+    forces: Forces,
+    tally: Tally,
+    loads: Loads,
+    samples: usize,
 }
 
 impl<'a> Running<'a> {
     fn new(system: &'a System, options: &Options) -> Self {
         let (workspace, state) = (Workspace::new(system), system.start());
-        let start_energy = workspace.energy(system, &state);
-        let result = Integration {
-            state: state.clone(),
-            force_peak: [0.0; 2],
-            contact_end: [0.0; 2],
-            flank_impulse: [0.0; 2],
-            reach: [0.0; 2],
-            energy_residual: 0.0,
-            momentum_residual: 0.0,
-            steps: 0,
-            time: 0.0,
-            samples: Vec::new(),
-        };
         Self {
             system,
             options: *options,
             rotation: Rotation::over(&system.omega, options.step),
+            start_energy: workspace.energy(system, &state),
             workspace,
-            state,
             forces: Forces::default(),
-            before: [[0.0; 2]; 2],
-            seat_impulse: 0.0,
-            start_energy,
-            result,
+            tally: Tally::default(),
+            samples: Vec::new(),
+            margin: MARGIN,
+            kept: Kept {
+                state: state.clone(),
+                forces: Forces::default(),
+                tally: Tally::default(),
+                loads: Loads::default(),
+                samples: 0,
+            },
+            state,
         }
+    }
+
+    fn time(&self) -> f64 {
+        self.tally.steps as f64 * self.options.step
+    }
+
+    /// Steps to the next survey, again and with more candidates watched if one has been missed.
+    fn interval(&mut self) -> Result<()> {
+        self.keep();
+        let left = self.options.end_time.map(|end| ((end - self.time()) / self.options.step).round() as u64);
+        let steps = left.map_or(INTERVAL, |left| left.clamp(1, INTERVAL));
+        loop {
+            let watch = self.margin * self.system.speed * self.options.step * INTERVAL as f64;
+            self.workspace.survey(self.system, &self.state, watch);
+            for _ in 0..steps {
+                self.step()?;
+            }
+            if !self.workspace.survey(self.system, &self.state, watch) {
+                return Ok(());
+            }
+            self.margin *= 2.0;
+            self.go_back();
+        }
+    }
+
+    fn keep(&mut self) {
+        self.kept.state.clone_from(&self.state);
+        self.kept.forces.clone_from(&self.forces);
+        self.kept.tally = self.tally;
+        self.kept.samples = self.samples.len();
+        self.workspace.contact.keep(&mut self.kept.loads);
+    }
+
+    fn go_back(&mut self) {
+        self.state.clone_from(&self.kept.state);
+        self.forces.clone_from(&self.kept.forces);
+        self.tally = self.kept.tally;
+        self.samples.truncate(self.kept.samples);
+        self.workspace.contact.go_back(&self.kept.loads);
     }
 
     fn step(&mut self) -> Result<()> {
@@ -164,8 +213,7 @@ impl<'a> Running<'a> {
         self.drift(step);
         self.workspace.forces(self.system, &self.state, &mut self.forces)?;
         self.kick(0.5 * step);
-        self.result.steps += 1;
-        self.result.time = self.result.steps as f64 * step;
+        self.tally.steps += 1;
         self.sample();
         Ok(())
     }
@@ -178,11 +226,11 @@ impl<'a> Running<'a> {
             *v += step * f / self.system.sphere_mass;
         }
         self.state.actuator_velocity += step * self.forces.actuator / self.system.actuator_mass;
-        for (impulse, force) in self.result.flank_impulse.iter_mut().zip(self.forces.flanks) {
+        for (impulse, force) in self.tally.flank_impulse.iter_mut().zip(self.forces.flanks) {
             *impulse += 2.0 * step * force;
         }
         let active = self.workspace.contact.active();
-        self.seat_impulse += step * active.iter().map(|&i| self.workspace.contact.force_vector(i)[2]).sum::<f64>();
+        self.tally.seat_impulse += step * active.iter().map(|&i| self.workspace.contact.force_vector(i)[2]).sum::<f64>();
     }
 
     fn drift(&mut self, step: f64) {
@@ -201,23 +249,25 @@ impl<'a> Running<'a> {
         let sphere_force = self.forces.sphere.map(|f| 2.0 * f);
         let magnitudes = [sphere_force[0].hypot(sphere_force[1]), -2.0 * self.forces.actuator];
         let step = self.options.step;
+        let time = self.time();
+        let tally = &mut self.tally;
         for (i, &force) in magnitudes.iter().enumerate() {
-            self.result.force_peak[i] = self.result.force_peak[i].max(force);
-            self.result.reach[i] = self.result.reach[i].max(self.forces.reach[i]);
-            let [last, earlier] = [self.before[0][i], self.before[1][i]];
+            tally.force_peak[i] = tally.force_peak[i].max(force);
+            tally.reach[i] = tally.reach[i].max(self.forces.reach[i]);
+            let [last, earlier] = [tally.before[0][i], tally.before[1][i]];
             if force == 0.0 && last > 0.0 {
                 // the force goes on falling as over the last step, until it is zero
                 let falling = earlier - last;
                 let share = if falling > 0.0 { (last / falling).min(1.0) } else { 1.0 };
-                self.result.contact_end[i] = self.result.time - step + share * step;
+                tally.contact_end[i] = time - step + share * step;
             } else if force > 0.0 {
-                self.result.contact_end[i] = self.result.time;
+                tally.contact_end[i] = time;
             }
         }
-        self.before = [magnitudes, self.before[0]];
+        tally.before = [magnitudes, tally.before[0]];
         if self.options.history {
-            self.result.samples.push(Sample {
-                time: self.result.time,
+            self.samples.push(Sample {
+                time,
                 sphere: self.state.sphere,
                 sphere_velocity: self.state.sphere_velocity,
                 sphere_force,
@@ -228,10 +278,13 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Whether no candidate can be met again: all contacts are open, and the straight flights of sphere and actuator
+    /// Whether the end is reached, or no candidate can be met again: all contacts are open, and the straight flights of sphere and actuator
     /// stay clear of every place that the modes' present amplitudes let the candidates reach.
     fn is_over(&self) -> bool {
-        if !self.workspace.contact.active().is_empty() {
+        if let Some(end) = self.options.end_time {
+            return self.time() >= end - 0.5 * self.options.step;
+        }
+        if self.tally.steps == 0 || !self.workspace.contact.active().is_empty() {
             return false;
         }
         let state = &self.state;
@@ -270,14 +323,19 @@ impl<'a> Running<'a> {
         }
     }
 
-    fn finish(mut self) -> Integration {
+    fn finish(self) -> Integration {
         let (system, state) = (self.system, &self.state);
         let start = system.actuator_mass * system.speed;
         let left = system.actuator_mass * state.actuator_velocity + system.sphere_mass * state.sphere_velocity[1];
-        self.result.momentum_residual = (left + self.seat_impulse - start).abs() / start;
         let energy = self.workspace.energy(system, state);
-        self.result.energy_residual = (energy - self.start_energy).abs() / self.start_energy;
-        self.result.state = self.state;
-        self.result
+        Integration {
+            momentum_residual: (left + self.tally.seat_impulse - start).abs() / start,
+            energy_residual: (energy - self.start_energy).abs() / self.start_energy,
+            time: self.time(),
+            work: self.workspace.contact.work,
+            state: self.state,
+            tally: self.tally,
+            samples: self.samples,
+        }
     }
 }

@@ -4,11 +4,14 @@
 //! Without friction the sphere's rotation idles: it has no torque, and of the three degrees of freedom in the plane two
 //! move.
 
+mod body;
 mod candidates;
 mod cholesky;
 pub mod contact;
 pub mod integrate;
+mod model;
 pub mod system;
 
+pub use body::{SeatBody, SeatMesh, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
-#[cfg(test)] mod scratch;
+pub use model::{DEFAULT_MODES, DEFAULT_TOLERANCE, SeatModel, quantities};

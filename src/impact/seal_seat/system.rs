@@ -3,7 +3,7 @@
 //! Half the bodies (y >= 0) with half the rigid masses; whoever reports doubles forces, impulses and energies.
 
 use super::candidates::{Candidate, Partner};
-use super::contact::{Ball, Contact};
+use super::contact::{Ball, Contact, Nodes};
 use crate::body::solid::InterfaceBody;
 use crate::error::{Error, Result};
 use crate::scene::SealSeat;
@@ -25,8 +25,8 @@ pub struct System {
     pub speed: f64,
     /// The sphere and the tips at the start.
     pub balls: Vec<Ball>,
-    /// The contact problem, unsolved.
-    pub contact: Contact,
+    /// The candidates as the contact problem has them.
+    pub nodes: Nodes,
 }
 
 impl System {
@@ -60,7 +60,7 @@ impl System {
             sphere_mass: 0.5 * scene.sphere.mass,
             actuator_mass: 0.5 * scene.actuator.mass,
             speed: scene.actuator.speed,
-            contact: Contact::new(place, candidates.iter().map(ball).collect(), &residual),
+            nodes: Nodes::new(place, candidates.iter().map(ball).collect(), &residual),
             balls,
         })
     }
@@ -113,18 +113,18 @@ pub struct Forces {
 
 /// Room for the evaluation of forces, and the contact problem's last solution.
 #[derive(Debug, Clone)]
-pub struct Workspace {
+pub struct Workspace<'a> {
     /// Contact problem.
-    pub contact: Contact,
+    pub contact: Contact<'a>,
     displaced: Vec<f64>,
     balls: Vec<Ball>,
 }
 
-impl Workspace {
+impl<'a> Workspace<'a> {
     /// Room for `system`.
-    pub fn new(system: &System) -> Self {
+    pub fn new(system: &'a System) -> Self {
         Self {
-            contact: system.contact.clone(),
+            contact: Contact::new(&system.nodes),
             displaced: vec![0.0; 3 * system.candidates.len()],
             balls: system.balls.clone(),
         }
@@ -135,18 +135,7 @@ impl Workspace {
     /// # Errors
     /// As [`Contact::solve`].
     pub fn forces(&mut self, system: &System, state: &State, forces: &mut Forces) -> Result<()> {
-        self.displaced.fill(0.0);
-        for (shape, &q) in system.participation.iter().zip(&state.modal) {
-            self.displaced.iter_mut().zip(shape).for_each(|(u, phi)| *u += q * phi);
-        }
-        for (number, (ball, start)) in self.balls.iter_mut().zip(&system.balls).enumerate() {
-            if number == 0 {
-                ball.centre[0] = start.centre[0] + state.sphere[0];
-                ball.centre[2] = start.centre[2] + state.sphere[1];
-            } else {
-                ball.centre[2] = start.centre[2] + state.actuator;
-            }
-        }
+        self.place(system, state);
         self.contact.solve(&self.displaced, &self.balls)?;
         forces.modal.clear();
         forces.modal.resize(system.omega.len(), 0.0);
@@ -161,9 +150,7 @@ impl Workspace {
                 Partner::Sphere => {
                     forces.sphere[0] -= f[0];
                     forces.sphere[1] -= f[2];
-                    let right = candidate.right_flank * self.contact.force(i);
-                    forces.flanks[0] += self.contact.force(i) - right;
-                    forces.flanks[1] += right;
+                    forces.flanks[usize::from(candidate.right_flank)] += self.contact.force(i);
                     0
                 }
                 Partner::Tip(_) => {
@@ -176,6 +163,28 @@ impl Workspace {
             }
         }
         Ok(())
+    }
+
+    /// Looks at all candidates at `state`, whose forces have been evaluated: see [`Contact::survey`].
+    pub fn survey(&mut self, system: &System, state: &State, margin: f64) -> bool {
+        self.place(system, state);
+        self.contact.survey(&self.displaced, &self.balls, margin)
+    }
+
+    /// Puts the candidates without contact, and the balls, where `state` has them.
+    fn place(&mut self, system: &System, state: &State) {
+        self.displaced.fill(0.0);
+        for (shape, &q) in system.participation.iter().zip(&state.modal) {
+            self.displaced.iter_mut().zip(shape).for_each(|(u, phi)| *u += q * phi);
+        }
+        for (number, (ball, start)) in self.balls.iter_mut().zip(&system.balls).enumerate() {
+            if number == 0 {
+                ball.centre[0] = start.centre[0] + state.sphere[0];
+                ball.centre[2] = start.centre[2] + state.sphere[1];
+            } else {
+                ball.centre[2] = start.centre[2] + state.actuator;
+            }
+        }
     }
 
     /// Energy in J of the half bodies.
