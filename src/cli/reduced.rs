@@ -3,7 +3,7 @@
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::reduced::Reduced;
-use crate::impact::{CURVES, History, PLATE_QUANTITIES, Summary};
+use crate::impact::{CURVES, History, Quantities, Summary};
 use crate::scene::{self, Model, Scene};
 use clap::Args;
 use std::path::PathBuf;
@@ -54,14 +54,14 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 }
 
 /// The summary as lines of name, value and unit.
-pub fn table(summary: &Summary) -> String {
+pub fn table<Q: Quantities>(summary: &Summary<Q>) -> String {
     let who = match (&summary.model, summary.modes) {
         (Some(model), Some(modes)) => format!("model {model}, {modes} modes"),
         _ => "reference".to_owned(),
     };
     let mut lines = vec![format!("{} ({who})", summary.scene)];
-    for (name, unit) in PLATE_QUANTITIES {
-        let value = summary.quantities.get(name).unwrap_or(f64::NAN);
+    for &(name, unit) in Q::NAMES {
+        let value = summary.quantities.value(name).unwrap_or(f64::NAN);
         let unit = if unit == "1" { "" } else { unit };
         let band = summary.uncertainty.get(name).map_or_else(String::new, |u| format!(" +- {u:.2e}"));
         lines.push(format!("  {name:<22} {:>14}{band} {unit}", significant(value)));
