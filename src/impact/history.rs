@@ -1,15 +1,20 @@
 //! The course of an impact over time, the same type for reduced models and the reference.
 
 /// The course over time of one kind of scene: curves by name over one time axis.
-pub trait Curves: Clone + std::fmt::Debug + PartialEq {
+pub trait Curves: Clone + Default + std::fmt::Debug + PartialEq {
     /// Name and unit of every curve.
     const NAMES: &'static [(&'static str, &'static str)];
+    /// The columns of its file, in this order; the first is the time.
+    const COLUMNS: &'static [&'static str];
 
     /// Time in s, strictly increasing.
     fn time(&self) -> &[f64];
 
     /// The curve called `name` in [`Curves::NAMES`].
     fn values(&self, name: &str) -> Option<&[f64]>;
+
+    /// Where the values of the column called `name` in [`Curves::COLUMNS`] go.
+    fn column(&mut self, name: &str) -> Option<&mut Vec<f64>>;
 }
 
 /// Motion of one body along z.
@@ -79,6 +84,17 @@ impl History {
 
 impl Curves for History {
     const NAMES: &'static [(&'static str, &'static str)] = &CURVES;
+    const COLUMNS: &'static [&'static str] = &[
+        "time",
+        "outer_displacement",
+        "outer_velocity",
+        "outer_force",
+        "plate_displacement",
+        "plate_velocity",
+        "inner_displacement",
+        "inner_velocity",
+        "inner_force",
+    ];
 
     fn time(&self) -> &[f64] {
         &self.time
@@ -86,5 +102,19 @@ impl Curves for History {
 
     fn values(&self, name: &str) -> Option<&[f64]> {
         self.curve(name)
+    }
+    fn column(&mut self, name: &str) -> Option<&mut Vec<f64>> {
+        Some(match name {
+            "time" => &mut self.time,
+            "outer_displacement" => &mut self.outer.displacement,
+            "outer_velocity" => &mut self.outer.velocity,
+            "outer_force" => &mut self.outer_force,
+            "plate_displacement" => &mut self.plate.displacement,
+            "plate_velocity" => &mut self.plate.velocity,
+            "inner_displacement" => &mut self.inner.displacement,
+            "inner_velocity" => &mut self.inner.velocity,
+            "inner_force" => &mut self.inner_force,
+            _ => return None,
+        })
     }
 }

@@ -102,7 +102,7 @@ pub struct SeatHistory {
     pub actuator_force: Vec<f64>,
 }
 
-/// Name and unit of every curve of the [`SeatHistory`], in the order of its file.
+/// Name and unit of every curve of the [`SeatHistory`].
 pub const SEAT_CURVES: [(&str, &str); 10] = [
     ("sphere_displacement_x", "m"),
     ("sphere_displacement_z", "m"),
@@ -116,27 +116,21 @@ pub const SEAT_CURVES: [(&str, &str); 10] = [
     ("actuator_force", "N"),
 ];
 
-impl SeatHistory {
-    /// The curve called `name` in [`SEAT_CURVES`], to be filled.
-    pub fn curve_mut(&mut self, name: &str) -> Option<&mut Vec<f64>> {
-        Some(match name {
-            "sphere_displacement_x" => &mut self.sphere_displacement[0],
-            "sphere_displacement_z" => &mut self.sphere_displacement[1],
-            "sphere_velocity_x" => &mut self.sphere_velocity[0],
-            "sphere_velocity_z" => &mut self.sphere_velocity[1],
-            "sphere_force" => &mut self.sphere_force,
-            "sphere_force_x" => &mut self.sphere_force_components[0],
-            "sphere_force_z" => &mut self.sphere_force_components[1],
-            "actuator_displacement" => &mut self.actuator_displacement,
-            "actuator_velocity" => &mut self.actuator_velocity,
-            "actuator_force" => &mut self.actuator_force,
-            _ => return None,
-        })
-    }
-}
-
 impl Curves for SeatHistory {
     const NAMES: &'static [(&'static str, &'static str)] = &SEAT_CURVES;
+    const COLUMNS: &'static [&'static str] = &[
+        "time",
+        "sphere_displacement_x",
+        "sphere_displacement_z",
+        "sphere_velocity_x",
+        "sphere_velocity_z",
+        "sphere_force",
+        "sphere_force_x",
+        "sphere_force_z",
+        "actuator_displacement",
+        "actuator_velocity",
+        "actuator_force",
+    ];
 
     fn time(&self) -> &[f64] {
         &self.time
@@ -154,6 +148,23 @@ impl Curves for SeatHistory {
             "actuator_displacement" => &self.actuator_displacement,
             "actuator_velocity" => &self.actuator_velocity,
             "actuator_force" => &self.actuator_force,
+            _ => return None,
+        })
+    }
+
+    fn column(&mut self, name: &str) -> Option<&mut Vec<f64>> {
+        Some(match name {
+            "time" => &mut self.time,
+            "sphere_displacement_x" => &mut self.sphere_displacement[0],
+            "sphere_displacement_z" => &mut self.sphere_displacement[1],
+            "sphere_velocity_x" => &mut self.sphere_velocity[0],
+            "sphere_velocity_z" => &mut self.sphere_velocity[1],
+            "sphere_force" => &mut self.sphere_force,
+            "sphere_force_x" => &mut self.sphere_force_components[0],
+            "sphere_force_z" => &mut self.sphere_force_components[1],
+            "actuator_displacement" => &mut self.actuator_displacement,
+            "actuator_velocity" => &mut self.actuator_velocity,
+            "actuator_force" => &mut self.actuator_force,
             _ => return None,
         })
     }

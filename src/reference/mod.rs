@@ -21,7 +21,7 @@ pub use identity::settings_hash;
 pub use modes::plate_modes;
 pub use python::{python, versions};
 pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_meshes};
-pub use solve::{Wish, solve, solve_with};
+pub use solve::{Wish, solve, solve_as, solve_with};
 pub use store::{Lookup, Store};
 
 /// Fineness of the reference's mesh, relative to `reference.elements_per_contact_radius`.
