@@ -117,7 +117,7 @@ pub fn table<Q: Quantities>(summary: &Summary<Q>) -> String {
         let value = summary.quantities.value(name).unwrap_or(f64::NAN);
         let unit = if *unit == "1" { "" } else { unit };
         let band = summary.uncertainty.get(*name).map_or_else(String::new, |u| format!(" +- {u:.2e}"));
-        lines.push(format!("  {name:<24} {:>12}{band} {unit}", significant(value)));
+        lines.push(format!("  {name:<22} {:>14}{band} {unit}", significant(value)));
     }
     let bender = summary.bender.iter().flat_map(|bender| {
         let drive = &bender.drive;

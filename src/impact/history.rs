@@ -13,6 +13,10 @@ pub trait Curves: Clone + Default + std::fmt::Debug + PartialEq {
     /// The curve called `name` in [`Curves::NAMES`].
     fn values(&self, name: &str) -> Option<&[f64]>;
 
+    /// Rate at which the curve called `name` goes on after the last sample, in free flight; `None` if a contact is
+    /// closed there, or the curve is one of an elastic body, which swings on.
+    fn rate_after_end(&self, name: &str) -> Option<f64>;
+
     /// Where the values of the column called `name` in [`Curves::COLUMNS`] go.
     fn column(&mut self, name: &str) -> Option<&mut Vec<f64>>;
 }
@@ -102,6 +106,16 @@ impl Curves for History {
 
     fn values(&self, name: &str) -> Option<&[f64]> {
         self.curve(name)
+    }
+
+    fn rate_after_end(&self, name: &str) -> Option<f64> {
+        let last = self.len().checked_sub(1)?;
+        let flies = self.outer_force[last] == 0.0 && self.inner_force[last] == 0.0;
+        (flies && !name.starts_with("plate")).then(|| match name {
+            "outer_displacement" => self.outer.velocity[last],
+            "inner_displacement" => self.inner.velocity[last],
+            _ => 0.0,
+        })
     }
     fn column(&mut self, name: &str) -> Option<&mut Vec<f64>> {
         Some(match name {

@@ -57,6 +57,10 @@ impl Quantities for SeatQuantities {
     type History = SeatHistory;
     const NAMES: &'static [(&'static str, &'static str)] = &SEAT_QUANTITIES;
 
+    fn last_contact(&self) -> f64 {
+        self.sphere_contact_end.max(self.actuator_contact_end)
+    }
+
     fn value(&self, name: &str) -> Option<f64> {
         Some(match name {
             "efficiency" => self.efficiency,
@@ -149,6 +153,17 @@ impl Curves for SeatHistory {
             "actuator_velocity" => &self.actuator_velocity,
             "actuator_force" => &self.actuator_force,
             _ => return None,
+        })
+    }
+
+    fn rate_after_end(&self, name: &str) -> Option<f64> {
+        let last = self.time.len().checked_sub(1)?;
+        let flies = self.sphere_force[last] == 0.0 && self.actuator_force[last] == 0.0;
+        flies.then(|| match name {
+            "sphere_displacement_x" => self.sphere_velocity[0][last],
+            "sphere_displacement_z" => self.sphere_velocity[1][last],
+            "actuator_displacement" => self.actuator_velocity[last],
+            _ => 0.0,
         })
     }
 

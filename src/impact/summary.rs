@@ -29,6 +29,9 @@ pub trait Quantities: Clone + std::fmt::Debug + PartialEq + Serialize + serde::d
 
     /// The value of the quantity called `name` in [`Quantities::NAMES`].
     fn value(&self, name: &str) -> Option<f64>;
+
+    /// Time of the last release of any body, s.
+    fn last_contact(&self) -> f64;
 }
 
 /// Results of an impact through a plate (scene kind `plate-impact`).
@@ -92,6 +95,10 @@ impl PlateQuantities {
 impl Quantities for PlateQuantities {
     type History = History;
     const NAMES: &'static [(&'static str, &'static str)] = &PLATE_QUANTITIES;
+
+    fn last_contact(&self) -> f64 {
+        self.outer_contact_end.max(self.inner_contact_end)
+    }
 
     fn value(&self, name: &str) -> Option<f64> {
         self.get(name)
