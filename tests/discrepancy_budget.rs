@@ -251,7 +251,7 @@ fn page_markdown_and_json_show_the_budget_and_bars_have_its_lengths() {
         command: String::new(),
     };
     let page = scene_page(&scene_report);
-    let report = Report { scenes: vec![scene_report] };
+    let report = Report { scenes: vec![scene_report], seats: Vec::new() };
     let document: serde_json::Value = serde_json::from_str(&json(&report).unwrap()).unwrap();
     let text = markdown(&report);
     for (k, row) in rows.iter().enumerate() {

@@ -2,6 +2,7 @@
 
 mod bench;
 mod compare;
+mod compare_seats;
 mod doctor;
 mod mesh;
 mod optimise;

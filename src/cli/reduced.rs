@@ -25,6 +25,9 @@ pub struct Arguments {
     /// of a seal seat 1e-3]
     #[arg(long, value_parser = tolerance)]
     tolerance: Option<f64>,
+    /// Mesh of the seat (.vtu, tetrahedra), for seal-seat scenes [default: that in meshes/ or the cache, else a new one]
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
     /// Write displacement, velocity and force over time to this CSV file
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
@@ -51,6 +54,13 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 }
 
 fn plate(scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<History>)> {
+    if let Some(mesh) = &arguments.mesh {
+        return Err(Error::Usage(format!(
+            "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
+            mesh.display(),
+            scene.name
+        )));
+    }
     let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::C);
     let reduced = Reduced::new(scene, model, arguments.modes)?;
     let tolerance = arguments.tolerance.unwrap_or(DEFAULT_TOLERANCE);
@@ -68,7 +78,10 @@ fn seat(
 ) -> Result<(SeatSummary, Option<SeatHistory>)> {
     let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::C);
     let cache = Cache::from_environment();
-    let mesh = SeatMesh::open(&reference::seat_mesh(scene, &cache)?)?;
+    let mesh = match &arguments.mesh {
+        Some(path) => SeatMesh::open(path)?,
+        None => SeatMesh::open(&reference::seat_mesh(scene, &cache)?)?,
+    };
     let reduced = SeatModel::new(scene, model, arguments.modes, &mesh, &cache)?;
     context.note(format_args!(
         "mesh {}, {} degrees of freedom; set up in {:.2} s",
