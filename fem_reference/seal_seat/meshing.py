@@ -82,7 +82,7 @@ def seat_size(scene: SeatScene, factor: float) -> SeatSize:
         tips=scene.actuator.tip_positions,
         at_tips=TIP_ELEMENT * at_ring,
         tip_zone=0.1 * scene.actuator.tip_radius,
-        slope=SLOPE,
+        slope=SLOPE / factor,
         largest=seat.island_height / (THROUGH_ISLAND * through) / factor,
         membrane=membrane / factor,
         membrane_top=seat.membrane_thickness,
