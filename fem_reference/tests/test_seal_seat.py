@@ -17,13 +17,15 @@ from fem_reference.errors import SceneError, SolverError
 from fem_reference.fenicsx import alone
 from fem_reference.mesh import Floats
 from fem_reference.seal_seat.meshing import cad_volume, seat_mesh
+from fem_reference.seal_seat.modal import seat_modes
 from fem_reference.seal_seat.model import ACTUATOR, LEFT, RIGHT, SPHERE, SeatModel, seat_model
 from fem_reference.seal_seat.run import SeatRun, integrate
 from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
-from fem_reference.seal_seat.solve import QUANTITIES, history
+from fem_reference.seal_seat.solve import HISTORY_COLUMNS, QUANTITIES, history, seat_frequency
 from fem_reference.solid.checkpoint import Checkpoint
 from fem_reference.solid.loop import Loop, make_loop
 from fem_reference.solid.mesh import TetMesh, qualities, surface
+from fem_reference.solid.model import SphereContact
 from fem_reference.solid.spectrum import critical_time_step
 from fem_reference.tests.program import run_program
 from fem_reference.tests.seal_seat_scenes import DEGREE, seat_document
@@ -73,8 +75,8 @@ def test_nodes_of_the_ring_lie_on_the_sphere_and_nothing_penetrates(coarse: Seat
     ring, radius = design.ring(), design.sphere_radius
     touching = 0
     for contact, patch in zip(coarse.model.contacts[:2], coarse.patches[:2], strict=True):
-        assert contact.places is not None  # type: ignore[union-attr]
-        away = contact.places - np.array(ring.sphere_centre)  # type: ignore[union-attr]
+        assert isinstance(contact, SphereContact) and contact.places is not None
+        away = contact.places - np.array(ring.sphere_centre)
         gap = np.linalg.norm(away, axis=1) - radius
         on_ring = patch.distances < 1e-9 * radius
         assert np.abs(gap[on_ring]).max() < 1e-9 * radius
@@ -186,16 +188,14 @@ def mirrored(seat: SeatModel) -> SeatModel:
     cells[:, [5, 6]] = cells[:, [6, 5]]
     cells[:, [7, 8]] = cells[:, [8, 7]]
     mesh = TetMesh(body.mesh.name, body.mesh.points * flip, cells)
-    contacts = tuple(
-        dataclasses.replace(
-            contact,
-            centre=tuple(np.array(contact.centre) * flip),  # type: ignore[union-attr]
-            places=None if contact.places is None else contact.places * flip,  # type: ignore[union-attr]
-        )
-        for contact in seat.model.contacts
-    )
+    contacts = []
+    for contact in seat.model.contacts:
+        assert isinstance(contact, SphereContact)
+        x, y, z = contact.centre
+        places = None if contact.places is None else contact.places * flip
+        contacts.append(dataclasses.replace(contact, centre=(-x, y, z), places=places))
     model = dataclasses.replace(
-        seat.model, elastic=(dataclasses.replace(body, mesh=mesh),), contacts=contacts
+        seat.model, elastic=(dataclasses.replace(body, mesh=mesh),), contacts=tuple(contacts)
     )
     return SeatModel(model, seat.patches)
 
@@ -294,9 +294,10 @@ def test_the_result_folder_is_complete(tmp_path: Path) -> None:
     assert summary["sphere_angle"] == pytest.approx(
         math.atan2(summary["sphere_velocity_x"], summary["sphere_velocity_z"])
     )
-    table = np.genfromtxt(out / "history.csv", delimiter=",", names=True)
-    assert table.dtype.names is not None and len(table.dtype.names) == 21
-    assert table["time"][-1] == pytest.approx(3e-6, rel=1e-3)
+    header = (out / "history.csv").read_text(encoding="ascii").splitlines()[0].split(",")
+    table = np.loadtxt(out / "history.csv", delimiter=",", skiprows=1)
+    assert header[:11] == [*HISTORY_COLUMNS] and table.shape[1] == len(header) == 21
+    assert table[-1, 0] == pytest.approx(3e-6, rel=1e-3)
     assert (out / "stress.pvd").is_file() and (out / "mesh.vtu").is_file()
     assert sorted(p.name for p in tmp_path.iterdir()) == ["result", "scene.json"]
 
@@ -309,3 +310,10 @@ def test_the_surface_of_the_mesh_is_closed(coarse: SeatModel) -> None:
     assert volume == pytest.approx(coarse.mesh.volume(), rel=1e-12)
     for flank in (LEFT, RIGHT):
         assert coarse.patches[flank].areas.min() >= 0.0
+
+
+def test_slepc_and_inverse_iteration_agree_on_the_first_frequency(coarse: SeatModel) -> None:
+    frequencies = seat_modes(scene(True), coarse.mesh, 4)
+    assert np.all(np.diff(frequencies) > 0.0)
+    iterated = seat_frequency(make_loop(coarse.model, alone()), coarse)
+    assert iterated == pytest.approx(frequencies[0], rel=1e-4)
