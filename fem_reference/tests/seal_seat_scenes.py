@@ -47,7 +47,7 @@ def seat_document(improved: bool = False, **changes: Any) -> dict[str, Any]:
         },
         "intended_angle": 15.0 * DEGREE,
         "run": {"end_time": None},
-        "reference": {"geometry": "solid", "elements_per_ring_radius": 6.0},
+        "reference": {"geometry": "solid", "elements_per_ring_radius": 10.0},
     }
     for name, value in changes.items():
         *tables, key = name.split("__")
