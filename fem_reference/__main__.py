@@ -56,9 +56,10 @@ def _parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--checkpoint-interval", type=float, default=60.0, metavar="S", help="seconds (60)"
     )
-    modes = commands.add_parser("modes", help="axisymmetric eigenfrequencies of the plate")
+    modes = commands.add_parser("modes", help="eigenfrequencies of a plate or a seal seat")
     modes.add_argument("--scene", type=Path, required=True)
     modes.add_argument("--count", type=int, default=8)
+    modes.add_argument("--mesh", type=Path, metavar="FILE", help=".vtu, of a seal seat only")
     bands = commands.add_parser("bands", help="bands of a middling mesh against a finer one")
     bands.add_argument("--scene", type=Path, nargs="+", required=True, help="or provenance.json")
     bands.add_argument("--out", type=Path, required=True, help="JSON; a table .md beside it")

@@ -63,7 +63,7 @@ fn values_arrive_in_si() {
     let sphere = seat(&other).sphere;
     assert_eq!((sphere.mass, sphere.body), (0.0002, SphereBody::Elastic));
     let settings = parse(VALID).reference;
-    assert_eq!((settings.elements_per_contact_radius, settings.elements_per_ring_radius), (None, Some(6.0)));
+    assert_eq!((settings.elements_per_contact_radius, settings.elements_per_ring_radius), (None, Some(10.0)));
 }
 
 /// The ring's points lie on the sphere, and the sphere's normal there is that of the cone.

@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import Any
 
-from ..errors import SceneError
+from ..errors import SceneError, SolverError
 from .scene import SeatScene, parse_seat_scene
 
 
@@ -27,7 +27,21 @@ def run(document: Any, arguments: argparse.Namespace) -> None:
     if arguments.command == "solve":
         _solve(scene, arguments)
         return
+    if arguments.command == "modes":
+        _modes(scene, arguments)
+        return
     raise SceneError(f"{arguments.command} is not for scenes of kind 'seal-seat'")
+
+
+def _modes(scene: SeatScene, arguments: argparse.Namespace) -> None:
+    from .meshing import seat_mesh
+    from .modal import read_mesh, seat_modes
+
+    if arguments.count < 1:
+        raise SolverError(f"--count is {arguments.count}; it must be at least 1")
+    mesh = read_mesh(arguments.mesh) if arguments.mesh else seat_mesh(scene)
+    found = [{"frequency": float(f)} for f in seat_modes(scene, mesh, arguments.count)]
+    print(json.dumps({"schema_version": 1, "scene": scene.name, "modes": found}, indent=2))
 
 
 def _solve(scene: SeatScene, arguments: argparse.Namespace) -> None:

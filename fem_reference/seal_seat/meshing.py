@@ -24,13 +24,13 @@ from ..solid.mesh import TetMesh, check_elements, tetrahedra
 from ..solid.meshing import generate
 from .scene import Ring, SeatScene
 
-SLOPE = 0.35
+SLOPE = 0.6
 """Growth of the element size per distance, at factor 1."""
-TIP_ELEMENT = 1.25
+TIP_ELEMENT = 1.6
 """Element size under the tips over that at the ring."""
 THROUGH_MEMBRANE = 1.0
 """Least number of elements through the membrane; quadratic ones bend well with one."""
-THROUGH_ISLAND = 3.0
+THROUGH_ISLAND = 2.5
 """Least number of elements over the island's height."""
 
 
@@ -82,7 +82,7 @@ def seat_size(scene: SeatScene, factor: float) -> SeatSize:
         tips=scene.actuator.tip_positions,
         at_tips=TIP_ELEMENT * at_ring,
         tip_zone=0.1 * scene.actuator.tip_radius,
-        slope=SLOPE,
+        slope=SLOPE / factor,
         largest=seat.island_height / (THROUGH_ISLAND * through) / factor,
         membrane=membrane / factor,
         membrane_top=seat.membrane_thickness,

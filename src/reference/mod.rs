@@ -18,7 +18,7 @@ pub use child::Progress;
 pub use doctor::{Check, doctor};
 pub use entry::Stored;
 pub use identity::settings_hash;
-pub use modes::plate_modes;
+pub use modes::{plate_modes, seat_frequencies};
 pub use python::{python, versions};
 pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_meshes};
 pub use solve::{Wish, solve, solve_as, solve_with};

@@ -408,12 +408,12 @@ static SEAT_REFERENCE: [Field; 2] = [
     optional(
         "elements_per_ring_radius",
         pure(RING_ELEMENTS),
-        "Elements across the radius of the contact ring at `paper` resolution; absent = 6",
+        "Elements across the radius of the contact ring at `paper` resolution; absent = 10",
     ),
 ];
 
 /// Default of `reference.elements_per_ring_radius`.
-pub(super) const DEFAULT_RING_ELEMENTS: f64 = 6.0;
+pub(super) const DEFAULT_RING_ELEMENTS: f64 = 10.0;
 
 static RUN: [Field; 1] = [optional(
     "end_time",
