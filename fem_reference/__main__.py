@@ -8,7 +8,7 @@ import logging
 import sys
 from pathlib import Path
 
-from .errors import RunError, SolverError
+from .errors import RunError, SceneError, SolverError
 from .progress import Progress
 
 RESOLUTION_NAMES = ("coarse", "paper", "fine")
@@ -56,15 +56,23 @@ def _parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--checkpoint-interval", type=float, default=60.0, metavar="S", help="seconds (60)"
     )
-    modes = commands.add_parser("modes", help="axisymmetric eigenfrequencies of the plate")
+    modes = commands.add_parser("modes", help="eigenfrequencies of a plate or a seal seat")
     modes.add_argument("--scene", type=Path, required=True)
     modes.add_argument("--count", type=int, default=8)
+    modes.add_argument("--mesh", type=Path, metavar="FILE", help=".vtu, of a seal seat only")
     bands = commands.add_parser("bands", help="bands of a middling mesh against a finer one")
     bands.add_argument("--scene", type=Path, nargs="+", required=True, help="or provenance.json")
     bands.add_argument("--out", type=Path, required=True, help="JSON; a table .md beside it")
     cost = commands.add_parser("cost", help="cost against error over meshes, limits of the machine")
     cost.add_argument("--scene", type=Path, required=True)
     cost.add_argument("--out", type=Path, required=True, help="JSON; a figure .svg beside it")
+    mesh = commands.add_parser("mesh", help="mesh of a seal seat as .vtu, a .json beside it")
+    mesh.add_argument("--scene", type=Path, required=True, help="scene.json of kind seal-seat")
+    mesh.add_argument("--out", type=Path, required=True, help="FILE.vtu")
+    mesh.add_argument("--resolution", choices=RESOLUTION_NAMES, default="paper")
+    mesh.add_argument(
+        "--size-factor", type=float, default=1.0, metavar="X", help="X times as large elements"
+    )
     commands.add_parser("versions", help="versions of everything a result depends on")
     return parser
 
@@ -76,7 +84,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
         print(json.dumps(versions(), indent=2))
         return
-    from .scene import read_scene
+    from .scene import parse_scene, read_document
 
     try:
         if arguments.command == "bands":
@@ -85,7 +93,15 @@ def _run(arguments: argparse.Namespace) -> None:
             if not report(arguments.scene, arguments.out, Progress()):
                 raise SolverError("in some quantity fewer than nine of ten scenes keep their band")
             return
-        scene = read_scene(arguments.scene)
+        document = read_document(arguments.scene)
+        if isinstance(document, dict) and document.get("kind") == "seal-seat":
+            from .seal_seat.command import run
+
+            run(document, arguments)
+            return
+        if arguments.command == "mesh":
+            raise SceneError("mesh is for scenes of kind 'seal-seat'")
+        scene = parse_scene(document)
         if arguments.command == "cost":
             from .cost import cost
 

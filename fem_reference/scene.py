@@ -114,7 +114,7 @@ class Scene:
     """The document as given, for the provenance."""
 
 
-class _Reader:
+class Reader:
     """Typed access to one JSON object; every error names the field's full path."""
 
     def __init__(self, node: Any, path: str) -> None:
@@ -135,20 +135,24 @@ class _Reader:
                 )
 
     def get(self, key: str) -> Any:
+        """The value of a key that has to be there."""
         if key not in self.node:
             raise SceneError(f"{self._name(key)} is missing")
         return self.node[key]
 
-    def child(self, key: str) -> _Reader:
-        return _Reader(self.get(key), self._name(key))
+    def child(self, key: str) -> Reader:
+        """The object under a key."""
+        return Reader(self.get(key), self._name(key))
 
     def text(self, key: str) -> str:
+        """The text under a key."""
         value = self.get(key)
         if not isinstance(value, str):
             raise SceneError(f"{self._name(key)} must be a text, not {_show(value)}")
         return value
 
     def choice(self, key: str, allowed: tuple[str, ...]) -> str:
+        """A text that is one of ``allowed``."""
         value = self.text(key)
         if value not in allowed:
             raise SceneError(
@@ -187,7 +191,8 @@ def _show(value: Any) -> str:
     return text if len(text) <= 40 else text[:37] + "..."
 
 
-def _material(reader: _Reader) -> Material:
+def read_material(reader: Reader) -> Material:
+    """The material an object describes."""
     reader.allow("name", "youngs_modulus", "poisson_ratio", "density")
     return Material(
         name=reader.text("name"),
@@ -197,7 +202,7 @@ def _material(reader: _Reader) -> Material:
     )
 
 
-def _plate(reader: _Reader) -> Plate:
+def _plate(reader: Reader) -> Plate:
     reader.allow("radius", "thickness", "edge", "material", "damping_ratio")
     if reader.node.get("damping_ratio") is not None:
         damping = reader.number("damping_ratio", "(no unit)", inclusive=True)
@@ -209,17 +214,19 @@ def _plate(reader: _Reader) -> Plate:
         radius=reader.number("radius", "m"),
         thickness=reader.number("thickness", "m"),
         edge=reader.choice("edge", EDGES),
-        material=_material(reader.child("material")),
+        material=read_material(reader.child("material")),
     )
 
 
-def _sphere(reader: _Reader, extra: str) -> Sphere:
+def _sphere(reader: Reader, extra: str) -> Sphere:
     reader.choice("kind", ("sphere",))
     reader.allow("kind", "radius", "material", extra)
-    return Sphere(radius=reader.number("radius", "m"), material=_material(reader.child("material")))
+    return Sphere(
+        radius=reader.number("radius", "m"), material=read_material(reader.child("material"))
+    )
 
 
-def _geometry(reference: _Reader) -> tuple[str, int, tuple[str, ...]]:
+def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:
     """Geometry, element order and rigid bodies of the table ``reference``."""
     reference.allow("geometry", "elements_per_contact_radius", "element_order", "rigid")
     geometry = reference.choice("geometry", GEOMETRIES)
@@ -243,7 +250,7 @@ def parse_scene(document: Any) -> Scene:
     Raises:
         SceneError: naming the field, its value and what would be valid.
     """
-    root = _Reader(document, "")
+    root = Reader(document, "")
     root.choice("kind", ("plate-impact",))
     root.allow(
         "name",
@@ -289,18 +296,26 @@ def parse_scene(document: Any) -> Scene:
     )
 
 
-def read_scene(path: Path) -> Scene:
-    """Read and check a scene file.
+def read_document(path: Path) -> Any:
+    """The decoded ``scene.json``, not yet checked.
 
     Raises:
-        SceneError: the file cannot be read, is not JSON, or its content is not valid.
+        SceneError: the file cannot be read or is not JSON.
     """
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(f"scene file {path} cannot be read: {error}") from error
     try:
-        document = json.loads(text)
+        return json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         raise SceneError(f"scene file {path} is not valid JSON: {error}") from error
-    return parse_scene(document)
+
+
+def read_scene(path: Path) -> Scene:
+    """Read and check a scene file of kind plate-impact.
+
+    Raises:
+        SceneError: the file cannot be read, is not JSON, or its content is not valid.
+    """
+    return parse_scene(read_document(path))

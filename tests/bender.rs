@@ -201,7 +201,8 @@ fn torque_deflection_and_speed_are_three_ways_to_say_one_thing() {
         Scene::parse("scene.toml", &format!("{}{body}{}", &text[..outer], &text[inner..]))
     };
     let outer = |drive: &str, beam: &str| {
-        let Setup::PlateImpact(setup) = scene(drive, beam).unwrap().setup;
+        let scene = scene(drive, beam).unwrap();
+        let setup = scene.plate_impact().unwrap();
         setup.outer
     };
     let measured_beam = "first_frequency = \"500 Hz\"\ntip_stiffness = \"2500 N/m\"";

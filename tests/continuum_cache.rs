@@ -71,7 +71,7 @@ fn a_warm_cache_is_really_read() {
 fn rounding_the_patch_radii_to_three_digits_changes_the_impact_by_less_than_1e_4() {
     for name in ["scaled-plate-r10", "scaled-plate-r6.35"] {
         let scene = Scene::read(resolve(name).unwrap()).unwrap();
-        let Setup::PlateImpact(setup) = &scene.setup;
+        let setup = scene.plate_impact().unwrap();
         let reduced = Reduced::new(&scene, Model::B, None).unwrap();
         let system = reduced.system();
         let rough = integrate(system, &Options { tolerance: 1e-3, ..Options::default() }).unwrap();

@@ -25,7 +25,7 @@ fn shipped(name: &str) -> Scene {
 /// Table 1's scene with 10 mm spheres, changed by `change`.
 fn scene(change: impl Fn(&mut PlateImpact)) -> Scene {
     let mut scene = shipped(TABLE_1[0]);
-    let Setup::PlateImpact(setup) = &mut scene.setup;
+    let Setup::PlateImpact(setup) = &mut scene.setup else { panic!("a plate impact") };
     change(setup);
     scene
 }
@@ -189,7 +189,8 @@ fn static_flexibility(body: &ModalBody) -> [[f64; 2]; 2] {
 /// Clamped circular plate under a central force: w = R^2/(16 pi D) (Timoshenko & Woinowsky-Krieger, section 19).
 #[test]
 fn mean_of_both_faces_of_a_thin_plate_gives_way_as_kirchhoffs_by_timoshenko() {
-    let Setup::PlateImpact(setup) = &shipped(TABLE_1[0]).setup;
+    let scene = shipped(TABLE_1[0]);
+    let setup = scene.plate_impact().unwrap();
     let thickness = 0.33e-3;
     let plate = Plate { thickness, ..setup.plate.clone() };
     let steel = &plate.material;
@@ -250,7 +251,7 @@ fn page_markdown_and_json_show_the_budget_and_bars_have_its_lengths() {
         command: String::new(),
     };
     let page = scene_page(&scene_report);
-    let report = Report { scenes: vec![scene_report] };
+    let report = Report { scenes: vec![scene_report], seats: Vec::new() };
     let document: serde_json::Value = serde_json::from_str(&json(&report).unwrap()).unwrap();
     let text = markdown(&report);
     for (k, row) in rows.iter().enumerate() {

@@ -11,8 +11,8 @@ use impactcheck::scene::{Model, PlateImpact, Scene, Setup, resolve};
 
 fn scene(name: &str) -> (Scene, PlateImpact) {
     let scene = Scene::read(resolve(name).unwrap()).unwrap();
-    let Setup::PlateImpact(setup) = scene.setup.clone();
-    (scene, *setup)
+    let setup = scene.plate_impact().unwrap().clone();
+    (scene, setup)
 }
 
 fn model(scene: &Scene, model: Model) -> Outcome {

@@ -44,6 +44,7 @@ impl Data {
                 provenance: serde_json::json!({"created": "2026-01-01T00:00:00Z", "settings": {"courant": 0.9}}),
                 command: "impactcheck compare synthetic --models A,B".into(),
             }],
+            seats: Vec::new(),
         }
     }
 }

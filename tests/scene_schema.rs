@@ -23,6 +23,7 @@ fn accepts_keyword(schema: &Map<String, Value>, keyword: &str, rule: &Value, val
         "type" => match rule.as_str().expect("type") {
             "object" => value.is_object(),
             "string" => value.is_string(),
+            "array" => value.is_array(),
             "boolean" => value.is_boolean(),
             "number" => value.is_number(),
             "integer" => value.is_u64() || value.is_i64(),
@@ -34,6 +35,13 @@ fn accepts_keyword(schema: &Map<String, Value>, keyword: &str, rule: &Value, val
         "maximum" => number(|v, bound| v <= bound),
         "exclusiveMinimum" => number(|v, bound| v > bound),
         "exclusiveMaximum" => number(|v, bound| v < bound),
+        "items" => value.as_array().is_none_or(|items| items.iter().all(|item| accepts(rule, item))),
+        "minItems" => {
+            value.as_array().is_none_or(|items| items.len() as u64 >= rule.as_u64().expect("count"))
+        }
+        "maxItems" => {
+            value.as_array().is_none_or(|items| items.len() as u64 <= rule.as_u64().expect("count"))
+        }
         "maxLength" => value.as_str().is_none_or(|s| s.len() as u64 <= rule.as_u64().expect("length")),
         "anyOf" => all(rule).iter().any(|s| accepts(s, value)),
         "allOf" => all(rule).iter().all(|s| accepts(s, value)),
@@ -125,6 +133,41 @@ fn schema_and_reader_agree() {
     ] {
         assert!(VALID.contains(from), "`{from}` is not in the scene");
         let text = VALID.replacen(from, to, 1);
+        assert_eq!(Scene::parse("scene.toml", &text).is_ok(), valid, "reader, {to}");
+        assert_eq!(accepts(&schema, &scene_json(&text)), valid, "schema, {to}");
+    }
+}
+
+const SEAT: &str = include_str!("fixtures/seal-seat.toml");
+
+#[test]
+fn schema_and_reader_agree_on_seal_seats() {
+    let schema = schema();
+    let tolerances =
+        "[tolerances.C]\nsphere_angle = { absolute = \"0.5 deg\" }\nsphere_force_rms = 0.1\n[reduced]";
+    for (from, to, valid) in [
+        ("modes", "modes", true),
+        ("\"15 deg\"      # alpha", "0.2      # alpha", true),
+        ("[\"-4.5 mm\", \"4.5 mm\"]", "[0.001]", true),
+        ("[reduced]", tolerances, true),
+        ("[reduced]", "[reference]\nelement_order = 1\nelements_per_ring_radius = 4\n[reduced]", true),
+        ("notch_width        = \"1.4 mm\"", "", false),
+        ("[\"-4.5 mm\", \"4.5 mm\"]", "[]", false),
+        ("[\"-4.5 mm\", \"4.5 mm\"]", "0.001", false),
+        ("[\"-4.5 mm\", \"4.5 mm\"]", "[true]", false),
+        ("[\"-4.5 mm\", \"4.5 mm\"]", "[0,1e-3,2e-3,3e-3,4e-3,5e-3,6e-3,7e-3,-1e-3]", false),
+        ("\"120 deg\"", "3.2", false),
+        ("\"15 deg\"      # alpha", "-0.1      # alpha", false),
+        ("seal-seat\"\n", "plate-impact\"\n", false),
+        ("[reduced]", "[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6\n[reduced]", false),
+        ("[reduced]", "[reference]\ngeometry = \"solid\"\n[reduced]", false),
+        ("[reduced]", "[tolerances.B]\nsphere_angle = 1\n[reduced]", false),
+        ("[reduced]", "[tolerances.C]\nouter_force_peak = 1\n[reduced]", false),
+        ("modes = 16", "model = \"B\"", false),
+        ("tip_radius", "tip_raduis", false),
+    ] {
+        assert!(SEAT.contains(from), "`{from}` is not in the scene");
+        let text = SEAT.replacen(from, to, 1);
         assert_eq!(Scene::parse("scene.toml", &text).is_ok(), valid, "reader, {to}");
         assert_eq!(accepts(&schema, &scene_json(&text)), valid, "schema, {to}");
     }

@@ -7,6 +7,8 @@ import os
 import shutil
 import sys
 import traceback
+from collections.abc import Callable
+from typing import Any
 
 from ..errors import RunError, SolverError
 from ..progress import Progress
@@ -47,8 +49,8 @@ def _launch(processes: int) -> None:
     os.execve(program, command, {**settings, **kept})
 
 
-def solve_solid(scene: Scene, arguments: argparse.Namespace) -> None:
-    """Run ``solve`` for a scene with solid geometry.
+def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> None:
+    """Call ``work`` with the communicator, in as many processes as ``arguments.np`` says.
 
     Raises:
         RunError: in a run of one process; several are ended together with its exit status.
@@ -56,21 +58,10 @@ def solve_solid(scene: Scene, arguments: argparse.Namespace) -> None:
     if arguments.np > 1 and not _launched():
         _launch(arguments.np)
     from ..fenicsx import world
-    from .result import solve
 
     comm = world()
     try:
-        solve(
-            scene,
-            arguments.out,
-            arguments.resolution,
-            comm,
-            courant=arguments.courant,
-            stress_times=arguments.stress_at,
-            frames=arguments.fields,
-            checkpoint=arguments.checkpoint,
-            checkpoint_interval=arguments.checkpoint_interval,
-        )
+        work(comm)
     except RunError as error:
         if comm.size == 1:
             raise
@@ -83,3 +74,28 @@ def solve_solid(scene: Scene, arguments: argparse.Namespace) -> None:
             raise
         traceback.print_exc()
         comm.Abort(1)
+
+
+def solve_solid(scene: Scene, arguments: argparse.Namespace) -> None:
+    """Run ``solve`` for a scene with solid geometry.
+
+    Raises:
+        RunError: see `in_processes`.
+    """
+
+    def work(comm: Any) -> None:
+        from .result import solve
+
+        solve(
+            scene,
+            arguments.out,
+            arguments.resolution,
+            comm,
+            courant=arguments.courant,
+            stress_times=arguments.stress_at,
+            frames=arguments.fields,
+            checkpoint=arguments.checkpoint,
+            checkpoint_interval=arguments.checkpoint_interval,
+        )
+
+    in_processes(arguments, work)

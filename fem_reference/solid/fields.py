@@ -67,7 +67,7 @@ def _grid(model: Model, **data: Any) -> meshio.Mesh:
     points = np.vstack([body.mesh.points for body in model.elastic])
     cells = np.vstack(
         [body.mesh.cells + first for body, first in zip(model.elastic, model.first, strict=False)]
-    )
+    ).astype(np.int32)
     kind = "tetra" if cells.shape[1] == 4 else "tetra10"
     number = np.concatenate(
         [np.full(b.mesh.cells.shape[0], i, np.int32) for i, b in enumerate(model.elastic)]

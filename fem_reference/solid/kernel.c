@@ -41,6 +41,7 @@ typedef struct {
     double *compliance;    /* (count) diagonal of G M^-1 G^T, 1/kg */
     int32_t *active;       /* (count) work space */
     double impulse[3];     /* on the candidates so far, N s */
+    double normal_impulse; /* the same, summed along each candidate's own normal, N s */
     double force[3];       /* on the candidates in the last step, N */
     double work;           /* on all bodies so far, J */
     int64_t last;          /* last step with a force, -1: none */
@@ -255,6 +256,7 @@ static void ledger(Problem *p, Contact *c) {
         if (k > c->outermost) c->outermost = k;
     }
     for (int d = 0; d < 3; ++d) c->impulse[d] += dt * c->force[d];
+    c->normal_impulse += dt * total;
     if (total > 0.0) {
         if (c->last < 0 || p->step - c->last > c->split) {
             if (c->intervals < MAX_INTERVALS) c->first_step[c->intervals] = p->step;

@@ -51,6 +51,7 @@ class Contact(ctypes.Structure):
         ("compliance", _DOUBLE),
         ("active", _INT32),
         ("impulse", _VECTOR),
+        ("normal_impulse", ctypes.c_double),
         ("force", _VECTOR),
         ("work", ctypes.c_double),
         ("last", ctypes.c_int64),

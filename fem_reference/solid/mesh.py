@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import SolverError
 from ..mesh import Floats, Ints
 
-EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (2, 3), (1, 3))
+EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 """Corners of a tetrahedron's edges, in VTK's order of a quadratic tetrahedron's midside nodes."""
 FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
 """Corners of a tetrahedron's faces, counter-clockwise seen from outside."""

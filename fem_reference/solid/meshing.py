@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import gmsh
 import numpy as np
@@ -51,7 +52,15 @@ class SizeField:
         return f"Min({self.largest!r},{self.least!r}+{self.slope!r}*{nearest})"
 
 
-def generate(name: str, build: Callable[[], None], size: SizeField) -> tuple[Floats, Ints]:
+class Sized(Protocol):
+    """Where elements are to be how large."""
+
+    def expression(self) -> str:
+        """For gmsh's MathEval."""
+        ...
+
+
+def generate(name: str, build: Callable[[], None], size: Sized) -> tuple[Floats, Ints]:
     """Mesh what ``build`` adds to gmsh's OCC model; points (n, 3), corners (m, 4).
 
     Raises:

@@ -116,7 +116,7 @@ class ContactProblem:
             return np.zeros(0)
         return np.ctypeslib.as_array(contact.multipliers, (contact.count,)).copy()
 
-    _SCALARS = ("work", "last", "intervals", "outermost")
+    _SCALARS = ("normal_impulse", "work", "last", "intervals", "outermost")
     _LISTS = ("impulse", "force", "first_step", "last_step")
 
     def checkpoint(self) -> dict[str, Any]:

@@ -35,7 +35,7 @@ from .plate import PLATE, PlateModel, plate_model
 from .run import SolidRun, integrate
 from .spectrum import first_frequency
 
-REVISION = 1
+REVISION = 2
 """Counts changes of the method that make older checkpoints useless."""
 
 Report = Callable[[str, float, str], None]

@@ -99,10 +99,13 @@ def body_translation(loop: Loop, body: int, axis: int) -> Floats:
     return np.asarray(motion.ravel() * (loop.inverse > 0.0))
 
 
-def first_frequency(loop: Loop, body: int, axis: int = 2, tolerance: float = 1e-6) -> float:
+def first_frequency(
+    loop: Loop, body: int, axis: int = 2, tolerance: float = 1e-6, start: Floats | None = None
+) -> float:
     """Lowest eigenfrequency of a body, Hz, by inverse iteration from the motion along ``axis``.
 
-    A body that is free along ``axis`` keeps that motion out of the iteration.
+    A body that is free along ``axis`` keeps that motion out of the iteration. ``start`` (3 n,) is
+    another motion to begin with, where the lowest mode may not contain that along ``axis``.
     """
     free = free_components(loop, body)
     mass = np.repeat(loop.mass, 3)
@@ -120,6 +123,8 @@ def first_frequency(loop: Loop, body: int, axis: int = 2, tolerance: float = 1e-
     if floating:
         place = np.concatenate([b.mesh.points for b in loop.model.elastic])[loop.owned]
         x = orthogonal(rigid * np.repeat((place[:, :2] ** 2).sum(axis=1), 3))
+    if start is not None:
+        x = orthogonal(start * free)
     value = 0.0
     for _ in range(60):
         x /= math.sqrt(loop.dot(x, mass * x))

@@ -7,6 +7,7 @@ pub mod continuum;
 mod eigenmodes;
 pub mod kirchhoff;
 pub mod quadrature;
+pub mod solid;
 
 use serde::{Deserialize, Serialize};
 

@@ -1,14 +1,14 @@
 //! `impactcheck compare` and `impactcheck gate`: the main job, scene to verdict.
 
-use super::{Context, JsonArgument, reference};
-use crate::comparison::{Comparison, SceneComparison, Verdict, compare_scene};
+use super::{Context, JsonArgument, compare_seats, reference};
+use crate::comparison::{SceneComparison, Verdict, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Outcome;
 use crate::impact::reduced::Reduced;
 use crate::measured::{self, Record, Speed};
 use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
 use crate::report::{self, Report, SceneReport};
-use crate::scene::{self, Model, Scene};
+use crate::scene::{self, Model, Scene, Setup};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -20,15 +20,15 @@ const TOLERANCE: f64 = 1e-7;
 pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all shipped scenes]
     scenes: Vec<String>,
-    /// Reduced models to compare
+    /// Reduced models to compare; a seal seat has C only
     #[arg(long, value_delimiter = ',', default_value = "A,B,C")]
-    models: Vec<Model>,
+    pub(super) models: Vec<Model>,
     /// Resolution of the reference
     #[arg(long, default_value = "paper")]
-    resolution: Resolution,
+    pub(super) resolution: Resolution,
     /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
     #[arg(long)]
-    compute: bool,
+    pub(super) compute: bool,
     /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
     /// repeated impacts
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
@@ -71,7 +71,9 @@ pub fn gate(context: &Context, arguments: &GateArguments) -> Result<ExitStatus> 
 
 fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Result<Verdict> {
     let start = Instant::now();
-    let scenes = read(&arguments.scenes)?;
+    let all = read(&arguments.scenes)?;
+    let (scenes, seats): (Vec<Scene>, Vec<Scene>) =
+        all.into_iter().partition(|scene| matches!(scene.setup, Setup::PlateImpact(_)));
     // refused before anything is computed
     let records = records(arguments, &scenes)?;
     report::check_writable(&arguments.out)?;
@@ -80,6 +82,7 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
         report::check_writable(folder)?;
     }
     let references = references(context, arguments, &scenes)?;
+    let seats = compare_seats::reports(context, arguments, &seats)?;
     let mut reduced = Vec::new();
     for scene in &scenes {
         let outcomes: Result<Vec<Outcome>> = models(arguments)
@@ -108,9 +111,9 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
         report.command +=
             &arguments.measured.iter().map(|f| format!(" --measured {}", f.display())).collect::<String>();
     }
-    let comparison = Comparison::new(reports.iter().map(|scene| scene.comparison.clone()).collect());
+    let report = Report { scenes: reports, seats };
+    let comparison = report.comparison();
     let verdict = comparison.verdict;
-    let report = Report { scenes: reports };
     report::write(&report, &arguments.out)?;
     if let Some(file) = junit {
         report::write_file(file, report::junit(&report)?.as_bytes())?;
@@ -122,8 +125,8 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
     }
     context.note(format_args!(
         "{} scene{} compared in {:.2} s; report: {}",
-        scenes.len(),
-        if scenes.len() == 1 { "" } else { "s" },
+        comparison.scenes.len() + comparison.seats.len(),
+        if comparison.scenes.len() + comparison.seats.len() == 1 { "" } else { "s" },
         start.elapsed().as_secs_f64(),
         arguments.out.join("index.html").display()
     ));

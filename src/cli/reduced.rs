@@ -2,9 +2,12 @@
 
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
+use crate::body::cache::Cache;
 use crate::impact::reduced::Reduced;
-use crate::impact::{CURVES, History, PLATE_QUANTITIES, Summary};
-use crate::scene::{self, Model, Scene};
+use crate::impact::seal_seat::{self, SeatMesh, SeatModel};
+use crate::impact::{Curves, History, Quantities, SeatHistory, SeatSummary, Summary};
+use crate::reference;
+use crate::scene::{self, Model, Scene, Setup};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -18,9 +21,13 @@ pub struct Arguments {
     /// Number of modes [default: the scene's, else 16 for B and as many as needed for C]
     #[arg(long, value_name = "N")]
     modes: Option<usize>,
-    /// Relative error of the efficiency that the time integration may have
-    #[arg(long, default_value_t = 1e-7, value_parser = tolerance)]
-    tolerance: f64,
+    /// Relative error that the time integration may have: of the efficiency, of a seal seat's sphere of its velocity [default: 1e-7,
+    /// of a seal seat 1e-3]
+    #[arg(long, value_parser = tolerance)]
+    tolerance: Option<f64>,
+    /// Mesh of the seat (.vtu, tetrahedra), for seal-seat scenes [default: that in meshes/ or the cache, else a new one]
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
     /// Write displacement, velocity and force over time to this CSV file
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
@@ -28,42 +35,101 @@ pub struct Arguments {
     json: JsonArgument,
 }
 
+/// Relative error of the efficiency of a plate impact when the caller names none.
+const DEFAULT_TOLERANCE: f64 = 1e-7;
+
 /// Runs the model and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
-    let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::C);
-    let reduced = Reduced::new(&scene, model, arguments.modes)?;
-    let summary = match &arguments.history {
-        None => reduced.run(arguments.tolerance)?,
-        Some(path) => {
-            let outcome = reduced.run_with_history(arguments.tolerance)?;
-            crate::report::write_file(path, &csv(&outcome.history)?)?;
-            context.note(format_args!("history of {} samples in {}", outcome.history.len(), path.display()));
-            outcome.summary
+    match &scene.setup {
+        Setup::PlateImpact(_) => {
+            let (summary, history) = plate(&scene, arguments)?;
+            finish(context, arguments, &summary, history)
         }
+        Setup::SealSeat(_) => {
+            let (summary, history) = seat(context, &scene, arguments)?;
+            finish(context, arguments, &summary, history)
+        }
+    }
+}
+
+fn plate(scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<History>)> {
+    if let Some(mesh) = &arguments.mesh {
+        return Err(Error::Usage(format!(
+            "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
+            mesh.display(),
+            scene.name
+        )));
+    }
+    let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::C);
+    let reduced = Reduced::new(scene, model, arguments.modes)?;
+    let tolerance = arguments.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+    if arguments.history.is_none() {
+        return Ok((reduced.run(tolerance)?, None));
+    }
+    let outcome = reduced.run_with_history(tolerance)?;
+    Ok((outcome.summary, Some(outcome.history)))
+}
+
+fn seat(
+    context: &Context,
+    scene: &Scene,
+    arguments: &Arguments,
+) -> Result<(SeatSummary, Option<SeatHistory>)> {
+    let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::C);
+    let cache = Cache::from_environment();
+    let mesh = match &arguments.mesh {
+        Some(path) => SeatMesh::open(path)?,
+        None => SeatMesh::open(&reference::seat_mesh(scene, &cache)?)?,
     };
+    let reduced = SeatModel::new(scene, model, arguments.modes, &mesh, &cache)?;
+    context.note(format_args!(
+        "mesh {}, {} degrees of freedom; set up in {:.2} s",
+        mesh.path().display(),
+        reduced.dofs,
+        reduced.setup_seconds
+    ));
+    let tolerance = arguments.tolerance.unwrap_or(seal_seat::DEFAULT_TOLERANCE);
+    if arguments.history.is_none() {
+        return Ok((reduced.run(tolerance)?, None));
+    }
+    let (summary, history) = reduced.run_with_history(tolerance)?;
+    Ok((summary, Some(history)))
+}
+
+/// Writes the history, if there is one, and prints warnings and summary.
+fn finish<Q: Quantities>(
+    context: &Context,
+    arguments: &Arguments,
+    summary: &Summary<Q>,
+    history: Option<Q::History>,
+) -> Result<ExitStatus> {
+    if let (Some(path), Some(history)) = (&arguments.history, &history) {
+        crate::report::write_file(path, &csv(history)?)?;
+        context.note(format_args!("history of {} samples in {}", history.time().len(), path.display()));
+    }
     for warning in &summary.warnings {
         context.note(format_args!("warning: {warning}"));
     }
     if arguments.json.json {
-        super::print_json(&summary)?;
+        super::print_json(summary)?;
     } else {
-        super::print(&table(&summary))?;
+        super::print(&table(summary))?;
     }
     Ok(ExitStatus::Pass)
 }
 
 /// The summary as lines of name, value and unit.
-pub fn table(summary: &Summary) -> String {
+pub fn table<Q: Quantities>(summary: &Summary<Q>) -> String {
     let who = match (&summary.model, summary.modes) {
         (Some(model), Some(modes)) => format!("model {model}, {modes} modes"),
         _ => "reference".to_owned(),
     };
     let mut lines = vec![format!("{} ({who})", summary.scene)];
-    for (name, unit) in PLATE_QUANTITIES {
-        let value = summary.quantities.get(name).unwrap_or(f64::NAN);
-        let unit = if unit == "1" { "" } else { unit };
-        let band = summary.uncertainty.get(name).map_or_else(String::new, |u| format!(" +- {u:.2e}"));
+    for (name, unit) in Q::NAMES {
+        let value = summary.quantities.value(name).unwrap_or(f64::NAN);
+        let unit = if *unit == "1" { "" } else { unit };
+        let band = summary.uncertainty.get(*name).map_or_else(String::new, |u| format!(" +- {u:.2e}"));
         lines.push(format!("  {name:<22} {:>14}{band} {unit}", significant(value)));
     }
     let bender = summary.bender.iter().flat_map(|bender| {
@@ -105,18 +171,18 @@ fn significant(value: f64) -> String {
 }
 
 /// The history as a CSV file with the columns of a reference's history.
-fn csv(history: &History) -> Result<Vec<u8>> {
-    let failed = |e: csv::Error| Error::Internal(format!("writing CSV: {e}"));
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let names = CURVES.map(|(name, _)| name);
-    writer.write_record(std::iter::once("time").chain(names)).map_err(failed)?;
-    for i in 0..history.len() {
-        let row = names.iter().filter_map(|name| history.curve(name)).map(|curve| curve[i]);
-        writer
-            .serialize(std::iter::once(history.time[i]).chain(row).collect::<Vec<f64>>())
-            .map_err(failed)?;
+fn csv(history: &impl Curves) -> Result<Vec<u8>> {
+    fn write<H: Curves>(history: &H) -> std::result::Result<Vec<u8>, csv::Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let names = H::NAMES.iter().map(|(name, _)| *name);
+        writer.write_record(std::iter::once("time").chain(names.clone()))?;
+        for (i, time) in history.time().iter().enumerate() {
+            let row = names.clone().filter_map(|name| history.values(name)).map(|curve| curve[i]);
+            writer.serialize(std::iter::once(*time).chain(row).collect::<Vec<f64>>())?;
+        }
+        writer.into_inner().map_err(|e| e.into_error().into())
     }
-    writer.into_inner().map_err(|e| Error::Internal(format!("writing CSV: {e}")))
+    write(history).map_err(|e| Error::Internal(format!("writing CSV: {e}")))
 }
 
 /// Parses a tolerance between what double precision gives and what is of use.

@@ -3,8 +3,9 @@
 use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
+use crate::impact::{PlateQuantities, Quantities, SeatQuantities};
 use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
-use crate::scene::{self, Geometry, Scene};
+use crate::scene::{self, Geometry, Scene, Setup};
 use clap::Args;
 
 #[derive(Debug, Args)]
@@ -44,22 +45,36 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     let store = context.store();
     let resolution = arguments.target_error.map_or(arguments.resolution, Resolution::Within);
+    match scene.setup {
+        Setup::PlateImpact(_) => show::<PlateQuantities>(context, arguments, &scene, resolution, &store),
+        Setup::SealSeat(_) => show::<SeatQuantities>(context, arguments, &scene, resolution, &store),
+    }
+}
+
+/// The rest of [`run`], for the kind of scene that has the quantities `Q`.
+fn show<Q: Quantities>(
+    context: &Context,
+    arguments: &Arguments,
+    scene: &Scene,
+    resolution: Resolution,
+    store: &Store,
+) -> Result<ExitStatus> {
     let wanted = !arguments.fresh && arguments.stress_at.is_empty() && arguments.fields == 0;
-    let stored = match wanted.then(|| store.find(&scene, resolution)) {
+    let stored = match wanted.then(|| store.find_as::<Q>(scene, resolution)) {
         Some(Lookup::Found(stored)) => {
             context.note(format_args!("found {}", stored.folder.display()));
             *stored
         }
         other => {
             if let Some(lookup @ (Lookup::Stale { .. } | Lookup::Damaged { .. })) = &other {
-                context.note(format_args!("{}; computing it again", problem(&scene, resolution, lookup)));
+                context.note(format_args!("{}; computing it again", problem(scene, resolution, lookup)));
             }
             let wish = Wish {
                 stress_at: arguments.stress_at.clone(),
                 fields: arguments.fields,
                 processes: arguments.np,
             };
-            compute(context, &scene, resolution, &store, &wish)?
+            compute_as::<Q>(context, scene, resolution, store, &wish)?
         }
     };
     let convergence = stored.outcome.summary.convergence.as_ref();
@@ -75,7 +90,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 }
 
 /// What is wrong with what the store has.
-pub fn problem(scene: &Scene, resolution: Resolution, lookup: &Lookup) -> String {
+pub fn problem<Q: Quantities>(scene: &Scene, resolution: Resolution, lookup: &Lookup<Q>) -> String {
     let which = format!("the {resolution} reference of `{}`", scene.name);
     match lookup {
         Lookup::Found(_) => format!("{which} is there"),
@@ -93,8 +108,20 @@ pub fn compute(
     store: &Store,
     wish: &Wish,
 ) -> Result<Stored> {
+    compute_as(context, scene, resolution, store, wish)
+}
+
+/// As [`compute`], for a scene of the kind that has the quantities `Q`.
+pub fn compute_as<Q: Quantities>(
+    context: &Context,
+    scene: &Scene,
+    resolution: Resolution,
+    store: &Store,
+    wish: &Wish,
+) -> Result<Stored<Q>> {
+    let python = crate::reference::python()?;
     let bar = Bar::new(context, &format!("{} ({resolution})", scene.name));
-    let stored = crate::reference::solve(scene, resolution, store, wish, &mut |progress| bar.show(progress))?;
+    let stored = crate::reference::solve_as(&python, scene, resolution, store, wish, &mut |p| bar.show(p))?;
     drop(bar);
     context.note(format_args!("computed {}", stored.folder.display()));
     Ok(stored)

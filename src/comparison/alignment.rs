@@ -1,7 +1,7 @@
 //! Two histories with different time axes, brought onto a common one.
 
 use super::interpolation::MonotoneCubic;
-use crate::impact::{CURVES, History, Outcome};
+use crate::impact::{Curves, Outcome, Quantities};
 use serde::Serialize;
 
 /// Samples of the common axis: about as many as a crash signal at 10 kHz has, for which
@@ -26,13 +26,12 @@ impl CommonAxis {
     /// The window of a comparison, fixed by the reference: from 0 to 1.1 times the end of its
     /// last contact, or to the end of its history if that comes first. `None` if the
     /// reference's history can't be sampled.
-    pub fn of_reference(reference: &Outcome) -> Option<Self> {
+    pub fn of_reference<Q: Quantities>(reference: &Outcome<Q>) -> Option<Self> {
         if !can_be_sampled(&reference.history) {
             return None;
         }
-        let last = *reference.history.time.last()?;
-        let q = &reference.summary.quantities;
-        let contact = q.outer_contact_end.max(q.inner_contact_end) * WINDOW_FACTOR;
+        let last = *reference.history.time().last()?;
+        let contact = reference.summary.quantities.last_contact() * WINDOW_FACTOR;
         let end = if contact > 0.0 { contact.min(last) } else { last };
         (end > 0.0).then_some(CommonAxis { start: 0.0, end, samples: SAMPLES })
     }
@@ -51,7 +50,7 @@ impl CommonAxis {
 /// One curve of two histories on their common axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlignedCurve {
-    /// Name in [`CURVES`].
+    /// Name in [`Curves::NAMES`].
     pub quantity: &'static str,
     /// Unit.
     pub unit: &'static str,
@@ -91,13 +90,13 @@ pub(super) fn peak(values: &[f64]) -> f64 {
 }
 
 /// Whether every curve has a finite value at every instant and time increases strictly.
-pub(super) fn can_be_sampled(history: &History) -> bool {
-    let n = history.len();
+pub(super) fn can_be_sampled<H: Curves>(history: &H) -> bool {
+    let n = history.time().len();
     let whole = |values: &[f64]| values.len() == n && values.iter().all(|v| v.is_finite());
     n >= 2
-        && whole(&history.time)
-        && history.time.windows(2).all(|w| w[0] < w[1])
-        && CURVES.iter().all(|(name, _)| history.curve(name).is_some_and(whole))
+        && whole(history.time())
+        && history.time().windows(2).all(|w| w[0] < w[1])
+        && H::NAMES.iter().all(|(name, _)| history.values(name).is_some_and(whole))
 }
 
 /// Every curve of both histories on the reference's window `axis`; empty if one can't be sampled.
@@ -106,13 +105,13 @@ pub(super) fn can_be_sampled(history: &History) -> bool {
 /// inside the window with both contacts open, the spheres fly on freely: constant velocity, no
 /// force. The plate's curves are then compared up to the end of the reduced history; so are
 /// all curves if it ends during a contact.
-pub fn align(axis: CommonAxis, reference: &History, reduced: &History) -> Vec<AlignedCurve> {
+pub fn align<H: Curves>(axis: CommonAxis, reference: &H, reduced: &H) -> Vec<AlignedCurve> {
     if !can_be_sampled(reference) || !can_be_sampled(reduced) {
         return Vec::new();
     }
-    let aligned = |(quantity, unit)| {
+    let aligned = |&(quantity, unit): &(&'static str, &'static str)| {
         let axis = axis.cut(covered_until(quantity, reduced));
-        let of = |history| sampled(quantity, history, &axis);
+        let of = |history: &H| sampled(quantity, history, &axis);
         (axis.end > axis.start).then(|| AlignedCurve {
             quantity,
             unit,
@@ -121,13 +120,13 @@ pub fn align(axis: CommonAxis, reference: &History, reduced: &History) -> Vec<Al
             reduced: of(reduced),
         })
     };
-    CURVES.into_iter().filter_map(aligned).collect()
+    H::NAMES.iter().filter_map(aligned).collect()
 }
 
 /// One curve of a history on a common axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledCurve {
-    /// Name in [`CURVES`].
+    /// Name in [`Curves::NAMES`].
     pub quantity: &'static str,
     /// Values; NaN where the history doesn't cover the axis, free flight of the spheres included.
     /// Shape (axis.samples).
@@ -135,39 +134,32 @@ pub struct SampledCurve {
 }
 
 /// Every curve of a history at the instants of `axis`; empty if it can't be sampled.
-pub fn sample(axis: CommonAxis, history: &History) -> Vec<SampledCurve> {
+pub fn sample<H: Curves>(axis: CommonAxis, history: &H) -> Vec<SampledCurve> {
     if !can_be_sampled(history) {
         return Vec::new();
     }
-    let curve = |(quantity, _)| {
+    let curve = |&(quantity, _): &(&'static str, &'static str)| {
         let end = covered_until(quantity, history);
         let mut values = sampled(quantity, history, &axis);
         let beyond = (0..axis.samples).filter(|&k| axis.time(k) > end);
         beyond.for_each(|k| values[k] = f64::NAN);
         SampledCurve { quantity, values }
     };
-    CURVES.into_iter().map(curve).collect()
+    H::NAMES.iter().map(curve).collect()
 }
 
 /// Time in s up to which a curve is known, free flight included.
-fn covered_until(quantity: &str, history: &History) -> f64 {
-    let last = history.len() - 1;
-    let flies = history.outer_force[last] == 0.0 && history.inner_force[last] == 0.0;
-    if flies && !quantity.starts_with("plate") { f64::INFINITY } else { history.time[last] }
+fn covered_until<H: Curves>(quantity: &str, history: &H) -> f64 {
+    let end = history.time().last().copied().unwrap_or(f64::NAN);
+    history.rate_after_end(quantity).map_or(end, |_| f64::INFINITY)
 }
 
 /// A curve of a history that can be sampled, at the instants of `axis`.
-fn sampled(quantity: &str, history: &History, axis: &CommonAxis) -> Vec<f64> {
-    let Some(values) = history.curve(quantity) else {
+fn sampled<H: Curves>(quantity: &str, history: &H, axis: &CommonAxis) -> Vec<f64> {
+    let (Some(values), Some(&end)) = (history.values(quantity), history.time().last()) else {
         return Vec::new();
     };
-    let curve = MonotoneCubic::new(&history.time, values);
-    let last = history.len() - 1;
-    let end = history.time[last];
-    let rate = match quantity {
-        "outer_displacement" => history.outer.velocity[last],
-        "inner_displacement" => history.inner.velocity[last],
-        _ => 0.0,
-    };
+    let curve = MonotoneCubic::new(history.time(), values);
+    let rate = history.rate_after_end(quantity).unwrap_or(0.0);
     (0..axis.samples).map(|k| axis.time(k)).map(|t| curve.at(t) + rate * (t - end).max(0.0)).collect()
 }

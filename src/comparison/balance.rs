@@ -18,11 +18,7 @@ pub(super) fn check(setup: &PlateImpact, summary: &Summary, history: &History) -
     // Forces of a reference are averages over the sampling interval, which shifts them by up to one.
     let interval = summary.sample_interval.unwrap_or(0.0);
     let mut momentum = |name: &str, mass: f64, motion: &Motion, force: &[f64], sign: f64| {
-        let impulse = RunningIntegral::of(&history.time, force);
-        let gained = |k: usize| mass * (motion.velocity[k] - motion.velocity[0]);
-        let missed = largest((0..history.len()).map(|k| gained(k) - sign * impulse.values[k]));
-        let bound = impulse.sampling_error + peak(force) * interval + SLACK * peak(&impulse.values);
-        checks.push(Check::new(format!("{name}_momentum_balance"), "N*s", missed, 0.0, bound));
+        checks.push(momentum_balance(name, mass, &history.time, &motion.velocity, force, sign, interval));
     };
     let (outer, inner) = (&setup.outer, &setup.inner);
     let outer_mass = outer.shape.mass(&outer.material);
@@ -38,14 +34,52 @@ pub(super) fn check(setup: &PlateImpact, summary: &Summary, history: &History) -
         ("inner", &history.inner, SLACK),
     ];
     for (name, motion, slack) in motions {
-        let path = RunningIntegral::of(&history.time, &motion.velocity);
-        let moved = |k: usize| motion.displacement[k] - motion.displacement[0];
-        let missed = largest((0..history.len()).map(|k| moved(k) - path.values[k]));
-        let bound =
-            path.sampling_error + peak(&motion.velocity) * interval + slack * peak(&motion.displacement);
-        checks.push(Check::new(format!("{name}_displacement_balance"), "m", missed, 0.0, bound));
+        let motion = (&motion.displacement[..], &motion.velocity[..]);
+        checks.push(path_balance(name, &history.time, motion, interval, slack));
     }
     checks
+}
+
+/// The velocity of a mass in kg changes by `sign` times the impulse of `force` in N.
+pub(super) fn momentum_balance(
+    name: &str,
+    mass: f64,
+    time: &[f64],
+    velocity: &[f64],
+    force: &[f64],
+    sign: f64,
+    interval: f64,
+) -> Check {
+    let impulse = RunningIntegral::of(time, force);
+    let gained = |k: usize| mass * (velocity[k] - velocity[0]);
+    let missed = largest((0..time.len()).map(|k| gained(k) - sign * impulse.values[k]));
+    let bound = impulse.sampling_error + peak(force) * interval + SLACK * peak(&impulse.values);
+    Check::new(format!("{name}_momentum_balance"), "N*s", missed, 0.0, bound)
+}
+
+/// The displacement of a rigid body is the integral of its velocity.
+pub(super) fn displacement_balance(
+    name: &str,
+    time: &[f64],
+    displacement: &[f64],
+    velocity: &[f64],
+    interval: f64,
+) -> Check {
+    path_balance(name, time, (displacement, velocity), interval, SLACK)
+}
+
+fn path_balance(
+    name: &str,
+    time: &[f64],
+    (displacement, velocity): (&[f64], &[f64]),
+    interval: f64,
+    slack: f64,
+) -> Check {
+    let path = RunningIntegral::of(time, velocity);
+    let moved = |k: usize| displacement[k] - displacement[0];
+    let missed = largest((0..time.len()).map(|k| moved(k) - path.values[k]));
+    let bound = path.sampling_error + peak(velocity) * interval + slack * peak(displacement);
+    Check::new(format!("{name}_displacement_balance"), "m", missed, 0.0, bound)
 }
 
 /// Largest magnitude.

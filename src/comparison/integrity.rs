@@ -7,7 +7,7 @@ use super::alignment::{can_be_sampled, peak};
 use super::balance;
 use super::discrepancy::Discrepancy;
 use super::verdict::Verdict;
-use crate::impact::{CURVES, History, Outcome, PLATE_QUANTITIES, Source, Summary};
+use crate::impact::{Curves, History, Outcome, PlateQuantities, Quantities, Source, Summary};
 use crate::scene::{PlateImpact, Scene, Setup, Tolerances};
 use serde::Serialize;
 
@@ -17,9 +17,9 @@ const REFERENCE_PEAK_SLACK: f64 = 0.01;
 /// The same for a reduced model, whose force is smooth.
 const REDUCED_PEAK_SLACK: f64 = 0.002;
 /// Share of the initial speed by which velocities may differ that should be the same.
-const VELOCITY_SLACK: f64 = 1e-3;
+pub(super) const VELOCITY_SLACK: f64 = 1e-3;
 /// Relative difference between the efficiency and the one that the final velocity gives.
-const EFFICIENCY_SLACK: f64 = 2e-3;
+pub(super) const EFFICIENCY_SLACK: f64 = 2e-3;
 /// Share of the peak below which a force counts as none.
 const FORCE_FLOOR: f64 = 1e-9;
 
@@ -47,30 +47,46 @@ impl Check {
     }
 
     /// A number of defects, of which there should be none.
-    fn count(check: &str, defects: usize) -> Self {
+    pub(super) fn count(check: &str, defects: usize) -> Self {
         Check::new(check, "1", defects as f64, 0.0, 0.0)
     }
 }
 
+/// A kind of scene whose results can be compared.
+pub trait Compared: Quantities {
+    /// Whether a result whose curves can be sampled is consistent with itself and with the scene.
+    fn consistency(scene: &Scene, outcome: &Outcome<Self>) -> Vec<Check>;
+}
+
 /// All checks of one result.
-pub(super) fn check(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
-    let Setup::PlateImpact(setup) = &scene.setup;
+pub(super) fn check<Q: Compared>(scene: &Scene, outcome: &Outcome<Q>) -> Vec<Check> {
     let (summary, history) = (&outcome.summary, &outcome.history);
     let mut checks = form(summary, history);
     if can_be_sampled(history) {
         checks.extend(sampling(summary, history));
-        checks.extend(start(setup, history));
-        for (name, force) in forces(history) {
-            checks.extend(contact(name, summary, history, force));
-        }
-        checks.extend(end(setup, summary, history));
-        checks.extend(balance::check(setup, summary, history));
+        checks.extend(Q::consistency(scene, outcome));
     }
     checks
 }
 
+impl Compared for PlateQuantities {
+    fn consistency(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
+        // A scene of another kind has no such results.
+        let Setup::PlateImpact(setup) = &scene.setup else { return vec![Check::count("kind_of_scene", 1)] };
+        let (summary, history) = (&outcome.summary, &outcome.history);
+        let mut checks = start(setup, history);
+        let q = &summary.quantities;
+        let (outer, inner) = ((q.outer_force_peak, q.outer_contact_end), (q.inner_force_peak, q.inner_contact_end));
+        checks.extend(contact("outer", summary.source, &history.time, &history.outer_force, outer));
+        checks.extend(contact("inner", summary.source, &history.time, &history.inner_force, inner));
+        checks.extend(end(setup, summary, history));
+        checks.extend(balance::check(setup, summary, history));
+        checks
+    }
+}
+
 /// Both results are of the same scene.
-pub(super) fn same_impact(reference: &Summary, reduced: &Summary) -> Check {
+pub(super) fn same_impact<Q: Quantities>(reference: &Summary<Q>, reduced: &Summary<Q>) -> Check {
     let differs = reference.scene != reduced.scene || reference.scene_hash != reduced.scene_hash;
     Check::count("same_scene", usize::from(differs))
 }
@@ -81,26 +97,22 @@ pub(super) fn tolerances_are_used(tolerances: &Tolerances, rows: &[Discrepancy])
     Check::count("unknown_tolerances", unused.count())
 }
 
-fn forces(history: &History) -> [(&'static str, &[f64]); 2] {
-    [("outer", &history.outer_force), ("inner", &history.inner_force)]
-}
-
 /// Values are numbers, curves are complete, time increases.
-fn form(summary: &Summary, history: &History) -> Vec<Check> {
-    let curves = || CURVES.iter().filter_map(|(name, _)| history.curve(name));
-    let quantities = PLATE_QUANTITIES.iter().filter_map(|(name, _)| summary.quantities.get(name));
+fn form<Q: Quantities>(summary: &Summary<Q>, history: &Q::History) -> Vec<Check> {
+    let curves = || <Q::History as Curves>::NAMES.iter().filter_map(|(name, _)| history.values(name));
+    let quantities = Q::NAMES.iter().filter_map(|(name, _)| summary.quantities.value(name));
     let not_finite = curves()
         .flatten()
-        .chain(&history.time)
+        .chain(history.time())
         .copied()
         .chain(quantities)
         .chain([summary.energy_residual, summary.momentum_residual])
         .chain(summary.uncertainty.values().copied())
         .filter(|x| !x.is_finite())
         .count();
-    let incomplete = curves().filter(|c| c.len() != history.len() || c.len() < 2).count();
+    let incomplete = curves().filter(|c| c.len() != history.time().len() || c.len() < 2).count();
     let disordered =
-        history.time.windows(2).filter(|w| w[0].partial_cmp(&w[1]) != Some(std::cmp::Ordering::Less));
+        history.time().windows(2).filter(|w| w[0].partial_cmp(&w[1]) != Some(std::cmp::Ordering::Less));
     vec![
         Check::count("not_finite", not_finite),
         Check::count("incomplete_curves", incomplete),
@@ -109,17 +121,18 @@ fn form(summary: &Summary, history: &History) -> Vec<Check> {
 }
 
 /// The history has the samples that the summary states, at the distance it states.
-fn sampling(summary: &Summary, history: &History) -> Vec<Check> {
-    let mut checks = vec![Check::new("first_time", "s", history.time[0], 0.0, 0.0)];
+fn sampling<Q: Quantities>(summary: &Summary<Q>, history: &Q::History) -> Vec<Check> {
+    let time = history.time();
+    let mut checks = vec![Check::new("first_time", "s", time[0], 0.0, 0.0)];
     // A reference that doesn't say how it was sampled can't be checked for missing samples.
     if summary.samples.is_some() || summary.source == Source::Reference {
         let stated = summary.samples.map_or(f64::NAN, |n| n as f64);
-        checks.push(Check::new("samples", "1", history.len() as f64, stated, 0.0));
+        checks.push(Check::new("samples", "1", time.len() as f64, stated, 0.0));
     }
     if summary.sample_interval.is_some() || summary.source == Source::Reference {
         let interval = summary.sample_interval.unwrap_or(f64::NAN);
         let spacing = |w: &[f64]| w[1] - w[0];
-        let worst = history.time.windows(2).map(spacing).fold(interval, |worst, s| {
+        let worst = time.windows(2).map(spacing).fold(interval, |worst, s| {
             if (s - interval).abs() > (worst - interval).abs() { s } else { worst }
         });
         checks.push(Check::new("sample_interval", "s", worst, interval, 0.01 * interval.abs()));
@@ -149,16 +162,21 @@ fn start(setup: &PlateImpact, history: &History) -> Vec<Check> {
     ]
 }
 
-/// Sign, peak and end of a contact force.
-fn contact(name: &str, summary: &Summary, history: &History, force: &[f64]) -> [Check; 3] {
-    let value = |quantity: &str| summary.quantities.get(&format!("{name}_{quantity}")).unwrap_or(f64::NAN);
+/// Sign, peak and end of a contact force over `time`, against the peak in N and the end in s that a summary states.
+pub(super) fn contact(
+    name: &str,
+    source: Source,
+    time: &[f64],
+    force: &[f64],
+    (stated_peak, stated_end): (f64, f64),
+) -> [Check; 3] {
     let tension = force.iter().fold(0.0_f64, |least, &f| least.min(f));
     let floor = FORCE_FLOOR * peak(force);
 
     let (at, found) = force.iter().enumerate().fold((0, 0.0), |m, (k, &f)| if f > m.1 { (k, f) } else { m });
     let neighbours = [at.checked_sub(1), Some(at + 1).filter(|&k| k < force.len())];
     let drop = neighbours.into_iter().flatten().map(|k| found - force[k]).fold(0.0, f64::max);
-    let slack = match summary.source {
+    let slack = match source {
         Source::Reference => REFERENCE_PEAK_SLACK,
         Source::Reduced => REDUCED_PEAK_SLACK,
     };
@@ -167,16 +185,16 @@ fn contact(name: &str, summary: &Summary, history: &History, force: &[f64]) -> [
     let peak_bound = slack * found + 0.25 * drop;
 
     let last = force.iter().rposition(|&f| f > floor);
-    let (end, end_bound) = last.map_or((0.0, history.time[1]), |k| {
-        let before = k.checked_sub(1).map_or(0.0, |j| history.time[k] - history.time[j]);
-        let after = history.time.get(k + 1).map_or(0.0, |t| t - history.time[k]);
+    let (end, end_bound) = last.map_or((0.0, time[1]), |k| {
+        let before = k.checked_sub(1).map_or(0.0, |j| time[k] - time[j]);
+        let after = time.get(k + 1).map_or(0.0, |t| t - time[k]);
         // Room for the rounding of times written as text.
-        (history.time[k], before.max(after) * 1.001)
+        (time[k], before.max(after) * 1.001)
     });
     [
         Check::new(format!("{name}_tension"), "N", tension, 0.0, 1e-6 * peak(force)),
-        Check::new(format!("{name}_force_peak"), "N", found, value("force_peak"), peak_bound),
-        Check::new(format!("{name}_contact_end"), "s", end, value("contact_end"), end_bound),
+        Check::new(format!("{name}_force_peak"), "N", found, stated_peak, peak_bound),
+        Check::new(format!("{name}_contact_end"), "s", end, stated_end, end_bound),
     ]
 }
 

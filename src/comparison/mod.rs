@@ -16,13 +16,14 @@ mod integrity;
 mod interpolation;
 mod iso18571;
 mod russell;
+mod seal_seat;
 mod sprague_geers;
 mod verdict;
 
 pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
 pub use curve_metrics::CurveMetrics;
 pub use discrepancy::{BandVerdict, Discrepancy};
-pub use integrity::Check;
+pub use integrity::{Check, Compared};
 pub(crate) use interpolation::MonotoneCubic;
 pub use iso18571::{Grade, Iso18571, iso18571};
 pub use russell::{Russell, russell};
@@ -30,47 +31,75 @@ pub use sprague_geers::{SpragueGeers, sprague_geers};
 pub use verdict::Verdict;
 
 use crate::error::Result;
-use crate::impact::{CURVES, Outcome, PLATE_QUANTITIES, SCHEMA_VERSION, Summary};
+use crate::impact::{Curves, Outcome, PlateQuantities, Quantities, SCHEMA_VERSION, SeatQuantities, Summary};
 use crate::measured::Measured;
 use crate::scene::{Model, Scene, Tolerances};
 use budget::QuantityBudget;
 use discrepancy::Scales;
+use serde::ser::{SerializeStruct, Serializer};
 use serde::Serialize;
 
-/// The document of `compare` and `gate`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// The document of `compare` and `gate`. In JSON the scenes of both kinds are one list.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
     /// Fail if any scene fails.
     pub verdict: Verdict,
-    /// One entry per scene.
+    /// One entry per plate impact.
     pub scenes: Vec<SceneComparison>,
+    /// One entry per seal seat.
+    pub seats: Vec<SceneComparison<SeatQuantities>>,
 }
 
 impl Comparison {
-    /// The document of these scenes.
+    /// The document of these plate impacts.
     pub fn new(scenes: Vec<SceneComparison>) -> Self {
         let verdict = Verdict::all(scenes.iter().map(|s| s.verdict));
-        Comparison { schema_version: SCHEMA_VERSION, verdict, scenes }
+        Comparison { schema_version: SCHEMA_VERSION, verdict, scenes, seats: Vec::new() }
+    }
+
+    /// The same with these seal seats.
+    pub fn with_seats(self, seats: Vec<SceneComparison<SeatQuantities>>) -> Self {
+        let verdict = Verdict::all(seats.iter().map(|s| s.verdict).chain([self.verdict]));
+        Comparison { verdict, seats, ..self }
+    }
+}
+
+impl Serialize for Comparison {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        /// A scene of either kind.
+        #[derive(Serialize)]
+        #[serde(untagged)]
+        enum Entry<'a> {
+            Plate(&'a SceneComparison),
+            Seat(&'a SceneComparison<SeatQuantities>),
+        }
+        let entries = self.scenes.iter().map(Entry::Plate).chain(self.seats.iter().map(Entry::Seat));
+        let mut document = serializer.serialize_struct("Comparison", 3)?;
+        document.serialize_field("schema_version", &self.schema_version)?;
+        document.serialize_field("verdict", &self.verdict)?;
+        document.serialize_field("scenes", &entries.collect::<Vec<_>>())?;
+        document.end()
     }
 }
 
 /// One scene: its reference and the reduced models compared with it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SceneComparison {
+#[serde(bound = "")]
+pub struct SceneComparison<Q: Quantities = PlateQuantities> {
     /// Name of the scene.
     pub scene: String,
     /// Fail if any model fails or the reference contradicts itself.
     pub verdict: Verdict,
     /// Summary of the reference.
-    pub reference: Summary,
+    pub reference: Summary<Q>,
     /// Whether the reference is consistent with itself and with the scene; always gated.
     pub integrity: Vec<Check>,
     /// Time axis of all curves, fixed by the reference; `None` if its history can't be used.
     pub window: Option<CommonAxis>,
     /// One entry per reduced model.
-    pub models: Vec<ModelComparison>,
+    pub models: Vec<ModelComparison<Q>>,
     /// What causes the difference between model B and the reference, one entry per quantity; empty unless
     /// [`SceneComparison::add_budget`] was called and found models B and C.
     pub budget: Vec<QuantityBudget>,
@@ -98,11 +127,12 @@ impl SceneComparison {
 
 /// One reduced model against the reference.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelComparison {
+#[serde(bound = "")]
+pub struct ModelComparison<Q: Quantities = PlateQuantities> {
     /// Name of the model.
     pub model: String,
     /// Summary of the reduced model.
-    pub summary: Summary,
+    pub summary: Summary<Q>,
     /// Fail if any row or check fails, those of the reference included.
     pub verdict: Verdict,
     /// Quantities, curves and residuals.
@@ -116,7 +146,7 @@ pub struct ModelComparison {
     pub aligned: Vec<AlignedCurve>,
 }
 
-impl ModelComparison {
+impl<Q: Quantities> ModelComparison<Q> {
     /// The row called `quantity`.
     pub fn discrepancy(&self, quantity: &str) -> Option<&Discrepancy> {
         self.discrepancies.iter().find(|d| d.quantity == quantity)
@@ -127,7 +157,7 @@ impl ModelComparison {
     pub fn largest(&self) -> Option<&Discrepancy> {
         self.discrepancies
             .iter()
-            .filter(|d| PLATE_QUANTITIES.iter().any(|(name, _)| *name == d.quantity))
+            .filter(|d| Q::NAMES.iter().any(|(name, _)| *name == d.quantity))
             .filter(|d| d.relative.is_some() && !d.quantity.ends_with("_contacts"))
             .max_by(|a, b| {
                 let size = |d: &Discrepancy| d.relative.map_or(0.0, f64::abs);
@@ -145,7 +175,11 @@ impl ModelComparison {
 ///
 /// All curves are resampled on the window that the reference fixes (see [`CommonAxis::of_reference`]
 /// and [`align`]), so that differently sampled histories don't differ for that reason.
-pub fn compare_scene(scene: &Scene, reference: &Outcome, reduced: &[Outcome]) -> SceneComparison {
+pub fn compare_scene<Q: Compared>(
+    scene: &Scene,
+    reference: &Outcome<Q>,
+    reduced: &[Outcome<Q>],
+) -> SceneComparison<Q> {
     let integrity = integrity::check(scene, reference);
     let sound = Verdict::all(integrity.iter().map(|c| c.verdict));
     let window = CommonAxis::of_reference(reference);
@@ -164,13 +198,13 @@ pub fn compare_scene(scene: &Scene, reference: &Outcome, reduced: &[Outcome]) ->
     }
 }
 
-fn compare_model(
+fn compare_model<Q: Compared>(
     scene: &Scene,
-    reference: &Outcome,
-    reduced: &Outcome,
+    reference: &Outcome<Q>,
+    reduced: &Outcome<Q>,
     window: Option<CommonAxis>,
     reference_sound: Verdict,
-) -> ModelComparison {
+) -> ModelComparison<Q> {
     let name = reduced.summary.model.clone().unwrap_or_default();
     let none = Tolerances::new();
     let tolerances = name.parse::<Model>().ok().and_then(|m| scene.tolerances.get(&m)).unwrap_or(&none);
@@ -197,15 +231,19 @@ fn compare_model(
 }
 
 /// The rows of the summary's quantities.
-fn quantities(reference: &Outcome, reduced: &Outcome, tolerances: &Tolerances) -> Vec<Discrepancy> {
+fn quantities<Q: Quantities>(
+    reference: &Outcome<Q>,
+    reduced: &Outcome<Q>,
+    tolerances: &Tolerances,
+) -> Vec<Discrepancy> {
     let (m, c) = (&reference.summary, &reduced.summary);
-    let row = |(quantity, unit): (&str, &str)| {
-        let value = |s: &Summary| s.quantities.get(quantity).unwrap_or(f64::NAN);
+    let row = |&(quantity, unit): &(&str, &str)| {
+        let value = |s: &Summary<Q>| s.quantities.value(quantity).unwrap_or(f64::NAN);
         // `outer_force_peak` belongs to the curve `outer_force`, and so on; a quantity that
         // belongs to none is its own peak.
-        let curve = CURVES.iter().find(|(curve, _)| quantity.starts_with(curve));
+        let curve = <Q::History as Curves>::NAMES.iter().find(|(curve, _)| quantity.starts_with(curve));
         let peak =
-            curve.and_then(|(name, _)| reference.history.curve(name)).map_or(value(m).abs(), alignment::peak);
+            curve.and_then(|(name, _)| reference.history.values(name)).map_or(value(m).abs(), alignment::peak);
         Discrepancy::new(
             (quantity, unit),
             (value(c), value(m)),
@@ -214,17 +252,17 @@ fn quantities(reference: &Outcome, reduced: &Outcome, tolerances: &Tolerances) -
             m.uncertainty.get(quantity).copied(),
         )
     };
-    PLATE_QUANTITIES.into_iter().map(row).collect()
+    Q::NAMES.iter().map(row).collect()
 }
 
 /// The rows of root mean square and largest distance of every curve; NaN where it can't be measured.
-fn curve_distances(
-    reference: &Outcome,
+fn curve_distances<Q: Quantities>(
+    reference: &Outcome<Q>,
     aligned: &[AlignedCurve],
     tolerances: &Tolerances,
 ) -> Vec<Discrepancy> {
-    let mut rows = Vec::with_capacity(2 * CURVES.len());
-    for (curve, unit) in CURVES {
+    let mut rows = Vec::new();
+    for &(curve, unit) in <Q::History as Curves>::NAMES {
         let found = aligned.iter().find(|a| a.quantity == curve);
         let peak = found.map_or(f64::NAN, AlignedCurve::peak);
         let distances = [
@@ -246,7 +284,7 @@ fn curve_distances(
 }
 
 /// The rows of the conservation residuals.
-fn residuals(m: &Summary, c: &Summary, tolerances: &Tolerances) -> [Discrepancy; 2] {
+fn residuals<Q: Quantities>(m: &Summary<Q>, c: &Summary<Q>, tolerances: &Tolerances) -> [Discrepancy; 2] {
     let row = |quantity, reduced, reference| {
         Discrepancy::of_residual(quantity, (reduced, reference), tolerances.get(quantity))
     };

@@ -1,5 +1,26 @@
 //! The course of an impact over time, the same type for reduced models and the reference.
 
+/// The course over time of one kind of scene: curves by name over one time axis.
+pub trait Curves: Clone + Default + std::fmt::Debug + PartialEq {
+    /// Name and unit of every curve.
+    const NAMES: &'static [(&'static str, &'static str)];
+    /// The columns of its file, in this order; the first is the time.
+    const COLUMNS: &'static [&'static str];
+
+    /// Time in s, strictly increasing.
+    fn time(&self) -> &[f64];
+
+    /// The curve called `name` in [`Curves::NAMES`].
+    fn values(&self, name: &str) -> Option<&[f64]>;
+
+    /// Rate at which the curve called `name` goes on after the last sample, in free flight; `None` if a contact is
+    /// closed there, or the curve is one of an elastic body, which swings on.
+    fn rate_after_end(&self, name: &str) -> Option<f64>;
+
+    /// Where the values of the column called `name` in [`Curves::COLUMNS`] go.
+    fn column(&mut self, name: &str) -> Option<&mut Vec<f64>>;
+}
+
 /// Motion of one body along z.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Motion {
@@ -62,5 +83,52 @@ impl History {
     /// Whether there is no sample.
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
+    }
+}
+
+impl Curves for History {
+    const NAMES: &'static [(&'static str, &'static str)] = &CURVES;
+    const COLUMNS: &'static [&'static str] = &[
+        "time",
+        "outer_displacement",
+        "outer_velocity",
+        "outer_force",
+        "plate_displacement",
+        "plate_velocity",
+        "inner_displacement",
+        "inner_velocity",
+        "inner_force",
+    ];
+
+    fn time(&self) -> &[f64] {
+        &self.time
+    }
+
+    fn values(&self, name: &str) -> Option<&[f64]> {
+        self.curve(name)
+    }
+
+    fn rate_after_end(&self, name: &str) -> Option<f64> {
+        let last = self.len().checked_sub(1)?;
+        let flies = self.outer_force[last] == 0.0 && self.inner_force[last] == 0.0;
+        (flies && !name.starts_with("plate")).then(|| match name {
+            "outer_displacement" => self.outer.velocity[last],
+            "inner_displacement" => self.inner.velocity[last],
+            _ => 0.0,
+        })
+    }
+    fn column(&mut self, name: &str) -> Option<&mut Vec<f64>> {
+        Some(match name {
+            "time" => &mut self.time,
+            "outer_displacement" => &mut self.outer.displacement,
+            "outer_velocity" => &mut self.outer.velocity,
+            "outer_force" => &mut self.outer_force,
+            "plate_displacement" => &mut self.plate.displacement,
+            "plate_velocity" => &mut self.plate.velocity,
+            "inner_displacement" => &mut self.inner.displacement,
+            "inner_velocity" => &mut self.inner.velocity,
+            "inner_force" => &mut self.inner_force,
+            _ => return None,
+        })
     }
 }

@@ -15,6 +15,8 @@ mod outer_body;
 mod point_laws;
 mod recorder;
 pub mod reduced;
+pub mod seal_seat;
+mod seat_result;
 mod step_bounds;
 mod summary;
 pub mod system;
@@ -23,16 +25,19 @@ pub mod variants;
 pub mod wet;
 
 pub use contact_ledger::ContactLedger;
-pub use history::{CURVES, History, Motion};
+pub use history::{CURVES, Curves, History, Motion};
 pub use integrator::Losses;
 pub use outer_body::{Drive, OuterBody};
-pub use summary::{BenderSummary, PLATE_QUANTITIES, PlateQuantities, SCHEMA_VERSION, Source, Summary};
+pub use seat_result::{SEAT_CURVES, SEAT_QUANTITIES, SeatHistory, SeatQuantities, SeatSummary};
+pub use summary::{
+    BenderSummary, PLATE_QUANTITIES, PlateQuantities, Quantities, SCHEMA_VERSION, Source, Summary,
+};
 
 /// What a run gives.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
+pub struct Outcome<Q: Quantities = PlateQuantities> {
     /// The result in a few numbers.
-    pub summary: Summary,
+    pub summary: Summary<Q>,
     /// The course over time.
-    pub history: History,
+    pub history: Q::History,
 }

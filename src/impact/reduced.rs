@@ -11,7 +11,7 @@ use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
 use crate::fluid::FluidForces;
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::scene::{Edge, Material, Model, PlateImpact, Scene, Setup, Shape};
+use crate::scene::{Edge, Material, Model, PlateImpact, Scene, Shape};
 use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
@@ -62,7 +62,7 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::new`].
     pub fn in_series(scene: Scene, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Self> {
-        let Setup::PlateImpact(setup) = &scene.setup;
+        let setup = scene.plate_impact()?;
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
             (Model::A, Some(n)) => {

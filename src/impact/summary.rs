@@ -1,5 +1,6 @@
 //! The result of a run in a few numbers, the same type for reduced models and the reference.
 
+use super::history::{Curves, History};
 use super::{Drive, Losses};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -15,6 +16,22 @@ pub enum Source {
     Reduced,
     /// Finite-element reference.
     Reference,
+}
+
+/// The physical results of one kind of scene, by name.
+///
+/// What a summary, a store or a comparison does alike for every kind goes by this.
+pub trait Quantities: Clone + std::fmt::Debug + PartialEq + Serialize + serde::de::DeserializeOwned {
+    /// The course over time that goes with it.
+    type History: Curves;
+    /// The quantities that are compared, with their units.
+    const NAMES: &'static [(&'static str, &'static str)];
+
+    /// The value of the quantity called `name` in [`Quantities::NAMES`].
+    fn value(&self, name: &str) -> Option<f64>;
+
+    /// Time of the last release of any body, s.
+    fn last_contact(&self) -> f64;
 }
 
 /// Results of an impact through a plate (scene kind `plate-impact`).
@@ -75,6 +92,19 @@ impl PlateQuantities {
     }
 }
 
+impl Quantities for PlateQuantities {
+    type History = History;
+    const NAMES: &'static [(&'static str, &'static str)] = &PLATE_QUANTITIES;
+
+    fn last_contact(&self) -> f64 {
+        self.outer_contact_end.max(self.inner_contact_end)
+    }
+
+    fn value(&self, name: &str) -> Option<f64> {
+        self.get(name)
+    }
+}
+
 /// What is said about a bender besides the quantities; its eq. (1) efficiency relates to its kinetic energy.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BenderSummary {
@@ -87,7 +117,8 @@ pub struct BenderSummary {
 
 /// Summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Summary {
+#[serde(bound = "")]
+pub struct Summary<Q: Quantities = PlateQuantities> {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
     /// Name of the scene.
@@ -102,7 +133,7 @@ pub struct Summary {
     pub modes: Option<usize>,
     /// The physical results.
     #[serde(flatten)]
-    pub quantities: PlateQuantities,
+    pub quantities: Q,
     /// |energy at the end + losses - energy at the start| over the energy at the start.
     pub energy_residual: f64,
     /// Momentum that no impulse accounts for, over the momentum at the start.

@@ -27,7 +27,7 @@ use super::validity;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::{ModalBody, kirchhoff};
 use crate::error::Result;
-use crate::scene::{PlateImpact, Scene, Setup};
+use crate::scene::{PlateImpact, Scene};
 
 /// How the bodies of a scene are simplified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +81,7 @@ impl<'a> Variants<'a> {
         patch_modes: usize,
         continuum: &ContinuumSetup,
     ) -> Result<Self> {
-        let Setup::PlateImpact(setup) = &scene.setup;
+        let setup = scene.plate_impact()?;
         let kirchhoff = kirchhoff::modes(&setup.plate, modes[0].max(patch_modes))?;
         let few = lowest(&kirchhoff, patch_modes);
         let mut rough = Rough::of(&System::new(setup, &few, [0.0; 2]))?;

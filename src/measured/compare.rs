@@ -8,7 +8,7 @@ use super::record::Record;
 use crate::comparison::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
 use crate::impact::{CURVES, Outcome};
-use crate::scene::{Scene, Setup};
+use crate::scene::Scene;
 use serde::Serialize;
 
 /// Measured records of one scene beside its models; part of the comparison document.
@@ -88,7 +88,7 @@ pub fn compare(
     reduced: &[Outcome],
     (bandwidth, speed): (f64, Speed),
 ) -> Result<Measured> {
-    let Setup::PlateImpact(setup) = &scene.setup;
+    let setup = scene.plate_impact()?;
     let window = CommonAxis::of_reference(reference).ok_or_else(|| {
         Error::Reference(format!("the history of the reference of `{}` can't be used", scene.name))
     })?;

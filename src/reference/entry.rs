@@ -1,7 +1,7 @@
 //! One stored solution: a folder whose files are verified before they are believed.
 
 use super::history_file;
-use crate::impact::{Outcome, SCHEMA_VERSION, Source, Summary};
+use crate::impact::{Outcome, PlateQuantities, Quantities, SCHEMA_VERSION, Source, Summary};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -13,9 +13,9 @@ use std::path::{Path, PathBuf};
 /// `outcome.summary.samples` may differ from the number of rows of the history: both are kept
 /// as found, and the comparison makes a failed check of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stored {
+pub struct Stored<Q: Quantities = PlateQuantities> {
     /// Summary and history.
-    pub outcome: Outcome,
+    pub outcome: Outcome<Q>,
     /// What it was made from and with: `provenance.json`.
     pub provenance: Value,
     /// Where it lies.
@@ -36,10 +36,10 @@ const PROVENANCE: &str = "provenance.json";
 const REQUIRED: [&str; 4] = [SUMMARY, HISTORY, "mesh.vtu", PROVENANCE];
 
 /// Verifies the folder's checksums and reads it.
-pub(super) fn load(folder: &Path) -> Result<Stored, Damage> {
+pub(super) fn load<Q: Quantities>(folder: &Path) -> Result<Stored<Q>, Damage> {
     verify(folder)?;
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
-    let summary: Summary = read_json(folder, SUMMARY)?;
+    let summary: Summary<Q> = read_json(folder, SUMMARY)?;
     let provenance: Value = read_json(folder, PROVENANCE)?;
     let history = history_file::read(&folder.join(HISTORY)).map_err(|reason| damage(HISTORY, reason))?;
     if summary.schema_version != SCHEMA_VERSION {

@@ -1,22 +1,9 @@
 //! `history.csv` of a stored solution, read strictly.
 
-use crate::impact::{History, Motion};
+use crate::impact::Curves;
 use std::path::Path;
 
-/// The columns, in this order.
-const COLUMNS: [&str; 9] = [
-    "time",
-    "outer_displacement",
-    "outer_velocity",
-    "outer_force",
-    "plate_displacement",
-    "plate_velocity",
-    "inner_displacement",
-    "inner_velocity",
-    "inner_force",
-];
-
-/// What the name of a band's column adds to that of its curve. Bands follow the columns above, one per curve.
+/// What the name of a band's column adds to that of its curve. Bands follow the curves, one per curve.
 const BAND: &str = "_band";
 
 fn is_width(text: &str) -> bool {
@@ -24,42 +11,42 @@ fn is_width(text: &str) -> bool {
 }
 
 /// Whether these are the columns of a history, with or without bands.
-fn are_columns(found: &csv::StringRecord) -> bool {
-    let bands = COLUMNS[1..].iter().map(|name| format!("{name}{BAND}"));
-    let all: Vec<String> = COLUMNS.iter().map(|name| (*name).to_owned()).chain(bands).collect();
-    found.iter().eq(COLUMNS) || found.iter().eq(all.iter().map(String::as_str))
+fn are_columns(found: &csv::StringRecord, columns: &[&str]) -> bool {
+    let bands = columns[1..].iter().map(|name| format!("{name}{BAND}"));
+    let all: Vec<String> = columns.iter().map(|name| (*name).to_owned()).chain(bands).collect();
+    found.iter().eq(columns.iter().copied()) || found.iter().eq(all.iter().map(String::as_str))
 }
 
-/// Reads a history: the columns above, finite numbers, strictly increasing time, one row at least.
+/// Reads a history: its columns, finite numbers, strictly increasing time, one row at least.
 ///
 /// # Errors
 /// One sentence with line, column and value.
-pub(super) fn read(path: &Path) -> Result<History, String> {
+pub(super) fn read<H: Curves>(path: &Path) -> Result<H, String> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .from_path(path)
         .map_err(|e| format!("can't be read: {e}"))?;
-    let mut columns: [Vec<f64>; 9] = Default::default();
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); H::COLUMNS.len()];
     for (index, record) in reader.records().enumerate() {
         let line = index + 1;
         // The reader itself refuses a row with another number of columns than the first.
         let record = record.map_err(|e| format!("line {line}: {e}"))?;
         if index == 0 {
-            if !are_columns(&record) {
+            if !are_columns(&record, H::COLUMNS) {
                 let found: Vec<&str> = record.iter().take(12).collect();
                 return Err(format!(
                     "line 1: the columns are {}; expected {} and perhaps the bands of the curves",
                     found.join(","),
-                    COLUMNS.join(",")
+                    H::COLUMNS.join(",")
                 ));
             }
             continue;
         }
-        for ((column, name), text) in columns.iter_mut().zip(COLUMNS).zip(record.iter()) {
+        for ((column, name), text) in columns.iter_mut().zip(H::COLUMNS).zip(record.iter()) {
             let number: Option<f64> = text.parse().ok().filter(|n: &f64| n.is_finite());
             let number =
                 number.ok_or_else(|| format!("line {line}: {name} is `{text}`, not a finite number"))?;
-            if let (true, Some(last)) = (name == "time", column.last())
+            if let (true, Some(last)) = (*name == "time", column.last())
                 && number <= *last
             {
                 return Err(format!(
@@ -68,30 +55,18 @@ pub(super) fn read(path: &Path) -> Result<History, String> {
             }
             column.push(number);
         }
-        if let Some(text) = record.iter().skip(COLUMNS.len()).find(|text| !is_width(text)) {
+        if let Some(text) = record.iter().skip(H::COLUMNS.len()).find(|text| !is_width(text)) {
             return Err(format!("line {line}: a band is `{text}`, not a finite number of 0 or more"));
         }
     }
     if columns[0].is_empty() {
         return Err("has no sample".to_owned());
     }
-    let [
-        time,
-        outer_displacement,
-        outer_velocity,
-        outer_force,
-        plate_displacement,
-        plate_velocity,
-        inner_displacement,
-        inner_velocity,
-        inner_force,
-    ] = columns;
-    Ok(History {
-        time,
-        outer: Motion { displacement: outer_displacement, velocity: outer_velocity },
-        plate: Motion { displacement: plate_displacement, velocity: plate_velocity },
-        inner: Motion { displacement: inner_displacement, velocity: inner_velocity },
-        outer_force,
-        inner_force,
-    })
+    let mut history = H::default();
+    for (values, name) in columns.into_iter().zip(H::COLUMNS) {
+        let column =
+            history.column(name).ok_or_else(|| format!("has a column `{name}` that belongs nowhere"))?;
+        *column = values;
+    }
+    Ok(history)
 }

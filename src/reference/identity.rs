@@ -2,7 +2,7 @@
 
 use super::Resolution;
 use crate::scene::hash::{canonical, sha256_hex};
-use crate::scene::{Scene, unit_of};
+use crate::scene::{Scene, Setup, unit_of};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -30,6 +30,9 @@ pub(super) fn solver_document(scene: &Scene, resolution: Resolution) -> Result<V
         fields.remove(foreign);
     }
     fields.insert("scene_hash".into(), scene.hash().into());
+    if let Setup::SealSeat(setup) = &scene.setup {
+        fields.insert("geometry_hash".into(), setup.geometry_hash().into());
+    }
     fields.insert("settings_hash".into(), settings_hash(scene, resolution).into());
     Ok(document)
 }
@@ -40,7 +43,18 @@ pub(super) fn staleness(provenance: &Value, scene: &Scene, resolution: Resolutio
     let stored = &provenance["scene"];
     let mut reasons = Vec::new();
     if provenance["scene_hash"] != present["scene_hash"] {
-        let physical = ["kind", "plate", "outer", "inner", "fluid", "run"];
+        let physical = [
+            "kind",
+            "plate",
+            "outer",
+            "inner",
+            "fluid",
+            "seat",
+            "sphere",
+            "actuator",
+            "intended_angle",
+            "run",
+        ];
         let mut changes = Vec::new();
         for key in physical {
             differences(key, &stored[key], &present[key], &mut changes);

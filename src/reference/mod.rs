@@ -10,6 +10,7 @@ mod history_file;
 mod identity;
 mod modes;
 mod python;
+mod seat_mesh;
 mod solve;
 mod store;
 
@@ -17,9 +18,10 @@ pub use child::Progress;
 pub use doctor::{Check, doctor};
 pub use entry::Stored;
 pub use identity::settings_hash;
-pub use modes::plate_modes;
+pub use modes::{plate_modes, seat_frequencies};
 pub use python::{python, versions};
-pub use solve::{Wish, solve, solve_with};
+pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_meshes};
+pub use solve::{Wish, solve, solve_as, solve_with};
 pub use store::{Lookup, Store};
 
 /// Fineness of the reference's mesh, relative to `reference.elements_per_contact_radius`.

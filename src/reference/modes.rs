@@ -1,8 +1,8 @@
-//! Eigenmodes of the plate from the finite-element side: one run of `fem_reference modes` (SLEPc).
+//! Eigenmodes from the finite-element side: one run of `fem_reference modes` (SLEPc).
 
 use super::{Resolution, identity, python};
 use crate::body::continuum::PlateMode;
-use crate::scene::{Scene, Setup};
+use crate::scene::Scene;
 use crate::{Error, Result};
 use serde::Deserialize;
 use std::path::Path;
@@ -16,6 +16,8 @@ struct Document {
 struct Mode {
     /// Hz.
     frequency: f64,
+    /// Of a plate's mode.
+    #[serde(default)]
     longitudinal: bool,
 }
 
@@ -23,14 +25,32 @@ struct Mode {
 /// rigid motion of a free plate is not among them. `python` is the interpreter, see [`super::python`].
 ///
 /// # Errors
-/// [`Error::Solver`] if the solver fails or its answer can't be read, [`Error::Io`] if no temporary file can be
-/// written.
+/// [`Error::Scene`] if the scene has no plate, [`Error::Solver`] if the solver fails or its answer can't be read,
+/// [`Error::Io`] if no temporary file can be written.
 pub fn plate_modes(python: &Path, scene: &Scene, count: usize) -> Result<Vec<PlateMode>> {
-    let Setup::PlateImpact(setup) = &scene.setup;
-    let thickness = setup.plate.thickness;
-    let failed = |what: String| {
-        Error::Solver(format!("modes of the plate of thickness {thickness} m by SLEPc: {what}"))
-    };
+    let thickness = scene.plate_impact()?.plate.thickness;
+    let modes = modes(python, scene, None, count, &format!("the plate of thickness {thickness} m"))?;
+    Ok(modes
+        .into_iter()
+        .map(|m| PlateMode { frequency: m.frequency, longitudinal: m.longitudinal })
+        .collect())
+}
+
+/// The `count` lowest eigenfrequencies in Hz, ascending, of the scene's seat on the mesh in the file `mesh` (`.vtu`):
+/// rim clamped, symmetric about y = 0, with the lumped mass of the reference. `python` is the interpreter, see
+/// [`super::python`].
+///
+/// # Errors
+/// As [`plate_modes`].
+pub fn seat_frequencies(python: &Path, scene: &Scene, mesh: &Path, count: usize) -> Result<Vec<f64>> {
+    scene.seal_seat()?;
+    let mesh = std::path::absolute(mesh).map_err(|e| Error::io("finding", mesh, e))?;
+    let modes = modes(python, scene, Some(&mesh), count, &format!("the seat of `{}`", scene.name))?;
+    Ok(modes.into_iter().map(|m| m.frequency).collect())
+}
+
+fn modes(python: &Path, scene: &Scene, mesh: Option<&Path>, count: usize, body: &str) -> Result<Vec<Mode>> {
+    let failed = |what: String| Error::Solver(format!("modes of {body} by SLEPc: {what}"));
     let folder = std::env::temp_dir();
     let folder = tempfile::tempdir_in(&folder).map_err(|e| Error::io("writing into", &folder, e))?;
     let input = folder.path().join("scene.json");
@@ -38,6 +58,9 @@ pub fn plate_modes(python: &Path, scene: &Scene, count: usize) -> Result<Vec<Pla
     std::fs::write(&input, document.to_string()).map_err(|e| Error::io("writing", &input, e))?;
     let mut command = python::fem_reference(python);
     command.args(["modes", "--count", &count.to_string(), "--scene"]).arg(&input);
+    if let Some(mesh) = mesh {
+        command.arg("--mesh").arg(mesh);
+    }
     let output = command.output().map_err(|e| failed(format!("{} can't be run: {e}", python.display())))?;
     if !output.status.success() {
         let log = String::from_utf8_lossy(&output.stderr);
@@ -48,9 +71,5 @@ pub fn plate_modes(python: &Path, scene: &Scene, count: usize) -> Result<Vec<Pla
     if document.modes.len() != count {
         return Err(failed(format!("{} modes came back, {count} were asked for", document.modes.len())));
     }
-    Ok(document
-        .modes
-        .into_iter()
-        .map(|m| PlateMode { frequency: m.frequency, longitudinal: m.longitudinal })
-        .collect())
+    Ok(document.modes)
 }

@@ -3,6 +3,7 @@
 use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::{Resolution, Store, identity, python};
+use crate::impact::Quantities;
 use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use std::ffi::OsStr;
@@ -36,7 +37,7 @@ pub fn solve(
     wish: &Wish,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
-    solve_with(&python::python()?, scene, resolution, store, wish, progress)
+    solve_as(&python::python()?, scene, resolution, store, wish, progress)
 }
 
 /// As [`solve`], with the interpreter `python`.
@@ -51,6 +52,21 @@ pub fn solve_with(
     wish: &Wish,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
+    solve_as(python, scene, resolution, store, wish, progress)
+}
+
+/// As [`solve_with`], for a scene of the kind that has the quantities `Q`.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_as<Q: Quantities>(
+    python: &Path,
+    scene: &Scene,
+    resolution: Resolution,
+    store: &Store,
+    wish: &Wish,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Stored<Q>> {
     let work = store.work_folder(scene)?;
     let input = work.path().join("scene.json");
     let output = work.path().join("result");

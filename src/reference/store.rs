@@ -5,6 +5,7 @@
 
 use super::entry::{self, Damage, Stored};
 use super::{Resolution, identity};
+use crate::impact::{PlateQuantities, Quantities};
 use crate::project::project_root;
 use crate::scene::Scene;
 use crate::{Error, Result};
@@ -30,9 +31,9 @@ pub struct Store {
 
 /// What the store has for a scene at a resolution.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Lookup {
+pub enum Lookup<Q: Quantities = PlateQuantities> {
     /// A solution of exactly this scene with exactly these settings.
-    Found(Box<Stored>),
+    Found(Box<Stored<Q>>),
     /// There is none.
     Missing,
     /// There is one of another scene or with other settings.
@@ -49,7 +50,7 @@ pub enum Lookup {
     },
 }
 
-impl From<Damage> for Lookup {
+impl<Q: Quantities> From<Damage> for Lookup<Q> {
     fn from(damage: Damage) -> Self {
         Lookup::Damaged { file: damage.file, reason: damage.reason }
     }
@@ -84,8 +85,13 @@ impl Store {
         Ok(parent.join(format!(".checkpoint-{}", resolution)))
     }
 
-    /// Looks for the solution of `scene` at `resolution`. Every file is verified by its checksum.
+    /// Looks for the solution of `scene`, a plate impact, at `resolution`. Every file is verified by its checksum.
     pub fn find(&self, scene: &Scene, resolution: Resolution) -> Lookup {
+        self.find_as(scene, resolution)
+    }
+
+    /// As [`Store::find`], for a scene of the kind that has the quantities `Q`.
+    pub fn find_as<Q: Quantities>(&self, scene: &Scene, resolution: Resolution) -> Lookup<Q> {
         let folder = self.folder(scene, resolution);
         loop {
             let before = entry::fingerprint(&folder);
@@ -145,7 +151,7 @@ impl Store {
     }
 }
 
-fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
+fn examine<Q: Quantities>(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup<Q> {
     match fs::metadata(folder) {
         Err(e) if e.kind() == ErrorKind::NotFound => return Lookup::Missing,
         Err(e) => return Damage { file: folder.to_path_buf(), reason: format!("can't be read: {e}") }.into(),

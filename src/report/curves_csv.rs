@@ -23,7 +23,7 @@ pub fn curves_csv(report: &SceneReport) -> Result<String> {
         let columns: Vec<Vec<f64>> = sources
             .iter()
             .flat_map(|(_, history)| {
-                let mut curves = sample(axis, history);
+                let mut curves = sample(axis, *history);
                 curves.sort_by_key(|c| CURVES.iter().position(|(name, _)| *name == c.quantity));
                 let missing = if curves.is_empty() { CURVES.len() } else { 0 };
                 curves.into_iter().map(|c| c.values).chain(vec![Vec::new(); missing])

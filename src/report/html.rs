@@ -4,12 +4,13 @@
 use super::format::{Prefixed, model_name, percent, prefixed, significant, with_unit, words};
 use super::{Report, SceneReport, Theme, figure};
 use crate::comparison::{BandVerdict, Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
+use crate::impact::Quantities;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 
 const STYLE: &str = include_str!("style.css");
 
-fn page(title: &str, body: &Markup) -> String {
+pub(super) fn page(title: &str, body: &Markup) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -26,7 +27,7 @@ fn page(title: &str, body: &Markup) -> String {
     .into_string()
 }
 
-fn badge(verdict: Verdict) -> Markup {
+pub(super) fn badge(verdict: Verdict) -> Markup {
     html! { span class=(format!("verdict {verdict}")) { (verdict) } }
 }
 
@@ -62,6 +63,7 @@ pub fn index_page(report: &Report) -> String {
                         }
                     }
                 }
+                @for seat in &report.seats { (super::seal_seat::index_rows(seat)) }
             }
         } }
         p { a href="comparison.json" { "JSON" } " · " a href="comparison.md" { "Markdown" } " · "
@@ -148,7 +150,7 @@ pub fn scene_page(report: &SceneReport) -> String {
     page(&format!("{} · impactcheck", comparison.scene), &body)
 }
 
-fn model_section(model: &ModelComparison) -> Markup {
+pub(super) fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
     html! {
         h2 { "Model " (model_name(&model.model, model.summary.modes)) " " (badge(model.verdict)) }
         @for warning in &model.summary.warnings { p { strong { "Warning: " } (warning) } }
@@ -235,7 +237,7 @@ fn curve_row(curve: &CurveMetrics) -> Markup {
 }
 
 /// What a result contradicts itself in, in plain sight.
-fn contradictions(source: &str, checks: &[Check]) -> Markup {
+pub(super) fn contradictions(source: &str, checks: &[Check]) -> Markup {
     let failed: Vec<_> = checks.iter().filter(|c| !c.verdict.passed()).collect();
     html! {
         @if !failed.is_empty() {
@@ -245,7 +247,7 @@ fn contradictions(source: &str, checks: &[Check]) -> Markup {
     }
 }
 
-fn checks(checks: &[Check]) -> Markup {
+pub(super) fn checks(checks: &[Check]) -> Markup {
     html! {
         div.scroll { table.checks {
             thead { tr {
@@ -267,7 +269,7 @@ fn checks(checks: &[Check]) -> Markup {
 }
 
 /// A table of what nested JSON says, a row per leaf.
-fn facts(of: &[(&str, Option<&Value>)]) -> Markup {
+pub(super) fn facts(of: &[(&str, Option<&Value>)]) -> Markup {
     let mut rows = Vec::new();
     for (name, value) in of {
         if let Some(value) = value {

@@ -1,8 +1,9 @@
 //! JUnit XML for continuous integration: a suite per scene, a case per model and quantity.
 
 use super::Report;
-use crate::comparison::{Check, Discrepancy};
+use crate::comparison::{Check, Discrepancy, SceneComparison};
 use crate::error::{Error, Result};
+use crate::impact::Quantities;
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 
 /// JUnit XML. It holds no times, so that equal results give equal files.
@@ -11,21 +12,23 @@ use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 /// [`Error::Internal`] if it can't be serialised.
 pub fn junit(report: &Report) -> Result<String> {
     let mut document = quick_junit::Report::new("impactcheck");
-    for scene in &report.scenes {
-        let comparison = &scene.comparison;
-        let mut suite = TestSuite::new(comparison.scene.clone());
-        suite.add_test_cases(
-            comparison.integrity.iter().map(|c| integrity_case(&comparison.scene, "reference", c)),
-        );
-        for model in &comparison.models {
-            let rows = model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d));
-            suite.add_test_cases(rows);
-            let checks = model.integrity.iter();
-            suite.add_test_cases(checks.map(|c| integrity_case(&comparison.scene, &model.model, c)));
-        }
-        document.add_test_suite(suite);
-    }
+    document.add_test_suites(report.scenes.iter().map(|scene| suite(&scene.comparison)));
+    document.add_test_suites(report.seats.iter().map(|seat| suite(&seat.comparison)));
     document.to_string().map_err(|e| Error::Internal(format!("writing JUnit XML: {e}")))
+}
+
+fn suite<Q: Quantities>(comparison: &SceneComparison<Q>) -> TestSuite {
+    let mut suite = TestSuite::new(comparison.scene.clone());
+    suite.add_test_cases(
+        comparison.integrity.iter().map(|c| integrity_case(&comparison.scene, "reference", c)),
+    );
+    for model in &comparison.models {
+        let rows = model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d));
+        suite.add_test_cases(rows);
+        let checks = model.integrity.iter();
+        suite.add_test_cases(checks.map(|c| integrity_case(&comparison.scene, &model.model, c)));
+    }
+    suite
 }
 
 fn named(scene: &str, source: &str, name: &str, failure: Option<String>) -> TestCase {

@@ -1,8 +1,9 @@
 //! The report as Markdown: verdicts, discrepancies and curve metrics as tables.
 
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
-use super::{Report, SceneReport};
-use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison};
+use super::{Report, SceneReport, SeatReport};
+use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison, SceneComparison};
+use crate::impact::Quantities;
 
 /// Markdown of the whole report.
 pub fn markdown(report: &Report) -> String {
@@ -11,25 +12,53 @@ pub fn markdown(report: &Report) -> String {
         "# impactcheck: {verdict}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy |\n|---|---|---|--:|--:|---|\n"
     );
     for scene in &report.scenes {
-        let reference = scene.comparison.reference.quantities.efficiency;
         for model in &scene.comparison.models {
-            let largest = model
-                .largest()
-                .map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
-            text += &format!(
-                "| {} | {} | {} | {} | {} | {largest} |\n",
-                escape(&scene.comparison.scene),
-                escape(&model_name(&model.model, model.summary.modes)),
-                model.verdict,
-                significant(model.summary.quantities.efficiency, 4),
-                significant(reference, 4),
-            );
+            text += &row(&scene.comparison, model);
+        }
+    }
+    for seat in &report.seats {
+        for model in &seat.comparison.models {
+            text += &row(&seat.comparison, model);
         }
     }
     for scene in &report.scenes {
         text += &section(scene);
     }
+    for seat in &report.seats {
+        text += &seat_section(seat);
+    }
     text
+}
+
+/// A model's row in the table of verdicts.
+fn row<Q: Quantities>(comparison: &SceneComparison<Q>, model: &ModelComparison<Q>) -> String {
+    let largest =
+        model.largest().map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
+    let efficiency = |q: &Q| significant(q.value("efficiency").unwrap_or(f64::NAN), 4);
+    format!(
+        "| {} | {} | {} | {} | {} | {largest} |\n",
+        escape(&comparison.scene),
+        escape(&model_name(&model.model, model.summary.modes)),
+        model.verdict,
+        efficiency(&model.summary.quantities),
+        efficiency(&comparison.reference.quantities),
+    )
+}
+
+/// A seal seat's: picture, curves and tables.
+fn seat_section(seat: &SeatReport) -> String {
+    let comparison = &seat.comparison;
+    let mut text = format!(
+        "\n## {0}: {1}\n\n{2}\n\n![Section with the directions of flight]({0}-section.svg)\n\n![Forces and velocities]({0}.svg)\n",
+        escape(&comparison.scene),
+        comparison.verdict,
+        escape(&seat.scene.description),
+    );
+    text += &failures("the reference", &comparison.integrity);
+    for model in &comparison.models {
+        text += &model_section(model);
+    }
+    text + &format!("\nMade by:\n\n    {}\n", seat.command)
 }
 
 fn section(scene: &SceneReport) -> String {
@@ -51,7 +80,7 @@ fn section(scene: &SceneReport) -> String {
     text
 }
 
-fn model_section(model: &ModelComparison) -> String {
+fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> String {
     let name = escape(&model_name(&model.model, model.summary.modes));
     let mut text = format!(
         "\n### Model {name}: {}\n\n| quantity | reduced | reference | difference | relative | 95 % band | \\|E\\| against u | tolerance | bias | verdict |\n|---|--:|--:|--:|--:|--:|---|--:|--:|---|\n",

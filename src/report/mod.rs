@@ -18,6 +18,8 @@ mod markdown;
 mod measured_section;
 mod png;
 mod polyline;
+mod seal_seat;
+mod seal_seat_picture;
 mod terminal;
 mod ticks;
 mod write;
@@ -31,6 +33,8 @@ pub use junit::junit;
 pub use markdown::markdown;
 pub use measured_section::efficiency_figure;
 pub use png::png;
+pub use seal_seat::{Cost, SeatReport, seat_curves, seat_curves_csv, seat_page, seat_section};
+pub use seal_seat_picture::{Arrow, seat_picture};
 pub use terminal::terminal;
 pub use write::{check_writable, write, write_file};
 
@@ -41,8 +45,10 @@ use crate::scene::Scene;
 /// Everything the exporters need.
 #[derive(Debug, Clone)]
 pub struct Report<'a> {
-    /// One entry per scene, in the order of the report.
+    /// One entry per plate impact, in the order of the report.
     pub scenes: Vec<SceneReport<'a>>,
+    /// One entry per seal seat.
+    pub seats: Vec<SeatReport>,
 }
 
 /// One scene of the report.
@@ -66,5 +72,6 @@ impl Report<'_> {
     /// The comparison document of all scenes.
     pub fn comparison(&self) -> Comparison {
         Comparison::new(self.scenes.iter().map(|s| s.comparison.clone()).collect())
+            .with_seats(self.seats.iter().map(|s| s.comparison.clone()).collect())
     }
 }

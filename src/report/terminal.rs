@@ -47,6 +47,9 @@ pub fn terminal(report: &Report) -> String {
         }
         text.push('\n');
     }
+    for seat in &report.seats {
+        text += &super::seal_seat::terminal(seat);
+    }
     text
 }
 

@@ -118,6 +118,22 @@ fn files(report: &Report) -> Result<Vec<(String, Vec<u8>)>> {
         files.push((format!("{name}.csv"), super::curves_csv(scene)?.into_bytes()));
         files.push((format!("{name}.html"), super::scene_page(scene).into_bytes()));
     }
+    for seat in &report.seats {
+        let name = &seat.comparison.scene;
+        if !is_file_name(name) {
+            return Err(Error::Usage(format!("scene name `{name}` can't be used as a file name")));
+        }
+        if !names.insert(name) || name == "index" {
+            return Err(Error::Usage(format!("scene name `{name}` stands for two pages of the report")));
+        }
+        let section = super::seat_section(seat).map(|svg| (format!("{name}-section"), svg));
+        for (stem, svg) in section.into_iter().chain([(name.clone(), super::seat_curves(seat))]) {
+            files.push((format!("{stem}.png"), super::png(&svg, PNG_SCALE)?));
+            files.push((format!("{stem}.svg"), svg.into_bytes()));
+        }
+        files.push((format!("{name}.csv"), super::seat_curves_csv(seat)?));
+        files.push((format!("{name}.html"), super::seat_page(seat).into_bytes()));
+    }
     Ok(files)
 }
 

@@ -13,10 +13,10 @@ pub(super) fn chosen<'f>(field: &'f Field, value: &Spanned<DeValue>) -> Option<&
     choices.iter().find(|c| c.name == text)
 }
 
-/// "it can be: a, b" for what this version can run.
+/// "it can be: a, b".
 pub(super) fn alternatives(field: &Field) -> String {
     let Kind::Choice(choices) = &field.kind else { return String::new() };
-    let names: Vec<&str> = choices.iter().filter(|c| c.refused.is_none()).map(|c| c.name).collect();
+    let names: Vec<&str> = choices.iter().map(|c| c.name).collect();
     format!("it can be: {}", names.join(", "))
 }
 
@@ -27,6 +27,10 @@ pub(super) fn needed(kind: &Kind, path: &str) -> (&'static str, String) {
             let names: Vec<&str> = choices.iter().map(|c| c.name).collect();
             ("a text", format!("write one of: \"{}\"", names.join("\", \"")))
         }
+        Kind::Quantities(dimension, ..) => (
+            "a list",
+            format!("write a list in square brackets, for example [\"{}\"]", dimension.describe().2),
+        ),
         Kind::Flag => ("true or false", "write true or false, without quotes".to_owned()),
         Kind::Table(_) | Kind::TableOf(_) | Kind::Tolerances => {
             ("a table", format!("write a table [{path}]"))
@@ -45,6 +49,10 @@ pub(super) fn example(place: &Place, field: &Field) -> String {
             let (_, unit, sample) = dimension.describe();
             let quote = if *dimension == Dimension::NONE { "" } else { "\"" };
             format!("`{key} = {quote}{sample}{quote}`: {doc}, {}", bound.describe(unit))
+        }
+        Kind::Quantities(dimension, bound, most) => {
+            let (_, unit, sample) = dimension.describe();
+            format!("`{key} = [\"{sample}\"]`: {doc}, 1 to {most} numbers, each {}", bound.describe(unit))
         }
         Kind::Choice(choices) => format!("`{key} = \"{}\"`: {doc}; {}", choices[0].name, alternatives(field)),
         Kind::Count(low, _) => format!("`{key} = {low}`: {doc}"),

@@ -3,7 +3,7 @@
 use super::advice::{alternatives, chosen, example, needed};
 use super::problem::{Collector, did_you_mean};
 use super::quantity::{self, Dimension, QuantityError};
-use super::specification::{Bound, Choice, DEFAULT_GEOMETRY, Field, Kind};
+use super::specification::{Bound, DEFAULT_GEOMETRY, Field, Kind};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -13,6 +13,7 @@ use toml::de::{DeTable, DeValue};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Checked {
     Number(f64),
+    Numbers(Vec<f64>),
     Count(u64),
     Text(String),
     Flag(bool),
@@ -64,28 +65,19 @@ impl<'a> Checker<'a> {
     }
 
     /// Checks `table` against `fields`; what is returned holds only values without fault.
-    /// `None` if this version can't run its `kind`: then nothing else in it is looked at.
-    pub(super) fn table(&mut self, place: &Place, table: &DeTable, fields: &[Field]) -> Option<Values> {
+    pub(super) fn table(&mut self, place: &Place, table: &DeTable, fields: &[Field]) -> Values {
         let mut values = Values::new();
         // What some keys belong to: the kind of a body, or the geometry of the reference.
         let selector = fields.iter().find(|f| f.key == "kind" || f.key == "geometry");
         let word = selector.map_or("kind", |f| f.key);
         let kind = selector.zip(table.get(word));
-        if let Some((field, value)) = kind
-            && let Some(Choice { refused: Some(sentence), .. }) = chosen(field, value)
-        {
-            let help = alternatives(field);
-            self.problems.add(
-                value.span(),
-                format!("`{}`: {sentence}", place.key(word)),
-                "not in this version",
-                help,
-            );
-            return None;
-        }
         let absent = (word == "geometry" && kind.is_none()).then_some(DEFAULT_GEOMETRY);
         let kind = kind.and_then(|(field, value)| Some(chosen(field, value)?.name)).or(absent);
-        for field in fields {
+        // A key that has a form for this kind is not told about its other forms.
+        let elsewhere = |field: &Field| {
+            !field.belongs_to(kind) && fields.iter().any(|f| f.key == field.key && f.belongs_to(kind))
+        };
+        for field in fields.iter().filter(|field| !elsewhere(field)) {
             match table.get_key_value(field.key) {
                 Some((key, _)) if kind.is_some() && !field.belongs_to(kind) => {
                     let (kind, owners) = (kind.unwrap_or_default(), field.only.join("` and `"));
@@ -117,7 +109,7 @@ impl<'a> Checker<'a> {
             fields.iter().filter(|f| kind.is_none() || f.belongs_to(kind)).map(|f| f.key),
             fields,
         );
-        Some(values)
+        values
     }
 
     /// Notes that a key is not there.
@@ -178,8 +170,11 @@ impl<'a> Checker<'a> {
             (Kind::Count(low, high), _) => self.count(place, value, *low, *high),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(Checked::Flag(*flag)),
             (Kind::Material, DeValue::String(text)) => self.material(place, value, text),
+            (Kind::Quantities(dimension, bound, most), DeValue::Array(items)) => {
+                self.quantities(place, value, items, (*dimension, *bound), *most)
+            }
             (Kind::Table(fields), DeValue::Table(table)) => {
-                self.table(place, table, fields).map(Checked::Table)
+                Some(Checked::Table(self.table(place, table, fields)))
             }
             (Kind::TableOf(fields), DeValue::Table(tables)) => self.tables(place, tables, fields),
             (kind, found) => {
@@ -212,7 +207,7 @@ impl<'a> Checker<'a> {
             let inner = Place { path: &path, span: key.span() };
             match value.get_ref() {
                 DeValue::Table(table) => {
-                    let checked = self.table(&inner, table, fields).unwrap_or_default();
+                    let checked = self.table(&inner, table, fields);
                     values.insert(key.get_ref().to_string(), Checked::Table(checked));
                 }
                 found => {
@@ -270,6 +265,25 @@ impl<'a> Checker<'a> {
             "out of range",
             format!("write a whole number from {low} to {high}, for example 16"),
         )
+    }
+
+    /// Reads a list of numbers or texts with units, in SI.
+    fn quantities(
+        &mut self,
+        place: &Place,
+        value: &Spanned<DeValue>,
+        items: &[Spanned<DeValue>],
+        (dimension, bound): (Dimension, Bound),
+        most: usize,
+    ) -> Option<Checked> {
+        if items.is_empty() || items.len() > most {
+            let message = format!("but it has to have 1 to {most} entries; found: {}", items.len());
+            let help = format!("write a list like [\"{}\"]", dimension.describe().2);
+            return self.fault(place, value, &message, "wrong length", help);
+        }
+        let numbers: Vec<Option<f64>> =
+            items.iter().map(|item| self.quantity(place, item, dimension, bound)).collect();
+        Some(Checked::Numbers(numbers.into_iter().collect::<Option<_>>()?))
     }
 
     /// Reads a number or a text with unit, in SI.

@@ -7,12 +7,14 @@
 mod advice;
 mod alternatives;
 mod check;
+mod collision;
 mod find;
 pub(crate) mod hash;
 mod problem;
 mod quantity;
 mod read;
 mod schema;
+mod seal_seat;
 mod specification;
 mod template;
 mod tolerances;
@@ -23,9 +25,11 @@ pub use problem::{Problem, Problems, problems};
 pub(crate) use quantity::in_unit as quantity_in;
 pub use read::MAX_FILE_BYTES;
 pub use schema::schema;
+pub use seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
 pub(crate) use specification::unit_of;
 pub use template::{Field, Rejected, Template};
 
+use crate::Error;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -216,6 +220,8 @@ pub struct ShearThinning {
 pub enum Setup {
     /// Outer body, circular plate, inner body on one axis.
     PlateImpact(Box<PlateImpact>),
+    /// Sphere in a flexibly mounted seal seat, struck from below.
+    SealSeat(Box<SealSeat>),
 }
 
 /// Outer body, circular plate, inner body on one axis.
@@ -292,8 +298,12 @@ pub enum Geometry {
 pub struct ReferenceSettings {
     /// Geometry of the elements.
     pub geometry: Geometry,
-    /// Elements across the contact radius at `paper` resolution.
-    pub elements_per_contact_radius: f64,
+    /// Elements across the contact radius at `paper` resolution; `None` for a seal seat.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elements_per_contact_radius: Option<f64>,
+    /// Elements across the radius of the contact ring at `paper` resolution, seal seat only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elements_per_ring_radius: Option<f64>,
     /// Order of the elements, solid geometry only; `None` = quadratic.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub element_order: Option<u64>,
@@ -352,4 +362,37 @@ pub struct Scene {
     pub reference: ReferenceSettings,
     /// Tolerances of the gate, by reduced model.
     pub tolerances: BTreeMap<Model, Tolerances>,
+}
+
+impl Scene {
+    /// The plate impact, for what knows nothing else.
+    ///
+    /// # Errors
+    /// [`Error::Scene`](crate::Error::Scene) if the scene is of another kind.
+    pub fn plate_impact(&self) -> crate::Result<&PlateImpact> {
+        match &self.setup {
+            Setup::PlateImpact(setup) => Ok(setup),
+            Setup::SealSeat(_) => Err(self.other_kind("seal-seat", "plate-impact")),
+        }
+    }
+
+    /// The seal seat, for what knows nothing else.
+    ///
+    /// # Errors
+    /// [`Error::Scene`](crate::Error::Scene) if the scene is of another kind.
+    pub fn seal_seat(&self) -> crate::Result<&SealSeat> {
+        match &self.setup {
+            Setup::SealSeat(setup) => Ok(setup),
+            Setup::PlateImpact(_) => Err(self.other_kind("plate-impact", "seal-seat")),
+        }
+    }
+
+    fn other_kind(&self, found: &str, needed: &str) -> Error {
+        let help = format!("name a scene of kind = \"{needed}\"");
+        Error::Scene(miette::miette!(
+            help = help,
+            "scene `{}` is of kind `{found}`, but this runs scenes of kind `{needed}` only",
+            self.name
+        ))
+    }
 }

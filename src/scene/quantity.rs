@@ -37,6 +37,10 @@ impl Dimension {
     pub const LINE_MASS: Dimension = Dimension([-1, 1, 0, 0]);
     /// Frequency, Hz.
     pub const FREQUENCY: Dimension = Dimension([0, 0, -1, 0]);
+    /// Plane angle, rad.
+    pub const ANGLE: Dimension = Dimension([0, 0, 0, 1]);
+    /// Impulse, N s.
+    pub const IMPULSE: Dimension = Dimension([1, 1, -1, 0]);
 
     /// What a message calls it: name with article, SI unit, an example.
     pub fn describe(self) -> (&'static str, &'static str, &'static str) {
@@ -55,6 +59,8 @@ impl Dimension {
             Dimension::BENDING_STIFFNESS => ("a bending stiffness", "N*m^2", "2100 N*mm^2"),
             Dimension::LINE_MASS => ("a mass per length", "kg/m", "40 g/m"),
             Dimension::FREQUENCY => ("a frequency", "Hz", "4.6 kHz"),
+            Dimension::ANGLE => ("an angle", "rad", "15 deg"),
+            Dimension::IMPULSE => ("an impulse", "N*s", "0.2 mN*s"),
             _ => ("a quantity", "SI", "1"),
         }
     }

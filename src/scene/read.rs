@@ -1,8 +1,9 @@
 //! From the text of a scene file to a [`Scene`].
 
 use super::check::{Checked, Checker, Place, Values};
+use super::collision::collisions;
 use super::problem::Collector;
-use super::specification::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS, SCENE};
+use super::specification::{DEFAULT_ELEMENTS, DEFAULT_RING_ELEMENTS, DEFAULT_SOLID_ELEMENTS, SCENE};
 use super::*;
 use crate::analytical::cantilever;
 use crate::body::beam;
@@ -31,7 +32,9 @@ impl Scene {
     /// [`Error::Scene`] with every fault, its place and what would be valid.
     pub fn parse(source_name: &str, text: &str) -> Result<Scene> {
         let (values, tolerances) = checked(source_name, text)?;
-        assemble(&values, tolerances)
+        let scene = assemble(&values, tolerances)?;
+        refuse_collisions(&scene, source_name, text)?;
+        Ok(scene)
     }
 }
 
@@ -86,10 +89,40 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap
     }
     let mut checker = Checker::new(source_name, text, root);
     let place = Place { path: "", span: 0..0 };
-    let checked = checker.table(&place, root, &SCENE).map(|values| (values, checker.tolerances(root)));
-    match checked {
-        Some(checked) if checker.problems.is_empty() => Ok(checked),
-        _ => Err(Error::Scene(checker.problems.into_report())),
+    let values = checker.table(&place, root, &SCENE);
+    let seal_seat = values.get("kind") == Some(&Checked::Text("seal-seat".to_owned()));
+    let tolerances = checker.tolerances(root, seal_seat);
+    match checker.problems.is_empty() {
+        true => Ok((values, tolerances)),
+        false => Err(Error::Scene(checker.problems.into_report())),
+    }
+}
+
+/// Refuses a scene whose features collide, with the place of the first field at fault.
+///
+/// # Errors
+/// [`Error::Scene`] with every collision.
+pub(super) fn refuse_collisions(scene: &Scene, source_name: &str, text: &str) -> Result<()> {
+    let collisions = collisions(scene);
+    if collisions.is_empty() {
+        return Ok(());
+    }
+    let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
+    let mut problems = Collector::new(source_name, text);
+    for collision in collisions {
+        let place = collision.fields.iter().find_map(|field| span_of(tree.get_ref(), field));
+        problems.add(place.unwrap_or(0..0), collision.message, "collides", collision.help.to_owned());
+    }
+    Err(Error::Scene(problems.into_report()))
+}
+
+/// Where the key `path` ("seat.tilt") stands in the file.
+fn span_of(table: &DeTable, path: &str) -> Option<std::ops::Range<usize>> {
+    let (key, rest) = path.split_once('.').map_or((path, None), |(key, rest)| (key, Some(rest)));
+    let (found, value) = table.get_key_value(key)?;
+    match rest {
+        Some(rest) => span_of(value.get_ref().as_table()?, rest),
+        None => Some(found.span()),
     }
 }
 
@@ -149,6 +182,13 @@ impl<'a> Node<'a> {
         }
     }
 
+    fn numbers(&self, key: &str) -> Result<Vec<f64>> {
+        match self.get(key)? {
+            Checked::Numbers(numbers) => Ok(numbers.clone()),
+            other => Err(mismatch(key, other)),
+        }
+    }
+
     fn number_or(&self, key: &str, default: f64) -> Result<f64> {
         if self.0.contains_key(key) { self.number(key) } else { Ok(default) }
     }
@@ -173,6 +213,31 @@ fn unknown(key: &str, word: &str) -> Error {
 pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>) -> Result<Scene> {
     let root = &Node(values);
     let materials = root.table("materials")?;
+    let settings = root.optional_table("reference")?;
+    let (setup, reference) = match root.text("kind")? {
+        "plate-impact" => {
+            (Setup::PlateImpact(Box::new(plate_impact(root, &materials)?)), reference(settings)?)
+        }
+        "seal-seat" => (Setup::SealSeat(Box::new(seal_seat(root, &materials)?)), seat_reference(settings)?),
+        other => return Err(unknown("kind", other)),
+    };
+    let end_time = root.optional_table("run")?.filter(|r| r.0.contains_key("end_time"));
+    Ok(Scene {
+        name: root.text("name")?.to_owned(),
+        description: if root.0.contains_key("description") {
+            root.text("description")?.to_owned()
+        } else {
+            String::new()
+        },
+        setup,
+        run: Run { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
+        reduced: reduced(root.optional_table("reduced")?)?,
+        reference,
+        tolerances,
+    })
+}
+
+fn plate_impact(root: &Node, materials: &Node) -> Result<PlateImpact> {
     let (plate, outer, inner) = (root.table("plate")?, root.table("outer")?, root.table("inner")?);
     let plate = Plate {
         radius: plate.number("radius")?,
@@ -183,33 +248,60 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>)
             "free" => Edge::Free,
             other => return Err(unknown("edge", other)),
         },
-        material: material(&materials, plate.text("material")?)?,
+        material: material(materials, plate.text("material")?)?,
         damping_ratio: plate.number_or("damping_ratio", 0.0)?,
     };
-    let fluid = root.optional_table("fluid")?.map(|f| fluid(&f, &plate)).transpose()?;
-    let setup = PlateImpact {
-        fluid,
-        outer: striker(&outer, material(&materials, outer.text("material")?)?)?,
+    Ok(PlateImpact {
+        fluid: root.optional_table("fluid")?.map(|f| fluid(&f, &plate)).transpose()?,
+        outer: striker(&outer, material(materials, outer.text("material")?)?)?,
         inner: Inner {
             shape: shape(&inner)?,
-            material: material(&materials, inner.text("material")?)?,
+            material: material(materials, inner.text("material")?)?,
             gap: inner.number_or("gap", 0.0)?,
         },
         plate,
-    };
-    let end_time = root.optional_table("run")?.filter(|r| r.0.contains_key("end_time"));
-    Ok(Scene {
-        name: root.text("name")?.to_owned(),
-        description: if root.0.contains_key("description") {
-            root.text("description")?.to_owned()
-        } else {
-            String::new()
+    })
+}
+
+fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
+    let (seat, sphere, actuator) = (root.table("seat")?, root.table("sphere")?, root.table("actuator")?);
+    let notch = seat.0.contains_key("notch_width").then(|| -> Result<Notch> {
+        Ok(Notch { width: seat.number("notch_width")?, floor: seat.number("notch_floor")? })
+    });
+    let (radius, steel) = (sphere.number("radius")?, material(materials, sphere.text("material")?)?);
+    let full = Shape::Sphere { radius }.mass(&steel);
+    Ok(SealSeat {
+        seat: Seat {
+            material: material(materials, seat.text("material")?)?,
+            membrane_radius: seat.number("membrane_radius")?,
+            membrane_thickness: seat.number("membrane_thickness")?,
+            island_length: seat.number("island_length")?,
+            island_width: seat.number("island_width")?,
+            island_height: seat.number("island_height")?,
+            seat_distance: seat.number("seat_distance")?,
+            seated_height: seat.number("seated_height")?,
+            tilt: seat.number("tilt")?,
+            aperture_angle: seat.number("aperture_angle")?,
+            bore_radius: seat.number("bore_radius")?,
+            bore_depth: seat.number("bore_depth")?,
+            notch: notch.transpose()?,
         },
-        setup: Setup::PlateImpact(Box::new(setup)),
-        run: Run { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
-        reduced: reduced(root.optional_table("reduced")?)?,
-        reference: reference(root.optional_table("reference")?)?,
-        tolerances,
+        sphere: SeatedSphere {
+            radius,
+            mass: sphere.number_or("mass", full)?,
+            material: steel,
+            body: match sphere.0.get("body") {
+                Some(Checked::Text(word)) if word == "elastic" => SphereBody::Elastic,
+                _ => SphereBody::Rigid,
+            },
+        },
+        actuator: Actuator {
+            mass: actuator.number("mass")?,
+            speed: actuator.number("speed")?,
+            tip_radius: actuator.number("tip_radius")?,
+            tip_positions: actuator.numbers("tip_positions")?,
+        },
+        intended_angle: root.table("intended")?.number("angle")?,
     })
 }
 
@@ -328,6 +420,14 @@ fn reduced(settings: Option<Node>) -> Result<ReducedSettings> {
     Ok(reduced)
 }
 
+/// The order of the elements, if it is given.
+fn element_order(settings: &Node) -> Option<u64> {
+    match settings.0.get("element_order") {
+        Some(Checked::Count(order)) => Some(*order),
+        _ => None,
+    }
+}
+
 fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
     let empty = Values::new();
     let settings = settings.unwrap_or(Node(&empty));
@@ -336,16 +436,31 @@ fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
         _ => Geometry::Axisymmetric,
     };
     let default = if geometry == Geometry::Solid { DEFAULT_SOLID_ELEMENTS } else { DEFAULT_ELEMENTS };
-    let elements_per_contact_radius = settings.number_or("elements_per_contact_radius", default)?;
-    let element_order = match settings.0.get("element_order") {
-        Some(Checked::Count(order)) => Some(*order),
-        _ => None,
-    };
     let rigid = match settings.0.get("rigid") {
         Some(Checked::Text(word)) if word == "outer" => Some(Rigid::Outer),
         Some(Checked::Text(word)) if word == "inner" => Some(Rigid::Inner),
         Some(Checked::Text(word)) if word == "both" => Some(Rigid::Both),
         _ => None,
     };
-    Ok(ReferenceSettings { geometry, elements_per_contact_radius, element_order, rigid })
+    Ok(ReferenceSettings {
+        geometry,
+        elements_per_contact_radius: Some(settings.number_or("elements_per_contact_radius", default)?),
+        elements_per_ring_radius: None,
+        element_order: element_order(&settings),
+        rigid,
+    })
+}
+
+fn seat_reference(settings: Option<Node>) -> Result<ReferenceSettings> {
+    let empty = Values::new();
+    let settings = settings.unwrap_or(Node(&empty));
+    Ok(ReferenceSettings {
+        geometry: Geometry::Solid,
+        elements_per_contact_radius: None,
+        elements_per_ring_radius: Some(
+            settings.number_or("elements_per_ring_radius", DEFAULT_RING_ELEMENTS)?,
+        ),
+        element_order: element_order(&settings),
+        rigid: None,
+    })
 }

@@ -3,8 +3,8 @@
 use super::alternatives::groups;
 use super::check::MAX_NAME;
 use super::quantity::Dimension;
-use super::specification::{Alternative, Bound, Field, Kind, MODELS, SCENE, TOLERANCES};
-use super::tolerances::{TERMS, gated_names};
+use super::specification::{Alternative, Bound, Field, Kind, SCENE, TOLERANCES};
+use super::tolerances::{TERMS, gated_names, models};
 use serde_json::{Map, Value, json};
 
 /// The JSON schema (draft 2020-12) of scene files.
@@ -15,7 +15,17 @@ pub fn schema() -> Value {
     let mut schema = table(&SCENE);
     schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
     schema["title"] = json!("impactcheck scene");
-    schema["properties"][TOLERANCES.key] = described(tolerances(), TOLERANCES.doc);
+    // What can have a tolerance depends on the scene's kind.
+    schema["properties"][TOLERANCES.key] = described(json!({}), TOLERANCES.doc);
+    for (kind, seal_seat) in [("plate-impact", false), ("seal-seat", true)] {
+        let then = json!({ "properties": { TOLERANCES.key: tolerances(seal_seat) } });
+        if let Some(rules) = schema["allOf"].as_array_mut() {
+            rules.push(json!({
+                "if": { "properties": { "kind": { "const": kind } }, "required": ["kind"] },
+                "then": then,
+            }));
+        }
+    }
     schema
 }
 
@@ -26,8 +36,11 @@ fn described(mut schema: Value, doc: &str) -> Value {
 
 /// A table that has these keys and no other; keys of one `kind` are refused under another.
 fn table(fields: &[Field]) -> Value {
+    // A key that stands in the table once per kind gets its form with the kind.
+    let several = |f: &Field| fields.iter().filter(|other| other.key == f.key).count() > 1;
+    let form = |f: &Field| if several(f) { json!({}) } else { value(&f.kind) };
     let properties: Map<String, Value> =
-        fields.iter().map(|f| (f.key.to_owned(), described(value(&f.kind), f.doc))).collect();
+        fields.iter().map(|f| (f.key.to_owned(), described(form(f), f.doc))).collect();
     let required: Vec<&str> =
         fields.iter().filter(|f| f.is_needed(None) && f.alternative.is_none()).map(|f| f.key).collect();
     let mut schema = json!({
@@ -36,12 +49,14 @@ fn table(fields: &[Field]) -> Value {
     let mut rules: Vec<Value> = alternatives(fields, None);
     for kind in kinds(fields) {
         let needed: Vec<&str> = fields.iter().filter(|f| f.is_needed(Some(kind))).map(|f| f.key).collect();
-        let foreign: Map<String, Value> = fields
+        let mut particular: Map<String, Value> = fields
             .iter()
             .filter(|f| !f.belongs_to(Some(kind)))
             .map(|f| (f.key.to_owned(), json!(false)))
             .collect();
-        let mut then = json!({ "required": needed, "properties": foreign });
+        let own = fields.iter().filter(|f| several(f) && f.belongs_to(Some(kind)));
+        particular.extend(own.map(|f| (f.key.to_owned(), value(&f.kind))));
+        let mut then = json!({ "required": needed, "properties": particular });
         let ways = alternatives(fields, Some(kind));
         if !ways.is_empty() {
             then["allOf"] = json!(ways);
@@ -62,9 +77,7 @@ fn kinds(fields: &[Field]) -> Vec<&'static str> {
     let depends = |f: &Field| !f.only.is_empty() || f.alternative.is_some_and(|a| a.kind.is_some());
     let kind = fields.iter().find(|f| f.key == "kind" && fields.iter().any(depends));
     match kind.map(|f| &f.kind) {
-        Some(Kind::Choice(choices)) => {
-            choices.iter().filter(|c| c.refused.is_none()).map(|c| c.name).collect()
-        }
+        Some(Kind::Choice(choices)) => choices.iter().map(|c| c.name).collect(),
         _ => Vec::new(),
     }
 }
@@ -97,15 +110,18 @@ fn value(kind: &Kind) -> Value {
             "type": "string", "pattern": "^[A-Za-z0-9_-][A-Za-z0-9._-]*$", "maxLength": MAX_NAME,
         }),
         Kind::Choice(choices) => {
-            let names: Vec<&str> = choices.iter().filter(|c| c.refused.is_none()).map(|c| c.name).collect();
+            let names: Vec<&str> = choices.iter().map(|c| c.name).collect();
             json!({ "enum": names })
         }
         Kind::Quantity(dimension, bound) => quantity(*dimension, *bound),
+        Kind::Quantities(dimension, bound, most) => json!({
+            "type": "array", "items": quantity(*dimension, *bound), "minItems": 1, "maxItems": most,
+        }),
         Kind::Count(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Table(fields) => table(fields),
         Kind::TableOf(fields) => json!({ "type": "object", "additionalProperties": table(fields) }),
-        Kind::Tolerances => tolerances(),
+        Kind::Tolerances => json!({}),
     }
 }
 
@@ -126,7 +142,7 @@ fn quantity(dimension: Dimension, bound: Bound) -> Value {
     json!({ "anyOf": [number, { "type": "string", "pattern": pattern }], "examples": [sample] })
 }
 
-fn tolerances() -> Value {
+fn tolerances(seal_seat: bool) -> Value {
     let text_or_number = |low: Option<f64>| {
         let mut number = json!({ "type": "number" });
         if let Some(low) = low {
@@ -148,8 +164,9 @@ fn tolerances() -> Value {
         { "type": "string" },
         { "type": "object", "properties": terms, "additionalProperties": false, "anyOf": bounds },
     ] });
-    let quantities: Map<String, Value> = gated_names().map(|n| (n, tolerance.clone())).collect();
+    let quantities: Map<String, Value> = gated_names(seal_seat).map(|n| (n, tolerance.clone())).collect();
     let model = json!({ "type": "object", "properties": quantities, "additionalProperties": false });
-    let models: Map<String, Value> = MODELS.iter().map(|m| (m.name.to_owned(), model.clone())).collect();
+    let models: Map<String, Value> =
+        models(seal_seat).iter().map(|m| (m.name.to_owned(), model.clone())).collect();
     json!({ "type": "object", "properties": models, "additionalProperties": false })
 }

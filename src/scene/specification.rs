@@ -39,16 +39,10 @@ impl Bound {
 #[derive(Debug)]
 pub(super) struct Choice {
     pub(super) name: &'static str,
-    /// What this version says when it can't run the choice.
-    pub(super) refused: Option<&'static str>,
 }
 
 const fn choice(name: &'static str) -> Choice {
-    Choice { name, refused: None }
-}
-
-const fn refused(name: &'static str, sentence: &'static str) -> Choice {
-    Choice { name, refused: Some(sentence) }
+    Choice { name }
 }
 
 /// What stands behind a key.
@@ -62,6 +56,8 @@ pub(super) enum Kind {
     Choice(&'static [Choice]),
     /// A number with a unit.
     Quantity(Dimension, Bound),
+    /// A list of numbers with units, of at least one and at most so many.
+    Quantities(Dimension, Bound, usize),
     /// A whole number in a range, both ends valid.
     Count(u64, u64),
     /// true or false.
@@ -150,26 +146,47 @@ const FRACTION: Bound = Bound { low: Some((0.0, false)), high: Some((1.0, true))
 /// The names of the reduced models.
 pub(super) const MODELS: [Choice; 3] = [choice("A"), choice("B"), choice("C")];
 
-/// The keys of a scene file.
-pub(super) static SCENE: [Field; 11] = [
+const PLATE_IMPACT: &[&str] = &["plate-impact"];
+const SEAL_SEAT: &[&str] = &["seal-seat"];
+
+/// The keys of a scene file. A key whose table depends on the scene's kind stands here once per kind.
+pub(super) static SCENE: [Field; 17] = [
     required("name", Kind::Name, "Name of the scene in the store and in reports"),
     optional("description", Kind::Text, "One line for people"),
-    required(
-        "kind",
-        Kind::Choice(&[
-            choice("plate-impact"),
-            refused("seal-seat", "this version has no seal-seat scenes; it runs `plate-impact` only"),
-        ]),
-        "What strikes what",
-    ),
+    required("kind", Kind::Choice(&[choice("plate-impact"), choice("seal-seat")]), "What strikes what"),
     required("materials", Kind::TableOf(&MATERIAL), "Materials by name"),
-    required("plate", Kind::Table(&PLATE), "Circular plate of constant thickness"),
-    required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above"),
-    required("inner", Kind::Table(&INNER), "The body that rests below the plate"),
-    optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry"),
+    only(PLATE_IMPACT, required("plate", Kind::Table(&PLATE), "Circular plate of constant thickness")),
+    only(PLATE_IMPACT, required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above")),
+    only(PLATE_IMPACT, required("inner", Kind::Table(&INNER), "The body that rests below the plate")),
+    only(PLATE_IMPACT, optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry")),
+    only(
+        SEAL_SEAT,
+        required("seat", Kind::Table(&SEAT), "Membrane and island with the two seats, one piece"),
+    ),
+    only(
+        SEAL_SEAT,
+        required("sphere", Kind::Table(&SEATED_SPHERE), "The sphere, at rest in the seat at x < 0"),
+    ),
+    only(
+        SEAL_SEAT,
+        required(
+            "actuator",
+            Kind::Table(&ACTUATOR),
+            "Strikes the underside from below; rigid, guided along z",
+        ),
+    ),
+    only(SEAL_SEAT, required("intended", Kind::Table(&INTENDED), "Where the sphere is meant to fly")),
     optional("run", Kind::Table(&RUN), "Length of the run"),
-    optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model"),
-    optional("reference", Kind::Table(&REFERENCE), "Settings of the finite-element reference"),
+    only(PLATE_IMPACT, optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model")),
+    only(SEAL_SEAT, optional("reduced", Kind::Table(&SEAT_REDUCED), "Settings of the reduced model")),
+    only(
+        PLATE_IMPACT,
+        optional("reference", Kind::Table(&REFERENCE), "Settings of the finite-element reference"),
+    ),
+    only(
+        SEAL_SEAT,
+        optional("reference", Kind::Table(&SEAT_REFERENCE), "Settings of the finite-element reference"),
+    ),
 ];
 
 /// Stands apart from [`SCENE`] because its shape is checked by its own reader.
@@ -304,6 +321,100 @@ static FLUID: [Field; 10] = [
     thinning("power_index", pure(FRACTION), "Carreau's law: power n"),
 ];
 
+const ACUTE: Bound = Bound { low: Some((0.0, true)), high: Some((std::f64::consts::FRAC_PI_2, false)) };
+const CONE: Bound = Bound { low: Some((0.0, false)), high: Some((std::f64::consts::PI, false)) };
+const HALF_TURN: Bound =
+    Bound { low: Some((-std::f64::consts::PI, true)), high: Some((std::f64::consts::PI, true)) };
+
+/// A key of the notch.
+const fn notch(key: &'static str, doc: &'static str) -> Field {
+    one_way(None, "the notch", "notch", optional(key, positive(Dimension::LENGTH), doc))
+}
+
+static SEAT: [Field; 14] = [
+    required("material", Kind::Material, "Material of the whole piece, a name under [materials]"),
+    required("membrane_radius", positive(Dimension::LENGTH), "Radius of the membrane, whose rim is clamped"),
+    required("membrane_thickness", positive(Dimension::LENGTH), "Thickness of the membrane, from z = 0 up"),
+    required("island_length", positive(Dimension::LENGTH), "Length of the island along x"),
+    required("island_width", positive(Dimension::LENGTH), "Width of the island along y"),
+    required("island_height", positive(Dimension::LENGTH), "z of the island's top"),
+    required("seat_distance", positive(Dimension::LENGTH), "Distance of the two seated centres along x"),
+    required(
+        "seated_height",
+        positive(Dimension::LENGTH),
+        "z of the centre of a sphere that rests in a seat",
+    ),
+    required(
+        "tilt",
+        Kind::Quantity(Dimension::ANGLE, ACUTE),
+        "alpha: inward tilt of the seats' axes against z",
+    ),
+    required("aperture_angle", Kind::Quantity(Dimension::ANGLE, CONE), "gamma: full angle of the cones"),
+    required("bore_radius", positive(Dimension::LENGTH), "Radius of the bores"),
+    required(
+        "bore_depth",
+        positive(Dimension::LENGTH),
+        "Depth of the bores' floors below the seated centres",
+    ),
+    notch("notch_width", "Width of the slot between the seats along x; absent = no slot"),
+    notch("notch_floor", "z of the slot's floor"),
+];
+
+static SEATED_SPHERE: [Field; 4] = [
+    required("radius", positive(Dimension::LENGTH), "Radius of the sphere"),
+    BODY_MATERIAL,
+    optional("mass", positive(Dimension::MASS), "Mass of the sphere; absent = that of a full one"),
+    optional(
+        "body",
+        Kind::Choice(&[choice("rigid"), choice("elastic")]),
+        "Whether the sphere deforms, in the reference; absent = rigid",
+    ),
+];
+
+/// Largest number of tips of the actuator.
+const MOST_TIPS: usize = 8;
+
+static ACTUATOR: [Field; 4] = [
+    required("mass", positive(Dimension::MASS), "Mass of the actuator"),
+    required("speed", positive(Dimension::SPEED), "Speed towards the seat"),
+    TIP_RADIUS,
+    required(
+        "tip_positions",
+        Kind::Quantities(Dimension::LENGTH, Bound::ANY, MOST_TIPS),
+        "x of each tip, at y = 0 below the underside",
+    ),
+];
+
+static INTENDED: [Field; 1] = [required(
+    "angle",
+    Kind::Quantity(Dimension::ANGLE, HALF_TURN),
+    "Direction of the sphere's flight against z, positive towards +x",
+)];
+
+static SEAT_REDUCED: [Field; 2] = [
+    optional("model", Kind::Choice(&[choice("C")]), "The model to run: only C knows this kind"),
+    optional("modes", Kind::Count(1, 1024), "Number of modes of the seat"),
+];
+
+/// Smallest and largest number of elements across the ring's radius.
+const RING_ELEMENTS: Bound = Bound { low: Some((1.0, true)), high: Some((64.0, true)) };
+
+static SEAT_REFERENCE: [Field; 2] = [
+    optional(
+        "element_order",
+        Kind::Count(1, 2),
+        "Order of the tetrahedra: 1 linear, 2 quadratic; absent = 2",
+    ),
+    optional(
+        "elements_per_ring_radius",
+        pure(RING_ELEMENTS),
+        "Elements across the radius of the contact ring at `paper` resolution; absent = 10",
+    ),
+];
+
+/// Default of `reference.elements_per_ring_radius`.
+pub(super) const DEFAULT_RING_ELEMENTS: f64 = 10.0;
+
 static RUN: [Field; 1] = [optional(
     "end_time",
     positive(Dimension::TIME),
@@ -353,16 +464,20 @@ pub(super) const DEFAULT_SOLID_ELEMENTS: f64 = 3.0;
 
 /// The SI unit of the quantity at `path` in a scene's JSON form, such as `plate.material.density`.
 pub(crate) fn unit_of(path: &str) -> Option<&'static str> {
-    let mut fields: &[Field] = &SCENE;
-    let mut unit = None;
-    for key in path.split('.') {
-        match fields.iter().find(|f| f.key == key)?.kind {
-            Kind::Table(inner) => fields = inner,
+    fn find(fields: &[Field], path: &str) -> Option<&'static str> {
+        let (key, rest) = path.split_once('.').map_or((path, None), |(key, rest)| (key, Some(rest)));
+        // A key may stand here several times, once per kind of the scene.
+        fields.iter().filter(|f| f.key == key).find_map(|field| match (&field.kind, rest) {
+            (Kind::Table(inner), Some(rest)) => find(inner, rest),
             // In JSON a material stands where it is used.
-            Kind::Material => fields = &MATERIAL,
-            Kind::Quantity(dimension, _) => unit = Some(dimension.describe().1),
-            _ => {}
-        }
+            (Kind::Material, Some(rest)) => find(&MATERIAL, rest),
+            (Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..), None) => {
+                Some(dimension.describe().1)
+            }
+            _ => None,
+        })
     }
-    unit
+    // Two things have another name in JSON than in the file.
+    let path = path.replace("seat.notch.", "seat.notch_").replace("intended_angle", "intended.angle");
+    find(&SCENE, &path)
 }

@@ -4,8 +4,9 @@
 //! costs a few microseconds.
 
 use super::check::{Checked, Values};
+use super::collision::collisions;
 use super::quantity::{self, Dimension, QuantityError};
-use super::read::{assemble, checked, read_text};
+use super::read::{assemble, checked, read_text, refuse_collisions};
 use super::specification::{self, Kind, SCENE};
 use super::{Model, Scene, Tolerances, suggestion};
 use crate::{Error, Result};
@@ -57,7 +58,7 @@ impl Field {
 
     fn dimension(&self) -> Dimension {
         match self.kind {
-            Kind::Quantity(dimension, _) => *dimension,
+            Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..) => *dimension,
             _ => Dimension::NONE,
         }
     }
@@ -96,8 +97,8 @@ impl Field {
         let rejected =
             |range: String| Rejected(format!("`{}` is {value}{shown}, but it has to be {range}", self.path));
         match self.kind {
-            Kind::Quantity(_, bound) if bound.holds(value) => Ok(()),
-            Kind::Quantity(_, bound) => Err(rejected(bound.describe(unit))),
+            Kind::Quantity(_, bound) | Kind::Quantities(_, bound, _) if bound.holds(value) => Ok(()),
+            Kind::Quantity(_, bound) | Kind::Quantities(_, bound, _) => Err(rejected(bound.describe(unit))),
             Kind::Count(low, high) => {
                 let whole = value.fract() == 0.0 && value >= *low as f64 && value <= *high as f64;
                 if whole { Ok(()) } else { Err(rejected(format!("a whole number from {low} to {high}"))) }
@@ -124,6 +125,7 @@ impl Template {
     pub fn parse(source_name: &str, text: &str) -> Result<Self> {
         let (values, tolerances) = checked(source_name, text)?;
         let scene = assemble(&values, tolerances.clone())?;
+        refuse_collisions(&scene, source_name, text)?;
         Ok(Template { values, tolerances, scene, text: text.to_owned() })
     }
 
@@ -161,7 +163,7 @@ impl Template {
     /// The scene with other numbers, in SI; later ones win.
     ///
     /// # Errors
-    /// [`Rejected`] for the first number that is out of bounds.
+    /// [`Rejected`] for the first number that is out of bounds, or the first two features that collide.
     pub fn with(&self, numbers: &[(&Field, f64)]) -> std::result::Result<Scene, Rejected> {
         let mut values = self.values.clone();
         for (field, value) in numbers {
@@ -170,7 +172,11 @@ impl Template {
                 if field.is_count() { Checked::Count(*value as u64) } else { Checked::Number(*value + 0.0) };
             set(&mut values, &field.keys, checked);
         }
-        assemble(&values, self.tolerances.clone()).map_err(|e| Rejected(e.to_string()))
+        let scene = assemble(&values, self.tolerances.clone()).map_err(|e| Rejected(e.to_string()))?;
+        match collisions(&scene).into_iter().next() {
+            Some(collision) => Err(Rejected(collision.message)),
+            None => Ok(scene),
+        }
     }
 
     /// The scene file with another name and other numbers, in SI. Comments are lost.
@@ -196,12 +202,15 @@ fn write(table: &mut toml::Table, keys: &[String], number: toml::Value) {
         [key] => {
             table.insert(key.clone(), number);
         }
-        [key, rest @ ..] => {
-            let inner = table.entry(key.clone()).or_insert_with(|| toml::Table::new().into());
-            if let toml::Value::Table(inner) = inner {
-                write(inner, rest, number);
+        [key, rest @ ..] => match table.entry(key.clone()).or_insert_with(|| toml::Table::new().into()) {
+            toml::Value::Table(inner) => write(inner, rest, number),
+            toml::Value::Array(list) => {
+                if let Some(entry) = index(rest).and_then(|i| list.get_mut(i)) {
+                    *entry = number;
+                }
             }
-        }
+            _ => {}
+        },
     }
 }
 
@@ -214,11 +223,23 @@ fn set(values: &mut Values, keys: &[String], value: Checked) {
         }
         [key, rest @ ..] => {
             let inner = values.entry(key.clone()).or_insert_with(|| Checked::Table(Values::new()));
-            if let Checked::Table(inner) = inner {
-                set(inner, rest, value);
+            match (inner, value) {
+                (Checked::Table(inner), value) => set(inner, rest, value),
+                (Checked::Numbers(list), Checked::Number(number)) => {
+                    if let Some(entry) = index(rest).and_then(|i| list.get_mut(i)) {
+                        *entry = number;
+                    }
+                }
+                _ => {}
             }
         }
     }
+}
+
+/// The place in a list that the last key names, counted from 1.
+fn index(keys: &[String]) -> Option<usize> {
+    let [key] = keys else { return None };
+    key.parse::<usize>().ok()?.checked_sub(1)
 }
 
 /// The numeric fields below a table with the keys of `specification`; `values` is what the file has there.
@@ -248,6 +269,16 @@ fn collect(
             Kind::Quantity(..) | Kind::Count(..) => {
                 found.push(Field { path: keys.join("."), keys: keys.clone(), kind: &field.kind });
             }
+            // the entries of a list that the file has, counted from 1
+            Kind::Quantities(..) => {
+                let list = values.and_then(|v| v.get(field.key));
+                let count = if let Some(Checked::Numbers(list)) = list { list.len() } else { 0 };
+                for entry in 1..=count {
+                    keys.push(entry.to_string());
+                    found.push(Field { path: keys.join("."), keys: keys.clone(), kind: &field.kind });
+                    keys.pop();
+                }
+            }
             Kind::Table(inner) => {
                 let there = table(values, field.key);
                 // one number alone does not make a table that has to have others
@@ -273,7 +304,6 @@ fn collect(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Setup;
 
     const BASE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
     const BENDER: &str = include_str!("../../scenes/examples/rocker-bender.toml");
@@ -300,7 +330,7 @@ mod tests {
         let modulus = template.field("materials.steel.youngs_modulus").expect("a material's");
         let modes = template.field("reduced.modes").expect("a count");
         let scene = template.with(&[(&gap, 1e-5), (&modulus, 100e9), (&modes, 7.0)]).expect("valid");
-        let Setup::PlateImpact(setup) = &scene.setup;
+        let setup = scene.plate_impact().expect("a plate");
         assert_eq!((setup.inner.gap, scene.reduced.modes), (1e-5, Some(7)));
         assert_eq!([&setup.plate.material, &setup.outer.material].map(|m| m.youngs_modulus), [100e9; 2]);
         assert_eq!(template.with(&[]).expect("unchanged"), *template.scene());

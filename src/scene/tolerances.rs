@@ -3,9 +3,9 @@
 use super::check::{Checker, Place};
 use super::problem::did_you_mean;
 use super::quantity::{Dimension, dimension_of};
-use super::specification::{Bound, MODELS};
+use super::specification::{Bound, Choice, MODELS};
 use super::{Model, Tolerance, Tolerances};
-use crate::impact::{CURVES, PLATE_QUANTITIES};
+use crate::impact::{CURVES, PLATE_QUANTITIES, SEAT_CURVES, SEAT_QUANTITIES};
 use std::collections::BTreeMap;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -28,35 +28,51 @@ struct Gated {
     is_residual: bool,
 }
 
-/// The names that can have a tolerance.
-pub(super) fn gated_names() -> impl Iterator<Item = String> {
-    let scalars = PLATE_QUANTITIES.iter().map(|(name, _)| (*name).to_owned());
-    let curves = CURVES.iter().flat_map(|(name, _)| [format!("{name}_rms"), format!("{name}_max")]);
+/// Names of quantities and of curves, each with its unit.
+type Names = (&'static [(&'static str, &'static str)], &'static [(&'static str, &'static str)]);
+
+/// What can have a tolerance in a scene of this kind.
+fn names(seal_seat: bool) -> Names {
+    if seal_seat { (&SEAT_QUANTITIES, &SEAT_CURVES) } else { (&PLATE_QUANTITIES, &CURVES) }
+}
+
+/// The names that can have a tolerance in a scene of this kind.
+pub(super) fn gated_names(seal_seat: bool) -> impl Iterator<Item = String> {
+    let (quantities, curves) = names(seal_seat);
+    let scalars = quantities.iter().map(|(name, _)| (*name).to_owned());
+    let curves = curves.iter().flat_map(|(name, _)| [format!("{name}_rms"), format!("{name}_max")]);
     scalars.chain(curves).chain(RESIDUALS.map(str::to_owned))
 }
 
 const RESIDUALS: [&str; 2] = ["energy_residual", "momentum_residual"];
 
-fn gated(name: &str) -> Option<Gated> {
+fn gated(name: &str, seal_seat: bool) -> Option<Gated> {
+    let (quantities, curves) = names(seal_seat);
     if RESIDUALS.contains(&name) {
         return Some(Gated { dimension: Dimension::NONE, has_curve: false, is_residual: true });
     }
-    if let Some((_, unit)) = PLATE_QUANTITIES.iter().find(|(n, _)| *n == name) {
-        let has_curve = CURVES.iter().any(|(curve, _)| name.starts_with(curve));
+    if let Some((_, unit)) = quantities.iter().find(|(n, _)| *n == name) {
+        let has_curve = curves.iter().any(|(curve, _)| name.starts_with(curve));
         return Some(Gated { dimension: dimension_of(unit)?, has_curve, is_residual: false });
     }
     // A difference of curves is given relative to the peak: a pure number.
     let curve = name.strip_suffix("_rms").or_else(|| name.strip_suffix("_max"))?;
-    CURVES.iter().any(|(c, _)| *c == curve).then_some(Gated {
+    curves.iter().any(|(c, _)| *c == curve).then_some(Gated {
         dimension: Dimension::NONE,
         has_curve: true,
         is_residual: false,
     })
 }
 
+/// The reduced models a scene of this kind has.
+pub(super) fn models(seal_seat: bool) -> &'static [Choice] {
+    if seal_seat { &MODELS[2..] } else { &MODELS }
+}
+
 impl Checker<'_> {
     /// Reads the table `[tolerances]`, noting every fault.
-    pub(super) fn tolerances(&mut self, root: &DeTable) -> BTreeMap<Model, Tolerances> {
+    pub(super) fn tolerances(&mut self, root: &DeTable, seal_seat: bool) -> BTreeMap<Model, Tolerances> {
+        let known = models(seal_seat);
         let mut models = BTreeMap::new();
         let Some((key, value)) = root.get_key_value("tolerances") else { return models };
         let place = Place { path: "tolerances", span: key.span() };
@@ -73,18 +89,19 @@ impl Checker<'_> {
         for (key, value) in table {
             let path = place.key(key.get_ref());
             let place = Place { path: &path, span: key.span() };
-            match (MODELS.iter().find(|m| m.name == key.get_ref()), value.get_ref()) {
+            match (known.iter().find(|m| m.name == key.get_ref()), value.get_ref()) {
                 (None, _) => {
-                    let names = MODELS.map(|m| m.name).join(", ");
+                    let names: Vec<&str> = known.iter().map(|m| m.name).collect();
+                    let example = known[known.len() / 2].name;
                     self.problems.add(
                         key.span(),
-                        format!("`{path}`: `{}` is not a reduced model", key.get_ref()),
+                        format!("`{path}`: `{}` is not a reduced model of this kind of scene", key.get_ref()),
                         "unknown model",
-                        format!("there are {names}: write for example [tolerances.B]"),
+                        format!("there are {}: write for example [tolerances.{example}]", names.join(", ")),
                     );
                 }
                 (Some(model), DeValue::Table(quantities)) => {
-                    let tolerances = self.model(&place, quantities);
+                    let tolerances = self.model(&place, quantities, seal_seat);
                     if let Ok(model) = model.name.parse() {
                         models.insert(model, tolerances);
                     }
@@ -103,14 +120,14 @@ impl Checker<'_> {
         models
     }
 
-    fn model(&mut self, place: &Place, quantities: &DeTable) -> Tolerances {
+    fn model(&mut self, place: &Place, quantities: &DeTable, seal_seat: bool) -> Tolerances {
         let mut tolerances = Tolerances::new();
         for (key, value) in quantities {
             let name = key.get_ref().as_ref();
             let path = place.key(name);
             let place = Place { path: &path, span: key.span() };
-            let Some(gated) = gated(name) else {
-                let names: Vec<String> = gated_names().collect();
+            let Some(gated) = gated(name, seal_seat) else {
+                let names: Vec<String> = gated_names(seal_seat).collect();
                 self.problems.add(
                     key.span(),
                     format!("`{path}`: `{name}` is not a quantity that can have a tolerance"),

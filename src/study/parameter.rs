@@ -52,7 +52,8 @@ pub fn scene(name: &str, setup: PlateImpact) -> Scene {
         reduced: ReducedSettings { model: None, modes: None },
         reference: ReferenceSettings {
             geometry: Geometry::Axisymmetric,
-            elements_per_contact_radius: 12.0,
+            elements_per_contact_radius: Some(12.0),
+            elements_per_ring_radius: None,
             element_order: None,
             rigid: None,
         },

@@ -89,7 +89,8 @@ pub fn scene() -> Scene {
         reduced: ReducedSettings { model: Some(Model::B), modes: Some(16) },
         reference: ReferenceSettings {
             geometry: Geometry::Axisymmetric,
-            elements_per_contact_radius: 12.0,
+            elements_per_contact_radius: Some(12.0),
+            elements_per_ring_radius: None,
             element_order: None,
             rigid: None,
         },

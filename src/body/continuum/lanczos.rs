@@ -1,21 +1,37 @@
 //! Lowest elastic modes by shift-invert Lanczos with full reorthogonalisation.
 //!
 //! Works on x -> K^-1 M x in the inner product of M, with the stiffness factorised once; a free body's
-//! rigid motion is projected out of every vector (see [`HalfBody::solve`]). faer's own
+//! rigid motion is projected out of every vector (see [`ShiftInvert::solve`]). faer's own
 //! `partial_self_adjoint_eigen` is bound to the Euclidean product, which would need half solves with
 //! the sparse factor, and to a number of modes that is known beforehand.
 
-use super::mirror::{HalfBody, axpy, dot};
+use super::mirror::{axpy, dot};
 use crate::error::{Error, Result};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
-/// Modes of a half body, ascending.
+/// An elastic body with factorised stiffness K and mass M over n degrees of freedom.
+pub(in crate::body) trait ShiftInvert {
+    /// Number of degrees of freedom n.
+    fn size(&self) -> usize;
+    /// Number of elastic modes.
+    fn elastic_size(&self) -> usize {
+        self.size()
+    }
+    /// M x.
+    fn mass_times(&self, x: &[f64]) -> Vec<f64>;
+    /// Static displacement under the load `f`, in place; of a free body by inertia relief.
+    fn solve(&self, f: &mut [f64]);
+    /// Makes `x` M-orthogonal to the rigid motions, in place.
+    fn remove_rigid(&self, _x: &mut [f64]) {}
+}
+
+/// Modes of an elastic body, ascending.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Modes {
+pub(in crate::body) struct Modes {
     /// Eigenfrequencies in rad/s, ascending. Shape (k).
     pub omega: Vec<f64>,
-    /// Shapes with v^T M_h v = 1. Shape (k, n).
+    /// Shapes with v^T M v = 1. Shape (k, n).
     pub shape: Vec<Vec<f64>>,
 }
 
@@ -28,7 +44,11 @@ const RESIDUAL: f64 = 1e-6;
 ///
 /// # Errors
 /// [`Error::Solver`] if the mesh has not enough modes or the iteration does not converge.
-pub(super) fn lowest_modes(body: &HalfBody, wanted: usize, omega_limit: f64) -> Result<Modes> {
+pub(in crate::body) fn lowest_modes(
+    body: &impl ShiftInvert,
+    wanted: usize,
+    omega_limit: f64,
+) -> Result<Modes> {
     if wanted == 0 {
         return Ok(Modes::default());
     }
@@ -125,7 +145,7 @@ impl Columns {
 /// Makes `w` M-orthogonal to the basis, and `w_mass` = M w with it.
 ///
 /// Once more if much of `w` was lost: twice is enough (Parlett, The Symmetric Eigenvalue Problem, 6.9).
-fn orthogonalise(body: &HalfBody, w: &mut [f64], w_mass: &mut Vec<f64>, basis: &Columns) {
+fn orthogonalise(body: &impl ShiftInvert, w: &mut [f64], w_mass: &mut Vec<f64>, basis: &Columns) {
     let n = w.len();
     for _ in 0..2 {
         let before = dot(w, w_mass);
@@ -189,7 +209,7 @@ impl SplitMix {
 mod tests {
     use super::super::assembly::Matrices;
     use super::super::mesh;
-    use super::super::mirror::Parity;
+    use super::super::mirror::{HalfBody, Parity};
     use super::*;
     use crate::scene::Material;
     use approx::assert_relative_eq;

@@ -11,6 +11,7 @@
 //! - a mode with v^T M_h v = 1 has the norm 2 on the whole body: participation p_i^T v / sqrt(2).
 
 use super::assembly::{FIXED, Matrices};
+use super::lanczos::ShiftInvert;
 use super::mesh::Mesh;
 use crate::error::{Error, Result};
 use faer::linalg::solvers::Solve;
@@ -103,16 +104,6 @@ impl HalfBody {
         Ok(body)
     }
 
-    /// Number of degrees of freedom.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
-    /// Number of elastic modes the mesh has.
-    pub fn elastic_size(&self) -> usize {
-        self.size - usize::from(self.rigid.is_some())
-    }
-
     /// Relative error that rounding in the assembled stiffness can leave in the square of the frequency
     /// `omega` (rad/s): machine precision times the largest nodal frequency squared over omega squared.
     ///
@@ -132,9 +123,18 @@ impl HalfBody {
         }
         load
     }
+}
 
-    /// Mass matrix times `x`.
-    pub fn mass_times(&self, x: &[f64]) -> Vec<f64> {
+impl ShiftInvert for HalfBody {
+    fn size(&self) -> usize {
+        self.size
+    }
+
+    fn elastic_size(&self) -> usize {
+        self.size - usize::from(self.rigid.is_some())
+    }
+
+    fn mass_times(&self, x: &[f64]) -> Vec<f64> {
         let value = |dof: usize| if dof == FIXED { 0.0 } else { x[dof] };
         let nodal: Vec<[f64; 2]> = self.dof.iter().map(|d| d.map(value)).collect();
         let momentum = self.matrices.mass_times(&nodal);
@@ -153,7 +153,7 @@ impl HalfBody {
     ///
     /// A free body is accelerated by the resultant; its displacement is that under the load and the
     /// inertia forces, with the rigid part (M-orthogonally) taken out: inertia relief.
-    pub fn solve(&self, f: &mut [f64]) {
+    fn solve(&self, f: &mut [f64]) {
         if let Some(rigid) = &self.rigid {
             let acceleration = dot(&rigid.shape, f) / rigid.mass;
             axpy(-acceleration, &rigid.momentum, f);
@@ -165,7 +165,7 @@ impl HalfBody {
     }
 
     /// Makes `x` M-orthogonal to the rigid motion, in place.
-    pub fn remove_rigid(&self, x: &mut [f64]) {
+    fn remove_rigid(&self, x: &mut [f64]) {
         if let Some(rigid) = &self.rigid {
             let rigid_part = dot(&rigid.momentum, x) / rigid.mass;
             axpy(-rigid_part, &rigid.shape, x);
@@ -174,14 +174,14 @@ impl HalfBody {
 }
 
 /// Scalar product.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(in crate::body) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len();
     let (a, b) = (MatRef::from_column_major_slice(a, n, 1), MatRef::from_column_major_slice(b, n, 1));
     a.col(0).transpose() * b.col(0)
 }
 
 /// y += factor x.
-pub(super) fn axpy(factor: f64, x: &[f64], y: &mut [f64]) {
+pub(in crate::body) fn axpy(factor: f64, x: &[f64], y: &mut [f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += factor * x;
     }

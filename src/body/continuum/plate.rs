@@ -9,7 +9,7 @@
 
 use super::assembly::Matrices;
 use super::grading::Grading;
-use super::lanczos::{Modes, lowest_modes};
+use super::lanczos::{Modes, ShiftInvert, lowest_modes};
 use super::mesh::{self, Mesh, patch_then_graded};
 use super::mirror::{HalfBody, Parity, dot};
 use super::patch::{half_space_flexibility, nodal_forces, point};

@@ -2,6 +2,7 @@
 
 use super::assembly::Matrices;
 use super::mesh;
+use super::lanczos::ShiftInvert;
 use super::mirror::{HalfBody, Parity, dot};
 use super::patch::{half_space_flexibility, nodal_forces};
 use super::{MeshOptions, check_patch};

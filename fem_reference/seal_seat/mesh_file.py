@@ -1,0 +1,74 @@
+"""The mesh of a seal seat as a file that other programs read, and what it was made from."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+
+from ..errors import SceneError, SolverError
+from ..output import write_json
+from ..settings import RESOLUTIONS
+from ..solid.mesh import TetMesh, edge_lengths, qualities
+from ..versions import versions
+from .meshing import seat_mesh
+from .scene import SeatScene
+
+
+def mesh_report(mesh: TetMesh) -> dict[str, Any]:
+    """Numbers that say how large and how good a mesh is."""
+    quality = qualities(mesh.points, mesh.corners)
+    edges = edge_lengths(mesh.points, mesh.corners)
+    nodes = int(mesh.points.shape[0])
+    return {
+        "nodes": nodes,
+        "dofs": 3 * nodes,
+        "elements": int(quality.size),
+        "element_order": mesh.order,
+        "smallest_element": float(edges.min()),
+        "largest_element": float(edges.max()),
+        "min_quality": float(quality.min()),
+        "mean_quality": float(quality.mean()),
+        "volume": mesh.volume(),
+    }
+
+
+def write_seat_mesh(path: Path, scene: SeatScene, resolution: str, size_factor: float) -> None:
+    """Mesh the seat, write it as an uncompressed .vtu and what it was made from as .json beside it.
+
+    Raises:
+        SceneError: the size factor is not sound.
+        SolverError: meshing failed or the files cannot be written.
+    """
+    if not (math.isfinite(size_factor) and 0.1 <= size_factor <= 10.0):
+        raise SceneError(f"--size-factor is {size_factor:g}; it must lie between 0.1 and 10")
+    mesh = seat_mesh(scene, RESOLUTIONS[resolution] / size_factor)
+    kind = {1: "tetra", 2: "tetra10"}[mesh.order]
+    grid = meshio.Mesh(mesh.points, [(kind, mesh.cells.astype(np.int32))])
+    temporary = path.with_name(f".partial-{path.name}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        meshio.vtu.write(temporary, grid, binary=True, compression=None)
+        document = {
+            "schema_version": 1,
+            "scene": scene.name,
+            "geometry_hash": scene.geometry_hash,
+            "sha256": hashlib.sha256(temporary.read_bytes()).hexdigest(),
+            "resolution": resolution,
+            "size_factor": size_factor,
+            "elements_per_ring_radius": scene.elements_per_ring_radius,
+            **mesh_report(mesh),
+            "versions": {name: versions()[name] for name in ("gmsh", "meshio")},
+        }
+        # The description goes first: a mesh without one is taken for one of something else.
+        write_json(path.with_suffix(".json.partial"), document)
+        path.with_suffix(".json.partial").replace(path.with_suffix(".json"))
+        temporary.replace(path)
+    except OSError as error:
+        raise SolverError(f"the mesh {path} cannot be written: {error}") from error
+    finally:
+        temporary.unlink(missing_ok=True)

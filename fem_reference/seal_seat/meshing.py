@@ -1,0 +1,174 @@
+"""Tetrahedral mesh of the seal seat by gmsh's CAD kernel: the half y >= 0, one solid.
+
+Membrane and island are fused; then, for each seat, one solid of revolution (bore and cone) and,
+if there is one, the notch are cut out. The contact ring is an edge of the cone, so that nodes lie
+on it, and there is a node where each tip touches first. The element size grows linearly with the
+distance from the ring and from the tips.
+
+Elements have straight edges, also the quadratic ones: their stiffness and mass are then integrated
+exactly, and any program that reads the mesh gets the same discrete body. Midside nodes next to the
+ring lie on chords, inside the cone by up to h^2 / (8 rho); the contact takes their gap where the
+exact surface is (`Ring.on_cone`), so that nothing penetrates at the start.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import gmsh
+import numpy as np
+
+from ..errors import SolverError
+from ..solid.mesh import TetMesh, check_elements, tetrahedra
+from ..solid.meshing import generate
+from .scene import Ring, SeatScene
+
+SLOPE = 0.6
+"""Growth of the element size per distance, at factor 1."""
+TIP_ELEMENT = 1.6
+"""Element size under the tips over that at the ring."""
+THROUGH_MEMBRANE = 1.0
+"""Least number of elements through the membrane; quadratic ones bend well with one."""
+THROUGH_ISLAND = 2.5
+"""Least number of elements over the island's height."""
+
+
+@dataclass(frozen=True)
+class SeatSize:
+    """Element size min(largest, ring + slope * d_ring, tip + slope * max(0, d_tip - zone)), m."""
+
+    ring: Ring
+    at_ring: float
+    tips: tuple[float, ...]
+    """x of each, m."""
+    at_tips: float
+    tip_zone: float
+    """Radius of the zone of smallest elements under a tip, m."""
+    slope: float
+    largest: float
+    membrane: float
+    """Largest size in the membrane, m."""
+    membrane_top: float
+    """z, m."""
+
+    def expression(self) -> str:
+        """For gmsh's MathEval."""
+        (cx, _, cz), (nx, _, nz) = self.ring.sphere_centre, self.ring.axis
+        x, z = f"(x-({cx!r}))", f"(z-({cz!r}))"
+        s = f"({x}*({nx!r})+{z}*({nz!r}))"
+        rho = f"Sqrt(Max(0,{x}*{x}+y*y+{z}*{z}-{s}*{s}))"
+        across, along = f"({rho}-{self.ring.radius!r})", f"({s}-({self.ring.offset!r}))"
+        size = f"{self.at_ring!r}+{self.slope!r}*Sqrt({across}*{across}+{along}*{along})"
+        for tip in self.tips:
+            away = f"Sqrt((x-({tip!r}))*(x-({tip!r}))+y*y+z*z)"
+            near = f"{self.at_tips!r}+{self.slope!r}*Max(0,{away}-{self.tip_zone!r})"
+            size = f"Min({size},{near})"
+        # From the membrane's size to that of the island over a membrane's thickness or so.
+        bulk = f"({self.membrane!r}+{self.slope!r}*Max(0,z-{self.membrane_top!r}))"
+        return f"Min(Min({self.largest!r},{bulk}),{size})"
+
+
+def seat_size(scene: SeatScene, factor: float) -> SeatSize:
+    """Element sizes for ``factor`` times the elements asked for, in every direction."""
+    seat, ring = scene.seat, scene.ring()
+    at_ring = ring.radius / scene.elements_per_ring_radius / factor
+    # Linear tetrahedra are too stiff in bending: more of them through the thickness.
+    through = {1: 2.0, 2: 1.0}[scene.element_order]
+    membrane = seat.membrane_thickness / (THROUGH_MEMBRANE * through)
+    return SeatSize(
+        ring=ring,
+        at_ring=at_ring,
+        tips=scene.actuator.tip_positions,
+        at_tips=TIP_ELEMENT * at_ring,
+        tip_zone=0.1 * scene.actuator.tip_radius,
+        slope=SLOPE / factor,
+        largest=seat.island_height / (THROUGH_ISLAND * through) / factor,
+        membrane=membrane / factor,
+        membrane_top=seat.membrane_thickness,
+    )
+
+
+def _revolved(scene: SeatScene, ring: Ring) -> int:
+    """Bore and cone of one seat, to beyond the island's top, as a solid; its tag."""
+    seat, occ = scene.seat, gmsh.model.occ
+    tan = math.tan(ring.half_angle)
+    rim = ring.offset - (ring.radius - seat.bore_radius) / tan
+    # The cone's inner flank rises least: it decides where the cone has left the island.
+    rise = math.cos(ring.half_angle + seat.tilt) / math.cos(ring.half_angle)
+    ring_low = ring.sphere_centre[2] + ring.offset * math.cos(seat.tilt)
+    ring_low -= ring.radius * math.sin(seat.tilt)
+    top = ring.offset + 1.05 * (seat.island_height - ring_low) / rise
+    profile = [
+        (0.0, -seat.bore_depth),
+        (seat.bore_radius, -seat.bore_depth),
+        (seat.bore_radius, rim),
+        (ring.radius, ring.offset),
+        (ring.radius + (top - ring.offset) * tan, top),
+        (0.0, top),
+    ]
+    (cx, _, cz), (nx, _, nz) = ring.sphere_centre, ring.axis
+    corners = [
+        occ.addPoint(cx + s * nx + rho * nz, 0.0, cz + s * nz - rho * nx) for rho, s in profile
+    ]
+    lines = [occ.addLine(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+    face = occ.addPlaneSurface([occ.addCurveLoop(lines)])
+    made = occ.revolve([(2, face)], cx, 0.0, cz, nx, 0.0, nz, 2.0 * math.pi)
+    return int(next(tag for dimension, tag in made if dimension == 3))
+
+
+def build(scene: SeatScene) -> None:
+    """Add the half seat to gmsh's OCC model."""
+    seat, occ = scene.seat, gmsh.model.occ
+    length, width, height = seat.island_length, seat.island_width, seat.island_height
+    membrane = occ.addCylinder(
+        0.0, 0.0, 0.0, 0.0, 0.0, seat.membrane_thickness, seat.membrane_radius, -1, math.pi
+    )
+    island = occ.addBox(-0.5 * length, 0.0, 0.0, length, 0.5 * width, height)
+    body, _ = occ.fuse([(3, membrane)], [(3, island)])
+    tools = [(3, _revolved(scene, scene.ring(side))) for side in (-1.0, 1.0)]
+    if seat.notch is not None:
+        notch = seat.notch
+        slot = occ.addBox(-0.5 * notch.width, -width, notch.floor, notch.width, 2.0 * width, height)
+        tools.append((3, slot))
+    cut, _ = occ.cut(body, tools)
+    # A node where each tip touches first: otherwise the force peaks scatter with the nodes' places.
+    touched = [(0, occ.addPoint(x, 0.0, 0.0)) for x in scene.actuator.tip_positions]
+    whole, _ = occ.fragment(cut, touched)
+    solids = [tag for dimension, tag in whole if dimension == 3]
+    if len(solids) != 1:
+        raise SolverError(
+            f"the seal seat falls into {len(solids)} pieces: its features cut it through"
+        )
+
+
+def cad_volume(scene: SeatScene) -> float:
+    """Volume of the exact half body, m^3."""
+    gmsh.initialize([], readConfigFiles=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.add("seat")
+        build(scene)
+        gmsh.model.occ.synchronize()
+        return float(sum(gmsh.model.occ.getMass(3, tag) for _, tag in gmsh.model.getEntities(3)))
+    finally:
+        gmsh.finalize()
+
+
+def seat_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
+    """The half seat with ``factor`` times the elements asked for, in every direction.
+
+    Raises:
+        SolverError: gmsh failed, an element is inverted or degenerate, or the ring is no edge.
+    """
+    points, corners = generate("seat", lambda: build(scene), seat_size(scene, factor))
+    length = scene.seat.membrane_radius
+    # What lies on the plane of symmetry and on the underside up to rounding, lies there exactly.
+    for axis in (1, 2):
+        points[np.abs(points[:, axis]) < 1e-9 * length, axis] = 0.0
+    mesh = tetrahedra("seat", points, corners, scene.element_order)
+    check_elements(mesh)
+    on_ring = np.count_nonzero(scene.ring().distance(points) < 1e-9 * length)
+    if on_ring < 5:
+        raise SolverError(f"only {on_ring} corners of the mesh lie on the contact ring")
+    return mesh

@@ -1,0 +1,175 @@
+"""The seal-seat scene as a three-dimensional model: half of it, sphere and actuator rigid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import SolverError
+from ..mesh import Floats, Ints
+from ..solid.mesh import TetMesh, surface
+from ..solid.model import (
+    ElasticBody,
+    Model,
+    RigidBody,
+    SphereContact,
+    guided,
+    nodal_areas,
+    symmetry_plane,
+)
+from .scene import Ring, SeatScene
+
+FRACTION = 0.5
+"""Share of the bodies that is modelled."""
+RING_REACH = 0.4
+"""Distance from the ring within which nodes of the cone may touch, over the sphere's radius.
+
+While the sphere is launched it slides up the cone's flanks by some hundredths of its radius."""
+TIP_REACH = 0.25
+"""The same under a tip, over the tip's radius."""
+SPHERE, ACTUATOR = 0, 1
+"""Numbers of the rigid bodies."""
+LEFT, RIGHT = 0, 1
+"""Numbers of the contacts of the cone's flanks with the sphere; the tips' follow."""
+
+
+@dataclass(frozen=True)
+class Patch:
+    """Where a contact can be: its nodes, their areas and normals."""
+
+    nodes: Ints
+    areas: Floats
+    """(n,) m^2"""
+    normals: Floats
+    """(n, 3) unit normals, out of the seat."""
+    reach: float
+    """m"""
+    distances: Floats
+    """(n,) from the ring or from under the tip, m, ascending."""
+
+
+@dataclass(frozen=True)
+class SeatModel:
+    """The model and where its parts are."""
+
+    model: Model
+    patches: tuple[Patch, ...]
+    """One per contact."""
+
+    @property
+    def mesh(self) -> TetMesh:
+        """Of the seat."""
+        return self.model.elastic[0].mesh
+
+    @property
+    def tips(self) -> range:
+        """Numbers of the tips' contacts."""
+        return range(RIGHT + 1, len(self.model.contacts))
+
+
+def clamped_rim(mesh: TetMesh, facets: Ints, radius: float) -> Ints:
+    """Fixed components of the nodes on the membrane's rim."""
+    corners = mesh.points[facets[:, :3]]
+    on_rim = np.abs(np.hypot(corners[:, :, 0], corners[:, :, 1]) - radius) < 1e-6 * radius
+    nodes = np.unique(facets[np.all(on_rim, axis=1)])
+    if nodes.size == 0:
+        raise SolverError("the mesh of the seat has no face on the rim of its membrane")
+    return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
+
+
+def cone_nodes(mesh: TetMesh, facets: Ints, ring: Ring, reach: float) -> tuple[Ints, Floats]:
+    """Facets of the cone around the ring, and the areas (n,) they give to the mesh's nodes."""
+    corners = mesh.points[facets[:, :3]]
+    s, rho = ring.coordinates(corners.reshape(-1, 3))
+    away = np.abs(rho - ring.cone(s)).reshape(-1, 3)
+    near = ring.distance(corners.reshape(-1, 3)).reshape(-1, 3)
+    cone = np.all(away < 1e-6 * ring.radius, axis=1) & np.any(near <= reach, axis=1)
+    if not np.any(cone):
+        raise SolverError("the mesh of the seat has no faces on the cone around its contact ring")
+    return facets[cone], nodal_areas(mesh, facets[cone])
+
+
+def _ring_patches(scene: SeatScene, mesh: TetMesh, facets: Ints) -> tuple[Patch, Patch, Floats]:
+    """Both flanks, and the exact places of all nodes that are on the cone (else the mesh's)."""
+    ring = scene.ring()
+    reach = RING_REACH * scene.sphere_radius
+    cone, areas = cone_nodes(mesh, facets, ring, reach)
+    nodes = np.unique(cone)
+    places = mesh.points.copy()
+    places[nodes] = ring.on_cone(mesh.points[nodes])
+    distance = ring.distance(places[nodes])
+    order = np.argsort(distance, kind="stable")
+    nodes, distance = nodes[order], distance[order]
+    nodes, distance = nodes[distance <= reach], distance[distance <= reach]
+    s, rho = ring.coordinates(places[nodes])
+    axis = np.array(ring.axis)
+    outward = places[nodes] - np.array(ring.sphere_centre) - s[:, None] * axis
+    outward /= rho[:, None]
+    sin, cos = np.sin(ring.half_angle), np.cos(ring.half_angle)
+    normals = sin * axis - cos * outward
+    # +x of the axis, in the plane of symmetry: the right flank.
+    right = outward @ np.array([axis[2], 0.0, -axis[0]]) >= 0.0
+
+    def patch(chosen: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> Patch:
+        return Patch(nodes[chosen], areas[nodes[chosen]], normals[chosen], reach, distance[chosen])
+
+    return patch(~right), patch(right), places
+
+
+def _tip_patch(scene: SeatScene, mesh: TetMesh, areas: Floats, x: float) -> Patch:
+    reach = TIP_REACH * scene.actuator.tip_radius
+    distance = np.hypot(mesh.points[:, 0] - x, mesh.points[:, 1])
+    nodes = np.flatnonzero((areas > 0.0) & (distance <= reach))
+    if nodes.size == 0:
+        raise SolverError(f"the mesh of the seat has no node under the tip at x = {x:.6g} m")
+    nodes = nodes[np.argsort(distance[nodes], kind="stable")]
+    normals = np.tile([0.0, 0.0, -1.0], (nodes.size, 1))
+    return Patch(nodes, areas[nodes], normals, reach, distance[nodes])
+
+
+def seat_model(scene: SeatScene, mesh: TetMesh) -> SeatModel:
+    """Bodies, supports and contacts on a mesh of the half seat.
+
+    Raises:
+        SolverError: the mesh is not one of this scene.
+    """
+    facets = surface(mesh)
+    fixed = np.union1d(
+        symmetry_plane(mesh, 1), clamped_rim(mesh, facets, scene.seat.membrane_radius)
+    )
+    left, right, places = _ring_patches(scene, mesh, facets)
+    under = facets[np.all(mesh.points[facets][:, :, 2] == 0.0, axis=1)]
+    areas = nodal_areas(mesh, under)
+    tips = [_tip_patch(scene, mesh, areas, x) for x in scene.actuator.tip_positions]
+    sphere = RigidBody(
+        "sphere", FRACTION * scene.sphere_mass, guided((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    )
+    actuator = RigidBody(
+        "actuator",
+        FRACTION * scene.actuator.mass,
+        guided((0.0, 0.0, 1.0)),
+        (0.0, 0.0, scene.actuator.speed),
+    )
+    contacts = [
+        SphereContact(
+            name,
+            0,
+            patch.nodes,
+            SPHERE,
+            scene.ring().sphere_centre,
+            scene.sphere_radius,
+            places[patch.nodes],
+        )
+        for name, patch in (("left flank", left), ("right flank", right))
+    ]
+    radius = scene.actuator.tip_radius
+    contacts += [
+        SphereContact(f"tip {number}", 0, patch.nodes, ACTUATOR, (x, 0.0, -radius), radius)
+        for number, (x, patch) in enumerate(
+            zip(scene.actuator.tip_positions, tips, strict=True), start=1
+        )
+    ]
+    body = ElasticBody(mesh, scene.seat.material, fixed)
+    model = Model((body,), (sphere, actuator), tuple(contacts))
+    return SeatModel(model, (left, right, *tips))

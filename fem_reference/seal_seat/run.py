@@ -1,0 +1,288 @@
+"""A run of the seal seat: supervision, sampling, ledger, end, checkpoints."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
+from ..errors import SolverError
+from ..estimate import hertz_stiffness
+from ..mesh import Floats
+from ..solid.checkpoint import Checkpoint
+from ..solid.fields import Frames
+from ..solid.loop import Energies, Loop
+from ..solid.spectrum import critical_time_step
+from .ending import Ending
+from .model import ACTUATOR, FRACTION, LEFT, RIGHT, SPHERE, SeatModel
+from .scene import SeatScene
+
+PEAK_WINDOW_SAMPLES = 2
+CHUNK_SAMPLES = 16
+LONGEST_RUN = 100.0
+"""Over the estimated duration of the actuator's contact."""
+
+COLUMNS = (
+    *("sphere_displacement_x", "sphere_displacement_z"),
+    *("sphere_velocity_x", "sphere_velocity_z"),
+    *("sphere_impulse_x", "sphere_impulse_z"),
+    *("actuator_displacement", "actuator_velocity", "actuator_impulse"),
+)
+"""Of the raw samples: m, m/s and N s on the whole bodies; the actuator's impulse on the seat."""
+
+
+@dataclass(frozen=True)
+class SeatRun:
+    """Result of the time loop, of the whole bodies rather than the half."""
+
+    times: Floats
+    rows: Floats
+    """(m, 9) `COLUMNS`."""
+    time_step: float
+    critical_time_step: float
+    steps: int
+    loop_seconds: float
+    sphere_velocity: tuple[float, float]
+    """Along x and z at the end, m/s."""
+    actuator_velocity: float
+    sphere_force_peak: float
+    """N, of the resultant averaged over the peak window."""
+    actuator_force_peak: float
+    sphere_contacts: tuple[tuple[float, float], ...]
+    """First and last instant of each contact of the sphere, either flank, s."""
+    actuator_contacts: tuple[tuple[float, float], ...]
+    flank_impulses: tuple[float, float]
+    """Normal impulse on the left and on the right flank, N s."""
+    in_contact_at_end: bool
+    energy_residual: float
+    contact_loss: float
+    momentum_residual: float
+    support_impulse: float
+    """Along z, N s."""
+    sweeps_per_step: float
+    unconverged: int
+
+
+def contact_duration(scene: SeatScene) -> float:
+    """Duration of the actuator's contact if the seat were a heavy half-space (Hertz), s."""
+    actuator = scene.actuator
+    k = hertz_stiffness(scene.seat.material.plane_strain_modulus, actuator.tip_radius)
+    k *= len(actuator.tip_positions)
+    approach = (5.0 * actuator.mass * actuator.speed**2 / (4.0 * k)) ** 0.4
+    return float(2.943275184 * approach / actuator.speed)
+
+
+def integrate(
+    loop: Loop,
+    seat: SeatModel,
+    scene: SeatScene,
+    *,
+    courant: float = 0.9,
+    fields: Callable[[float], Frames] | None = None,
+    checkpoint: Checkpoint | None = None,
+    on_progress: Callable[[float, str], None] = lambda done, message: None,
+) -> SeatRun:
+    """Step from the first touch to ``scene.end_time``, or until no further contact is possible.
+
+    ``fields`` makes the recorder of fields from the sampling interval. A run whose ``checkpoint``
+    holds a state goes on from there.
+
+    Raises:
+        SolverError: time step above the critical one, divergence, no end found, or a contact that
+            left the zone of candidates.
+    """
+    saved: dict[str, Any] = (checkpoint.load() if checkpoint else None) or {}
+    critical = float(saved["critical"]) if saved else critical_time_step(loop)
+    time_step = courant * critical
+    if not 0.0 < time_step <= critical:
+        raise SolverError(
+            f"the time step {time_step:.6g} s is not between 0 and the critical time step "
+            f"{critical:.6g} s; the Courant factor must be in (0, 1], it is {courant:g}"
+        )
+    duration = contact_duration(scene)
+    stride = max(1, round(PEAK_WINDOW_FRACTION * duration / PEAK_WINDOW_SAMPLES / time_step))
+    if scene.end_time is not None:
+        # The last sample falls exactly on the end.
+        wanted = max(1, math.ceil(scene.end_time / (stride * time_step) - 1e-9))
+        time_step = scene.end_time / (wanted * stride)
+    else:
+        wanted = math.ceil(LONGEST_RUN * duration / (stride * time_step))
+    interval = stride * time_step
+    frames = fields(interval) if fields is not None else None
+    loop.set_step(time_step, max(1, round(CHATTER_FRACTION * duration / time_step)))
+    ended = Ending(loop, seat, scene) if scene.end_time is None else None
+    initial = FRACTION * scene.initial_energy
+    rows: list[Floats] = []
+    seconds = 0.0
+    if saved:
+        loop.u[:] = loop.own(saved["u"])
+        loop.v[:] = loop.own(saved["v"])
+        loop.problem.restore(saved["problem"])
+        rows = list(saved["rows"])
+        seconds = float(saved["seconds"])
+    started = time.perf_counter()
+    while len(rows) < wanted:
+        chunk_started = time.perf_counter()
+        for _ in range(min(CHUNK_SAMPLES, wanted - len(rows))):
+            if frames is not None:
+                frames(len(rows), loop)
+            rows.append(_sample(loop, seat, stride))
+        seconds += time.perf_counter() - chunk_started
+        energies = loop.energies()
+        if not energies.total <= 10.0 * initial:
+            raise SolverError(
+                f"the solution diverged at {len(rows) * interval:.4g} s: energy "
+                f"{energies.total:.3g} J, at the start {initial:.3g} J"
+            )
+        now = len(rows) * interval
+        done = now / scene.end_time if scene.end_time else 1.0 - math.exp(-now / (2.0 * duration))
+        on_progress(done, f"{now * 1e6:.1f} us, {time.perf_counter() - started:.1f} s")
+        if ended is not None and ended(energies):
+            break
+        if checkpoint is not None and checkpoint.due(loop.comm):
+            checkpoint.save(loop, critical=critical, rows=np.array(rows), seconds=seconds)
+    else:
+        if ended is not None:
+            raise SolverError(
+                f"a further contact is still possible at {len(rows) * interval:.4g} s; "
+                "set run.end_time"
+            )
+    rows.append(_sample(loop, seat, 1))
+    _require_inside(loop, seat)
+    return _result(loop, seat, scene, np.array(rows), interval, critical, seconds)
+
+
+def _sample(loop: Loop, seat: SeatModel, stride: int) -> Floats:
+    """Advance by ``stride`` steps; the row of the first step, see `COLUMNS`."""
+    sphere, actuator = loop.problem.rigids[SPHERE], loop.problem.rigids[ACTUATOR]
+    places = np.array([sphere.u[0], sphere.u[2], actuator.u[2]])
+    before = np.array([sphere.v[0], sphere.v[2], actuator.v[2]])
+    loop.advance(1)
+    speeds = 0.5 * (before + np.array([sphere.v[0], sphere.v[2], actuator.v[2]]))
+    # The multiplier of a step acts half a step before and after its instant.
+    half = 0.5 * loop.dt
+    flanks, tips = (
+        sum(
+            (
+                np.array(loop.problem.contacts[k].impulse)
+                - half * np.array(loop.problem.contacts[k].force)
+                for k in which
+            ),
+            start=np.zeros(3),
+        )
+        / FRACTION
+        for which in ((LEFT, RIGHT), seat.tips)
+    )
+    loop.advance(stride - 1)
+    # What the contacts do to the seat, the sphere gets with the opposite sign.
+    return np.array(
+        [*places[:2], *speeds[:2], -flanks[0], -flanks[2], places[2], speeds[2], tips[2]]
+    )
+
+
+def _require_inside(loop: Loop, seat: SeatModel) -> None:
+    for contact, patch, definition in zip(
+        loop.problem.contacts, seat.patches, loop.model.contacts, strict=False
+    ):
+        if contact.outermost < 0:
+            continue
+        distance = float(patch.distances[contact.outermost])
+        if distance > 0.95 * patch.reach:
+            raise SolverError(
+                f"contact of the {definition.name} reached {distance:.3g} m, the end of the nodes "
+                f"that are looked at ({patch.reach:.3g} m)"
+            )
+
+
+def _intervals(loop: Loop, numbers: tuple[int, ...]) -> tuple[tuple[float, float], ...]:
+    """Contacts of a body that touches at several places: their union, s."""
+    spans = sorted(
+        (
+            max(0.0, contact.first_step[k] - 0.5) * loop.dt,
+            (contact.last_step[k] + 0.5) * loop.dt,
+        )
+        for contact in (loop.problem.contacts[n] for n in numbers)
+        for k in range(min(contact.intervals, len(contact.first_step)))
+    )
+    merged: list[tuple[float, float]] = []
+    chatter = loop.dt * loop.problem.contacts[0].split
+    for start, end in spans:
+        if merged and start <= merged[-1][1] + chatter:
+            merged[-1] = (merged[-1][0], max(end, merged[-1][1]))
+        else:
+            merged.append((start, end))
+    return tuple(merged)
+
+
+def peak(impulse: Floats, interval: float) -> float:
+    """Largest magnitude of the mean force (N) over the peak window, from impulses (m, d)."""
+    window = min(PEAK_WINDOW_SAMPLES, impulse.shape[0] - 1)
+    means = (impulse[window:] - impulse[:-window]) / (window * interval)
+    return float(np.linalg.norm(means, axis=1).max())
+
+
+def momentum_misses(loop: Loop, seat: SeatModel, scene: SeatScene) -> list[float]:
+    """Momentum (N s, part modelled) that no impulse accounts for, of three independent balances.
+
+    All bodies against supports and guides along x and z; sphere and actuator against contacts.
+    """
+    problem = loop.problem
+    sphere, actuator = problem.rigids[SPHERE], problem.rigids[ACTUATOR]
+    start = FRACTION * scene.actuator.mass * scene.actuator.speed
+    momenta = loop.momenta()[0]
+    misses = []
+    for axis in (0, 2):
+        of_actuator = actuator.mass * actuator.v[axis]
+        of_sphere = sphere.mass * sphere.v[axis]
+        total = momenta[axis] + of_sphere + of_actuator - (start if axis == 2 else 0.0)
+        misses.append(total - problem.state.reaction[axis])
+        flanks = sum(problem.contacts[k].impulse[axis] for k in (LEFT, RIGHT))
+        misses.append(of_sphere + flanks)
+    tips = sum(problem.contacts[k].impulse[2] for k in seat.tips)
+    misses.append(actuator.mass * actuator.v[2] - start + tips)
+    return misses
+
+
+def _result(
+    loop: Loop,
+    seat: SeatModel,
+    scene: SeatScene,
+    rows: Floats,
+    interval: float,
+    critical: float,
+    seconds: float,
+) -> SeatRun:
+    problem = loop.problem
+    energies: Energies = loop.energies()
+    work = sum(contact.work for contact in problem.contacts)
+    sphere, actuator = problem.rigids[SPHERE], problem.rigids[ACTUATOR]
+    initial = FRACTION * scene.initial_energy
+    momentum = FRACTION * scene.actuator.mass * scene.actuator.speed
+    flanks = tuple(problem.contacts[k].normal_impulse / FRACTION for k in (LEFT, RIGHT))
+    return SeatRun(
+        times=interval * np.arange(rows.shape[0]),
+        rows=rows,
+        time_step=loop.dt,
+        critical_time_step=critical,
+        steps=problem.state.step,
+        loop_seconds=seconds,
+        sphere_velocity=(sphere.v[0], sphere.v[2]),
+        actuator_velocity=actuator.v[2],
+        sphere_force_peak=peak(rows[:, 4:6], interval),
+        actuator_force_peak=peak(rows[:, 8:], interval),
+        sphere_contacts=_intervals(loop, (LEFT, RIGHT)),
+        actuator_contacts=_intervals(loop, tuple(seat.tips)),
+        flank_impulses=(flanks[0], flanks[1]),
+        in_contact_at_end=any(any(contact.force) for contact in problem.contacts),
+        energy_residual=abs(energies.total - initial - work) / initial,
+        contact_loss=-work / initial,
+        momentum_residual=max(abs(m) for m in momentum_misses(loop, seat, scene)) / momentum,
+        support_impulse=problem.state.reaction[2] / FRACTION,
+        sweeps_per_step=problem.state.sweeps / max(1, problem.state.step),
+        unconverged=problem.state.unconverged,
+    )

@@ -1,0 +1,207 @@
+"""From a seal-seat scene to a solution on one mesh: mesh, assemble, step, and what it says."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import SceneError
+from ..mesh import Floats
+from ..output import SAMPLES
+from ..solid.checkpoint import Checkpoint
+from ..solid.fields import Frames
+from ..solid.loop import Loop, make_loop
+from ..solid.memory import memory_needed, require_memory
+from ..solid.solve import Settings
+from ..solid.spectrum import first_frequency
+from .meshing import seat_mesh
+from .model import SeatModel, seat_model
+from .run import SeatRun, integrate
+from .scene import SeatScene
+
+REVISION = 1
+"""Counts changes of the method that make older checkpoints useless."""
+
+QUANTITIES = (
+    "efficiency",
+    "sphere_velocity_x",
+    "sphere_velocity_z",
+    "sphere_speed",
+    "sphere_angle",
+    "sphere_force_peak",
+    "actuator_force_peak",
+    "actuator_velocity_final",
+    "sphere_contact_end",
+    "actuator_contact_end",
+    "left_flank_impulse",
+    "right_flank_impulse",
+    "first_frequency",
+)
+
+HISTORY_COLUMNS = (
+    "time",
+    "sphere_displacement_x",
+    "sphere_displacement_z",
+    "sphere_velocity_x",
+    "sphere_velocity_z",
+    "sphere_force",
+    "sphere_force_x",
+    "sphere_force_z",
+    "actuator_displacement",
+    "actuator_velocity",
+    "actuator_force",
+)
+
+Report = Callable[[str, float, str], None]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A run on one mesh."""
+
+    run: SeatRun
+    seat: SeatModel
+    loop: Loop
+    frames: Frames | None
+    needed_memory: float
+    """Stated before the run, bytes."""
+
+
+def _identity(scene: SeatScene, seat: SeatModel, courant: float) -> str:
+    """What a checkpoint belongs to: scene, mesh, step and method."""
+    digest = hashlib.sha256()
+    settings = [REVISION, scene.raw, scene.end_time, courant]
+    digest.update(json.dumps(settings, sort_keys=True).encode())
+    digest.update(np.round(seat.mesh.points, 15).tobytes())
+    digest.update(seat.mesh.cells.tobytes())
+    return digest.hexdigest()
+
+
+def compute(
+    scene: SeatScene, factor: float, settings: Settings, comm: Any, label: str, report: Report
+) -> Solution:
+    """Solve a scene with ``factor`` times the elements asked for, in every direction.
+
+    Raises:
+        SceneError: the scene is outside the method.
+        SolverError: meshing or the run failed, or there is too little memory.
+    """
+    if scene.sphere_elastic:
+        raise SceneError("sphere.body is 'elastic'; this solver supports 'rigid' only")
+    report("mesh", 0.0, "meshing")
+    # gmsh runs in one process; the others wait.
+    made = seat_model(scene, seat_mesh(scene, factor)) if comm.rank == 0 else None
+    seat: SeatModel = comm.bcast(made)
+    nodes = int(seat.model.first[-1])
+    report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
+    loop = make_loop(seat.model, comm)
+    checkpoint = Checkpoint(
+        settings.checkpoint_folder / f"{label}.npz",
+        _identity(scene, seat, settings.courant),
+        settings.checkpoint_interval,
+    )
+    recorder: list[Frames] = []
+
+    def fields(interval: float) -> Frames:
+        folder = settings.checkpoint_folder / f"{label}-frames"
+        recorder.append(Frames(folder, settings.frames, settings.frame_times, interval))
+        return recorder[0]
+
+    run = integrate(
+        loop,
+        seat,
+        scene,
+        courant=settings.courant,
+        fields=fields if settings.frames or settings.frame_times else None,
+        checkpoint=checkpoint,
+        on_progress=lambda done, message: report("stepping", done, message),
+    )
+    needed = memory_needed(nodes, scene.element_order, comm.size)
+    return Solution(run, seat, loop, recorder[0] if recorder else None, needed)
+
+
+def seat_frequency(loop: Loop, seat: SeatModel) -> float:
+    """First eigenfrequency of the seat with clamped rim, symmetric about y = 0, Hz."""
+    # Lifting and rocking together: the lowest mode is one of both or a mixture.
+    start = np.zeros((loop.all_masses.size, 3))
+    start[:, 2] = 1.0 + seat.mesh.points[:, 0] / np.abs(seat.mesh.points[:, 0]).max()
+    return first_frequency(loop, 0, start=loop.own(start))
+
+
+def quantities(scene: SeatScene, solution: Solution) -> dict[str, float]:
+    """The summary's physical quantities, SI; a contact that never closed ends at 0."""
+    run = solution.run
+    x, z = run.sphere_velocity
+
+    def end(contacts: tuple[tuple[float, float], ...]) -> float:
+        return contacts[-1][1] if contacts else 0.0
+
+    return {
+        "efficiency": 0.5 * scene.sphere_mass * (x * x + z * z) / scene.initial_energy,
+        "sphere_velocity_x": x,
+        "sphere_velocity_z": z,
+        "sphere_speed": math.hypot(x, z),
+        "sphere_angle": math.atan2(x, z),
+        "sphere_force_peak": run.sphere_force_peak,
+        "actuator_force_peak": run.actuator_force_peak,
+        "actuator_velocity_final": run.actuator_velocity,
+        "sphere_contact_end": end(run.sphere_contacts),
+        "actuator_contact_end": end(run.actuator_contacts),
+        "left_flank_impulse": run.flank_impulses[0],
+        "right_flank_impulse": run.flank_impulses[1],
+        "first_frequency": seat_frequency(solution.loop, solution.seat),
+    }
+
+
+def sampling(times: Floats) -> Floats:
+    """(samples,) evenly spaced instants of a history, from those of a run's raw samples, s."""
+    stride = max(2, 2 * round((times.size - 1) / SAMPLES / 2))
+    return np.asarray(times[::stride])
+
+
+def history(times: Floats, rows: Floats, at: Floats) -> Floats:
+    """Table (samples, 11) of `HISTORY_COLUMNS` at evenly spaced instants ``at``, s.
+
+    Forces are impulse over interval, the interval centred on the sample; at both ends only its
+    half inside the run counts. Beyond the run's end bodies fly on, and no force acts.
+
+    Args:
+        times: (m,) instants of the raw samples, s.
+        rows: (m, 9) `run.COLUMNS`.
+        at: instants wanted, s.
+    """
+    half = 0.5 * (at[1] - at[0])
+    low, high = np.maximum(at - half, 0.0), np.minimum(at + half, at[-1])
+    late = np.maximum(at - times[-1], 0.0)
+
+    def sampled(column: int) -> Floats:
+        return np.asarray(np.interp(at, times, rows[:, column]))
+
+    def force(column: int) -> Floats:
+        impulse = rows[:, column]
+        change = np.interp(high, times, impulse) - np.interp(low, times, impulse)
+        return np.asarray(change / (high - low))
+
+    vx, vz, va = sampled(2), sampled(3), sampled(7)
+    fx, fz = force(4), force(5)
+    return np.column_stack(
+        [
+            at,
+            sampled(0) + vx * late,
+            sampled(1) + vz * late,
+            vx,
+            vz,
+            np.hypot(fx, fz),
+            fx,
+            fz,
+            sampled(6) + va * late,
+            va,
+            force(8),
+        ]
+    )

@@ -1,0 +1,186 @@
+//! Mesh of a solid body: straight-edged tetrahedra, linear or quadratic, read from a VTK file.
+
+use crate::error::{Error, Result};
+use std::collections::HashMap;
+use std::path::Path;
+use vtkio::model::{CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk};
+
+/// The edges of a tetrahedron between its corners, in VTK's order of the midside nodes 4 to 9.
+pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+/// Faces of a tetrahedron by its corners, pointing outwards, each with the midside nodes of its edges.
+const FACES: [([usize; 3], [usize; 3]); 4] =
+    [([0, 2, 1], [6, 5, 4]), ([0, 1, 3], [4, 8, 7]), ([1, 2, 3], [5, 9, 8]), ([2, 0, 3], [6, 7, 9])];
+/// Largest distance of a midside node from the middle of its edge, over the edge's length: the elements are straight,
+/// as those of the finite-element reference.
+const STRAIGHT: f64 = 1e-6;
+
+/// Tetrahedra with four nodes (linear) or ten (quadratic, straight edges).
+#[derive(Debug, Clone, PartialEq)]
+pub struct TetMesh {
+    /// Places of the nodes in m. Shape (nodes, 3).
+    pub points: Vec<[f64; 3]>,
+    /// Nodes of the cells one after the other, corners first, midside nodes in VTK's order.
+    /// Shape (cells * [`TetMesh::nodes_per_cell`]).
+    pub cells: Vec<usize>,
+    /// Polynomial order of the shape functions, 1 or 2.
+    pub order: usize,
+}
+
+impl TetMesh {
+    /// Checks and keeps a mesh.
+    ///
+    /// # Errors
+    /// One sentence that says which cell or node is unusable: a node that does not exist or belongs to no cell, a
+    /// cell that is flat or turned inside out, a curved edge.
+    pub fn new(
+        points: Vec<[f64; 3]>,
+        cells: Vec<usize>,
+        order: usize,
+    ) -> std::result::Result<Self, String> {
+        let mesh = Self { points, cells, order };
+        mesh.check()?;
+        Ok(mesh)
+    }
+
+    /// Reads an unstructured grid of tetrahedra (VTK cell type 10 or 24) from a `.vtu` file, in m.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if the file can't be read as VTK or its mesh is unusable.
+    pub fn read(path: &Path) -> Result<Self> {
+        let failed = |what: String| Error::Solver(format!("mesh {}: {what}", path.display()));
+        let vtk = Vtk::import(path).map_err(|e| failed(format!("can't be read as VTK: {e}")))?;
+        let piece = grid(vtk).map_err(&failed)?;
+        let points = piece.points.cast_into::<f64>().ok_or_else(|| failed("its points are no numbers".into()))?;
+        let points: Vec<[f64; 3]> = points.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
+        let order = match piece.cells.types.first() {
+            Some(CellType::Tetra) => 1,
+            Some(CellType::QuadraticTetra) => 2,
+            _ => return Err(failed("has no tetrahedra (VTK cell type 10 or 24)".into())),
+        };
+        if piece.cells.types.iter().any(|t| *t != piece.cells.types[0]) {
+            return Err(failed("mixes cells of different types".into()));
+        }
+        let cells = connectivity(piece.cells.cell_verts, nodes_per_cell(order))
+            .ok_or_else(|| failed("has cells with a wrong number of nodes".into()))?;
+        Self::new(points, cells, order).map_err(failed)
+    }
+
+    /// Number of nodes of a cell, 4 or 10.
+    pub fn nodes_per_cell(&self) -> usize {
+        nodes_per_cell(self.order)
+    }
+
+    /// The nodes of each cell.
+    pub fn cells(&self) -> std::slice::ChunksExact<'_, usize> {
+        self.cells.chunks_exact(self.nodes_per_cell())
+    }
+
+    /// Places of the corners of a cell.
+    pub(super) fn corners(&self, cell: &[usize]) -> [[f64; 3]; 4] {
+        std::array::from_fn(|a| self.points[cell[a]])
+    }
+
+    /// The faces that belong to one cell only: their nodes, corners first. Shape (faces, 3 or 6).
+    pub fn outer_faces(&self) -> Vec<Vec<usize>> {
+        let mut outer: HashMap<[usize; 3], Option<Vec<usize>>> = HashMap::new();
+        for cell in self.cells() {
+            for (corners, midsides) in FACES {
+                let mut key = corners.map(|c| cell[c]);
+                let mut nodes = key.to_vec();
+                if self.order == 2 {
+                    nodes.extend(midsides.map(|m| cell[m]));
+                }
+                key.sort_unstable();
+                outer.entry(key).and_modify(|face| *face = None).or_insert(Some(nodes));
+            }
+        }
+        let mut faces: Vec<Vec<usize>> = outer.into_values().flatten().collect();
+        faces.sort_unstable();
+        faces
+    }
+
+    fn check(&self) -> std::result::Result<(), String> {
+        let per_cell = self.nodes_per_cell();
+        if self.cells.is_empty() || self.cells.len() % per_cell != 0 {
+            return Err(format!("{} node numbers are no tetrahedra of {per_cell} nodes", self.cells.len()));
+        }
+        if let Some(node) = self.points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+            return Err(format!("node {node} has a place that is not finite"));
+        }
+        let mut used = vec![false; self.points.len()];
+        for (number, cell) in self.cells().enumerate() {
+            for &node in cell {
+                *used.get_mut(node).ok_or_else(|| {
+                    format!("cell {number} names node {node} of {}", self.points.len())
+                })? = true;
+            }
+            let corners = self.corners(cell);
+            if volume(&corners) <= 0.0 {
+                return Err(format!("cell {number} is flat or turned inside out"));
+            }
+            for ([a, b], &midside) in EDGES.iter().zip(&cell[4..]) {
+                let middle = std::array::from_fn(|c| 0.5 * (corners[*a][c] + corners[*b][c]));
+                if distance(middle, self.points[midside]) > STRAIGHT * distance(corners[*a], corners[*b]) {
+                    return Err(format!("node {midside} is not in the middle of its edge: edges must be straight"));
+                }
+            }
+        }
+        match used.iter().position(|used| !used) {
+            Some(node) => Err(format!("node {node} belongs to no cell")),
+            None => Ok(()),
+        }
+    }
+}
+
+fn nodes_per_cell(order: usize) -> usize {
+    if order == 1 { 4 } else { 10 }
+}
+
+/// Volume of a tetrahedron in m^3, positive if its corners are in VTK's order.
+pub(super) fn volume(corners: &[[f64; 3]; 4]) -> f64 {
+    let [a, b, c] = [1, 2, 3].map(|k| std::array::from_fn(|d| corners[k][d] - corners[0][d]));
+    dot3(a, cross(b, c)) / 6.0
+}
+
+/// Vector product.
+pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Scalar product.
+pub(super) fn dot3(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let d = std::array::from_fn(|c| a[c] - b[c]);
+    dot3(d, d).sqrt()
+}
+
+/// The only piece of an unstructured grid.
+fn grid(vtk: Vtk) -> std::result::Result<UnstructuredGridPiece, String> {
+    let DataSet::UnstructuredGrid { pieces, .. } = vtk.data else {
+        return Err("is no unstructured grid".into());
+    };
+    match <[Piece<UnstructuredGridPiece>; 1]>::try_from(pieces) {
+        Ok([Piece::Inline(piece)]) => Ok(*piece),
+        _ => Err("does not consist of one piece".into()),
+    }
+}
+
+/// Node numbers of cells that have `per_cell` nodes each.
+fn connectivity(numbers: VertexNumbers, per_cell: usize) -> Option<Vec<usize>> {
+    match numbers {
+        VertexNumbers::XML { connectivity, offsets } => {
+            let offsets = offsets.strip_prefix(&[0]).unwrap_or(&offsets);
+            let regular = offsets.iter().enumerate().all(|(k, end)| *end == ((k + 1) * per_cell) as u64);
+            let whole = regular && connectivity.len() == offsets.len() * per_cell;
+            whole.then(|| connectivity.into_iter().map(|n| n as usize).collect())
+        }
+        VertexNumbers::Legacy { vertices, .. } => {
+            let cells = vertices.chunks_exact(per_cell + 1);
+            let whole = cells.remainder().is_empty() && cells.clone().all(|c| c[0] as usize == per_cell);
+            whole.then(|| cells.flat_map(|c| c[1..].iter().map(|n| *n as usize)).collect())
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! `impactcheck mesh`: meshes the seat of a seal-seat scene.
+
+use super::{Context, JsonArgument};
+use crate::error::{Error, ExitStatus, Result};
+use crate::reference::{self, Resolution};
+use crate::scene::{self, Scene};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file of kind seal-seat, or the name of a shipped scene
+    scene: String,
+    /// The mesh file, .vtu; a description .json appears beside it
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// How fine the mesh is
+    #[arg(long, default_value = "paper")]
+    resolution: Resolution,
+    /// Elements this many times as large
+    #[arg(long, default_value_t = 1.0, value_name = "X")]
+    size_factor: f64,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// Makes the mesh and prints its numbers.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    let factor = arguments.size_factor;
+    if !(0.1..=10.0).contains(&factor) {
+        return Err(Error::Usage(format!("--size-factor {factor} has to lie between 0.1 and 10")));
+    }
+    let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
+    scene.seal_seat()?;
+    let python = reference::python()?;
+    let info = reference::make_seat_mesh(&python, &scene, arguments.resolution, factor, &arguments.out)?;
+    if arguments.json.json {
+        super::print_json(&info)?;
+    } else {
+        context.note(format_args!(
+            "{}: {} nodes, {} dofs, {} tetrahedra of order {}, quality {:.2} at worst, {:.2} on average",
+            arguments.out.display(),
+            info.nodes,
+            info.dofs,
+            info.elements,
+            info.element_order,
+            info.min_quality,
+            info.mean_quality
+        ));
+    }
+    Ok(ExitStatus::Pass)
+}

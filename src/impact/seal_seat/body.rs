@@ -1,0 +1,113 @@
+//! The seat as an elastic body: its mesh, supports, modes and flexibility, through the cache on disk.
+
+use super::candidates::{Candidate, Zones, candidates};
+use crate::body::cache::{Cache, revision};
+use crate::body::solid::{InterfaceBody, SOURCES, Solid, TetMesh};
+use crate::error::{Error, Result};
+use crate::scene::SealSeat;
+use crate::scene::hash::{drop_material_names, sha256_hex};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// See [`revision`].
+const REVISION: u64 = revision(&SOURCES) ^ revision(&[include_bytes!("body.rs"), include_bytes!("candidates.rs")]);
+/// How far from the rim, over the membrane's radius, the corners of a face of the rim may lie; the reference's bound.
+const ON_RIM: f64 = 1e-6;
+/// How far from the plane of symmetry, over the membrane's radius, its nodes may lie.
+const ON_PLANE: f64 = 1e-9;
+
+/// A mesh file of the half seat, read once.
+#[derive(Debug, Clone)]
+pub struct SeatMesh {
+    path: PathBuf,
+    content_hash: String,
+}
+
+/// Half a seat, seen from its contact candidates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SeatBody {
+    /// Modes and flexibility.
+    pub body: InterfaceBody,
+    /// Nodes of the interface.
+    pub candidates: Vec<Candidate>,
+    /// Nodes of the mesh.
+    pub nodes: usize,
+    /// Degrees of freedom of the mesh without those that supports hold.
+    pub dofs: usize,
+}
+
+impl SeatMesh {
+    /// The mesh in a `.vtu` file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file can't be read.
+    pub fn open(path: &Path) -> Result<Self> {
+        let content = std::fs::read(path).map_err(|e| Error::io("reading", path, e))?;
+        Ok(Self { path: path.to_path_buf(), content_hash: sha256_hex(&content) })
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The seat of `scene` with `modes` modes and the contact candidates in `zones`, from `cache` or computed.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if the mesh is unusable or not one of this scene, or the modes do not converge.
+    pub fn body(&self, scene: &SealSeat, zones: &Zones, modes: usize, cache: &Cache) -> Result<SeatBody> {
+        let mut inputs = json!({
+            "body": "seal seat", "revision": REVISION, "mesh": self.content_hash, "zones": zones, "modes": modes,
+            "seat": scene.seat, "ring": [scene.sphere.radius], "tips": scene.actuator.tip_positions,
+        });
+        drop_material_names(&mut inputs);
+        cache.get_or_build(&inputs, || self.build(scene, zones, modes))
+    }
+
+    fn build(&self, scene: &SealSeat, zones: &Zones, modes: usize) -> Result<SeatBody> {
+        let mesh = TetMesh::read(&self.path)?;
+        let wrong = |what: &str| {
+            let path = self.path.display();
+            Error::Solver(format!("mesh {path} is not one of this seat: {what}"))
+        };
+        let held = supports(scene, &mesh);
+        if !held.contains(&[true; 3]) {
+            return Err(wrong("it has no face on the rim of the membrane"));
+        }
+        let candidates = candidates(scene, &mesh, zones);
+        if !candidates.iter().any(|c| c.partner == super::Partner::Sphere) {
+            return Err(wrong("it has no node on the contact ring"));
+        }
+        for (tip, x) in scene.actuator.tip_positions.iter().enumerate() {
+            if !candidates.iter().any(|c| c.partner == super::Partner::Tip(tip)) {
+                return Err(wrong(&format!("it has no node under the tip at x = {x} m")));
+            }
+        }
+        let interface: Vec<usize> = candidates.iter().map(|c| c.node).collect();
+        let solid = Solid::new(&mesh, &scene.seat.material, &held, &interface)?;
+        Ok(SeatBody {
+            body: solid.at_interface(modes)?,
+            candidates,
+            nodes: mesh.points.len(),
+            dofs: solid.size(),
+        })
+    }
+}
+
+/// Which of (u_x, u_y, u_z) of each node are held: all on the membrane's rim, u_y in the plane of symmetry y = 0.
+pub fn supports(scene: &SealSeat, mesh: &TetMesh) -> Vec<[bool; 3]> {
+    let radius = scene.seat.membrane_radius;
+    let in_plane = |p: &[f64; 3]| p[1].abs() <= ON_PLANE * radius;
+    let mut held: Vec<[bool; 3]> = mesh.points.iter().map(|p| [false, in_plane(p), false]).collect();
+    for face in mesh.outer_faces() {
+        let on_rim = |&node: &usize| {
+            let [x, y, _] = mesh.points[node];
+            (x.hypot(y) - radius).abs() < ON_RIM * radius
+        };
+        if face[..3].iter().all(on_rim) {
+            face.iter().for_each(|&node| held[node] = [true; 3]);
+        }
+    }
+    held
+}

@@ -1,0 +1,182 @@
+//! Contact candidates: the nodes of the seat's mesh that the sphere and the actuator's tips may touch.
+
+use crate::analytical::hertz::HertzImpact;
+use crate::body::solid::TetMesh;
+use crate::scene::SealSeat;
+use serde::{Deserialize, Serialize};
+
+/// How far from a surface the corners of a face may lie that belongs to it, over the sphere's radius. A mesh has its
+/// corners on the surfaces up to rounding, in files of a few digits too.
+const ON_SURFACE: f64 = 1e-6;
+
+/// Share of a zone that contact may fill.
+const ROOM: f64 = 0.85;
+
+/// Which rigid body a candidate can meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Partner {
+    /// The sphere.
+    Sphere,
+    /// The actuator's tip of this number.
+    Tip(usize),
+}
+
+/// A node that may be touched.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// Number of the node in the mesh.
+    pub node: usize,
+    /// Place in m on the exact surface: nodes of straight elements lie beside the cone by the edges' sagitta.
+    pub place: [f64; 3],
+    /// What it may meet.
+    pub partner: Partner,
+    /// Distance in m from where the partner touches first: from the ring along the cone, from the tip's axis.
+    pub offset: f64,
+    /// Whether it lies on the flank at the +x side of the seat's axis.
+    pub right_flank: bool,
+}
+
+/// Half widths in m of the zones in which contact is looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Zones {
+    /// On the cone, to both sides of the ring.
+    pub ring: f64,
+    /// On the underside, around each tip's axis.
+    pub tip: f64,
+}
+
+impl Zones {
+    /// Widths for the forces that are to be expected, from above: the actuator's as if the seat were a heavy half-space
+    /// (Hertz), the sphere's as it takes twice the actuator's speed in the same time.
+    ///
+    /// Tip: the radius of the Hertz contact (Johnson 1985, Contact Mechanics, eq. 4.22). Cone: three half widths of
+    /// the line contact (eq. 4.43) with the force spread over the ring; the flanks share it unequally, and the sphere slides on
+    /// them.
+    pub fn expected(scene: &SealSeat) -> Self {
+        let (actuator, ring) = (&scene.actuator, scene.ring());
+        let modulus = scene.seat.material.plane_strain_modulus();
+        let stiffness = 4.0 / 3.0 * modulus * actuator.tip_radius.sqrt();
+        let hit = HertzImpact { mass: actuator.mass, speed: actuator.speed, stiffness };
+        let patch = (actuator.tip_radius * hit.approach_peak()).sqrt();
+        let force = 2.0 * hit.force_peak() * scene.sphere.mass / actuator.mass;
+        let length = 2.0 * std::f64::consts::PI * ring.radius;
+        let line_load = force / (length * (0.5 * scene.seat.aperture_angle).sin());
+        let half_width = (4.0 * line_load * scene.sphere.radius / (std::f64::consts::PI * modulus)).sqrt();
+        Self { ring: rounded(3.0 * half_width), tip: rounded(patch) }
+    }
+
+    /// Zones that hold contact up to `reach` in m from where sphere and tips touch first, with room beyond it; `None`
+    /// if these do.
+    pub fn widened(&self, reach: [f64; 2]) -> Option<Self> {
+        let wider = |zone: f64, reach: f64| if reach > ROOM * zone { rounded(1.5 * zone) } else { zone };
+        let wide = Self { ring: wider(self.ring, reach[0]), tip: wider(self.tip, reach[1]) };
+        (wide != *self).then_some(wide)
+    }
+}
+
+/// `value` with two significant digits, so that zones of scenes that are a little different find the same body.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+/// All nodes of the outer faces on the cone and on the underside within `zones`, ascending by node.
+pub fn candidates(scene: &SealSeat, mesh: &TetMesh, zones: &Zones) -> Vec<Candidate> {
+    let cone = Cone::of(scene);
+    let close = ON_SURFACE * scene.sphere.radius;
+    let mut found = Vec::new();
+    let mut seen = vec![false; mesh.points.len()];
+    for face in mesh.outer_faces() {
+        let all = |on: &dyn Fn([f64; 3]) -> bool| face[..3].iter().all(|&node| on(mesh.points[node]));
+        let on_cone = all(&|p| p[0] < 0.0 && cone.height(p).abs() < close);
+        let below = all(&|p| p[2].abs() < close);
+        for &node in face.iter().filter(|_| on_cone || below) {
+            if std::mem::replace(&mut seen[node], true) {
+                continue;
+            }
+            let place = mesh.points[node];
+            if on_cone && cone.along(place).abs() <= zones.ring {
+                found.push(cone.candidate(node, place));
+            } else if below {
+                found.extend(under_tip(scene, node, place, zones.tip));
+            }
+        }
+    }
+    found.sort_unstable_by_key(|c: &Candidate| c.node);
+    found
+}
+
+/// A node of the underside, if it is near a tip; of two tips the nearer one meets it.
+fn under_tip(scene: &SealSeat, node: usize, place: [f64; 3], zone: f64) -> Option<Candidate> {
+    let distance = |x: &f64| (place[0] - x).hypot(place[1]);
+    let tips = scene.actuator.tip_positions.iter().map(distance).enumerate();
+    let (tip, offset) = tips.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (offset <= zone).then_some(Candidate {
+        node,
+        place: [place[0], place[1], 0.0],
+        partner: Partner::Tip(tip),
+        offset,
+        right_flank: false,
+    })
+}
+
+/// The cone of the seat in which the sphere rests, seen from the sphere's centre.
+struct Cone {
+    centre: [f64; 2],
+    axis: [f64; 2],
+    radius: f64,
+    /// Half the aperture angle.
+    half_angle: f64,
+}
+
+impl Cone {
+    fn of(scene: &SealSeat) -> Self {
+        let ring = scene.ring();
+        Self {
+            centre: ring.sphere_centre,
+            axis: ring.axis,
+            radius: scene.sphere.radius,
+            half_angle: 0.5 * scene.seat.aperture_angle,
+        }
+    }
+
+    /// Distance in m of `p` from the sphere's centre across the axis and along it, and the unit vector across.
+    fn meridian(&self, p: [f64; 3]) -> (f64, f64, [f64; 3]) {
+        let [sin, cos] = self.axis;
+        let d = [p[0] - self.centre[0], p[1], p[2] - self.centre[1]];
+        let along = d[0] * sin + d[2] * cos;
+        let across = [d[0] - along * sin, d[1], d[2] - along * cos];
+        let radius = across.iter().map(|a| a * a).sum::<f64>().sqrt();
+        (radius, along, across.map(|a| a / radius))
+    }
+
+    /// Distance in m of `p` behind the cone, seen from the sphere.
+    fn height(&self, p: [f64; 3]) -> f64 {
+        let (sin, cos) = self.half_angle.sin_cos();
+        let (across, along, _) = self.meridian(p);
+        across * cos - along * sin - self.radius
+    }
+
+    /// Distance in m of `p` from the ring, along the cone and up.
+    fn along(&self, p: [f64; 3]) -> f64 {
+        let (sin, cos) = self.half_angle.sin_cos();
+        let (across, along, _) = self.meridian(p);
+        across * sin + along * cos
+    }
+
+    fn candidate(&self, node: usize, p: [f64; 3]) -> Candidate {
+        let (sin, cos) = self.half_angle.sin_cos();
+        let [axis_x, axis_z] = self.axis;
+        let (radius, along, across) = self.meridian(p);
+        // Along the radius from the seat's axis onto the cone, as the reference moves it.
+        let exact = (self.radius + along * sin) / cos;
+        // The seat's +x flank is where the unit vector across has a positive component along (cos, 0, -sin).
+        let side = across[0] * axis_z - across[2] * axis_x;
+        Candidate {
+            node,
+            place: std::array::from_fn(|c| p[c] + (exact - radius) * across[c]),
+            partner: Partner::Sphere,
+            offset: self.along(p).abs(),
+            right_flank: side >= 0.0,
+        }
+    }
+}

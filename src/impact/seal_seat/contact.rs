@@ -1,0 +1,368 @@
+//! Unilateral contact of rigid spheres with the candidate nodes of an elastic body, at one instant.
+//!
+//! The modes say where the candidates u lie without contact forces; forces lambda_i >= 0 along the true normals n_i
+//! move them further by the residual flexibility, u_i += sum_j R_ij n_j lambda_j, until no gap
+//! g_i = |x_i + u_i - c| - r is negative and only closed gaps carry force. The residual has no inertia: this is a static
+//! problem, and its forces derive from an energy, so that an integrator that keeps energies keeps this one.
+//!
+//! With frozen normals it is a linear complementarity problem with the matrix G_ij = n_i^T R_ij n_j, which is
+//! symmetric positive definite: its solution is unique. It is found by exchanging the wrong nodes of the last step's
+//! contact set all at once, each time with a Newton step on the set; if that makes no progress only the last wrong one
+//! is exchanged, which ends after a finite number of exchanges (Judice & Pires 1994, Computers Ops Res. 21, 587).
+//!
+//! From one instant to the next only candidates with a small gap are watched; [`Contact::survey`] looks at all and tells
+//! whether one has been missed.
+
+use super::cholesky::Cholesky;
+use crate::error::{Error, Result};
+
+/// Largest gap in m, over the radius of the partner, that a closed contact may have.
+const CLOSED: f64 = 1e-9;
+/// Newton's method keeps its factor as long as a step shrinks the gaps to this share.
+const CHORD: f64 = 0.05;
+/// Exchanges of all wrong nodes at once without progress before they are exchanged singly.
+const PATIENCE: u32 = 4;
+/// Most iterations per instant.
+const MOST: u32 = 400;
+
+/// A rigid sphere that candidates meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball {
+    /// Centre in m.
+    pub centre: [f64; 3],
+    /// Radius in m.
+    pub radius: f64,
+}
+
+/// The nodes that may be touched.
+#[derive(Debug, Clone)]
+pub struct Nodes {
+    /// Places at rest in m. Shape (n).
+    place: Vec<[f64; 3]>,
+    /// Number of the ball each one meets. Shape (n).
+    ball: Vec<usize>,
+    /// Residual flexibility R_ij in m/N, 3 x 3 blocks row by row. Shape (n, n).
+    residual: Vec<[f64; 9]>,
+}
+
+impl Nodes {
+    /// Candidates at `place`, each against the ball of the number in `ball`, with the `residual` flexibility
+    /// (x, y, z of each candidate; shape (3 n, 3 n), row by row) in m/N.
+    pub fn new(place: Vec<[f64; 3]>, ball: Vec<usize>, residual: &[f64]) -> Self {
+        let n = place.len();
+        let entry = |i: usize, j: usize, k: usize| residual[(3 * i + k / 3) * 3 * n + 3 * j + k % 3];
+        let residual = (0..n * n).map(|ij| std::array::from_fn(|k| entry(ij / n, ij % n, k))).collect();
+        Self { place, ball, residual }
+    }
+
+    /// Number of candidates.
+    pub fn len(&self) -> usize {
+        self.place.len()
+    }
+
+    /// Whether there is no candidate.
+    pub fn is_empty(&self) -> bool {
+        self.place.is_empty()
+    }
+}
+
+/// A solution, from which the next one starts.
+#[derive(Debug, Clone, Default)]
+pub struct Loads {
+    /// Candidates in contact, ascending.
+    active: Vec<usize>,
+    /// Force of each candidate in N. Shape (n).
+    force: Vec<f64>,
+    /// Normals from the balls to the candidates. Shape (n).
+    normal: Vec<[f64; 3]>,
+    /// Candidates that are looked at, ascending.
+    watched: Vec<usize>,
+}
+
+/// The contact problem and its last solution.
+#[derive(Debug, Clone)]
+pub struct Contact<'a> {
+    nodes: &'a Nodes,
+    loads: Loads,
+    /// Displacements by the residual in m. Shape (n).
+    yielding: Vec<[f64; 3]>,
+    gap: Vec<f64>,
+    /// Nodes on the wrong side: in contact with a tensile force, or out of contact and too deep. Shape (n).
+    wrong: Vec<bool>,
+    /// Factor of G on `factored`, the contact set it was made for.
+    factor: Cholesky,
+    factored: Vec<usize>,
+    previous: Vec<usize>,
+    step: Vec<f64>,
+    /// What it has cost so far.
+    pub work: Work,
+}
+
+/// What the solutions have cost.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Instants solved.
+    pub solutions: u64,
+    /// Newton steps.
+    pub iterations: u64,
+    /// Factorisations.
+    pub factorisations: u64,
+    /// Nodes in contact, summed over the factorisations.
+    pub factored: u64,
+}
+
+impl<'a> Contact<'a> {
+    /// The problem of `nodes`, without forces and with all of them watched.
+    pub fn new(nodes: &'a Nodes) -> Self {
+        let n = nodes.len();
+        Self {
+            nodes,
+            loads: Loads {
+                active: Vec::with_capacity(n),
+                force: vec![0.0; n],
+                normal: vec![[0.0; 3]; n],
+                watched: (0..n).collect(),
+            },
+            yielding: vec![[0.0; 3]; n],
+            gap: vec![0.0; n],
+            wrong: vec![false; n],
+            factor: Cholesky::with_capacity(n),
+            factored: Vec::with_capacity(n),
+            previous: Vec::with_capacity(n),
+            step: Vec::with_capacity(n),
+            work: Work::default(),
+        }
+    }
+
+    /// Candidates that carry force, ascending.
+    pub fn active(&self) -> &[usize] {
+        &self.loads.active
+    }
+
+    /// Force in N of a candidate, positive in compression.
+    pub fn force(&self, candidate: usize) -> f64 {
+        self.loads.force[candidate]
+    }
+
+    /// Force vector in N on the elastic body at a candidate.
+    pub fn force_vector(&self, candidate: usize) -> [f64; 3] {
+        self.loads.normal[candidate].map(|n| n * self.loads.force[candidate])
+    }
+
+    /// Elastic energy in J that the residual flexibility holds.
+    pub fn energy(&self) -> f64 {
+        let work = |&i: &usize| dot(self.force_vector(i), self.yielding[i]);
+        0.5 * self.loads.active.iter().map(work).sum::<f64>()
+    }
+
+    /// Copies the present solution.
+    pub fn keep(&self, kept: &mut Loads) {
+        kept.clone_from(&self.loads);
+    }
+
+    /// Goes back to a solution that was kept; what is watched stays as it is.
+    pub fn go_back(&mut self, kept: &Loads) {
+        self.loads.active.clone_from(&kept.active);
+        self.loads.force.clone_from(&kept.force);
+        self.loads.normal.clone_from(&kept.normal);
+    }
+
+    /// Finds the forces for candidates displaced by `modal` in m (shape (3 n)) without the residual's part.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if the residual is not positive definite or no solution is found.
+    pub fn solve(&mut self, modal: &[f64], balls: &[Ball]) -> Result<()> {
+        self.work.solutions += 1;
+        let (mut fewest, mut patience, mut last) = (usize::MAX, PATIENCE, f64::INFINITY);
+        for _ in 0..MOST {
+            let worst = self.evaluate_set(modal, balls);
+            let closed = worst <= CLOSED;
+            if !closed {
+                if self.factored != self.loads.active || worst > CHORD * last {
+                    self.factorise()?;
+                }
+                last = worst;
+                self.correct();
+            }
+            // A set that is sure to change is not solved to the end.
+            let wrong = match closed {
+                true => self.mark_wrong(modal, balls),
+                false if patience > 0 => self.mark_tensile(),
+                false => 0,
+            };
+            if wrong == 0 && closed {
+                return Ok(());
+            }
+            if wrong > 0 {
+                if closed && wrong < fewest {
+                    (fewest, patience) = (wrong, PATIENCE);
+                } else if closed {
+                    patience = patience.saturating_sub(1);
+                }
+                self.exchange(patience == 0);
+                last = f64::INFINITY;
+            }
+        }
+        Err(Error::Solver(format!(
+            "the contact forces of the seal seat did not converge in {MOST} iterations with {} of {} candidates in contact",
+            self.loads.active.len(),
+            self.nodes.len()
+        )))
+    }
+
+    /// Looks at all candidates after [`Contact::solve`] and watches those with gaps below `margin` in m from now on;
+    /// whether one that was not watched has been missed.
+    pub fn survey(&mut self, modal: &[f64], balls: &[Ball], margin: f64) -> bool {
+        let mut missed = false;
+        let (mut active, mut watched) = (0, 0);
+        let before = std::mem::take(&mut self.loads.watched);
+        self.previous.clear();
+        for i in 0..self.nodes.len() {
+            let was_watched = before.get(watched) == Some(&i);
+            watched += usize::from(was_watched);
+            if self.loads.active.get(active) == Some(&i) {
+                active += 1;
+                self.previous.push(i);
+                continue;
+            }
+            self.yielding[i] = self.displaced_by_residual(i);
+            self.look(i, modal, balls);
+            missed |= !was_watched && self.gap[i] < -CLOSED * balls[self.nodes.ball[i]].radius;
+            if self.gap[i] < margin {
+                self.previous.push(i);
+            }
+        }
+        self.loads.watched = before;
+        std::mem::swap(&mut self.loads.watched, &mut self.previous);
+        missed
+    }
+
+    /// Displacements, normals and gaps of the contact set; its largest gap in magnitude, over the radius.
+    fn evaluate_set(&mut self, modal: &[f64], balls: &[Ball]) -> f64 {
+        for a in 0..self.loads.active.len() {
+            let i = self.loads.active[a];
+            self.yielding[i] = self.displaced_by_residual(i);
+        }
+        let mut worst = 0.0f64;
+        for a in 0..self.loads.active.len() {
+            let i = self.loads.active[a];
+            self.look(i, modal, balls);
+            worst = worst.max(self.gap[i].abs() / balls[self.nodes.ball[i]].radius);
+        }
+        worst
+    }
+
+    /// Gap and normal of candidate `i` from its displacements.
+    fn look(&mut self, i: usize, modal: &[f64], balls: &[Ball]) {
+        let ball = balls[self.nodes.ball[i]];
+        let d: [f64; 3] = std::array::from_fn(|c| {
+            self.nodes.place[i][c] + modal[3 * i + c] + self.yielding[i][c] - ball.centre[c]
+        });
+        let distance = dot(d, d).sqrt();
+        self.gap[i] = distance - ball.radius;
+        self.loads.normal[i] = d.map(|d| d / distance);
+    }
+
+    fn displaced_by_residual(&self, i: usize) -> [f64; 3] {
+        let n = self.nodes.len();
+        let row = &self.nodes.residual[i * n..(i + 1) * n];
+        let mut u = [0.0; 3];
+        for &j in &self.loads.active {
+            let (r, [x, y, z]) = (&row[j], self.force_vector(j));
+            u[0] += r[0] * x + r[1] * y + r[2] * z;
+            u[1] += r[3] * x + r[4] * y + r[5] * z;
+            u[2] += r[6] * x + r[7] * y + r[8] * z;
+        }
+        u
+    }
+
+    fn factorise(&mut self) -> Result<()> {
+        let n = self.nodes.len();
+        self.factored.clone_from(&self.loads.active);
+        self.work.factorisations += 1;
+        self.work.factored += self.factored.len() as u64;
+        let (active, normal, residual) = (&self.factored, &self.loads.normal, &self.nodes.residual);
+        let fine = self.factor.factorise(active.len(), |a, b| {
+            let (i, j) = (active[a], active[b]);
+            let (r, p, q) = (&residual[i * n + j], normal[i], normal[j]);
+            p[0] * (r[0] * q[0] + r[1] * q[1] + r[2] * q[2])
+                + p[1] * (r[3] * q[0] + r[4] * q[1] + r[5] * q[2])
+                + p[2] * (r[6] * q[0] + r[7] * q[1] + r[8] * q[2])
+        });
+        if fine {
+            return Ok(());
+        }
+        self.factored.clear();
+        Err(Error::Solver(
+            "the residual flexibility of the seal seat's contact nodes is not positive definite: the mesh has too few nodes for this number of modes".into(),
+        ))
+    }
+
+    /// Newton step on the contact set.
+    fn correct(&mut self) {
+        self.work.iterations += 1;
+        self.step.clear();
+        self.step.extend(self.loads.active.iter().map(|&i| -self.gap[i]));
+        self.factor.solve(&mut self.step);
+        for (&i, step) in self.loads.active.iter().zip(&self.step) {
+            self.loads.force[i] += step;
+        }
+    }
+
+    /// Marks the nodes that pull; their number.
+    fn mark_tensile(&mut self) -> usize {
+        self.wrong.fill(false);
+        let mut count = 0;
+        for &i in &self.loads.active {
+            self.wrong[i] = self.loads.force[i] < 0.0;
+            count += usize::from(self.wrong[i]);
+        }
+        count
+    }
+
+    /// Marks the nodes that pull and the open watched ones that are too deep; their number.
+    fn mark_wrong(&mut self, modal: &[f64], balls: &[Ball]) -> usize {
+        let mut count = self.mark_tensile();
+        let mut active = 0;
+        for w in 0..self.loads.watched.len() {
+            let i = self.loads.watched[w];
+            // a solution that was gone back to may have nodes in contact that are not watched
+            while self.loads.active.get(active).is_some_and(|a| *a < i) {
+                active += 1;
+            }
+            if self.loads.active.get(active) == Some(&i) {
+                active += 1;
+                continue;
+            }
+            self.yielding[i] = self.displaced_by_residual(i);
+            self.look(i, modal, balls);
+            self.wrong[i] = self.gap[i] < -CLOSED * balls[self.nodes.ball[i]].radius;
+            count += usize::from(self.wrong[i]);
+        }
+        count
+    }
+
+    /// Moves the marked nodes, or only the last one, into the contact set or out of it.
+    fn exchange(&mut self, single: bool) {
+        if single && let Some(last) = self.wrong.iter().rposition(|wrong| *wrong) {
+            self.wrong[..last].fill(false);
+        }
+        for &i in self.loads.active.iter().filter(|&&i| self.wrong[i]) {
+            self.loads.force[i] = 0.0;
+        }
+        self.previous.clone_from(&self.loads.active);
+        self.loads.active.clear();
+        let mut next = 0;
+        for (i, &wrong) in self.wrong.iter().enumerate() {
+            let was = self.previous.get(next) == Some(&i);
+            next += usize::from(was);
+            if was != wrong {
+                self.loads.active.push(i);
+            }
+        }
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

@@ -1,0 +1,341 @@
+//! Time integration of the reduced seal seat.
+//!
+//! Strang splitting: contact forces as kicks, between them modes and rigid bodies move exactly, so that high
+//! modes need no small steps. Symmetric, symplectic and of second order; the contact forces derive from an energy and are
+//! continuous, with kinks where a node touches or lets go.
+
+use super::contact::{Loads, Work};
+use super::system::{Forces, State, System, Workspace};
+use crate::error::{Error, Result};
+
+/// Most time steps of a run.
+const MOST_STEPS: u64 = 2_000_000;
+/// Steps between two surveys of all candidates, and between two looks whether contact is still possible.
+const INTERVAL: u64 = 8;
+/// Gap below which an open candidate is watched until the next survey, over the actuator's way in between. Should a
+/// candidate be missed, the steps since the last survey are done again with twice the margin.
+const MARGIN: f64 = 0.05;
+
+/// Settings of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Time step in s.
+    pub step: f64,
+    /// End in s; `None` = until no further contact is possible.
+    pub end_time: Option<f64>,
+    /// Whether a sample is kept of every step.
+    pub history: bool,
+}
+
+/// What is known at the end of a step; of whole bodies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// s.
+    pub time: f64,
+    /// m, x and z.
+    pub sphere: [f64; 2],
+    /// m/s, x and z.
+    pub sphere_velocity: [f64; 2],
+    /// Force on the sphere in N, x and z.
+    pub sphere_force: [f64; 2],
+    /// m.
+    pub actuator: f64,
+    /// m/s.
+    pub actuator_velocity: f64,
+    /// N, positive in compression.
+    pub actuator_force: f64,
+}
+
+/// What a run adds up; of whole bodies.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tally {
+    /// Largest forces in N of sphere (magnitude) and actuator.
+    pub force_peak: [f64; 2],
+    /// Times in s of the last release of sphere and actuator.
+    pub contact_end: [f64; 2],
+    /// Impulses of the normal forces on the flanks at the -x and the +x side of the seat's axis in N s.
+    pub flank_impulse: [f64; 2],
+    /// Largest distance in m of loaded candidates from where sphere and tips touch first.
+    pub reach: [f64; 2],
+    /// Time steps.
+    pub steps: u64,
+    /// Impulse along z on the seat in N s, from the nodal forces.
+    seat_impulse: f64,
+    /// Magnitudes of the forces of sphere and actuator at the last sample and the one before.
+    before: [[f64; 2]; 2],
+}
+
+/// Result of a run; of whole bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Integration {
+    /// State at the end.
+    pub state: State,
+    /// What was added up.
+    pub tally: Tally,
+    /// |energy at the end - energy at the start| over the energy at the start.
+    pub energy_residual: f64,
+    /// Momentum of sphere and actuator that the impulse on the seat does not account for, over that at the start.
+    pub momentum_residual: f64,
+    /// End of the run in s.
+    pub time: f64,
+    /// Samples, if asked for.
+    pub samples: Vec<Sample>,
+    /// What the contact forces have cost.
+    pub work: Work,
+}
+
+/// Exact motion of the modes over one step.
+struct Rotation {
+    cos: Vec<f64>,
+    /// sin(omega h) / omega
+    sinc: Vec<f64>,
+    /// -omega sin(omega h)
+    back: Vec<f64>,
+}
+
+impl Rotation {
+    fn over(omega: &[f64], step: f64) -> Self {
+        Self {
+            cos: omega.iter().map(|w| (w * step).cos()).collect(),
+            sinc: omega.iter().map(|w| (w * step).sin() / w).collect(),
+            back: omega.iter().map(|w| -(w * step).sin() * w).collect(),
+        }
+    }
+}
+
+/// Runs the impact.
+///
+/// # Errors
+/// [`Error::Solver`] if the contact forces do not converge, or contact does not end.
+pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
+    let mut run = Running::new(system, options);
+    run.workspace.forces(system, &run.state, &mut run.forces)?;
+    run.sample();
+    while !run.is_over() {
+        if run.tally.steps >= MOST_STEPS {
+            return Err(Error::Solver(format!("contact of the seal seat is still possible after {:e} s", run.time())));
+        }
+        run.interval()?;
+    }
+    Ok(run.finish())
+}
+
+struct Running<'a> {
+    system: &'a System,
+    options: Options,
+    rotation: Rotation,
+    workspace: Workspace<'a>,
+    state: State,
+    forces: Forces,
+    tally: Tally,
+    samples: Vec<Sample>,
+    start_energy: f64,
+    /// Present value of [`MARGIN`].
+    margin: f64,
+    kept: Kept,
+}
+
+/// Where a run can go back to.
+struct Kept {
+    state: State,
+    forces: Forces,
+    tally: Tally,
+    loads: Loads,
+    samples: usize,
+}
+
+impl<'a> Running<'a> {
+    fn new(system: &'a System, options: &Options) -> Self {
+        let (workspace, state) = (Workspace::new(system), system.start());
+        Self {
+            system,
+            options: *options,
+            rotation: Rotation::over(&system.omega, options.step),
+            start_energy: workspace.energy(system, &state),
+            workspace,
+            forces: Forces::default(),
+            tally: Tally::default(),
+            samples: Vec::new(),
+            margin: MARGIN,
+            kept: Kept {
+                state: state.clone(),
+                forces: Forces::default(),
+                tally: Tally::default(),
+                loads: Loads::default(),
+                samples: 0,
+            },
+            state,
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.tally.steps as f64 * self.options.step
+    }
+
+    /// Steps to the next survey, again and with more candidates watched if one has been missed.
+    fn interval(&mut self) -> Result<()> {
+        self.keep();
+        let left = self.options.end_time.map(|end| ((end - self.time()) / self.options.step).round() as u64);
+        let steps = left.map_or(INTERVAL, |left| left.clamp(1, INTERVAL));
+        loop {
+            let watch = self.margin * self.system.speed * self.options.step * INTERVAL as f64;
+            self.workspace.survey(self.system, &self.state, watch);
+            for _ in 0..steps {
+                self.step()?;
+            }
+            if !self.workspace.survey(self.system, &self.state, watch) {
+                return Ok(());
+            }
+            self.margin *= 2.0;
+            self.go_back();
+        }
+    }
+
+    fn keep(&mut self) {
+        self.kept.state.clone_from(&self.state);
+        self.kept.forces.clone_from(&self.forces);
+        self.kept.tally = self.tally;
+        self.kept.samples = self.samples.len();
+        self.workspace.contact.keep(&mut self.kept.loads);
+    }
+
+    fn go_back(&mut self) {
+        self.state.clone_from(&self.kept.state);
+        self.forces.clone_from(&self.kept.forces);
+        self.tally = self.kept.tally;
+        self.samples.truncate(self.kept.samples);
+        self.workspace.contact.go_back(&self.kept.loads);
+    }
+
+    fn step(&mut self) -> Result<()> {
+        let step = self.options.step;
+        self.kick(0.5 * step);
+        self.drift(step);
+        self.workspace.forces(self.system, &self.state, &mut self.forces)?;
+        self.kick(0.5 * step);
+        self.tally.steps += 1;
+        self.sample();
+        Ok(())
+    }
+
+    fn kick(&mut self, step: f64) {
+        for (v, f) in self.state.modal_velocity.iter_mut().zip(&self.forces.modal) {
+            *v += step * f;
+        }
+        for (v, f) in self.state.sphere_velocity.iter_mut().zip(self.forces.sphere) {
+            *v += step * f / self.system.sphere_mass;
+        }
+        self.state.actuator_velocity += step * self.forces.actuator / self.system.actuator_mass;
+        for (impulse, force) in self.tally.flank_impulse.iter_mut().zip(self.forces.flanks) {
+            *impulse += 2.0 * step * force;
+        }
+        let active = self.workspace.contact.active();
+        self.tally.seat_impulse += step * active.iter().map(|&i| self.workspace.contact.force_vector(i)[2]).sum::<f64>();
+    }
+
+    fn drift(&mut self, step: f64) {
+        let r = &self.rotation;
+        for (k, (q, v)) in self.state.modal.iter_mut().zip(&mut self.state.modal_velocity).enumerate() {
+            (*q, *v) = (*q * r.cos[k] + *v * r.sinc[k], *q * r.back[k] + *v * r.cos[k]);
+        }
+        for (x, v) in self.state.sphere.iter_mut().zip(self.state.sphere_velocity) {
+            *x += step * v;
+        }
+        self.state.actuator += step * self.state.actuator_velocity;
+    }
+
+    /// Keeps what the result needs of this instant.
+    fn sample(&mut self) {
+        let sphere_force = self.forces.sphere.map(|f| 2.0 * f);
+        let magnitudes = [sphere_force[0].hypot(sphere_force[1]), -2.0 * self.forces.actuator];
+        let step = self.options.step;
+        let time = self.time();
+        let tally = &mut self.tally;
+        for (i, &force) in magnitudes.iter().enumerate() {
+            tally.force_peak[i] = tally.force_peak[i].max(force);
+            tally.reach[i] = tally.reach[i].max(self.forces.reach[i]);
+            let [last, earlier] = [tally.before[0][i], tally.before[1][i]];
+            if force == 0.0 && last > 0.0 {
+                // the force goes on falling as over the last step, until it is zero
+                let falling = earlier - last;
+                let share = if falling > 0.0 { (last / falling).min(1.0) } else { 1.0 };
+                tally.contact_end[i] = time - step + share * step;
+            } else if force > 0.0 {
+                tally.contact_end[i] = time;
+            }
+        }
+        tally.before = [magnitudes, tally.before[0]];
+        if self.options.history {
+            self.samples.push(Sample {
+                time,
+                sphere: self.state.sphere,
+                sphere_velocity: self.state.sphere_velocity,
+                sphere_force,
+                actuator: self.state.actuator,
+                actuator_velocity: self.state.actuator_velocity,
+                actuator_force: magnitudes[1],
+            });
+        }
+    }
+
+    /// Whether the end is reached, or no candidate can be met again: all contacts are open, and the straight flights of sphere and actuator
+    /// stay clear of every place that the modes' present amplitudes let the candidates reach.
+    fn is_over(&self) -> bool {
+        if let Some(end) = self.options.end_time {
+            return self.time() >= end - 0.5 * self.options.step;
+        }
+        if self.tally.steps == 0 || !self.workspace.contact.active().is_empty() {
+            return false;
+        }
+        let state = &self.state;
+        let modes = self.system.omega.iter().zip(&state.modal).zip(&state.modal_velocity);
+        let amplitude: Vec<f64> = modes.map(|((omega, q), v)| q.hypot(v / omega)).collect();
+        self.system.candidates.iter().enumerate().all(|(i, candidate)| {
+            let room: f64 = self
+                .system
+                .participation
+                .iter()
+                .zip(&amplitude)
+                .map(|(shape, a)| a * shape[3 * i..3 * i + 3].iter().map(|s| s * s).sum::<f64>().sqrt())
+                .sum();
+            let (ball, moved, velocity) = self.partner(candidate);
+            let from: [f64; 3] =
+                std::array::from_fn(|c| self.system.balls[ball].centre[c] + moved[c] - candidate.place[c]);
+            let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            let speed = dot(velocity, velocity);
+            let nearest = if speed > 0.0 { (-dot(from, velocity) / speed).max(0.0) } else { 0.0 };
+            let then: [f64; 3] = std::array::from_fn(|c| from[c] + nearest * velocity[c]);
+            dot(then, then).sqrt() - self.system.balls[ball].radius > room
+        })
+    }
+
+    /// Number of the ball a candidate meets, its displacement and velocity.
+    fn partner(&self, candidate: &super::Candidate) -> (usize, [f64; 3], [f64; 3]) {
+        let state = &self.state;
+        match candidate.partner {
+            super::Partner::Sphere => {
+                let in_plane = |[x, z]: [f64; 2]| [x, 0.0, z];
+                (0, in_plane(state.sphere), in_plane(state.sphere_velocity))
+            }
+            super::Partner::Tip(tip) => {
+                (1 + tip, [0.0, 0.0, state.actuator], [0.0, 0.0, state.actuator_velocity])
+            }
+        }
+    }
+
+    fn finish(self) -> Integration {
+        let (system, state) = (self.system, &self.state);
+        let start = system.actuator_mass * system.speed;
+        let left = system.actuator_mass * state.actuator_velocity + system.sphere_mass * state.sphere_velocity[1];
+        let energy = self.workspace.energy(system, state);
+        Integration {
+            momentum_residual: (left + self.tally.seat_impulse - start).abs() / start,
+            energy_residual: (energy - self.start_energy).abs() / self.start_energy,
+            time: self.time(),
+            work: self.workspace.contact.work,
+            state: self.state,
+            tally: self.tally,
+            samples: self.samples,
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! Reduced model of the flexible seal seat (section 4.4): modes and full residual flexibility of the seat, rigid sphere
+//! and actuator, unilateral contact at the nodes of the seat's mesh.
+//!
+//! Without friction the sphere's rotation idles: it has no torque, and of the three degrees of freedom in the plane two
+//! move.
+
+mod body;
+mod candidates;
+mod cholesky;
+pub mod contact;
+pub mod integrate;
+mod model;
+pub mod system;
+
+pub use body::{SeatBody, SeatMesh, supports};
+pub use candidates::{Candidate, Partner, Zones, candidates};
+pub use model::{DEFAULT_MODES, DEFAULT_TOLERANCE, SeatModel, quantities};
