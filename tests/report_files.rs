@@ -4,7 +4,7 @@ mod synthetic_impact;
 
 use impactcheck::comparison::compare_scene;
 use impactcheck::impact::Outcome;
-use impactcheck::report::{Report, SceneReport, check_writable, write};
+use impactcheck::report::{Attachments, Report, SceneReport, check_writable, write};
 use impactcheck::scene::Scene;
 use impactcheck::{Error, ExitStatus};
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ fn report<'a>(scene: &'a Scene, reference: &'a Outcome, reduced: &'a [Outcome]) 
     let comparison = compare_scene(scene, reference, reduced);
     let command = "impactcheck compare synthetic".into();
     let provenance = serde_json::Value::Null;
-    Report { scenes: vec![SceneReport { scene, comparison, reference, reduced, provenance, command }] }
+    Report { scenes: vec![SceneReport { scene, comparison, reference, reduced, provenance, command, attachments: Attachments::default() }] }
 }
 
 fn contents(dir: &Path) -> BTreeMap<String, Vec<u8>> {

@@ -1,13 +1,13 @@
 //! `impactcheck compare` and `impactcheck gate`: the main job, scene to verdict.
 
 use super::{Context, JsonArgument, reference};
-use crate::comparison::{Comparison, SceneComparison, Verdict, compare_scene};
+use crate::comparison::{CommonAxis, Comparison, SceneComparison, Verdict, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Outcome;
 use crate::impact::reduced::Reduced;
 use crate::measured::{self, Record, Speed};
 use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
-use crate::report::{self, Report, SceneReport};
+use crate::report::{self, Attachments, Report, SceneReport};
 use crate::scene::{self, Model, Scene};
 use clap::Args;
 use std::path::PathBuf;
@@ -81,10 +81,12 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
     }
     let references = references(context, arguments, &scenes)?;
     let mut reduced = Vec::new();
-    for scene in &scenes {
+    for (scene, stored) in scenes.iter().zip(&references) {
+        // the models' curves are drawn and compared as far as the reference's
+        let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
         let outcomes: Result<Vec<Outcome>> = models(arguments)
             .into_iter()
-            .map(|model| Reduced::new(scene, model, None)?.run_with_history(TOLERANCE))
+            .map(|model| Reduced::new(scene, model, None)?.run_with_history_until(TOLERANCE, end))
             .collect();
         reduced.push(outcomes?);
     }
@@ -99,6 +101,7 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
             reduced,
             provenance: stored.provenance.clone(),
             command: format!("impactcheck compare {}", scene.name),
+            attachments: Attachments { bands: stored.bands.clone() },
         })
         .collect();
     if let (Some(report), false) = (reports.first_mut(), records.is_empty()) {

@@ -1,5 +1,6 @@
 //! `history.csv` of a stored solution, read strictly.
 
+use super::CurveBands;
 use crate::impact::{History, Motion};
 use std::path::Path;
 
@@ -19,8 +20,9 @@ const COLUMNS: [&str; 9] = [
 /// What the name of a band's column adds to that of its curve. Bands follow the columns above, one per curve.
 const BAND: &str = "_band";
 
-fn is_width(text: &str) -> bool {
-    text.parse::<f64>().is_ok_and(|width| width.is_finite() && width >= 0.0)
+/// The number, if it can be the half width of a band.
+fn width(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|width: &f64| width.is_finite() && *width >= 0.0)
 }
 
 /// Whether these are the columns of a history, with or without bands.
@@ -30,16 +32,18 @@ fn are_columns(found: &csv::StringRecord) -> bool {
     found.iter().eq(COLUMNS) || found.iter().eq(all.iter().map(String::as_str))
 }
 
-/// Reads a history: the columns above, finite numbers, strictly increasing time, one row at least.
+/// Reads a history: the columns above, finite numbers, strictly increasing time, one row at least; and the bands of
+/// its curves, if the file has them.
 ///
 /// # Errors
 /// One sentence with line, column and value.
-pub(super) fn read(path: &Path) -> Result<History, String> {
+pub(super) fn read(path: &Path) -> Result<(History, Option<CurveBands>), String> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .from_path(path)
         .map_err(|e| format!("can't be read: {e}"))?;
     let mut columns: [Vec<f64>; 9] = Default::default();
+    let mut bands: [Vec<f64>; 8] = Default::default();
     for (index, record) in reader.records().enumerate() {
         let line = index + 1;
         // The reader itself refuses a row with another number of columns than the first.
@@ -68,13 +72,19 @@ pub(super) fn read(path: &Path) -> Result<History, String> {
             }
             column.push(number);
         }
-        if let Some(text) = record.iter().skip(COLUMNS.len()).find(|text| !is_width(text)) {
-            return Err(format!("line {line}: a band is `{text}`, not a finite number of 0 or more"));
+        for (band, text) in bands.iter_mut().zip(record.iter().skip(COLUMNS.len())) {
+            let width = width(text);
+            band.push(width.ok_or_else(|| {
+                format!("line {line}: a band is `{text}`, not a finite number of 0 or more")
+            })?);
         }
     }
     if columns[0].is_empty() {
         return Err("has no sample".to_owned());
     }
+    let has_bands = !bands[0].is_empty();
+    let bands = has_bands
+        .then(|| CurveBands::new(columns[0].clone(), COLUMNS[1..].iter().copied().zip(bands).collect()));
     let [
         time,
         outer_displacement,
@@ -86,12 +96,13 @@ pub(super) fn read(path: &Path) -> Result<History, String> {
         inner_velocity,
         inner_force,
     ] = columns;
-    Ok(History {
+    let history = History {
         time,
         outer: Motion { displacement: outer_displacement, velocity: outer_velocity },
         plate: Motion { displacement: plate_displacement, velocity: plate_velocity },
         inner: Motion { displacement: inner_displacement, velocity: inner_velocity },
         outer_force,
         inner_force,
-    })
+    };
+    Ok((history, bands))
 }

@@ -4,6 +4,7 @@
 //! with exactly these settings; everything else is said to be missing, stale or damaged.
 
 mod child;
+mod curve_bands;
 mod doctor;
 mod entry;
 mod history_file;
@@ -14,6 +15,7 @@ mod solve;
 mod store;
 
 pub use child::Progress;
+pub use curve_bands::CurveBands;
 pub use doctor::{Check, doctor};
 pub use entry::Stored;
 pub use identity::settings_hash;

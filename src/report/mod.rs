@@ -3,12 +3,14 @@
 //! Nothing here computes physics, and nothing depends on the time of day: the same results give
 //! the same files.
 
+mod attachments;
 mod budget_figure;
 mod budget_section;
 mod chart;
 mod curves_csv;
 mod efficiency_boxes;
 mod figure;
+mod figure_panel;
 pub(crate) mod format;
 mod html;
 mod json;
@@ -22,9 +24,10 @@ mod terminal;
 mod ticks;
 mod write;
 
+pub use attachments::Attachments;
 pub use chart::{ChartPanel, Series, chart};
 pub use curves_csv::curves_csv;
-pub use figure::{Theme, figure, measured_figure};
+pub use figure::{FIGURE_WIDTHS, Theme, figure, measured_figure, printed_figure};
 pub use html::{index_page, scene_page};
 pub use json::json;
 pub use junit::junit;
@@ -60,6 +63,8 @@ pub struct SceneReport<'a> {
     pub provenance: serde_json::Value,
     /// Command line that makes this comparison again.
     pub command: String,
+    /// What else there is to show.
+    pub attachments: Attachments,
 }
 
 impl Report<'_> {
