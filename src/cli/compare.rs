@@ -101,7 +101,7 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
             reduced,
             provenance: stored.provenance.clone(),
             command: format!("impactcheck compare {}", scene.name),
-            attachments: Attachments { bands: stored.bands.clone() },
+            attachments: Attachments::of(stored),
         })
         .collect();
     if let (Some(report), false) = (reports.first_mut(), records.is_empty()) {

@@ -4,6 +4,7 @@ use super::format::{prefixed, significant, with_unit, words};
 use super::{ChartPanel, SceneReport, Series, Theme, chart, measured_figure};
 use crate::impact::CURVES;
 use crate::measured::{AlignedRecord, Measured, Partner};
+use super::html::scrolled;
 use maud::{Markup, PreEscaped, html};
 
 /// Rows of a table, the heading first.
@@ -129,10 +130,10 @@ pub(super) fn measured_html(report: &SceneReport) -> Markup {
         let mut rows = rows.into_iter();
         let heading = rows.next().unwrap_or_default();
         html! {
-            div.scroll { table.measured {
+            (scrolled("Measurement", &html! { table.measured {
                 thead { tr { @for cell in &heading { th.left scope="col" { (cell) } } } }
                 tbody { @for row in rows { tr { @for cell in &row { td.left { (cell) } } } } }
-            } }
+            } }))
         }
     };
     html! {
