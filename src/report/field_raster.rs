@@ -55,7 +55,9 @@ impl Raster {
         for (quad, body) in mesh.quads.iter().zip(&mesh.bodies) {
             let first = (1 + (body % BODIES.len()) * SHADES) as u8;
             let corners = quad.map(|n| place[n]);
-            raster.fill(corners, [0.0; 4], |_| first);
+            let mut pixels = std::mem::take(&mut raster.pixels);
+            raster.fill(corners, [0.0; 4], |pixel, _| pixels[pixel] = first);
+            raster.pixels = pixels;
             let edges = (0..4).map(|k| distance(corners[k], corners[(k + 1) % 4]));
             let shortest = edges.fold(f64::INFINITY, f64::min);
             let shade = (shortest / 2.0).min((SHADES - 1) as f64) as u8;
@@ -66,19 +68,31 @@ impl Raster {
         raster.outlined(mesh, &place).mirrored()
     }
 
-    /// Nodal means of `values` (one per element), in colours from 0 to the largest in view, which is returned.
-    pub(super) fn field(mesh: &FieldMesh, values: &[f64], view: View, width: usize) -> (Self, f64) {
+    /// Nodal means of `values` (one per element, none negative), in colours from 0 to what a `share` of the section in view
+    /// does not exceed (1 = to the largest); that value is returned.
+    pub(super) fn field(
+        mesh: &FieldMesh,
+        values: &[f64],
+        share: f64,
+        view: View,
+        width: usize,
+    ) -> (Self, f64) {
         let mut raster = Raster::new(view, width);
         let place = raster.placed(mesh, view);
         let nodal = nodal_means(mesh, values);
-        let inside =
-            |n: usize| mesh.points[n][0] <= view.radius && (view.low..=view.high).contains(&mesh.points[n][1]);
-        let largest = (0..nodal.len()).filter(|n| inside(*n)).map(|n| nodal[n]).fold(0.0, f64::max);
-        let scale = if largest > 0.0 { (LEVELS - 1) as f64 / largest } else { 0.0 };
+        let mut shown = vec![f64::NAN; raster.pixels.len()];
         for quad in &mesh.quads {
-            raster.fill(quad.map(|n| place[n]), quad.map(|n| nodal[n]), |v| 1 + (v * scale) as u8);
+            raster.fill(quad.map(|n| place[n]), quad.map(|n| nodal[n]), |pixel, value| shown[pixel] = value);
         }
-        (raster.outlined(mesh, &place).mirrored(), largest)
+        let mut sorted: Vec<f64> = shown.iter().copied().filter(|v| v.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let last = sorted.len().saturating_sub(1) as f64;
+        let top = sorted.get((share * last).round() as usize).copied().unwrap_or(0.0);
+        let scale = if top > 0.0 { (LEVELS - 1) as f64 / top } else { 0.0 };
+        for (pixel, value) in raster.pixels.iter_mut().zip(&shown).filter(|(_, value)| value.is_finite()) {
+            *pixel = 1 + (value.max(0.0) * scale).round().min((LEVELS - 1) as f64) as u8;
+        }
+        (raster.outlined(mesh, &place).mirrored(), top)
     }
 
     /// Nodes in pixels of the right half, z upwards.
@@ -88,8 +102,8 @@ impl Raster {
         mesh.points.iter().map(|p| [middle + p[0] * scale, (view.high - p[1]) * scale]).collect()
     }
 
-    /// Fills a quadrilateral as two triangles; a pixel's value is linear in the corners'.
-    fn fill(&mut self, corners: [[f64; 2]; 4], values: [f64; 4], colour: impl Fn(f64) -> u8) {
+    /// Visits the pixels of a quadrilateral as those of two triangles; a pixel's value is linear in the corners'.
+    fn fill(&self, corners: [[f64; 2]; 4], values: [f64; 4], mut set: impl FnMut(usize, f64)) {
         for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
             let (pa, pb, pc) = (corners[a], corners[b], corners[c]);
             let area = cross(pa, pb, pc);
@@ -106,7 +120,7 @@ impl Raster {
                     let w = [cross(pb, pc, p) / area, cross(pc, pa, p) / area, cross(pa, pb, p) / area];
                     if w.iter().all(|w| *w >= -1e-9) {
                         let value = w[0] * values[a] + w[1] * values[b] + w[2] * values[c];
-                        self.pixels[y * self.width + x] = colour(value.max(0.0));
+                        set(y * self.width + x, value);
                     }
                 }
             }
@@ -241,19 +255,22 @@ mod tests {
         mesh.points.extend([[2.0, 0.0], [2.0, 1.0]]);
         mesh.quads.push([1, 4, 5, 2]);
         mesh.bodies.push(1);
-        let (raster, largest) = Raster::field(&mesh, &[0.0, 10.0], VIEW, 80);
-        assert_eq!(largest, 10.0);
+        let (raster, largest) = Raster::field(&mesh, &[0.0, 10.0], 1.0, VIEW, 80);
+        assert!((9.8..=10.0).contains(&largest), "{largest}");
         // zero at the axis, the mean of both elements between them, the largest at the rim
         let at = |x: usize| f64::from(raster.pixels[30 * 80 + x]);
         assert!((at(41) - 1.0).abs() <= 4.0 && (at(60) - 100.0).abs() <= 6.0 && at(78) > 190.0);
         assert_eq!(raster.pixels[30 * 80 + 2], raster.pixels[30 * 80 + 77]);
+        // the field rises from 0 to 5 over the first element
         let near = View { radius: 0.5, ..VIEW };
-        assert_eq!(Raster::field(&mesh, &[0.0, 10.0], near, 80).1, 0.0, "5 only at nodes out of view");
+        assert!((2.3..=2.5).contains(&Raster::field(&mesh, &[0.0, 10.0], 1.0, near, 80).1));
+        let half = Raster::field(&mesh, &[0.0, 10.0], 0.5, VIEW, 80).1;
+        assert!((4.7..=5.3).contains(&half), "{half}");
     }
 
     #[test]
     fn pictures_can_be_decoded_and_the_colours_are_those_of_the_map() {
-        let png = Raster::field(&unit_square(), &[1.0], VIEW, 40).0.png(true).expect("PNG");
+        let png = Raster::field(&unit_square(), &[1.0], 1.0, VIEW, 40).0.png(true).expect("PNG");
         let image = resvg::tiny_skia::Pixmap::decode_png(&png).expect("valid");
         let centre = image.pixel(20, 15).expect("inside").demultiply();
         assert_eq!([centre.red(), centre.green(), centre.blue()], cividis(1.0));

@@ -89,9 +89,12 @@
         if (Number.isFinite(room) && (!best || room > best.room + 1)) best = { room, k };
       }
       if (!best) continue;
-      const above = y(curve, best.k) - 5 * devicePixelRatio;
-      const top = plot.bbox.top + 16 * devicePixelRatio;
-      const place = [curve.body, plot.valToPos(data.time[best.k], "x", true), Math.max(above, top)];
+      // on the side where the next curve is farther away
+      const own = y(curve, best.k), others = panel.curves.filter((c) => c !== curve).map((c) => y(c, best.k) - own);
+      const above = Math.min(own - plot.bbox.top, ...others.filter((d) => d < 0).map((d) => -d));
+      const below = Math.min(plot.bbox.top + plot.bbox.height - own, ...others.filter((d) => d > 0));
+      const shift = (above >= below ? -4 : 20) * devicePixelRatio;
+      const place = [curve.body, plot.valToPos(data.time[best.k], "x", true), own + shift];
       context.strokeStyle = colour("bg");
       context.strokeText(...place);
       context.fillStyle = colour("fg");
@@ -223,7 +226,9 @@
   new ResizeObserver(fit).observe(root);
   // the tables begin with the instant of the largest force
   const force = data.panels[data.panels.length - 1].curves[0].values[data.sources[0].id];
-  show(force.indexOf(Math.max(...force.filter((v) => v != null))));
+  const peak = force.indexOf(Math.max(...force.filter((v) => v != null)));
+  // uPlot draws and scales in a microtask
+  setTimeout(() => show(peak));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => plots.forEach((plot) => plot.redraw(false)));
   window.impactcheck = { plots, zoom, range: () => range };
 })();
