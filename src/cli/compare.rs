@@ -7,7 +7,7 @@ use crate::impact::Outcome;
 use crate::impact::reduced::Reduced;
 use crate::measured::{self, Record, Speed};
 use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
-use crate::report::{self, Attachments, Report, SceneReport};
+use crate::report::{self, Attachments, FIGURE_WIDTHS, FigureFormat, Report, SceneReport};
 use crate::scene::{self, Model, Scene};
 use clap::Args;
 use std::path::PathBuf;
@@ -39,6 +39,12 @@ pub struct Arguments {
     /// Where the outer body's measured speed comes from: scene (the signal may have an offset) or measured (it has none)
     #[arg(long, default_value = "scene", value_name = "SOURCE")]
     speed: Speed,
+    /// Write the figure for a paper to this file (.svg, .pdf or .png); of several scenes, the scene's name is added
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
+    /// Width of that figure: 85 mm is one column, 175 mm a page
+    #[arg(long, default_value = "175 mm", value_name = "LENGTH", value_parser = figure_width, requires = "figure")]
+    figure_width: f64,
     /// Folder the report is written to
     #[arg(long, default_value = "reports", value_name = "DIR")]
     out: PathBuf,
@@ -79,6 +85,7 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
     {
         report::check_writable(folder)?;
     }
+    let figures = figures(arguments, &scenes)?;
     let references = references(context, arguments, &scenes)?;
     let mut reduced = Vec::new();
     for (scene, stored) in scenes.iter().zip(&references) {
@@ -115,6 +122,9 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
     let verdict = comparison.verdict;
     let report = Report { scenes: reports };
     report::write(&report, &arguments.out)?;
+    for (scene, (file, format)) in report.scenes.iter().zip(&figures) {
+        report::write_file(file, &report::figure_file(scene, arguments.figure_width, *format)?)?;
+    }
     if let Some(file) = junit {
         report::write_file(file, report::junit(&report)?.as_bytes())?;
     }
@@ -131,6 +141,32 @@ fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Res
         arguments.out.join("index.html").display()
     ));
     Ok(verdict)
+}
+
+/// The file of every scene's figure; none if none is asked for. Refused before anything is computed.
+fn figures(arguments: &Arguments, scenes: &[Scene]) -> Result<Vec<(PathBuf, FigureFormat)>> {
+    let Some(file) = &arguments.figure else { return Ok(Vec::new()) };
+    let format = FigureFormat::of(file)?;
+    if let Some(folder) = file.parent() {
+        report::check_writable(folder)?;
+    }
+    if scenes.len() == 1 {
+        return Ok(vec![(file.clone(), format)]);
+    }
+    let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let (stem, ending) = (part(file.file_stem()), part(file.extension()));
+    let named = |scene: &Scene| (file.with_file_name(format!("{stem}-{}.{ending}", scene.name)), format);
+    Ok(scenes.iter().map(named).collect())
+}
+
+/// Parses the width of a figure, in mm.
+fn figure_width(text: &str) -> std::result::Result<f64, String> {
+    let width = 1e3 * scene::quantity_in(text, "m")?;
+    if FIGURE_WIDTHS.contains(&width) {
+        Ok(width)
+    } else {
+        Err(format!("{width} mm is not within {} to {} mm", FIGURE_WIDTHS.start(), FIGURE_WIDTHS.end()))
+    }
 }
 
 /// The measured files; they belong to one scene.
