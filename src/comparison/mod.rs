@@ -80,6 +80,15 @@ pub struct SceneComparison {
 }
 
 impl SceneComparison {
+    /// Adds checks of the reference; one that fails makes the scene and all its models fail.
+    pub fn add_reference_checks(&mut self, checks: Vec<Check>) {
+        if checks.iter().any(|check| !check.verdict.passed()) {
+            self.verdict = Verdict::Fail;
+            self.models.iter_mut().for_each(|model| model.verdict = Verdict::Fail);
+        }
+        self.integrity.extend(checks);
+    }
+
     /// Adds the discrepancy budget (see [`mod@budget`]) if models B and C are both compared.
     ///
     /// # Errors

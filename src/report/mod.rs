@@ -40,6 +40,7 @@ pub use figure_file::{FigureFormat, figure_file};
 pub use html::index_page;
 pub use json::json;
 pub use junit::junit;
+pub(crate) use junit::{failure as row_failure, integrity_failure as check_failure};
 pub use markdown::markdown;
 pub use measured_section::efficiency_figure;
 pub use png::png;
