@@ -12,6 +12,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+/// What the names of these checks begin with.
+pub const CHECK: &str = "accepted_reference";
 /// Relative difference that a quantity without a band may have.
 const WITHOUT_BAND: f64 = 1e-3;
 
@@ -113,7 +115,7 @@ pub fn checks(record: &[Acceptance], reference: &Summary, resolution: Resolution
         };
         let unit = PLATE_QUANTITIES.iter().find(|(n, _)| n == name).map_or("1", |(_, unit)| unit);
         Check {
-            check: format!("accepted_reference_{name}"),
+            check: format!("{CHECK}_{name}"),
             unit: unit.to_owned(),
             found,
             expected: *expected,

@@ -1,7 +1,9 @@
-//! `impactcheck compare` and `impactcheck gate`: the main job, scene to verdict.
+//! `impactcheck compare`: the main job, scene to verdict.
 
 use super::{Context, JsonArgument, reference};
-use crate::comparison::{CommonAxis, Comparison, SceneComparison, Verdict, compare_scene};
+use crate::ci::commit::Commit;
+use crate::ci::{acceptance, trend};
+use crate::comparison::{CommonAxis, Comparison, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Outcome;
 use crate::impact::reduced::Reduced;
@@ -10,11 +12,13 @@ use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
 use crate::report::{self, Attachments, FIGURE_WIDTHS, FigureFormat, Report, SceneReport};
 use crate::scene::{self, Model, Scene};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Relative error of the efficiency that the reduced models' time integration may have in a comparison.
 const TOLERANCE: f64 = 1e-7;
+/// Results over commits, beside the report.
+const TRENDS: &str = "trends.jsonl";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -45,6 +49,9 @@ pub struct Arguments {
     /// Width of that figure: 85 mm is one column, 175 mm a page
     #[arg(long, default_value = "175 mm", value_name = "LENGTH", value_parser = figure_width, requires = "figure")]
     figure_width: f64,
+    /// Results over commits to draw in the report [default: trends.jsonl in the report's folder, if it exists]
+    #[arg(long, value_name = "FILE")]
+    trends: Option<PathBuf>,
     /// Folder the report is written to
     #[arg(long, default_value = "reports", value_name = "DIR")]
     out: PathBuf,
@@ -52,110 +59,162 @@ pub struct Arguments {
     json: JsonArgument,
 }
 
-#[derive(Debug, Args)]
-pub struct GateArguments {
-    #[command(flatten)]
-    compare: Arguments,
-    /// Write the checks as JUnit XML to this file
-    #[arg(long, value_name = "FILE")]
-    junit: Option<PathBuf>,
-}
-
 /// Compares and writes the report. The verdict is shown; the exit status tells only whether the job was done.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    job(context, arguments, None)?;
+    let job = Job::read(arguments)?;
+    job.check_folders(&[])?;
+    let results = job.results(context)?;
+    job.finish(context, job.report(context, &results)?, &Outputs::default())?;
     Ok(ExitStatus::Pass)
 }
 
-/// Compares, writes the report and lets the verdict be the exit status.
-pub fn gate(context: &Context, arguments: &GateArguments) -> Result<ExitStatus> {
-    Ok(match job(context, &arguments.compare, arguments.junit.as_ref())? {
-        Verdict::Pass => ExitStatus::Pass,
-        Verdict::Fail => ExitStatus::ToleranceExceeded,
-    })
+/// Scenes to compare, read and checked.
+pub(super) struct Job<'a> {
+    start: Instant,
+    arguments: &'a Arguments,
+    /// Scene files, and what they say.
+    pub(super) scenes: Vec<(PathBuf, Scene)>,
+    records: Vec<Record>,
+    figures: Vec<(PathBuf, FigureFormat)>,
 }
 
-fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Result<Verdict> {
-    let start = Instant::now();
-    let scenes = read(&arguments.scenes)?;
-    // refused before anything is computed
-    let records = records(arguments, &scenes)?;
-    report::check_writable(&arguments.out)?;
-    if let Some(folder) = junit.and_then(|file| file.parent()).filter(|folder| !folder.as_os_str().is_empty())
-    {
-        report::check_writable(folder)?;
+/// Reference and reduced models of every scene.
+pub(super) struct Results {
+    references: Vec<Stored>,
+    reduced: Vec<Vec<Outcome>>,
+}
+
+/// What is written besides the report.
+#[derive(Debug, Default)]
+pub(super) struct Outputs {
+    /// The checks as JUnit XML.
+    pub(super) junit: Option<PathBuf>,
+    /// File of results over commits, and the commit to add to it.
+    pub(super) record: Option<(PathBuf, Commit)>,
+}
+
+impl<'a> Job<'a> {
+    pub(super) fn read(arguments: &'a Arguments) -> Result<Self> {
+        let start = Instant::now();
+        let scenes = read(&arguments.scenes)?;
+        // refused before anything is computed
+        let records = records(arguments, scenes.len())?;
+        let figures = figures(arguments, &scenes)?;
+        Ok(Job { start, arguments, scenes, records, figures })
     }
-    let figures = figures(arguments, &scenes)?;
-    let references = references(context, arguments, &scenes)?;
-    let mut reduced = Vec::new();
-    for (scene, stored) in scenes.iter().zip(&references) {
-        // the models' curves are drawn and compared as far as the reference's
-        let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
-        let outcomes: Result<Vec<Outcome>> = models(arguments)
-            .into_iter()
-            .map(|model| Reduced::new(scene, model, None)?.run_with_history_until(TOLERANCE, end))
-            .collect();
-        reduced.push(outcomes?);
+
+    /// The folders of the report and of `files` can be written.
+    pub(super) fn check_folders(&self, files: &[Option<&PathBuf>]) -> Result<()> {
+        report::check_writable(&self.arguments.out)?;
+        let figures = self.figures.iter().map(|(file, _)| file);
+        let parents = files.iter().copied().flatten().chain(figures).filter_map(|file| file.parent());
+        parents.filter(|folder| !folder.as_os_str().is_empty()).try_for_each(report::check_writable)
     }
-    let mut reports: Vec<SceneReport> = scenes
-        .iter()
-        .zip(&references)
-        .zip(&reduced)
-        .map(|((scene, stored), reduced)| SceneReport {
-            scene,
-            comparison: compared(context, scene, &stored.outcome, reduced),
-            reference: &stored.outcome,
-            reduced,
-            provenance: stored.provenance.clone(),
-            command: format!("impactcheck compare {}", scene.name),
-            attachments: Attachments::of(stored),
-        })
-        .collect();
-    if let (Some(report), false) = (reports.first_mut(), records.is_empty()) {
-        let how = (arguments.bandwidth, arguments.speed);
-        let measured = measured::compare(report.scene, &records, report.reference, report.reduced, how)?;
-        report.comparison.measured = Some(measured);
-        report.command +=
-            &arguments.measured.iter().map(|f| format!(" --measured {}", f.display())).collect::<String>();
+
+    pub(super) fn resolution(&self) -> Resolution {
+        self.arguments.resolution
     }
-    let comparison = Comparison::new(reports.iter().map(|scene| scene.comparison.clone()).collect());
-    let verdict = comparison.verdict;
-    let report = Report { scenes: reports };
-    report::write(&report, &arguments.out)?;
-    for (scene, (file, format)) in report.scenes.iter().zip(&figures) {
-        report::write_file(file, &report::figure_file(scene, arguments.figure_width, *format)?)?;
+
+    pub(super) fn out(&self) -> &Path {
+        &self.arguments.out
     }
-    if let Some(file) = junit {
-        report::write_file(file, report::junit(&report)?.as_bytes())?;
+
+    /// References from the store (or computed), and the reduced models' runs.
+    pub(super) fn results(&self, context: &Context) -> Result<Results> {
+        let references = references(context, self.arguments, &self.scenes)?;
+        let mut reduced = Vec::new();
+        for ((_, scene), stored) in self.scenes.iter().zip(&references) {
+            // the models' curves are drawn and compared as far as the reference's
+            let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
+            let outcomes: Result<Vec<Outcome>> = models(self.arguments)
+                .into_iter()
+                .map(|model| Reduced::new(scene, model, None)?.run_with_history_until(TOLERANCE, end))
+                .collect();
+            reduced.push(outcomes?);
+        }
+        Ok(Results { references, reduced })
     }
-    if arguments.json.json {
-        super::print_json(&comparison)?;
-    } else {
-        super::print(&report::terminal(&report))?;
+
+    /// The comparison of all scenes, and what is shown with it.
+    pub(super) fn report<'b>(&'b self, context: &Context, results: &'b Results) -> Result<Report<'b>> {
+        let mut reports = Vec::new();
+        for (((file, scene), stored), reduced) in
+            self.scenes.iter().zip(&results.references).zip(&results.reduced)
+        {
+            let acceptances = acceptance::read(file)?;
+            let mut comparison = compared(context, scene, &stored.outcome, reduced);
+            let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
+            comparison.add_reference_checks(checks);
+            reports.push(SceneReport {
+                scene,
+                comparison,
+                reference: &stored.outcome,
+                reduced,
+                provenance: stored.provenance.clone(),
+                command: format!("impactcheck compare {}", scene.name),
+                attachments: Attachments { acceptances, ..Attachments::of(stored) },
+            });
+        }
+        if let (Some(report), false) = (reports.first_mut(), self.records.is_empty()) {
+            let how = (self.arguments.bandwidth, self.arguments.speed);
+            let measured = measured::compare(report.scene, &self.records, report.reference, report.reduced, how)?;
+            report.comparison.measured = Some(measured);
+            let files = self.arguments.measured.iter().map(|f| format!(" --measured {}", f.display()));
+            report.command += &files.collect::<String>();
+        }
+        Ok(Report { scenes: reports })
     }
-    context.note(format_args!(
-        "{} scene{} compared in {:.2} s; report: {}",
-        scenes.len(),
-        if scenes.len() == 1 { "" } else { "s" },
-        start.elapsed().as_secs_f64(),
-        arguments.out.join("index.html").display()
-    ));
-    Ok(verdict)
+
+    /// Writes the report and `outputs`, and prints the result.
+    pub(super) fn finish(
+        &self,
+        context: &Context,
+        mut report: Report,
+        outputs: &Outputs,
+    ) -> Result<Comparison> {
+        let comparison = report.comparison();
+        let entries = match &outputs.record {
+            Some((file, commit)) => trend::record(file, &comparison, commit)?,
+            None => {
+                trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?
+            }
+        };
+        for scene in &mut report.scenes {
+            scene.attachments.trends = trend::trends(&entries, &scene.comparison);
+        }
+        report::write(&report, &self.arguments.out)?;
+        for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
+            report::write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
+        }
+        if let Some(file) = &outputs.junit {
+            report::write_file(file, report::junit(&report)?.as_bytes())?;
+        }
+        if self.arguments.json.json {
+            super::print_json(&comparison)?;
+        } else {
+            super::print(&report::terminal(&report))?;
+        }
+        context.note(format_args!(
+            "{} scene{} compared in {:.2} s; report: {}",
+            self.scenes.len(),
+            if self.scenes.len() == 1 { "" } else { "s" },
+            self.start.elapsed().as_secs_f64(),
+            self.arguments.out.join("index.html").display()
+        ));
+        Ok(comparison)
+    }
 }
 
 /// The file of every scene's figure; none if none is asked for. Refused before anything is computed.
-fn figures(arguments: &Arguments, scenes: &[Scene]) -> Result<Vec<(PathBuf, FigureFormat)>> {
+fn figures(arguments: &Arguments, scenes: &[(PathBuf, Scene)]) -> Result<Vec<(PathBuf, FigureFormat)>> {
     let Some(file) = &arguments.figure else { return Ok(Vec::new()) };
     let format = FigureFormat::of(file)?;
-    if let Some(folder) = file.parent() {
-        report::check_writable(folder)?;
-    }
     if scenes.len() == 1 {
         return Ok(vec![(file.clone(), format)]);
     }
     let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
     let (stem, ending) = (part(file.file_stem()), part(file.extension()));
-    let named = |scene: &Scene| (file.with_file_name(format!("{stem}-{}.{ending}", scene.name)), format);
+    let named = |(_, scene): &(PathBuf, Scene)| (file.with_file_name(format!("{stem}-{}.{ending}", scene.name)), format);
     Ok(scenes.iter().map(named).collect())
 }
 
@@ -170,11 +229,10 @@ fn figure_width(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// The measured files; they belong to one scene.
-fn records(arguments: &Arguments, scenes: &[Scene]) -> Result<Vec<Record>> {
-    if !arguments.measured.is_empty() && scenes.len() != 1 {
+fn records(arguments: &Arguments, scenes: usize) -> Result<Vec<Record>> {
+    if !arguments.measured.is_empty() && scenes != 1 {
         return Err(Error::Usage(format!(
-            "--measured needs exactly one scene, to which the files belong; there are {}",
-            scenes.len()
+            "--measured needs exactly one scene, to which the files belong; there are {scenes}"
         )));
     }
     arguments.measured.iter().map(|file| Record::read(file)).collect()
@@ -201,15 +259,16 @@ fn compared(context: &Context, scene: &Scene, reference: &Outcome, reduced: &[Ou
 }
 
 /// The scenes named, or all shipped ones.
-fn read(names: &[String]) -> Result<Vec<Scene>> {
+fn read(names: &[String]) -> Result<Vec<(PathBuf, Scene)>> {
     let paths = if names.is_empty() {
         scene::shipped()?
     } else {
         names.iter().map(|name| scene::resolve(name)).collect::<Result<Vec<_>>>()?
     };
-    let scenes = paths.iter().map(Scene::read).collect::<Result<Vec<_>>>()?;
-    for (i, scene) in scenes.iter().enumerate() {
-        if scenes[..i].iter().any(|other| other.name == scene.name) {
+    let read = |path: PathBuf| Scene::read(&path).map(|scene| (path, scene));
+    let scenes = paths.into_iter().map(read).collect::<Result<Vec<_>>>()?;
+    for (i, (_, scene)) in scenes.iter().enumerate() {
+        if scenes[..i].iter().any(|(_, other)| other.name == scene.name) {
             return Err(Error::Usage(format!(
                 "two scenes are called `{}`; a report needs different names",
                 scene.name
@@ -220,11 +279,15 @@ fn read(names: &[String]) -> Result<Vec<Scene>> {
 }
 
 /// The references of all scenes, or one error that names every one that can't be used.
-fn references(context: &Context, arguments: &Arguments, scenes: &[Scene]) -> Result<Vec<Stored>> {
+fn references(
+    context: &Context,
+    arguments: &Arguments,
+    scenes: &[(PathBuf, Scene)],
+) -> Result<Vec<Stored>> {
     let store = context.store();
     let mut found = Vec::new();
     let mut problems = Vec::new();
-    for scene in scenes {
+    for (_, scene) in scenes {
         match store.find(scene, arguments.resolution) {
             Lookup::Found(stored) => found.push(*stored),
             Lookup::Missing | Lookup::Stale { .. } if arguments.compute => {

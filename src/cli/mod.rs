@@ -3,6 +3,7 @@
 mod bench;
 mod compare;
 mod doctor;
+mod gate;
 mod optimise;
 mod progress;
 mod reduced;
@@ -48,7 +49,7 @@ enum Command {
     Compare(compare::Arguments),
     /// Compare, and let the scene's tolerances decide the exit status
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
-    Gate(compare::GateArguments),
+    Gate(gate::Arguments),
     /// Compute one of the paper's tables or parameter studies, or a sweep of one's own
     #[command(
         after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
@@ -115,7 +116,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Reduced(arguments) => reduced::run(&context, &arguments),
         Command::Reference(arguments) => reference::run(&context, &arguments),
         Command::Compare(arguments) => compare::run(&context, &arguments),
-        Command::Gate(arguments) => compare::gate(&context, &arguments),
+        Command::Gate(arguments) => gate::run(&context, &arguments),
         Command::Study(arguments) => study::run(&context, &arguments),
         Command::Optimise(arguments) => optimise::run(&context, &arguments),
         Command::Bench(arguments) => bench::run(&context, &arguments),

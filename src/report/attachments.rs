@@ -1,5 +1,7 @@
 //! What a report shows besides the comparison, where there is any of it.
 
+use crate::ci::acceptance::Acceptance;
+use crate::ci::trend::Trend;
 use crate::impact::Outcome;
 use crate::reference::{CurveBands, FieldMesh, Stored};
 
@@ -12,6 +14,10 @@ pub struct Attachments {
     pub mesh: Option<FieldMesh>,
     /// Stress of the reference at the instant (s) nearest to the outer force's peak.
     pub stress: Option<(f64, FieldMesh)>,
+    /// The gated numbers over the commits recorded.
+    pub trends: Vec<Trend>,
+    /// Changes of tolerances and reference accepted so far, oldest first.
+    pub acceptances: Vec<Acceptance>,
 }
 
 impl Attachments {
@@ -22,6 +28,7 @@ impl Attachments {
             bands: stored.bands.clone(),
             mesh: stored.mesh().ok(),
             stress: stored.stress_near(instant_of_peak(&stored.outcome)).ok().flatten(),
+            ..Attachments::default()
         }
     }
 }

@@ -99,6 +99,8 @@ fn card(scene: &SceneReport) -> Markup {
             h2 { (scene_link(scene)) " " (badge(scene.comparison.verdict)) }
             p.soft { (scene.scene.description) }
             ul.models { @for model in &scene.comparison.models { li { (model_line(model)) } } }
+            @let drifting = scene.attachments.trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
+            @if drifting > 0 { p { strong { (drifting) " numbers drift" } " over the commits recorded." } }
         }
     }
 }

@@ -3,6 +3,7 @@
 //! Nothing here computes physics, and nothing depends on the time of day: the same results give
 //! the same files.
 
+mod acceptance_section;
 mod attachments;
 mod budget_figure;
 mod budget_section;
@@ -30,6 +31,7 @@ mod polyline;
 mod scene_page;
 mod terminal;
 mod ticks;
+mod trend_section;
 mod write;
 
 pub use attachments::Attachments;

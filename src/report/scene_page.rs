@@ -44,6 +44,8 @@ pub fn scene_page(report: &SceneReport) -> String {
             summary { "Checks of the reference against itself (" (comparison.integrity.len()) ")" }
             (checks(&comparison.integrity))
         }
+        (super::trend_section::trends_html(report))
+        (super::acceptance_section::acceptances_html(report))
         h2 { "Provenance" }
         p { "Scene hash " code { (comparison.reference.scene_hash) } }
         details {
