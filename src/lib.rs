@@ -6,6 +6,7 @@
 pub mod analytical;
 pub mod bench;
 pub mod body;
+pub mod ci;
 pub mod cli;
 pub mod comparison;
 pub mod contact;

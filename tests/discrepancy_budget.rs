@@ -249,6 +249,7 @@ fn page_markdown_and_json_show_the_budget_and_bars_have_its_lengths() {
         reduced: &reduced,
         provenance: serde_json::Value::Null,
         command: String::new(),
+        attachments: impactcheck::report::Attachments::default(),
     };
     let page = scene_page(&scene_report);
     let report = Report { scenes: vec![scene_report], seats: Vec::new() };

@@ -5,8 +5,8 @@ mod synthetic_impact;
 use impactcheck::comparison::{Verdict, compare_scene};
 use impactcheck::impact::{CURVES, Outcome, PLATE_QUANTITIES};
 use impactcheck::report::{
-    Report, SceneReport, Theme, curves_csv, figure, index_page, json, junit, markdown, png, scene_page,
-    terminal,
+    Attachments, Report, SceneReport, Theme, curves_csv, figure, index_page, json, junit, markdown, png,
+    scene_page, terminal,
 };
 use impactcheck::scene::Scene;
 use resvg::usvg::roxmltree::Document;
@@ -43,6 +43,7 @@ impl Data {
                 reduced: &self.reduced,
                 provenance: serde_json::json!({"created": "2026-01-01T00:00:00Z", "settings": {"courant": 0.9}}),
                 command: "impactcheck compare synthetic --models A,B".into(),
+                attachments: Attachments::default(),
             }],
             seats: Vec::new(),
         }

@@ -4,7 +4,7 @@ mod synthetic_impact;
 
 use impactcheck::comparison::compare_scene;
 use impactcheck::impact::Outcome;
-use impactcheck::report::{Report, SceneReport, check_writable, write};
+use impactcheck::report::{Attachments, Report, SceneReport, check_writable, write};
 use impactcheck::scene::Scene;
 use impactcheck::{Error, ExitStatus};
 use std::collections::BTreeMap;
@@ -16,8 +16,9 @@ fn report<'a>(scene: &'a Scene, reference: &'a Outcome, reduced: &'a [Outcome]) 
     let comparison = compare_scene(scene, reference, reduced);
     let command = "impactcheck compare synthetic".into();
     let provenance = serde_json::Value::Null;
+    let attachments = Attachments::default();
     Report {
-        scenes: vec![SceneReport { scene, comparison, reference, reduced, provenance, command }],
+        scenes: vec![SceneReport { scene, comparison, reference, reduced, provenance, command, attachments }],
         seats: Vec::new(),
     }
 }

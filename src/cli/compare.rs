@@ -1,34 +1,39 @@
-//! `impactcheck compare` and `impactcheck gate`: the main job, scene to verdict.
+//! `impactcheck compare`: the main job, scene to verdict.
 
-use super::{Context, JsonArgument, compare_seats, reference};
-use crate::comparison::{SceneComparison, Verdict, compare_scene};
+use super::compare_seats::{self, SeatRun};
+use super::{Context, JsonArgument, reference};
+use crate::ci::commit::Commit;
+use crate::ci::{acceptance, trend};
+use crate::comparison::{CommonAxis, Comparison, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
-use crate::impact::Outcome;
 use crate::impact::reduced::Reduced;
+use crate::impact::{Outcome, Quantities};
 use crate::measured::{self, Record, Speed};
-use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
-use crate::report::{self, Report, SceneReport};
+use crate::reference::{Lookup, Resolution, Stored, Wish};
+use crate::report::{self, Attachments, FIGURE_WIDTHS, FigureFormat, Report, SceneReport};
 use crate::scene::{self, Model, Scene, Setup};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Relative error of the efficiency that the reduced models' time integration may have in a comparison.
 const TOLERANCE: f64 = 1e-7;
+/// Results over commits, beside the report.
+const TRENDS: &str = "trends.jsonl";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all shipped scenes]
     scenes: Vec<String>,
-    /// Reduced models to compare; a seal seat has C only
+    /// Reduced models to compare
     #[arg(long, value_delimiter = ',', default_value = "A,B,C")]
-    pub(super) models: Vec<Model>,
+    models: Vec<Model>,
     /// Resolution of the reference
     #[arg(long, default_value = "paper")]
-    pub(super) resolution: Resolution,
+    resolution: Resolution,
     /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
     #[arg(long)]
-    pub(super) compute: bool,
+    compute: bool,
     /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
     /// repeated impacts
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
@@ -39,6 +44,15 @@ pub struct Arguments {
     /// Where the outer body's measured speed comes from: scene (the signal may have an offset) or measured (it has none)
     #[arg(long, default_value = "scene", value_name = "SOURCE")]
     speed: Speed,
+    /// Write the figure for a paper to this file (.svg, .pdf or .png); of several scenes, the scene's name is added
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
+    /// Width of that figure: 85 mm is one column, 175 mm a page
+    #[arg(long, default_value = "175 mm", value_name = "LENGTH", value_parser = figure_width, requires = "figure")]
+    figure_width: f64,
+    /// Results over commits to draw in the report [default: trends.jsonl in the report's folder, if it exists]
+    #[arg(long, value_name = "FILE")]
+    trends: Option<PathBuf>,
     /// Folder the report is written to
     #[arg(long, default_value = "reports", value_name = "DIR")]
     out: PathBuf,
@@ -46,98 +60,218 @@ pub struct Arguments {
     json: JsonArgument,
 }
 
-#[derive(Debug, Args)]
-pub struct GateArguments {
-    #[command(flatten)]
-    compare: Arguments,
-    /// Write the checks as JUnit XML to this file
-    #[arg(long, value_name = "FILE")]
-    junit: Option<PathBuf>,
-}
-
 /// Compares and writes the report. The verdict is shown; the exit status tells only whether the job was done.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    job(context, arguments, None)?;
+    let job = Job::read(arguments)?;
+    job.check_folders(&[])?;
+    let results = job.results(context)?;
+    job.finish(context, job.report(context, &results)?, &Outputs::default())?;
     Ok(ExitStatus::Pass)
 }
 
-/// Compares, writes the report and lets the verdict be the exit status.
-pub fn gate(context: &Context, arguments: &GateArguments) -> Result<ExitStatus> {
-    Ok(match job(context, &arguments.compare, arguments.junit.as_ref())? {
-        Verdict::Pass => ExitStatus::Pass,
-        Verdict::Fail => ExitStatus::ToleranceExceeded,
-    })
+/// Scenes to compare, read and checked.
+pub(super) struct Job<'a> {
+    start: Instant,
+    arguments: &'a Arguments,
+    /// Scene files, and what they say.
+    pub(super) scenes: Vec<(PathBuf, Scene)>,
+    records: Vec<Record>,
+    figures: Vec<(PathBuf, FigureFormat)>,
 }
 
-fn job(context: &Context, arguments: &Arguments, junit: Option<&PathBuf>) -> Result<Verdict> {
-    let start = Instant::now();
-    let all = read(&arguments.scenes)?;
-    let (scenes, seats): (Vec<Scene>, Vec<Scene>) =
-        all.into_iter().partition(|scene| matches!(scene.setup, Setup::PlateImpact(_)));
-    // refused before anything is computed
-    let records = records(arguments, &scenes)?;
-    report::check_writable(&arguments.out)?;
-    if let Some(folder) = junit.and_then(|file| file.parent()).filter(|folder| !folder.as_os_str().is_empty())
-    {
-        report::check_writable(folder)?;
+/// Reference and reduced models of every scene.
+pub(super) struct Results {
+    references: Vec<Stored>,
+    reduced: Vec<Vec<Outcome>>,
+    seats: Vec<SeatRun>,
+}
+
+/// What is written besides the report.
+#[derive(Debug, Default)]
+pub(super) struct Outputs {
+    /// The checks as JUnit XML.
+    pub(super) junit: Option<PathBuf>,
+    /// File of results over commits, and the commit to add to it.
+    pub(super) record: Option<(PathBuf, Commit)>,
+}
+
+impl<'a> Job<'a> {
+    pub(super) fn read(arguments: &'a Arguments) -> Result<Self> {
+        let start = Instant::now();
+        let scenes = read(&arguments.scenes)?;
+        // refused before anything is computed
+        if let Some((_, seat)) = scenes.iter().find(|(_, scene)| is_seat(scene)) {
+            compare_seats::check_models(seat, &arguments.models)?;
+        }
+        let records = records(arguments, &scenes)?;
+        let figures = figures(arguments, &scenes)?;
+        Ok(Job { start, arguments, scenes, records, figures })
     }
-    let references = references(context, arguments, &scenes)?;
-    let seats = compare_seats::reports(context, arguments, &seats)?;
-    let mut reduced = Vec::new();
-    for scene in &scenes {
-        let outcomes: Result<Vec<Outcome>> = models(arguments)
-            .into_iter()
-            .map(|model| Reduced::new(scene, model, None)?.run_with_history(TOLERANCE))
-            .collect();
-        reduced.push(outcomes?);
+
+    /// The folders of the report and of `files` can be written.
+    pub(super) fn check_folders(&self, files: &[Option<&PathBuf>]) -> Result<()> {
+        report::check_writable(&self.arguments.out)?;
+        let figures = self.figures.iter().map(|(file, _)| file);
+        let parents = files.iter().copied().flatten().chain(figures).filter_map(|file| file.parent());
+        parents.filter(|folder| !folder.as_os_str().is_empty()).try_for_each(report::check_writable)
     }
-    let mut reports: Vec<SceneReport> = scenes
-        .iter()
-        .zip(&references)
-        .zip(&reduced)
-        .map(|((scene, stored), reduced)| SceneReport {
-            scene,
-            comparison: compared(context, scene, &stored.outcome, reduced),
-            reference: &stored.outcome,
-            reduced,
-            provenance: stored.provenance.clone(),
-            command: format!("impactcheck compare {}", scene.name),
-        })
-        .collect();
-    if let (Some(report), false) = (reports.first_mut(), records.is_empty()) {
-        let how = (arguments.bandwidth, arguments.speed);
-        let measured = measured::compare(report.scene, &records, report.reference, report.reduced, how)?;
-        report.comparison.measured = Some(measured);
-        report.command +=
-            &arguments.measured.iter().map(|f| format!(" --measured {}", f.display())).collect::<String>();
+
+    /// The plate impacts, with their files.
+    pub(super) fn plates(&self) -> impl Iterator<Item = &(PathBuf, Scene)> {
+        self.scenes.iter().filter(|(_, scene)| !is_seat(scene))
     }
-    let report = Report { scenes: reports, seats };
-    let comparison = report.comparison();
-    let verdict = comparison.verdict;
-    report::write(&report, &arguments.out)?;
-    if let Some(file) = junit {
-        report::write_file(file, report::junit(&report)?.as_bytes())?;
+
+    /// The seal seats, with their files.
+    pub(super) fn seats(&self) -> impl Iterator<Item = &(PathBuf, Scene)> {
+        self.scenes.iter().filter(|(_, scene)| is_seat(scene))
     }
-    if arguments.json.json {
-        super::print_json(&comparison)?;
+
+    pub(super) fn resolution(&self) -> Resolution {
+        self.arguments.resolution
+    }
+
+    pub(super) fn out(&self) -> &Path {
+        &self.arguments.out
+    }
+
+    /// References from the store (or computed), and the reduced models' runs.
+    pub(super) fn results(&self, context: &Context) -> Result<Results> {
+        let plates: Vec<&Scene> = self.plates().map(|(_, scene)| scene).collect();
+        let seats: Vec<&Scene> = self.seats().map(|(_, scene)| scene).collect();
+        let mut problems = Vec::new();
+        let references = references(context, self.arguments, &plates, &mut problems)?;
+        let stored = self::references(context, self.arguments, &seats, &mut problems)?;
+        all_found(problems)?;
+        let seats = seats.into_iter().zip(stored);
+        let seats = seats.map(|(scene, stored)| compare_seats::run(scene, stored)).collect::<Result<_>>()?;
+        let mut reduced = Vec::new();
+        for (scene, stored) in plates.into_iter().zip(&references) {
+            // the models' curves are drawn and compared as far as the reference's
+            let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
+            let outcomes: Result<Vec<Outcome>> = models(self.arguments)
+                .into_iter()
+                .map(|model| Reduced::new(scene, model, None)?.run_with_history_until(TOLERANCE, end))
+                .collect();
+            reduced.push(outcomes?);
+        }
+        Ok(Results { references, reduced, seats })
+    }
+
+    /// The comparison of all scenes, and what is shown with it.
+    pub(super) fn report<'b>(&'b self, context: &Context, results: &'b Results) -> Result<Report<'b>> {
+        let mut reports = Vec::new();
+        for (((file, scene), stored), reduced) in self.plates().zip(&results.references).zip(&results.reduced)
+        {
+            let acceptances = acceptance::read(file)?;
+            let mut comparison = compared(context, scene, &stored.outcome, reduced);
+            let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
+            comparison.add_reference_checks(checks);
+            reports.push(SceneReport {
+                scene,
+                comparison,
+                reference: &stored.outcome,
+                reduced,
+                provenance: stored.provenance.clone(),
+                command: format!("impactcheck compare {}", scene.name),
+                attachments: Attachments { acceptances, ..Attachments::of(stored) },
+            });
+        }
+        if let (Some(report), false) = (reports.first_mut(), self.records.is_empty()) {
+            let how = (self.arguments.bandwidth, self.arguments.speed);
+            let measured =
+                measured::compare(report.scene, &self.records, report.reference, report.reduced, how)?;
+            report.comparison.measured = Some(measured);
+            let files = self.arguments.measured.iter().map(|f| format!(" --measured {}", f.display()));
+            report.command += &files.collect::<String>();
+        }
+        let seats = self.seats().zip(&results.seats);
+        let seats =
+            seats.map(|((file, scene), run)| compare_seats::report(file, scene, run, self.resolution()));
+        Ok(Report { scenes: reports, seats: seats.collect::<Result<_>>()? })
+    }
+
+    /// Writes the report and `outputs`, and prints the result.
+    pub(super) fn finish(
+        &self,
+        context: &Context,
+        mut report: Report,
+        outputs: &Outputs,
+    ) -> Result<Comparison> {
+        let comparison = report.comparison();
+        let entries = match &outputs.record {
+            Some((file, commit)) => trend::record(file, &comparison, commit)?,
+            None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
+        };
+        for scene in &mut report.scenes {
+            scene.attachments.trends = trend::trends(&entries, &scene.comparison);
+        }
+        for seat in &mut report.seats {
+            seat.attachments.trends = trend::trends(&entries, &seat.comparison);
+        }
+        report::write(&report, &self.arguments.out)?;
+        for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
+            report::write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
+        }
+        if let Some(file) = &outputs.junit {
+            report::write_file(file, report::junit(&report)?.as_bytes())?;
+        }
+        if self.arguments.json.json {
+            super::print_json(&comparison)?;
+        } else {
+            super::print(&report::terminal(&report))?;
+        }
+        context.note(format_args!(
+            "{} scene{} compared in {:.2} s; report: {}",
+            self.scenes.len(),
+            if self.scenes.len() == 1 { "" } else { "s" },
+            self.start.elapsed().as_secs_f64(),
+            self.arguments.out.join("index.html").display()
+        ));
+        Ok(comparison)
+    }
+}
+
+fn is_seat(scene: &Scene) -> bool {
+    matches!(scene.setup, Setup::SealSeat(_))
+}
+
+/// The file of every scene's figure; none if none is asked for. Refused before anything is computed.
+fn figures(arguments: &Arguments, scenes: &[(PathBuf, Scene)]) -> Result<Vec<(PathBuf, FigureFormat)>> {
+    let Some(file) = &arguments.figure else { return Ok(Vec::new()) };
+    let format = FigureFormat::of(file)?;
+    if let Some((_, seat)) = scenes.iter().find(|(_, scene)| is_seat(scene)) {
+        return Err(Error::Usage(format!(
+            "--figure draws plate impacts, and scene `{0}` is a seal seat; its drawings {0}.svg and {0}-section.svg are in the folder of the report",
+            seat.name
+        )));
+    }
+    if scenes.len() == 1 {
+        return Ok(vec![(file.clone(), format)]);
+    }
+    let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let (stem, ending) = (part(file.file_stem()), part(file.extension()));
+    let named = |(_, scene): &(PathBuf, Scene)| {
+        (file.with_file_name(format!("{stem}-{}.{ending}", scene.name)), format)
+    };
+    Ok(scenes.iter().map(named).collect())
+}
+
+/// Parses the width of a figure, in mm.
+fn figure_width(text: &str) -> std::result::Result<f64, String> {
+    let width = 1e3 * scene::quantity_in(text, "m")?;
+    if FIGURE_WIDTHS.contains(&width) {
+        Ok(width)
     } else {
-        super::print(&report::terminal(&report))?;
+        Err(format!("{width} mm is not within {} to {} mm", FIGURE_WIDTHS.start(), FIGURE_WIDTHS.end()))
     }
-    context.note(format_args!(
-        "{} scene{} compared in {:.2} s; report: {}",
-        comparison.scenes.len() + comparison.seats.len(),
-        if comparison.scenes.len() + comparison.seats.len() == 1 { "" } else { "s" },
-        start.elapsed().as_secs_f64(),
-        arguments.out.join("index.html").display()
-    ));
-    Ok(verdict)
 }
 
 /// The measured files; they belong to one scene.
-fn records(arguments: &Arguments, scenes: &[Scene]) -> Result<Vec<Record>> {
-    if !arguments.measured.is_empty() && scenes.len() != 1 {
+fn records(arguments: &Arguments, scenes: &[(PathBuf, Scene)]) -> Result<Vec<Record>> {
+    let plates = scenes.iter().filter(|(_, scene)| !is_seat(scene)).count();
+    if !arguments.measured.is_empty() && (plates != 1 || scenes.len() != 1) {
         return Err(Error::Usage(format!(
-            "--measured needs exactly one scene, to which the files belong; there are {}",
+            "--measured needs exactly one plate impact, to which the files belong; there are {} scenes, {plates} of that kind",
             scenes.len()
         )));
     }
@@ -165,15 +299,16 @@ fn compared(context: &Context, scene: &Scene, reference: &Outcome, reduced: &[Ou
 }
 
 /// The scenes named, or all shipped ones.
-fn read(names: &[String]) -> Result<Vec<Scene>> {
+fn read(names: &[String]) -> Result<Vec<(PathBuf, Scene)>> {
     let paths = if names.is_empty() {
         scene::shipped()?
     } else {
         names.iter().map(|name| scene::resolve(name)).collect::<Result<Vec<_>>>()?
     };
-    let scenes = paths.iter().map(Scene::read).collect::<Result<Vec<_>>>()?;
-    for (i, scene) in scenes.iter().enumerate() {
-        if scenes[..i].iter().any(|other| other.name == scene.name) {
+    let read = |path: PathBuf| Scene::read(&path).map(|scene| (path, scene));
+    let scenes = paths.into_iter().map(read).collect::<Result<Vec<_>>>()?;
+    for (i, (_, scene)) in scenes.iter().enumerate() {
+        if scenes[..i].iter().any(|(_, other)| other.name == scene.name) {
             return Err(Error::Usage(format!(
                 "two scenes are called `{}`; a report needs different names",
                 scene.name
@@ -183,32 +318,38 @@ fn read(names: &[String]) -> Result<Vec<Scene>> {
     Ok(scenes)
 }
 
-/// The references of all scenes, or one error that names every one that can't be used.
-fn references(context: &Context, arguments: &Arguments, scenes: &[Scene]) -> Result<Vec<Stored>> {
+/// The references of `scenes`, from the store or computed; `problems` gets a sentence for every one that can't be used.
+fn references<Q: Quantities>(
+    context: &Context,
+    arguments: &Arguments,
+    scenes: &[&Scene],
+    problems: &mut Vec<String>,
+) -> Result<Vec<Stored<Q>>> {
     let store = context.store();
     let mut found = Vec::new();
-    let mut problems = Vec::new();
     for scene in scenes {
-        match store.find(scene, arguments.resolution) {
+        match store.find_as(scene, arguments.resolution) {
             Lookup::Found(stored) => found.push(*stored),
             Lookup::Missing | Lookup::Stale { .. } if arguments.compute => {
-                found.push(computed(context, arguments, scene, &store)?);
+                let wish = Wish::default();
+                found.push(reference::compute_as(context, scene, arguments.resolution, &store, &wish)?);
             }
             other => problems.push(reference::problem(scene, arguments.resolution, &other)),
         }
     }
+    Ok(found)
+}
+
+/// One error that names every reference that can't be used, if there is any.
+fn all_found(mut problems: Vec<String>) -> Result<()> {
     if problems.is_empty() {
-        return Ok(found);
+        return Ok(());
     }
     problems.push(
         "compute references with `impactcheck reference SCENE` or `--compute` (`impactcheck doctor` tells what that needs)"
             .into(),
     );
     Err(Error::Reference(problems.join("\n  ")))
-}
-
-fn computed(context: &Context, arguments: &Arguments, scene: &Scene, store: &Store) -> Result<Stored> {
-    reference::compute(context, scene, arguments.resolution, store, &Wish::default())
 }
 
 /// The models to compare, each once, in the order asked for.

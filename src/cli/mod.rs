@@ -4,6 +4,7 @@ mod bench;
 mod compare;
 mod compare_seats;
 mod doctor;
+mod gate;
 mod mesh;
 mod optimise;
 mod progress;
@@ -50,10 +51,10 @@ enum Command {
     Compare(compare::Arguments),
     /// Compare, and let the scene's tolerances decide the exit status
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
-    Gate(compare::GateArguments),
     /// Mesh the seat of a seal-seat scene
     #[command(after_help = "Example: impactcheck mesh my-seat.toml --out my-seat.vtu")]
     Mesh(mesh::Arguments),
+    Gate(gate::Arguments),
     /// Compute one of the paper's tables or parameter studies, or a sweep of one's own
     #[command(
         after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
@@ -120,8 +121,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Reduced(arguments) => reduced::run(&context, &arguments),
         Command::Reference(arguments) => reference::run(&context, &arguments),
         Command::Compare(arguments) => compare::run(&context, &arguments),
-        Command::Gate(arguments) => compare::gate(&context, &arguments),
         Command::Mesh(arguments) => mesh::run(&context, &arguments),
+        Command::Gate(arguments) => gate::run(&context, &arguments),
         Command::Study(arguments) => study::run(&context, &arguments),
         Command::Optimise(arguments) => optimise::run(&context, &arguments),
         Command::Bench(arguments) => bench::run(&context, &arguments),

@@ -1,8 +1,8 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
 use super::{Context, JsonArgument};
-use crate::error::{Error, ExitStatus, Result};
 use crate::body::cache::Cache;
+use crate::error::{Error, ExitStatus, Result};
 use crate::impact::reduced::Reduced;
 use crate::impact::seal_seat::{self, SeatMesh, SeatModel};
 use crate::impact::{Curves, History, Quantities, SeatHistory, SeatSummary, Summary};

@@ -144,6 +144,18 @@ impl Discrepancy {
     pub fn checked(&self) -> f64 {
         (self.difference - self.bias.unwrap_or(0.0)).abs()
     }
+
+    /// Whether the row is about a conservation residual, each of whose sides is gated by itself.
+    pub fn is_residual(&self) -> bool {
+        self.quantity.ends_with("_residual")
+    }
+
+    /// How much of the tolerance is used, 1 = all of it; `None` if the row is not gated.
+    pub fn used(&self) -> Option<f64> {
+        let checked =
+            if self.is_residual() { self.reduced.abs().max(self.reference.abs()) } else { self.checked() };
+        self.tolerance.map(|tolerance| if checked == 0.0 { 0.0 } else { checked / tolerance })
+    }
 }
 
 #[cfg(test)]

@@ -36,8 +36,8 @@ use crate::measured::Measured;
 use crate::scene::{Model, Scene, Tolerances};
 use budget::QuantityBudget;
 use discrepancy::Scales;
-use serde::ser::{SerializeStruct, Serializer};
 use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
 
 /// The document of `compare` and `gate`. In JSON the scenes of both kinds are one list.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,6 +108,17 @@ pub struct SceneComparison<Q: Quantities = PlateQuantities> {
     pub measured: Option<Measured>,
 }
 
+impl<Q: Quantities> SceneComparison<Q> {
+    /// Adds checks of the reference; one that fails makes the scene and all its models fail.
+    pub fn add_reference_checks(&mut self, checks: Vec<Check>) {
+        if checks.iter().any(|check| !check.verdict.passed()) {
+            self.verdict = Verdict::Fail;
+            self.models.iter_mut().for_each(|model| model.verdict = Verdict::Fail);
+        }
+        self.integrity.extend(checks);
+    }
+}
+
 impl SceneComparison {
     /// Adds the discrepancy budget (see [`mod@budget`]) if models B and C are both compared.
     ///
@@ -163,6 +174,13 @@ impl<Q: Quantities> ModelComparison<Q> {
                 let size = |d: &Discrepancy| d.relative.map_or(0.0, f64::abs);
                 size(a).total_cmp(&size(b))
             })
+    }
+
+    /// The gated row that is nearest to its bound, or farthest beyond it.
+    pub fn tightest(&self) -> Option<&Discrepancy> {
+        let used =
+            |d: &Discrepancy| d.used().map_or(-1.0, |used| if used.is_nan() { f64::INFINITY } else { used });
+        self.discrepancies.iter().filter(|d| d.tolerance.is_some()).max_by(|a, b| used(a).total_cmp(&used(b)))
     }
 
     /// Number of rows that have a tolerance.
@@ -242,8 +260,9 @@ fn quantities<Q: Quantities>(
         // `outer_force_peak` belongs to the curve `outer_force`, and so on; a quantity that
         // belongs to none is its own peak.
         let curve = <Q::History as Curves>::NAMES.iter().find(|(curve, _)| quantity.starts_with(curve));
-        let peak =
-            curve.and_then(|(name, _)| reference.history.values(name)).map_or(value(m).abs(), alignment::peak);
+        let peak = curve
+            .and_then(|(name, _)| reference.history.values(name))
+            .map_or(value(m).abs(), alignment::peak);
         Discrepancy::new(
             (quantity, unit),
             (value(c), value(m)),

@@ -117,13 +117,30 @@ impl Reduced {
     /// # Errors
     /// As [`integrate`].
     pub fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
+        self.run_with_history_until(tolerance, 0.0)
+    }
+
+    /// As [`Reduced::run_with_history`]; a history that would end earlier, because no further contact is possible, goes on
+    /// until `end` (s) unless the scene names its end.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub fn run_with_history_until(&self, tolerance: f64, end: f64) -> Result<Outcome> {
         let mut summary = self.run(tolerance)?;
         let system = &self.system;
         let hit =
             HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
         let sample_interval = Some(hit.duration() / SAMPLES_PER_CONTACT);
-        let result = self.integrate(&Options { sample_interval, ..self.options(tolerance) })?;
-        let history = result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))?;
+        let options = Options { sample_interval, ..self.options(tolerance) };
+        let record = |options: &Options| -> Result<_> {
+            let result = self.integrate(options)?;
+            result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))
+        };
+        let mut history = record(&options)?;
+        if options.end_time.is_none() && history.time.last().is_some_and(|last| *last < end) {
+            // so much later that rounding can't leave the last instant out
+            history = record(&Options { end_time: Some(end * (1.0 + 1e-9)), ..options })?;
+        }
         summary.samples = Some(history.len());
         Ok(Outcome { summary, history })
     }

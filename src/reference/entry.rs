@@ -1,6 +1,6 @@
 //! One stored solution: a folder whose files are verified before they are believed.
 
-use super::history_file;
+use super::{CurveBands, history_file};
 use crate::impact::{Outcome, PlateQuantities, Quantities, SCHEMA_VERSION, Source, Summary};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 pub struct Stored<Q: Quantities = PlateQuantities> {
     /// Summary and history.
     pub outcome: Outcome<Q>,
+    /// 95 % bands of the history's curves, if the solution has them.
+    pub bands: Option<CurveBands>,
     /// What it was made from and with: `provenance.json`.
     pub provenance: Value,
     /// Where it lies.
@@ -41,7 +43,8 @@ pub(super) fn load<Q: Quantities>(folder: &Path) -> Result<Stored<Q>, Damage> {
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
     let summary: Summary<Q> = read_json(folder, SUMMARY)?;
     let provenance: Value = read_json(folder, PROVENANCE)?;
-    let history = history_file::read(&folder.join(HISTORY)).map_err(|reason| damage(HISTORY, reason))?;
+    let (history, bands) =
+        history_file::read(&folder.join(HISTORY)).map_err(|reason| damage(HISTORY, reason))?;
     if summary.schema_version != SCHEMA_VERSION {
         let reason =
             format!("schema_version is {}; this program reads {SCHEMA_VERSION}", summary.schema_version);
@@ -55,7 +58,7 @@ pub(super) fn load<Q: Quantities>(folder: &Path) -> Result<Stored<Q>, Damage> {
             format!("scene_hash is {}, but {} in {SUMMARY}", provenance["scene_hash"], summary.scene_hash);
         return Err(damage(PROVENANCE, reason));
     }
-    Ok(Stored { outcome: Outcome { summary, history }, provenance, folder: folder.to_path_buf() })
+    Ok(Stored { outcome: Outcome { summary, history }, bands, provenance, folder: folder.to_path_buf() })
 }
 
 /// Text of the checksum file; what tells one version of an entry from the next.

@@ -4,8 +4,10 @@
 //! with exactly these settings; everything else is said to be missing, stale or damaged.
 
 mod child;
+mod curve_bands;
 mod doctor;
 mod entry;
+mod fields;
 mod history_file;
 mod identity;
 mod modes;
@@ -15,8 +17,10 @@ mod solve;
 mod store;
 
 pub use child::Progress;
+pub use curve_bands::CurveBands;
 pub use doctor::{Check, doctor};
 pub use entry::Stored;
+pub use fields::FieldMesh;
 pub use identity::settings_hash;
 pub use modes::{plate_modes, seat_frequencies};
 pub use python::{python, versions};

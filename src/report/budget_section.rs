@@ -2,6 +2,7 @@
 
 use super::budget_figure::{budget_figure, cause_name};
 use super::format::{Prefixed, prefixed, with_unit, words};
+use super::html::scrolled;
 use crate::comparison::budget::{Part, QuantityBudget};
 use maud::{Markup, html};
 
@@ -22,31 +23,31 @@ pub(super) fn budget_html(rows: &[QuantityBudget]) -> Markup {
             figcaption { "Relative to the reference, one scale for all. Thin line: uncertainty of a part. "
                 "Grey: bound of the remainder." }
         }
-        div.scroll { table.budget {
+        (scrolled("Discrepancy budget", &html! { table.budget {
             thead { tr {
                 th scope="col" { "cause" }
                 @for row in rows { th scope="col" { (words(&row.quantity)) } }
             } }
             tbody {
-                tr { td { "model B − reference" } @for row in rows { (cell(row, "difference", row.difference, None)) } }
+                tr { th scope="row" { "model B − reference" } @for row in rows { (cell(row, "difference", row.difference, None)) } }
                 @for (k, part) in first.parts.iter().enumerate() {
                     tr data-cause=(part.cause) {
-                        td title=(part.switch) { (cause_name(&part.cause)) }
+                        th scope="row" title=(part.switch) { (cause_name(&part.cause)) }
                         @for row in rows {
                             @let Part { value, uncertainty, .. } = row.parts[k];
                             (cell(row, &part.cause, value, Some(uncertainty)))
                         }
                     }
                 }
-                tr { td { "remainder" } @for row in rows { (cell(row, "remainder", row.remainder, None)) } }
-                tr { td { "95 % band of the reference" }
+                tr { th scope="row" { "remainder" } @for row in rows { (cell(row, "remainder", row.remainder, None)) } }
+                tr { th scope="row" { "95 % band of the reference" }
                     @for row in rows { (cell(row, "reference_uncertainty", row.reference_uncertainty.unwrap_or(f64::NAN), None)) } }
-                tr { td { "uncertainty of C" }
+                tr { th scope="row" { "uncertainty of C" }
                     @for row in rows { (cell(row, "model_uncertainty", row.model_uncertainty, None)) } }
-                tr { td { "explained" }
+                tr { th scope="row" { "explained" }
                     @for row in rows { td { span class=(format!("verdict {}", row.explained)) { (row.explained) } } } }
             }
-        } }
+        } }))
         ul.soft { @for part in &first.parts { li { (cause_name(&part.cause)) ": " (part.switch) } } }
     }
 }

@@ -59,7 +59,7 @@ pub(super) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
 }
 
 /// A relative value in per cent with its sign.
-pub(super) fn percent(relative: Option<f64>) -> String {
+pub(crate) fn percent(relative: Option<f64>) -> String {
     match relative {
         // Beyond that the reference is nothing to compare with.
         Some(r) if r.abs() >= 100.0 => format!("{} 10⁴ %", if r > 0.0 { ">" } else { "< −" }),
@@ -74,7 +74,7 @@ pub(super) fn percent(relative: Option<f64>) -> String {
 }
 
 /// A name of the results in words: `outer_force_peak` is "outer force, peak".
-pub(super) fn words(quantity: &str) -> String {
+pub(crate) fn words(quantity: &str) -> String {
     for (ending, word) in [
         ("_rms", "rms distance"),
         ("_max", "largest distance"),
@@ -90,7 +90,7 @@ pub(super) fn words(quantity: &str) -> String {
 }
 
 /// "A, 1 mode", "B, 16 modes".
-pub(super) fn model_name(model: &str, modes: Option<usize>) -> String {
+pub(crate) fn model_name(model: &str, modes: Option<usize>) -> String {
     match modes {
         Some(1) => format!("{model}, 1 mode"),
         Some(n) => format!("{model}, {n} modes"),

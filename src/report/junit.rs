@@ -56,7 +56,7 @@ fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
 }
 
 /// What is wrong with a row, in one sentence with numbers, unit and bound.
-pub(super) fn failure(row: &Discrepancy) -> String {
+pub(crate) fn failure(row: &Discrepancy) -> String {
     let Discrepancy { quantity, unit, reduced, reference, difference, .. } = row;
     let numbers = format!("{quantity}: reduced {reduced} {unit}, reference {reference} {unit}");
     match (row.tolerance, row.bias) {
@@ -69,7 +69,7 @@ pub(super) fn failure(row: &Discrepancy) -> String {
 }
 
 /// What is wrong with a check, in one sentence with numbers, unit and bound.
-pub(super) fn integrity_failure(check: &Check) -> String {
+pub(crate) fn integrity_failure(check: &Check) -> String {
     let Check { check, unit, found, expected, bound, .. } = check;
     format!("{check}: found {found} {unit}, expected {expected} {unit} within {bound} {unit}")
 }

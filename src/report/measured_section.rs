@@ -1,6 +1,7 @@
 //! The measured records in the report: alignment, efficiencies, curve metrics.
 
 use super::format::{prefixed, significant, with_unit, words};
+use super::html::scrolled;
 use super::{ChartPanel, SceneReport, Series, Theme, chart, measured_figure};
 use crate::impact::CURVES;
 use crate::measured::{AlignedRecord, Measured, Partner};
@@ -129,10 +130,10 @@ pub(super) fn measured_html(report: &SceneReport) -> Markup {
         let mut rows = rows.into_iter();
         let heading = rows.next().unwrap_or_default();
         html! {
-            div.scroll { table.measured {
+            (scrolled("Measurement", &html! { table.measured {
                 thead { tr { @for cell in &heading { th.left scope="col" { (cell) } } } }
                 tbody { @for row in rows { tr { @for cell in &row { td.left { (cell) } } } } }
-            } }
+            } }))
         }
     };
     html! {

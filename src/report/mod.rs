@@ -3,12 +3,19 @@
 //! Nothing here computes physics, and nothing depends on the time of day: the same results give
 //! the same files.
 
+mod acceptance_section;
+mod attachments;
 mod budget_figure;
 mod budget_section;
 mod chart;
 mod curves_csv;
+mod discrepancy_section;
 mod efficiency_boxes;
+mod facts;
+mod field_raster;
 mod figure;
+mod figure_file;
+mod figure_panel;
 pub(crate) mod format;
 mod html;
 mod json;
@@ -16,23 +23,32 @@ mod junit;
 mod label_placement;
 mod markdown;
 mod measured_section;
+mod mesh_section;
+mod page_data;
+mod pdf;
 mod png;
 mod polyline;
+mod scene_page;
 mod seal_seat;
 mod seal_seat_picture;
 mod terminal;
 mod ticks;
+mod trend_section;
 mod write;
 
+pub use attachments::Attachments;
 pub use chart::{ChartPanel, Series, chart};
 pub use curves_csv::curves_csv;
-pub use figure::{Theme, figure, measured_figure};
-pub use html::{index_page, scene_page};
+pub use figure::{FIGURE_WIDTHS, Theme, figure, measured_figure, printed_figure};
+pub use figure_file::{FigureFormat, figure_file};
+pub use html::index_page;
 pub use json::json;
 pub use junit::junit;
+pub(crate) use junit::{failure as row_failure, integrity_failure as check_failure};
 pub use markdown::markdown;
 pub use measured_section::efficiency_figure;
 pub use png::png;
+pub use scene_page::scene_page;
 pub use seal_seat::{Cost, SeatReport, seat_curves, seat_curves_csv, seat_page, seat_section};
 pub use seal_seat_picture::{Arrow, seat_picture};
 pub use terminal::terminal;
@@ -66,6 +82,8 @@ pub struct SceneReport<'a> {
     pub provenance: serde_json::Value,
     /// Command line that makes this comparison again.
     pub command: String,
+    /// What else there is to show.
+    pub attachments: Attachments,
 }
 
 impl Report<'_> {

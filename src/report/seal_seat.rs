@@ -1,11 +1,14 @@
 //! The report of a seal-seat scene: page, row of the index, lines for the terminal, Markdown, curves.
 
+use super::attachments::Attachments;
 use super::chart::{ChartPanel, Series, chart};
-use super::format::{model_name, percent, significant, with_unit, words, prefixed};
-use super::html::{badge, checks, contradictions, facts, model_section, page};
+use super::discrepancy_section::{checks, contradictions, model_section};
+use super::facts::facts;
+use super::format::{model_name, percent, prefixed, significant, with_unit};
+use super::html::{badge, page};
 use super::junit::{failure, integrity_failure};
 use super::seal_seat_picture::{Arrow, seat_picture};
-use crate::comparison::{ModelComparison, SceneComparison, align};
+use crate::comparison::{SceneComparison, align};
 use crate::error::{Error, Result};
 use crate::impact::{Curves, Outcome, SEAT_CURVES, SeatQuantities};
 use crate::scene::{Scene, Setup};
@@ -39,6 +42,8 @@ pub struct SeatReport {
     pub animation: Option<std::path::PathBuf>,
     /// Command line that makes this comparison again.
     pub command: String,
+    /// What else there is to show: trends and accepted changes.
+    pub attachments: Attachments,
 }
 
 /// Directions found and intended.
@@ -54,7 +59,12 @@ fn arrows(report: &SeatReport) -> Vec<Arrow> {
     arrows.push(Arrow { name: "reference".into(), velocity: of(reference), colour: "#1a1a1a", dashes: "" });
     for model in &report.comparison.models {
         let name = format!("model {}", model_name(&model.model, model.summary.modes));
-        arrows.push(Arrow { name, velocity: of(&model.summary.quantities), colour: "#009e73", dashes: "9 4" });
+        arrows.push(Arrow {
+            name,
+            velocity: of(&model.summary.quantities),
+            colour: "#009e73",
+            dashes: "9 4",
+        });
     }
     arrows
 }
@@ -120,13 +130,15 @@ pub fn seat_page(report: &SeatReport) -> String {
             summary { "Checks of the reference against itself (" (comparison.integrity.len()) ")" }
             (checks(&comparison.integrity))
         }
+        (super::trend_section::trends_html(&report.attachments))
+        (super::acceptance_section::acceptances_html(&report.attachments))
         h2 { "Provenance" }
         p { "Scene hash " code { (comparison.reference.scene_hash) } }
         details { summary { "How the reference was made" } (facts(&[("", Some(&report.provenance))])) }
         h2 { "Make it again" }
         pre tabindex="0" { (report.command) }
     };
-    page(&format!("{name} · impactcheck"), &body)
+    page(&format!("{name} · impactcheck"), &[], &body, &html! {})
 }
 
 /// Size and direction of the velocity, and how far it is from the intended direction.
@@ -178,28 +190,6 @@ fn cost(report: &SeatReport) -> Markup {
     }
 }
 
-/// Rows of the index's table of verdicts.
-pub(super) fn index_rows(report: &SeatReport) -> Markup {
-    let name = &report.comparison.scene;
-    let reference = &report.comparison.reference.quantities;
-    html! {
-        @for model in &report.comparison.models {
-            tr data-scene=(name) data-model=(model.model) {
-                th scope="row" { a href=(format!("{name}.html")) { (name) } }
-                td.left { (model_name(&model.model, model.summary.modes)) }
-                td.left { (badge(model.verdict)) }
-                td data-si=(model.summary.quantities.efficiency) { (significant(model.summary.quantities.efficiency, 4)) }
-                td data-si=(reference.efficiency) { (significant(reference.efficiency, 4)) }
-                td.left { (largest(model)) }
-            }
-        }
-    }
-}
-
-fn largest(model: &ModelComparison<SeatQuantities>) -> String {
-    model.largest().map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)))
-}
-
 /// Lines for the terminal: values of the reference and of each model, and what failed.
 pub(super) fn terminal(report: &SeatReport) -> String {
     let comparison = &report.comparison;
@@ -212,7 +202,9 @@ pub(super) fn terminal(report: &SeatReport) -> String {
     let line = |name: &str, q: &SeatQuantities, verdict: &str| {
         let cell = |own: f64, m: f64| match name {
             "reference" => format!("{:>22}", significant(own, 4)),
-            _ => format!("{:>22}", format!("{} ({})", significant(own, 4), percent(Some((own - m) / m.abs())))),
+            _ => {
+                format!("{:>22}", format!("{} ({})", significant(own, 4), percent(Some((own - m) / m.abs()))))
+            }
         };
         let angle = match name {
             "reference" => format!("{:+.2}°", q.sphere_angle.to_degrees()),

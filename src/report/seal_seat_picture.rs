@@ -96,8 +96,7 @@ fn seat_body(scene: &SealSeat, scale: &Scale) -> Markup {
     let seat = &scene.seat;
     let (r, t) = (seat.membrane_radius, seat.membrane_thickness);
     let (half, h) = (0.5 * seat.island_length, seat.island_height);
-    let outline =
-        [[-r, 0.0], [r, 0.0], [r, t], [half, t], [half, h], [-half, h], [-half, t], [-r, t]];
+    let outline = [[-r, 0.0], [r, 0.0], [r, t], [half, t], [half, h], [-half, h], [-half, t], [-r, t]];
     let notch = seat.notch.map(|n| {
         let (w, above) = (0.5 * n.width, 1.1 * h);
         [[-w, n.floor], [w, n.floor], [w, above], [-w, above]]
@@ -152,7 +151,10 @@ fn draw_arrow(arrow: &Arrow, from: [f64; 2], length_per_speed: f64, scale: &Scal
     let direction = arrow.velocity.map(|v| v / speed);
     let length = speed * length_per_speed;
     let at = |along: f64, across: f64| {
-        [from[0] + along * direction[0] + across * direction[1], from[1] + along * direction[1] - across * direction[0]]
+        [
+            from[0] + along * direction[0] + across * direction[1],
+            from[1] + along * direction[1] - across * direction[0],
+        ]
     };
     let head = 0.08 * length;
     html! {

@@ -29,8 +29,11 @@ impl Matrices {
     pub fn new(mesh: &TetMesh, material: &Material) -> Self {
         let (start, column) = sparsity(mesh);
         let lame = Lame::of(material);
-        let elements: Vec<Vec<Block>> =
-            mesh.cells.par_chunks(mesh.nodes_per_cell()).map(|cell| element_stiffness(mesh, cell, lame)).collect();
+        let elements: Vec<Vec<Block>> = mesh
+            .cells
+            .par_chunks(mesh.nodes_per_cell())
+            .map(|cell| element_stiffness(mesh, cell, lame))
+            .collect();
         let mut stiffness = vec![[0.0; 9]; column.len()];
         for (cell, element) in mesh.cells().zip(elements) {
             for (row, blocks) in cell.iter().zip(element.chunks_exact(cell.len())) {
@@ -156,7 +159,8 @@ fn element_stiffness(mesh: &TetMesh, cell: &[usize], lame: Lame) -> Vec<Block> {
             gradient[a] = gradients[a].map(|g| (4.0 * l[a] - 1.0) * g);
         }
         for (k, [a, b]) in EDGES.into_iter().enumerate() {
-            gradient[4 + k] = std::array::from_fn(|c| 4.0 * (l[a] * gradients[b][c] + l[b] * gradients[a][c]));
+            gradient[4 + k] =
+                std::array::from_fn(|c| 4.0 * (l[a] * gradients[b][c] + l[b] * gradients[a][c]));
         }
         add(&gradient, 0.25 * volume);
     }

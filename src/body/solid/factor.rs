@@ -30,7 +30,8 @@ impl Factor {
     /// [`Error::Solver`] if the matrix is not positive definite.
     pub fn new(lower: &SparseColMat<usize, f64>, interface: &[usize]) -> Result<Self> {
         let n = lower.ncols();
-        let defect = |e: faer::sparse::FaerError| Error::Internal(format!("ordering the solid's stiffness: {e:?}"));
+        let defect =
+            |e: faer::sparse::FaerError| Error::Internal(format!("ordering the solid's stiffness: {e:?}"));
         let forward = ordering(lower, interface).map_err(defect)?;
         let mut inverse = vec![0; n];
         forward.iter().enumerate().for_each(|(new, &old)| inverse[old] = new);

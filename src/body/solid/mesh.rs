@@ -32,11 +32,7 @@ impl TetMesh {
     /// # Errors
     /// One sentence that says which cell or node is unusable: a node that does not exist or belongs to no cell, a
     /// cell that is flat or turned inside out, a curved edge.
-    pub fn new(
-        points: Vec<[f64; 3]>,
-        cells: Vec<usize>,
-        order: usize,
-    ) -> std::result::Result<Self, String> {
+    pub fn new(points: Vec<[f64; 3]>, cells: Vec<usize>, order: usize) -> std::result::Result<Self, String> {
         let mesh = Self { points, cells, order };
         mesh.check()?;
         Ok(mesh)
@@ -50,7 +46,8 @@ impl TetMesh {
         let failed = |what: String| Error::Solver(format!("mesh {}: {what}", path.display()));
         let vtk = Vtk::import(path).map_err(|e| failed(format!("can't be read as VTK: {e}")))?;
         let piece = grid(vtk).map_err(&failed)?;
-        let points = piece.points.cast_into::<f64>().ok_or_else(|| failed("its points are no numbers".into()))?;
+        let points =
+            piece.points.cast_into::<f64>().ok_or_else(|| failed("its points are no numbers".into()))?;
         let points: Vec<[f64; 3]> = points.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
         let order = match piece.cells.types.first() {
             Some(CellType::Tetra) => 1,
@@ -110,9 +107,10 @@ impl TetMesh {
         let mut used = vec![false; self.points.len()];
         for (number, cell) in self.cells().enumerate() {
             for &node in cell {
-                *used.get_mut(node).ok_or_else(|| {
-                    format!("cell {number} names node {node} of {}", self.points.len())
-                })? = true;
+                *used
+                    .get_mut(node)
+                    .ok_or_else(|| format!("cell {number} names node {node} of {}", self.points.len()))? =
+                    true;
             }
             let corners = self.corners(cell);
             if volume(&corners) <= 0.0 {
@@ -121,7 +119,9 @@ impl TetMesh {
             for ([a, b], &midside) in EDGES.iter().zip(&cell[4..]) {
                 let middle = std::array::from_fn(|c| 0.5 * (corners[*a][c] + corners[*b][c]));
                 if distance(middle, self.points[midside]) > STRAIGHT * distance(corners[*a], corners[*b]) {
-                    return Err(format!("node {midside} is not in the middle of its edge: edges must be straight"));
+                    return Err(format!(
+                        "node {midside} is not in the middle of its edge: edges must be straight"
+                    ));
                 }
             }
         }

@@ -72,8 +72,7 @@ impl Solid {
                 })
             })
             .collect();
-        let last: Vec<usize> =
-            interface.iter().flat_map(|&node| dof[node]).filter(|d| *d != FIXED).collect();
+        let last: Vec<usize> = interface.iter().flat_map(|&node| dof[node]).filter(|d| *d != FIXED).collect();
         let factor = Factor::new(&matrices.free_stiffness(&dof, size), &last)?;
         let mut mass = vec![0.0; size];
         for (dof, m) in dof.iter().zip(&matrices.mass) {
@@ -151,7 +150,10 @@ impl InterfaceBody {
     /// [`Error::Usage`] if the body has fewer modes.
     pub fn residual(&self, modes: usize) -> Result<Vec<f64>> {
         if modes > self.omega.len() {
-            return Err(Error::Usage(format!("{modes} modes of a solid that has {} are asked for", self.omega.len())));
+            return Err(Error::Usage(format!(
+                "{modes} modes of a solid that has {} are asked for",
+                self.omega.len()
+            )));
         }
         let n = self.size();
         let mut full = vec![0.0; n * n];

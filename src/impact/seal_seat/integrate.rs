@@ -113,7 +113,10 @@ pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     run.sample();
     while !run.is_over() {
         if run.tally.steps >= MOST_STEPS {
-            return Err(Error::Solver(format!("contact of the seal seat is still possible after {:e} s", run.time())));
+            return Err(Error::Solver(format!(
+                "contact of the seal seat is still possible after {:e} s",
+                run.time()
+            )));
         }
         run.interval()?;
     }
@@ -230,7 +233,8 @@ impl<'a> Running<'a> {
             *impulse += 2.0 * step * force;
         }
         let active = self.workspace.contact.active();
-        self.tally.seat_impulse += step * active.iter().map(|&i| self.workspace.contact.force_vector(i)[2]).sum::<f64>();
+        self.tally.seat_impulse +=
+            step * active.iter().map(|&i| self.workspace.contact.force_vector(i)[2]).sum::<f64>();
     }
 
     fn drift(&mut self, step: f64) {
@@ -326,7 +330,8 @@ impl<'a> Running<'a> {
     fn finish(self) -> Integration {
         let (system, state) = (self.system, &self.state);
         let start = system.actuator_mass * system.speed;
-        let left = system.actuator_mass * state.actuator_velocity + system.sphere_mass * state.sphere_velocity[1];
+        let left =
+            system.actuator_mass * state.actuator_velocity + system.sphere_mass * state.sphere_velocity[1];
         let energy = self.workspace.energy(system, state);
         Integration {
             momentum_residual: (left + self.tally.seat_impulse - start).abs() / start,

@@ -1,0 +1,9 @@
+//! What a project needs when a machine runs the gate on every commit: results over commits ([`trend`]), tolerances and
+//! references that are changed with a reason only ([`acceptance`], [`tolerance_edit`]), messages for GitHub ([`github`]).
+
+pub mod acceptance;
+pub mod commit;
+pub mod github;
+mod json_lines;
+pub mod tolerance_edit;
+pub mod trend;

@@ -1,0 +1,189 @@
+//! `impactcheck gate`: compare, the verdict is the exit status; tolerances and references change with a reason only.
+
+use super::Context;
+use super::compare::{self, Job, Outputs, Results};
+use crate::ci::acceptance::{self, Acceptance, AcceptedReference};
+use crate::ci::{commit, github, tolerance_edit};
+use crate::comparison::{SceneComparison, Verdict};
+use crate::error::{Error, ExitStatus, Result};
+use crate::impact::Quantities;
+use crate::reference::Resolution;
+use crate::report::{self, Attachments, Report};
+use crate::scene::Scene;
+use clap::Args;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    compare: compare::Arguments,
+    /// Write the checks as JUnit XML to this file
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Add the gated numbers, with the commit, to this file of results over commits (JSON lines)
+    #[arg(long, value_name = "FILE", conflicts_with = "trends")]
+    record: Option<PathBuf>,
+    /// Change what fails in the scene files (known bias; bound of a residual) so that it passes, and accept the references as
+    /// they are; the reason is kept beside the scene file
+    #[arg(long, requires = "reason")]
+    update: bool,
+    /// Why the change is right
+    #[arg(long, value_name = "TEXT", requires = "update", value_parser = reason)]
+    reason: Option<String>,
+}
+
+/// Compares, writes the report and lets the verdict be the exit status.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    let job = Job::read(&arguments.compare)?;
+    job.check_folders(&[arguments.junit.as_ref(), arguments.record.as_ref()])?;
+    let record = match &arguments.record {
+        Some(file) => Some((file.clone(), commit(&job, file)?)),
+        None => None,
+    };
+    let results = job.results(context)?;
+    let outputs = Outputs { junit: arguments.junit.clone(), record };
+    let Some(reason) = arguments.reason.as_ref().filter(|_| arguments.update) else {
+        return conclude(context, &job, &results, &outputs);
+    };
+    if update(context, &job, &results, reason)? {
+        // scenes are immutable: those of the new tolerances are read again, and what was solved stays
+        return conclude(context, &Job::read(&arguments.compare)?, &results, &outputs);
+    }
+    conclude(context, &job, &results, &outputs)
+}
+
+fn conclude(context: &Context, job: &Job, results: &Results, outputs: &Outputs) -> Result<ExitStatus> {
+    let report = job.report(context, results)?;
+    if github::is_running() {
+        tell_github(context, job, &report)?;
+    }
+    Ok(match job.finish(context, report, outputs)?.verdict {
+        Verdict::Pass => ExitStatus::Pass,
+        Verdict::Fail => ExitStatus::ToleranceExceeded,
+    })
+}
+
+/// The commit of the first scene's repository; what this run writes does not count as a change.
+fn commit(job: &Job, record: &Path) -> Result<commit::Commit> {
+    let file = job.scenes.first().map_or(Path::new("."), |(file, _)| file);
+    commit::current(file.parent().unwrap_or(Path::new(".")), &[record, job.out()])
+}
+
+/// Annotations on standard error, where they don't disturb results, and the summary of the job.
+fn tell_github(context: &Context, job: &Job, report: &Report) -> Result<()> {
+    let place = |name: &str| {
+        let found = job.scenes.iter().find(|(_, scene)| scene.name == name);
+        found.map_or_else(Default::default, |(file, _)| {
+            (github::path_in_repository(file), std::fs::read_to_string(file).unwrap_or_default())
+        })
+    };
+    for command in github::annotations(report, place) {
+        // not a note: --quiet must not hide it
+        eprintln!("{command}");
+    }
+    let Some(file) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|file| !file.is_empty()) else {
+        return Ok(());
+    };
+    let path = PathBuf::from(file);
+    let opened = std::fs::OpenOptions::new().append(true).create(true).open(&path);
+    let written = opened.and_then(|mut file| file.write_all(github::job_summary(report).as_bytes()));
+    if let Err(error) = written {
+        context.note(Error::io("writing the job summary to", path, error));
+    }
+    Ok(())
+}
+
+/// Changes what fails in the scene files, and records why. Whether anything was changed.
+fn update(context: &Context, job: &Job, results: &Results, reason: &str) -> Result<bool> {
+    let report = job.report(context, results)?;
+    let (plates, seats) = (job.plates().zip(&report.scenes), job.seats().zip(&report.seats));
+    let mut changes = Vec::new();
+    for ((file, _), scene) in plates {
+        changes.push(Change::of(file, &scene.comparison, &scene.attachments, job.resolution(), reason)?);
+    }
+    for ((file, _), seat) in seats {
+        changes.push(Change::of(file, &seat.comparison, &seat.attachments, job.resolution(), reason)?);
+    }
+    for change in &changes {
+        change.make(context)?;
+    }
+    Ok(changes.iter().any(|change| change.entry.is_some()))
+}
+
+/// What an update does to one scene.
+struct Change {
+    scene: String,
+    file: PathBuf,
+    /// The scene file's new text, if it changes.
+    text: Option<String>,
+    /// What is recorded; `None` if there is nothing to update.
+    entry: Option<Acceptance>,
+}
+
+impl Change {
+    /// The change that makes `comparison` pass, checked, not yet made.
+    fn of<Q: Quantities>(
+        file: &Path,
+        comparison: &SceneComparison<Q>,
+        attachments: &Attachments,
+        resolution: Resolution,
+        reason: &str,
+    ) -> Result<Self> {
+        acceptable(comparison)?;
+        let old = std::fs::read_to_string(file).map_err(|e| Error::io("reading", file, e))?;
+        let (text, tolerances) = tolerance_edit::edited(&old, comparison)?;
+        let reference = AcceptedReference::of(&comparison.reference, resolution);
+        let known = attachments.acceptances.iter().any(|a| a.reference == reference);
+        // what was written has to be read back as what was meant, before it is written
+        Scene::parse(&file.display().to_string(), &text)?;
+        let date = acceptance::today();
+        let entry = Acceptance { date, reason: reason.to_owned(), tolerances, reference };
+        let nothing = entry.tolerances.is_empty() && known;
+        Ok(Change {
+            scene: comparison.scene.clone(),
+            file: file.to_owned(),
+            text: (text != old).then_some(text),
+            entry: (!nothing).then_some(entry),
+        })
+    }
+
+    fn make(&self, context: &Context) -> Result<()> {
+        let Some(entry) = &self.entry else {
+            context.note(format_args!("{}: nothing to update", self.scene));
+            return Ok(());
+        };
+        if let Some(text) = &self.text {
+            report::write_file(&self.file, text.as_bytes())?;
+        }
+        acceptance::add(&self.file, entry.clone())?;
+        let changed = entry.tolerances.len();
+        let tolerances = if changed == 1 { "tolerance" } else { "tolerances" };
+        context.note(format_args!(
+            "{}: {changed} {tolerances} changed, reference accepted; the reason is in {}",
+            self.scene,
+            acceptance::record_of(&self.file).display()
+        ));
+        Ok(())
+    }
+}
+
+/// A result that contradicts itself can't be accepted; a reference that is not the accepted one can.
+fn acceptable<Q: Quantities>(comparison: &SceneComparison<Q>) -> Result<()> {
+    let of_reference = comparison.integrity.iter().filter(|c| !c.check.starts_with(acceptance::CHECK));
+    let of_models = comparison.models.iter().flat_map(|model| &model.integrity);
+    match of_reference.chain(of_models).find(|check| !check.verdict.passed()) {
+        None => Ok(()),
+        Some(check) => Err(Error::Usage(format!(
+            "--update: scene `{}` has a result that contradicts itself, which no reason makes right: {}; nothing was changed",
+            comparison.scene,
+            report::check_failure(check)
+        ))),
+    }
+}
+
+/// A reason that says something.
+fn reason(text: &str) -> std::result::Result<String, String> {
+    let text = text.trim();
+    if text.is_empty() { Err("a reason is needed, in words".into()) } else { Ok(text.to_owned()) }
+}

@@ -1,0 +1,127 @@
+//! Discrepancies, curve metrics and checks of one reduced model as tables of the page.
+
+use super::format::{model_name, percent, prefixed, significant, with_unit, words};
+use super::html::{badge, number, scrolled};
+use crate::comparison::{BandVerdict, Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
+use crate::impact::Quantities;
+use maud::{Markup, html};
+
+/// Section of one model.
+pub(super) fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
+    html! {
+        h2 { "Model " (model_name(&model.model, model.summary.modes)) " " (badge(model.verdict)) }
+        @for warning in &model.summary.warnings { p { strong { "Warning: " } (warning) } }
+        (contradictions(&model.model, &model.integrity))
+        h3 { "Discrepancies" }
+        (scrolled(&format!("Discrepancies of model {}", model.model), &html! { table.discrepancies data-model=(model.model) {
+            thead { tr {
+                th scope="col" { "quantity" } th.left scope="col" { "verdict" }
+                @for heading in ["reduced", "reference", "difference", "relative", "95 % band", "|E| against u", "tolerance", "bias"] {
+                    th scope="col" { (heading) }
+                }
+            } }
+            tbody { @for row in &model.discrepancies { (discrepancy_row(row)) } }
+        } }))
+        p.soft { "Difference is reduced minus reference. A row without tolerance is not gated. Bias is the known "
+            "discrepancy about which the tolerance lies. A distance of curves is relative to the reference's peak. "
+            "|E| against u (ASME V&V 20): a difference within the reference's 95 % band proves no error of the model." }
+        h3 { "Curve metrics" }
+        (scrolled(&format!("Curve metrics of model {}", model.model), &html! { table.curves data-model=(model.model) {
+            thead { tr {
+                @for heading in ["curve", "Sprague-Geers C", "M", "P", "Russell C", "M", "P", "ISO/TS 18571 R", "Z", "EP", "EM", "ES"] {
+                    th scope="col" { (heading) }
+                }
+                th.left scope="col" { "grade" } th scope="col" { "window" } th scope="col" { "samples" }
+            } }
+            tbody { @for curve in &model.curves { (curve_row(curve)) } }
+        } }))
+        p.soft { "Sprague-Geers and Russell: comprehensive, magnitude and phase error, 0 is best. ISO/TS 18571: rating, "
+            "corridor, phase, magnitude and slope score, 1 is best. Reported, not gated." }
+        details {
+            summary { "Checks of the result against itself (" (model.integrity.len()) ")" }
+            (checks(&model.integrity))
+        }
+    }
+}
+
+fn discrepancy_row(row: &Discrepancy) -> Markup {
+    let to = prefixed(&row.unit, row.reference.abs().max(row.reduced.abs()));
+    html! {
+        tr data-quantity=(row.quantity) {
+            th scope="row" { (words(&row.quantity)) }
+            td.left {
+                @if row.tolerance.is_none() && row.verdict.passed() { span.soft { "not gated" } }
+                @else { (badge(row.verdict)) }
+            }
+            (number("reduced", Some(row.reduced), to, 5))
+            (number("reference", Some(row.reference), to, 5))
+            (number("difference", Some(row.difference), to, 3))
+            td data-field="relative" data-si=(row.relative.map_or(String::new(), |r| r.to_string())) {
+                (percent(row.relative))
+            }
+            (number("uncertainty", row.uncertainty, to, 2))
+            td.left data-field="band_verdict" { (row.band_verdict.map_or("–", BandVerdict::words)) }
+            (number("tolerance", row.tolerance, to, 3))
+            (number("bias", row.bias, to, 3))
+        }
+    }
+}
+
+fn curve_row(curve: &CurveMetrics) -> Markup {
+    let scores = [
+        ("sprague_geers", curve.sprague_geers),
+        ("sprague_geers_magnitude", curve.sprague_geers_magnitude),
+        ("sprague_geers_phase", curve.sprague_geers_phase),
+        ("russell", curve.russell),
+        ("russell_magnitude", curve.russell_magnitude),
+        ("russell_phase", curve.russell_phase),
+        ("iso18571", curve.iso18571),
+        ("iso18571_corridor", curve.iso18571_corridor),
+        ("iso18571_phase", curve.iso18571_phase),
+        ("iso18571_magnitude", curve.iso18571_magnitude),
+        ("iso18571_slope", curve.iso18571_slope),
+    ];
+    let time = prefixed("s", curve.window[1]);
+    html! {
+        tr data-quantity=(curve.quantity) {
+            th scope="row" { (words(&curve.quantity)) }
+            @for (field, value) in scores { (number(field, value, prefixed("1", 1.0), 3)) }
+            td.left { (curve.grade.map_or("–".into(), |g| g.to_string())) }
+            td { (significant(curve.window[0] * time.factor, 4)) " to " (with_unit(curve.window[1], time, 4)) }
+            td { (curve.samples) }
+        }
+    }
+}
+
+/// What a result contradicts itself in, in plain sight.
+pub(super) fn contradictions(source: &str, checks: &[Check]) -> Markup {
+    let failed: Vec<_> = checks.iter().filter(|c| !c.verdict.passed()).collect();
+    html! {
+        @if !failed.is_empty() {
+            p { (badge(Verdict::Fail)) " The result of " (source) " contradicts itself or its scene:" }
+            ul { @for check in failed { li { (super::junit::integrity_failure(check)) } } }
+        }
+    }
+}
+
+/// The checks of a result against itself.
+pub(super) fn checks(checks: &[Check]) -> Markup {
+    html! {
+        (scrolled("Checks", &html! { table.checks {
+            thead { tr {
+                @for heading in ["check", "found", "expected", "bound"] { th scope="col" { (heading) } }
+                th.left scope="col" { "verdict" }
+            } }
+            tbody { @for check in checks {
+                @let to = prefixed(&check.unit, check.expected.abs().max(check.found.abs()));
+                tr data-check=(check.check) {
+                    th scope="row" { (words(&check.check)) }
+                    (number("found", Some(check.found), to, 5))
+                    (number("expected", Some(check.expected), to, 5))
+                    (number("bound", Some(check.bound), to, 3))
+                    td.left { (badge(check.verdict)) }
+                }
+            } }
+        } }))
+    }
+}

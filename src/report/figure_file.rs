@@ -1,0 +1,51 @@
+//! The figure of a scene as a file for a paper.
+
+use super::{SceneReport, printed_figure};
+use crate::error::{Error, Result};
+use std::path::Path;
+
+/// Dots per inch of a PNG, what journals ask of line drawings.
+const RESOLUTION: f32 = 600.0;
+
+/// Kind of a figure's file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FigureFormat {
+    /// Vector drawing for the web and for editors; text stays text.
+    Svg,
+    /// Vector drawing for LaTeX; text as outlines.
+    Pdf,
+    /// 600 dots per inch.
+    Png,
+}
+
+impl FigureFormat {
+    /// The format that the ending of `file` stands for.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if it is none of them.
+    pub fn of(file: &Path) -> Result<Self> {
+        let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        match ending.as_str() {
+            "svg" => Ok(FigureFormat::Svg),
+            "pdf" => Ok(FigureFormat::Pdf),
+            "png" => Ok(FigureFormat::Png),
+            _ => Err(Error::Usage(format!(
+                "--figure {}: the name has to end in .svg, .pdf or .png",
+                file.display()
+            ))),
+        }
+    }
+}
+
+/// The figure of a scene, `width` mm wide (within [`super::FIGURE_WIDTHS`]), as a file's bytes.
+///
+/// # Errors
+/// [`Error::Internal`] if it can't be drawn.
+pub fn figure_file(report: &SceneReport, width: f64, format: FigureFormat) -> Result<Vec<u8>> {
+    let svg = printed_figure(report, width);
+    match format {
+        FigureFormat::Svg => Ok(svg.into_bytes()),
+        FigureFormat::Pdf => super::pdf::pdf(&svg, &report.scene.name),
+        FigureFormat::Png => super::png::printed_png(&svg, RESOLUTION),
+    }
+}

@@ -1,0 +1,111 @@
+//! What a scene's page carries for its script: the curves on the common axis, and the comparison document of the scene.
+
+use super::SceneReport;
+use super::figure::{QUANTITIES, bands, dash};
+use super::format::model_name;
+use crate::comparison::{CommonAxis, SampledCurve, sample};
+use serde_json::{Value, json};
+
+/// Significant digits of a curve's peak that are kept.
+const DIGITS: i32 = 5;
+
+/// JSON of the curves, values in the units of the panels; without times if the reference's history can't be used.
+pub(super) fn curves(report: &SceneReport) -> Value {
+    let Some(axis) = report.comparison.window else {
+        return json!({"time": [], "sources": [], "panels": []});
+    };
+    let reference =
+        ("reference".to_owned(), "FE reference".to_owned(), sample(axis, &report.reference.history));
+    let reduced = report.reduced.iter().map(|outcome| {
+        let model = outcome.summary.model.clone().unwrap_or_default();
+        let name = format!("model {}", model_name(&model, outcome.summary.modes));
+        (model, name, sample(axis, &outcome.history))
+    });
+    let sources: Vec<_> = std::iter::once(reference).chain(reduced).collect();
+    let bands = bands(report, axis);
+    let panels: Vec<Value> = QUANTITIES
+        .iter()
+        .map(|quantity| {
+            let named =
+                |curves: &[SampledCurve], name: &str| curves.iter().find(|c| c.quantity == name).cloned();
+            let belongs = |c: &&SampledCurve| c.quantity.ends_with(quantity.suffix);
+            let values = sources.iter().flat_map(|(_, _, curves)| curves.iter().filter(belongs)).flat_map(|c| &c.values);
+            let peak = values.filter(|v| v.is_finite()).fold(0.0_f64, |p, v| p.max(v.abs())) * quantity.factor;
+            let decimals = if peak > 0.0 { (DIGITS - 1 - peak.log10().floor() as i32).clamp(0, 12) } else { 0 };
+            let rounded = |curve: &SampledCurve| rounded(&curve.values, quantity.factor, decimals);
+            let curves: Vec<Value> = quantity
+                .bodies
+                .iter()
+                .map(|body| {
+                    let name = format!("{body}_{}", quantity.suffix);
+                    let values: serde_json::Map<String, Value> = sources
+                        .iter()
+                        .filter_map(|(id, _, curves)| Some((id.clone(), rounded(&named(curves, &name)?))))
+                        .collect();
+                    let band = named(&bands, &name).map(|band| rounded(&band));
+                    json!({"body": body, "name": name, "values": values, "band": band})
+                })
+                .collect();
+            json!({"label": quantity.label, "factor": quantity.factor, "decimals": decimals.max(1) - 1, "curves": curves})
+        })
+        .collect();
+    let of_source = |(id, name, _): &(String, String, Vec<SampledCurve>)| {
+        let is_reference = id == "reference";
+        let dashes: Vec<f64> = if is_reference {
+            Vec::new()
+        } else {
+            dash(id).split(' ').filter_map(|d| d.parse().ok()).collect()
+        };
+        json!({
+            "id": id, "name": name, "short": if is_reference { "FE" } else { id }, "dash": dashes,
+            "width": if is_reference { 2.1 } else { 1.7 },
+            "colour": if is_reference { "fg".to_owned() } else { id.to_lowercase() },
+        })
+    };
+    json!({"time": times(axis), "sources": sources.iter().map(of_source).collect::<Vec<_>>(), "panels": panels})
+}
+
+/// Instants in us.
+fn times(axis: CommonAxis) -> Value {
+    let seconds: Vec<f64> = (0..axis.samples).map(|k| axis.time(k)).collect();
+    rounded(&seconds, 1e6, (DIGITS + 2 - (axis.end * 1e6).log10().ceil() as i32).clamp(0, 12))
+}
+
+/// Values times `factor`, rounded; `null` for what is not finite.
+fn rounded(values: &[f64], factor: f64, decimals: i32) -> Value {
+    let unit = 10_f64.powi(decimals);
+    let number = |v: &f64| {
+        let rounded = (v * factor * unit).round() / unit;
+        // a whole number needs no point, and zero no sign
+        match rounded {
+            r if r == 0.0 => json!(0),
+            r if r.fract() == 0.0 && r.abs() < 1e15 => json!(r as i64),
+            r => json!(r),
+        }
+    };
+    values.iter().map(number).collect()
+}
+
+/// A JSON document as the text of a script element, which no text inside can end.
+pub(super) fn embedded(document: &impl serde::Serialize) -> String {
+    serde_json::to_string(document).unwrap_or_else(|_| "null".into()).replace('<', "\\u003c")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{embedded, rounded};
+    use serde_json::json;
+
+    #[test]
+    fn numbers_are_rounded_and_short() {
+        let found = rounded(&[-2.956_614e-4, 0.0, -1e-12, f64::NAN, 0.5], 1e6, 2);
+        assert_eq!(found.to_string(), "[-295.66,0,0,null,500000]");
+    }
+
+    #[test]
+    fn no_text_ends_the_script() {
+        let text = embedded(&json!({"a": "</script><script>"}));
+        assert!(!text.contains('<'));
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).expect("JSON")["a"], "</script><script>");
+    }
+}

@@ -1,0 +1,118 @@
+//! The report's pages in headless Chromium: no error on the console, the numbers are those of the JSON, curves are
+//! switched and zoomed together, and axe-core finds nothing serious, in light and dark and on a phone.
+//!
+//! Without Chromium or axe-core these tests fail and say so: a page nobody opened is not tested.
+
+use assert_cmd::Command;
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command as Process, Stdio};
+
+const SCENE: &str = "scaled-plate-r10";
+const TEST: &str = include_str!("report_browser.js");
+
+/// Chromium, by the environment variable `CHROMIUM` or one of its names.
+fn chromium() -> PathBuf {
+    let named = std::env::var_os("CHROMIUM").map(PathBuf::from);
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let names = ["chromium", "chromium-browser", "google-chrome"];
+    let found = || {
+        std::env::split_paths(&path).flat_map(|dir| names.map(|name| dir.join(name))).find(|p| p.is_file())
+    };
+    named
+        .or_else(found)
+        .expect("no chromium: `make setup` installs it, or set CHROMIUM to a Chromium or Chrome")
+}
+
+/// The text of axe-core, as `make setup` installs it.
+fn axe() -> String {
+    let tools = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/python-tools/lib");
+    let entries = fs::read_dir(&tools).into_iter().flatten().flatten();
+    let mut files = entries
+        .map(|e| e.path().join("site-packages/axe_playwright_python/axe.min.js"))
+        .filter(|f| f.is_file());
+    let file = files.next().expect("no axe-core below target/python-tools: `make setup` installs it");
+    fs::read_to_string(file).unwrap()
+}
+
+fn report(out: &Path) {
+    let run = Command::cargo_bin("impactcheck")
+        .unwrap()
+        .args(["compare", SCENE, "--quiet", "--out"])
+        .arg(out)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+}
+
+/// Opens `page` with the test inside it and gives what the test, the page and the console complain about.
+fn problems(dir: &Path, page: &str, arguments: &[&str]) -> Vec<String> {
+    let text = fs::read_to_string(dir.join(page)).unwrap();
+    let comparison: Value =
+        serde_json::from_str(&fs::read_to_string(dir.join("comparison.json")).unwrap()).unwrap();
+    let first = "<script>window.problems = []; addEventListener('error', (e) => problems.push(`error: ${e.message}`));
+        const told = console.error; console.error = (...a) => { problems.push(`console: ${a.join(' ')}`); told(...a); };</script>";
+    let data = |id: &str, value: &Value| {
+        let text = value.to_string().replace('<', "\\u003c");
+        format!("<script type=\"application/json\" id=\"{id}\">{text}</script>")
+    };
+    let last = format!(
+        "{}{}<script>{}</script><script>{TEST}</script></body>",
+        data("test-comparison", &comparison["scenes"][0]),
+        data("test-curves", &samples(dir)),
+        axe()
+    );
+    let text = text.replacen("<head>", &format!("<head>{first}"), 1);
+    let (before, after) = text.rsplit_once("</body>").unwrap();
+    let tested = dir.join(format!("tested-{page}"));
+    fs::write(&tested, format!("{before}{last}{after}")).unwrap();
+
+    let profile = tempfile::tempdir().unwrap();
+    let output = Process::new(chromium())
+        .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--dump-dom"])
+        .args(["--virtual-time-budget=20000", "--window-size=1100,900"])
+        .arg(format!("--user-data-dir={}", profile.path().display()))
+        .args(arguments)
+        .arg(format!("file://{}", tested.display()))
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let dom = String::from_utf8_lossy(&output.stdout);
+    let log = String::from_utf8_lossy(&output.stderr);
+    let result = dom.rsplit_once("<pre id=\"test-result\">").and_then(|(_, rest)| rest.split_once("</pre>"));
+    let (result, _) = result.unwrap_or_else(|| panic!("the test did not finish: {log}"));
+    let text = result.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
+    let mut problems: Vec<String> = serde_json::from_str(&text).unwrap();
+    problems.extend(log.lines().filter(|line| line.contains("CONSOLE")).map(str::to_owned));
+    problems
+}
+
+/// Some samples of every column of the CSV file: `{"B_outer_force": [[row, value], ...], ...}`.
+fn samples(dir: &Path) -> Value {
+    let mut reader = csv::Reader::from_path(dir.join(format!("{SCENE}.csv"))).unwrap();
+    let names: Vec<String> = reader.headers().unwrap().iter().skip(1).map(str::to_owned).collect();
+    let rows: Vec<csv::StringRecord> = reader.records().map(|r| r.unwrap()).collect();
+    let mut columns = serde_json::Map::new();
+    for (k, name) in names.into_iter().enumerate() {
+        let value = |row: usize| rows[row][k + 1].parse::<f64>().ok().map(|v| json!([row, v]));
+        columns.insert(name, (0..rows.len()).step_by(100).filter_map(value).collect());
+    }
+    assert_eq!(columns.len(), 4 * 8, "reference and three models");
+    Value::Object(columns)
+}
+
+#[test]
+fn pages_work_in_a_browser_in_light_dark_and_on_a_phone() {
+    let dir = tempfile::tempdir().unwrap();
+    report(dir.path());
+    let page = format!("{SCENE}.html");
+    const DARK: &str = "--blink-settings=preferredColorScheme=0";
+    let views: [(&str, &[&str]); 3] =
+        [(&page, &[]), (&page, &[DARK, "--window-size=500,900"]), ("index.html", &[DARK])];
+    for (page, arguments) in views {
+        let problems = problems(dir.path(), page, arguments);
+        assert!(problems.is_empty(), "{page} {arguments:?}:\n{}", problems.join("\n"));
+    }
+}
