@@ -142,6 +142,12 @@ impl<'a> Job<'a> {
         let references = references(context, self.arguments, &plates, &mut problems)?;
         let stored = self::references(context, self.arguments, &seats, &mut problems)?;
         all_found(problems)?;
+        for stored in &references {
+            tell_reused(context, &stored.outcome.summary.scene, &stored.provenance);
+        }
+        for stored in &stored {
+            tell_reused(context, &stored.outcome.summary.scene, &stored.provenance);
+        }
         let seats = seats.into_iter().zip(stored);
         let seats = seats.map(|(scene, stored)| compare_seats::run(scene, stored)).collect::<Result<_>>()?;
         let mut reduced = Vec::new();
@@ -150,7 +156,19 @@ impl<'a> Job<'a> {
             let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
             let outcomes: Result<Vec<Outcome>> = models(self.arguments)
                 .into_iter()
-                .map(|model| Reduced::new(scene, model, None)?.run_with_history_until(TOLERANCE, end))
+                .map(|model| {
+                    let start = Instant::now();
+                    let body = Reduced::new(scene, model, None)?;
+                    let set_up = start.elapsed().as_secs_f64();
+                    let outcome = body.run_with_history_until(TOLERANCE, end)?;
+                    context.detail(format_args!(
+                        "{}: model {model} set up in {:.1} ms, run in {:.2} ms",
+                        scene.name,
+                        1e3 * set_up,
+                        1e3 * outcome.summary.solve_seconds
+                    ));
+                    Ok(outcome)
+                })
                 .collect();
             reduced.push(outcomes?);
         }
@@ -338,6 +356,12 @@ fn references<Q: Quantities>(
         }
     }
     Ok(found)
+}
+
+/// Where a reference comes from.
+fn tell_reused(context: &Context, scene: &str, provenance: &serde_json::Value) {
+    let made = provenance["created"].as_str().map_or(String::new(), |when| format!(", made {when}"));
+    context.detail(format_args!("{scene}: reference from the store{made}"));
 }
 
 /// One error that names every reference that can't be used, if there is any.

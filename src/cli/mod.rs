@@ -6,11 +6,13 @@ mod compare_seats;
 mod doctor;
 mod gate;
 mod mesh;
+mod new;
 mod optimise;
 mod progress;
 mod reduced;
 mod reference;
 mod schema;
+mod shell;
 mod stress;
 mod study;
 mod sweep;
@@ -33,6 +35,9 @@ struct Cli {
     /// Say nothing but results and errors
     #[arg(long, short, global = true)]
     quiet: bool,
+    /// Say also what was reused and what was computed, and how long each took
+    #[arg(long, short, global = true, conflicts_with = "quiet")]
+    verbose: bool,
 }
 
 const EXIT_STATUS: &str = "Exit status: 0 pass, 1 internal error, 2 usage, 3 invalid scene, \
@@ -72,9 +77,22 @@ enum Command {
     #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
     Stress(stress::Arguments),
     /// Tell what is installed, and the command that installs what is missing
+    #[command(after_help = "Example: impactcheck doctor")]
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
+    #[command(after_help = "Example: impactcheck schema > scene.schema.json")]
     Schema,
+    /// Write a valid scene file to start from
+    #[command(after_help = "Example: impactcheck new my-impact && impactcheck reduced my-impact.toml")]
+    New(new::Arguments),
+    /// Print the completions of a shell
+    #[command(
+        after_help = "Example: impactcheck completions bash > ~/.local/share/bash-completion/completions/impactcheck"
+    )]
+    Completions(shell::CompletionArguments),
+    /// Print the manual page, or write one per command
+    #[command(after_help = "Example: impactcheck man --out ~/.local/share/man/man1")]
+    Man(shell::ManArguments),
 }
 
 /// The switch every command has that prints results.
@@ -90,6 +108,7 @@ struct JsonArgument {
 struct Context {
     store: Option<PathBuf>,
     quiet: bool,
+    verbose: bool,
 }
 
 impl Context {
@@ -100,6 +119,13 @@ impl Context {
     /// A line for people, on standard error.
     fn note(&self, text: impl std::fmt::Display) {
         if !self.quiet {
+            eprintln!("{text}");
+        }
+    }
+
+    /// A line for people who want to know everything, on standard error.
+    fn detail(&self, text: impl std::fmt::Display) {
+        if self.verbose {
             eprintln!("{text}");
         }
     }
@@ -116,7 +142,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             return status;
         }
     };
-    let context = Context { store: cli.store, quiet: cli.quiet };
+    let context = Context { store: cli.store, quiet: cli.quiet, verbose: cli.verbose };
     let result = match cli.command {
         Command::Reduced(arguments) => reduced::run(&context, &arguments),
         Command::Reference(arguments) => reference::run(&context, &arguments),
@@ -129,6 +155,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Stress(arguments) => stress::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),
+        Command::New(arguments) => new::run(&context, &arguments),
+        Command::Completions(arguments) => shell::completions(&arguments),
+        Command::Man(arguments) => shell::man(&arguments),
     };
     result.unwrap_or_else(|error| {
         eprintln!("{}", describe(&error));
@@ -151,10 +180,11 @@ fn print_json(document: &impl Serialize) -> Result<()> {
     print(&text)
 }
 
-/// Prints a line on standard output; a reader that has gone away is no error.
+/// Prints a line on standard output, its colours only where they can be seen and are wanted (`NO_COLOR`); a reader that
+/// has gone away is no error.
 fn print(text: &str) -> Result<()> {
     use std::io::{ErrorKind, Write};
-    match writeln!(std::io::stdout(), "{text}") {
+    match writeln!(anstream::stdout(), "{text}") {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::io("writing to", "standard output", e)),
         _ => Ok(()),
     }

@@ -7,6 +7,7 @@ use super::facts::facts;
 use super::format::{model_name, percent, prefixed, significant, with_unit};
 use super::html::{badge, page};
 use super::junit::{failure, integrity_failure};
+use super::terminal::coloured;
 use super::seal_seat_picture::{Arrow, seat_picture};
 use crate::comparison::{SceneComparison, align};
 use crate::error::{Error, Result};
@@ -194,7 +195,7 @@ fn cost(report: &SeatReport) -> Markup {
 pub(super) fn terminal(report: &SeatReport) -> String {
     let comparison = &report.comparison;
     let reference = &comparison.reference.quantities;
-    let mut text = format!("{}: {}\n", comparison.scene, comparison.verdict);
+    let mut text = format!("{}: {}\n", comparison.scene, coloured(comparison.verdict));
     text += &format!(
         "  {:<10}{:>20}{:>22}{:>22}{:>22}  verdict\n",
         "", "direction", "speed, m/s", "sphere peak, N", "actuator peak, N"
@@ -223,7 +224,7 @@ pub(super) fn terminal(report: &SeatReport) -> String {
     };
     text += &line("reference", reference, "");
     for model in &comparison.models {
-        text += &line(&model.model, &model.summary.quantities, &model.verdict.to_string());
+        text += &line(&model.model, &model.summary.quantities, &coloured(model.verdict));
     }
     for check in comparison.integrity.iter().filter(|c| !c.verdict.passed()) {
         text += &format!("  reference: {}\n", integrity_failure(check));

@@ -1,8 +1,21 @@
-//! A short plain table for the terminal.
+//! A short table for the terminal.
 
 use super::Report;
 use super::format::{percent, prefixed, with_unit};
+use crate::comparison::Verdict;
 use crate::impact::PlateQuantities;
+use anstyle::{AnsiColor, Style};
+
+/// Styles; whoever prints takes them away where they can't be seen.
+const YELLOW: Style = AnsiColor::Yellow.on_default();
+const GREEN: Style = AnsiColor::Green.on_default().bold();
+const RED: Style = AnsiColor::Red.on_default().bold();
+
+/// A verdict in its colour.
+pub(super) fn coloured(verdict: Verdict) -> String {
+    let style = if verdict.passed() { GREEN } else { RED };
+    format!("{style}{verdict}{style:#}")
+}
 
 /// The columns: heading, quantity, unit.
 const COLUMNS: [(&str, &str, &str); 5] = [
@@ -20,13 +33,13 @@ pub fn terminal(report: &Report) -> String {
     for scene in &report.scenes {
         let comparison = &scene.comparison;
         let reference = &comparison.reference.quantities;
-        text += &format!("{}: {}\n", comparison.scene, comparison.verdict);
+        text += &format!("{}: {}\n", comparison.scene, coloured(comparison.verdict));
         let headings: String = COLUMNS.iter().map(|(heading, ..)| format!("{heading:>22}")).collect();
         text += &format!("  {:<10}{headings}  verdict\n", "");
         text += &format!("  {:<10}{}\n", "reference", cells(reference, None));
         for model in &comparison.models {
             let row = cells(&model.summary.quantities, Some(reference));
-            text += &format!("  {:<10}{row}  {}\n", model.model, model.verdict);
+            text += &format!("  {:<10}{row}  {}\n", model.model, coloured(model.verdict));
         }
         if let Some(measured) = &comparison.measured {
             text += &format!("  {}\n", super::measured_section::sentence(measured));
@@ -36,7 +49,7 @@ pub fn terminal(report: &Report) -> String {
         }
         for model in &comparison.models {
             for warning in &model.summary.warnings {
-                text += &format!("  warning: {warning}\n");
+                text += &format!("  {YELLOW}warning:{YELLOW:#} {warning}\n");
             }
             for row in model.discrepancies.iter().filter(|d| !d.verdict.passed()) {
                 text += &format!("  {}: {}\n", model.model, super::junit::failure(row));

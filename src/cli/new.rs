@@ -1,0 +1,59 @@
+//! `impactcheck new`: a scene of one's own to start from.
+
+use super::Context;
+use crate::error::{Error, ExitStatus, Result};
+use crate::report;
+use crate::scene::Scene;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Kind of scene.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Kind {
+    /// A body strikes a plate, the plate passes the blow to a body behind it
+    PlateImpact,
+    /// A sphere is launched out of a flexibly mounted conical seat
+    SealSeat,
+}
+
+impl Kind {
+    /// A scene of this kind, whose name is `NAME`.
+    fn starter(self) -> &'static str {
+        match self {
+            Kind::PlateImpact => include_str!("starters/plate-impact.toml"),
+            Kind::SealSeat => include_str!("starters/seal-seat.toml"),
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Name of the scene; the file is NAME.toml
+    name: String,
+    /// What strikes what
+    #[arg(long, value_enum, default_value = "plate-impact")]
+    kind: Kind,
+    /// The file to write instead [default: NAME.toml]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Writes a valid scene file; one that exists stays as it is.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    let file = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.toml", arguments.name)));
+    if file.exists() {
+        return Err(Error::Usage(format!(
+            "{} exists and stays as it is; take another name, or another file with --out",
+            file.display()
+        )));
+    }
+    let text = arguments.kind.starter().replacen("NAME", &arguments.name, 1);
+    // a name that can't be one is refused as it would be in a file
+    Scene::parse(&file.display().to_string(), &text)?;
+    report::write_file(&file, text.as_bytes())?;
+    context.note(format_args!(
+        "{0}: change what you like, then `impactcheck reduced {0}` and, with FEniCSx, `impactcheck compare {0} --compute --out my-report`",
+        file.display()
+    ));
+    Ok(ExitStatus::Pass)
+}

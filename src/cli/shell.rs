@@ -1,0 +1,48 @@
+//! `impactcheck completions` and `impactcheck man`: what shell and manual need to know of the commands.
+
+use super::Cli;
+use crate::error::{Error, ExitStatus, Result};
+use crate::report;
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct CompletionArguments {
+    /// The shell
+    shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManArguments {
+    /// Write a page per command into this folder instead of the program's page to standard output
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Prints the completions of a shell.
+pub fn completions(arguments: &CompletionArguments) -> Result<ExitStatus> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut Cli::command(), "impactcheck", &mut script);
+    super::print(String::from_utf8_lossy(&script).trim_end())?;
+    Ok(ExitStatus::Pass)
+}
+
+/// Prints the manual page, or writes all of them.
+pub fn man(arguments: &ManArguments) -> Result<ExitStatus> {
+    let failed = |e: std::io::Error| Error::Internal(format!("making the manual pages: {e}"));
+    let Some(folder) = &arguments.out else {
+        let mut page = Vec::new();
+        clap_mangen::Man::new(Cli::command()).render(&mut page).map_err(failed)?;
+        super::print(String::from_utf8_lossy(&page).trim_end())?;
+        return Ok(ExitStatus::Pass);
+    };
+    report::check_writable(folder)?;
+    let made = tempfile::tempdir().map_err(failed)?;
+    clap_mangen::generate_to(Cli::command(), made.path()).map_err(failed)?;
+    for page in std::fs::read_dir(made.path()).map_err(failed)? {
+        let page = page.map_err(failed)?;
+        report::write_file(&folder.join(page.file_name()), &std::fs::read(page.path()).map_err(failed)?)?;
+    }
+    Ok(ExitStatus::Pass)
+}
