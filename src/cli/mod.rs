@@ -56,10 +56,10 @@ enum Command {
     Compare(compare::Arguments),
     /// Compare, and let the scene's tolerances decide the exit status
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
+    Gate(gate::Arguments),
     /// Mesh the seat of a seal-seat scene
     #[command(after_help = "Example: impactcheck mesh my-seat.toml --out my-seat.vtu")]
     Mesh(mesh::Arguments),
-    Gate(gate::Arguments),
     /// Compute one of the paper's tables or parameter studies, or a sweep of one's own
     #[command(
         after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
