@@ -66,7 +66,13 @@ fn references(
             Lookup::Found(stored) => found.push(*stored),
             Lookup::Missing | Lookup::Stale { .. } if arguments.compute => {
                 let wish = Wish::default();
-                found.push(super::reference::compute_as(context, scene, arguments.resolution, &store, &wish)?);
+                found.push(super::reference::compute_as(
+                    context,
+                    scene,
+                    arguments.resolution,
+                    &store,
+                    &wish,
+                )?);
             }
             other => problems.push(super::reference::problem(scene, arguments.resolution, &other)),
         }

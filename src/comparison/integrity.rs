@@ -76,7 +76,8 @@ impl Compared for PlateQuantities {
         let (summary, history) = (&outcome.summary, &outcome.history);
         let mut checks = start(setup, history);
         let q = &summary.quantities;
-        let (outer, inner) = ((q.outer_force_peak, q.outer_contact_end), (q.inner_force_peak, q.inner_contact_end));
+        let (outer, inner) =
+            ((q.outer_force_peak, q.outer_contact_end), (q.inner_force_peak, q.inner_contact_end));
         checks.extend(contact("outer", summary.source, &history.time, &history.outer_force, outer));
         checks.extend(contact("inner", summary.source, &history.time, &history.inner_force, inner));
         checks.extend(end(setup, summary, history));

@@ -36,8 +36,8 @@ use crate::measured::Measured;
 use crate::scene::{Model, Scene, Tolerances};
 use budget::QuantityBudget;
 use discrepancy::Scales;
-use serde::ser::{SerializeStruct, Serializer};
 use serde::Serialize;
+use serde::ser::{SerializeStruct, Serializer};
 
 /// The document of `compare` and `gate`. In JSON the scenes of both kinds are one list.
 #[derive(Debug, Clone, PartialEq)]
@@ -242,8 +242,9 @@ fn quantities<Q: Quantities>(
         // `outer_force_peak` belongs to the curve `outer_force`, and so on; a quantity that
         // belongs to none is its own peak.
         let curve = <Q::History as Curves>::NAMES.iter().find(|(curve, _)| quantity.starts_with(curve));
-        let peak =
-            curve.and_then(|(name, _)| reference.history.values(name)).map_or(value(m).abs(), alignment::peak);
+        let peak = curve
+            .and_then(|(name, _)| reference.history.values(name))
+            .map_or(value(m).abs(), alignment::peak);
         Discrepancy::new(
             (quantity, unit),
             (value(c), value(m)),

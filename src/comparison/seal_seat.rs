@@ -60,7 +60,8 @@ fn velocities(setup: &SealSeat, q: &SeatQuantities, history: &SeatHistory) -> Ve
         checks.push(velocity("actuator_velocity_final", found, q.actuator_velocity_final));
     }
     let [fx, fz] = &history.sphere_force_components;
-    let missed = history.sphere_force.iter().zip(fx.iter().zip(fz)).map(|(f, (x, z))| (f - x.hypot(*z)).abs());
+    let missed =
+        history.sphere_force.iter().zip(fx.iter().zip(fz)).map(|(f, (x, z))| (f - x.hypot(*z)).abs());
     let bound = 1e-6 * peak(&history.sphere_force);
     checks.push(Check::new("sphere_force_components", "N", missed.fold(0.0, f64::max), 0.0, bound));
     checks

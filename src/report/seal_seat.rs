@@ -1,7 +1,7 @@
 //! The report of a seal-seat scene: page, row of the index, lines for the terminal, Markdown, curves.
 
 use super::chart::{ChartPanel, Series, chart};
-use super::format::{model_name, percent, significant, with_unit, words, prefixed};
+use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::html::{badge, checks, contradictions, facts, model_section, page};
 use super::junit::{failure, integrity_failure};
 use super::seal_seat_picture::{Arrow, seat_picture};
@@ -54,7 +54,12 @@ fn arrows(report: &SeatReport) -> Vec<Arrow> {
     arrows.push(Arrow { name: "reference".into(), velocity: of(reference), colour: "#1a1a1a", dashes: "" });
     for model in &report.comparison.models {
         let name = format!("model {}", model_name(&model.model, model.summary.modes));
-        arrows.push(Arrow { name, velocity: of(&model.summary.quantities), colour: "#009e73", dashes: "9 4" });
+        arrows.push(Arrow {
+            name,
+            velocity: of(&model.summary.quantities),
+            colour: "#009e73",
+            dashes: "9 4",
+        });
     }
     arrows
 }
@@ -212,7 +217,9 @@ pub(super) fn terminal(report: &SeatReport) -> String {
     let line = |name: &str, q: &SeatQuantities, verdict: &str| {
         let cell = |own: f64, m: f64| match name {
             "reference" => format!("{:>22}", significant(own, 4)),
-            _ => format!("{:>22}", format!("{} ({})", significant(own, 4), percent(Some((own - m) / m.abs())))),
+            _ => {
+                format!("{:>22}", format!("{} ({})", significant(own, 4), percent(Some((own - m) / m.abs()))))
+            }
         };
         let angle = match name {
             "reference" => format!("{:+.2}°", q.sphere_angle.to_degrees()),

@@ -96,18 +96,21 @@ fn seat_body(scene: &SealSeat, scale: &Scale) -> Markup {
     let seat = &scene.seat;
     let (r, t) = (seat.membrane_radius, seat.membrane_thickness);
     let (half, h) = (0.5 * seat.island_length, seat.island_height);
-    let outline =
-        [[-r, 0.0], [r, 0.0], [r, t], [half, t], [half, h], [-half, h], [-half, t], [-r, t]];
+    let outline = [[-r, 0.0], [r, 0.0], [r, t], [half, t], [half, h], [-half, h], [-half, t], [-r, t]];
     let notch = seat.notch.map(|n| {
         let (w, above) = (0.5 * n.width, 1.1 * h);
         [[-w, n.floor], [w, n.floor], [w, above], [-w, above]]
     });
+    let hollows =
+        || [-1.0, 1.0].map(|side| hollow(scene, side).to_vec()).into_iter().chain(notch.map(|n| n.to_vec()));
     html! {
-        polygon points=(scale.points(&outline)) fill="#f0dfb8" stroke="none" {}
-        @for side in [-1.0, 1.0] { polygon points=(scale.points(&hollow(scene, side))) fill="#ffffff" stroke="#9a7f3c" {} }
-        @if let Some(notch) = notch { polygon points=(scale.points(&notch)) fill="#ffffff" stroke="#9a7f3c" {} }
-        // what the hollows' outlines show above the island is taken away again
-        rect x=(scale.x(-r)) width=(format!("{:.2}", 2.0 * r * scale.factor)) y="0" height=(scale.z(h)) fill="#ffffff" {}
+        clipPath id="seat" { polygon points=(scale.points(&outline)) {} }
+        g clip-path="url(#seat)" {
+            polygon points=(scale.points(&outline)) fill="#f0dfb8" stroke="#9a7f3c" stroke-width="3" {}
+            // the edges first: where one hollow runs into another there is none
+            @for hollow in hollows() { polygon points=(scale.points(&hollow)) fill="none" stroke="#9a7f3c" stroke-width="3" {} }
+            @for hollow in hollows() { polygon points=(scale.points(&hollow)) fill="#ffffff" stroke="none" {} }
+        }
     }
 }
 
@@ -152,7 +155,10 @@ fn draw_arrow(arrow: &Arrow, from: [f64; 2], length_per_speed: f64, scale: &Scal
     let direction = arrow.velocity.map(|v| v / speed);
     let length = speed * length_per_speed;
     let at = |along: f64, across: f64| {
-        [from[0] + along * direction[0] + across * direction[1], from[1] + along * direction[1] - across * direction[0]]
+        [
+            from[0] + along * direction[0] + across * direction[1],
+            from[1] + along * direction[1] - across * direction[0],
+        ]
     };
     let head = 0.08 * length;
     html! {

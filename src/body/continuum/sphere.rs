@@ -1,8 +1,8 @@
 //! Free sphere as a continuum: what it gives way beyond its half-space.
 
 use super::assembly::Matrices;
-use super::mesh;
 use super::lanczos::ShiftInvert;
+use super::mesh;
 use super::mirror::{HalfBody, Parity, dot};
 use super::patch::{half_space_flexibility, nodal_forces};
 use super::{MeshOptions, check_patch};

@@ -11,7 +11,8 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// See [`revision`].
-const REVISION: u64 = revision(&SOURCES) ^ revision(&[include_bytes!("body.rs"), include_bytes!("candidates.rs")]);
+const REVISION: u64 =
+    revision(&SOURCES) ^ revision(&[include_bytes!("body.rs"), include_bytes!("candidates.rs")]);
 /// How far from the rim, over the membrane's radius, the corners of a face of the rim may lie; the reference's bound.
 const ON_RIM: f64 = 1e-6;
 /// How far from the plane of symmetry, over the membrane's radius, its nodes may lie.

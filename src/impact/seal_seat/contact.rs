@@ -366,3 +366,69 @@ impl<'a> Contact<'a> {
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nodes on a plane above a ball of radius 10 that rises through it, with a random flexibility.
+    fn nodes(n: usize, random: &mut fastrand::Rng) -> (Nodes, Vec<f64>) {
+        let place = (0..n).map(|_| [2.0 * random.f64() - 1.0, 2.0 * random.f64() - 1.0, 0.0]).collect();
+        let m = 3 * n;
+        let a: Vec<f64> = (0..m * m).map(|_| random.f64() - 0.5).collect();
+        let product = |i: usize, j: usize| (0..m).map(|k| a[i * m + k] * a[j * m + k]).sum::<f64>();
+        let residual: Vec<f64> =
+            (0..m * m).map(|e| product(e / m, e % m) + if e / m == e % m { 0.1 } else { 0.0 }).collect();
+        (Nodes::new(place, vec![0; n], &residual), residual)
+    }
+
+    #[test]
+    fn gaps_are_not_negative_forces_do_not_pull_and_only_closed_gaps_carry_force() {
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut touching = 0;
+        for n in [1, 2, 5, 12, 40] {
+            let (nodes, residual) = nodes(n, &mut random);
+            let mut contact = Contact::new(&nodes);
+            // one sequence of instants: each starts from the last, deeper or shallower
+            for height in [0.0, 0.01, 0.08, 0.06, 0.2, 0.02, -0.5, 0.05] {
+                let modal: Vec<f64> = (0..3 * n).map(|_| 0.02 * (random.f64() - 0.5)).collect();
+                let ball = Ball { centre: [0.0, 0.0, height - 10.0], radius: 10.0 };
+                contact.solve(&modal, &[ball]).expect("solution");
+                let force: Vec<f64> = (0..n).flat_map(|i| contact.force_vector(i)).collect();
+                for i in 0..n {
+                    let at: [f64; 3] = std::array::from_fn(|c| {
+                        let row = 3 * i + c;
+                        let yields: f64 = (0..3 * n).map(|k| residual[row * 3 * n + k] * force[k]).sum();
+                        nodes.place[i][c] + modal[row] + yields - ball.centre[c]
+                    });
+                    let distance = dot(at, at).sqrt();
+                    let (gap, load) = (distance - 10.0, contact.force(i));
+                    assert!(load >= 0.0 && gap >= -1e-7, "{n} nodes: force {load}, gap {gap}");
+                    assert!(load == 0.0 || gap < 1e-7, "{n} nodes: force {load} over a gap of {gap}");
+                    let f: [f64; 3] = std::array::from_fn(|c| force[3 * i + c]);
+                    assert!(dot(f, at) > (1.0 - 1e-6) * load * distance - 1e-12, "the force is not normal");
+                    touching += usize::from(load > 0.0);
+                }
+            }
+        }
+        assert!(touching > 50, "{touching}");
+    }
+
+    #[test]
+    fn a_survey_finds_what_was_not_watched() {
+        let mut random = fastrand::Rng::with_seed(5);
+        let (nodes, _) = nodes(20, &mut random);
+        let mut contact = Contact::new(&nodes);
+        let modal = vec![0.0; 60];
+        let ball = |height: f64| [Ball { centre: [0.0, 0.0, height - 10.0], radius: 10.0 }];
+        contact.solve(&modal, &ball(-0.1)).expect("apart");
+        // none is near: none is watched
+        assert!(!contact.survey(&modal, &ball(-0.1), 1e-3));
+        contact.solve(&modal, &ball(0.1)).expect("solution");
+        assert!(contact.active().is_empty());
+        assert!(contact.survey(&modal, &ball(0.1), 1e-3), "all nodes have been passed through unseen");
+        contact.solve(&modal, &ball(0.1)).expect("solution");
+        assert!(!contact.active().is_empty());
+        assert!(!contact.survey(&modal, &ball(0.1), 1e-3));
+    }
+}

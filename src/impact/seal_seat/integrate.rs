@@ -113,7 +113,10 @@ pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     run.sample();
     while !run.is_over() {
         if run.tally.steps >= MOST_STEPS {
-            return Err(Error::Solver(format!("contact of the seal seat is still possible after {:e} s", run.time())));
+            return Err(Error::Solver(format!(
+                "contact of the seal seat is still possible after {:e} s",
+                run.time()
+            )));
         }
         run.interval()?;
     }
@@ -230,7 +233,8 @@ impl<'a> Running<'a> {
             *impulse += 2.0 * step * force;
         }
         let active = self.workspace.contact.active();
-        self.tally.seat_impulse += step * active.iter().map(|&i| self.workspace.contact.force_vector(i)[2]).sum::<f64>();
+        self.tally.seat_impulse +=
+            step * active.iter().map(|&i| self.workspace.contact.force_vector(i)[2]).sum::<f64>();
     }
 
     fn drift(&mut self, step: f64) {
@@ -326,7 +330,8 @@ impl<'a> Running<'a> {
     fn finish(self) -> Integration {
         let (system, state) = (self.system, &self.state);
         let start = system.actuator_mass * system.speed;
-        let left = system.actuator_mass * state.actuator_velocity + system.sphere_mass * state.sphere_velocity[1];
+        let left =
+            system.actuator_mass * state.actuator_velocity + system.sphere_mass * state.sphere_velocity[1];
         let energy = self.workspace.energy(system, state);
         Integration {
             momentum_residual: (left + self.tally.seat_impulse - start).abs() / start,
@@ -337,5 +342,83 @@ impl<'a> Running<'a> {
             tally: self.tally,
             samples: self.samples,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::contact::{Ball, Nodes};
+    use super::super::{Candidate, Partner};
+    use super::*;
+    use std::f64::consts::PI;
+
+    const MASS: f64 = 2e-3;
+    const SPEED: f64 = 0.5;
+    const FLEXIBILITY: f64 = 1e-6;
+
+    /// An actuator under a node, straight above its tip, that yields by its residual flexibility and `modes`, given by
+    /// (omega, participation along z).
+    fn spring(modes: &[(f64, f64)]) -> System {
+        let residual = [[FLEXIBILITY, 0.0, 0.0], [0.0, FLEXIBILITY, 0.0], [0.0, 0.0, FLEXIBILITY]].concat();
+        let place = [0.0; 3];
+        System {
+            omega: modes.iter().map(|m| m.0).collect(),
+            participation: modes.iter().map(|m| vec![0.0, 0.0, m.1]).collect(),
+            candidates: vec![Candidate {
+                node: 0,
+                place,
+                partner: Partner::Tip(0),
+                offset: 0.0,
+                right_flank: false,
+            }],
+            sphere_mass: 1e-4,
+            actuator_mass: MASS,
+            speed: SPEED,
+            balls: vec![
+                Ball { centre: [0.0, 0.0, 1.0], radius: 1e-3 },
+                Ball { centre: [0.0, 0.0, -3e-3], radius: 3e-3 },
+            ],
+            nodes: Nodes::new(vec![place], vec![1], &residual),
+        }
+    }
+
+    fn run(system: &System, steps: f64, end_time: Option<f64>) -> Integration {
+        let duration = PI * (MASS * FLEXIBILITY).sqrt();
+        integrate(system, &Options { step: duration / steps, end_time, history: false }).expect("run")
+    }
+
+    #[test]
+    fn an_actuator_on_a_spring_is_thrown_back_after_half_a_period() {
+        let (omega, duration) = ((MASS * FLEXIBILITY).sqrt().recip(), PI * (MASS * FLEXIBILITY).sqrt());
+        let result = run(&spring(&[]), 400.3, None);
+        assert!((result.state.actuator_velocity / -SPEED - 1.0).abs() < 1e-4);
+        // the half body's force is doubled
+        assert!((result.tally.force_peak[1] / (2.0 * MASS * SPEED * omega) - 1.0).abs() < 1e-4);
+        assert!((result.tally.contact_end[1] / duration - 1.0).abs() < 1e-3);
+        assert!(result.momentum_residual < 1e-12 && result.energy_residual < 1e-4);
+        assert_eq!(result.state.sphere_velocity, [0.0; 2]);
+    }
+
+    #[test]
+    fn time_integration_is_of_second_order_before_the_release_and_at_least_first_after_it() {
+        let system = spring(&[(4e4, 12.0), (1.1e5, -9.0)]);
+        let duration = PI * (MASS * FLEXIBILITY).sqrt();
+        let error = |end: f64, steps: f64, exact: f64| {
+            (run(&system, steps, Some(end)).state.actuator_velocity - exact).abs()
+        };
+        for (end, least) in [(0.5 * duration, 1.9), (3.0 * duration, 1.0)] {
+            let exact = run(&system, 51200.0, Some(end)).state.actuator_velocity;
+            let errors = [100.0, 400.0, 1600.0].map(|steps| error(end, steps, exact));
+            let observed = (errors[0] / errors[2]).log(16.0);
+            assert!(errors[2] < 1e-4 * SPEED, "{errors:?}");
+            assert!(observed > least, "order {observed} up to {end} s: {errors:?}");
+        }
+    }
+
+    #[test]
+    fn a_step_that_is_too_long_for_contact_shows_in_the_energy() {
+        let coarse = run(&spring(&[(4e4, 12.0)]), 4.0, None).energy_residual;
+        let fine = run(&spring(&[(4e4, 12.0)]), 400.0, None).energy_residual;
+        assert!(coarse > 100.0 * fine, "{coarse} {fine}");
     }
 }

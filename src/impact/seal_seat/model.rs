@@ -84,7 +84,8 @@ impl SeatModel {
         let period = 2.0 * std::f64::consts::PI / (highest * FIRST_STEPS.0);
         let mut warnings = Vec::new();
         if setup.sphere.body == SphereBody::Elastic {
-            warnings.push("the reduced model takes the sphere as rigid, the scene has an elastic one".to_owned());
+            warnings
+                .push("the reduced model takes the sphere as rigid, the scene has an elastic one".to_owned());
         }
         Ok(Self {
             scene: scene.clone(),

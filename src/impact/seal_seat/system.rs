@@ -47,7 +47,8 @@ impl System {
         let [x, z] = scene.ring().sphere_centre;
         let mut balls = vec![Ball { centre: [x, 0.0, z], radius: scene.sphere.radius }];
         let radius = scene.actuator.tip_radius;
-        balls.extend(scene.actuator.tip_positions.iter().map(|&x| Ball { centre: [x, 0.0, -radius], radius }));
+        balls
+            .extend(scene.actuator.tip_positions.iter().map(|&x| Ball { centre: [x, 0.0, -radius], radius }));
         let ball = |candidate: &Candidate| match candidate.partner {
             Partner::Sphere => 0,
             Partner::Tip(tip) => 1 + tip,
