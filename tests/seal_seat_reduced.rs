@@ -229,9 +229,9 @@ fn what_a_seal_seat_has_not_is_refused_in_one_sentence() {
         assert!(error.contains(said), "{arguments:?}: {error}");
     }
     // the mesh of another geometry
-    let text = std::fs::read_to_string(scene)
-        .expect("scene")
-        .replace("\"15 deg\"     # alpha", "\"14 deg\"     # alpha");
+    let own = std::fs::read_to_string(scene).expect("scene");
+    let text = own.replace("tilt               = \"15 deg\"", "tilt               = \"14 deg\"");
+    assert_ne!(text, own);
     let other = folder.path().join("other.toml");
     std::fs::write(&other, text).expect("file");
     let (status, _, error) =

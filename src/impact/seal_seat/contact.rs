@@ -18,6 +18,9 @@ use crate::error::{Error, Result};
 
 /// Largest gap in m, over the radius of the partner, that a closed contact may have.
 const CLOSED: f64 = 1e-9;
+/// Change of a normal in rad that counts as much as a gap of its size times this, over the radius: forces act along the
+/// normals of the last iteration.
+const TURN: f64 = 1e-3;
 /// Newton's method keeps its factor as long as a step shrinks the gaps to this share.
 const CHORD: f64 = 0.05;
 /// Exchanges of all wrong nodes at once without progress before they are exchanged singly.
@@ -237,7 +240,8 @@ impl<'a> Contact<'a> {
         missed
     }
 
-    /// Displacements, normals and gaps of the contact set; its largest gap in magnitude, over the radius.
+    /// Displacements, normals and gaps of the contact set; its largest gap in magnitude over the radius, or turn of a
+    /// normal if that counts more.
     fn evaluate_set(&mut self, modal: &[f64], balls: &[Ball]) -> f64 {
         for a in 0..self.loads.active.len() {
             let i = self.loads.active[a];
@@ -246,8 +250,10 @@ impl<'a> Contact<'a> {
         let mut worst = 0.0f64;
         for a in 0..self.loads.active.len() {
             let i = self.loads.active[a];
+            let before = self.loads.normal[i];
             self.look(i, modal, balls);
-            worst = worst.max(self.gap[i].abs() / balls[self.nodes.ball[i]].radius);
+            let turn = (0..3).map(|c| (self.loads.normal[i][c] - before[c]).abs()).fold(0.0, f64::max);
+            worst = worst.max(self.gap[i].abs() / balls[self.nodes.ball[i]].radius).max(TURN * turn);
         }
         worst
     }
