@@ -17,12 +17,14 @@ use super::cholesky::Cholesky;
 use crate::error::{Error, Result};
 
 /// Largest gap in m, over the radius of the partner, that a closed contact may have.
-const CLOSED: f64 = 1e-9;
+const CLOSED: f64 = 1e-8;
 /// Change of a normal in rad that counts as much as a gap of its size times this, over the radius: forces act along the
 /// normals of the last iteration.
 const TURN: f64 = 1e-3;
 /// Newton's method keeps its factor as long as a step shrinks the gaps to this share.
 const CHORD: f64 = 0.05;
+/// Rows that the factor takes up or loses, beyond a sixteenth of it, before it is rather made anew.
+const UPDATES: usize = 4;
 /// Exchanges of all wrong nodes at once without progress before they are exchanged singly.
 const PATIENCE: u32 = 4;
 /// Most iterations per instant.
@@ -67,6 +69,14 @@ impl Nodes {
     pub fn is_empty(&self) -> bool {
         self.place.is_empty()
     }
+
+    /// Displacement in m of candidate `i` along its normal under a unit force on `j` along its own: n_i^T R_ij n_j.
+    fn compliance(&self, i: usize, j: usize, normal: &[[f64; 3]]) -> f64 {
+        let (r, p, q) = (&self.residual[i * self.len() + j], normal[i], normal[j]);
+        p[0] * (r[0] * q[0] + r[1] * q[1] + r[2] * q[2])
+            + p[1] * (r[3] * q[0] + r[4] * q[1] + r[5] * q[2])
+            + p[2] * (r[6] * q[0] + r[7] * q[1] + r[8] * q[2])
+    }
 }
 
 /// A solution, from which the next one starts.
@@ -92,9 +102,11 @@ pub struct Contact<'a> {
     gap: Vec<f64>,
     /// Nodes on the wrong side: in contact with a tensile force, or out of contact and too deep. Shape (n).
     wrong: Vec<bool>,
-    /// Factor of G on `factored`, the contact set it was made for.
+    /// Factor of G on the nodes `factored`, in this order.
     factor: Cholesky,
     factored: Vec<usize>,
+    /// Normals that the factor's rows were made with. Shape (n).
+    factor_normal: Vec<[f64; 3]>,
     previous: Vec<usize>,
     step: Vec<f64>,
     /// What it has cost so far.
@@ -110,8 +122,8 @@ pub struct Work {
     pub iterations: u64,
     /// Factorisations.
     pub factorisations: u64,
-    /// Nodes in contact, summed over the factorisations.
-    pub factored: u64,
+    /// Nodes in contact, summed over the Newton steps.
+    pub loaded: u64,
 }
 
 impl<'a> Contact<'a> {
@@ -131,6 +143,7 @@ impl<'a> Contact<'a> {
             wrong: vec![false; n],
             factor: Cholesky::with_capacity(n),
             factored: Vec::with_capacity(n),
+            factor_normal: vec![[0.0; 3]; n],
             previous: Vec::with_capacity(n),
             step: Vec::with_capacity(n),
             work: Work::default(),
@@ -168,6 +181,10 @@ impl<'a> Contact<'a> {
         self.loads.active.clone_from(&kept.active);
         self.loads.force.clone_from(&kept.force);
         self.loads.normal.clone_from(&kept.normal);
+        for a in 0..self.loads.active.len() {
+            let i = self.loads.active[a];
+            self.yielding[i] = self.displaced_by_residual(i);
+        }
     }
 
     /// Finds the forces for candidates displaced by `modal` in m (shape (3 n)) without the residual's part.
@@ -177,13 +194,12 @@ impl<'a> Contact<'a> {
     pub fn solve(&mut self, modal: &[f64], balls: &[Ball]) -> Result<()> {
         self.work.solutions += 1;
         let (mut fewest, mut patience, mut last) = (usize::MAX, PATIENCE, f64::INFINITY);
-        for _ in 0..MOST {
-            let worst = self.evaluate_set(modal, balls);
-            let closed = worst <= CLOSED;
+        for iteration in 0..MOST {
+            // the last instant's forces still yield what they did
+            let worst = self.evaluate_set(modal, balls, iteration > 0);
+            let closed = self.loads.active.is_empty() || (worst <= CLOSED && iteration > 0);
             if !closed {
-                if self.factored != self.loads.active || worst > CHORD * last {
-                    self.factorise()?;
-                }
+                self.fit(worst > CHORD * last)?;
                 last = worst;
                 self.correct();
             }
@@ -241,9 +257,9 @@ impl<'a> Contact<'a> {
     }
 
     /// Displacements, normals and gaps of the contact set; its largest gap in magnitude over the radius, or turn of a
-    /// normal if that counts more.
-    fn evaluate_set(&mut self, modal: &[f64], balls: &[Ball]) -> f64 {
-        for a in 0..self.loads.active.len() {
+    /// normal if that counts more. `yielding` = the forces have changed since.
+    fn evaluate_set(&mut self, modal: &[f64], balls: &[Ball], yielding: bool) -> f64 {
+        for a in 0..if yielding { self.loads.active.len() } else { 0 } {
             let i = self.loads.active[a];
             self.yielding[i] = self.displaced_by_residual(i);
         }
@@ -282,20 +298,49 @@ impl<'a> Contact<'a> {
         u
     }
 
+    /// Makes the factor that of the contact set: anew if `anew` or much has changed, else by adding and taking rows. Rows that
+    /// stay keep the normals they were made with, which is what the method's chord is.
+    fn fit(&mut self, anew: bool) -> Result<()> {
+        self.wrong.fill(false);
+        for &i in &self.loads.active {
+            self.wrong[i] = true;
+        }
+        let gone = self.factored.iter().filter(|&&i| !self.wrong[i]).count();
+        let new = self.loads.active.len() + gone - self.factored.len();
+        if anew || gone + new > UPDATES + self.factored.len() / 16 {
+            return self.factorise();
+        }
+        for k in (0..self.factored.len()).rev() {
+            if !self.wrong[self.factored[k]] {
+                self.factored.remove(k);
+                if !self.factor.remove(k) {
+                    return self.factorise();
+                }
+            }
+        }
+        self.factored.iter().for_each(|&i| self.wrong[i] = false);
+        for a in 0..self.loads.active.len() {
+            let i = self.loads.active[a];
+            if self.wrong[i] {
+                self.factored.push(i);
+                self.factor_normal[i] = self.loads.normal[i];
+                let (factored, normal, nodes) = (&self.factored, &self.factor_normal, self.nodes);
+                if !self.factor.append(|b| nodes.compliance(i, factored[b], normal)) {
+                    return self.factorise();
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn factorise(&mut self) -> Result<()> {
-        let n = self.nodes.len();
         self.factored.clone_from(&self.loads.active);
         self.work.factorisations += 1;
-        self.work.factored += self.factored.len() as u64;
-        let (active, normal, residual) = (&self.factored, &self.loads.normal, &self.nodes.residual);
-        let fine = self.factor.factorise(active.len(), |a, b| {
-            let (i, j) = (active[a], active[b]);
-            let (r, p, q) = (&residual[i * n + j], normal[i], normal[j]);
-            p[0] * (r[0] * q[0] + r[1] * q[1] + r[2] * q[2])
-                + p[1] * (r[3] * q[0] + r[4] * q[1] + r[5] * q[2])
-                + p[2] * (r[6] * q[0] + r[7] * q[1] + r[8] * q[2])
-        });
-        if fine {
+        for &i in &self.factored {
+            self.factor_normal[i] = self.loads.normal[i];
+        }
+        let (active, normal, nodes) = (&self.factored, &self.factor_normal, self.nodes);
+        if self.factor.factorise(active.len(), |a, b| nodes.compliance(active[a], active[b], normal)) {
             return Ok(());
         }
         self.factored.clear();
@@ -307,10 +352,11 @@ impl<'a> Contact<'a> {
     /// Newton step on the contact set.
     fn correct(&mut self) {
         self.work.iterations += 1;
+        self.work.loaded += self.factored.len() as u64;
         self.step.clear();
-        self.step.extend(self.loads.active.iter().map(|&i| -self.gap[i]));
+        self.step.extend(self.factored.iter().map(|&i| -self.gap[i]));
         self.factor.solve(&mut self.step);
-        for (&i, step) in self.loads.active.iter().zip(&self.step) {
+        for (&i, step) in self.factored.iter().zip(&self.step) {
             self.loads.force[i] += step;
         }
     }

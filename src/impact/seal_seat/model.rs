@@ -16,7 +16,7 @@ pub const DEFAULT_MODES: usize = 16;
 /// Relative error of the sphere's velocity from the time integration when the caller names none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 /// Steps tried first: per period of the highest mode, and over the actuator's contact if the seat were a heavy half-space.
-const FIRST_STEPS: (f64, f64) = (8.0, 100.0);
+const FIRST_STEPS: (f64, f64) = (6.0, 60.0);
 /// Halvings of the step before the tolerance is given up.
 const HALVINGS: u32 = 12;
 /// Widenings of the zones of contact candidates before the mesh is given up.
@@ -231,5 +231,42 @@ fn history(result: &Integration) -> SeatHistory {
         actuator_displacement: curve(&|s| s.actuator),
         actuator_velocity: curve(&|s| s.actuator_velocity),
         actuator_force: curve(&|s| s.actuator_force),
+    }
+}
+
+#[cfg(test)]
+mod scratch {
+    use super::*;
+    #[test]
+    fn cost() {
+        for (f, m) in [
+            ("initial", "/tmp/seat/fine.vtu"),
+            ("initial", "meshes/seal-seat-initial.vtu"),
+            ("improved", "meshes/seal-seat-improved.vtu"),
+        ] {
+            let scene = Scene::read(format!("scenes/examples/seal-seat-{f}.toml")).unwrap();
+            let model = SeatModel::new(
+                &scene,
+                Model::C,
+                None,
+                &SeatMesh::open(std::path::Path::new(m)).unwrap(),
+                &Cache::at("/tmp/seat/cache2"),
+            )
+            .unwrap();
+            for _ in 0..3 {
+                let t = Instant::now();
+                let (r, step) = model.converged(1e-3).unwrap();
+                eprintln!(
+                    "{f} candidates {} setup {:.2} run {:?} step {step:e} steps {} {:?} v {:?} F {:?}",
+                    model.system.candidates.len(),
+                    model.setup_seconds,
+                    t.elapsed(),
+                    r.tally.steps,
+                    r.work,
+                    r.state.sphere_velocity,
+                    r.tally.force_peak
+                );
+            }
+        }
     }
 }
