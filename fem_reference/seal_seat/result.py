@@ -39,7 +39,7 @@ from .solve import (
     sampling,
 )
 
-RATIO = 0.88
+RATIO = 0.8
 """Elements of neighbouring meshes, in every direction."""
 MESHES = 5
 BAND_REACH = 0.02
