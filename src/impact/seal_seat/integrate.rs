@@ -12,8 +12,8 @@ use crate::error::{Error, Result};
 const MOST_STEPS: u64 = 2_000_000;
 /// Steps between two surveys of all candidates, and between two looks whether contact is still possible.
 const INTERVAL: u64 = 8;
-/// Gap below which an open candidate is watched until the next survey, over the actuator's way in between. Should a
-/// candidate be missed, the steps since the last survey are done again with twice the margin.
+/// Gap below which an open candidate is watched until the next survey at least, over the actuator's way in between. Should
+/// one be missed, the steps since the last survey are done again with more.
 const MARGIN: f64 = 0.05;
 
 /// Settings of a run.
@@ -109,6 +109,7 @@ impl Rotation {
 /// [`Error::Solver`] if the contact forces do not converge, or contact does not end.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     let mut run = Running::new(system, options);
+    run.workspace.survey(system, &run.state, run.margin());
     run.workspace.forces(system, &run.state, &mut run.forces)?;
     run.sample();
     while !run.is_over() {
@@ -133,8 +134,6 @@ struct Running<'a> {
     tally: Tally,
     samples: Vec<Sample>,
     start_energy: f64,
-    /// Present value of [`MARGIN`].
-    margin: f64,
     kept: Kept,
 }
 
@@ -159,7 +158,6 @@ impl<'a> Running<'a> {
             forces: Forces::default(),
             tally: Tally::default(),
             samples: Vec::new(),
-            margin: MARGIN,
             kept: Kept {
                 state: state.clone(),
                 forces: Forces::default(),
@@ -181,17 +179,21 @@ impl<'a> Running<'a> {
         let left = self.options.end_time.map(|end| ((end - self.time()) / self.options.step).round() as u64);
         let steps = left.map_or(INTERVAL, |left| left.clamp(1, INTERVAL));
         loop {
-            let watch = self.margin * self.system.speed * self.options.step * INTERVAL as f64;
-            self.workspace.survey(self.system, &self.state, watch);
             for _ in 0..steps {
                 self.step()?;
             }
-            if !self.workspace.survey(self.system, &self.state, watch) {
+            let survey = self.workspace.survey(self.system, &self.state, self.margin());
+            if !survey.missed {
                 return Ok(());
             }
-            self.margin *= 2.0;
             self.go_back();
+            self.workspace.survey(self.system, &self.state, self.margin().max(2.0 * survey.needed));
         }
+    }
+
+    /// Gap in m below which an open candidate is watched at least.
+    fn margin(&self) -> f64 {
+        MARGIN * self.system.speed * self.options.step * INTERVAL as f64
     }
 
     fn keep(&mut self) {
