@@ -172,7 +172,7 @@ fn numbers_of_a_seal_seat_can_be_varied() {
 fn what_knows_plates_only_refuses_a_seal_seat() {
     let scene = parse(VALID);
     let error = impactcheck::impact::reduced::Reduced::new(&scene, impactcheck::scene::Model::B, None);
-    let error = error.err().expect("refused");
+    let Err(error) = error else { panic!("accepted") };
     assert_eq!(error.exit_status(), ExitStatus::InvalidScene);
     let said = error.to_string();
     assert!(said.contains("`seal-seat`") && said.contains("`plate-impact`"), "{said}");

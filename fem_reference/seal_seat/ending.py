@@ -9,8 +9,10 @@ import numpy as np
 from ..mesh import Floats
 from ..solid.ending import no_further_contact
 from ..solid.loop import Energies, Loop
+from ..solid.model import nodal_areas
 from ..solid.spectrum import conjugate_gradients, free_components
-from .model import ACTUATOR, LEFT, RIGHT, SPHERE, Patch, SeatModel
+from .model import ELASTIC_SPHERE, LEFT, RIGHT, SEAT, Patch, SeatModel
+from .motion import sphere_motion
 from .scene import SeatScene
 
 
@@ -24,7 +26,36 @@ def flexibility(loop: Loop, patch: Patch) -> float:
     load = np.zeros((loop.all_masses.size, 3))
     load[patch.nodes] = (weights / weights.sum())[:, None] * patch.normals
     force = loop.own(load)
-    return loop.dot(force, conjugate_gradients(loop, force, free_components(loop, 0)))
+    return loop.dot(force, conjugate_gradients(loop, force, free_components(loop, SEAT)))
+
+
+def relieved_flexibility(loop: Loop, load: Floats) -> float:
+    """Flexibility of the free half sphere under a load (N, 3), rigid motion apart, m/N.
+
+    Inertia relief: the rigid motions in the plane of symmetry (along x and z, about y) are taken
+    out of load and displacement.
+    """
+    free = free_components(loop, ELASTIC_SPHERE)
+    mass = np.repeat(loop.mass, 3)
+    points = np.concatenate([body.mesh.points for body in loop.model.elastic])
+    points = points - loop.model.elastic[ELASTIC_SPHERE].mesh.points.mean(axis=0)
+    x, z = points[:, 0], points[:, 2]
+    zero, one = np.zeros_like(x), np.ones_like(x)
+    rigid: list[Floats] = []
+    for motion in ((one, zero, zero), (zero, zero, one), (z, zero, -x)):
+        vector = loop.own(np.stack(motion, axis=1)) * free
+        for before in rigid:
+            vector -= before * loop.dot(before, mass * vector)
+        rigid.append(vector / math.sqrt(loop.dot(vector, mass * vector)))
+
+    def balanced(force: Floats) -> Floats:
+        for motion in rigid:
+            force = force - mass * motion * loop.dot(motion, force)
+        return force
+
+    relieved = balanced(loop.own(load) * free)
+    x_static = conjugate_gradients(loop, relieved, free, balanced, tolerance=1e-4)
+    return loop.dot(relieved, x_static)
 
 
 class Ending:
@@ -39,6 +70,17 @@ class Ending:
         self.ring_flexibility = max(flexibility(loop, seat.patches[k]) for k in (LEFT, RIGHT))
         self.tip_flexibility = max(flexibility(loop, seat.patches[k]) for k in seat.tips)
 
+        self.sphere_flexibility = 0.0
+        if seat.sphere_facets is not None:
+            mesh = loop.model.elastic[ELASTIC_SPHERE].mesh
+            areas = nodal_areas(mesh, seat.sphere_facets)
+            nodes = np.flatnonzero(areas > 0.0)
+            weights = areas[nodes] / areas[nodes].sum()
+            load = np.zeros((loop.all_masses.size, 3))
+            first = int(loop.model.first[ELASTIC_SPHERE])
+            load[first + nodes] = weights[:, None] * np.array(ring.axis)
+            self.sphere_flexibility = relieved_flexibility(loop, load)
+
     def _clear_of_cone(self, motion: Floats) -> float:
         """Least clearance (or its rate) over the cone after a motion (x, z) of the sphere.
 
@@ -51,15 +93,19 @@ class Ending:
         problem = self.loop.problem
         if any(any(contact.force) for contact in problem.contacts):
             return False
-        sphere, actuator = problem.rigids[SPHERE], problem.rigids[ACTUATOR]
-        energy = energies.elastic[0]
+        actuator = problem.rigids[self.seat.actuator]
+        place, speed = sphere_motion(self.loop, self.seat)
+        energy = energies.elastic[SEAT]
+        of_sphere = 0.0
+        if self.seat.sphere_facets is not None:
+            of_sphere = energies.elastic[ELASTIC_SPHERE] - energies.rigid_motion[ELASTIC_SPHERE]
         return no_further_contact(
-            clearance=self._clear_of_cone(np.array([sphere.u[0], sphere.u[2]])),
-            opening_speed=self._clear_of_cone(np.array([sphere.v[0], sphere.v[2]])),
+            clearance=self._clear_of_cone(place[[0, 2]]),
+            opening_speed=self._clear_of_cone(speed[[0, 2]]),
             plate_energy=energy,
             plate_flexibility=self.ring_flexibility,
-            sphere_energy=0.0,
-            sphere_flexibility=0.0,
+            sphere_energy=of_sphere,
+            sphere_flexibility=self.sphere_flexibility,
         ) and no_further_contact(
             clearance=-actuator.u[2],
             opening_speed=-actuator.v[2],

@@ -28,10 +28,22 @@ SLOPE = 0.6
 """Growth of the element size per distance, at factor 1."""
 TIP_ELEMENT = 1.6
 """Element size under the tips over that at the ring."""
+SPHERE_ELEMENT = 1.5
+"""Element size of an elastic sphere at the ring over that of the seat."""
 THROUGH_MEMBRANE = 1.0
 """Least number of elements through the membrane; quadratic ones bend well with one."""
 THROUGH_ISLAND = 2.5
 """Least number of elements over the island's height."""
+
+
+def _ring_distance(ring: Ring) -> str:
+    """The distance from the ring for gmsh's MathEval."""
+    (cx, _, cz), (nx, _, nz) = ring.sphere_centre, ring.axis
+    x, z = f"(x-({cx!r}))", f"(z-({cz!r}))"
+    s = f"({x}*({nx!r})+{z}*({nz!r}))"
+    rho = f"Sqrt(Max(0,{x}*{x}+y*y+{z}*{z}-{s}*{s}))"
+    across, along = f"({rho}-{ring.radius!r})", f"({s}-({ring.offset!r}))"
+    return f"Sqrt({across}*{across}+{along}*{along})"
 
 
 @dataclass(frozen=True)
@@ -54,12 +66,7 @@ class SeatSize:
 
     def expression(self) -> str:
         """For gmsh's MathEval."""
-        (cx, _, cz), (nx, _, nz) = self.ring.sphere_centre, self.ring.axis
-        x, z = f"(x-({cx!r}))", f"(z-({cz!r}))"
-        s = f"({x}*({nx!r})+{z}*({nz!r}))"
-        rho = f"Sqrt(Max(0,{x}*{x}+y*y+{z}*{z}-{s}*{s}))"
-        across, along = f"({rho}-{self.ring.radius!r})", f"({s}-({self.ring.offset!r}))"
-        size = f"{self.at_ring!r}+{self.slope!r}*Sqrt({across}*{across}+{along}*{along})"
+        size = f"{self.at_ring!r}+{self.slope!r}*{_ring_distance(self.ring)}"
         for tip in self.tips:
             away = f"Sqrt((x-({tip!r}))*(x-({tip!r}))+y*y+z*z)"
             near = f"{self.at_tips!r}+{self.slope!r}*Max(0,{away}-{self.tip_zone!r})"
@@ -153,6 +160,48 @@ def cad_volume(scene: SeatScene) -> float:
         return float(sum(gmsh.model.occ.getMass(3, tag) for _, tag in gmsh.model.getEntities(3)))
     finally:
         gmsh.finalize()
+
+
+@dataclass(frozen=True)
+class RingSize:
+    """Element size min(largest, least + slope * d), d the distance from the ring, m."""
+
+    ring: Ring
+    least: float
+    slope: float
+    largest: float
+
+    def expression(self) -> str:
+        """For gmsh's MathEval."""
+        return f"Min({self.largest!r},{self.least!r}+{self.slope!r}*{_ring_distance(self.ring)})"
+
+
+def sphere_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
+    """Half of the sphere in its seat, finest along the ring; its volume is exact.
+
+    Raises:
+        SolverError: gmsh failed, or an element is inverted or degenerate.
+    """
+    ring, radius = scene.ring(), scene.sphere_radius
+    x, y, z = ring.sphere_centre
+
+    def add() -> None:
+        half = 0.5 * math.pi
+        tag = gmsh.model.occ.addSphere(x, y, z, radius, -1, -half, half, math.pi)
+        # gmsh's half sphere begins at the plane y = 0 on the side of +x and turns towards +y.
+        if gmsh.model.occ.getCenterOfMass(3, tag)[1] < 0.0:
+            raise SolverError("gmsh made the half sphere on the wrong side")
+
+    least = SPHERE_ELEMENT * ring.radius / scene.elements_per_ring_radius / factor
+    size = RingSize(ring, least, SLOPE / factor, 0.5 * radius / factor)
+    points, corners = generate("sphere", add, size)
+    points[np.abs(points[:, 1]) < 1e-9 * radius, 1] = 0.0
+    volume = TetMesh("sphere", points, corners).volume()
+    centre = np.array([x, y, z])
+    points = centre + (points - centre) * math.cbrt(2.0 / 3.0 * math.pi * radius**3 / volume)
+    mesh = tetrahedra("sphere", points, corners, scene.element_order)
+    check_elements(mesh)
+    return mesh
 
 
 def seat_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:

@@ -1,8 +1,8 @@
-"""The seal-seat scene as a three-dimensional model: half of it, sphere and actuator rigid."""
+"""The seal-seat scene as a three-dimensional model: half of it, actuator rigid, sphere either."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,14 +10,17 @@ from ..errors import SolverError
 from ..mesh import Floats, Ints
 from ..solid.mesh import TetMesh, surface
 from ..solid.model import (
+    Contact,
     ElasticBody,
     Model,
     RigidBody,
     SphereContact,
+    SurfaceContact,
     guided,
     nodal_areas,
     symmetry_plane,
 )
+from .elastic_sphere import sphere_pairs, touching_facets
 from .scene import Ring, SeatScene
 
 FRACTION = 0.5
@@ -28,8 +31,8 @@ RING_REACH = 0.4
 While the sphere is launched it slides up the cone's flanks by some hundredths of its radius."""
 TIP_REACH = 0.25
 """The same under a tip, over the tip's radius."""
-SPHERE, ACTUATOR = 0, 1
-"""Numbers of the rigid bodies."""
+SEAT, ELASTIC_SPHERE = 0, 1
+"""Numbers of the elastic bodies."""
 LEFT, RIGHT = 0, 1
 """Numbers of the contacts of the cone's flanks with the sphere; the tips' follow."""
 
@@ -56,11 +59,20 @@ class SeatModel:
     model: Model
     patches: tuple[Patch, ...]
     """One per contact."""
+    places: tuple[Floats, ...] = ()
+    """(n, 3) exact places of each flank's candidates, m."""
+    sphere_facets: Ints | None = None
+    """Facets of an elastic sphere that can touch; None: the sphere is rigid."""
 
     @property
     def mesh(self) -> TetMesh:
         """Of the seat."""
         return self.model.elastic[0].mesh
+
+    @property
+    def actuator(self) -> int:
+        """Number of the rigid body."""
+        return len(self.model.rigid) - 1
 
     @property
     def tips(self) -> range:
@@ -128,8 +140,8 @@ def _tip_patch(scene: SeatScene, mesh: TetMesh, areas: Floats, x: float) -> Patc
     return Patch(nodes, areas[nodes], normals, reach, distance[nodes])
 
 
-def seat_model(scene: SeatScene, mesh: TetMesh) -> SeatModel:
-    """Bodies, supports and contacts on a mesh of the half seat.
+def seat_model(scene: SeatScene, mesh: TetMesh, sphere_mesh: TetMesh | None = None) -> SeatModel:
+    """Bodies, supports and contacts on a mesh of the half seat, and of the sphere if it is elastic.
 
     Raises:
         SolverError: the mesh is not one of this scene.
@@ -142,34 +154,53 @@ def seat_model(scene: SeatScene, mesh: TetMesh) -> SeatModel:
     under = facets[np.all(mesh.points[facets][:, :, 2] == 0.0, axis=1)]
     areas = nodal_areas(mesh, under)
     tips = [_tip_patch(scene, mesh, areas, x) for x in scene.actuator.tip_positions]
-    sphere = RigidBody(
-        "sphere", FRACTION * scene.sphere_mass, guided((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
-    )
     actuator = RigidBody(
         "actuator",
         FRACTION * scene.actuator.mass,
         guided((0.0, 0.0, 1.0)),
         (0.0, 0.0, scene.actuator.speed),
     )
-    contacts = [
-        SphereContact(
-            name,
-            0,
-            patch.nodes,
-            SPHERE,
-            scene.ring().sphere_centre,
-            scene.sphere_radius,
-            places[patch.nodes],
-        )
-        for name, patch in (("left flank", left), ("right flank", right))
-    ]
+    flanks = (("left flank", left), ("right flank", right))
+    elastic = [ElasticBody(mesh, scene.seat.material, fixed)]
+    rigid = [actuator]
+    contacts: list[Contact] = []
+    sphere_facets = None
+    if sphere_mesh is None:
+        in_plane = guided((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+        rigid.insert(0, RigidBody("sphere", FRACTION * scene.sphere_mass, in_plane))
+        for name, patch in flanks:
+            centre, radius = scene.ring().sphere_centre, scene.sphere_radius
+            exact = places[patch.nodes]
+            contacts.append(SphereContact(name, SEAT, patch.nodes, 0, centre, radius, exact))
+    else:
+        # The mass is the scene's, whatever the material's density.
+        density = FRACTION * scene.sphere_mass / sphere_mesh.volume()
+        material = replace(scene.sphere_material, density=density)
+        elastic.append(ElasticBody(sphere_mesh, material, symmetry_plane(sphere_mesh, 1)))
+        sphere_facets = touching_facets(scene, sphere_mesh)
+        still = np.zeros_like(sphere_mesh.points)
+        for name, patch in flanks:
+            pairs = sphere_pairs(scene, sphere_mesh, sphere_facets, places[patch.nodes], still)
+            contacts.append(
+                SurfaceContact(
+                    name,
+                    SEAT,
+                    patch.nodes,
+                    ELASTIC_SPHERE,
+                    pairs.facets,
+                    pairs.weights,
+                    pairs.normals,
+                    pairs.gaps,
+                    np.unique(sphere_facets),
+                )
+            )
     radius = scene.actuator.tip_radius
     contacts += [
-        SphereContact(f"tip {number}", 0, patch.nodes, ACTUATOR, (x, 0.0, -radius), radius)
+        SphereContact(f"tip {number}", SEAT, patch.nodes, len(rigid) - 1, (x, 0.0, -radius), radius)
         for number, (x, patch) in enumerate(
             zip(scene.actuator.tip_positions, tips, strict=True), start=1
         )
     ]
-    body = ElasticBody(mesh, scene.seat.material, fixed)
-    model = Model((body,), (sphere, actuator), tuple(contacts))
-    return SeatModel(model, (left, right, *tips))
+    model = Model(tuple(elastic), tuple(rigid), tuple(contacts))
+    exact_places = (places[left.nodes], places[right.nodes])
+    return SeatModel(model, (left, right, *tips), exact_places, sphere_facets)

@@ -19,7 +19,8 @@ from ..solid.fields import Frames
 from ..solid.loop import Energies, Loop
 from ..solid.spectrum import critical_time_step
 from .ending import Ending
-from .model import ACTUATOR, FRACTION, LEFT, RIGHT, SPHERE, SeatModel
+from .model import FRACTION, LEFT, RIGHT, SEAT, SeatModel
+from .motion import pair_again, sphere_motion
 from .scene import SeatScene
 
 PEAK_WINDOW_SAMPLES = 2
@@ -131,7 +132,7 @@ def integrate(
         for _ in range(min(CHUNK_SAMPLES, wanted - len(rows))):
             if frames is not None:
                 frames(len(rows), loop)
-            rows.append(_sample(loop, seat, stride))
+            rows.append(_sample(loop, seat, scene, stride))
         seconds += time.perf_counter() - chunk_started
         energies = loop.energies()
         if not energies.total <= 10.0 * initial:
@@ -152,18 +153,21 @@ def integrate(
                 f"a further contact is still possible at {len(rows) * interval:.4g} s; "
                 "set run.end_time"
             )
-    rows.append(_sample(loop, seat, 1))
+    rows.append(_sample(loop, seat, scene, 1))
     _require_inside(loop, seat)
     return _result(loop, seat, scene, np.array(rows), interval, critical, seconds)
 
 
-def _sample(loop: Loop, seat: SeatModel, stride: int) -> Floats:
+def _sample(loop: Loop, seat: SeatModel, scene: SeatScene, stride: int) -> Floats:
     """Advance by ``stride`` steps; the row of the first step, see `COLUMNS`."""
-    sphere, actuator = loop.problem.rigids[SPHERE], loop.problem.rigids[ACTUATOR]
-    places = np.array([sphere.u[0], sphere.u[2], actuator.u[2]])
-    before = np.array([sphere.v[0], sphere.v[2], actuator.v[2]])
+    pair_again(loop, seat, scene)
+    actuator = loop.problem.rigids[seat.actuator]
+    place, speed = sphere_motion(loop, seat)
+    places = np.array([place[0], place[2], actuator.u[2]])
+    before = np.array([speed[0], speed[2], actuator.v[2]])
     loop.advance(1)
-    speeds = 0.5 * (before + np.array([sphere.v[0], sphere.v[2], actuator.v[2]]))
+    _, speed = sphere_motion(loop, seat)
+    speeds = 0.5 * (before + np.array([speed[0], speed[2], actuator.v[2]]))
     # The multiplier of a step acts half a step before and after its instant.
     half = 0.5 * loop.dt
     flanks, tips = (
@@ -232,13 +236,14 @@ def momentum_misses(loop: Loop, seat: SeatModel, scene: SeatScene) -> list[float
     All bodies against supports and guides along x and z; sphere and actuator against contacts.
     """
     problem = loop.problem
-    sphere, actuator = problem.rigids[SPHERE], problem.rigids[ACTUATOR]
+    actuator = problem.rigids[seat.actuator]
     start = FRACTION * scene.actuator.mass * scene.actuator.speed
-    momenta = loop.momenta()[0]
+    momenta = loop.momenta()[SEAT]
+    _, speed = sphere_motion(loop, seat)
     misses = []
     for axis in (0, 2):
         of_actuator = actuator.mass * actuator.v[axis]
-        of_sphere = sphere.mass * sphere.v[axis]
+        of_sphere = FRACTION * scene.sphere_mass * speed[axis]
         total = momenta[axis] + of_sphere + of_actuator - (start if axis == 2 else 0.0)
         misses.append(total - problem.state.reaction[axis])
         flanks = sum(problem.contacts[k].impulse[axis] for k in (LEFT, RIGHT))
@@ -260,7 +265,8 @@ def _result(
     problem = loop.problem
     energies: Energies = loop.energies()
     work = sum(contact.work for contact in problem.contacts)
-    sphere, actuator = problem.rigids[SPHERE], problem.rigids[ACTUATOR]
+    _, speed = sphere_motion(loop, seat)
+    actuator = problem.rigids[seat.actuator]
     initial = FRACTION * scene.initial_energy
     momentum = FRACTION * scene.actuator.mass * scene.actuator.speed
     flanks = tuple(problem.contacts[k].normal_impulse / FRACTION for k in (LEFT, RIGHT))
@@ -271,7 +277,7 @@ def _result(
         critical_time_step=critical,
         steps=problem.state.step,
         loop_seconds=seconds,
-        sphere_velocity=(sphere.v[0], sphere.v[2]),
+        sphere_velocity=(float(speed[0]), float(speed[2])),
         actuator_velocity=actuator.v[2],
         sphere_force_peak=peak(rows[:, 4:6], interval),
         actuator_force_peak=peak(rows[:, 8:], interval),

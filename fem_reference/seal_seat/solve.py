@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import SceneError
 from ..mesh import Floats
 from ..output import SAMPLES
 from ..solid.checkpoint import Checkpoint
@@ -20,7 +19,7 @@ from ..solid.loop import Loop, make_loop
 from ..solid.memory import memory_needed, require_memory
 from ..solid.solve import Settings
 from ..solid.spectrum import first_frequency
-from .meshing import seat_mesh
+from .meshing import seat_mesh, sphere_mesh
 from .model import SeatModel, seat_model
 from .run import SeatRun, integrate
 from .scene import SeatScene
@@ -78,8 +77,9 @@ def _identity(scene: SeatScene, seat: SeatModel, courant: float) -> str:
     digest = hashlib.sha256()
     settings = [REVISION, scene.raw, scene.end_time, courant]
     digest.update(json.dumps(settings, sort_keys=True).encode())
-    digest.update(np.round(seat.mesh.points, 15).tobytes())
-    digest.update(seat.mesh.cells.tobytes())
+    for body in seat.model.elastic:
+        digest.update(np.round(body.mesh.points, 15).tobytes())
+        digest.update(body.mesh.cells.tobytes())
     return digest.hexdigest()
 
 
@@ -92,11 +92,12 @@ def compute(
         SceneError: the scene is outside the method.
         SolverError: meshing or the run failed, or there is too little memory.
     """
-    if scene.sphere_elastic:
-        raise SceneError("sphere.body is 'elastic'; this solver supports 'rigid' only")
     report("mesh", 0.0, "meshing")
     # gmsh runs in one process; the others wait.
-    made = seat_model(scene, seat_mesh(scene, factor)) if comm.rank == 0 else None
+    made = None
+    if comm.rank == 0:
+        sphere = sphere_mesh(scene, factor) if scene.sphere_elastic else None
+        made = seat_model(scene, seat_mesh(scene, factor), sphere)
     seat: SeatModel = comm.bcast(made)
     nodes = int(seat.model.first[-1])
     report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
@@ -130,7 +131,8 @@ def seat_frequency(loop: Loop, seat: SeatModel) -> float:
     """First eigenfrequency of the seat with clamped rim, symmetric about y = 0, Hz."""
     # Lifting and rocking together: the lowest mode is one of both or a mixture.
     start = np.zeros((loop.all_masses.size, 3))
-    start[:, 2] = 1.0 + seat.mesh.points[:, 0] / np.abs(seat.mesh.points[:, 0]).max()
+    x = seat.mesh.points[:, 0]
+    start[: x.size, 2] = 1.0 + x / np.abs(x).max()
     return first_frequency(loop, 0, start=loop.own(start))
 
 

@@ -77,7 +77,8 @@ class SphereContact:
 class SurfaceContact:
     """Nodes of an elastic body against the surface of another one, meshes not matching.
 
-    Displacements are small against the elements: the pairs stay as they are made.
+    The pairs stay as they are made (displacements small against the elements), unless whoever
+    runs the model makes new ones (`ContactProblem.pair`).
     """
 
     name: str
@@ -93,6 +94,8 @@ class SurfaceContact:
     """(n, 3) unit normal, from the target to the candidate."""
     gaps: Floats
     """(n,) initial gap, m, of the exact bodies rather than their meshes."""
+    reachable: Ints | None = None
+    """Nodes of the target that later pairs may have, if there are to be any."""
 
 
 Contact = SphereContact | SurfaceContact

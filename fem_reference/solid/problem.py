@@ -50,6 +50,8 @@ class ContactProblem:
             parts.append(contact.nodes + first[contact.body])
             if not isinstance(contact, SphereContact):
                 parts.append(contact.facets.ravel() + first[contact.target])
+                if contact.reachable is not None:
+                    parts.append(contact.reachable + first[contact.target])
         self.nodes: Ints = np.unique(np.concatenate(parts)) if parts else np.zeros(0, np.int64)
         size = 3 * self.nodes.size
         self.u, self.predicted, self.before, self.force = (np.zeros(size) for _ in range(4))
@@ -108,6 +110,29 @@ class ContactProblem:
         structure.weight = pointer(weights, np.float64)
         structure.normal = pointer(contact.normals, np.float64)
         structure.gap = pointer(contact.gaps.copy(), np.float64)
+
+    def pair(
+        self, number: int, target: int, facets: Ints, weights: Floats, normals: Floats, gaps: Floats
+    ) -> None:
+        """New pairs for a contact of two surfaces, as `SurfaceContact` has them.
+
+        Args:
+            number: of the contact.
+            target: first node of the body the facets belong to, in the model's numbering.
+            facets: (n, 3) or (n, 6), among the nodes the contact was made with or `reachable`.
+            weights: shape functions.
+            normals: (n, 3).
+            gaps: (n,) such that gap + normal . (candidate's - facet's displacement) is the
+                distance now, m.
+        """
+        contact = self.contacts[number]
+        count, width = facets.shape
+        shape = (count, kernel.FACET_NODES)
+        numbers = np.ctypeslib.as_array(contact.facet, shape)
+        numbers[:, :width] = np.searchsorted(self.nodes, facets + target)
+        np.ctypeslib.as_array(contact.weight, shape)[:, :width] = weights
+        np.ctypeslib.as_array(contact.normal, (count, 3))[:] = normals
+        np.ctypeslib.as_array(contact.gap, (count,))[:] = gaps
 
     def multipliers(self, number: int) -> Floats:
         """Multipliers of a contact's candidates in the last step, N."""

@@ -16,9 +16,9 @@ import scipy.integrate
 from fem_reference.errors import SceneError, SolverError
 from fem_reference.fenicsx import alone
 from fem_reference.mesh import Floats
-from fem_reference.seal_seat.meshing import cad_volume, seat_mesh
+from fem_reference.seal_seat.meshing import cad_volume, seat_mesh, sphere_mesh
 from fem_reference.seal_seat.modal import seat_modes
-from fem_reference.seal_seat.model import ACTUATOR, LEFT, RIGHT, SPHERE, SeatModel, seat_model
+from fem_reference.seal_seat.model import LEFT, RIGHT, SeatModel, seat_model
 from fem_reference.seal_seat.run import SeatRun, integrate
 from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
 from fem_reference.seal_seat.solve import HISTORY_COLUMNS, QUANTITIES, history, seat_frequency
@@ -62,7 +62,7 @@ def test_the_mesh_fills_the_cad_model(improved: bool) -> None:
     design = scene(improved, reference__element_order=1)
     exact = cad_volume(design)
     misses = []
-    for factor in (0.5, 1.0):
+    for factor in (0.6, 1.2):
         mesh = seat_mesh(design, factor)
         misses.append(abs(mesh.volume() / exact - 1.0))
         assert qualities(mesh.points, mesh.corners).min() > 0.1
@@ -206,7 +206,7 @@ def test_a_mirrored_seat_throws_the_sphere_the_other_way(coarse: SeatModel) -> N
         loop = make_loop(seat.model, alone())
         loop.set_step(0.8 * critical_time_step(loop), 1)
         loop.advance(1500)
-        sphere, actuator = loop.problem.rigids[SPHERE], loop.problem.rigids[ACTUATOR]
+        sphere, actuator = loop.problem.rigids
         states.append([*sphere.v, actuator.v[2], *sphere.u])
     first, second = np.array(states)
     assert abs(first[0]) > 1e-3 and first[2] > 0.1
@@ -297,7 +297,7 @@ def test_the_result_folder_is_complete(tmp_path: Path) -> None:
     header = (out / "history.csv").read_text(encoding="ascii").splitlines()[0].split(",")
     table = np.loadtxt(out / "history.csv", delimiter=",", skiprows=1)
     assert header[:11] == [*HISTORY_COLUMNS] and table.shape[1] == len(header) == 21
-    assert table[-1, 0] == pytest.approx(3e-6, rel=1e-3)
+    assert 3e-6 - summary["sample_interval"] <= table[-1, 0] <= 3e-6
     assert (out / "stress.pvd").is_file() and (out / "mesh.vtu").is_file()
     assert sorted(p.name for p in tmp_path.iterdir()) == ["result", "scene.json"]
 
@@ -317,3 +317,30 @@ def test_slepc_and_inverse_iteration_agree_on_the_first_frequency(coarse: SeatMo
     assert np.all(np.diff(frequencies) > 0.0)
     iterated = seat_frequency(make_loop(coarse.model, alone()), coarse)
     assert iterated == pytest.approx(frequencies[0], rel=1e-4)
+
+
+def test_a_sphere_that_deforms_is_launched_like_a_rigid_one_the_more_the_stiffer_it_is() -> None:
+    end = {"end_time": 12e-6}
+    states = []
+    for body, modulus in (("rigid", 210e9), ("elastic", 210e9), ("elastic", 5e9)):
+        design = scene(
+            reference__element_order=1,
+            sphere__body=body,
+            sphere__material__youngs_modulus=modulus,
+            run=end,
+        )
+        sphere = sphere_mesh(design, 0.4) if design.sphere_elastic else None
+        model = seat_model(design, seat_mesh(design, 0.4), sphere)
+        run = integrate(make_loop(model.model, alone()), model, design)
+        assert run.energy_residual < 1e-11 and run.momentum_residual < 1e-11
+        assert run.unconverged == 0
+        states.append([*run.sphere_velocity, run.actuator_velocity])
+        if sphere is not None:
+            assert sphere.volume() == pytest.approx(
+                2.0 / 3.0 * math.pi * design.sphere_radius**3, rel=1e-12
+            )
+    rigid, steel, soft = np.array(states)
+    speed = math.hypot(rigid[0], rigid[1])
+    # Contact compliance of steel over that of the polymer: 1.3 %, and the seat bends much more.
+    assert np.abs(steel - rigid)[:2].max() < 0.005 * speed
+    assert np.abs(soft - rigid)[:2].max() > 0.01 * speed
