@@ -6,7 +6,7 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::impact::reduced::Reduced;
 use crate::impact::seal_seat::{self, SeatMesh, SeatModel};
 use crate::impact::{Curves, History, Quantities, SeatHistory, SeatSummary, Summary};
-use crate::reference;
+use crate::reference::{self, Resolution};
 use crate::scene::{self, Model, Scene, Setup};
 use clap::Args;
 use std::path::PathBuf;
@@ -80,7 +80,7 @@ fn seat(
     let cache = Cache::from_environment();
     let mesh = match &arguments.mesh {
         Some(path) => SeatMesh::open(path)?,
-        None => SeatMesh::open(&reference::seat_mesh(scene, &cache)?)?,
+        None => SeatMesh::open(&reference::seat_mesh(scene, Resolution::Paper, &cache)?)?,
     };
     let reduced = SeatModel::new(scene, model, arguments.modes, &mesh, &cache)?;
     context.note(format_args!(

@@ -53,27 +53,31 @@ pub fn seat_meshes(folder: &Path, scene: &Scene) -> Result<Vec<(PathBuf, SeatMes
     Ok(found)
 }
 
-/// A mesh for the seat of `scene`: `meshes/<name>.vtu` or another one in `meshes/` that is made for its geometry, else one in
-/// `cache`, else one that `fem_reference` makes now and that stays in `cache`.
+/// A mesh for the seat of `scene`: at `paper` resolution `meshes/<name>.vtu` or another one in `meshes/` that is made for
+/// its geometry, else one in `cache`, else one that `fem_reference` makes now and that stays in `cache`.
 ///
 /// # Errors
 /// [`Error::Scene`] if it is no seal seat, [`Error::Solver`] if there is none and none can be made.
-pub fn seat_mesh(scene: &Scene, cache: &Cache) -> Result<PathBuf> {
+pub fn seat_mesh(scene: &Scene, resolution: Resolution, cache: &Cache) -> Result<PathBuf> {
     let shipped = project_root().join("meshes");
-    let found = if shipped.is_dir() { seat_meshes(&shipped, scene)? } else { Vec::new() };
+    let found = if resolution == Resolution::Paper && shipped.is_dir() {
+        seat_meshes(&shipped, scene)?
+    } else {
+        Vec::new()
+    };
     let of_that_name = |path: &Path| path.file_stem().is_some_and(|stem| *stem == *scene.name);
     let best = found.iter().find(|(path, _)| of_that_name(path)).or(found.first());
     if let Some((path, _)) = best {
         return Ok(path.clone());
     }
     let settings = &scene.reference;
-    let fineness = json!([settings.elements_per_ring_radius, settings.element_order]).to_string();
+    let fineness = json!([resolution, settings.elements_per_ring_radius, settings.element_order]).to_string();
     let name = sha256_hex(format!("{}{fineness}", scene.seal_seat()?.geometry_hash()).as_bytes());
     let folder = cache.folder().map_or_else(|| std::env::temp_dir().join("impactcheck"), Path::to_path_buf);
     let path = folder.join("meshes").join(format!("{name}.vtu"));
     if intact(&path).is_none() {
         std::fs::create_dir_all(folder.join("meshes")).map_err(|e| Error::io("writing", &path, e))?;
-        make_seat_mesh(&python::python()?, scene, Resolution::Paper, 1.0, &path)?;
+        make_seat_mesh(&python::python()?, scene, resolution, 1.0, &path)?;
     }
     Ok(path)
 }

@@ -101,12 +101,16 @@ fn seat_body(scene: &SealSeat, scale: &Scale) -> Markup {
         let (w, above) = (0.5 * n.width, 1.1 * h);
         [[-w, n.floor], [w, n.floor], [w, above], [-w, above]]
     });
+    let hollows =
+        || [-1.0, 1.0].map(|side| hollow(scene, side).to_vec()).into_iter().chain(notch.map(|n| n.to_vec()));
     html! {
-        polygon points=(scale.points(&outline)) fill="#f0dfb8" stroke="none" {}
-        @for side in [-1.0, 1.0] { polygon points=(scale.points(&hollow(scene, side))) fill="#ffffff" stroke="#9a7f3c" {} }
-        @if let Some(notch) = notch { polygon points=(scale.points(&notch)) fill="#ffffff" stroke="#9a7f3c" {} }
-        // what the hollows' outlines show above the island is taken away again
-        rect x=(scale.x(-r)) width=(format!("{:.2}", 2.0 * r * scale.factor)) y="0" height=(scale.z(h)) fill="#ffffff" {}
+        clipPath id="seat" { polygon points=(scale.points(&outline)) {} }
+        g clip-path="url(#seat)" {
+            polygon points=(scale.points(&outline)) fill="#f0dfb8" stroke="#9a7f3c" stroke-width="3" {}
+            // the edges first: where one hollow runs into another there is none
+            @for hollow in hollows() { polygon points=(scale.points(&hollow)) fill="none" stroke="#9a7f3c" stroke-width="3" {} }
+            @for hollow in hollows() { polygon points=(scale.points(&hollow)) fill="#ffffff" stroke="none" {} }
+        }
     }
 }
 

@@ -12,6 +12,8 @@ pub mod insensitivity;
 pub mod parameter;
 mod plot;
 pub mod rocker;
+pub mod seal_seat;
+pub mod seal_seat_cost;
 pub mod sweep;
 pub mod table2;
 mod write;
@@ -52,7 +54,7 @@ pub struct Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 9] = [
+pub const STUDIES: [Entry; 11] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
@@ -115,6 +117,20 @@ pub const STUDIES: [Entry; 9] = [
         takes_model: true,
         run: fluid::run,
         panels: &fluid::PANELS,
+    },
+    Entry {
+        name: "seal-seat",
+        about: "Section 4.4: what decides the direction of the sphere out of the flexible seal seat",
+        takes_model: false,
+        run: |_, note| seal_seat::run(note),
+        panels: &[],
+    },
+    Entry {
+        name: "seal-seat-cost",
+        about: "Run times of the reduced seal seat and of the finite elements on the same mesh",
+        takes_model: false,
+        run: |_, note| seal_seat_cost::run(note),
+        panels: &[],
     },
 ];
 

@@ -53,21 +53,6 @@ impl Matrices {
         self.column[range.clone()].iter().copied().zip(&self.stiffness[range])
     }
 
-    /// Force on the nodes under the displacements `u`. Shape (nodes, 3).
-    pub fn stiffness_times(&self, u: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        (0..self.mass.len())
-            .map(|node| {
-                let mut force = [0.0; 3];
-                for (other, block) in self.row(node) {
-                    for c in 0..3 {
-                        force[c] += dot3([block[3 * c], block[3 * c + 1], block[3 * c + 2]], u[other]);
-                    }
-                }
-                force
-            })
-            .collect()
-    }
-
     /// Lower triangle of the stiffness over the free displacements, whose numbers ascend with the nodes.
     pub fn free_stiffness(&self, dof: &[[usize; 3]], size: usize) -> SparseColMat<usize, f64> {
         let (mut start, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
@@ -190,4 +175,91 @@ fn sparsity(mesh: &TetMesh) -> (Vec<usize>, Vec<usize>) {
         Some(*end)
     }));
     (start, rows.concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mesh::boxes;
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn material() -> Material {
+        Material { name: "m".into(), youngs_modulus: 2.6e9, poisson_ratio: 0.38, density: 1320.0 }
+    }
+
+    /// Force on the nodes under the displacements `u`. Shape (nodes, 3).
+    fn forces(matrices: &Matrices, u: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        (0..matrices.mass.len())
+            .map(|node| {
+                let mut force = [0.0; 3];
+                for (other, block) in matrices.row(node) {
+                    for c in 0..3 {
+                        force[c] += dot3([block[3 * c], block[3 * c + 1], block[3 * c + 2]], u[other]);
+                    }
+                }
+                force
+            })
+            .collect()
+    }
+
+    /// A box 3 x 2 x 1 with a node inside, sheared so that no edge is parallel to an axis.
+    fn sheared(order: usize) -> TetMesh {
+        boxes([3.0, 2.0, 1.0], [3, 2, 2], order, |[x, y, z]| [x + 0.2 * y * z, y + 0.1 * x, z + 0.3 * x * x])
+    }
+
+    #[test]
+    fn rigid_motions_need_no_force() {
+        for order in [1, 2] {
+            let mesh = sheared(order);
+            let matrices = Matrices::new(&mesh, &material());
+            let scale = 2.6e9 * 3.0;
+            for axis in 0..3 {
+                let shift = vec![std::array::from_fn(|c| f64::from(u8::from(c == axis))); mesh.points.len()];
+                let omega: [f64; 3] = shift[0];
+                let turn: Vec<[f64; 3]> = mesh.points.iter().map(|p| cross(omega, *p)).collect();
+                for u in [shift, turn] {
+                    let worst = forces(&matrices, &u).into_iter().flatten().map(f64::abs).fold(0.0, f64::max);
+                    assert!(worst < 1e-13 * scale, "order {order}: {worst}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn patch_test_uniform_strain_gives_the_exact_energy_and_no_force_inside() {
+        let gradient = [[1e-3, 4e-4, -2e-4], [-3e-4, 2e-3, 5e-4], [6e-4, -1e-4, -1.5e-3]];
+        let (e, nu) = (2.6e9, 0.38);
+        let (lambda, mu) = (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)));
+        let trace: f64 = (0..3).map(|i| gradient[i][i]).sum();
+        let squares: f64 =
+            (0..9).map(|k| (0.5 * (gradient[k / 3][k % 3] + gradient[k % 3][k / 3])).powi(2)).sum();
+        let density = 0.5 * lambda * trace * trace + mu * squares;
+        for order in [1, 2] {
+            let mesh = sheared(order);
+            let matrices = Matrices::new(&mesh, &material());
+            let u: Vec<[f64; 3]> = mesh.points.iter().map(|p| gradient.map(|row| dot3(row, *p))).collect();
+            let force = forces(&matrices, &u);
+            let whole: f64 = mesh.cells().map(|cell| volume(&mesh.corners(cell))).sum();
+            let energy: f64 = 0.5 * u.iter().zip(&force).map(|(u, f)| dot3(*u, *f)).sum::<f64>();
+            assert_relative_eq!(energy, density * whole, max_relative = 1e-12);
+            let mut inside = vec![true; mesh.points.len()];
+            mesh.outer_faces().iter().flatten().for_each(|&n| inside[n] = false);
+            assert!(inside.contains(&true));
+            let largest = force.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
+            for (force, _) in force.iter().zip(&inside).filter(|(_, inside)| **inside) {
+                assert!(force.iter().all(|f| f.abs() < 1e-12 * largest), "order {order}: {force:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn masses_are_positive_and_add_up() {
+        for order in [1, 2] {
+            let mesh = sheared(order);
+            let matrices = Matrices::new(&mesh, &material());
+            let whole: f64 = mesh.cells().map(|cell| volume(&mesh.corners(cell))).sum();
+            assert_relative_eq!(matrices.mass.iter().sum::<f64>(), 1320.0 * whole, max_relative = 1e-13);
+            assert!(matrices.mass.iter().all(|m| *m > 0.0));
+        }
+    }
 }

@@ -63,11 +63,6 @@ impl Factor {
         Ok(Self { symbolic, values, interface: interface.len() })
     }
 
-    /// Entries of the factor.
-    pub fn entries(&self) -> usize {
-        self.values.len()
-    }
-
     /// Solves for `rhs` in place.
     pub fn solve(&self, rhs: &mut [f64]) {
         let n = rhs.len();
@@ -150,4 +145,61 @@ fn ordering(
     let stack = MemStack::new(&mut memory);
     amd::order(&mut forward, &mut inverse, upper.as_ref(), amd::Control::default(), stack)?;
     Ok(forward.into_iter().map(|i| rest[i]).chain(interface.iter().copied()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use faer::sparse::Triplet;
+
+    /// Lower triangle of the Laplacian of a grid of n x n points plus 0.1 at each.
+    fn laplacian(n: usize) -> SparseColMat<usize, f64> {
+        let mut entries = Vec::new();
+        for i in 0..n * n {
+            entries.push(Triplet::new(i, i, 4.1));
+            if i % n + 1 < n {
+                entries.push(Triplet::new(i + 1, i, -1.0));
+            }
+            if i + n < n * n {
+                entries.push(Triplet::new(i + n, i, -1.0));
+            }
+        }
+        SparseColMat::try_new_from_triplets(n * n, n * n, &entries).expect("matrix")
+    }
+
+    #[test]
+    fn the_interface_s_flexibility_is_that_of_solutions_with_unit_loads() {
+        let n = 17;
+        let matrix = laplacian(n);
+        // in no order, neighbours and nodes far apart
+        let interface = [200, 3, 4, 21, 288, 0, 150];
+        let factor = Factor::new(&matrix, &interface).expect("positive definite");
+        let flexibility = factor.interface_flexibility();
+        for (column, &loaded) in interface.iter().enumerate() {
+            let mut u = vec![0.0; n * n];
+            u[loaded] = 1.0;
+            factor.solve(&mut u);
+            // the solution is one: A u = e
+            let mut residual = vec![0.0; n * n];
+            residual[loaded] = -1.0;
+            for t in matrix.triplet_iter() {
+                residual[t.row] += t.val * u[t.col];
+                if t.row != t.col {
+                    residual[t.col] += t.val * u[t.row];
+                }
+            }
+            assert!(residual.iter().all(|r| r.abs() < 1e-14));
+            for (row, &seen) in interface.iter().enumerate() {
+                assert!((flexibility[(row, column)] - u[seen]).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_positive_definite_is_refused() {
+        let entries = [Triplet::new(0, 0, 1.0), Triplet::new(1, 0, 2.0), Triplet::new(1, 1, 1.0)];
+        let matrix = SparseColMat::try_new_from_triplets(2, 2, &entries).expect("matrix");
+        let Err(error) = Factor::new(&matrix, &[1]) else { panic!("factorised") };
+        assert!(error.to_string().contains("not positive definite"));
+    }
 }

@@ -184,3 +184,116 @@ fn connectivity(numbers: VertexNumbers, per_cell: usize) -> Option<Vec<usize>> {
         }
     }
 }
+
+/// A box of the given lengths cut into six tetrahedra per brick, its corners moved by `place`.
+#[cfg(test)]
+pub(super) fn boxes(
+    lengths: [f64; 3],
+    bricks: [usize; 3],
+    order: usize,
+    place: impl Fn([f64; 3]) -> [f64; 3],
+) -> TetMesh {
+    let [nx, ny, nz] = bricks;
+    let number = |i: usize, j: usize, k: usize| (i * (ny + 1) + j) * (nz + 1) + k;
+    let mut points = Vec::new();
+    for (i, j, k) in grid_points([nx + 1, ny + 1, nz + 1]) {
+        let at = [(i, nx, 0), (j, ny, 1), (k, nz, 2)];
+        points.push(place(at.map(|(i, n, c)| lengths[c] * i as f64 / n as f64)));
+    }
+    let mut corners = Vec::new();
+    for (i, j, k) in grid_points(bricks) {
+        // Kuhn's division: a tetrahedron per order in which the axes are walked.
+        for path in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
+            let mut step = [i, j, k];
+            let mut cell = vec![number(i, j, k)];
+            for axis in path {
+                step[axis] += 1;
+                cell.push(number(step[0], step[1], step[2]));
+            }
+            let odd = matches!(path, [0, 2, 1] | [2, 1, 0] | [1, 0, 2]);
+            if odd {
+                cell.swap(2, 3);
+            }
+            corners.push(cell);
+        }
+    }
+    let mut midsides: HashMap<[usize; 2], usize> = HashMap::new();
+    let mut cells = Vec::new();
+    for cell in corners {
+        cells.extend(&cell);
+        for [a, b] in EDGES.iter().filter(|_| order == 2) {
+            let mut edge = [cell[*a], cell[*b]];
+            edge.sort_unstable();
+            let middle = *midsides.entry(edge).or_insert_with(|| {
+                points.push(std::array::from_fn(|c| 0.5 * (points[edge[0]][c] + points[edge[1]][c])));
+                points.len() - 1
+            });
+            cells.push(middle);
+        }
+    }
+    TetMesh::new(points, cells, order).expect("mesh")
+}
+
+#[cfg(test)]
+fn grid_points([nx, ny, nz]: [usize; 3]) -> impl Iterator<Item = (usize, usize, usize)> {
+    (0..nx).flat_map(move |i| (0..ny).flat_map(move |j| (0..nz).map(move |k| (i, j, k))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_has_the_outer_faces_of_its_surface() {
+        for order in [1, 2] {
+            let mesh = boxes([3.0, 2.0, 1.0], [3, 2, 1], order, |p| p);
+            let faces = mesh.outer_faces();
+            // two triangles per square of the surface
+            assert_eq!(faces.len(), 2 * 2 * (3 * 2 + 2 + 3));
+            let area: f64 = faces
+                .iter()
+                .map(|face| {
+                    let [a, b, c] = [0, 1, 2].map(|k| mesh.points[face[k]]);
+                    let n = cross(std::array::from_fn(|d| b[d] - a[d]), std::array::from_fn(|d| c[d] - a[d]));
+                    0.5 * dot3(n, n).sqrt()
+                })
+                .sum();
+            assert!((area - 22.0).abs() < 1e-12);
+            let middle = |face: &[usize], a: usize, b: usize, m: usize| {
+                let [a, b, m] = [a, b, m].map(|k| mesh.points[face[k]]);
+                (0..3).all(|c| (0.5 * (a[c] + b[c]) - m[c]).abs() < 1e-12)
+            };
+            if order == 2 {
+                let on_edges = |face: &Vec<usize>| {
+                    [(0, 1), (1, 2), (2, 0)].iter().all(|&(a, b)| (3..6).any(|m| middle(face, a, b, m)))
+                };
+                assert!(faces.iter().all(on_edges));
+            }
+        }
+    }
+
+    #[test]
+    fn unusable_meshes_are_told_apart() {
+        let good = boxes([1.0; 3], [1, 1, 1], 2, |p| p);
+        let told = |points: Vec<[f64; 3]>, cells: Vec<usize>, order| {
+            TetMesh::new(points, cells, order).expect_err("unusable")
+        };
+        let mut inverted = good.cells.clone();
+        inverted.swap(0, 1);
+        assert!(told(good.points.clone(), inverted, 2).contains("turned inside out"));
+        let mut curved = good.points.clone();
+        curved[good.cells[4]][0] += 0.01;
+        let said = told(curved, good.cells.clone(), 2);
+        assert!(said.contains("straight") || said.contains("inside out"), "{said}");
+        let mut missing = good.cells.clone();
+        missing[0] = 99;
+        assert!(told(good.points.clone(), missing, 2).contains("names node 99"));
+        let mut more = good.points.clone();
+        more.push([0.0; 3]);
+        assert!(told(more, good.cells.clone(), 2).contains("belongs to no cell"));
+        assert!(told(good.points.clone(), good.cells[..9].to_vec(), 2).contains("no tetrahedra"));
+        let mut lost = good.points.clone();
+        lost[0][1] = f64::NAN;
+        assert!(told(lost, good.cells.clone(), 2).contains("not finite"));
+    }
+}

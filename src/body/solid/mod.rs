@@ -171,3 +171,53 @@ impl InterfaceBody {
         Ok(full)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// Relative error of the first eigenfrequency of a bar, free at one end and held along y and z everywhere, of
+    /// 4 `fine` bricks over its length and `fine` over its width.
+    fn bar_error(fine: usize, order: usize) -> f64 {
+        let material = Material { name: "m".into(), youngs_modulus: 8.0, poisson_ratio: 0.0, density: 2.0 };
+        let mesh = mesh::boxes([1.0, 0.25, 0.25], [4 * fine, fine, fine], order, |p| p);
+        let held: Vec<[bool; 3]> = mesh.points.iter().map(|p| [p[0] == 0.0, true, true]).collect();
+        let end: Vec<usize> = (0..mesh.points.len()).filter(|&n| mesh.points[n][0] == 1.0).collect();
+        let solid = Solid::new(&mesh, &material, &held, &end).expect("solid");
+        let body = solid.at_interface(2).expect("modes");
+        // omega = pi/2 sqrt(E/rho)/L
+        body.omega[0] / (0.5 * PI * 2.0) - 1.0
+    }
+
+    #[test]
+    fn frequency_of_a_bar_converges_with_second_order() {
+        for order in [1, 2] {
+            let errors = [1, 2, 4].map(|fine| bar_error(fine, order).abs());
+            assert!(errors[2] < 1e-3, "order {order}: {errors:?}");
+            for pair in errors.windows(2) {
+                let observed = (pair[0] / pair[1]).log2();
+                assert!((1.8..2.3).contains(&observed), "order {order}: {errors:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn all_modes_together_leave_no_residual() {
+        let material = Material { name: "m".into(), youngs_modulus: 1.0, poisson_ratio: 0.3, density: 1.0 };
+        let mesh = mesh::boxes([1.0, 0.7, 0.4], [4, 3, 2], 1, |p| p);
+        let held: Vec<[bool; 3]> = mesh.points.iter().map(|p| [p[0] == 0.0; 3]).collect();
+        let interface = [59, 58, 30, 2];
+        let solid = Solid::new(&mesh, &material, &held, &interface).expect("solid");
+        let body = solid.at_interface(solid.size() / 2).expect("modes");
+        let trace = |modes| (0..12).map(|i| body.residual(modes).expect("residual")[13 * i]).sum::<f64>();
+        // each mode takes some of it away, and what is left stays positive: no mode is counted twice
+        let traces: Vec<f64> = [0, 1, 5, 20, body.omega.len()].map(trace).to_vec();
+        assert!(traces.windows(2).all(|w| w[1] < w[0]) && traces[4] > 0.0, "{traces:?}");
+        assert!(traces[4] < 0.2 * traces[0], "{traces:?}");
+        let held_node = body.residual(0).expect("residual");
+        let last = 12 * 9 + 9;
+        assert_eq!(held_node[last], 0.0, "node 2 is held: it does not yield");
+        assert!(body.residual(body.omega.len() + 1).is_err());
+    }
+}

@@ -94,9 +94,9 @@ pub fn candidates(scene: &SealSeat, mesh: &TetMesh, zones: &Zones) -> Vec<Candid
                 continue;
             }
             let place = mesh.points[node];
-            if on_cone && cone.along(place).abs() <= zones.ring {
-                found.push(cone.candidate(node, place));
-            } else if below {
+            if on_cone {
+                found.extend(Some(cone.candidate(node, place)).filter(|c| c.offset <= zones.ring));
+            } else {
                 found.extend(under_tip(scene, node, place, zones.tip));
             }
         }
@@ -171,11 +171,12 @@ impl Cone {
         let exact = (self.radius + along * sin) / cos;
         // The seat's +x flank is where the unit vector across has a positive component along (cos, 0, -sin).
         let side = across[0] * axis_z - across[2] * axis_x;
+        let place = std::array::from_fn(|c| p[c] + (exact - radius) * across[c]);
         Candidate {
             node,
-            place: std::array::from_fn(|c| p[c] + (exact - radius) * across[c]),
+            place,
             partner: Partner::Sphere,
-            offset: self.along(p).abs(),
+            offset: self.along(place).abs(),
             right_flank: side >= 0.0,
         }
     }

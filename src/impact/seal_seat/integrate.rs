@@ -12,8 +12,8 @@ use crate::error::{Error, Result};
 const MOST_STEPS: u64 = 2_000_000;
 /// Steps between two surveys of all candidates, and between two looks whether contact is still possible.
 const INTERVAL: u64 = 8;
-/// Gap below which an open candidate is watched until the next survey, over the actuator's way in between. Should a
-/// candidate be missed, the steps since the last survey are done again with twice the margin.
+/// Gap below which an open candidate is watched until the next survey at least, over the actuator's way in between. Should
+/// one be missed, the steps since the last survey are done again with more.
 const MARGIN: f64 = 0.05;
 
 /// Settings of a run.
@@ -109,6 +109,7 @@ impl Rotation {
 /// [`Error::Solver`] if the contact forces do not converge, or contact does not end.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     let mut run = Running::new(system, options);
+    run.workspace.survey(system, &run.state, run.margin());
     run.workspace.forces(system, &run.state, &mut run.forces)?;
     run.sample();
     while !run.is_over() {
@@ -133,8 +134,6 @@ struct Running<'a> {
     tally: Tally,
     samples: Vec<Sample>,
     start_energy: f64,
-    /// Present value of [`MARGIN`].
-    margin: f64,
     kept: Kept,
 }
 
@@ -159,7 +158,6 @@ impl<'a> Running<'a> {
             forces: Forces::default(),
             tally: Tally::default(),
             samples: Vec::new(),
-            margin: MARGIN,
             kept: Kept {
                 state: state.clone(),
                 forces: Forces::default(),
@@ -181,17 +179,21 @@ impl<'a> Running<'a> {
         let left = self.options.end_time.map(|end| ((end - self.time()) / self.options.step).round() as u64);
         let steps = left.map_or(INTERVAL, |left| left.clamp(1, INTERVAL));
         loop {
-            let watch = self.margin * self.system.speed * self.options.step * INTERVAL as f64;
-            self.workspace.survey(self.system, &self.state, watch);
             for _ in 0..steps {
                 self.step()?;
             }
-            if !self.workspace.survey(self.system, &self.state, watch) {
+            let survey = self.workspace.survey(self.system, &self.state, self.margin());
+            if !survey.missed {
                 return Ok(());
             }
-            self.margin *= 2.0;
             self.go_back();
+            self.workspace.survey(self.system, &self.state, self.margin().max(2.0 * survey.needed));
         }
+    }
+
+    /// Gap in m below which an open candidate is watched at least.
+    fn margin(&self) -> f64 {
+        MARGIN * self.system.speed * self.options.step * INTERVAL as f64
     }
 
     fn keep(&mut self) {
@@ -342,5 +344,83 @@ impl<'a> Running<'a> {
             tally: self.tally,
             samples: self.samples,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::contact::{Ball, Nodes};
+    use super::super::{Candidate, Partner};
+    use super::*;
+    use std::f64::consts::PI;
+
+    const MASS: f64 = 2e-3;
+    const SPEED: f64 = 0.5;
+    const FLEXIBILITY: f64 = 1e-6;
+
+    /// An actuator under a node, straight above its tip, that yields by its residual flexibility and `modes`, given by
+    /// (omega, participation along z).
+    fn spring(modes: &[(f64, f64)]) -> System {
+        let residual = [[FLEXIBILITY, 0.0, 0.0], [0.0, FLEXIBILITY, 0.0], [0.0, 0.0, FLEXIBILITY]].concat();
+        let place = [0.0; 3];
+        System {
+            omega: modes.iter().map(|m| m.0).collect(),
+            participation: modes.iter().map(|m| vec![0.0, 0.0, m.1]).collect(),
+            candidates: vec![Candidate {
+                node: 0,
+                place,
+                partner: Partner::Tip(0),
+                offset: 0.0,
+                right_flank: false,
+            }],
+            sphere_mass: 1e-4,
+            actuator_mass: MASS,
+            speed: SPEED,
+            balls: vec![
+                Ball { centre: [0.0, 0.0, 1.0], radius: 1e-3 },
+                Ball { centre: [0.0, 0.0, -3e-3], radius: 3e-3 },
+            ],
+            nodes: Nodes::new(vec![place], vec![1], &residual),
+        }
+    }
+
+    fn run(system: &System, steps: f64, end_time: Option<f64>) -> Integration {
+        let duration = PI * (MASS * FLEXIBILITY).sqrt();
+        integrate(system, &Options { step: duration / steps, end_time, history: false }).expect("run")
+    }
+
+    #[test]
+    fn an_actuator_on_a_spring_is_thrown_back_after_half_a_period() {
+        let (omega, duration) = ((MASS * FLEXIBILITY).sqrt().recip(), PI * (MASS * FLEXIBILITY).sqrt());
+        let result = run(&spring(&[]), 400.3, None);
+        assert!((result.state.actuator_velocity / -SPEED - 1.0).abs() < 1e-4);
+        // the half body's force is doubled
+        assert!((result.tally.force_peak[1] / (2.0 * MASS * SPEED * omega) - 1.0).abs() < 1e-4);
+        assert!((result.tally.contact_end[1] / duration - 1.0).abs() < 1e-3);
+        assert!(result.momentum_residual < 1e-12 && result.energy_residual < 1e-4);
+        assert_eq!(result.state.sphere_velocity, [0.0; 2]);
+    }
+
+    #[test]
+    fn time_integration_is_of_second_order_before_the_release_and_at_least_first_after_it() {
+        let system = spring(&[(4e4, 12.0), (1.1e5, -9.0)]);
+        let duration = PI * (MASS * FLEXIBILITY).sqrt();
+        let error = |end: f64, steps: f64, exact: f64| {
+            (run(&system, steps, Some(end)).state.actuator_velocity - exact).abs()
+        };
+        for (end, least) in [(0.5 * duration, 1.9), (3.0 * duration, 1.0)] {
+            let exact = run(&system, 51200.0, Some(end)).state.actuator_velocity;
+            let errors = [100.0, 400.0, 1600.0].map(|steps| error(end, steps, exact));
+            let observed = (errors[0] / errors[2]).log(16.0);
+            assert!(errors[2] < 1e-4 * SPEED, "{errors:?}");
+            assert!(observed > least, "order {observed} up to {end} s: {errors:?}");
+        }
+    }
+
+    #[test]
+    fn a_step_that_is_too_long_for_contact_shows_in_the_energy() {
+        let coarse = run(&spring(&[(4e4, 12.0)]), 4.0, None).energy_residual;
+        let fine = run(&spring(&[(4e4, 12.0)]), 400.0, None).energy_residual;
+        assert!(coarse > 100.0 * fine, "{coarse} {fine}");
     }
 }

@@ -3,7 +3,7 @@
 //! Half the bodies (y >= 0) with half the rigid masses; whoever reports doubles forces, impulses and energies.
 
 use super::candidates::{Candidate, Partner};
-use super::contact::{Ball, Contact, Nodes};
+use super::contact::{Ball, Contact, Nodes, Survey};
 use crate::body::solid::InterfaceBody;
 use crate::error::{Error, Result};
 use crate::scene::SealSeat;
@@ -167,7 +167,7 @@ impl<'a> Workspace<'a> {
     }
 
     /// Looks at all candidates at `state`, whose forces have been evaluated: see [`Contact::survey`].
-    pub fn survey(&mut self, system: &System, state: &State, margin: f64) -> bool {
+    pub fn survey(&mut self, system: &System, state: &State, margin: f64) -> Survey {
         self.place(system, state);
         self.contact.survey(&self.displaced, &self.balls, margin)
     }

@@ -1,0 +1,205 @@
+//! Section 4.4 with the reduced model: what decides the direction of the sphere's flight out of the flexible seal seat.
+//!
+//! Around both shipped designs one quantity at a time is varied: aperture angle, tilt, place of impact, notch, membrane.
+//! Each geometry is meshed (coarse, the meshes stay in the cache); the paper publishes no dimensions, only what it found.
+
+use super::{Cell, Claim, Note, SCHEMA_VERSION, Study};
+use crate::body::cache::Cache;
+use crate::error::Result;
+use crate::impact::SeatQuantities;
+use crate::impact::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
+use crate::project::project_root;
+use crate::reference::{self, Resolution};
+use crate::scene::{self, Model, Notch, Scene, SealSeat, Setup};
+
+/// How far the improved design's direction may lie from the intended one, rad.
+const INTENDED_WITHIN: f64 = 1.5 * DEGREE;
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// The scenes of the two designs.
+const DESIGNS: [(&str, &str); 2] = [("initial", "seal-seat-initial"), ("improved", "seal-seat-improved")];
+
+/// A design with one thing changed.
+struct Case {
+    design: &'static str,
+    varied: &'static str,
+    scene: Scene,
+}
+
+impl Case {
+    fn seat(&self) -> Result<&SealSeat> {
+        self.scene.seal_seat()
+    }
+}
+
+/// The study.
+///
+/// # Errors
+/// [`Error::Usage`](crate::Error::Usage) if a shipped scene is gone, [`Error::Solver`](crate::Error::Solver) if a seat can't
+/// be meshed or solved.
+pub fn run(note: &mut Note) -> Result<Study> {
+    let [initial, improved] = [shipped(DESIGNS[0].1)?, shipped(DESIGNS[1].1)?];
+    let cases = cases(&initial, &improved)?;
+    let cache = Cache::from_environment();
+    let mut results = Vec::new();
+    for (k, case) in cases.iter().enumerate() {
+        note(&format!("{} of {}: {} design, {}", k + 1, cases.len(), case.design, case.varied));
+        results.push(solve(&case.scene, &cache)?);
+    }
+    let rows = cases.iter().zip(&results).map(|(case, result)| row(case, result)).collect::<Result<_>>()?;
+    let intended = improved.seal_seat()?.intended_angle;
+    let angle = |design: &str, varied: &str| {
+        let case = cases.iter().position(|c| c.design == design && c.varied == varied);
+        case.map(|k| results[k].sphere_angle)
+    };
+    Ok(Study {
+        schema_version: SCHEMA_VERSION,
+        study: "seal-seat",
+        description: "Section 4.4 of the paper: direction and speed of the sphere out of the flexible seal seat, model C on coarse \
+             meshes, each design with one quantity changed. The paper publishes no dimensions; it finds that the \
+             initial design, hit at its centre, throws the sphere to the wrong side, and that notch and hits on both \
+             sides together bring the intended direction."
+            .into(),
+        columns: vec![
+            "design",
+            "varied",
+            "aperture_angle",
+            "tilt",
+            "outermost_tip",
+            "notch_width",
+            "membrane_thickness",
+            "sphere_angle",
+            "deviation",
+            "sphere_speed",
+            "efficiency",
+            "sphere_force_peak",
+            "actuator_force_peak",
+        ],
+        units: vec!["1", "1", "rad", "rad", "m", "m", "m", "rad", "rad", "m/s", "1", "N", "N"],
+        rows,
+        claims: claims(intended, &angle),
+    })
+}
+
+/// What the paper says of the directions, and what follows from the table of notch and impact.
+fn claims(intended: f64, angle: &dyn Fn(&str, &str) -> Option<f64>) -> Vec<Claim> {
+    let held = |ours: Option<bool>| ours.map(|held| f64::from(u8::from(held)));
+    let missed = |varied: &str, design: &str| {
+        held(angle(design, varied).map(|a| (a - intended).abs() > INTENDED_WITHIN))
+    };
+    vec![
+        Claim::new(
+            "initial design: the sphere leaves to the wrong side (1 = yes)".into(),
+            "1",
+            Some(1.0),
+            held(angle("initial", "nothing").map(|a| a < 0.0)),
+            0.0,
+        ),
+        Claim::new(
+            "improved design: the sphere leaves in the intended direction".into(),
+            "rad",
+            Some(intended),
+            angle("improved", "nothing"),
+            INTENDED_WITHIN,
+        ),
+        Claim::new(
+            "notch alone, hit at the centre: misses the intended direction (1 = yes)".into(),
+            "1",
+            Some(1.0),
+            missed("hit at the centre", "improved"),
+            0.0,
+        ),
+        Claim::new(
+            "hits on both sides alone, no notch: misses the intended direction (1 = yes)".into(),
+            "1",
+            Some(1.0),
+            missed("no notch", "improved"),
+            0.0,
+        ),
+    ]
+}
+
+/// A scene the project ships, among the scenes or the examples.
+pub(super) fn shipped(name: &str) -> Result<Scene> {
+    let example = project_root().join("scenes/examples").join(format!("{name}.toml"));
+    if example.is_file() { Scene::read(example) } else { Scene::read(scene::resolve(name)?) }
+}
+
+fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    let notch = improved.seal_seat()?.seat.notch;
+    for ((design, _), base) in DESIGNS.into_iter().zip([initial, improved]) {
+        let mut add = |varied: &'static str, change: &dyn Fn(&mut SealSeat)| {
+            let mut scene = base.clone();
+            if let Setup::SealSeat(setup) = &mut scene.setup {
+                change(setup);
+            }
+            cases.push(Case { design, varied, scene });
+        };
+        add("nothing", &|_| {});
+        add("aperture angle -10°", &|s| s.seat.aperture_angle -= 10.0 * DEGREE);
+        add("aperture angle +10°", &|s| s.seat.aperture_angle += 10.0 * DEGREE);
+        add("tilt -5°", &|s| s.seat.tilt -= 5.0 * DEGREE);
+        add("tilt +5°", &|s| s.seat.tilt += 5.0 * DEGREE);
+        add("membrane -20 %", &|s| s.seat.membrane_thickness *= 0.8);
+        add("membrane +20 %", &|s| s.seat.membrane_thickness *= 1.2);
+        if design == "initial" {
+            add("hit at half the island", &|s| at(s, 0.25));
+            add("hit on both sides", &|s| at(s, 0.45));
+            add("notch", &|s| s.seat.notch = notch);
+        } else {
+            add("hit at the centre", &|s| s.actuator.tip_positions = vec![0.0]);
+            add("hit at half the island", &|s| at(s, 0.25));
+            add("no notch", &|s| s.seat.notch = None);
+            add("notch half as wide", &|s| widen(s, 0.5));
+            add("notch half as wide again", &|s| widen(s, 1.5));
+        }
+    }
+    // Without a notch its floor is no membrane: a thicker membrane than that is one of the notched design only.
+    for case in &mut cases {
+        if let Setup::SealSeat(setup) = &mut case.scene.setup
+            && let Some(notch) = &mut setup.seat.notch
+        {
+            notch.floor = notch.floor.max(setup.seat.membrane_thickness);
+        }
+    }
+    Ok(cases)
+}
+
+/// Two tips at this share of the island's length to either side of its centre.
+fn at(scene: &mut SealSeat, share: f64) {
+    let x = share * scene.seat.island_length;
+    scene.actuator.tip_positions = vec![-x, x];
+}
+
+fn widen(scene: &mut SealSeat, factor: f64) {
+    scene.seat.notch = scene.seat.notch.map(|notch| Notch { width: factor * notch.width, ..notch });
+}
+
+fn solve(scene: &Scene, cache: &Cache) -> Result<SeatQuantities> {
+    let mesh = SeatMesh::open(&reference::seat_mesh(scene, Resolution::Coarse, cache)?)?;
+    let model = SeatModel::new(scene, Model::C, None, &mesh, cache)?;
+    Ok(model.run(DEFAULT_TOLERANCE)?.quantities)
+}
+
+fn row(case: &Case, result: &SeatQuantities) -> Result<Vec<Cell>> {
+    let scene = case.seat()?;
+    let outermost = scene.actuator.tip_positions.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let numbers = [
+        scene.seat.aperture_angle,
+        scene.seat.tilt,
+        outermost,
+        scene.seat.notch.map_or(0.0, |notch| notch.width),
+        scene.seat.membrane_thickness,
+        result.sphere_angle,
+        result.sphere_angle - scene.intended_angle,
+        result.sphere_speed,
+        result.efficiency,
+        result.sphere_force_peak,
+        result.actuator_force_peak,
+    ];
+    Ok([Cell::Text(case.design), Cell::Text(case.varied)]
+        .into_iter()
+        .chain(numbers.map(Cell::Number))
+        .collect())
+}

@@ -1,0 +1,241 @@
+//! Reduced model of the flexible seal seat (section 4.4) on a coarse mesh of the improved design.
+//!
+//! Mesh: `impactcheck mesh seal-seat-improved --resolution coarse --size-factor 2.2`, quadratic tetrahedra, 2174 nodes.
+
+use assert_cmd::Command;
+use impactcheck::body::cache::Cache;
+use impactcheck::impact::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
+use impactcheck::scene::{Model, Scene};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name)
+}
+
+fn scene() -> Scene {
+    Scene::read(fixture("seal-seat.toml")).expect("scene")
+}
+
+fn mesh() -> SeatMesh {
+    SeatMesh::open(&fixture("seal-seat-improved-coarse.vtu")).expect("mesh")
+}
+
+fn model(modes: usize) -> SeatModel {
+    SeatModel::new(&scene(), Model::C, Some(modes), &mesh(), &Cache::off()).expect("model")
+}
+
+/// Model with 16 modes, built once for all tests.
+fn sixteen() -> &'static SeatModel {
+    static MODEL: OnceLock<SeatModel> = OnceLock::new();
+    MODEL.get_or_init(|| model(16))
+}
+
+/// Eigenfrequencies of the fixture's mesh in Hz by dolfinx 0.5.2 and SLEPc 3.18 (Krylov-Schur, shift-invert):
+/// `python3 -m fem_reference modes --scene scene.json --count 10 --mesh tests/fixtures/seal-seat-improved-coarse.vtu`.
+const SLEPC: [f64; 10] = [
+    4493.682227800223,
+    11707.746592643321,
+    13942.499255702645,
+    24248.05222102489,
+    33763.23730331995,
+    42149.393628541264,
+    46766.07512512408,
+    55724.276975830275,
+    57593.32323011873,
+    63071.917493595094,
+];
+
+#[test]
+fn first_ten_frequencies_are_those_of_slepc_on_the_same_mesh() {
+    let omega = &sixteen().system().omega;
+    for (found, expected) in omega.iter().zip(SLEPC) {
+        let frequency = found / (2.0 * std::f64::consts::PI);
+        assert!((frequency / expected - 1.0).abs() < 1e-6, "{frequency} Hz, SLEPc {expected} Hz");
+    }
+}
+
+#[test]
+fn ledgers_of_energy_and_momentum_balance() {
+    let result = sixteen().integrate(0.25e-6, false).expect("run");
+    assert!(result.energy_residual < 1e-4, "{}", result.energy_residual);
+    assert!(result.momentum_residual < 1e-12, "{}", result.momentum_residual);
+    // what the flanks push along the normals is more than what the sphere gets, and not much more
+    let [left, right] = result.tally.flank_impulse;
+    let system = sixteen().system();
+    let [x, z] = result.state.sphere_velocity;
+    let momentum = 2.0 * system.sphere_mass * x.hypot(z);
+    assert!(left > 0.0 && right > 0.0 && left + right > momentum && left + right < 2.0 * momentum);
+}
+
+#[test]
+fn launch_converges_in_time_with_second_order_and_across_contact_events_at_least_with_first() {
+    let velocity = |step: f64| sixteen().integrate(step, false).expect("run").state.sphere_velocity;
+    let exact = velocity(1e-6 / 32.0);
+    let error = |step: f64| {
+        let [x, z] = velocity(step);
+        (x - exact[0]).hypot(z - exact[1])
+    };
+    let errors = [2e-6, 1e-6, 0.5e-6, 0.25e-6].map(error);
+    let order = (errors[0] / errors[3]).log(8.0);
+    assert!(order > 1.0, "order {order}: {errors:?}");
+    assert!(errors[3] < 2e-3, "{errors:?}");
+}
+
+#[test]
+fn tolerance_bounds_the_error_of_the_velocity() {
+    let quantities = |tolerance| sixteen().run(tolerance).expect("run").quantities;
+    let exact = quantities(1e-5);
+    let found = quantities(1e-3);
+    let miss = (found.sphere_velocity_x - exact.sphere_velocity_x)
+        .hypot(found.sphere_velocity_z - exact.sphere_velocity_z);
+    assert!(miss < 1e-3 * exact.sphere_speed, "{miss}");
+}
+
+#[test]
+fn ten_modes_and_the_residual_are_as_good_as_many() {
+    let quantities = |model: &SeatModel| model.run(1e-4).expect("run").quantities;
+    let many = quantities(&model(60));
+    for modes in [10, 16, 25] {
+        let few = quantities(&model(modes));
+        let angle = (few.sphere_angle - many.sphere_angle).to_degrees();
+        assert!(angle.abs() < 0.5, "{modes} modes: {angle} degrees off");
+        for (name, a, b, bound) in [
+            ("speed", few.sphere_speed, many.sphere_speed, 0.01),
+            ("force on the sphere", few.sphere_force_peak, many.sphere_force_peak, 0.03),
+            ("force of the actuator", few.actuator_force_peak, many.actuator_force_peak, 0.03),
+        ] {
+            assert!((a / b - 1.0).abs() < bound, "{modes} modes: {name} {a}, with 60 modes {b}");
+        }
+    }
+}
+
+#[test]
+fn wider_zones_of_candidates_change_nothing() {
+    let scene = scene();
+    let setup = scene.seal_seat().expect("seal seat");
+    let expected = Zones::expected(setup);
+    let wide = Zones { ring: 4.0 * expected.ring, tip: 1.6 * expected.tip };
+    let body = mesh().body(setup, &wide, 16, &Cache::off()).expect("body");
+    assert!(body.candidates.len() > sixteen().system().candidates.len() + 20);
+    let system = impactcheck::impact::seal_seat::system::System::new(setup, &body.body, &body.candidates, 16)
+        .expect("system");
+    let options =
+        impactcheck::impact::seal_seat::integrate::Options { step: 1e-6, end_time: None, history: false };
+    let wide = impactcheck::impact::seal_seat::integrate::integrate(&system, &options).expect("run");
+    let narrow = sixteen().integrate(1e-6, false).expect("run");
+    for (a, b) in wide.state.sphere_velocity.iter().zip(narrow.state.sphere_velocity) {
+        assert!((a - b).abs() < 1e-7, "{a} {b}");
+    }
+}
+
+#[test]
+fn zones_too_narrow_are_widened() {
+    let zones = Zones { ring: 1e-5, tip: 1e-5 };
+    let wider = zones.widened([1e-5, 0.0]).expect("contact fills the zone");
+    assert!(wider.ring > zones.ring && wider.tip == zones.tip);
+    assert_eq!(zones.widened([0.5e-5, 0.5e-5]), None);
+}
+
+#[test]
+fn candidates_lie_on_the_exact_surfaces() {
+    let scene = scene();
+    let setup = scene.seal_seat().expect("seal seat");
+    let [cx, cz] = setup.ring().sphere_centre;
+    let mut on_ring = 0;
+    for candidate in &sixteen().system().candidates {
+        let [x, y, z] = candidate.place;
+        match candidate.partner {
+            Partner::Sphere => {
+                // a cone that touches the sphere: r^2 + d^2 at the distance d from the ring
+                let distance = (x - cx).hypot(y).hypot(z - cz);
+                let expected = setup.sphere.radius.hypot(candidate.offset);
+                assert!((distance - expected).abs() < 1e-9, "{distance} {expected}");
+                on_ring += usize::from(candidate.offset < 1e-9);
+            }
+            Partner::Tip(tip) => {
+                assert_eq!(z, 0.0);
+                let near = (x - setup.actuator.tip_positions[tip]).hypot(y);
+                assert!((near - candidate.offset).abs() < 1e-15);
+            }
+        }
+    }
+    assert!(on_ring > 10, "{on_ring}");
+}
+
+fn impactcheck(arguments: &[&str], cache: &Path) -> (i32, String, String) {
+    let mut command = Command::cargo_bin("impactcheck").expect("binary");
+    let output = command.args(arguments).env("IMPACTCHECK_CACHE", cache).output().expect("runs");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
+    (output.status.code().expect("status"), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn the_command_prints_the_summary_writes_the_history_and_remembers_the_body() {
+    let folder = tempfile::tempdir().expect("folder");
+    let (scene, mesh) = (fixture("seal-seat.toml"), fixture("seal-seat-improved-coarse.vtu"));
+    let history = folder.path().join("history.csv");
+    let cache = folder.path().join("cache");
+    let arguments = [
+        "reduced",
+        scene.to_str().expect("path"),
+        "--mesh",
+        mesh.to_str().expect("path"),
+        "--history",
+        history.to_str().expect("path"),
+        "--json",
+    ];
+    let (status, first, _) = impactcheck(&arguments, &cache);
+    assert_eq!(status, 0);
+    let (_, second, _) = impactcheck(&arguments, &cache);
+    let [first, second]: [Value; 2] = [first, second].map(|text| serde_json::from_str(&text).expect("JSON"));
+    for name in [
+        "sphere_velocity_x",
+        "sphere_velocity_z",
+        "sphere_angle",
+        "sphere_force_peak",
+        "actuator_force_peak",
+        "sphere_contact_end",
+    ] {
+        assert!(first[name].is_f64(), "{name}");
+        assert_eq!(first[name], second[name], "{name}: the cached body is another one");
+    }
+    assert_eq!(first["model"], "C");
+    let text = std::fs::read_to_string(history).expect("history");
+    assert!(text.starts_with("time,sphere_displacement_x,"));
+    assert_eq!(text.lines().count() as u64, 1 + first["samples"].as_u64().expect("samples"));
+}
+
+#[test]
+fn what_a_seal_seat_has_not_is_refused_in_one_sentence() {
+    let folder = tempfile::tempdir().expect("folder");
+    let (scene, mesh) = (fixture("seal-seat.toml"), fixture("seal-seat-improved-coarse.vtu"));
+    let (scene, mesh) = (scene.to_str().expect("path"), mesh.to_str().expect("path"));
+    let plate = fixture("plate-impact.toml");
+    let broken = folder.path().join("broken.vtu");
+    std::fs::write(&broken, "<VTKFile>").expect("file");
+    let broken = broken.to_str().expect("path");
+    for (arguments, status, said) in [
+        (vec!["reduced", scene, "--mesh", mesh, "--model", "A"], 2, "model A is one of a plate"),
+        (vec!["reduced", scene, "--mesh", mesh, "--model", "B"], 2, "model B is one of a plate"),
+        (vec!["reduced", scene, "--mesh", mesh, "--modes", "0"], 2, "at least one mode"),
+        (vec!["reduced", scene, "--mesh", broken], 12, "can't be read as VTK"),
+        (vec!["reduced", scene, "--mesh", "nowhere.vtu"], 1, "nowhere.vtu"),
+        (vec!["reduced", plate.to_str().expect("path"), "--mesh", mesh], 2, "is no seal seat"),
+    ] {
+        let (found, output, error) = impactcheck(&arguments, folder.path());
+        assert_eq!((found, output.as_str()), (status, ""), "{arguments:?}: {error}");
+        assert!(error.contains(said), "{arguments:?}: {error}");
+    }
+    // the mesh of another geometry
+    let own = std::fs::read_to_string(scene).expect("scene");
+    let text = own.replace("tilt               = \"15 deg\"", "tilt               = \"14 deg\"");
+    assert_ne!(text, own);
+    let other = folder.path().join("other.toml");
+    std::fs::write(&other, text).expect("file");
+    let (status, _, error) =
+        impactcheck(&["reduced", other.to_str().expect("path"), "--mesh", mesh], folder.path());
+    assert_eq!(status, 12, "{error}");
+    assert!(error.contains("not one of this seat"), "{error}");
+}
