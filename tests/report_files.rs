@@ -16,7 +16,17 @@ fn report<'a>(scene: &'a Scene, reference: &'a Outcome, reduced: &'a [Outcome]) 
     let comparison = compare_scene(scene, reference, reduced);
     let command = "impactcheck compare synthetic".into();
     let provenance = serde_json::Value::Null;
-    Report { scenes: vec![SceneReport { scene, comparison, reference, reduced, provenance, command, attachments: Attachments::default() }] }
+    Report {
+        scenes: vec![SceneReport {
+            scene,
+            comparison,
+            reference,
+            reduced,
+            provenance,
+            command,
+            attachments: Attachments::default(),
+        }],
+    }
 }
 
 fn contents(dir: &Path) -> BTreeMap<String, Vec<u8>> {

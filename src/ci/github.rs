@@ -45,7 +45,9 @@ pub fn annotations(report: &Report, files: &[String], text_of: impl Fn(usize) ->
     let more = found.len().saturating_sub(SHOWN);
     let mut commands: Vec<String> = found.into_iter().take(SHOWN).map(|(_, command)| command).collect();
     if more > 0 {
-        commands.push(format!("::notice title=impactcheck::{more} more failures are in the job summary and in the report"));
+        commands.push(format!(
+            "::notice title=impactcheck::{more} more failures are in the job summary and in the report"
+        ));
     }
     commands
 }
@@ -56,7 +58,9 @@ pub fn job_summary(report: &Report) -> String {
     text += "| scene | model | verdict | largest discrepancy | nearest to its bound | tolerance used |\n|---|---|---|---|---|--:|\n";
     for scene in &report.scenes {
         for model in &scene.comparison.models {
-            let largest = model.largest().map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
+            let largest = model
+                .largest()
+                .map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
             let tightest = model.tightest();
             text += &format!(
                 "| {} | {} | {} | {largest} | {} | {} |\n",
@@ -64,7 +68,9 @@ pub fn job_summary(report: &Report) -> String {
                 escaped(&model_name(&model.model, model.summary.modes)),
                 model.verdict,
                 tightest.map_or("–".into(), |d| words(&d.quantity)),
-                tightest.and_then(|d| d.used()).map_or("–".into(), |used| format!("{} %", significant(100.0 * used, 2))),
+                tightest
+                    .and_then(|d| d.used())
+                    .map_or("–".into(), |used| format!("{} %", significant(100.0 * used, 2))),
             );
         }
     }

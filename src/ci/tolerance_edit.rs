@@ -30,9 +30,9 @@ pub fn edited(text: &str, comparison: &SceneComparison) -> Result<(String, Vec<T
                 .and_then(|t| t.get_mut(&model.model))
                 .and_then(|t| t.get_mut(&row.quantity));
             let item = found.ok_or_else(|| invalid(format!("there is no `{place}`")))?;
-            let from = item.to_string().trim().to_owned();
+            let from = shown(item);
             change(item, row).ok_or_else(|| invalid(format!("`{place}` = {from} has no bound to go by")))?;
-            let to = item.to_string().trim().to_owned();
+            let to = shown(item);
             changes.push(ToleranceChange {
                 model: model.model.clone(),
                 quantity: row.quantity.clone(),
@@ -42,6 +42,11 @@ pub fn edited(text: &str, comparison: &SceneComparison) -> Result<(String, Vec<T
         }
     }
     Ok((document.to_string(), changes))
+}
+
+/// A value without the comment behind it.
+fn shown(item: &Item) -> String {
+    item.as_value().map_or_else(|| item.to_string(), |value| value.clone().decorated("", "").to_string())
 }
 
 /// Line (from 1) of the tolerance of `quantity` in the text of a scene file, else of the model's table.
@@ -77,9 +82,9 @@ fn change(item: &mut Item, row: &Discrepancy) -> Option<()> {
     let (size, unit) = number_and_unit(&bound)?;
     // what a bias of 1 in the terms of the bound is in SI
     let scale = match (key, row.relative) {
-        ("absolute", _) => unit.as_deref().map_or(Some(1.0), |unit| {
-            crate::scene::quantity_in(&format!("1 {unit}"), &row.unit).ok()
-        })?,
+        ("absolute", _) => unit
+            .as_deref()
+            .map_or(Some(1.0), |unit| crate::scene::quantity_in(&format!("1 {unit}"), &row.unit).ok())?,
         ("relative", Some(relative)) if relative != 0.0 => row.difference / relative,
         _ => row.tolerance? / size,
     };

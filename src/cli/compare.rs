@@ -157,7 +157,8 @@ impl<'a> Job<'a> {
         }
         if let (Some(report), false) = (reports.first_mut(), self.records.is_empty()) {
             let how = (self.arguments.bandwidth, self.arguments.speed);
-            let measured = measured::compare(report.scene, &self.records, report.reference, report.reduced, how)?;
+            let measured =
+                measured::compare(report.scene, &self.records, report.reference, report.reduced, how)?;
             report.comparison.measured = Some(measured);
             let files = self.arguments.measured.iter().map(|f| format!(" --measured {}", f.display()));
             report.command += &files.collect::<String>();
@@ -175,9 +176,7 @@ impl<'a> Job<'a> {
         let comparison = report.comparison();
         let entries = match &outputs.record {
             Some((file, commit)) => trend::record(file, &comparison, commit)?,
-            None => {
-                trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?
-            }
+            None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
         };
         for scene in &mut report.scenes {
             scene.attachments.trends = trend::trends(&entries, &scene.comparison);
@@ -214,7 +213,9 @@ fn figures(arguments: &Arguments, scenes: &[(PathBuf, Scene)]) -> Result<Vec<(Pa
     }
     let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
     let (stem, ending) = (part(file.file_stem()), part(file.extension()));
-    let named = |(_, scene): &(PathBuf, Scene)| (file.with_file_name(format!("{stem}-{}.{ending}", scene.name)), format);
+    let named = |(_, scene): &(PathBuf, Scene)| {
+        (file.with_file_name(format!("{stem}-{}.{ending}", scene.name)), format)
+    };
     Ok(scenes.iter().map(named).collect())
 }
 
@@ -279,11 +280,7 @@ fn read(names: &[String]) -> Result<Vec<(PathBuf, Scene)>> {
 }
 
 /// The references of all scenes, or one error that names every one that can't be used.
-fn references(
-    context: &Context,
-    arguments: &Arguments,
-    scenes: &[(PathBuf, Scene)],
-) -> Result<Vec<Stored>> {
+fn references(context: &Context, arguments: &Arguments, scenes: &[(PathBuf, Scene)]) -> Result<Vec<Stored>> {
     let store = context.store();
     let mut found = Vec::new();
     let mut problems = Vec::new();

@@ -107,7 +107,8 @@ fn update(context: &Context, job: &Job, results: &Results, reason: &str) -> Resu
         // what was written has to be read back as what was meant, before it is written
         Scene::parse(&file.display().to_string(), &edited)?;
         let changed = tolerances.len();
-        let entry = Acceptance { date: acceptance::today(), reason: reason.to_owned(), tolerances, reference };
+        let entry =
+            Acceptance { date: acceptance::today(), reason: reason.to_owned(), tolerances, reference };
         pending.push((file, text != edited, edited, entry, comparison.scene.clone(), changed));
     }
     let any = !pending.is_empty();

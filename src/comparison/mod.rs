@@ -146,11 +146,9 @@ impl ModelComparison {
 
     /// The gated row that is nearest to its bound, or farthest beyond it.
     pub fn tightest(&self) -> Option<&Discrepancy> {
-        let used = |d: &Discrepancy| d.used().map_or(-1.0, |used| if used.is_nan() { f64::INFINITY } else { used });
-        self.discrepancies
-            .iter()
-            .filter(|d| d.tolerance.is_some())
-            .max_by(|a, b| used(a).total_cmp(&used(b)))
+        let used =
+            |d: &Discrepancy| d.used().map_or(-1.0, |used| if used.is_nan() { f64::INFINITY } else { used });
+        self.discrepancies.iter().filter(|d| d.tolerance.is_some()).max_by(|a, b| used(a).total_cmp(&used(b)))
     }
 
     /// Number of rows that have a tolerance.

@@ -43,7 +43,8 @@ pub(super) fn load(folder: &Path) -> Result<Stored, Damage> {
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
     let summary: Summary = read_json(folder, SUMMARY)?;
     let provenance: Value = read_json(folder, PROVENANCE)?;
-    let (history, bands) = history_file::read(&folder.join(HISTORY)).map_err(|reason| damage(HISTORY, reason))?;
+    let (history, bands) =
+        history_file::read(&folder.join(HISTORY)).map_err(|reason| damage(HISTORY, reason))?;
     if summary.schema_version != SCHEMA_VERSION {
         let reason =
             format!("schema_version is {}; this program reads {SCHEMA_VERSION}", summary.schema_version);

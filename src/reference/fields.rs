@@ -98,9 +98,11 @@ fn parse(text: &str) -> Result<FieldMesh, String> {
 fn numbers(node: Node, wide: bool) -> Result<Vec<f64>, String> {
     let text: String = node.text().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
     match node.attribute("format") {
-        Some("ascii") => {
-            text.split(' ').filter(|t| !t.is_empty()).map(|t| t.parse().map_err(|_| format!("`{t}`"))).collect()
-        }
+        Some("ascii") => text
+            .split(' ')
+            .filter(|t| !t.is_empty())
+            .map(|t| t.parse().map_err(|_| format!("`{t}`")))
+            .collect(),
         Some("binary") => {
             let bytes = BASE64_STANDARD.decode(text.replace(' ', "")).map_err(|e| e.to_string())?;
             // the length of the data stands before them

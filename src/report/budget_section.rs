@@ -2,8 +2,8 @@
 
 use super::budget_figure::{budget_figure, cause_name};
 use super::format::{Prefixed, prefixed, with_unit, words};
-use crate::comparison::budget::{Part, QuantityBudget};
 use super::html::scrolled;
+use crate::comparison::budget::{Part, QuantityBudget};
 use maud::{Markup, html};
 
 const EXPLANATION: &str = "What each simplification of model B adds to its difference from the reference. They are \

@@ -50,7 +50,9 @@ impl<'a> Layout<'a> {
             let name = format!("{body}_{}", quantity.suffix);
             let curve = line.curves.iter().find(|c| c.quantity == name);
             axis.zip(curve).map_or_else(Vec::new, |(axis, curve)| {
-                let at = |(k, v): (usize, &f64)| (geometry.x_of(axis.time(k) * 1e6, end), y_of(v * quantity.factor));
+                let at = |(k, v): (usize, &f64)| {
+                    (geometry.x_of(axis.time(k) * 1e6, end), y_of(v * quantity.factor))
+                };
                 curve.values.iter().enumerate().map(at).filter(|p| p.1.is_finite()).collect()
             })
         };

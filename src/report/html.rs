@@ -100,7 +100,7 @@ fn card(scene: &SceneReport) -> Markup {
             p.soft { (scene.scene.description) }
             ul.models { @for model in &scene.comparison.models { li { (model_line(model)) } } }
             @let drifting = scene.attachments.trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
-            @if drifting > 0 { p { strong { (drifting) " numbers drift" } " over the commits recorded." } }
+            @if drifting > 0 { p { strong { "Drift: " } (drifting) " of " (scene.attachments.trends.len()) " numbers recorded over commits." } }
         }
     }
 }

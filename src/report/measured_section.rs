@@ -1,10 +1,10 @@
 //! The measured records in the report: alignment, efficiencies, curve metrics.
 
 use super::format::{prefixed, significant, with_unit, words};
+use super::html::scrolled;
 use super::{ChartPanel, SceneReport, Series, Theme, chart, measured_figure};
 use crate::impact::CURVES;
 use crate::measured::{AlignedRecord, Measured, Partner};
-use super::html::scrolled;
 use maud::{Markup, PreEscaped, html};
 
 /// Rows of a table, the heading first.

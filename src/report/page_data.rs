@@ -11,7 +11,9 @@ const DIGITS: i32 = 5;
 
 /// JSON of the curves, values in the units of the panels; without times if the reference's history can't be used.
 pub(super) fn curves(report: &SceneReport) -> Value {
-    let Some(axis) = report.comparison.window else { return json!({"time": [], "sources": [], "panels": []}) };
+    let Some(axis) = report.comparison.window else {
+        return json!({"time": [], "sources": [], "panels": []});
+    };
     let reference =
         ("reference".to_owned(), "FE reference".to_owned(), sample(axis, &report.reference.history));
     let reduced = report.reduced.iter().map(|outcome| {
@@ -49,8 +51,11 @@ pub(super) fn curves(report: &SceneReport) -> Value {
         .collect();
     let of_source = |(id, name, _): &(String, String, Vec<SampledCurve>)| {
         let is_reference = id == "reference";
-        let dashes: Vec<f64> =
-            if is_reference { Vec::new() } else { dash(id).split(' ').filter_map(|d| d.parse().ok()).collect() };
+        let dashes: Vec<f64> = if is_reference {
+            Vec::new()
+        } else {
+            dash(id).split(' ').filter_map(|d| d.parse().ok()).collect()
+        };
         json!({
             "id": id, "name": name, "short": if is_reference { "FE" } else { id }, "dash": dashes,
             "width": if is_reference { 2.1 } else { 1.7 },

@@ -51,7 +51,8 @@ fn content(tree: &Tree) -> Result<Vec<u8>> {
 }
 
 fn group(content: &mut Content, of: &Group) -> Result<()> {
-    if of.opacity().get() < 1.0 || of.clip_path().is_some() || of.mask().is_some() || !of.filters().is_empty() {
+    if of.opacity().get() < 1.0 || of.clip_path().is_some() || of.mask().is_some() || !of.filters().is_empty()
+    {
         return Err(internal("groups with opacity, clip, mask or filter"));
     }
     for node in of.children() {
