@@ -138,9 +138,8 @@ impl<'a> Job<'a> {
     /// The comparison of all scenes, and what is shown with it.
     pub(super) fn report<'b>(&'b self, context: &Context, results: &'b Results) -> Result<Report<'b>> {
         let mut reports = Vec::new();
-        for (((file, scene), stored), reduced) in
-            self.scenes.iter().zip(&results.references).zip(&results.reduced)
-        {
+        let solved = self.scenes.iter().zip(&results.references).zip(&results.reduced);
+        for (k, (((file, scene), stored), reduced)) in solved.enumerate() {
             let acceptances = acceptance::read(file)?;
             let mut comparison = compared(context, scene, &stored.outcome, reduced);
             let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
@@ -151,7 +150,7 @@ impl<'a> Job<'a> {
                 reference: &stored.outcome,
                 reduced,
                 provenance: stored.provenance.clone(),
-                command: format!("impactcheck compare {}", scene.name),
+                command: self.command(k),
                 attachments: Attachments { acceptances, ..Attachments::of(stored) },
             });
         }
@@ -164,6 +163,20 @@ impl<'a> Job<'a> {
             report.command += &files.collect::<String>();
         }
         Ok(Report { scenes: reports })
+    }
+
+    /// The command line that compares scene number `k` in the same way.
+    fn command(&self, k: usize) -> String {
+        let Arguments { scenes, models, resolution, .. } = self.arguments;
+        let mut command = format!("impactcheck compare {}", scenes.get(k).unwrap_or(&self.scenes[k].1.name));
+        let models: Vec<String> = models.iter().map(Model::to_string).collect();
+        if models != ["A", "B", "C"] {
+            command += &format!(" --models {}", models.join(","));
+        }
+        if *resolution != Resolution::Paper {
+            command += &format!(" --resolution {resolution}");
+        }
+        command
     }
 
     /// Writes the report and `outputs`, and prints the result.
