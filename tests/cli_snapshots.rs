@@ -67,8 +67,10 @@ fn help_of_the_program_and_of_every_command() {
 fn the_list_of_commands_is_complete() {
     let help = seen(&["--help"], None);
     let listed = help.lines().skip_while(|l| *l != "Commands:").skip(1).take_while(|l| !l.is_empty());
-    let names: Vec<&str> =
-        listed.filter(|l| l.starts_with("  ") && !l.starts_with("   ")).filter_map(|l| l.split_whitespace().next()).collect();
+    let names: Vec<&str> = listed
+        .filter(|l| l.starts_with("  ") && !l.starts_with("   "))
+        .filter_map(|l| l.split_whitespace().next())
+        .collect();
     let mut expected = COMMANDS.to_vec();
     expected.sort_unstable();
     let mut found = names.clone();
@@ -115,9 +117,14 @@ fn an_error_of_every_exit_status() {
     // 12: a solver
     let mut command = Command::cargo_bin("impactcheck").unwrap();
     command.args(["reference", "scaled-plate-r10", "--fresh", "--store", &path("store")]);
-    let output = command.current_dir(ROOT).env("IMPACTCHECK_PYTHON", "/nonexistent/python3").output().unwrap();
+    let output =
+        command.current_dir(ROOT).env("IMPACTCHECK_PYTHON", "/nonexistent/python3").output().unwrap();
     let text = String::from_utf8_lossy(&output.stderr).trim_end().to_owned();
-    check("error-12-no-python", &format!("{text}\n[exit status {}]", output.status.code().unwrap()), folder.path());
+    check(
+        "error-12-no-python",
+        &format!("{text}\n[exit status {}]", output.status.code().unwrap()),
+        folder.path(),
+    );
 }
 
 #[test]
@@ -129,7 +136,10 @@ fn a_new_scene_is_valid_and_runs() {
     let run = seen(&["reduced", &file, "--model", "B"], None);
     assert!(run.starts_with("mine (model B, 16 modes)") && run.ends_with("[exit status 0]"), "{run}");
     let seat = folder.path().join("seat.toml").display().to_string();
-    assert_eq!(seen(&["new", "seat", "--kind", "seal-seat", "--out", &seat, "--quiet"], None), "\n[exit status 0]");
+    assert_eq!(
+        seen(&["new", "seat", "--kind", "seal-seat", "--out", &seat, "--quiet"], None),
+        "\n[exit status 0]"
+    );
     assert!(fs::read_to_string(&seat).unwrap().contains("name        = \"seat\""));
 }
 
@@ -139,8 +149,15 @@ fn completions_and_manual_pages_know_every_command() {
     let completions = seen(&["completions", "bash"], None);
     assert_eq!(seen(&["man", "--out", &folder.path().display().to_string()], None), "\n[exit status 0]");
     for command in COMMANDS {
-        assert!(completions.contains(&format!("impactcheck__subcmd__{command}")) || completions.contains(&format!("impactcheck,{command}")), "{command}");
-        assert!(command == "help" || folder.path().join(format!("impactcheck-{command}.1")).is_file(), "{command}");
+        assert!(
+            completions.contains(&format!("impactcheck__subcmd__{command}"))
+                || completions.contains(&format!("impactcheck,{command}")),
+            "{command}"
+        );
+        assert!(
+            command == "help" || folder.path().join(format!("impactcheck-{command}.1")).is_file(),
+            "{command}"
+        );
     }
     assert!(seen(&["man"], None).contains(".TH impactcheck"));
 }

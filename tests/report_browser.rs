@@ -103,11 +103,40 @@ fn samples(dir: &Path) -> Value {
     Value::Object(columns)
 }
 
+/// The bands of the page are those of the stored history: each one's widest place is as wide.
+fn assert_bands(page: &str) {
+    let (_, rest) = page.split_once("id=\"curves\">").unwrap();
+    let curves: Value = serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap();
+    let end = curves["time"].as_array().unwrap().last().unwrap().as_f64().unwrap() * 1e-6;
+    let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("fem_reference/solutions");
+    let mut reader = csv::Reader::from_path(stored.join(SCENE).join("paper/history.csv")).unwrap();
+    let header: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
+    let rows: Vec<Vec<f64>> =
+        reader.records().map(|r| r.unwrap().iter().map(|x| x.parse().unwrap()).collect()).collect();
+    let mut compared = 0;
+    for panel in curves["panels"].as_array().unwrap() {
+        for curve in panel["curves"].as_array().unwrap() {
+            let name = format!("{}_band", curve["name"].as_str().unwrap());
+            let column = header.iter().position(|h| *h == name).unwrap();
+            let within = rows.iter().filter(|row| row[0] <= end + 1e-7).map(|row| row[column]);
+            let widest = within.fold(0.0, f64::max) * panel["factor"].as_f64().unwrap();
+            let drawn =
+                curve["band"].as_array().unwrap().iter().filter_map(Value::as_f64).fold(0.0, f64::max);
+            // the widest instant may lie between two of the page's, which has one digit more than it shows
+            let rounding = 0.5 * 10_f64.powi(-1 - panel["decimals"].as_i64().unwrap() as i32);
+            assert!(drawn <= widest + rounding && drawn >= 0.95 * widest, "{name}: {drawn} for {widest}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 8);
+}
+
 #[test]
 fn pages_work_in_a_browser_in_light_dark_and_on_a_phone() {
     let dir = tempfile::tempdir().unwrap();
     report(dir.path());
     let page = format!("{SCENE}.html");
+    assert_bands(&fs::read_to_string(dir.path().join(&page)).unwrap());
     const DARK: &str = "--blink-settings=preferredColorScheme=0";
     let views: [(&str, &[&str]); 3] =
         [(&page, &[]), (&page, &[DARK, "--window-size=500,900"]), ("index.html", &[DARK])];

@@ -4,9 +4,10 @@ mod synthetic_impact;
 
 use impactcheck::comparison::{Verdict, compare_scene};
 use impactcheck::impact::{CURVES, Outcome, PLATE_QUANTITIES};
+use impactcheck::reference::{CurveBands, FieldMesh};
 use impactcheck::report::{
-    Attachments, Report, SceneReport, Theme, curves_csv, figure, index_page, json, junit, markdown, png,
-    scene_page, terminal,
+    Attachments, FigureFormat, Report, SceneReport, Theme, curves_csv, figure, figure_file, index_page, json,
+    junit, markdown, png, printed_figure, scene_page, terminal,
 };
 use impactcheck::scene::Scene;
 use resvg::usvg::roxmltree::Document;
@@ -128,12 +129,16 @@ fn numbers_of_the_page_are_those_of_the_json() {
     assert_eq!(compared, 2 * 7 * (PLATE_QUANTITIES.len() + 2 * CURVES.len() + 2));
 }
 
+/// Also what scripts and styles could load.
 #[test]
 fn pages_load_nothing_and_show_verdict_and_command() {
     let data = Data::failing();
     let report = data.report();
     for page in [index_page(&report), scene_page(&report.scenes[0])] {
-        assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("src="));
+        assert!(!page.contains("<link") && !page.contains("src="));
+        for loading in ["@import", "url(", "fetch(", "XMLHttpRequest", "import(", "WebSocket"] {
+            assert!(!page.contains(loading), "{loading}");
+        }
         let loads = page.matches("http").count() - page.matches("http://www.w3.org/2000/svg").count();
         assert_eq!(loads, 0);
         assert!(page.contains("<span class=\"verdict fail\">fail</span>"));
@@ -163,7 +168,7 @@ fn junit_counts_a_case_per_model_and_quantity_and_its_failures() {
     for (quantity, _) in PLATE_QUANTITIES {
         assert_eq!(case(quantity).attribute("classname"), Some("synthetic.B"));
     }
-    let failure = case("outer_force_peak").first_element_child().unwrap();
+    let failure = case("outer_force_peak").children().find(|n| n.has_tag_name("failure")).unwrap();
     let message = failure.attribute("message").unwrap();
     for number in ["245.14", "243 N", "bound 1.215 N"] {
         assert!(message.contains(number), "{message}");
@@ -319,4 +324,192 @@ fn damaged_history_still_gives_a_report() {
     assert_eq!(document(&report)["verdict"], "fail");
     assert_eq!(curves_csv(&report.scenes[0]).unwrap().lines().count(), 1);
     assert!(markdown(&report).contains("not_finite: found 1 1, expected 0 1"));
+}
+
+/// The lengths in mm of a figure's root.
+fn size_in_mm(svg: &str) -> (f64, f64) {
+    let xml = Document::parse(svg).unwrap();
+    let length =
+        |name| xml.root_element().attribute(name).unwrap().strip_suffix("mm").unwrap().parse().unwrap();
+    (length("width"), length("height"))
+}
+
+#[test]
+fn figures_for_papers_have_their_width_readable_type_and_everything_inside() {
+    let data = Data::new();
+    let report = data.report();
+    for width in [75.0, 85.0, 119.0, 120.0, 175.0, 300.0] {
+        let svg = printed_figure(&report.scenes[0], width);
+        let (found, _) = size_in_mm(&svg);
+        assert!((found - width).abs() < 1e-2, "{found} mm for {width} mm");
+        let xml = Document::parse(&svg).unwrap();
+        let units: f64 =
+            xml.root_element().attribute("viewBox").unwrap().split(' ').nth(2).unwrap().parse().unwrap();
+        let points = |px: f64| px * width / units * 72.0 / 25.4;
+        let sizes =
+            xml.descendants().filter_map(|n| n.attribute("font-size")).map(|s| s.parse::<f64>().unwrap());
+        let smallest = sizes.fold(f64::INFINITY, f64::min);
+        assert!(points(smallest) >= 7.0, "{} pt at {width} mm", points(smallest));
+        // nothing leaves the drawing, text as the embedded font draws it
+        let mut options = resvg::usvg::Options { font_family: "DejaVu Sans".into(), ..Default::default() };
+        let font = concat!(env!("CARGO_MANIFEST_DIR"), "/src/report/fonts/DejaVuSans.ttf");
+        options.fontdb_mut().load_font_data(std::fs::read(font).unwrap());
+        let tree = resvg::usvg::Tree::from_str(&svg, &options).unwrap();
+        let inside = tree.root().abs_stroke_bounding_box();
+        assert!(inside.left() > -0.5 && inside.right() < tree.size().width() + 0.5, "{width} mm: {inside:?}");
+        assert!(
+            inside.top() > -0.5 && inside.bottom() < tree.size().height() + 0.5,
+            "{width} mm: {inside:?}"
+        );
+        let texts: Vec<_> = xml.descendants().filter_map(|n| n.text()).collect();
+        for text in ["Displacement in µm", "Velocity in mm/s", "Contact force in N", "Time in µs"] {
+            assert!(texts.contains(&text), "{width} mm: {text}");
+        }
+        assert!(texts.iter().any(|t| t.contains("69.") || t.contains(" %")), "efficiencies at {width} mm");
+    }
+}
+
+/// Paths and colours of the PDF are those of the SVG, counted in what the file says itself.
+#[test]
+fn pdf_holds_every_line_of_the_svg_on_a_page_of_its_size() {
+    use std::io::Read;
+    let data = Data::new();
+    let report = data.report();
+    let scene = &report.scenes[0];
+    let pdf = figure_file(scene, 85.0, FigureFormat::Pdf).unwrap();
+    let find = |what: &[u8], from: usize| {
+        from + pdf[from..].windows(what.len()).position(|w| w == what).unwrap_or_else(|| panic!("{what:?}"))
+    };
+    assert!(pdf.starts_with(b"%PDF-1."));
+    let text = String::from_utf8_lossy(&pdf);
+    let box_of_page: Vec<f64> =
+        between(&text, "/MediaBox [", "]").split(' ').map(|n| n.parse().unwrap()).collect();
+    let svg = printed_figure(scene, 85.0);
+    let (width, height) = size_in_mm(&svg);
+    assert!(
+        (box_of_page[2] - width * 72.0 / 25.4).abs() < 0.5
+            && (box_of_page[3] - height * 72.0 / 25.4).abs() < 0.5
+    );
+    let start = find(b"stream\n", 0) + 7;
+    let end = find(b"endstream", start);
+    let mut content = String::new();
+    flate2::read::ZlibDecoder::new(&pdf[start..end]).read_to_string(&mut content).unwrap();
+    let xml = Document::parse(&svg).unwrap();
+    for (class, colour) in
+        [("fig-reference", [26, 26, 26]), ("fig-A", [213, 94, 0]), ("fig-B", [0, 114, 178])]
+    {
+        let lines = xml.descendants().filter(|n| {
+            n.attribute("class") == Some(class) && n.attribute("d").is_some_and(|d| !d.is_empty())
+        });
+        let is_colour = |line: &&str| {
+            let numbers: Vec<f64> = line.split(' ').filter_map(|n| n.parse().ok()).collect();
+            line.ends_with(" RG")
+                && numbers.iter().zip(colour).all(|(n, c)| (n * 255.0 - f64::from(c)).abs() < 0.6)
+        };
+        assert_eq!(content.lines().filter(is_colour).count(), lines.count(), "{class}");
+    }
+}
+
+#[test]
+fn png_for_papers_states_its_resolution() {
+    let data = Data::new();
+    let report = data.report();
+    let bytes = figure_file(&report.scenes[0], 85.0, FigureFormat::Png).unwrap();
+    let reader = ::png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    let info = reader.info();
+    // 85 mm at 600 dots per inch
+    assert!(info.width.abs_diff(2008) <= 2, "{}", info.width);
+    assert_eq!(info.pixel_dims.unwrap().xppu, 23622);
+}
+
+/// A band of 10 N about a force: the drawn outline is that much higher than the curve.
+#[test]
+fn the_band_is_drawn_about_the_reference_as_wide_as_it_is() {
+    let data = Data::new();
+    let mut report = data.report();
+    let time = data.reference.history.time.clone();
+    let width = 10.0;
+    let widths = vec![("outer_force", vec![width; time.len()])];
+    report.scenes[0].attachments.bands = Some(CurveBands::new(time, widths));
+    let svg = figure(&report.scenes[0], Theme::Standalone);
+    let xml = Document::parse(&svg).unwrap();
+    let path = |class: &str, k: usize| -> Vec<f64> {
+        let found =
+            xml.descendants().filter(|n| n.attribute("class") == Some(class) && n.attribute("d").is_some());
+        let data = found.map(|n| n.attribute("d").unwrap()).nth(k).unwrap().trim_end_matches('Z').to_owned();
+        data.split(['M', 'L']).filter_map(|p| p.split(' ').nth(1)?.parse().ok()).collect()
+    };
+    let highest = |y: &[f64]| y.iter().copied().fold(f64::INFINITY, f64::min);
+    let lowest = |y: &[f64]| y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let bands = xml.descendants().filter(|n| n.attribute("class") == Some("fig-band")).count();
+    assert_eq!(bands, 1);
+    // legend, three displacements, three velocities, the efficiency's box, then the forces
+    let (curve, band) = (path("fig-reference", 8), path("fig-band", 0));
+    let scale = (lowest(&curve) - highest(&curve)) / 243.0;
+    assert!((highest(&curve) - highest(&band) - width * scale).abs() < 1.0, "above");
+    assert!(lowest(&band) > lowest(&curve), "below");
+}
+
+#[test]
+fn mesh_and_stress_are_shown_where_there_are_any() {
+    let data = Data::new();
+    let mut report = data.report();
+    assert!(!scene_page(&report.scenes[0]).contains("<image"));
+    let mut mesh = FieldMesh { points: Vec::new(), quads: Vec::new(), bodies: Vec::new(), von_mises: None };
+    for (body, (z, radius, height)) in
+        [(1e-3, 1e-2, 2e-2), (-1e-3, 3e-2, 2e-3), (-2.1e-2, 1e-2, 2e-2)].into_iter().enumerate()
+    {
+        let first = mesh.points.len();
+        mesh.points.extend([[0.0, z], [radius, z], [radius, z + height], [0.0, z + height]]);
+        mesh.quads.push([first, first + 1, first + 2, first + 3]);
+        mesh.bodies.push(body);
+    }
+    report.scenes[0].attachments.mesh = Some(mesh.clone());
+    assert_eq!(scene_page(&report.scenes[0]).matches("<image").count(), 2);
+    mesh.von_mises = Some(vec![1e8, 2e8, 3e8]);
+    report.scenes[0].attachments.stress = Some((47e-6, mesh));
+    let page = scene_page(&report.scenes[0]);
+    assert_eq!(page.matches("<image").count(), 4);
+    assert!(page.contains("47.00 µs") && page.contains("von Mises stress in MPa"));
+}
+
+#[test]
+fn junit_cases_carry_their_figures() {
+    let data = Data::new();
+    let report = data.report();
+    let xml = junit(&report).unwrap();
+    let xml = Document::parse(&xml).unwrap();
+    let mut compared = 0;
+    for model in &report.scenes[0].comparison.models {
+        for row in &model.discrepancies {
+            let class = format!("synthetic.{}", model.model);
+            let is_case = |n: &resvg::usvg::roxmltree::Node| {
+                n.attribute("classname") == Some(&class) && n.attribute("name") == Some(&row.quantity)
+            };
+            let case = xml.descendants().find(is_case).unwrap();
+            let property = |name: &str| {
+                let found = case
+                    .descendants()
+                    .find(|n| n.attribute("name") == Some(name) && n.has_tag_name("property"));
+                found.map(|n| n.attribute("value").unwrap().to_owned())
+            };
+            assert_eq!(property("unit"), Some(row.unit.clone()));
+            for (name, value) in [
+                ("reduced", Some(row.reduced)),
+                ("reference", Some(row.reference)),
+                ("tolerance", row.tolerance),
+                ("tolerance_used", row.used()),
+            ] {
+                let value = value.filter(|v| v.is_finite());
+                assert_eq!(
+                    property(name).map(|v| v.parse::<f64>().unwrap()),
+                    value,
+                    "{} {name}",
+                    row.quantity
+                );
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 100);
 }

@@ -34,9 +34,9 @@ pub fn edited<Q: Quantities>(
                 .and_then(|t| t.get_mut(&model.model))
                 .and_then(|t| t.get_mut(&row.quantity));
             let item = found.ok_or_else(|| invalid(format!("there is no `{place}`")))?;
-            let from = item.to_string().trim().to_owned();
+            let from = shown(item);
             change(item, row).ok_or_else(|| invalid(format!("`{place}` = {from} has no bound to go by")))?;
-            let to = item.to_string().trim().to_owned();
+            let to = shown(item);
             changes.push(ToleranceChange {
                 model: model.model.clone(),
                 quantity: row.quantity.clone(),
@@ -46,6 +46,11 @@ pub fn edited<Q: Quantities>(
         }
     }
     Ok((document.to_string(), changes))
+}
+
+/// A value without the comment behind it.
+fn shown(item: &Item) -> String {
+    item.as_value().map_or_else(|| item.to_string(), |value| value.clone().decorated("", "").to_string())
 }
 
 /// Line (from 1) of the tolerance of `quantity` in the text of a scene file, else of the model's table.

@@ -96,7 +96,7 @@ pub struct Trend {
     pub unit: String,
     /// Commit and value, oldest first.
     pub points: Vec<(String, f64)>,
-    /// Values that pass the gate now; those of the reference are not gated.
+    /// Values that pass the gate now; for the reference, which is not gated, its 95 % band, if known.
     pub admissible: Option<(f64, f64)>,
     /// Place in `points` of the commit from which on the number is farther than a tenth of its tolerance from where it was
     /// at first.
@@ -138,7 +138,7 @@ pub fn trends<Q: Quantities>(entries: &[Entry], scene: &SceneComparison<Q>) -> V
                 }
             };
             add(&model.model, Some(admissible));
-            add(REFERENCE, None);
+            add(REFERENCE, row.uncertainty.map(|u| (row.reference - u, row.reference + u)));
         }
     }
     trends.sort_by_key(|t| t.model == REFERENCE);

@@ -190,7 +190,7 @@ impl<'a> Job<'a> {
                 reference: &stored.outcome,
                 reduced,
                 provenance: stored.provenance.clone(),
-                command: format!("impactcheck compare {}", scene.name),
+                command: self.command(scene),
                 attachments: Attachments { acceptances, ..Attachments::of(stored) },
             });
         }
@@ -203,9 +203,26 @@ impl<'a> Job<'a> {
             report.command += &files.collect::<String>();
         }
         let seats = self.seats().zip(&results.seats);
-        let seats =
-            seats.map(|((file, scene), run)| compare_seats::report(file, scene, run, self.resolution()));
+        let seats = seats.map(|((file, scene), run)| {
+            compare_seats::report(file, scene, run, self.resolution(), self.command(scene))
+        });
         Ok(Report { scenes: reports, seats: seats.collect::<Result<_>>()? })
+    }
+
+    /// The command line that compares `scene` in the same way.
+    fn command(&self, scene: &Scene) -> String {
+        let Arguments { scenes, models, resolution, .. } = self.arguments;
+        let place = self.scenes.iter().position(|(_, other)| other.name == scene.name);
+        let named = place.and_then(|k| scenes.get(k)).unwrap_or(&scene.name);
+        let mut command = format!("impactcheck compare {named}");
+        let models: Vec<String> = models.iter().map(Model::to_string).collect();
+        if models != ["A", "B", "C"] {
+            command += &format!(" --models {}", models.join(","));
+        }
+        if *resolution != Resolution::Paper {
+            command += &format!(" --resolution {resolution}");
+        }
+        command
     }
 
     /// Writes the report and `outputs`, and prints the result.

@@ -47,12 +47,13 @@ pub(super) fn run(scene: &Scene, stored: Stored<SeatQuantities>) -> Result<SeatR
     Ok(SeatRun { stored, reduced, cost })
 }
 
-/// Compares what was run for the `scene` in `file`, whose tolerances count.
+/// Compares what was run for the `scene` in `file`, whose tolerances count; `command` makes it again.
 pub(super) fn report(
     file: &Path,
     scene: &Scene,
     run: &SeatRun,
     resolution: Resolution,
+    command: String,
 ) -> Result<SeatReport> {
     let SeatRun { stored, reduced, cost } = run;
     let acceptances = acceptance::read(file)?;
@@ -67,7 +68,7 @@ pub(super) fn report(
         cost: cost.clone(),
         provenance: stored.provenance.clone(),
         animation: animation.is_file().then_some(animation),
-        command: format!("impactcheck compare {}", scene.name),
+        command,
         attachments: Attachments { bands: stored.bands.clone(), acceptances, ..Attachments::default() },
     })
 }

@@ -1,5 +1,6 @@
 //! Nested JSON as a table of the page.
 
+use super::format::short;
 use super::html::scrolled;
 use maud::{Markup, html};
 use serde_json::Value;
@@ -33,16 +34,8 @@ fn flatten(name: &str, value: &Value, rows: &mut Vec<(String, String)>) {
         Value::String(text) => rows.push((name.to_owned(), text.clone())),
         Value::Number(number) if number.is_f64() => {
             // as many digits as anyone reads; the files beside the report have all of them
-            let value = number.as_f64().unwrap_or(f64::NAN);
-            rows.push((name.to_owned(), rounded(value)));
+            rows.push((name.to_owned(), short(number.as_f64().unwrap_or(f64::NAN))));
         }
         other => rows.push((name.to_owned(), other.to_string())),
     }
-}
-
-/// Six significant digits without zeros behind them.
-fn rounded(value: f64) -> String {
-    let short = format!("{value:.5e}").parse().unwrap_or(value);
-    let plain = format!("{short}");
-    if plain.len() <= 12 { plain } else { format!("{short:e}") }
 }

@@ -18,7 +18,7 @@ pub(super) const FONT_SIZE: f64 = 13.0;
 /// Height of a row of the legend in px.
 const LEGEND_ROW: f64 = 20.0;
 /// Widths in mm a figure of its own can have.
-pub const FIGURE_WIDTHS: std::ops::RangeInclusive<f64> = 60.0..=300.0;
+pub const FIGURE_WIDTHS: std::ops::RangeInclusive<f64> = 75.0..=300.0;
 
 /// Measures of the drawing in px.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,7 +93,7 @@ pub enum Theme {
 /// Colours of the stand-alone drawing; the page's style sheet has the same classes.
 const STYLE: &str = "\
 .fig-text{fill:#1a1a1a}.fig-frame{stroke:#444;fill:none}.fig-grid{stroke:#e3e3e3}\
-.fig-box{fill:#ececec;stroke:#bdbdbd}.fig-band{fill:#c4c4c4}.fig-halo{stroke:#fff}\
+.fig-box{fill:#ececec;stroke:#bdbdbd}.fig-band{fill:#d0d0d0}.fig-halo{stroke:#fff}\
 .fig-reference{stroke:#1a1a1a}.fig-A{stroke:#d55e00}.fig-B{stroke:#0072b2}.fig-C{stroke:#009e73}.fig-measured{stroke:#cc79a7}";
 
 /// One of the three panels.
@@ -234,7 +234,11 @@ pub fn printed_figure(report: &SceneReport, width: f64) -> String {
 
 fn scene_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> String {
     let axis = report.comparison.window;
-    let lines = axis.map_or_else(Vec::new, |axis| lines(report, axis));
+    let mut lines = axis.map_or_else(Vec::new, |axis| lines(report, axis));
+    if !geometry.boxes {
+        // a column is narrow: lines of 1 pt
+        lines.iter_mut().for_each(|line| line.width *= 0.8);
+    }
     let title = format!("{}: reduced models and finite-element reference", report.scene.name);
     drawing(&title, geometry, &QUANTITIES, &lines, axis, theme)
 }

@@ -8,15 +8,17 @@ use super::ticks::{tick_label, ticks};
 use crate::comparison::{CommonAxis, SampledCurve};
 use maud::{Markup, html};
 
-/// Lowest and highest value over all lines, with room on both sides.
+/// Lowest and highest value over all lines and bands, with room on both sides.
 fn range(quantity: &Quantity, lines: &[Line]) -> (f64, f64) {
-    let values = lines
-        .iter()
-        .flat_map(|l| &l.curves)
-        .filter(|c| c.quantity.ends_with(quantity.suffix))
-        .flat_map(|c| &c.values)
-        .filter(|v| v.is_finite())
-        .map(|v| v * quantity.factor);
+    let belongs = |c: &&SampledCurve| c.quantity.ends_with(quantity.suffix);
+    let curves = lines.iter().flat_map(|l| &l.curves).filter(belongs).flat_map(|c| c.values.iter().copied());
+    let edges = lines.iter().flat_map(|line| {
+        let curve = |band: &SampledCurve| line.curves.iter().find(|c| c.quantity == band.quantity);
+        let pairs = line.bands.iter().filter(belongs).filter_map(move |band| Some((curve(band)?, band)));
+        pairs
+            .flat_map(|(curve, band)| curve.values.iter().zip(&band.values).flat_map(|(v, w)| [v - w, v + w]))
+    });
+    let values = curves.chain(edges).filter(|v| v.is_finite()).map(|v| v * quantity.factor);
     let (low, high) = values.fold((0.0_f64, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
     let room = if high > low { 0.07 * (high - low) } else { 1.0 };
     (if low < 0.0 { low - room } else { -0.5 * room }, high + room)
@@ -72,8 +74,7 @@ impl<'a> Layout<'a> {
             };
             let time = |k: usize| axis.map_or(0.0, |axis| geometry.x_of(axis.time(k) * 1e6, end));
             let edge = side(1.0).chain(side(-1.0).rev());
-            // a band wider than the panel is cut at its frame
-            edge.filter(|(_, v)| v.is_finite()).map(|(k, v)| (time(k), y_of(v.clamp(low, high)))).collect()
+            edge.filter(|(_, v)| v.is_finite()).map(|(k, v)| (time(k), y_of(v))).collect()
         };
         let bands = lines.iter().flat_map(|line| {
             line.bands.iter().filter(|band| band.quantity.ends_with(quantity.suffix)).filter_map(|band| {

@@ -45,6 +45,13 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     minus(format!("{value:.decimals$}"))
 }
 
+/// Six significant digits without zeros behind them, for plain text.
+pub(super) fn short(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
+    let plain = format!("{rounded}");
+    if plain.len() <= 12 { plain } else { format!("{rounded:e}") }
+}
+
 /// A true minus sign.
 fn minus(text: String) -> String {
     text.replace('-', "−")
@@ -100,7 +107,7 @@ pub(crate) fn model_name(model: &str, modes: Option<usize>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{percent, prefixed, significant, with_unit, words};
+    use super::{percent, prefixed, short, significant, with_unit, words};
 
     #[test]
     fn significant_digits() {
@@ -110,6 +117,12 @@ mod tests {
         assert_eq!(significant(41_792.0, 4), "41792");
         assert_eq!(significant(f64::NAN, 4), "–");
         assert_eq!(significant(0.0, 4), "0");
+    }
+
+    #[test]
+    fn short_numbers_have_six_digits_at_most() {
+        let numbers = [443.692_261_185, -3.218_453_872e-10, 0.000_180_561_77, 5.0, 0.0, 92161.0];
+        assert_eq!(numbers.map(short), ["443.692", "-3.21845e-10", "0.000180562", "5", "0", "92161"]);
     }
 
     #[test]

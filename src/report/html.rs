@@ -106,7 +106,7 @@ fn card<Q: Quantities>(
             p.soft { (description) }
             ul.models { @for model in &comparison.models { li { (model_line(model)) } } }
             @let drifting = attachments.trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
-            @if drifting > 0 { p { strong { (drifting) " numbers drift" } " over the commits recorded." } }
+            @if drifting > 0 { p { strong { "Drift: " } (drifting) " of " (attachments.trends.len()) " numbers recorded over commits." } }
         }
     }
 }

@@ -78,7 +78,7 @@ fn rounded(values: &[f64], factor: f64, decimals: i32) -> Value {
         let rounded = (v * factor * unit).round() / unit;
         // a whole number needs no point, and zero no sign
         match rounded {
-            r if r == 0.0 => json!(0),
+            0.0 => json!(0),
             r if r.fract() == 0.0 && r.abs() < 1e15 => json!(r as i64),
             r => json!(r),
         }

@@ -32,10 +32,13 @@ pub fn scene_page(report: &SceneReport) -> String {
             Ok(pictures) => (pictures),
             Err(error) => p { (error) },
         }
-        (facts(&[
-            ("mesh", comparison.reference.mesh.as_ref()),
-            ("solver", comparison.reference.solver.as_ref()),
-        ]))
+        details {
+            summary { "Mesh and solver in numbers (SI units)" }
+            (facts(&[
+                ("mesh", comparison.reference.mesh.as_ref()),
+                ("solver", comparison.reference.solver.as_ref()),
+            ]))
+        }
         p { "Samples of the reference's history: " (comparison.reference.samples.map_or("–".into(), |n| n.to_string()))
             ", every " (with_unit(
                 comparison.reference.sample_interval.unwrap_or(f64::NAN),

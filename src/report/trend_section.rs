@@ -25,9 +25,9 @@ pub(super) fn trends_html(attachments: &Attachments) -> Markup {
     html! {
         h2 { "Trends" }
         p.soft {
-            "Gated numbers over the commits recorded, oldest first; shaded is what the gate admits now. A number drifts "
+            "Gated numbers over the commits recorded, oldest first; shaded is what the gate admits now, and for the reference its 95 % band. A number drifts "
             "since the commit from which on it is farther than a tenth of its tolerance from its first value. "
-            strong { @if drifting == 0 { "No number drifts." } @else { (drifting) " of " (trends.len()) " numbers drift." } }
+            strong { (drifting) " of " (trends.len()) @if drifting == 1 { " numbers drifts." } @else { " numbers drift." } }
         }
         (scrolled("Trends", &html! { table.trends {
             thead { tr {
