@@ -6,6 +6,7 @@ use crate::comparison::compare_scene;
 use crate::error::{Error, Result};
 use crate::impact::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
 use crate::impact::{Outcome, SeatQuantities};
+use crate::project::project_root;
 use crate::reference::{Resolution, Stored};
 use crate::report::{Attachments, Cost, SeatReport};
 use crate::scene::{Model, Scene};
@@ -67,7 +68,10 @@ pub(super) fn report(
         reduced: reduced.clone(),
         cost: cost.clone(),
         provenance: stored.provenance.clone(),
-        animation: animation.is_file().then_some(animation),
+        // the same on every machine, so that equal results give equal reports
+        animation: animation
+            .is_file()
+            .then(|| animation.strip_prefix(project_root()).map(Path::to_owned).unwrap_or(animation)),
         command,
         attachments: Attachments { bands: stored.bands.clone(), acceptances, ..Attachments::default() },
     })
