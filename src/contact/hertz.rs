@@ -3,6 +3,14 @@
 use crate::scene::Material;
 
 /// F = k delta^(3/2) while the approach delta is positive, else 0.
+///
+/// ```
+/// use impactcheck::contact::Hertz;
+///
+/// let contact = Hertz { stiffness: 1.5e10, tip_radius: 0.01 };
+/// let force = contact.force(8e-6);
+/// assert!((contact.approach(force) - 8e-6).abs() < 1e-18);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hertz {
     /// k = 4/3 E* sqrt(r) in N/m^(3/2).

@@ -14,6 +14,16 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A checked scene file, open to variation.
+///
+/// ```
+/// use impactcheck::scene::{Template, resolve};
+///
+/// let template = Template::read(resolve("scaled-plate-r10")?)?;
+/// let thickness = template.field("plate.thickness")?;
+/// let thinner = template.with(&[(&thickness, 1e-3)]).expect("a valid plate");
+/// assert_eq!(thinner.plate_impact()?.plate.thickness, 1e-3);
+/// # Ok::<(), impactcheck::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Template {
     values: Values,
