@@ -141,7 +141,10 @@
     const wide = document.documentElement.scrollWidth, window = document.documentElement.clientWidth;
     check(wide <= window, `the page is ${wide} px wide in a window of ${window} px`);
     check(document.querySelectorAll("th:not([scope])").length === 0, "headers of tables without scope");
-    check(document.querySelectorAll('svg[role="img"] > title').length > 0, "drawings without title");
+    const named = (element) => element.hasAttribute("aria-label") || element.querySelector(":scope > title");
+    for (const element of document.querySelectorAll('[role="img"], [role="region"], [role="group"]')) {
+      check(named(element), `without a name: ${element.outerHTML.slice(0, 120)}`);
+    }
   }
 
   async function accessibility() {
