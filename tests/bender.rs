@@ -10,7 +10,7 @@ use impactcheck::body::kirchhoff;
 use impactcheck::impact::OuterBody;
 use impactcheck::impact::integrator::{Integration, Options, integrate};
 use impactcheck::impact::system::System;
-use impactcheck::scene::{Bender, PlateImpact, Scene, Setup, Shape};
+use impactcheck::scene::{Bender, PlateImpact, Scene, Shape};
 use std::f64::consts::TAU;
 
 /// The bender of section 4.3 at a length of 13.7 mm.
@@ -203,7 +203,7 @@ fn torque_deflection_and_speed_are_three_ways_to_say_one_thing() {
     let outer = |drive: &str, beam: &str| {
         let scene = scene(drive, beam).unwrap();
         let setup = scene.plate_impact().unwrap();
-        setup.outer
+        setup.outer.clone()
     };
     let measured_beam = "first_frequency = \"500 Hz\"\ntip_stiffness = \"2500 N/m\"";
     let by_torque = outer("torque = \"4 N*mm\"", measured_beam);

@@ -6,7 +6,7 @@ use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, sphere_residual}
 use impactcheck::impact::integrator::{Options, integrate};
 use impactcheck::impact::reduced::Reduced;
 use impactcheck::impact::system::System;
-use impactcheck::scene::{Model, Scene, Setup, Shape, resolve};
+use impactcheck::scene::{Model, Scene, Shape, resolve};
 use std::path::Path;
 
 /// Summary of model C without the seconds it took.
