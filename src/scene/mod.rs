@@ -13,8 +13,10 @@ pub(crate) mod hash;
 mod problem;
 mod quantity;
 mod read;
+mod read_seat;
 mod schema;
 mod seal_seat;
+mod seat_specification;
 mod specification;
 mod template;
 mod tolerances;
@@ -368,7 +370,7 @@ impl Scene {
     /// The plate impact, for what knows nothing else.
     ///
     /// # Errors
-    /// [`Error::Scene`](crate::Error::Scene) if the scene is of another kind.
+    /// [`Error::Scene`] if the scene is of another kind.
     pub fn plate_impact(&self) -> crate::Result<&PlateImpact> {
         match &self.setup {
             Setup::PlateImpact(setup) => Ok(setup),
@@ -379,7 +381,7 @@ impl Scene {
     /// The seal seat, for what knows nothing else.
     ///
     /// # Errors
-    /// [`Error::Scene`](crate::Error::Scene) if the scene is of another kind.
+    /// [`Error::Scene`] if the scene is of another kind.
     pub fn seal_seat(&self) -> crate::Result<&SealSeat> {
         match &self.setup {
             Setup::SealSeat(setup) => Ok(setup),

@@ -3,7 +3,8 @@
 use super::check::{Checked, Checker, Place, Values};
 use super::collision::collisions;
 use super::problem::Collector;
-use super::specification::{DEFAULT_ELEMENTS, DEFAULT_RING_ELEMENTS, DEFAULT_SOLID_ELEMENTS, SCENE};
+use super::read_seat::{seal_seat, seat_reference};
+use super::specification::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS, SCENE};
 use super::*;
 use crate::analytical::cantilever;
 use crate::body::beam;
@@ -157,43 +158,43 @@ fn syntax(name: &str, text: &str, error: &toml::de::Error) -> Error {
 
 /// Typed access to checked values. The specification has seen to presence and type, so
 /// what is not found is a defect of the program.
-struct Node<'a>(&'a Values);
+pub(super) struct Node<'a>(pub(super) &'a Values);
 
 impl<'a> Node<'a> {
-    fn get(&self, key: &str) -> Result<&'a Checked> {
+    pub(super) fn get(&self, key: &str) -> Result<&'a Checked> {
         self.0.get(key).ok_or_else(|| Error::Internal(format!("the scene's `{key}` was not checked")))
     }
 
-    fn table(&self, key: &str) -> Result<Node<'a>> {
+    pub(super) fn table(&self, key: &str) -> Result<Node<'a>> {
         match self.get(key)? {
             Checked::Table(values) => Ok(Node(values)),
             other => Err(mismatch(key, other)),
         }
     }
 
-    fn optional_table(&self, key: &str) -> Result<Option<Node<'a>>> {
+    pub(super) fn optional_table(&self, key: &str) -> Result<Option<Node<'a>>> {
         self.0.contains_key(key).then(|| self.table(key)).transpose()
     }
 
-    fn number(&self, key: &str) -> Result<f64> {
+    pub(super) fn number(&self, key: &str) -> Result<f64> {
         match self.get(key)? {
             Checked::Number(number) => Ok(*number),
             other => Err(mismatch(key, other)),
         }
     }
 
-    fn numbers(&self, key: &str) -> Result<Vec<f64>> {
+    pub(super) fn numbers(&self, key: &str) -> Result<Vec<f64>> {
         match self.get(key)? {
             Checked::Numbers(numbers) => Ok(numbers.clone()),
             other => Err(mismatch(key, other)),
         }
     }
 
-    fn number_or(&self, key: &str, default: f64) -> Result<f64> {
+    pub(super) fn number_or(&self, key: &str, default: f64) -> Result<f64> {
         if self.0.contains_key(key) { self.number(key) } else { Ok(default) }
     }
 
-    fn text(&self, key: &str) -> Result<&'a str> {
+    pub(super) fn text(&self, key: &str) -> Result<&'a str> {
         match self.get(key)? {
             Checked::Text(text) => Ok(text),
             other => Err(mismatch(key, other)),
@@ -263,49 +264,7 @@ fn plate_impact(root: &Node, materials: &Node) -> Result<PlateImpact> {
     })
 }
 
-fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
-    let (seat, sphere, actuator) = (root.table("seat")?, root.table("sphere")?, root.table("actuator")?);
-    let notch = seat.0.contains_key("notch_width").then(|| -> Result<Notch> {
-        Ok(Notch { width: seat.number("notch_width")?, floor: seat.number("notch_floor")? })
-    });
-    let (radius, steel) = (sphere.number("radius")?, material(materials, sphere.text("material")?)?);
-    let full = Shape::Sphere { radius }.mass(&steel);
-    Ok(SealSeat {
-        seat: Seat {
-            material: material(materials, seat.text("material")?)?,
-            membrane_radius: seat.number("membrane_radius")?,
-            membrane_thickness: seat.number("membrane_thickness")?,
-            island_length: seat.number("island_length")?,
-            island_width: seat.number("island_width")?,
-            island_height: seat.number("island_height")?,
-            seat_distance: seat.number("seat_distance")?,
-            seated_height: seat.number("seated_height")?,
-            tilt: seat.number("tilt")?,
-            aperture_angle: seat.number("aperture_angle")?,
-            bore_radius: seat.number("bore_radius")?,
-            bore_depth: seat.number("bore_depth")?,
-            notch: notch.transpose()?,
-        },
-        sphere: SeatedSphere {
-            radius,
-            mass: sphere.number_or("mass", full)?,
-            material: steel,
-            body: match sphere.0.get("body") {
-                Some(Checked::Text(word)) if word == "elastic" => SphereBody::Elastic,
-                _ => SphereBody::Rigid,
-            },
-        },
-        actuator: Actuator {
-            mass: actuator.number("mass")?,
-            speed: actuator.number("speed")?,
-            tip_radius: actuator.number("tip_radius")?,
-            tip_positions: actuator.numbers("tip_positions")?,
-        },
-        intended_angle: root.table("intended")?.number("angle")?,
-    })
-}
-
-fn material(materials: &Node, name: &str) -> Result<Material> {
+pub(super) fn material(materials: &Node, name: &str) -> Result<Material> {
     let material = materials.table(name)?;
     Ok(Material {
         name: name.to_owned(),
@@ -421,7 +380,7 @@ fn reduced(settings: Option<Node>) -> Result<ReducedSettings> {
 }
 
 /// The order of the elements, if it is given.
-fn element_order(settings: &Node) -> Option<u64> {
+pub(super) fn element_order(settings: &Node) -> Option<u64> {
     match settings.0.get("element_order") {
         Some(Checked::Count(order)) => Some(*order),
         _ => None,
@@ -448,19 +407,5 @@ fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
         elements_per_ring_radius: None,
         element_order: element_order(&settings),
         rigid,
-    })
-}
-
-fn seat_reference(settings: Option<Node>) -> Result<ReferenceSettings> {
-    let empty = Values::new();
-    let settings = settings.unwrap_or(Node(&empty));
-    Ok(ReferenceSettings {
-        geometry: Geometry::Solid,
-        elements_per_contact_radius: None,
-        elements_per_ring_radius: Some(
-            settings.number_or("elements_per_ring_radius", DEFAULT_RING_ELEMENTS)?,
-        ),
-        element_order: element_order(&settings),
-        rigid: None,
     })
 }

@@ -1,6 +1,7 @@
 //! Every key a scene file may have: one table that drives reading, checking and the JSON schema.
 
 use super::quantity::Dimension;
+use super::seat_specification::{ACTUATOR, INTENDED, SEAT, SEAT_REDUCED, SEAT_REFERENCE, SEATED_SPHERE};
 
 /// Valid range of a number, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +42,7 @@ pub(super) struct Choice {
     pub(super) name: &'static str,
 }
 
-const fn choice(name: &'static str) -> Choice {
+pub(super) const fn choice(name: &'static str) -> Choice {
     Choice { name }
 }
 
@@ -114,11 +115,11 @@ impl Field {
     }
 }
 
-const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Field {
+pub(super) const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Field {
     Field { key, kind, required: true, only: &[], alternative: None, doc }
 }
 
-const fn optional(key: &'static str, kind: Kind, doc: &'static str) -> Field {
+pub(super) const fn optional(key: &'static str, kind: Kind, doc: &'static str) -> Field {
     Field { key, kind, required: false, only: &[], alternative: None, doc }
 }
 
@@ -126,15 +127,20 @@ const fn only(kinds: &'static [&'static str], field: Field) -> Field {
     Field { only: kinds, ..field }
 }
 
-const fn one_way(kind: Option<&'static str>, group: &'static str, set: &'static str, field: Field) -> Field {
+pub(super) const fn one_way(
+    kind: Option<&'static str>,
+    group: &'static str,
+    set: &'static str,
+    field: Field,
+) -> Field {
     Field { alternative: Some(Alternative { kind, group, set }), ..field }
 }
 
-const fn positive(dimension: Dimension) -> Kind {
+pub(super) const fn positive(dimension: Dimension) -> Kind {
     Kind::Quantity(dimension, Bound::POSITIVE)
 }
 
-const fn pure(bound: Bound) -> Kind {
+pub(super) const fn pure(bound: Bound) -> Kind {
     Kind::Quantity(Dimension::NONE, bound)
 }
 
@@ -216,8 +222,9 @@ const SPHERE_RADIUS: Field =
     only(&["sphere"], required("radius", positive(Dimension::LENGTH), "Radius of the sphere"));
 const COMPACT_MASS: Field =
     only(&["compact"], required("mass", positive(Dimension::MASS), "Mass of the body"));
-const TIP_RADIUS: Field = required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");
-const BODY_MATERIAL: Field =
+pub(super) const TIP_RADIUS: Field =
+    required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");
+pub(super) const BODY_MATERIAL: Field =
     required("material", Kind::Material, "Material of the body, a name under [materials]");
 
 /// A key of the bender (section 4.3 of the paper).
@@ -320,100 +327,6 @@ static FLUID: [Field; 10] = [
     thinning("relaxation_time", positive(Dimension::TIME), "Carreau's law: time lambda"),
     thinning("power_index", pure(FRACTION), "Carreau's law: power n"),
 ];
-
-const ACUTE: Bound = Bound { low: Some((0.0, true)), high: Some((std::f64::consts::FRAC_PI_2, false)) };
-const CONE: Bound = Bound { low: Some((0.0, false)), high: Some((std::f64::consts::PI, false)) };
-const HALF_TURN: Bound =
-    Bound { low: Some((-std::f64::consts::PI, true)), high: Some((std::f64::consts::PI, true)) };
-
-/// A key of the notch.
-const fn notch(key: &'static str, doc: &'static str) -> Field {
-    one_way(None, "the notch", "notch", optional(key, positive(Dimension::LENGTH), doc))
-}
-
-static SEAT: [Field; 14] = [
-    required("material", Kind::Material, "Material of the whole piece, a name under [materials]"),
-    required("membrane_radius", positive(Dimension::LENGTH), "Radius of the membrane, whose rim is clamped"),
-    required("membrane_thickness", positive(Dimension::LENGTH), "Thickness of the membrane, from z = 0 up"),
-    required("island_length", positive(Dimension::LENGTH), "Length of the island along x"),
-    required("island_width", positive(Dimension::LENGTH), "Width of the island along y"),
-    required("island_height", positive(Dimension::LENGTH), "z of the island's top"),
-    required("seat_distance", positive(Dimension::LENGTH), "Distance of the two seated centres along x"),
-    required(
-        "seated_height",
-        positive(Dimension::LENGTH),
-        "z of the centre of a sphere that rests in a seat",
-    ),
-    required(
-        "tilt",
-        Kind::Quantity(Dimension::ANGLE, ACUTE),
-        "alpha: inward tilt of the seats' axes against z",
-    ),
-    required("aperture_angle", Kind::Quantity(Dimension::ANGLE, CONE), "gamma: full angle of the cones"),
-    required("bore_radius", positive(Dimension::LENGTH), "Radius of the bores"),
-    required(
-        "bore_depth",
-        positive(Dimension::LENGTH),
-        "Depth of the bores' floors below the seated centres",
-    ),
-    notch("notch_width", "Width of the slot between the seats along x; absent = no slot"),
-    notch("notch_floor", "z of the slot's floor"),
-];
-
-static SEATED_SPHERE: [Field; 4] = [
-    required("radius", positive(Dimension::LENGTH), "Radius of the sphere"),
-    BODY_MATERIAL,
-    optional("mass", positive(Dimension::MASS), "Mass of the sphere; absent = that of a full one"),
-    optional(
-        "body",
-        Kind::Choice(&[choice("rigid"), choice("elastic")]),
-        "Whether the sphere deforms, in the reference; absent = rigid",
-    ),
-];
-
-/// Largest number of tips of the actuator.
-const MOST_TIPS: usize = 8;
-
-static ACTUATOR: [Field; 4] = [
-    required("mass", positive(Dimension::MASS), "Mass of the actuator"),
-    required("speed", positive(Dimension::SPEED), "Speed towards the seat"),
-    TIP_RADIUS,
-    required(
-        "tip_positions",
-        Kind::Quantities(Dimension::LENGTH, Bound::ANY, MOST_TIPS),
-        "x of each tip, at y = 0 below the underside",
-    ),
-];
-
-static INTENDED: [Field; 1] = [required(
-    "angle",
-    Kind::Quantity(Dimension::ANGLE, HALF_TURN),
-    "Direction of the sphere's flight against z, positive towards +x",
-)];
-
-static SEAT_REDUCED: [Field; 2] = [
-    optional("model", Kind::Choice(&[choice("C")]), "The model to run: only C knows this kind"),
-    optional("modes", Kind::Count(1, 1024), "Number of modes of the seat"),
-];
-
-/// Smallest and largest number of elements across the ring's radius.
-const RING_ELEMENTS: Bound = Bound { low: Some((1.0, true)), high: Some((64.0, true)) };
-
-static SEAT_REFERENCE: [Field; 2] = [
-    optional(
-        "element_order",
-        Kind::Count(1, 2),
-        "Order of the tetrahedra: 1 linear, 2 quadratic; absent = 2",
-    ),
-    optional(
-        "elements_per_ring_radius",
-        pure(RING_ELEMENTS),
-        "Elements across the radius of the contact ring at `paper` resolution; absent = 10",
-    ),
-];
-
-/// Default of `reference.elements_per_ring_radius`.
-pub(super) const DEFAULT_RING_ELEMENTS: f64 = 10.0;
 
 static RUN: [Field; 1] = [optional(
     "end_time",
