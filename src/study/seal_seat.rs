@@ -8,7 +8,6 @@ use crate::body::cache::Cache;
 use crate::error::Result;
 use crate::impact::SeatQuantities;
 use crate::impact::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
-use crate::project::project_root;
 use crate::reference::{self, Resolution};
 use crate::scene::{self, Model, Notch, Scene, SealSeat, Setup};
 
@@ -119,10 +118,9 @@ fn claims(intended: f64, angle: &dyn Fn(&str, &str) -> Option<f64>) -> Vec<Claim
     ]
 }
 
-/// A scene the project ships, among the scenes or the examples.
+/// A scene the project ships.
 pub(super) fn shipped(name: &str) -> Result<Scene> {
-    let example = project_root().join("scenes/examples").join(format!("{name}.toml"));
-    if example.is_file() { Scene::read(example) } else { Scene::read(scene::resolve(name)?) }
+    Scene::read(scene::resolve(name)?)
 }
 
 fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<Case>> {
