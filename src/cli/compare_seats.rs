@@ -7,9 +7,11 @@ use crate::comparison::compare_scene;
 use crate::error::{Error, Result};
 use crate::impact::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
 use crate::impact::{Outcome, SeatQuantities};
+use crate::project::project_root;
 use crate::reference::{Lookup, Stored, Wish};
 use crate::report::{Cost, SeatReport};
 use crate::scene::{Model, Scene};
+use std::path::Path;
 
 /// Name of the series of fields in the folder of a reference.
 const ANIMATION: &str = "stress.pvd";
@@ -40,7 +42,10 @@ fn report(scene: &Scene, stored: Stored<SeatQuantities>) -> Result<SeatReport> {
     let model = SeatModel::new(scene, Model::C, None, &mesh, &Cache::from_environment())?;
     let (summary, history) = model.run_with_history(DEFAULT_TOLERANCE)?;
     let reduced = vec![Outcome { summary, history }];
-    let animation = stored.folder.join(ANIMATION);
+    let animation = Some(stored.folder.join(ANIMATION)).filter(|file| file.is_file());
+    // as others find it, who have the project elsewhere
+    let root = project_root();
+    let animation = animation.map(|file| file.strip_prefix(&root).map(Path::to_path_buf).unwrap_or(file));
     Ok(SeatReport {
         scene: scene.clone(),
         comparison: compare_scene(scene, &stored.outcome, &reduced),
@@ -48,7 +53,7 @@ fn report(scene: &Scene, stored: Stored<SeatQuantities>) -> Result<SeatReport> {
         reduced,
         cost: vec![Cost { setup_seconds: model.setup_seconds, dofs: model.dofs }],
         provenance: stored.provenance,
-        animation: animation.is_file().then_some(animation),
+        animation,
         command: format!("impactcheck compare {}", scene.name),
     })
 }
