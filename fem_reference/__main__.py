@@ -1,4 +1,4 @@
-"""Command line: ``solve``, ``modes`` and ``versions``."""
+"""Command line: ``solve``, ``modes``, ``mesh``, ``bands``, ``cost`` and ``versions``."""
 
 from __future__ import annotations
 

@@ -140,3 +140,26 @@ fn the_shipped_meshes_belong_to_their_scenes_and_a_changed_one_to_none() {
         assert!(seat_meshes(folder.path(), &scene).expect("meshes").is_empty());
     }
 }
+
+#[test]
+fn meshing_refuses_what_it_cannot_mesh() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let out = folder.path().join("seat.vtu");
+    let seat = scene_file(DESIGNS[0]);
+    for (scene, factor, status, words) in [
+        (resolve("scaled-plate-r10").expect("shipped"), "1", 3, "`seal-seat`"),
+        (seat.clone(), "0", 2, "between 0.1 and 10"),
+        (seat, "nan", 2, "between 0.1 and 10"),
+    ] {
+        let done = std::process::Command::new(env!("CARGO_BIN_EXE_impactcheck"))
+            .args(["mesh", "--size-factor", factor, "--out"])
+            .arg(&out)
+            .arg(scene)
+            .output()
+            .expect("run");
+        let said = String::from_utf8_lossy(&done.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(done.status.code(), Some(status), "{said}");
+        assert!(said.contains(words), "{said}");
+        assert!(!out.exists());
+    }
+}

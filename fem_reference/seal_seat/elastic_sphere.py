@@ -1,6 +1,6 @@
 """Contact of the seat with a sphere that deforms: pairs of seat nodes and facets of the sphere.
 
-While the sphere is launched it slides up the cone by more than an element, so that the pairs have
+While the sphere is launched it slides up the cone by as much as an element, so that the pairs have
 to be made anew as it moves. The distance is always that of the exact, displaced sphere, plus what
 its mesh says about its deformation.
 """

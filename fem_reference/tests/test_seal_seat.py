@@ -16,9 +16,11 @@ import scipy.integrate
 from fem_reference.errors import SceneError, SolverError
 from fem_reference.fenicsx import alone
 from fem_reference.mesh import Floats
+from fem_reference.seal_seat.elastic_sphere import sphere_pairs
 from fem_reference.seal_seat.meshing import cad_volume, seat_mesh, sphere_mesh
 from fem_reference.seal_seat.modal import seat_modes
-from fem_reference.seal_seat.model import LEFT, RIGHT, SeatModel, seat_model
+from fem_reference.seal_seat.model import ELASTIC_SPHERE, LEFT, RIGHT, SeatModel, seat_model
+from fem_reference.seal_seat.motion import sphere_motion
 from fem_reference.seal_seat.run import SeatRun, integrate
 from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
 from fem_reference.seal_seat.solve import HISTORY_COLUMNS, QUANTITIES, history, seat_frequency
@@ -344,3 +346,30 @@ def test_a_sphere_that_deforms_is_launched_like_a_rigid_one_the_more_the_stiffer
     # Contact compliance of steel over that of the polymer: 1.3 %, and the seat bends much more.
     assert np.abs(steel - rigid)[:2].max() < 0.005 * speed
     assert np.abs(soft - rigid)[:2].max() > 0.01 * speed
+
+
+def test_pairs_of_an_elastic_sphere_follow_it_as_it_slides() -> None:
+    design = scene(
+        True, reference__element_order=1, sphere__body="elastic", run={"end_time": 58e-6}
+    )
+    sphere = sphere_mesh(design, 0.4)
+    model = seat_model(design, seat_mesh(design, 0.4), sphere)
+    loop = make_loop(model.model, alone())
+    integrate(loop, model, design)
+    facets, first = model.sphere_facets, int(loop.model.first[ELASTIC_SPHERE])
+    assert facets is not None
+    moved, (mean, _) = loop.gather(loop.u), sphere_motion(loop, model)
+    gaps: list[float] = []
+    slid: list[float] = []
+    for flank in (LEFT, RIGHT):
+        pressed = loop.problem.multipliers(flank) > 0.0
+        nodes, places = model.patches[flank].nodes[pressed], model.places[flank][pressed]
+        pairs = sphere_pairs(design, sphere, facets, places, moved[first:], mean, moved[nodes])
+        of_sphere = np.einsum("nk,nkd->nd", pairs.weights, moved[first:][pairs.facets])
+        gaps += (pairs.gaps + ((moved[nodes] - of_sphere) * pairs.normals).sum(axis=1)).tolist()
+        relative = moved[nodes] - mean
+        normal = (relative * pairs.normals).sum(axis=1)
+        slid += np.linalg.norm(relative - normal[:, None] * pairs.normals, axis=1).tolist()
+    # By then the sphere has slid so far that its curvature alone would open the old pairs.
+    assert max(slid) ** 2 / (2.0 * design.sphere_radius) > 1e-7
+    assert np.abs(gaps).max() < 1e-10
