@@ -8,7 +8,7 @@
 # The python that has (or gets) FEniCSx; Debian's packages belong to /usr/bin/python3.
 PYTHON := $(or $(IMPACTCHECK_PYTHON),/usr/bin/python3)
 SUDO   := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
-DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc openmpi-bin chromium
+DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc openmpi-bin chromium git
 VENV   := target/python-tools
 TOOL   := $(VENV)/bin/python
 RUN    := cargo run --release --quiet --
@@ -23,7 +23,7 @@ test: setup rust python live gate
 	@echo "all checks passed"
 
 setup:
-	@{ $(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" && command -v mpirun && command -v chromium; } >/dev/null 2>&1 || \
+	@{ $(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" && command -v mpirun && command -v chromium && command -v git; } >/dev/null 2>&1 || \
 	    { $(SUDO) apt-get update && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y $(DEBIAN); }
 	@[ -x $(VENV)/bin/ruff ] && [ -x $(VENV)/bin/mypy ] && ls $(VENV)/lib/*/site-packages/axe_playwright_python >/dev/null 2>&1 || \
 	    { $(PYTHON) -m venv --system-site-packages $(VENV) && $(TOOL) -m pip install --quiet ruff mypy && \

@@ -4,7 +4,10 @@
 
 use assert_cmd::Command;
 use impactcheck::body::cache::Cache;
+use impactcheck::comparison::compare_scene;
 use impactcheck::impact::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
+use impactcheck::impact::{Outcome, SeatQuantities, Source};
+use impactcheck::report::{self, Cost, Report, SeatReport};
 use impactcheck::scene::{Model, Scene};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -238,4 +241,102 @@ fn what_a_seal_seat_has_not_is_refused_in_one_sentence() {
         impactcheck(&["reduced", other.to_str().expect("path"), "--mesh", mesh], folder.path());
     assert_eq!(status, 12, "{error}");
     assert!(error.contains("not one of this seat"), "{error}");
+}
+
+/// A stand-in for a stored reference: model C with more modes, said to be finite elements.
+fn stand_in() -> Outcome<SeatQuantities> {
+    let (mut summary, history) = model(40).run_with_history(1e-3).expect("run");
+    summary.source = Source::Reference;
+    summary.model = None;
+    summary.modes = None;
+    summary.sample_interval = Some(history.time[1]);
+    Outcome { summary, history }
+}
+
+fn gated_scene() -> Scene {
+    let text = std::fs::read_to_string(fixture("seal-seat.toml")).expect("scene");
+    let text = format!(
+        "{text}\n[tolerances.C]\nsphere_angle = {{ absolute = \"0.5 deg\" }}\nsphere_speed = {{ relative = 0.01 }}\n\
+         sphere_force_peak = {{ relative = 0.03 }}\nactuator_force_peak = {{ relative = 0.03 }}\n"
+    );
+    Scene::parse("seal-seat.toml", &text).expect("scene")
+}
+
+#[test]
+fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
+    let scene = gated_scene();
+    let reference = stand_in();
+    let (summary, history) = sixteen().run_with_history(1e-3).expect("run");
+    let good = Outcome { summary, history };
+    let compared = compare_scene(&scene, &reference, std::slice::from_ref(&good));
+    let failed: Vec<_> = compared.models[0].integrity.iter().filter(|c| !c.verdict.passed()).collect();
+    assert!(compared.verdict.passed(), "{failed:?} {:?}", compared.integrity);
+    assert_eq!(compared.models[0].gated(), 4);
+    assert_eq!(compared.models[0].curves.len(), 10);
+    type Change = fn(&mut Outcome<SeatQuantities>);
+    let changes: [(&str, Change); 12] = [
+        ("direction", |o| o.summary.quantities.sphere_angle += 0.0175),
+        ("speed", |o| o.summary.quantities.sphere_speed *= 1.02),
+        ("peak of the sphere's force", |o| o.summary.quantities.sphere_force_peak *= 1.05),
+        ("peak of the actuator's force", |o| o.summary.quantities.actuator_force_peak *= 0.95),
+        ("efficiency that is not the velocity's", |o| o.summary.quantities.efficiency *= 1.01),
+        ("not a number", |o| o.summary.quantities.left_flank_impulse = f64::NAN),
+        ("force curve", |o| o.history.sphere_force.iter_mut().for_each(|f| *f *= 1.05)),
+        ("one component of the force", |o| {
+            o.history.sphere_force_components[0].iter_mut().for_each(|f| *f = -*f);
+        }),
+        ("velocity curve", |o| o.history.sphere_velocity[0].iter_mut().for_each(|v| *v *= 1.05)),
+        ("path", |o| o.history.actuator_displacement.iter_mut().for_each(|x| *x *= 1.05)),
+        ("a sample lost", |o| {
+            o.history.time.pop();
+        }),
+        ("another scene", |o| o.summary.scene_hash = "0".into()),
+    ];
+    for (what, change) in changes {
+        let mut bad = good.clone();
+        change(&mut bad);
+        assert!(!compare_scene(&scene, &reference, &[bad]).verdict.passed(), "{what}");
+    }
+}
+
+#[test]
+fn report_shows_the_seat_among_the_scenes() {
+    let scene = gated_scene();
+    let reference = stand_in();
+    let (summary, history) = sixteen().run_with_history(1e-3).expect("run");
+    let reduced = vec![Outcome { summary, history }];
+    let seat = SeatReport {
+        comparison: compare_scene(&scene, &reference, &reduced),
+        scene,
+        reference,
+        reduced,
+        cost: vec![Cost { setup_seconds: 1.0, dofs: 5929 }],
+        provenance: serde_json::json!({"created": "2026-01-01T00:00:00Z"}),
+        animation: None,
+        command: "impactcheck compare seal-seat-improved".into(),
+    };
+    let angle = seat.comparison.reference.quantities.sphere_angle.to_degrees();
+    let report = Report { scenes: Vec::new(), seats: vec![seat] };
+    let document: Value = serde_json::from_str(&report::json(&report).expect("JSON")).expect("JSON");
+    assert_eq!(document["verdict"], "pass");
+    assert_eq!(document["scenes"][0]["scene"], "seal-seat-improved");
+    assert!(document["scenes"][0]["models"][0]["summary"]["sphere_angle"].is_f64());
+    assert!(report::junit(&report).expect("JUnit").contains("classname=\"seal-seat-improved.C\""));
+    assert!(report::markdown(&report).contains("## seal-seat-improved: pass"));
+    assert!(report::terminal(&report).contains(&format!("{angle:+.2}°")));
+    let folder = tempfile::tempdir().expect("folder");
+    let written = report::write(&report, folder.path()).expect("files");
+    for name in
+        ["seal-seat-improved.html", "seal-seat-improved-section.svg", "seal-seat-improved.csv", "index.html"]
+    {
+        assert!(written.iter().any(|path| path.ends_with(name)), "{name}");
+    }
+    let page = std::fs::read_to_string(folder.path().join("seal-seat-improved.html")).expect("page");
+    assert!(
+        page.contains("intended direction: +15.00°") && page.contains(&format!("reference: {angle:+.2}°"))
+    );
+    let index = std::fs::read_to_string(folder.path().join("index.html")).expect("page");
+    assert!(index.contains("seal-seat-improved.html"));
+    let curves = std::fs::read_to_string(folder.path().join("seal-seat-improved.csv")).expect("curves");
+    assert_eq!(curves.lines().next().expect("header").split(',').count(), 21);
 }

@@ -4,7 +4,7 @@ use super::{Bench, Ratio, WorkPrecision, timed};
 use crate::error::{Error, Result};
 use crate::impact::reduced::Reduced;
 use crate::reference::{Lookup, Resolution, Store};
-use crate::scene::{self, Model, Scene};
+use crate::scene::{self, Model, Scene, Setup};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
@@ -19,6 +19,12 @@ const ERROR: f64 = 3e-3;
 pub(super) fn run(store: &Store, bench: &mut Bench) -> Result<()> {
     for path in scene::shipped()? {
         let scene = Scene::read(&path)?;
+        if matches!(scene.setup, Setup::SealSeat(_)) {
+            bench
+                .notes
+                .push(format!("scene `{}` is a seal seat: `impactcheck study seal-seat-cost`", scene.name));
+            continue;
+        }
         let Lookup::Found(finest) = store.find(&scene, Resolution::Fine) else {
             bench.notes.push(format!("scene `{}` has no stored fine reference", scene.name));
             continue;

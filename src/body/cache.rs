@@ -1,7 +1,8 @@
 //! Cache of bodies on disk, by content: the same inputs give the same numbers, bit by bit, without computing them.
 //!
 //! An entry is a text file named by the SHA-256 of its inputs: checksum, inputs, value, one per line. It is
-//! used only if checksum and inputs are right; everything else in the folder is ignored. An entry takes about 2 kB.
+//! used only if checksum and inputs are right; everything else in the folder is ignored. An entry takes about 2 kB, that of a
+//! seal seat some MB.
 
 use crate::error::Result;
 use crate::report::write_file;

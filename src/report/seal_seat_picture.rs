@@ -149,7 +149,8 @@ fn tip(x: f64, radius: f64, bottom: f64, scale: &Scale) -> String {
 
 fn draw_arrow(arrow: &Arrow, from: [f64; 2], length_per_speed: f64, scale: &Scale) -> Markup {
     let speed = arrow.velocity[0].hypot(arrow.velocity[1]);
-    if !(speed > 0.0) {
+    // at rest, or not a number
+    if speed.is_nan() || speed == 0.0 {
         return html! {};
     }
     let direction = arrow.velocity.map(|v| v / speed);

@@ -8,7 +8,6 @@ use crate::body::cache::Cache;
 use crate::error::Result;
 use crate::impact::SeatQuantities;
 use crate::impact::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
-use crate::project::project_root;
 use crate::reference::{self, Resolution};
 use crate::scene::{self, Model, Notch, Scene, SealSeat, Setup};
 
@@ -44,13 +43,20 @@ pub fn run(note: &mut Note) -> Result<Study> {
     let mut results = Vec::new();
     for (k, case) in cases.iter().enumerate() {
         note(&format!("{} of {}: {} design, {}", k + 1, cases.len(), case.design, case.varied));
-        results.push(solve(&case.scene, &cache)?);
+        // A geometry that gmsh meshes badly at one size it meshes well at another; if at none, its row stays empty.
+        let solved = solve(&case.scene, Resolution::Coarse, &cache);
+        let solved = solved.or_else(|_| solve(&case.scene, Resolution::Paper, &cache));
+        if let Err(error) = &solved {
+            note(&format!("{} design, {}: {error}", case.design, case.varied));
+        }
+        results.push(solved.ok());
     }
-    let rows = cases.iter().zip(&results).map(|(case, result)| row(case, result)).collect::<Result<_>>()?;
+    let rows =
+        cases.iter().zip(&results).map(|(case, result)| row(case, result.as_ref())).collect::<Result<_>>()?;
     let intended = improved.seal_seat()?.intended_angle;
     let angle = |design: &str, varied: &str| {
         let case = cases.iter().position(|c| c.design == design && c.varied == varied);
-        case.map(|k| results[k].sphere_angle)
+        results[case?].as_ref().map(|q| q.sphere_angle)
     };
     Ok(Study {
         schema_version: SCHEMA_VERSION,
@@ -119,10 +125,9 @@ fn claims(intended: f64, angle: &dyn Fn(&str, &str) -> Option<f64>) -> Vec<Claim
     ]
 }
 
-/// A scene the project ships, among the scenes or the examples.
+/// A scene the project ships.
 pub(super) fn shipped(name: &str) -> Result<Scene> {
-    let example = project_root().join("scenes/examples").join(format!("{name}.toml"));
-    if example.is_file() { Scene::read(example) } else { Scene::read(scene::resolve(name)?) }
+    Scene::read(scene::resolve(name)?)
 }
 
 fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<Case>> {
@@ -176,30 +181,32 @@ fn widen(scene: &mut SealSeat, factor: f64) {
     scene.seat.notch = scene.seat.notch.map(|notch| Notch { width: factor * notch.width, ..notch });
 }
 
-fn solve(scene: &Scene, cache: &Cache) -> Result<SeatQuantities> {
-    let mesh = SeatMesh::open(&reference::seat_mesh(scene, Resolution::Coarse, cache)?)?;
+fn solve(scene: &Scene, resolution: Resolution, cache: &Cache) -> Result<SeatQuantities> {
+    let mesh = SeatMesh::open(&reference::seat_mesh(scene, resolution, cache)?)?;
     let model = SeatModel::new(scene, Model::C, None, &mesh, cache)?;
     Ok(model.run(DEFAULT_TOLERANCE)?.quantities)
 }
 
-fn row(case: &Case, result: &SeatQuantities) -> Result<Vec<Cell>> {
+fn row(case: &Case, result: Option<&SeatQuantities>) -> Result<Vec<Cell>> {
     let scene = case.seat()?;
     let outermost = scene.actuator.tip_positions.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    let numbers = [
+    let geometry = [
         scene.seat.aperture_angle,
         scene.seat.tilt,
         outermost,
         scene.seat.notch.map_or(0.0, |notch| notch.width),
         scene.seat.membrane_thickness,
-        result.sphere_angle,
-        result.sphere_angle - scene.intended_angle,
-        result.sphere_speed,
-        result.efficiency,
-        result.sphere_force_peak,
-        result.actuator_force_peak,
     ];
-    Ok([Cell::Text(case.design), Cell::Text(case.varied)]
-        .into_iter()
-        .chain(numbers.map(Cell::Number))
-        .collect())
+    let found: [fn(&SeatQuantities) -> f64; 5] = [
+        |q| q.sphere_angle,
+        |q| q.sphere_speed,
+        |q| q.efficiency,
+        |q| q.sphere_force_peak,
+        |q| q.actuator_force_peak,
+    ];
+    let mut row = vec![Cell::Text(case.design), Cell::Text(case.varied)];
+    row.extend(geometry.map(Cell::Number));
+    row.extend(found.map(|value| Cell::from(result.map(value))));
+    row.insert(8, result.map(|q| q.sphere_angle - scene.intended_angle).into());
+    Ok(row)
 }

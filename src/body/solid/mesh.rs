@@ -98,7 +98,7 @@ impl TetMesh {
 
     fn check(&self) -> std::result::Result<(), String> {
         let per_cell = self.nodes_per_cell();
-        if self.cells.is_empty() || self.cells.len() % per_cell != 0 {
+        if self.cells.is_empty() || !self.cells.len().is_multiple_of(per_cell) {
             return Err(format!("{} node numbers are no tetrahedra of {per_cell} nodes", self.cells.len()));
         }
         if let Some(node) = self.points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {

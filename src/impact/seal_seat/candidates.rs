@@ -49,7 +49,7 @@ impl Zones {
     /// Widths for the forces that are to be expected, from above: the actuator's as if the seat were a heavy half-space
     /// (Hertz), the sphere's as it takes twice the actuator's speed in the same time.
     ///
-    /// Tip: the radius of the Hertz contact (Johnson 1985, Contact Mechanics, eq. 4.22). Cone: three half widths of
+    /// Tip: the radius of the Hertz contact (Johnson 1985, Contact Mechanics, eq. 4.22). Cone: five half widths of
     /// the line contact (eq. 4.43) with the force spread over the ring; the flanks share it unequally, and the sphere slides on
     /// them.
     pub fn expected(scene: &SealSeat) -> Self {
@@ -62,7 +62,7 @@ impl Zones {
         let length = 2.0 * std::f64::consts::PI * ring.radius;
         let line_load = force / (length * (0.5 * scene.seat.aperture_angle).sin());
         let half_width = (4.0 * line_load * scene.sphere.radius / (std::f64::consts::PI * modulus)).sqrt();
-        Self { ring: rounded(3.0 * half_width), tip: rounded(patch) }
+        Self { ring: rounded(5.0 * half_width), tip: rounded(patch) }
     }
 
     /// Zones that hold contact up to `reach` in m from where sphere and tips touch first, with room beyond it; `None`

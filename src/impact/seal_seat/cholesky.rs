@@ -54,7 +54,8 @@ impl Cholesky {
         let all = MatRef::from_column_major_slice(&self.values, n, n);
         solve_lower_triangular_in_place(all.submatrix(0, 0, size, size), row, Par::Seq);
         let pivot = entry(size) - self.column[..size].iter().map(|l| l * l).sum::<f64>();
-        if !(pivot > 0.0) {
+        // not positive, or not a number
+        if pivot.is_nan() || pivot <= 0.0 {
             return false;
         }
         for column in 0..size {

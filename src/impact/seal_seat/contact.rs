@@ -14,10 +14,12 @@
 //! whether one has been missed.
 
 use super::cholesky::Cholesky;
+use super::nodes::{Ball, Nodes, displaced, dot};
+use super::survey::UNWATCHED;
 use crate::error::{Error, Result};
 
 /// Largest gap in m, over the radius of the partner, that a closed contact may have.
-const CLOSED: f64 = 1e-8;
+pub(super) const CLOSED: f64 = 1e-8;
 /// Change of a normal in rad that counts as much as a gap of its size times this, over the radius: forces act along the
 /// normals of the last iteration.
 const TURN: f64 = 1e-3;
@@ -30,91 +32,27 @@ const PATIENCE: u32 = 4;
 /// Most iterations per instant.
 const MOST: u32 = 400;
 
-/// Margin of the next survey over that which was needed before.
-const RESERVE: f64 = 2.0;
-/// Place of a candidate that is not watched.
-const UNWATCHED: usize = usize::MAX;
-
-/// A rigid sphere that candidates meet.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ball {
-    /// Centre in m.
-    pub centre: [f64; 3],
-    /// Radius in m.
-    pub radius: f64,
-}
-
-/// The nodes that may be touched.
-#[derive(Debug, Clone)]
-pub struct Nodes {
-    /// Places at rest in m. Shape (n).
-    place: Vec<[f64; 3]>,
-    /// Number of the ball each one meets. Shape (n).
-    ball: Vec<usize>,
-    /// Residual flexibility R_ij in m/N, 3 x 3 blocks row by row. Shape (n, n).
-    residual: Vec<[f64; 9]>,
-}
-
-impl Nodes {
-    /// Candidates at `place`, each against the ball of the number in `ball`, with the `residual` flexibility
-    /// (x, y, z of each candidate; shape (3 n, 3 n), row by row) in m/N.
-    pub fn new(place: Vec<[f64; 3]>, ball: Vec<usize>, residual: &[f64]) -> Self {
-        let n = place.len();
-        let entry = |i: usize, j: usize, k: usize| residual[(3 * i + k / 3) * 3 * n + 3 * j + k % 3];
-        let residual = (0..n * n).map(|ij| std::array::from_fn(|k| entry(ij / n, ij % n, k))).collect();
-        Self { place, ball, residual }
-    }
-
-    /// Number of candidates.
-    pub fn len(&self) -> usize {
-        self.place.len()
-    }
-
-    /// Whether there is no candidate.
-    pub fn is_empty(&self) -> bool {
-        self.place.is_empty()
-    }
-
-    /// Flexibility of candidate `i` under forces on all.
-    fn row(&self, i: usize) -> &[[f64; 9]] {
-        &self.residual[i * self.len()..(i + 1) * self.len()]
-    }
-
-    /// Displacement in m of candidate `i` under the forces `push` on candidates.
-    fn displaced(&self, i: usize, push: &[(usize, [f64; 3])]) -> [f64; 3] {
-        displaced(self.row(i), push)
-    }
-
-    /// Displacement in m of candidate `i` along its normal under a unit force on `j` along its own: n_i^T R_ij n_j.
-    fn compliance(&self, i: usize, j: usize, normal: &[[f64; 3]]) -> f64 {
-        let (r, p, q) = (&self.residual[i * self.len() + j], normal[i], normal[j]);
-        p[0] * (r[0] * q[0] + r[1] * q[1] + r[2] * q[2])
-            + p[1] * (r[3] * q[0] + r[4] * q[1] + r[5] * q[2])
-            + p[2] * (r[6] * q[0] + r[7] * q[1] + r[8] * q[2])
-    }
-}
-
 /// A solution, from which the next one starts.
 #[derive(Debug, Clone, Default)]
 pub struct Loads {
     /// Candidates in contact, ascending.
-    active: Vec<usize>,
+    pub(super) active: Vec<usize>,
     /// Force of each candidate in N. Shape (n).
     force: Vec<f64>,
     /// Normals from the balls to the candidates. Shape (n).
     normal: Vec<[f64; 3]>,
     /// Candidates that are looked at, ascending.
-    watched: Vec<usize>,
+    pub(super) watched: Vec<usize>,
 }
 
 /// The contact problem and its last solution.
 #[derive(Debug, Clone)]
 pub struct Contact<'a> {
-    nodes: &'a Nodes,
-    loads: Loads,
+    pub(super) nodes: &'a Nodes,
+    pub(super) loads: Loads,
     /// Displacements by the residual in m. Shape (n).
-    yielding: Vec<[f64; 3]>,
-    gap: Vec<f64>,
+    pub(super) yielding: Vec<[f64; 3]>,
+    pub(super) gap: Vec<f64>,
     /// Nodes on the wrong side: in contact with a tensile force, or out of contact and too deep. Shape (n).
     wrong: Vec<bool>,
     /// Factor of G on the nodes `factored`, in this order.
@@ -125,24 +63,15 @@ pub struct Contact<'a> {
     previous: Vec<usize>,
     step: Vec<f64>,
     /// Contact set with the forces on the body in N.
-    push: Vec<(usize, [f64; 3])>,
+    pub(super) push: Vec<(usize, [f64; 3])>,
     /// Gaps at the last survey, 0 in contact. Shape (n).
-    surveyed: Vec<f64>,
+    pub(super) surveyed: Vec<f64>,
     /// Place of each candidate among those watched, or [`UNWATCHED`]. Shape (n).
-    slot: Vec<usize>,
+    pub(super) slot: Vec<usize>,
     /// Flexibility between those watched, side by side in memory. Shape (watched, watched).
-    compact: Vec<[f64; 9]>,
+    pub(super) compact: Vec<[f64; 9]>,
     /// What it has cost so far.
     pub work: Work,
-}
-
-/// What a look at all candidates has shown.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Survey {
-    /// Whether one that was not watched has been passed through.
-    pub missed: bool,
-    /// Largest gap in m at the survey before of those that have touched since: what margin was needed.
-    pub needed: f64,
 }
 
 /// What the solutions have cost.
@@ -269,49 +198,6 @@ impl<'a> Contact<'a> {
         )))
     }
 
-    /// Looks at all candidates after [`Contact::solve`], and watches from now on those with gaps below `margin` in m, or
-    /// below twice the margin that would have been needed since the last survey.
-    pub fn survey(&mut self, modal: &[f64], balls: &[Ball], margin: f64) -> Survey {
-        let mut survey = Survey { missed: false, needed: 0.0 };
-        self.collect_push();
-        let (mut active, mut watched) = (0, 0);
-        for i in 0..self.nodes.len() {
-            let was_watched = self.loads.watched.get(watched) == Some(&i);
-            watched += usize::from(was_watched);
-            let touches = self.loads.active.get(active) == Some(&i);
-            if touches {
-                active += 1;
-                self.gap[i] = 0.0;
-            } else {
-                self.yielding[i] = self.nodes.displaced(i, &self.push);
-                self.look(i, modal, balls);
-            }
-            let passed = !was_watched && self.gap[i] < -CLOSED * balls[self.nodes.ball[i]].radius;
-            survey.missed |= passed;
-            if touches || passed {
-                survey.needed = survey.needed.max(self.surveyed[i]);
-            }
-        }
-        self.surveyed.clone_from(&self.gap);
-        self.watch(margin.max(RESERVE * survey.needed));
-        survey
-    }
-
-    /// Watches the candidates whose gaps at the last survey were below `margin` in m.
-    fn watch(&mut self, margin: f64) {
-        self.loads.watched.clear();
-        self.loads.watched.extend((0..self.nodes.len()).filter(|&i| self.surveyed[i] < margin));
-        self.slot.fill(UNWATCHED);
-        for (slot, &i) in self.loads.watched.iter().enumerate() {
-            self.slot[i] = slot;
-        }
-        self.compact.clear();
-        for &i in &self.loads.watched {
-            let row = self.nodes.row(i);
-            self.compact.extend(self.loads.watched.iter().map(|&j| row[j]));
-        }
-    }
-
     /// Displacements, normals and gaps of the contact set; its largest gap in magnitude over the radius, or turn of a
     /// normal if that counts more. `yielding` = the forces have changed since.
     fn evaluate_set(&mut self, modal: &[f64], balls: &[Ball], yielding: bool) -> f64 {
@@ -334,7 +220,7 @@ impl<'a> Contact<'a> {
     }
 
     /// Gap and normal of candidate `i` from its displacements.
-    fn look(&mut self, i: usize, modal: &[f64], balls: &[Ball]) {
+    pub(super) fn look(&mut self, i: usize, modal: &[f64], balls: &[Ball]) {
         let ball = balls[self.nodes.ball[i]];
         let d: [f64; 3] = std::array::from_fn(|c| {
             self.nodes.place[i][c] + modal[3 * i + c] + self.yielding[i][c] - ball.centre[c]
@@ -345,7 +231,7 @@ impl<'a> Contact<'a> {
     }
 
     /// The forces on the body at the contact set.
-    fn collect_push(&mut self) {
+    pub(super) fn collect_push(&mut self) {
         self.push.clear();
         let (normal, force) = (&self.loads.normal, &self.loads.force);
         self.push.extend(self.loads.active.iter().map(|&j| (j, normal[j].map(|n| n * force[j]))));
@@ -475,22 +361,6 @@ impl<'a> Contact<'a> {
             }
         }
     }
-}
-
-/// sum_j R_j f_j in m over the pairs (j, f_j) of `push`.
-fn displaced(row: &[[f64; 9]], push: &[(usize, [f64; 3])]) -> [f64; 3] {
-    let mut u = [0.0; 3];
-    for (j, [x, y, z]) in push {
-        let r = &row[*j];
-        u[0] += r[0] * x + r[1] * y + r[2] * z;
-        u[1] += r[3] * x + r[4] * y + r[5] * z;
-        u[2] += r[6] * x + r[7] * y + r[8] * z;
-    }
-    u
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

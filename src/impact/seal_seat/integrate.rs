@@ -4,7 +4,8 @@
 //! modes need no small steps. Symmetric, symplectic and of second order; the contact forces derive from an energy and are
 //! continuous, with kinks where a node touches or lets go.
 
-use super::contact::{Loads, Work};
+use super::contact::Loads;
+use super::integration::{Integration, Sample, Tally};
 use super::system::{Forces, State, System, Workspace};
 use crate::error::{Error, Result};
 
@@ -25,63 +26,6 @@ pub struct Options {
     pub end_time: Option<f64>,
     /// Whether a sample is kept of every step.
     pub history: bool,
-}
-
-/// What is known at the end of a step; of whole bodies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
-    /// s.
-    pub time: f64,
-    /// m, x and z.
-    pub sphere: [f64; 2],
-    /// m/s, x and z.
-    pub sphere_velocity: [f64; 2],
-    /// Force on the sphere in N, x and z.
-    pub sphere_force: [f64; 2],
-    /// m.
-    pub actuator: f64,
-    /// m/s.
-    pub actuator_velocity: f64,
-    /// N, positive in compression.
-    pub actuator_force: f64,
-}
-
-/// What a run adds up; of whole bodies.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Tally {
-    /// Largest forces in N of sphere (magnitude) and actuator.
-    pub force_peak: [f64; 2],
-    /// Times in s of the last release of sphere and actuator.
-    pub contact_end: [f64; 2],
-    /// Impulses of the normal forces on the flanks at the -x and the +x side of the seat's axis in N s.
-    pub flank_impulse: [f64; 2],
-    /// Largest distance in m of loaded candidates from where sphere and tips touch first.
-    pub reach: [f64; 2],
-    /// Time steps.
-    pub steps: u64,
-    /// Impulse along z on the seat in N s, from the nodal forces.
-    seat_impulse: f64,
-    /// Magnitudes of the forces of sphere and actuator at the last sample and the one before.
-    before: [[f64; 2]; 2],
-}
-
-/// Result of a run; of whole bodies.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Integration {
-    /// State at the end.
-    pub state: State,
-    /// What was added up.
-    pub tally: Tally,
-    /// |energy at the end - energy at the start| over the energy at the start.
-    pub energy_residual: f64,
-    /// Momentum of sphere and actuator that the impulse on the seat does not account for, over that at the start.
-    pub momentum_residual: f64,
-    /// End of the run in s.
-    pub time: f64,
-    /// Samples, if asked for.
-    pub samples: Vec<Sample>,
-    /// What the contact forces have cost.
-    pub work: Work,
 }
 
 /// Exact motion of the modes over one step.
@@ -349,7 +293,7 @@ impl<'a> Running<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::contact::{Ball, Nodes};
+    use super::super::nodes::{Ball, Nodes};
     use super::super::{Candidate, Partner};
     use super::*;
     use std::f64::consts::PI;

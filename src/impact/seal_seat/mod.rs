@@ -9,9 +9,13 @@ mod candidates;
 mod cholesky;
 pub mod contact;
 pub mod integrate;
+pub mod integration;
 mod model;
+pub mod nodes;
+mod survey;
 pub mod system;
 
 pub use body::{SeatBody, SeatMesh, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
 pub use model::{DEFAULT_MODES, DEFAULT_TOLERANCE, SeatModel, quantities};
+pub use survey::Survey;

@@ -2,7 +2,8 @@
 
 use super::body::{SeatBody, SeatMesh};
 use super::candidates::Zones;
-use super::integrate::{Integration, Options, integrate};
+use super::integrate::{Options, integrate};
+use super::integration::{Integration, Sample};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::cache::Cache;
@@ -221,7 +222,7 @@ pub fn quantities(system: &System, result: &Integration) -> SeatQuantities {
 
 /// The samples of a run as curves.
 fn history(result: &Integration) -> SeatHistory {
-    let curve = |value: &dyn Fn(&super::integrate::Sample) -> f64| result.samples.iter().map(value).collect();
+    let curve = |value: &dyn Fn(&Sample) -> f64| result.samples.iter().map(value).collect();
     SeatHistory {
         time: curve(&|s| s.time),
         sphere_displacement: [0, 1].map(|c| curve(&|s| s.sphere[c])),

@@ -3,7 +3,9 @@
 //! Half the bodies (y >= 0) with half the rigid masses; whoever reports doubles forces, impulses and energies.
 
 use super::candidates::{Candidate, Partner};
-use super::contact::{Ball, Contact, Nodes, Survey};
+use super::contact::Contact;
+use super::nodes::{Ball, Nodes};
+use super::survey::Survey;
 use crate::body::solid::InterfaceBody;
 use crate::error::{Error, Result};
 use crate::scene::SealSeat;
