@@ -314,6 +314,7 @@ fn report_shows_the_seat_among_the_scenes() {
         provenance: serde_json::json!({"created": "2026-01-01T00:00:00Z"}),
         animation: None,
         command: "impactcheck compare seal-seat-improved".into(),
+        attachments: report::Attachments::default(),
     };
     let angle = seat.comparison.reference.quantities.sphere_angle.to_degrees();
     let report = Report { scenes: Vec::new(), seats: vec![seat] };
