@@ -68,6 +68,8 @@ struct Verification {
 /// Searches the optimum, verifies it if asked to, prints it.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let template = Template::read(scene::resolve(&arguments.scene)?)?;
+    // only plate impacts are searched
+    template.scene().plate_impact()?;
     let model = arguments.model.or(template.scene().reduced.model).unwrap_or(Model::B);
     let variables =
         arguments.over.iter().map(|text| Variable::parse(text, &template)).collect::<Result<Vec<_>>>()?;

@@ -161,7 +161,10 @@ impl Plan {
             toml::from_str(&text).map_err(|e| invalid(path, &format!("is no sweep file: {e}")))?;
         let beside = path.parent().unwrap_or(Path::new("")).join(&file.scene);
         let scene = if beside.is_file() { beside } else { scene::resolve(&file.scene)? };
-        Self::new(path, file, Template::read(scene)?)
+        let template = Template::read(scene)?;
+        // a seal seat is varied by `study seal-seat`, which meshes every geometry
+        template.scene().plate_impact()?;
+        Self::new(path, file, template)
     }
 
     fn new(path: &Path, file: File, template: Template) -> Result<Self> {
