@@ -62,6 +62,9 @@ solutions: setup
 	for scene in $(SCENES); do for resolution in coarse paper; do \
 	    $(RUN) reference $$scene --resolution $$resolution --fresh || exit 1; done; done
 	for scene in $(PLATES); do $(RUN) reference $$scene --resolution fine --fresh || exit 1; done
+	# the stress pictures of the report, at the outer force's peak
+	$(RUN) reference scaled-plate-r10 --stress-at 46.9e-6
+	$(RUN) reference scaled-plate-r6.35 --stress-at 25.3e-6
 
 evidence: setup
 	for scene in $(PLATES); do for resolution in coarse paper fine; do \

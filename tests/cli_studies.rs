@@ -409,7 +409,7 @@ fn bad_measured_files_end_with_2_or_3_and_nothing_is_written() {
         (vec!["scaled-plate-r10", "--measured", "no-such.csv"], 2, "no-such.csv"),
         (vec!["scaled-plate-r10", "--measured", text(&wrong)], 3, "wrong.csv"),
         (vec!["scaled-plate-r10", "--measured", text(&late)], 3, "late.csv"),
-        (vec!["--measured", text(&good)], 2, "exactly one scene"),
+        (vec!["--measured", text(&good)], 2, "exactly one plate impact"),
         (vec!["scaled-plate-r10", "--measured", text(&good), "--bandwidth", "3 mm"], 2, "bandwidth"),
         (vec!["scaled-plate-r10", "--measured", text(&good), "--bandwidth", "1 Hz"], 2, "bandwidth"),
         (vec!["scaled-plate-r10", "--measured", text(&good), "--speed", "guess"], 2, "speed"),

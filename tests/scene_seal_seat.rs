@@ -179,9 +179,9 @@ fn what_knows_plates_only_refuses_a_seal_seat() {
 }
 
 #[test]
-fn the_example_scenes_are_the_two_designs() {
+fn the_shipped_scenes_are_the_two_designs() {
     let read = |name: &str| {
-        let path = format!("{}/scenes/examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         Scene::read(path).expect("valid scene").seal_seat().expect("a seal seat").clone()
     };
     let (initial, improved) = (read("seal-seat-initial"), read("seal-seat-improved"));

@@ -62,7 +62,7 @@ pub struct Arguments {
 
 /// Compares and writes the report. The verdict is shown; the exit status tells only whether the job was done.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let job = Job::read(arguments)?;
+    let job = Job::read(context, arguments)?;
     job.check_folders(&[])?;
     let results = job.results(context)?;
     job.finish(context, job.report(context, &results)?, &Outputs::default())?;
@@ -96,10 +96,14 @@ pub(super) struct Outputs {
 }
 
 impl<'a> Job<'a> {
-    pub(super) fn read(arguments: &'a Arguments) -> Result<Self> {
+    pub(super) fn read(context: &Context, arguments: &'a Arguments) -> Result<Self> {
         let start = Instant::now();
-        let scenes = read(&arguments.scenes)?;
-        // refused before anything is computed
+        let mut scenes = read(&arguments.scenes)?;
+        // refused before anything is computed; of all shipped scenes those are compared that have one of the models
+        if arguments.scenes.is_empty() && !arguments.models.contains(&Model::C) {
+            scenes.retain(|(_, scene)| !is_seat(scene));
+            context.note("the shipped seal seats are left out: they have model C only");
+        }
         if let Some((_, seat)) = scenes.iter().find(|(_, scene)| is_seat(scene)) {
             compare_seats::check_models(seat, &arguments.models)?;
         }

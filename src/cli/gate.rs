@@ -35,7 +35,7 @@ pub struct Arguments {
 
 /// Compares, writes the report and lets the verdict be the exit status.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let job = Job::read(&arguments.compare)?;
+    let job = Job::read(context, &arguments.compare)?;
     job.check_folders(&[arguments.junit.as_ref(), arguments.record.as_ref()])?;
     let record = match &arguments.record {
         Some(file) => Some((file.clone(), commit(&job, file)?)),
@@ -48,7 +48,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     };
     if update(context, &job, &results, reason)? {
         // scenes are immutable: those of the new tolerances are read again, and what was solved stays
-        return conclude(context, &Job::read(&arguments.compare)?, &results, &outputs);
+        return conclude(context, &Job::read(context, &arguments.compare)?, &results, &outputs);
     }
     conclude(context, &job, &results, &outputs)
 }
