@@ -52,6 +52,6 @@ fn a_contact_wider_than_the_plate_is_thick_is_warned_of() {
     let thin = run("\"0.05 mm\"");
     assert_eq!(thin.warnings.len(), 1);
     let near = |ratio: &&str| thin.warnings[0].contains(&format!("{ratio} times as wide"));
-    assert!(["1.04", "1.05"].iter().any(|r| near(&r)), "{}", thin.warnings[0]);
+    assert!(["1.04", "1.05"].iter().any(near), "{}", thin.warnings[0]);
     assert!(thin.quantities.efficiency > 0.9 && thin.energy_residual < 1e-5);
 }
