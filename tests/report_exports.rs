@@ -305,7 +305,9 @@ fn terminal_has_a_line_per_model_and_says_what_failed() {
     let data = Data::new();
     let text = terminal(&data.report());
     assert_eq!(text.lines().filter(|l| l.trim_start().starts_with("reference ")).count(), 1);
-    assert!(text.lines().any(|l| l.trim_start().starts_with("B ") && l.contains("  \u{1b}[1m\u{1b}[32mpass")));
+    assert!(
+        text.lines().any(|l| l.trim_start().starts_with("B ") && l.contains("  \u{1b}[1m\u{1b}[32mpass"))
+    );
     assert!(text.contains("180.0 µs") && text.contains("243.0 N"));
     let text = terminal(&Data::failing().report());
     assert!(text.lines().any(|l| l.trim_start().starts_with("B: outer_force_peak: reduced 245.14")));

@@ -17,9 +17,11 @@ use std::process::{Command, Stdio};
 
 const SCENE: &str = "scaled-plate-r10";
 /// Tolerances of this program's integrator.
-const TOLERANCES: [f64; 10] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
+const TOLERANCES: [f64; 15] =
+    [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9];
 /// Relative tolerances of the peers.
-const PEER_TOLERANCES: [f64; 8] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+const PEER_TOLERANCES: [f64; 15] =
+    [1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10];
 /// Evaluations times state entries that a compiled peer's run may cost.
 const PEER_WORK: f64 = 4e9;
 /// Wall time in s that a run of SciPy may take.

@@ -19,41 +19,67 @@ pub enum Flight {
 
 /// Evaluations after which a flight counts as endless.
 const MAX_EVALUATIONS: usize = 1_000_000;
+/// Evaluations after which the bounds are drawn anew: damped modes have decayed meanwhile.
+const RENEWAL: usize = 500;
 
-/// Time from the state (`q`, `v`), both contacts open, to the next touch.
+/// Time from the state (`q`, `v`), both contacts open, to the next touch. Touches after `limit` s are not looked for:
+/// the flight is then over.
 ///
 /// # Errors
 /// [`Error::Solver`] if the bodies neither touch nor recede within [`MAX_EVALUATIONS`] evaluations.
-pub fn next_touch(system: &System, q: &[f64], v: &[f64]) -> Result<Flight> {
-    let bounds = [GapBounds::new(system, 0, q, v), GapBounds::new(system, 1, q, v)];
-    if system.outer_returns() && inner_is_out_of_reach(system, &bounds[1], q, v) {
+pub fn next_touch(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<Flight> {
+    if system.outer_returns() && inner_is_out_of_reach(system, &GapBounds::new(system, 1, q, v), q, v) {
         return Ok(Flight::Over);
     }
+    let (mut q, mut v, mut start) = (q.to_vec(), v.to_vec(), 0.0);
+    for _ in 0..MAX_EVALUATIONS / RENEWAL {
+        match search(system, &q, &v, limit - start) {
+            Search::Found(Flight::Touch(time)) => return Ok(Flight::Touch(start + time)),
+            Search::Found(Flight::Over) => return Ok(Flight::Over),
+            Search::NotYet(time) => {
+                advance(system, time, &mut q, &mut v);
+                start += time;
+            }
+        }
+    }
+    Err(Error::Solver(format!(
+        "free flight: no touch and no end found within {start:.3e} s ({MAX_EVALUATIONS} evaluations); set `run.end_time`"
+    )))
+}
+
+/// What a search came to.
+enum Search {
+    Found(Flight),
+    /// No touch up to this time in s.
+    NotYet(f64),
+}
+
+/// Looks for a touch within `limit` s by [`RENEWAL`] evaluations.
+fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> Search {
+    let bounds = [GapBounds::new(system, 0, q, v), GapBounds::new(system, 1, q, v)];
     let mut time = 0.0;
-    for _ in 0..MAX_EVALUATIONS {
+    for _ in 0..RENEWAL {
         let mut step = f64::INFINITY;
         for bound in &bounds {
             let Some(horizon) = bound.horizon(time) else { continue };
             let (gap, rate) = bound.gap(system, q, v, time);
             let scale = bound.elastic.max(bound.rigid_gap.abs());
             if gap <= 1e-14 * scale && rate < 0.0 {
-                return Ok(Flight::Touch(time));
+                return Search::Found(Flight::Touch(time));
             }
             step =
                 step.min(bound.safe_step(gap.max(0.0), rate)).min(horizon.max(1e-3 * bound.shortest_period));
         }
-        if step.is_infinite() {
-            return Ok(Flight::Over);
+        if step.is_infinite() || time > limit {
+            return Search::Found(Flight::Over);
         }
         // a step of round-off size: the touch is here
         if time + step == time {
-            return Ok(Flight::Touch(time));
+            return Search::Found(Flight::Touch(time));
         }
         time += step;
     }
-    Err(Error::Solver(format!(
-        "free flight: no touch and no end found within {time:.3e} s ({MAX_EVALUATIONS} evaluations); set `run.end_time`"
-    )))
+    Search::NotYet(time)
 }
 
 /// Whether no contact can touch any more in free flight from the state (`q`, `v`), both contacts open.

@@ -175,7 +175,7 @@ impl<'a> Run<'a> {
     fn fly(&mut self) -> Result<bool> {
         let system = self.solver.system;
         let (q, v) = (flat(&self.q), flat(&self.v));
-        let (flight, more) = match free_flight::next_touch(system, q, v)? {
+        let (flight, more) = match free_flight::next_touch(system, q, v, self.end_time - self.time)? {
             Flight::Touch(duration) if self.time + duration < self.end_time => (duration, true),
             Flight::Over if self.end_time.is_infinite() => return Ok(false),
             _ => (self.end_time - self.time, false),

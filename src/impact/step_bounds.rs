@@ -21,9 +21,10 @@ impl Bounds {
     /// defect where the forces are smooth, so that the bound may fall more slowly than the tolerance; factors and
     /// exponents are measured over scenes and numbers of modes (tests/integrator_runge_kutta.rs).
     pub(super) fn new(tolerance: f64) -> Self {
-        let smooth = tolerance.powf(0.7);
+        let smooth = 0.6 * tolerance.powf(0.7);
         let kinked = 1e-3 * tolerance.powf(0.95);
-        let force = (300.0 * tolerance).clamp(1e-11, 1e-4);
+        // a force that is off makes energy however short the step is
+        let force = (0.5 * tolerance).clamp(1e-11, 1e-5);
         Self {
             smooth,
             kinked,
