@@ -37,8 +37,8 @@ rust:
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --quiet
 
 python: setup
-	$(VENV)/bin/ruff check fem_reference
-	$(VENV)/bin/ruff format --check fem_reference
+	$(VENV)/bin/ruff check fem_reference examples
+	$(VENV)/bin/ruff format --check fem_reference examples
 	$(TOOL) -m mypy fem_reference
 	$(PYTHON) -m pytest -q fem_reference
 
@@ -54,6 +54,7 @@ live: setup
 # the gate on the stored references
 gate:
 	$(RUN) gate --out $(OUT)/gate --junit $(OUT)/gate/junit.xml
+	$(PYTHON) examples/read_results.py $(OUT)/gate
 
 report:
 	$(RUN) compare

@@ -1,4 +1,7 @@
-"""Reads what impactcheck wrote: a comparison, its curves, and a sweep (`python3 read_results.py REPORT_DIR [SWEEP.csv]`)."""
+"""Reads what impactcheck wrote: a comparison, its curves, and a sweep.
+
+``python3 read_results.py REPORT_DIR [SWEEP.csv]``
+"""
 
 import csv
 import json
@@ -7,13 +10,13 @@ from pathlib import Path
 
 
 def main(report: Path, sweep: Path | None) -> None:
+    """Print verdicts, largest forces and the best point of the sweep."""
     comparison = json.loads((report / "comparison.json").read_text())
     for scene in comparison["scenes"]:
         for model in scene["models"]:
-            print(
-                f"{scene['scene']}, model {model['model']}: {model['verdict']}, efficiency "
-                f"{model['summary']['efficiency']:.4f} (reference {scene['reference']['efficiency']:.4f})"
-            )
+            own, reference = model["summary"]["efficiency"], scene["reference"]["efficiency"]
+            name = f"{scene['scene']}, model {model['model']}"
+            print(f"{name}: {model['verdict']}, efficiency {own:.4f} (reference {reference:.4f})")
         with (report / f"{scene['scene']}.csv").open(newline="") as file:
             curves = list(csv.DictReader(file))
         names = [name for name in curves[0] if name.endswith("force")]
