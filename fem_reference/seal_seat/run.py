@@ -1,30 +1,25 @@
-"""A run of the seal seat: supervision, sampling, ledger, end, checkpoints."""
+"""A run of the seal seat: sampling, ledger."""
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from ..contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from ..errors import SolverError
 from ..estimate import hertz_stiffness
 from ..mesh import Floats
 from ..solid.checkpoint import Checkpoint
 from ..solid.fields import Frames
 from ..solid.loop import Energies, Loop
-from ..solid.spectrum import critical_time_step
+from ..solid.supervision import Course, Plan, supervise
 from .ending import Ending
 from .model import FRACTION, LEFT, RIGHT, SEAT, SeatModel
 from .motion import pair_again, sphere_motion
 from .scene import SeatScene
 
 PEAK_WINDOW_SAMPLES = 2
-CHUNK_SAMPLES = 16
 LONGEST_RUN = 100.0
 """Over the estimated duration of the actuator's contact."""
 
@@ -97,65 +92,25 @@ def integrate(
         SolverError: time step above the critical one, divergence, no end found, or a contact that
             left the zone of candidates.
     """
-    saved: dict[str, Any] = (checkpoint.load() if checkpoint else None) or {}
-    critical = float(saved["critical"]) if saved else critical_time_step(loop)
-    time_step = courant * critical
-    if not 0.0 < time_step <= critical:
-        raise SolverError(
-            f"the time step {time_step:.6g} s is not between 0 and the critical time step "
-            f"{critical:.6g} s; the Courant factor must be in (0, 1], it is {courant:g}"
-        )
-    duration = contact_duration(scene)
-    stride = max(1, round(PEAK_WINDOW_FRACTION * duration / PEAK_WINDOW_SAMPLES / time_step))
-    if scene.end_time is not None:
-        # The last sample falls exactly on the end.
-        wanted = max(1, math.ceil(scene.end_time / (stride * time_step) - 1e-9))
-        time_step = scene.end_time / (wanted * stride)
-    else:
-        wanted = math.ceil(LONGEST_RUN * duration / (stride * time_step))
-    interval = stride * time_step
-    frames = fields(interval) if fields is not None else None
-    loop.set_step(time_step, max(1, round(CHATTER_FRACTION * duration / time_step)))
-    ended = Ending(loop, seat, scene) if scene.end_time is None else None
-    initial = FRACTION * scene.initial_energy
-    rows: list[Floats] = []
-    seconds = 0.0
-    if saved:
-        loop.u[:] = loop.own(saved["u"])
-        loop.v[:] = loop.own(saved["v"])
-        loop.problem.restore(saved["problem"])
-        rows = list(saved["rows"])
-        seconds = float(saved["seconds"])
-    started = time.perf_counter()
-    while len(rows) < wanted:
-        chunk_started = time.perf_counter()
-        for _ in range(min(CHUNK_SAMPLES, wanted - len(rows))):
-            if frames is not None:
-                frames(len(rows), loop)
-            rows.append(_sample(loop, seat, scene, stride))
-        seconds += time.perf_counter() - chunk_started
-        energies = loop.energies()
-        if not energies.total <= 10.0 * initial:
-            raise SolverError(
-                f"the solution diverged at {len(rows) * interval:.4g} s: energy "
-                f"{energies.total:.3g} J, at the start {initial:.3g} J"
-            )
-        now = len(rows) * interval
-        done = now / scene.end_time if scene.end_time else 1.0 - math.exp(-now / (2.0 * duration))
-        on_progress(done, f"{now * 1e6:.1f} us, {time.perf_counter() - started:.1f} s")
-        if ended is not None and ended(energies):
-            break
-        if checkpoint is not None and checkpoint.due(loop.comm):
-            checkpoint.save(loop, critical=critical, rows=np.array(rows), seconds=seconds)
-    else:
-        if ended is not None:
-            raise SolverError(
-                f"a further contact is still possible at {len(rows) * interval:.4g} s; "
-                "set run.end_time"
-            )
-    rows.append(_sample(loop, seat, scene, 1))
+    plan = Plan(
+        duration=contact_duration(scene),
+        longest=LONGEST_RUN,
+        window_samples=PEAK_WINDOW_SAMPLES,
+        end_time=scene.end_time,
+        initial_energy=FRACTION * scene.initial_energy,
+    )
+    course = supervise(
+        loop,
+        plan,
+        lambda stride: _sample(loop, seat, scene, stride),
+        lambda: Ending(loop, seat, scene),
+        courant=courant,
+        fields=fields,
+        checkpoint=checkpoint,
+        on_progress=on_progress,
+    )
     _require_inside(loop, seat)
-    return _result(loop, seat, scene, np.array(rows), interval, critical, seconds)
+    return _result(loop, seat, scene, course)
 
 
 def _sample(loop: Loop, seat: SeatModel, scene: SeatScene, stride: int) -> Floats:
@@ -253,15 +208,7 @@ def momentum_misses(loop: Loop, seat: SeatModel, scene: SeatScene) -> list[float
     return misses
 
 
-def _result(
-    loop: Loop,
-    seat: SeatModel,
-    scene: SeatScene,
-    rows: Floats,
-    interval: float,
-    critical: float,
-    seconds: float,
-) -> SeatRun:
+def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course) -> SeatRun:
     problem = loop.problem
     energies: Energies = loop.energies()
     work = sum(contact.work for contact in problem.contacts)
@@ -271,16 +218,16 @@ def _result(
     momentum = FRACTION * scene.actuator.mass * scene.actuator.speed
     flanks = tuple(problem.contacts[k].normal_impulse / FRACTION for k in (LEFT, RIGHT))
     return SeatRun(
-        times=interval * np.arange(rows.shape[0]),
-        rows=rows,
+        times=course.times,
+        rows=course.rows,
         time_step=loop.dt,
-        critical_time_step=critical,
+        critical_time_step=course.critical_time_step,
         steps=problem.state.step,
-        loop_seconds=seconds,
+        loop_seconds=course.loop_seconds,
         sphere_velocity=(float(speed[0]), float(speed[2])),
         actuator_velocity=actuator.v[2],
-        sphere_force_peak=peak(rows[:, 4:6], interval),
-        actuator_force_peak=peak(rows[:, 8:], interval),
+        sphere_force_peak=peak(course.rows[:, 4:6], course.interval),
+        actuator_force_peak=peak(course.rows[:, 8:], course.interval),
         sphere_contacts=_intervals(loop, (LEFT, RIGHT)),
         actuator_contacts=_intervals(loop, tuple(seat.tips)),
         flank_impulses=(flanks[0], flanks[1]),

@@ -1,17 +1,13 @@
-"""A run of the plate model: supervision, sampling, ledger, end, checkpoints."""
+"""A run of the plate model: sampling, end, ledger."""
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from ..contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION, ContactRecord, peak_force
-from ..errors import SolverError
+from ..contact import ContactRecord, peak_force
 from ..mesh import Floats
 from ..scene import Scene
 from . import kernel
@@ -20,10 +16,10 @@ from .ending import no_further_contact
 from .fields import Frames
 from .loop import Energies, Loop
 from .plate import FRACTION, INNER, OUTER, PLATE, PlateModel
-from .spectrum import critical_time_step, patch_flexibility
+from .spectrum import patch_flexibility
+from .supervision import Course, Plan, supervise
 
 PEAK_WINDOW_SAMPLES = 4
-CHUNK_SAMPLES = 16
 LONGEST_RUN = 400.0
 NAMES = (OUTER, INNER)
 
@@ -168,65 +164,25 @@ def integrate(
     Raises:
         SolverError: time step above the critical one, divergence, or no end found.
     """
-    saved: dict[str, Any] = (checkpoint.load() if checkpoint else None) or {}
-    critical = float(saved["critical"]) if saved else critical_time_step(loop)
-    time_step = courant * critical
-    if not 0.0 < time_step <= critical:
-        raise SolverError(
-            f"the time step {time_step:.6g} s is not between 0 and the critical time step "
-            f"{critical:.6g} s; the Courant factor must be in (0, 1], it is {courant:g}"
-        )
-    window = PEAK_WINDOW_FRACTION * contact_duration
-    stride = max(1, round(window / PEAK_WINDOW_SAMPLES / time_step))
-    if scene.end_time is not None:
-        # The last sample falls exactly on the end.
-        samples_wanted = max(1, math.ceil(scene.end_time / (stride * time_step) - 1e-9))
-        time_step = scene.end_time / (samples_wanted * stride)
-    else:
-        samples_wanted = math.ceil(LONGEST_RUN * contact_duration / (stride * time_step))
-    interval = stride * time_step
-    frames = fields(interval) if fields is not None else None
-    loop.set_step(time_step, max(1, round(CHATTER_FRACTION * contact_duration / time_step)))
     bodies = _Bodies(loop, plate)
-    ended = _Ending(loop, plate, scene, bodies) if scene.end_time is None else None
-    initial_energy = 0.5 * FRACTION * scene.outer.mass * scene.speed**2
-    rows: list[Floats] = []
-    seconds = 0.0
-    if saved:
-        loop.u[:] = loop.own(saved["u"])
-        loop.v[:] = loop.own(saved["v"])
-        loop.problem.restore(saved["problem"])
-        rows = list(saved["rows"])
-        seconds = float(saved["seconds"])
-    started = time.perf_counter()
-    while len(rows) < samples_wanted:
-        chunk_started = time.perf_counter()
-        for _ in range(min(CHUNK_SAMPLES, samples_wanted - len(rows))):
-            if frames is not None:
-                frames(len(rows), loop)
-            rows.append(_sample(loop, plate, bodies, stride))
-        seconds += time.perf_counter() - chunk_started
-        energies = loop.energies()
-        if not energies.total <= 10.0 * initial_energy:
-            raise SolverError(
-                f"the solution diverged at {len(rows) * interval:.4g} s: energy "
-                f"{energies.total:.3g} J, at the start {initial_energy:.3g} J"
-            )
-        now = len(rows) * interval
-        done = now / scene.end_time if scene.end_time else 1.0 - math.exp(-now / contact_duration)
-        on_progress(done, f"{now * 1e6:.1f} us, {time.perf_counter() - started:.1f} s")
-        if ended is not None and ended(energies):
-            break
-        if checkpoint is not None and checkpoint.due(loop.comm):
-            checkpoint.save(loop, critical=critical, rows=np.array(rows), seconds=seconds)
-    else:
-        if ended is not None:
-            raise SolverError(
-                f"a further contact is still possible at {len(rows) * interval:.4g} s; "
-                "set run.end_time"
-            )
-    rows.append(_sample(loop, plate, bodies, 1))
-    return _result(loop, plate, scene, bodies, np.array(rows), interval, critical, seconds)
+    plan = Plan(
+        duration=contact_duration,
+        longest=LONGEST_RUN,
+        window_samples=PEAK_WINDOW_SAMPLES,
+        end_time=scene.end_time,
+        initial_energy=0.5 * FRACTION * scene.outer.mass * scene.speed**2,
+    )
+    course = supervise(
+        loop,
+        plan,
+        lambda stride: _sample(loop, plate, bodies, stride),
+        lambda: _Ending(loop, plate, scene, bodies),
+        courant=courant,
+        fields=fields,
+        checkpoint=checkpoint,
+        on_progress=on_progress,
+    )
+    return _result(loop, plate, scene, bodies, course)
 
 
 SIDES = (1.0, -1.0)
@@ -259,10 +215,7 @@ def _result(
     plate: PlateModel,
     scene: Scene,
     bodies: _Bodies,
-    rows: Floats,
-    interval: float,
-    critical: float,
-    seconds: float,
+    course: Course,
 ) -> SolidRun:
     problem = loop.problem
     energies = loop.energies()
@@ -289,18 +242,18 @@ def _result(
     ]
     initial_energy = 0.5 * FRACTION * scene.outer.mass * scene.speed**2
     records = tuple(
-        _record(loop, plate, number, rows[:, column], interval)
+        _record(loop, plate, number, course.rows[:, column], course.interval)
         for number, column in enumerate((2, 7))
     )
     return SolidRun(
-        times=interval * np.arange(rows.shape[0]),
-        rows=rows,
+        times=course.times,
+        rows=course.rows,
         contacts=(records[0], records[1]),
         in_contact_at_end=any(any(contact.force) for contact in problem.contacts),
         time_step=loop.dt,
-        critical_time_step=critical,
+        critical_time_step=course.critical_time_step,
         steps=problem.state.step,
-        loop_seconds=seconds,
+        loop_seconds=course.loop_seconds,
         outer_velocity=float(speeds[0]),
         inner_velocity=float(speeds[1]),
         initial_energy=initial_energy / FRACTION,
