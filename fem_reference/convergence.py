@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from .errors import SolverError
 from .explicit import Run
 from .mesh import Floats
 from .modal import first_frequency
-from .output import HISTORY_COLUMNS, history, resampled
+from .output import HISTORY_COLUMNS, Sampled, history, resampled
 from .progress import Progress
 from .scene import Scene
 from .solve import Solution, compute
@@ -80,13 +81,26 @@ class Sequence:
 
     def curve_bands(self) -> Floats:
         """(samples, 8) half widths of the 95 % bands of the history's curves."""
-        table, _ = history(self.finest.run)
-        tables = np.stack([table, *(resampled(s.run, table[:, 0]) for s in self.solutions[1:])])
-        sizes = np.array([1.0 / solution.factor for solution in self.solutions])
-        interval = table[1, 0] - table[0, 0] if table.shape[0] > 1 else 1.0
-        reach = max(1, round(CURVE_REACH * self.finest.estimate.duration / interval))
-        columns = range(1, len(HISTORY_COLUMNS))
-        return np.stack([curve_band(tables[:, :, k], sizes, reach) for k in columns], axis=1)
+        runs = [solution.run for solution in self.solutions]
+        factors = [solution.factor for solution in self.solutions]
+        return curve_bands(runs, factors, self.finest.estimate.duration)
+
+
+def curve_bands(runs: Iterable[Sampled], factors: list[float], duration: float) -> Floats:
+    """(samples, 8) half widths of the 95 % bands of the finest run's history.
+
+    Args:
+        runs: finest first.
+        factors: of each mesh, on the number of elements.
+        duration: Hertz contact duration, s.
+    """
+    finest, *coarser = runs
+    table, interval = history(finest)
+    tables = np.stack([table, *(resampled(run, table[:, 0]) for run in coarser)])
+    reach = max(1, round(CURVE_REACH * duration / interval))
+    columns = range(1, len(HISTORY_COLUMNS))
+    sizes = 1.0 / np.array(factors)
+    return np.stack([curve_band(tables[:, :, k], sizes, reach) for k in columns], axis=1)
 
 
 def solve_sequence(

@@ -11,7 +11,7 @@ import numpy as np
 
 from .contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from .convergence import QUANTITIES, Sequence, refine, solve_sequence
-from .errors import SceneError
+from .mesh import Floats
 from .output import (
     HISTORY_COLUMNS,
     history,
@@ -24,39 +24,56 @@ from .output import (
 )
 from .progress import Progress
 from .scene import Scene
-from .settings import RESOLUTIONS
+from .settings import RESOLUTIONS, require_instants, require_share
 from .solve import WAVE_FREQUENCY, Solution
+from .uncertainty import Estimate
 from .versions import versions
 
 SCHEMA_VERSION = 1
 
 
-def _convergence(sequence: Sequence) -> dict[str, Any]:
+def convergence_part(
+    meshes: list[dict[str, Any]], values: dict[str, Floats], estimates: dict[str, Estimate]
+) -> dict[str, Any]:
     """What the meshes say together, per quantity; finest mesh first."""
     return {
         "rule": "least squares after Eca & Hoekstra 2014",
-        "meshes": [
-            {
-                "factor": solution.factor,
-                "dofs": 2 * int(solution.system.mass.size),
-                "steps": solution.run.steps,
-                "seconds": solution.run.loop_seconds,
-                "energy_residual": solution.run.balance.energy_residual,
-            }
-            for solution in sequence.solutions
-        ],
+        "meshes": meshes,
         "quantities": {
             name: {
-                "values": [float(value) for value in sequence.values[name]],
+                "values": [float(value) for value in values[name]],
                 "order": estimate.order,
                 "extrapolated": estimate.extrapolated,
                 "scatter": estimate.scatter,
                 "band": estimate.band,
             }
-            for name, estimate in sequence.estimates.items()
+            for name, estimate in estimates.items()
         },
-        "relative_error": sequence.relative_error(),
     }
+
+
+def _convergence(sequence: Sequence) -> dict[str, Any]:
+    meshes = [
+        {
+            "factor": solution.factor,
+            "dofs": 2 * int(solution.system.mass.size),
+            "steps": solution.run.steps,
+            "seconds": solution.run.loop_seconds,
+            "energy_residual": solution.run.balance.energy_residual,
+        }
+        for solution in sequence.solutions
+    ]
+    part = convergence_part(meshes, sequence.values, sequence.estimates)
+    return {**part, "relative_error": sequence.relative_error()}
+
+
+def curve_uncertainty(bands: Floats) -> dict[str, float]:
+    """Root mean square and largest half width of the bands (samples, 8) of the history's curves."""
+    found = {}
+    for name, band in zip(HISTORY_COLUMNS[1:], bands.T, strict=True):
+        found[f"{name}_rms"] = float(np.sqrt(np.mean(band**2)))
+        found[f"{name}_max"] = float(band.max())
+    return found
 
 
 def _summary(
@@ -138,11 +155,8 @@ def solve(
     """
     progress = progress if progress is not None else Progress()
     factor = RESOLUTIONS[resolution_name]
-    for instant in stress_times:
-        if not 0.0 <= instant < math.inf or (scene.end_time and instant > scene.end_time):
-            raise SceneError(f"--stress-at is {instant:g} s; it must lie between 0 and the end")
-    if target_error is not None and not 0.0 < target_error < 1.0:
-        raise SceneError(f"--target-error is {target_error:g}; it must lie between 0 and 1")
+    require_instants(stress_times, scene.end_time)
+    require_share(target_error)
     with result_folder(target) as folder:
         options: dict[str, Any] = {
             "courant": courant,
@@ -161,9 +175,7 @@ def solve(
         summary["samples"] = table.shape[0]
         summary["sample_interval"] = interval
         bands = sequence.curve_bands()
-        for column, name in enumerate(HISTORY_COLUMNS[1:]):
-            summary["uncertainty"][f"{name}_rms"] = float(np.sqrt(np.mean(bands[:, column] ** 2)))
-            summary["uncertainty"][f"{name}_max"] = float(bands[:, column].max())
+        summary["uncertainty"].update(curve_uncertainty(bands))
         write_history(folder / "history.csv", table, bands)
         write_mesh(folder / "mesh.vtu", solution.mesh)
         for number, snapshot in enumerate(solution.run.snapshots):

@@ -47,22 +47,10 @@ def _modes(scene: SeatScene, arguments: argparse.Namespace) -> None:
 def _solve(scene: SeatScene, arguments: argparse.Namespace) -> None:
     from ..solid.command import in_processes
 
-    if arguments.target_error is not None:
-        raise SceneError("--target-error is not for scenes of kind 'seal-seat'")
-
     def work(comm: Any) -> None:
+        from ..solid.series import Options
         from .result import solve
 
-        solve(
-            scene,
-            arguments.out,
-            arguments.resolution,
-            comm,
-            courant=arguments.courant,
-            stress_times=arguments.stress_at,
-            frames=arguments.fields,
-            checkpoint=arguments.checkpoint,
-            checkpoint_interval=arguments.checkpoint_interval,
-        )
+        solve(scene, arguments.out, arguments.resolution, comm, Options.of(arguments))
 
     in_processes(arguments, work)

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,11 +10,9 @@ import numpy as np
 
 from ..mesh import Floats
 from ..output import SAMPLES
-from ..solid.checkpoint import Checkpoint
-from ..solid.fields import Frames
 from ..solid.loop import Loop, make_loop
-from ..solid.memory import memory_needed, require_memory
-from ..solid.solve import Settings
+from ..solid.memory import memory_needed, peak_memory, require_memory
+from ..solid.series import Recorder, Report, Settings
 from ..solid.spectrum import first_frequency
 from .meshing import seat_mesh, sphere_mesh
 from .model import SeatModel, seat_model
@@ -57,8 +52,6 @@ HISTORY_COLUMNS = (
     "actuator_force",
 )
 
-Report = Callable[[str, float, str], None]
-
 
 @dataclass(frozen=True)
 class Solution:
@@ -67,24 +60,20 @@ class Solution:
     run: SeatRun
     seat: SeatModel
     loop: Loop
-    frames: Frames | None
-    needed_memory: float
-    """Stated before the run, bytes."""
+    recorder: Recorder
+    memory_stated: float
+    """Before the run, bytes."""
+    memory_used: float
+    """At most so far, bytes."""
 
 
-def _identity(scene: SeatScene, seat: SeatModel, courant: float) -> str:
-    """What a checkpoint belongs to: scene, mesh, step and method."""
-    digest = hashlib.sha256()
-    settings = [REVISION, scene.raw, scene.end_time, courant]
-    digest.update(json.dumps(settings, sort_keys=True).encode())
-    for body in seat.model.elastic:
-        digest.update(np.round(body.mesh.points, 15).tobytes())
-        digest.update(body.mesh.cells.tobytes())
-    return digest.hexdigest()
+def method(scene: SeatScene) -> list[Any]:
+    """What kept states and results depend on, mesh and step apart."""
+    return [REVISION, scene.raw, scene.end_time]
 
 
 def compute(
-    scene: SeatScene, factor: float, settings: Settings, comm: Any, label: str, report: Report
+    scene: SeatScene, factor: float, settings: Settings, comm: Any, report: Report
 ) -> Solution:
     """Solve a scene with ``factor`` times the elements asked for, in every direction.
 
@@ -102,29 +91,18 @@ def compute(
     nodes = int(seat.model.first[-1])
     report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
     loop = make_loop(seat.model, comm)
-    checkpoint = Checkpoint(
-        settings.checkpoint_folder / f"{label}.npz",
-        _identity(scene, seat, settings.courant),
-        settings.checkpoint_interval,
-    )
-    recorder: list[Frames] = []
-
-    def fields(interval: float) -> Frames:
-        folder = settings.checkpoint_folder / f"{label}-frames"
-        recorder.append(Frames(folder, settings.frames, settings.frame_times, interval))
-        return recorder[0]
-
+    recorder = settings.recorder()
     run = integrate(
         loop,
         seat,
         scene,
         courant=settings.courant,
-        fields=fields if settings.frames or settings.frame_times else None,
-        checkpoint=checkpoint,
+        fields=recorder,
+        checkpoint=settings.checkpoint(method(scene), seat.model),
         on_progress=lambda done, message: report("stepping", done, message),
     )
     needed = memory_needed(nodes, scene.element_order, comm.size)
-    return Solution(run, seat, loop, recorder[0] if recorder else None, needed)
+    return Solution(run, seat, loop, recorder, needed, peak_memory(comm))
 
 
 def seat_frequency(loop: Loop, seat: SeatModel) -> float:

@@ -85,17 +85,8 @@ def solve_solid(scene: Scene, arguments: argparse.Namespace) -> None:
 
     def work(comm: Any) -> None:
         from .result import solve
+        from .series import Options
 
-        solve(
-            scene,
-            arguments.out,
-            arguments.resolution,
-            comm,
-            courant=arguments.courant,
-            stress_times=arguments.stress_at,
-            frames=arguments.fields,
-            checkpoint=arguments.checkpoint,
-            checkpoint_interval=arguments.checkpoint_interval,
-        )
+        solve(scene, arguments.out, arguments.resolution, comm, Options.of(arguments))
 
     in_processes(arguments, work)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import resource
 from pathlib import Path
 from typing import Any
 
@@ -54,3 +56,13 @@ def require_memory(nodes: int, order: int, comm: Any, free: float | None = None)
             "reference.elements_per_contact_radius or use a machine with more memory"
         )
     return f"{text} of {free / 1e9:.2g} GB free"
+
+
+def peak_memory(comm: Any) -> float:
+    """Largest memory in use so far, all processes together, bytes."""
+    own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    # The number above is inherited from the process that started this one, where it was larger.
+    with contextlib.suppress(OSError, StopIteration):
+        lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
+        own = int(next(line for line in lines if line.startswith("VmHWM")).split()[1])
+    return float(comm.allreduce(own * 1024.0))

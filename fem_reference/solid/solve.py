@@ -2,16 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
-import hashlib
-import json
 import math
-import resource
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,30 +20,16 @@ from ..estimate import (
 )
 from ..scene import Scene
 from ..solve import ACCEPTED_SHARE, MOST_MESHES, shortest_wavelengths
-from .checkpoint import Checkpoint
-from .fields import Frames
 from .loop import Loop, make_loop
-from .memory import memory_needed, require_memory
+from .memory import memory_needed, peak_memory, require_memory
 from .mesh import edge_lengths, qualities
 from .plate import PLATE, PlateModel, plate_model
 from .run import SolidRun, integrate
+from .series import Recorder, Report, Settings
 from .spectrum import first_frequency
 
 REVISION = 2
 """Counts changes of the method that make older checkpoints useless."""
-
-Report = Callable[[str, float, str], None]
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How a solution is computed, mesh apart."""
-
-    courant: float
-    checkpoint_folder: Path
-    checkpoint_interval: float
-    frames: int = 0
-    frame_times: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -66,30 +46,11 @@ class Solution:
     wavelength: float
     """Shortest that matters, m."""
     elements_per_wavelength: float
-    frames: Frames | None
-    needed_memory: float
-    """Stated before the run, bytes."""
-
-
-def peak_memory(comm: Any) -> float:
-    """Largest memory in use so far, all processes together, bytes."""
-    own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    # The number above is inherited from the process that started this one, where it was larger.
-    with contextlib.suppress(OSError, StopIteration):
-        lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
-        own = int(next(line for line in lines if line.startswith("VmHWM")).split()[1])
-    return float(comm.allreduce(own * 1024.0))
-
-
-def _identity(scene: Scene, model: Any, courant: float) -> str:
-    """What a checkpoint belongs to: scene, meshes, step and method."""
-    digest = hashlib.sha256()
-    settings = [REVISION, scene.raw, courant]
-    digest.update(json.dumps(settings, sort_keys=True).encode())
-    for body in model.elastic:
-        digest.update(np.round(body.mesh.points, 15).tobytes())
-        digest.update(body.mesh.cells.tobytes())
-    return digest.hexdigest()
+    recorder: Recorder
+    memory_stated: float
+    """Before the run, bytes."""
+    memory_used: float
+    """At most so far, bytes."""
 
 
 def _per_wavelength(
@@ -119,9 +80,12 @@ def _elements_per_radius(scene: Scene, plate: PlateModel, run: SolidRun) -> tupl
     return found[0], found[1]
 
 
-def compute(
-    scene: Scene, factor: float, settings: Settings, comm: Any, label: str, report: Report
-) -> Solution:
+def method(scene: Scene) -> list[Any]:
+    """What kept states and results depend on, meshes and step apart."""
+    return [REVISION, scene.raw]
+
+
+def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: Report) -> Solution:
     """Solve a scene with ``factor`` times the elements asked for, in every direction.
 
     The mesh is made for estimated contact radii, and again if those found in the run leave less
@@ -144,27 +108,16 @@ def compute(
         nodes = int(plate.model.first[-1])
         report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
         loop = make_loop(plate.model, comm)
-        name = f"{label}-{attempt}"
-        checkpoint = Checkpoint(
-            settings.checkpoint_folder / f"{name}.npz",
-            _identity(scene, plate.model, settings.courant),
-            settings.checkpoint_interval,
-        )
-        recorder: list[Frames] = []
-
-        def fields(interval: float, name: str = name, recorder: list[Frames] = recorder) -> Frames:
-            folder = settings.checkpoint_folder / f"{name}-frames"
-            recorder.append(Frames(folder, settings.frames, settings.frame_times, interval))
-            return recorder[0]
-
+        suffix = f"-{attempt}"
+        recorder = settings.recorder(suffix)
         run = integrate(
             loop,
             plate,
             scene,
             estimate.duration,
             courant=settings.courant,
-            fields=fields if settings.frames or settings.frame_times else None,
-            checkpoint=checkpoint,
+            fields=recorder,
+            checkpoint=settings.checkpoint(method(scene), plate.model, suffix),
             on_progress=lambda done, message: report("stepping", done, message),
         )
         found = _elements_per_radius(scene, plate, run)
@@ -181,8 +134,9 @@ def compute(
                 found,
                 wavelength,
                 per_wave,
-                recorder[0] if recorder else None,
+                recorder,
                 memory_needed(nodes, scene.element_order, comm.size),
+                peak_memory(comm),
             )
         grow = 1.0 if inside else 1.3
         radii = (

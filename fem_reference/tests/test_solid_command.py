@@ -132,14 +132,14 @@ def test_a_killed_run_goes_on_to_the_same_result(folder: Path, whole: Path) -> N
     ) as process:
         deadline = time.monotonic() + 120.0
         # The last mesh is the one whose run gives the result.
-        while not (kept / f"main-{tried}.npz").exists() and time.monotonic() < deadline:
+        while not (kept / f"mesh+0-{tried}.npz").exists() and time.monotonic() < deadline:
             assert process.poll() is None, "ended before its first checkpoint"
             time.sleep(0.005)
         os.kill(process.pid, signal.SIGKILL)
     assert not out.exists()
     states = sorted(file.name for file in kept.glob("*.npz"))
-    assert f"main-{tried}.npz" in states
-    with np.load(kept / f"main-{tried}.npz") as state:
+    assert f"mesh+0-{tried}.npz" in states
+    with np.load(kept / f"mesh+0-{tried}.npz") as state:
         # In the middle of the impact.
         assert state["rows"][-1, 2] > 0.0
         assert state["rows"].shape[0] > 10

@@ -1,0 +1,130 @@
+"""A scene on a series of meshes: bands, refinement towards a target, what is kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fem_reference.errors import SceneError, SolverError
+from fem_reference.solid import series
+from fem_reference.solid.series import MeshResult, Options, Problem, Settings, solve_series
+
+EXACT = 3.0
+
+
+class Alone:
+    """The communicator of one process, without MPI."""
+
+    rank, size = 0, 1
+
+    def barrier(self) -> None:
+        """Nobody to wait for."""
+
+    def bcast(self, value: Any) -> Any:
+        """Nobody to tell."""
+        return value
+
+
+class Convergent:
+    """A method of known order; keeps the factors it was asked for."""
+
+    def __init__(self, order: float) -> None:
+        self.order = order
+        self.factors: list[float] = []
+        self.meshes: list[MeshResult] = []
+
+    def compute(self, factor: float, settings: Settings, report: series.Report) -> Any:
+        """A value whose error falls with the order."""
+        assert settings.courant == 0.5
+        self.factors.append(factor)
+        report("stepping", 1.0, "done")
+        row = np.full((3, 1), EXACT + 0.1 * factor**-self.order)
+        run = SimpleNamespace(
+            times=np.arange(3.0), rows=row, steps=2, loop_seconds=0.0, energy_residual=0.0
+        )
+        return SimpleNamespace(run=run, loop=SimpleNamespace(all_masses=np.ones(7)))
+
+    def write(self, folder: Path, solution: Any, meshes: list[MeshResult]) -> None:
+        """The finest value."""
+        self.meshes = meshes
+        np.savetxt(folder / "value.txt", solution.run.rows)
+
+    def problem(self, revision: int = 1) -> Problem[Any]:
+        """To be solved on meshes."""
+        return Problem(
+            method=[revision, {"scene": 1}],
+            end_time=2.0,
+            ratio=0.8,
+            targeted=("value",),
+            compute=self.compute,
+            quantities=lambda solution: {"value": float(solution.run.rows[0, 0])},
+            write=self.write,
+        )
+
+
+@pytest.fixture
+def solve(tmp_path: Path) -> Callable[..., Convergent]:
+    def solve(order: float = 2.0, revision: int = 1, **options: Any) -> Convergent:
+        method = Convergent(order)
+        asked = Options(courant=0.5, checkpoint=tmp_path / "kept", **options)
+        solve_series(method.problem(revision), tmp_path / "out", 1.0, Alone(), asked)
+        return method
+
+    return solve
+
+
+@pytest.mark.parametrize("order", [1.2, 1.7])
+def test_the_band_holds_the_error_and_the_extrapolation_removes_it(
+    solve: Callable[..., Convergent], order: float
+) -> None:
+    found = series.estimates(solve(order).meshes)["value"]
+    assert found.order == pytest.approx(order, rel=1e-3)
+    assert found.extrapolated == pytest.approx(EXACT, abs=1e-5)
+    assert 0.1 <= found.band <= 0.13
+
+
+def test_refinement_ends_as_soon_as_the_target_is_met(
+    solve: Callable[..., Convergent], tmp_path: Path
+) -> None:
+    target = 0.02
+    method = solve(target_error=target)
+    assert series.relative_error(method.meshes, ("value",)) <= target
+    # No further than needed: the mesh before would not have met it.
+    before = 1.25 * 0.1 * (method.meshes[1].factor ** -2.0) / EXACT
+    assert before > target
+    # Every mesh once, the coarsest first.
+    assert len(set(method.factors)) == len(method.factors)
+    assert method.factors == sorted(method.factors)
+    factors = [mesh.factor for mesh in method.meshes]
+    assert factors == pytest.approx([factors[0] * 0.8**k for k in range(series.MESHES)])
+    written = np.loadtxt(tmp_path / "out" / "value.txt")
+    assert written[0] == pytest.approx(EXACT + 0.1 * factors[0] ** -2.0)
+
+
+def test_a_target_out_of_reach_is_an_error_and_leaves_no_result(
+    solve: Callable[..., Convergent], tmp_path: Path
+) -> None:
+    with pytest.raises(SolverError, match="1e-05 is asked for"):
+        solve(target_error=1e-5)
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(SceneError, match="--target-error is 2"):
+        solve(target_error=2.0)
+    with pytest.raises(SceneError, match="--stress-at is 3 s"):
+        solve(stress_times=(3.0,))
+
+
+def test_meshes_kept_by_a_failed_series_are_used_by_the_same_method_only(
+    solve: Callable[..., Convergent],
+) -> None:
+    with pytest.raises(SolverError):
+        solve(target_error=1e-5)
+    # Only the finest is run again: its state at the end is what the result is written from.
+    assert solve().factors == [1.0]
+    with pytest.raises(SolverError):
+        solve(target_error=1e-5)
+    assert len(solve(revision=2).factors) == series.MESHES
