@@ -28,8 +28,11 @@ from .run import SolidRun, integrate
 from .series import Recorder, Report, Settings
 from .spectrum import first_frequency
 
-REVISION = 2
+REVISION = 3
 """Counts changes of the method that make older checkpoints useless."""
+
+RADIUS_STEP = 1.04
+"""Ratio of neighbouring contact radii for which a mesh is made again."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +86,16 @@ def _elements_per_radius(scene: Scene, plate: PlateModel, run: SolidRun) -> tupl
 def method(scene: Scene) -> list[Any]:
     """What kept states and results depend on, meshes and step apart."""
     return [REVISION, scene.raw]
+
+
+def rounded(radius: float) -> float:
+    """The nearest of a series of radii, `RADIUS_STEP` apart.
+
+    An unstructured mesh changes altogether with the last digit of a size, and the radius found
+    differs in its last digits with the number of processes, in its first with the mesh.
+    """
+    step = math.log(RADIUS_STEP)
+    return math.exp(step * round(math.log(radius) / step))
 
 
 def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: Report) -> Solution:
@@ -140,8 +153,8 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
             )
         grow = 1.0 if inside else 1.3
         radii = (
-            grow * plate.size * found[0] if math.isfinite(found[0]) else radii[0],
-            grow * plate.size * found[1] if math.isfinite(found[1]) else radii[1],
+            rounded(grow * plate.size * found[0]) if math.isfinite(found[0]) else radii[0],
+            rounded(grow * plate.size * found[1]) if math.isfinite(found[1]) else radii[1],
         )
         if comm.rank == 0:
             print(

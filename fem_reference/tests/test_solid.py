@@ -31,6 +31,7 @@ from fem_reference.solid.model import (
     project,
     symmetry_plane,
 )
+from fem_reference.solid.solve import RADIUS_STEP, rounded
 from fem_reference.solid.spectrum import critical_time_step
 
 STEEL = Material("steel", 210e9, 0.3, 7780.0)
@@ -307,3 +308,13 @@ def test_too_little_memory_is_refused() -> None:
     assert "3000000 dofs" in require_memory(1_000_000, 2, alone(), 2.0 * needed)
     with pytest.raises(SolverError, match=r"3000000 dofs and needs about .* GB of memory"):
         require_memory(1_000_000, 2, alone(), needed)
+
+
+def test_radii_found_that_differ_by_round_off_make_the_same_mesh() -> None:
+    radii = np.geomspace(1e-5, 1e-3, 400)
+    found = np.array([rounded(radius) for radius in radii])
+    assert np.abs(np.log(found / radii)).max() <= 0.5 * math.log(RADIUS_STEP) * (1.0 + 1e-9)
+    again = np.array([rounded(radius * (1.0 + 1e-11)) for radius in radii])
+    # Hardly any radius is that close to the middle between two of the series.
+    assert np.count_nonzero(found != again) <= 1
+    assert len({rounded(3.1e-4 * (1.0 + e)) for e in (-1e-3, 0.0, 1e-3)}) == 1
