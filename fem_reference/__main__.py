@@ -64,7 +64,7 @@ def _parser() -> argparse.ArgumentParser:
     bands.add_argument("--scene", type=Path, nargs="+", required=True, help="or provenance.json")
     bands.add_argument("--out", type=Path, required=True, help="JSON; a table .md beside it")
     cost = commands.add_parser("cost", help="cost against error over meshes, limits of the machine")
-    cost.add_argument("--scene", type=Path, required=True)
+    cost.add_argument("--scene", type=Path, required=True, help="or provenance.json")
     cost.add_argument("--out", type=Path, required=True, help="JSON; a figure .svg beside it")
     mesh = commands.add_parser("mesh", help="mesh of a seal seat as .vtu, a .json beside it")
     mesh.add_argument("--scene", type=Path, required=True, help="scene.json of kind seal-seat")

@@ -297,7 +297,7 @@ def parse_scene(document: Any) -> Scene:
 
 
 def read_document(path: Path) -> Any:
-    """The decoded ``scene.json``, not yet checked.
+    """The decoded ``scene.json``, or the scene in a ``provenance.json``; not yet checked.
 
     Raises:
         SceneError: the file cannot be read or is not JSON.
@@ -307,9 +307,11 @@ def read_document(path: Path) -> Any:
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(f"scene file {path} cannot be read: {error}") from error
     try:
-        return json.loads(text)
+        document = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         raise SceneError(f"scene file {path} is not valid JSON: {error}") from error
+    inner = document.get("scene") if isinstance(document, dict) else None
+    return inner if isinstance(inner, dict) else document
 
 
 def read_scene(path: Path) -> Scene:

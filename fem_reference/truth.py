@@ -10,7 +10,7 @@ from typing import Any
 from .convergence import QUANTITIES, RATIO, quantities, solve_sequence
 from .output import history, resampled
 from .progress import Progress
-from .scene import Scene, parse_scene, read_scene
+from .scene import Scene, read_scene
 from .solve import compute
 
 FINE = 1.5
@@ -35,13 +35,6 @@ class Trial:
     def holds(self) -> bool:
         """Whether the finer mesh's value lies within the band."""
         return abs(self.value - self.finer) <= self.band
-
-
-def read_any(path: Path) -> Scene:
-    """A scene from ``scene.json`` or from the ``provenance.json`` of a stored solution."""
-    document = json.loads(path.read_text(encoding="utf-8"))
-    inner = document.get("scene") if isinstance(document, dict) else None
-    return parse_scene(inner) if isinstance(inner, dict) else read_scene(path)
 
 
 def try_bands(scene: Scene, progress: Progress) -> tuple[list[Trial], dict[str, Any]]:
@@ -85,7 +78,7 @@ def report(paths: list[Path], out: Path, progress: Progress) -> bool:
     ]
     kept: dict[str, list[bool]] = {name: [] for name in QUANTITIES}
     for path in paths:
-        scene = read_any(path)
+        scene = read_scene(path)
         trials, more = try_bands(scene, progress)
         for trial in trials:
             kept[trial.quantity].append(trial.holds)
