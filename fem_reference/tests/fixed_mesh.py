@@ -13,42 +13,50 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+from fem_reference.convergence import quantities
 from fem_reference.estimate import estimate_contact
+from fem_reference.explicit import integrate
+from fem_reference.fenicsx import alone
 from fem_reference.meshing import mesh_impact
-from fem_reference.scene import Scene, read_scene
+from fem_reference.scene import Scene, parse_scene, read_document
+from fem_reference.seal_seat.meshing import seat_mesh
+from fem_reference.seal_seat.model import seat_model
+from fem_reference.seal_seat.run import integrate as integrate_seat
+from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
+from fem_reference.seal_seat.solve import quantities as seat_quantities
 from fem_reference.settings import RESOLUTIONS, mesh_settings
+from fem_reference.solid.loop import make_loop
+from fem_reference.solid.plate import plate_model
+from fem_reference.solid.run import integrate as integrate_solid
+from fem_reference.solid.solve import quantities as solid_quantities
 from fem_reference.solve import shortest_wavelengths
+from fem_reference.system import build_system
 
 
-def make(scene: Scene) -> Any:
-    """The mesh, and the estimate it was made for."""
-    estimate = estimate_contact(scene)
+def make(scene: Scene | SeatScene) -> Any:
+    """The mesh, and for plates the estimate it was made for."""
     factor = RESOLUTIONS["coarse"]
+    if isinstance(scene, SeatScene):
+        return seat_model(scene, seat_mesh(scene, factor), None), None
+    estimate = estimate_contact(scene)
     if scene.geometry == "solid":
-        from fem_reference.solid.plate import plate_model
-
         waves = shortest_wavelengths(scene, estimate.duration)
         return plate_model(scene, estimate, waves, factor), estimate
     settings = mesh_settings(scene, estimate.outer_radius, estimate.inner_radius, factor)
     return mesh_impact(scene, settings), estimate
 
 
-def run(scene: Scene, mesh: Any, estimate: Any) -> tuple[dict[str, float], int]:
+def run(scene: Scene | SeatScene, mesh: Any, estimate: Any) -> tuple[dict[str, float], int]:
     """Quantities, and the number of nodes."""
+    if isinstance(scene, SeatScene):
+        loop = make_loop(mesh.model, alone())
+        seat: Any = SimpleNamespace(run=integrate_seat(loop, mesh, scene), loop=loop, seat=mesh)
+        return seat_quantities(scene, seat), loop.all_masses.size
     if scene.geometry == "solid":
-        from fem_reference.fenicsx import alone
-        from fem_reference.solid.loop import make_loop
-        from fem_reference.solid.run import integrate as integrate_solid
-        from fem_reference.solid.solve import quantities as solid_quantities
-
         loop = make_loop(mesh.model, alone())
         result = integrate_solid(loop, mesh, scene, estimate.duration)
         solid: Any = SimpleNamespace(run=result, loop=loop, plate=mesh)
         return solid_quantities(scene, solid), loop.all_masses.size
-    from fem_reference.convergence import quantities
-    from fem_reference.explicit import integrate
-    from fem_reference.system import build_system
-
     system = build_system(scene, mesh)
     found = integrate(system, scene.speed, estimate.duration, end_time=scene.end_time)
     return quantities(scene, found, system), int(system.mass.size)
@@ -56,7 +64,9 @@ def run(scene: Scene, mesh: Any, estimate: Any) -> tuple[dict[str, float], int]:
 
 def main(task: str, scene_path: Path, mesh_path: Path, *folder: str) -> None:
     """Do one of the two tasks."""
-    scene = read_scene(scene_path)
+    document = read_document(scene_path)
+    seat = document["kind"] == "seal-seat"
+    scene = parse_seat_scene(document) if seat else parse_scene(document)
     if task == "make":
         mesh_path.write_bytes(pickle.dumps(make(scene), protocol=4))
         return
