@@ -74,6 +74,8 @@ evidence: setup
 	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution paper || exit 1; done
 	$(RUN) --store $(OUT)/evidence gate scenes/validation/*.toml --models B,C --out $(OUT)/evidence-report
 	$(PYTHON) -m fem_reference bands --scene $(OUT)/evidence/*/paper/provenance.json --out $(OUT)/bands.json
+	for scene in $(PLATES); do $(PYTHON) -m fem_reference cost --out reports/reference-cost-$$scene.json \
+	    --scene fem_reference/solutions/$$scene/paper/provenance.json || exit 1; done
 	for study in table2 rocker fluid insensitivity seal-seat seal-seat-cost; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done
 	for study in fig14 fig15 fig16 fig17 half-period; do $(RUN) study $$study --model C --out $(OUT)/studies || exit 1; done
 	$(RUN) bench --modes 1,16 --out $(OUT)/bench

@@ -200,7 +200,22 @@ def _figure(name: str, points: Sequence[Point]) -> str:
         data = "L".join(f"{u:.1f} {v:.1f}" for u, v in line)
         parts.append(f'<path d="M{data}" fill="none" stroke="{colour}" stroke-width="1.7"/>')
         parts += [f'<circle cx="{u:.1f}" cy="{v:.1f}" r="3.5" fill="{colour}"/>' for u, v in line]
+        if kind == "on":
+            dofs = [point.dofs for point in points if point.sub_cycling == kind]
+            parts += [
+                f'<text x="{u:.1f}" y="{v + 17:.1f}" font-size="10" fill="#555" '
+                f'text-anchor="middle">{number}</text>'
+                for (u, v), number in zip(line, dofs, strict=True)
+            ]
         parts.append(f'<text x="{left + 190 * k}" y="24" fill="{colour}">sub-cycling {kind}</text>')
-    parts.append(f'<text x="{width / 2}" y="{height - 10}" text-anchor="middle">loop, s</text>')
+    parts.append(
+        f'<text x="{width / 2}" y="{height - 10}" text-anchor="middle">'
+        "processor time of the loop, s (at the points: degrees of freedom)</text>"
+    )
+    middle = top + (height - top - bottom) / 2.0
+    parts.append(
+        f'<text transform="translate(16 {middle:g}) rotate(-90)" text-anchor="middle">'
+        "largest error of efficiency, peaks</text>"
+    )
     parts.append("</svg>\n")
     return "\n".join(parts)
