@@ -122,7 +122,8 @@ pub fn largest_error(
         (if difference == 0.0 { 0.0 } else { difference / scale }, name)
     };
     // a value that is not a number is the largest of all
-    let larger = |a: (f64, &'static str), b: (f64, &'static str)| if a.0 >= b.0 || a.0.is_nan() { a } else { b };
+    let larger =
+        |a: (f64, &'static str), b: (f64, &'static str)| if a.0 >= b.0 || a.0.is_nan() { a } else { b };
     COVERED.into_iter().map(error).fold((0.0, COVERED[0]), larger)
 }
 
@@ -285,7 +286,11 @@ impl Search {
     ) -> (usize, Option<f64>) {
         let floor = self.floor.unwrap_or(self.tolerance);
         // what the floor leaves; where it leaves nothing, so much that the modes hardly matter beside it
-        let room = if floor < self.tolerance { (self.tolerance.powi(2) - floor.powi(2)).sqrt() } else { 0.5 * floor };
+        let room = if floor < self.tolerance {
+            (self.tolerance.powi(2) - floor.powi(2)).sqrt()
+        } else {
+            0.5 * floor
+        };
         let mut last = (most, None);
         for modes in CONTINUUM_RUNGS.into_iter().take_while(|n| *n <= most) {
             let alone = truncation(trials.layer.omega_next(modes));
@@ -333,7 +338,9 @@ impl Search {
     ) -> Plan {
         let met = error.is_some_and(|error| error <= self.tolerance);
         let reason = match (error, self.floor) {
-            (Some(_), _) if met => format!("model {model} is the cheapest whose estimated error meets the tolerance"),
+            (Some(_), _) if met => {
+                format!("model {model} is the cheapest whose estimated error meets the tolerance")
+            }
             (Some(error), Some(floor)) => format!(
                 "no reduced model is estimated to meet the tolerance: model {model} comes nearest with {:.2} %, {:.2} % of which are what model C was found to be off by",
                 100.0 * error,
@@ -370,4 +377,3 @@ impl Plan {
         Some(self)
     }
 }
-

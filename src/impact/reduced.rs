@@ -7,6 +7,7 @@ use super::validity;
 use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
+use crate::body::cache::Cache;
 use crate::body::continuum::{MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
@@ -65,6 +66,24 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::new`].
     pub fn in_series(scene: Scene, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Self> {
+        Self::build(scene, model, modes, plates, &Cache::from_environment())
+    }
+
+    /// As [`Reduced::new`] with the bodies of model C from `cache`.
+    ///
+    /// # Errors
+    /// As [`Reduced::new`].
+    pub fn new_in(scene: &Scene, model: Model, modes: Option<usize>, cache: &Cache) -> Result<Self> {
+        Self::build(scene.clone(), model, modes, &UnitPlates::default(), cache)
+    }
+
+    fn build(
+        scene: Scene,
+        model: Model,
+        modes: Option<usize>,
+        plates: &UnitPlates,
+        cache: &Cache,
+    ) -> Result<Self> {
         let setup = scene.plate_impact()?;
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
@@ -78,7 +97,7 @@ impl Reduced {
             Model::A | Model::B => kirchhoff(setup, modes.unwrap_or(DEFAULT_MODES), plates)?,
             Model::C => {
                 let rough = Rough::of(&kirchhoff_system(setup, DEFAULT_MODES, plates)?)?;
-                continuum(setup, modes.map_or(Wanted::Estimate, Wanted::Modes), &rough)?
+                continuum(setup, modes.map_or(Wanted::Estimate, Wanted::Modes), &rough, cache)?
             }
         };
         Ok(Self::of(built, model, scene, None))
@@ -90,10 +109,18 @@ impl Reduced {
     /// # Errors
     /// [`Error::Scene`] if the scene is no plate impact, [`Error::Solver`] for what no reduced model covers.
     pub fn auto(scene: &Scene, tolerance: f64) -> Result<Self> {
+        Self::auto_in(scene, tolerance, &Cache::from_environment())
+    }
+
+    /// As [`Reduced::auto`] with the bodies of model C from `cache`.
+    ///
+    /// # Errors
+    /// As [`Reduced::auto`].
+    pub fn auto_in(scene: &Scene, tolerance: f64, cache: &Cache) -> Result<Self> {
         let setup = scene.plate_impact()?;
         let mut plan = choice::plan(scene, tolerance)?;
         if let Some(cut) = plan.cut {
-            match continuum(setup, Wanted::Below(cut), &plan.rough) {
+            match continuum(setup, Wanted::Below(cut), &plan.rough, cache) {
                 Ok(built) => return Ok(Self::of(built, Model::C, scene.clone(), Some(plan.choice))),
                 Err(error) => plan = plan.without_continuum(&error).ok_or(error)?,
             }
@@ -281,9 +308,9 @@ fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<B
 }
 
 /// Model C.
-fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough) -> Result<Built> {
+fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<Built> {
     let rigid = usize::from(setup.plate.edge == Edge::Free);
-    let plate = validity::tempered(continuum_plate(setup, wanted, rough)?, setup, rough);
+    let plate = validity::tempered(continuum_plate(setup, wanted, rough, cache)?, setup, rough);
     let elastic = plate.omega.len() - rigid;
     let mesh = MeshOptions::default();
     let shapes = |radii: &[f64]| {
@@ -295,7 +322,7 @@ fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough) -> Result<Built
         Ok(shapes)
     };
     let fluid = fluid_forces(setup, shapes)?;
-    let tips = tip_residuals(setup, rough.patch_radius, &mesh)?;
+    let tips = tip_residuals(setup, rough.patch_radius, &mesh, cache)?;
     Ok(Built { system: join(setup, plate, tips)?, fluid, warnings: validity::warnings(setup, rough) })
 }
 
@@ -314,9 +341,9 @@ pub(super) fn fluid_forces(
 }
 
 /// Plate of model C: continuum with residual flexibility.
-fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough) -> Result<ModalBody> {
+fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<ModalBody> {
     let mesh = MeshOptions::default();
-    let build = |modes| cached::plate(&setup.plate, rough.patch_radius, modes, &mesh);
+    let build = |modes| cached::plate_in(cache, &setup.plate, rough.patch_radius, modes, &mesh);
     match wanted {
         Wanted::Modes(modes) => Ok(build(modes)?.modal_body(modes)),
         Wanted::Below(cut) => {
@@ -340,9 +367,14 @@ fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough) -> Result
 
 /// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
 /// radii `patch` in m.
-pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOptions) -> Result<[f64; 2]> {
+pub(super) fn tip_residuals(
+    setup: &PlateImpact,
+    patch: [f64; 2],
+    mesh: &MeshOptions,
+    cache: &Cache,
+) -> Result<[f64; 2]> {
     let tip = |shape: &Shape, material: &Material, patch| match *shape {
-        Shape::Sphere { radius } => cached::sphere_residual(radius, material, patch, mesh),
+        Shape::Sphere { radius } => cached::sphere_residual_in(cache, radius, material, patch, mesh),
         // a compact body and the tip of a bender are rigid but for their Hertz contact
         Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
     };
