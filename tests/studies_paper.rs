@@ -4,7 +4,7 @@ use impactcheck::scene::Model;
 use impactcheck::study::{Cell, STUDIES, Settings, Study, Verdict, figure, find, write};
 
 fn run(name: &str, model: Option<Model>) -> Study {
-    (find(name).unwrap().run)(&Settings { model }, &mut |_| ()).unwrap()
+    (find(name).unwrap().run)(&Settings { model, ..Settings::default() }, &mut |_| ()).unwrap()
 }
 
 fn numbers(study: &Study, column: &str) -> Vec<f64> {
@@ -100,7 +100,8 @@ fn every_study_is_drawn_from_columns_it_has() {
     }
     let folder = tempfile::tempdir().unwrap();
     let entry = find("fig17").unwrap();
-    let written = write(&run("fig17", Some(Model::A)), entry.panels, folder.path()).unwrap();
+    let study = run("fig17", Some(Model::A));
+    let written = write(&study, entry.figure(&study).unwrap(), folder.path()).unwrap();
     let names: Vec<String> =
         written.iter().map(|path| path.extension().unwrap().to_string_lossy().into_owned()).collect();
     assert_eq!(names, ["json", "csv", "md", "png", "svg"]);

@@ -27,13 +27,18 @@ pub fn frequency_parameters(edge: Edge, poisson_ratio: f64, count: usize) -> Vec
     // successive roots are about pi apart: a tenth of that brackets each one
     let step = PI / 10.0;
     let mut roots = Vec::with_capacity(count);
-    let mut low = 1.0;
+    let (mut low, mut below) = (1.0, characteristic(1.0));
     while roots.len() < count {
         let high = low + step;
-        if characteristic(low) * characteristic(high) < 0.0 {
-            roots.push(bisect(characteristic, low, high));
+        let above = characteristic(high);
+        if below * above < 0.0 {
+            roots.push(root(characteristic, [low, high], [below, above]));
+            // the next one is not near
+            low = high + 1.5;
+            below = characteristic(low);
+        } else {
+            (low, below) = (high, above);
         }
-        low = high;
     }
     roots
 }
@@ -56,11 +61,17 @@ pub fn frequencies(
 /// Deflection of the centre in the mass-normalised mode with parameter `k`, for unit radius and mass per area:
 /// w(0) with the integral of w^2 2 pi r dr over 0..1 equal to one.
 pub fn centre_deflection(edge: Edge, k: f64) -> f64 {
+    deflection(edge, k, &[0.0])[0]
+}
+
+/// As [`centre_deflection`] at the `radii` in 0..=1, of the sign that makes the centre's positive; `k` up to 700.
+pub fn deflection(edge: Edge, k: f64, radii: &[f64]) -> Vec<f64> {
     let (j0, j1, ratio) = (libm::j0(k), libm::j1(k), bessel_i_ratio(k));
-    // w = J0(k r) + g I0(k r)/I0(k)
+    // w = J0(k r) + g I0(k r)/I0(k); w(0) > 0
     let g = if edge == Edge::Free { -j1 / ratio } else { -j0 };
     let norm = 0.5 * (j0 * j0 + j1 * j1) + g / k * (j1 + j0 * ratio) + 0.5 * g * g * (1.0 - ratio * ratio);
-    (1.0 + g / bessel_i0(k)) / (2.0 * PI * norm).sqrt()
+    let (scale, rim) = (1.0 / (2.0 * PI * norm).sqrt(), bessel_i0(k));
+    radii.iter().map(|r| scale * (libm::j0(k * r) + g * bessel_i0(k * r) / rim)).collect()
 }
 
 /// I0(x) by its power series.
@@ -82,16 +93,24 @@ fn bessel_i_ratio(x: f64) -> f64 {
     (1..=terms).rev().fold(0.0, |tail, n| 1.0 / (2.0 * n as f64 / x + tail))
 }
 
-/// Root of `f` between `low` and `high`, to the last bit.
-fn bisect(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    let sign = f(low).signum();
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return middle;
+/// Root of `f` within the `bracket`, at whose ends it has the `values`, to rounding: false position, the end that stays
+/// weighed half (Illinois; Dowell & Jarratt, BIT 11, 1971).
+fn root(f: impl Fn(f64) -> f64, bracket: [f64; 2], values: [f64; 2]) -> f64 {
+    let ([mut old, mut new], [mut f_old, mut f_new]) = (bracket, values);
+    while f_new != 0.0 && (new - old).abs() > 4.0 * f64::EPSILON * new.abs() {
+        let next = new - f_new * (new - old) / (f_new - f_old);
+        if next == new || next == old {
+            return next;
         }
-        if f(middle).signum() == sign { low = middle } else { high = middle }
+        let value = f(next);
+        if value * f_new < 0.0 {
+            (old, f_old) = (new, f_new);
+        } else {
+            f_old *= 0.5;
+        }
+        (new, f_new) = (next, value);
     }
+    new
 }
 
 #[cfg(test)]

@@ -5,7 +5,9 @@ pub mod beam;
 pub mod cache;
 pub mod continuum;
 mod eigenmodes;
+pub mod free_sphere;
 pub mod kirchhoff;
+pub mod layer;
 pub mod quadrature;
 pub mod solid;
 

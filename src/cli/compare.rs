@@ -1,11 +1,13 @@
 //! `impactcheck compare`: the main job, scene to verdict.
 
+use super::asked_model::{self, AskedModel};
 use super::compare_seats::{self, SeatRun};
 use super::{Context, JsonArgument, reference};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
 use crate::comparison::{CommonAxis, Comparison, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
+use crate::impact::choice;
 use crate::impact::reduced::Reduced;
 use crate::impact::{Outcome, Quantities};
 use crate::measured::{self, Record, Speed};
@@ -25,9 +27,12 @@ const TRENDS: &str = "trends.jsonl";
 pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all shipped scenes]
     scenes: Vec<String>,
-    /// Reduced models to compare
+    /// Reduced models to compare; auto stands for the cheapest whose estimated error meets the tolerance
     #[arg(long, value_delimiter = ',', default_value = "A,B,C")]
-    models: Vec<Model>,
+    models: Vec<AskedModel>,
+    /// Tolerance of auto: relative error of the efficiency, the outer body's final velocity and both force peaks [default: 1%]
+    #[arg(long, value_parser = asked_model::tolerance)]
+    tolerance: Option<f64>,
     /// Resolution of the reference
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
@@ -98,9 +103,15 @@ pub(super) struct Outputs {
 impl<'a> Job<'a> {
     pub(super) fn read(context: &Context, arguments: &'a Arguments) -> Result<Self> {
         let start = Instant::now();
+        if let (Some(tolerance), false) = (arguments.tolerance, arguments.models.contains(&AskedModel::Auto))
+        {
+            return Err(Error::Usage(format!(
+                "--tolerance {tolerance} is for the model auto, which is not among --models"
+            )));
+        }
         let mut scenes = read(&arguments.scenes)?;
         // refused before anything is computed; of all shipped scenes those are compared that have one of the models
-        if arguments.scenes.is_empty() && !arguments.models.contains(&Model::C) {
+        if arguments.scenes.is_empty() && !arguments.models.contains(&AskedModel::Named(Model::C)) {
             scenes.retain(|(_, scene)| !is_seat(scene));
             context.note("the shipped seal seats are left out: they have model C only");
         }
@@ -158,23 +169,26 @@ impl<'a> Job<'a> {
         for (scene, stored) in plates.into_iter().zip(&references) {
             // the models' curves are drawn and compared as far as the reference's
             let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
-            let outcomes: Result<Vec<Outcome>> = models(self.arguments)
-                .into_iter()
-                .map(|model| {
-                    let start = Instant::now();
-                    let body = Reduced::new(scene, model, None)?;
-                    let set_up = start.elapsed().as_secs_f64();
-                    let outcome = body.run_with_history_until(TOLERANCE, end)?;
-                    context.detail(format_args!(
-                        "{}: model {model} set up in {:.1} ms, run in {:.2} ms",
+            let outcomes = models(scene, self.arguments)?.into_iter().map(|(body, set_up)| {
+                let outcome = body.run_with_history_until(TOLERANCE, end)?;
+                context.detail(format_args!(
+                    "{}: model {} set up in {:.1} ms, run in {:.2} ms",
+                    scene.name,
+                    body.model(),
+                    1e3 * set_up,
+                    1e3 * outcome.summary.solve_seconds
+                ));
+                if let Some(choice) = &outcome.summary.choice {
+                    context.note(format_args!(
+                        "{}: model {}, {}",
                         scene.name,
-                        1e3 * set_up,
-                        1e3 * outcome.summary.solve_seconds
+                        body.model(),
+                        asked_model::told(choice)
                     ));
-                    Ok(outcome)
-                })
-                .collect();
-            reduced.push(outcomes?);
+                }
+                Ok(outcome)
+            });
+            reduced.push(outcomes.collect::<Result<Vec<Outcome>>>()?);
         }
         Ok(Results { references, reduced, seats })
     }
@@ -219,9 +233,12 @@ impl<'a> Job<'a> {
         let place = self.scenes.iter().position(|(_, other)| other.name == scene.name);
         let named = place.and_then(|k| scenes.get(k)).unwrap_or(&scene.name);
         let mut command = format!("impactcheck compare {named}");
-        let models: Vec<String> = models.iter().map(Model::to_string).collect();
+        let models: Vec<String> = models.iter().map(AskedModel::to_string).collect();
         if models != ["A", "B", "C"] {
             command += &format!(" --models {}", models.join(","));
+        }
+        if let Some(tolerance) = self.arguments.tolerance {
+            command += &format!(" --tolerance {tolerance}");
         }
         if *resolution != Resolution::Paper {
             command += &format!(" --resolution {resolution}");
@@ -397,13 +414,30 @@ fn all_found(mut problems: Vec<String>) -> Result<()> {
     Err(Error::Reference(problems.join("\n  ")))
 }
 
-/// The models to compare, each once, in the order asked for.
-fn models(arguments: &Arguments) -> Vec<Model> {
+/// The models to compare, each once, in the order asked for, with the time in s that each took to set up. A model that is
+/// named and also chosen by auto is compared as auto chose it.
+fn models(scene: &Scene, arguments: &Arguments) -> Result<Vec<(Reduced, f64)>> {
+    let timed = |set_up: &dyn Fn() -> Result<Reduced>| {
+        let start = Instant::now();
+        set_up().map(|body| (body, start.elapsed().as_secs_f64()))
+    };
+    let mut chosen = None;
+    if arguments.models.contains(&AskedModel::Auto) {
+        let tolerance = arguments.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
+        chosen = Some(timed(&|| Reduced::auto(scene, tolerance))?);
+    }
+    let auto = chosen.as_ref().map(|(body, _)| body.model());
+    let mut done = Vec::new();
     let mut models = Vec::new();
-    for model in &arguments.models {
-        if !models.contains(model) {
-            models.push(*model);
+    for asked in &arguments.models {
+        match *asked {
+            AskedModel::Auto => models.extend(chosen.take()),
+            AskedModel::Named(model) if auto != Some(model) && !done.contains(&model) => {
+                done.push(model);
+                models.push(timed(&|| Reduced::new(scene, model, None))?);
+            }
+            AskedModel::Named(_) => {}
         }
     }
-    models
+    Ok(models)
 }

@@ -1,5 +1,6 @@
 //! The seal-seat scenes of `compare` and `gate`: the reduced model on the very mesh of the stored reference.
 
+use super::asked_model::AskedModel;
 use crate::body::cache::Cache;
 use crate::ci::acceptance;
 use crate::comparison::compare_scene;
@@ -26,11 +27,11 @@ pub(super) struct SeatRun {
 ///
 /// # Errors
 /// [`Error::Usage`] naming `scene`.
-pub(super) fn check_models(scene: &Scene, models: &[Model]) -> Result<()> {
-    if models.contains(&Model::C) {
+pub(super) fn check_models(scene: &Scene, models: &[AskedModel]) -> Result<()> {
+    if models.contains(&AskedModel::Named(Model::C)) {
         return Ok(());
     }
-    let names: Vec<String> = models.iter().map(Model::to_string).collect();
+    let names: Vec<String> = models.iter().map(AskedModel::to_string).collect();
     Err(Error::Usage(format!(
         "--models {}: scene `{}` is a seal seat, which has model C only",
         names.join(","),

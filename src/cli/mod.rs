@@ -1,5 +1,6 @@
 //! The command line: one file per command, no physics.
 
+mod asked_model;
 mod bench;
 mod compare;
 mod compare_seats;
@@ -46,7 +47,9 @@ const EXIT_STATUS: &str = "Exit status: 0 pass, 1 internal error, 2 usage, 3 inv
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a reduced model of a scene
-    #[command(after_help = "Example: impactcheck reduced scaled-plate-r10 --model B --modes 16")]
+    #[command(
+        after_help = "Examples: impactcheck reduced scaled-plate-r10 --model B --modes 16\n          impactcheck reduced scaled-plate-r10 --model auto --tolerance 1%"
+    )]
     Reduced(reduced::Arguments),
     /// Find the stored finite-element solution of a scene, or compute it
     #[command(after_help = "Example: impactcheck reference scaled-plate-r10 --resolution coarse")]

@@ -1,8 +1,10 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
+use super::asked_model::{self, AskedModel};
 use super::{Context, JsonArgument};
 use crate::body::cache::Cache;
 use crate::error::{Error, ExitStatus, Result};
+use crate::impact::choice;
 use crate::impact::reduced::Reduced;
 use crate::impact::seal_seat::{self, SeatMesh, SeatModel};
 use crate::impact::{Curves, History, Quantities, SeatHistory, SeatSummary, Summary};
@@ -15,15 +17,17 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Scene file, or the name of a shipped scene
     scene: String,
-    /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility) [default: the scene's, else C]
+    /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility), or auto, the cheapest whose
+    /// estimated error meets the tolerance [default: the scene's, else C]
     #[arg(long)]
-    model: Option<Model>,
+    model: Option<AskedModel>,
     /// Number of modes [default: the scene's, else 16 for B and as many as needed for C]
     #[arg(long, value_name = "N")]
     modes: Option<usize>,
     /// Relative error that the time integration may have: of the efficiency, of a seal seat's sphere of its velocity [default: 1e-7,
-    /// of a seal seat 1e-3]
-    #[arg(long, value_parser = tolerance)]
+    /// of a seal seat 1e-3]; with --model auto the error of the model itself: of the efficiency, the outer body's final velocity
+    /// and both force peaks [default: 1%]
+    #[arg(long, value_parser = asked_model::tolerance)]
     tolerance: Option<f64>,
     /// Mesh of the seat (.vtu, tetrahedra), for seal-seat scenes [default: that in meshes/ or the cache, else a new one]
     #[arg(long, value_name = "FILE")]
@@ -37,6 +41,8 @@ pub struct Arguments {
 
 /// Relative error of the efficiency of a plate impact when the caller names none.
 const DEFAULT_TOLERANCE: f64 = 1e-7;
+/// Largest tolerance of a time integration.
+const LARGEST_INTEGRATION: f64 = 1e-2;
 
 /// Runs the model and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
@@ -61,9 +67,21 @@ fn plate(scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<Histor
             scene.name
         )));
     }
-    let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::C);
-    let reduced = Reduced::new(scene, model, arguments.modes)?;
-    let tolerance = arguments.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+    let default = AskedModel::Named(scene.reduced.model.unwrap_or(Model::C));
+    let (reduced, tolerance) = match arguments.model.unwrap_or(default) {
+        AskedModel::Named(model) => {
+            (Reduced::new(scene, model, arguments.modes)?, integration_tolerance(arguments)?)
+        }
+        AskedModel::Auto => {
+            if let Some(modes) = arguments.modes {
+                return Err(Error::Usage(format!(
+                    "--modes {modes}: --model auto chooses the number of modes"
+                )));
+            }
+            let tolerance = arguments.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
+            (Reduced::auto(scene, tolerance)?, choice::integration_tolerance(tolerance))
+        }
+    };
     if arguments.history.is_none() {
         return Ok((reduced.run(tolerance)?, None));
     }
@@ -71,12 +89,32 @@ fn plate(scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<Histor
     Ok((outcome.summary, Some(outcome.history)))
 }
 
+/// The tolerance of the time integration of a model that is named.
+fn integration_tolerance(arguments: &Arguments) -> Result<f64> {
+    let tolerance = arguments.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+    if tolerance > LARGEST_INTEGRATION {
+        return Err(Error::Usage(format!(
+            "--tolerance {tolerance} is more than {LARGEST_INTEGRATION}: with a model that is named it is the error of the time integration; --model auto takes larger ones"
+        )));
+    }
+    Ok(tolerance)
+}
+
 fn seat(
     context: &Context,
     scene: &Scene,
     arguments: &Arguments,
 ) -> Result<(SeatSummary, Option<SeatHistory>)> {
-    let model = arguments.model.or(scene.reduced.model).unwrap_or(Model::C);
+    let model = match arguments.model {
+        Some(AskedModel::Named(model)) => model,
+        Some(AskedModel::Auto) => {
+            return Err(Error::Usage(format!(
+                "--model auto: scene `{}` is a seal seat, which has model C only",
+                scene.name
+            )));
+        }
+        None => scene.reduced.model.unwrap_or(Model::C),
+    };
     let cache = Cache::from_environment();
     let mesh = match &arguments.mesh {
         Some(path) => SeatMesh::open(path)?,
@@ -89,7 +127,10 @@ fn seat(
         reduced.dofs,
         reduced.setup_seconds
     ));
-    let tolerance = arguments.tolerance.unwrap_or(seal_seat::DEFAULT_TOLERANCE);
+    let tolerance = match arguments.tolerance {
+        Some(_) => integration_tolerance(arguments)?,
+        None => seal_seat::DEFAULT_TOLERANCE,
+    };
     if arguments.history.is_none() {
         return Ok((reduced.run(tolerance)?, None));
     }
@@ -156,6 +197,7 @@ pub fn table<Q: Quantities>(summary: &Summary<Q>) -> String {
     lines.push(format!("  {:<22} {:>14.1e}", "energy_residual", summary.energy_residual));
     lines.push(format!("  {:<22} {:>14.1e}", "momentum_residual", summary.momentum_residual));
     lines.push(format!("  {} steps in {:.3e} s", summary.steps, summary.solve_seconds));
+    lines.extend(summary.choice.as_ref().map(asked_model::told));
     lines.join("\n")
 }
 
@@ -183,13 +225,4 @@ fn csv(history: &impl Curves) -> Result<Vec<u8>> {
         writer.into_inner().map_err(|e| e.into_error().into())
     }
     write(history).map_err(|e| Error::Internal(format!("writing CSV: {e}")))
-}
-
-/// Parses a tolerance between what double precision gives and what is of use.
-fn tolerance(text: &str) -> std::result::Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if (1e-12..=1e-2).contains(&value) => Ok(value),
-        Ok(value) => Err(format!("{value} is not within 1e-12 to 1e-2")),
-        Err(e) => Err(e.to_string()),
-    }
 }

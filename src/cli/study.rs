@@ -28,7 +28,7 @@ enum Own {
 #[derive(Debug, Args)]
 struct Named {
     /// Name of the study: table2, fig14, fig15, fig16, fig17, half-period (section 4.1),
-    /// insensitivity, rocker, fluid, seal-seat (section 4.4), seal-seat-cost
+    /// insensitivity, auto, rocker, fluid, seal-seat (section 4.4), seal-seat-cost
     #[arg(required = true)]
     name: Option<String>,
     /// Reduced model, for the studies of figures [default: B, with which the paper made them]
@@ -60,14 +60,14 @@ fn named(context: &Context, arguments: &Named) -> Result<ExitStatus> {
             entry.name
         )));
     }
-    let settings = study::Settings { model: arguments.model };
+    let settings = study::Settings { model: arguments.model, store: context.store.clone() };
     if let Some(folder) = &arguments.out {
         // refused before anything is computed
         report::check_writable(folder)?;
     }
     let study = (entry.run)(&settings, &mut |text| context.note(text))?;
     if let Some(folder) = &arguments.out {
-        for path in study::write(&study, entry.panels, folder)? {
+        for path in study::write(&study, entry.figure(&study)?, folder)? {
             context.note(format_args!("wrote {}", path.display()));
         }
     }

@@ -2,6 +2,7 @@
 
 mod bank;
 mod centre;
+pub mod choice;
 pub mod collocation;
 mod contact_forces;
 mod contact_ledger;
@@ -24,6 +25,7 @@ mod validity;
 pub mod variants;
 pub mod wet;
 
+pub use choice::{Candidate, Choice};
 pub use contact_ledger::ContactLedger;
 pub use history::{CURVES, Curves, History, Motion};
 pub use integrator::Losses;

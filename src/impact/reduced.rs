@@ -1,11 +1,13 @@
 //! A reduced model of a scene: bodies reduced to modes, joined and integrated.
 
+use super::choice::{self, Choice, Cut};
 use super::integrator::{Integration, Options, integrate};
 use super::system::System;
 use super::validity;
 use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
+use crate::body::cache::Cache;
 use crate::body::continuum::{MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
@@ -31,6 +33,8 @@ pub struct Reduced {
     /// Forces of the fluid; a dry impact has none and takes the dry integrator.
     fluid: Option<FluidForces>,
     warnings: Vec<String>,
+    /// Why it is this model, if it was left to the program.
+    choice: Option<Choice>,
     scene: Scene,
 }
 
@@ -62,6 +66,24 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::new`].
     pub fn in_series(scene: Scene, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Self> {
+        Self::build(scene, model, modes, plates, &Cache::from_environment())
+    }
+
+    /// As [`Reduced::new`] with the bodies of model C from `cache`.
+    ///
+    /// # Errors
+    /// As [`Reduced::new`].
+    pub fn new_in(scene: &Scene, model: Model, modes: Option<usize>, cache: &Cache) -> Result<Self> {
+        Self::build(scene.clone(), model, modes, &UnitPlates::default(), cache)
+    }
+
+    fn build(
+        scene: Scene,
+        model: Model,
+        modes: Option<usize>,
+        plates: &UnitPlates,
+        cache: &Cache,
+    ) -> Result<Self> {
         let setup = scene.plate_impact()?;
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
@@ -71,8 +93,56 @@ impl Reduced {
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
             (_, modes) => modes.or(scene.reduced.modes),
         };
-        let Built { system, fluid, warnings } = build(setup, model, modes, plates)?;
-        Ok(Self { model, system, fluid, warnings, scene })
+        let built = match model {
+            Model::A | Model::B => kirchhoff(setup, modes.unwrap_or(DEFAULT_MODES), plates)?,
+            Model::C => {
+                let rough = Rough::of(&kirchhoff_system(setup, DEFAULT_MODES, plates)?)?;
+                continuum(setup, modes.map_or(Wanted::Estimate, Wanted::Modes), &rough, cache)?
+            }
+        };
+        Ok(Self::of(built, model, scene, None))
+    }
+
+    /// The cheapest model and number of modes whose estimated error meets `tolerance`, or what comes nearest; see
+    /// [`Choice`]. The tolerance covers [`choice::COVERED`].
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if the scene is no plate impact, [`Error::Solver`] for what no reduced model covers.
+    pub fn auto(scene: &Scene, tolerance: f64) -> Result<Self> {
+        Self::auto_in(scene, tolerance, &Cache::from_environment())
+    }
+
+    /// As [`Reduced::auto`] with the bodies of model C from `cache`.
+    ///
+    /// # Errors
+    /// As [`Reduced::auto`].
+    pub fn auto_in(scene: &Scene, tolerance: f64, cache: &Cache) -> Result<Self> {
+        let setup = scene.plate_impact()?;
+        let mut plan = choice::plan(scene, tolerance)?;
+        if let Some(cut) = plan.cut {
+            match continuum(setup, Wanted::Below(cut), &plan.rough, cache) {
+                Ok(built) => return Ok(Self::of(built, Model::C, scene.clone(), Some(plan.choice))),
+                Err(error) => plan = plan.without_continuum(&error).ok_or(error)?,
+            }
+        }
+        let built = kirchhoff(setup, plan.modes, &UnitPlates::default())?;
+        Ok(Self::of(built, plan.model, scene.clone(), Some(plan.choice)))
+    }
+
+    fn of(built: Built, model: Model, scene: Scene, choice: Option<Choice>) -> Self {
+        let Built { system, fluid, mut warnings } = built;
+        warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
+        Self { model, system, fluid, warnings, choice, scene }
+    }
+
+    /// The model.
+    pub fn model(&self) -> Model {
+        self.model
+    }
+
+    /// Why it is this model, if it was left to the program.
+    pub fn choice(&self) -> Option<&Choice> {
+        self.choice.as_ref()
     }
 
     /// The oscillators and contacts the model consists of.
@@ -173,6 +243,7 @@ impl Reduced {
             mesh: None,
             solver: None,
             warnings: self.warnings.clone(),
+            choice: self.choice.clone(),
             samples: None,
             sample_interval: None,
         }
@@ -206,48 +277,58 @@ struct Built {
     warnings: Vec<String>,
 }
 
-/// `model` with `modes` elastic modes; `None` lets model C choose.
-fn build(setup: &PlateImpact, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Built> {
-    let outer = OuterBody::new(&setup.outer)?;
-    let join = |plate: ModalBody, tips| {
-        let plate = match &setup.fluid {
-            Some(fluid) => immersed(plate, fluid),
-            None => plate,
-        };
-        System::with_outer(setup, outer.clone(), &plate, tips)
+/// Which modes of the continuum plate are wanted.
+enum Wanted {
+    /// So many.
+    Modes(usize),
+    /// As many as the error estimate asks for.
+    Estimate,
+    /// All below a frequency.
+    Below(Cut),
+}
+
+/// `plate`, immersed if there is a fluid, between the bodies of the scene.
+fn join(setup: &PlateImpact, plate: ModalBody, tips: [f64; 2]) -> Result<System> {
+    let plate = match &setup.fluid {
+        Some(fluid) => immersed(plate, fluid),
+        None => plate,
     };
-    let kirchhoff = |modes| Ok(join(plates.modes(&setup.plate, modes)?, [0.0; 2]));
+    Ok(System::with_outer(setup, OuterBody::new(&setup.outer)?, &plate, tips))
+}
+
+fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<System> {
+    join(setup, plates.modes(&setup.plate, modes)?, [0.0; 2])
+}
+
+/// Models A and B with `modes` elastic modes.
+fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<Built> {
+    let shapes = |radii: &[f64]| plates.shapes(&setup.plate, modes, radii);
+    let system = kirchhoff_system(setup, modes, plates)?;
+    Ok(Built { system, fluid: fluid_forces(setup, shapes)?, warnings: Vec::new() })
+}
+
+/// Model C.
+fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<Built> {
     let rigid = usize::from(setup.plate.edge == Edge::Free);
-    match model {
-        Model::A | Model::B => {
-            let modes = modes.unwrap_or(DEFAULT_MODES);
-            let shapes = |radii: &[f64]| plates.shapes(&setup.plate, modes, radii);
-            Ok(Built { system: kirchhoff(modes)?, fluid: fluid_forces(setup, shapes)?, warnings: Vec::new() })
+    let plate = validity::tempered(continuum_plate(setup, wanted, rough, cache)?, setup, rough);
+    let elastic = plate.omega.len() - rigid;
+    let mesh = MeshOptions::default();
+    let shapes = |radii: &[f64]| {
+        let mut shapes = cached::face_shapes(&setup.plate, rough.patch_radius, elastic, &mesh, radii)?;
+        for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
+            let sign = (shape[0] * phi[1]).signum();
+            shape.iter_mut().for_each(|value| *value *= sign);
         }
-        Model::C => {
-            let rough = Rough::of(&kirchhoff(DEFAULT_MODES)?)?;
-            let plate = validity::tempered(continuum(setup, modes, &rough)?, setup, &rough);
-            let elastic = plate.omega.len() - rigid;
-            let mesh = MeshOptions::default();
-            let shapes = |radii: &[f64]| {
-                let mut shapes =
-                    cached::face_shapes(&setup.plate, rough.patch_radius, elastic, &mesh, radii)?;
-                for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
-                    let sign = (shape[0] * phi[1]).signum();
-                    shape.iter_mut().for_each(|value| *value *= sign);
-                }
-                Ok(shapes)
-            };
-            let fluid = fluid_forces(setup, shapes)?;
-            let tips = tip_residuals(setup, rough.patch_radius, &mesh)?;
-            Ok(Built { system: join(plate, tips), fluid, warnings: validity::warnings(setup, &rough) })
-        }
-    }
+        Ok(shapes)
+    };
+    let fluid = fluid_forces(setup, shapes)?;
+    let tips = tip_residuals(setup, rough.patch_radius, &mesh, cache)?;
+    Ok(Built { system: join(setup, plate, tips)?, fluid, warnings: validity::warnings(setup, rough) })
 }
 
 /// Film and drag of the scene, if there are any. `shapes` gives the mass-normalised shapes of the dry plate's inner
 /// face at radii in m.
-fn fluid_forces(
+pub(super) fn fluid_forces(
     setup: &PlateImpact,
     shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
 ) -> Result<Option<FluidForces>> {
@@ -260,28 +341,40 @@ fn fluid_forces(
 }
 
 /// Plate of model C: continuum with residual flexibility.
-fn continuum(setup: &PlateImpact, modes: Option<usize>, rough: &Rough) -> Result<ModalBody> {
+fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<ModalBody> {
     let mesh = MeshOptions::default();
-    let build = |modes| cached::plate(&setup.plate, rough.patch_radius, modes, &mesh);
-    let Some(modes) = modes else {
-        let mut most = DEFAULT_MODES;
-        loop {
-            let plate = build(most)?;
-            let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
-            if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
-                return Ok(plate.modal_body(modes));
-            }
-            most *= 2;
+    let build = |modes| cached::plate_in(cache, &setup.plate, rough.patch_radius, modes, &mesh);
+    match wanted {
+        Wanted::Modes(modes) => Ok(build(modes)?.modal_body(modes)),
+        Wanted::Below(cut) => {
+            let plate = build(cut.modes)?;
+            let below = plate.omega.iter().filter(|omega| **omega < cut.omega).count();
+            Ok(plate.modal_body(below.clamp(1, cut.modes)))
         }
-    };
-    Ok(build(modes)?.modal_body(modes))
+        Wanted::Estimate => {
+            let mut most = DEFAULT_MODES;
+            loop {
+                let plate = build(most)?;
+                let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
+                if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
+                    return Ok(plate.modal_body(modes));
+                }
+                most *= 2;
+            }
+        }
+    }
 }
 
 /// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
 /// radii `patch` in m.
-pub(super) fn tip_residuals(setup: &PlateImpact, patch: [f64; 2], mesh: &MeshOptions) -> Result<[f64; 2]> {
+pub(super) fn tip_residuals(
+    setup: &PlateImpact,
+    patch: [f64; 2],
+    mesh: &MeshOptions,
+    cache: &Cache,
+) -> Result<[f64; 2]> {
     let tip = |shape: &Shape, material: &Material, patch| match *shape {
-        Shape::Sphere { radius } => cached::sphere_residual(radius, material, patch, mesh),
+        Shape::Sphere { radius } => cached::sphere_residual_in(cache, radius, material, patch, mesh),
         // a compact body and the tip of a bender are rigid but for their Hertz contact
         Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
     };
@@ -320,7 +413,7 @@ impl Rough {
     }
 
     /// Relative error of a force when the modes from `omega_next` rad/s on follow statically.
-    fn truncation_error(&self, omega_next: f64) -> f64 {
+    pub(super) fn truncation_error(&self, omega_next: f64) -> f64 {
         (self.contact_frequency / omega_next).powi(2)
     }
 }

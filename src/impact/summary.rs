@@ -163,6 +163,9 @@ pub struct Summary<Q: Quantities = PlateQuantities> {
     /// What a user has to know before relying on the result, a sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// Why it is this model and this number of modes, if that was left to the program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub choice: Option<super::Choice>,
     /// Number of samples in the history, if one was kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<usize>,

@@ -24,6 +24,7 @@ use super::reduced::{Rough, quantities, tip_residuals};
 use super::summary::PlateQuantities;
 use super::system::System;
 use super::validity;
+use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::{ModalBody, kirchhoff};
 use crate::error::Result;
@@ -91,7 +92,7 @@ impl<'a> Variants<'a> {
             setup,
             end_time: scene.run.end_time,
             plate: cached::plate(&setup.plate, patch, modes[1], &continuum.mesh)?,
-            tips: tip_residuals(setup, patch, &continuum.mesh)?,
+            tips: tip_residuals(setup, patch, &continuum.mesh, &Cache::from_environment())?,
             kirchhoff,
             rough,
         })

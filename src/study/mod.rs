@@ -2,6 +2,7 @@
 //!
 //! A study is one file with one function that returns a [`Study`], and one line in [`STUDIES`].
 
+pub mod auto;
 pub mod fig14;
 pub mod fig15;
 pub mod fig16;
@@ -24,6 +25,7 @@ pub use write::{csv, json, markdown, write};
 use crate::error::{Error, Result};
 use crate::scene::{Model, suggestion};
 use serde::Serialize;
+use std::path::PathBuf;
 
 /// Version of the study document.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -32,10 +34,12 @@ pub const SCHEMA_VERSION: u32 = 1;
 pub type Note<'a> = dyn FnMut(&str) + 'a;
 
 /// What the user may choose about a study.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Settings {
     /// The reduced model; `None` = the study's own choice.
     pub model: Option<Model>,
+    /// Folder of the stored references, for studies that look at them; `None` = the usual one.
+    pub store: Option<PathBuf>,
 }
 
 /// A study that can be asked for by name.
@@ -51,16 +55,33 @@ pub struct Entry {
     pub run: fn(&Settings, &mut Note) -> Result<Study>,
     /// How it is drawn, from the columns of its table; empty = it is no figure.
     pub panels: &'static [Panel],
+    /// Draws it, where panels of curves are not what it needs.
+    pub drawing: Option<fn(&Study) -> String>,
+}
+
+impl Entry {
+    /// The figure of the study as SVG, if it has one.
+    ///
+    /// # Errors
+    /// As [`figure`].
+    pub fn figure(&self, study: &Study) -> Result<Option<String>> {
+        match self.drawing {
+            Some(draw) => Ok(Some(draw(study))),
+            None if self.panels.is_empty() => Ok(None),
+            None => figure(study, self.panels).map(Some),
+        }
+    }
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 11] = [
+pub const STUDIES: [Entry; 12] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
         takes_model: false,
         run: |_, note| table2::run(note),
         panels: &[],
+        drawing: None,
     },
     Entry {
         name: "fig14",
@@ -68,6 +89,7 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: true,
         run: fig14::run,
         panels: &fig14::PANELS,
+        drawing: None,
     },
     Entry {
         name: "fig15",
@@ -75,6 +97,7 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: true,
         run: fig15::run,
         panels: &fig15::PANELS,
+        drawing: None,
     },
     Entry {
         name: "fig16",
@@ -82,6 +105,7 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: true,
         run: fig16::run,
         panels: &fig16::PANELS,
+        drawing: None,
     },
     Entry {
         name: "fig17",
@@ -89,6 +113,7 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: true,
         run: fig17::run,
         panels: &fig17::PANELS,
+        drawing: None,
     },
     Entry {
         name: "half-period",
@@ -96,6 +121,7 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: true,
         run: half_period::run,
         panels: &half_period::PANELS,
+        drawing: None,
     },
     Entry {
         name: "insensitivity",
@@ -103,6 +129,15 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: false,
         run: |_, note| insensitivity::run(note),
         panels: &[],
+        drawing: None,
+    },
+    Entry {
+        name: "auto",
+        about: "The models that `auto` chooses: estimated against true error, and their cost",
+        takes_model: false,
+        run: auto::run,
+        panels: &[],
+        drawing: Some(auto::figure),
     },
     Entry {
         name: "rocker",
@@ -110,6 +145,7 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: false,
         run: |_, note| rocker::run(note),
         panels: &rocker::PANELS,
+        drawing: None,
     },
     Entry {
         name: "fluid",
@@ -117,6 +153,7 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: true,
         run: fluid::run,
         panels: &fluid::PANELS,
+        drawing: None,
     },
     Entry {
         name: "seal-seat",
@@ -124,6 +161,7 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: false,
         run: |_, note| seal_seat::run(note),
         panels: &[],
+        drawing: None,
     },
     Entry {
         name: "seal-seat-cost",
@@ -131,6 +169,7 @@ pub const STUDIES: [Entry; 11] = [
         takes_model: false,
         run: |_, note| seal_seat_cost::run(note),
         panels: &[],
+        drawing: None,
     },
 ];
 

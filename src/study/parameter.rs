@@ -106,7 +106,12 @@ pub fn linear(low: f64, high: f64, count: usize) -> Vec<f64> {
 
 /// `count` values from `low` to `high`, both included, in equal ratios.
 pub fn logarithmic(low: f64, high: f64, count: usize) -> Vec<f64> {
-    (0..count).map(|k| low * (high / low).powf(k as f64 / (count - 1) as f64)).collect()
+    (0..count).map(|k| logarithmic_at(low, high, k as f64 / (count - 1) as f64)).collect()
+}
+
+/// The value between `low` and `high` at the part `x`, 0 to 1, of the way, in ratios.
+pub fn logarithmic_at(low: f64, high: f64, x: f64) -> f64 {
+    low * (high / low).powf(x)
 }
 
 /// The claim that `values` do nothing but rise (or fall): the share of steps that do, which has to be 1.

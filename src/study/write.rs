@@ -1,6 +1,6 @@
 //! A study as JSON, CSV and Markdown.
 
-use super::{Cell, Claim, Panel, Study, Verdict, figure};
+use super::{Cell, Claim, Study, Verdict};
 use crate::error::{Error, Result};
 use crate::report::format::significant;
 use crate::report::{png, write_file};
@@ -9,19 +9,18 @@ use std::path::{Path, PathBuf};
 /// Pixels of the PNG per unit of the drawing, as in the report.
 const PNG_SCALE: f32 = 3.0;
 
-/// Writes `<study>.json`, `<study>.csv` and `<study>.md`, and drawn by `panels`, if there are any, `<study>.svg` and
+/// Writes `<study>.json`, `<study>.csv` and `<study>.md`, and of its `figure`, if there is one, `<study>.svg` and
 /// `<study>.png` into `dir`, which is made if it does not exist, each by way of a temporary file. Returns the paths.
 ///
 /// # Errors
 /// [`Error::Io`] naming the file.
-pub fn write(study: &Study, panels: &[Panel], dir: &Path) -> Result<Vec<PathBuf>> {
+pub fn write(study: &Study, figure: Option<String>, dir: &Path) -> Result<Vec<PathBuf>> {
     let mut files = vec![
         ("json", json(study)?.into_bytes()),
         ("csv", csv(study)?.into_bytes()),
         ("md", markdown(study).into_bytes()),
     ];
-    if !panels.is_empty() {
-        let svg = figure(study, panels)?;
+    if let Some(svg) = figure {
         files.push(("png", png(&svg, PNG_SCALE)?));
         files.push(("svg", svg.into_bytes()));
     }
@@ -185,7 +184,7 @@ mod tests {
     #[test]
     fn three_files_are_written_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
-        let written = write(&study(), &[], &folder.path().join("new")).unwrap();
+        let written = write(&study(), None, &folder.path().join("new")).unwrap();
         let mut names: Vec<_> =
             std::fs::read_dir(folder.path().join("new")).unwrap().map(|e| e.unwrap().file_name()).collect();
         names.sort();

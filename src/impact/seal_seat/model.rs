@@ -185,6 +185,7 @@ impl SeatModel {
             mesh: None,
             solver: None,
             warnings: self.warnings.clone(),
+            choice: None,
             samples: None,
             sample_interval: None,
         }

@@ -1,0 +1,232 @@
+//! Circular plate as an elastic layer: in closed form what [`super::continuum`] finds by finite elements.
+//!
+//! Kirchhoff's modes of the plate are cylindrical waves of the wave numbers xi_k = k/R. In an infinite layer of the
+//! thickness t = 2 h a pressure of wave number xi on both faces moves the faces by
+//!
+//!   2 h/(E* x) 2 cosh^2 x/(sinh 2x - 2x) per unit in bending,  2 h/(E* x) 2 sinh^2 x/(sinh 2x + 2x) in squeezing,
+//!   2 h/(E* x) on a half-space,  x = xi h, E* = E/(1 - nu^2)
+//!
+//! (I. N. Sneddon, Fourier Transforms, 1951, section 52). Bending is summed over the plate's waves and, beyond the modes,
+//! integrated as on an infinite plate, as squeezing is everywhere: it does not reach as far as the rim. The frequency of a
+//! wave is the lower one of Mindlin's plate with the shear coefficient 5/(6 - nu). For thin plates that is
+//! the continuum plate to three digits; what is lacking is the effect of shear on the rim, and longitudinal modes.
+
+use super::ModalBody;
+use super::continuum::ContinuumPlate;
+use super::free_sphere::patch_transform;
+use super::quadrature::gauss_legendre;
+use crate::analytical::circular_plate::{centre_deflection, deflection, frequency_parameters, rigidity};
+use crate::scene::{Edge, Plate};
+use std::f64::consts::PI;
+
+/// x = xi h beyond which a layer yields as a half-space does, to 1e-9.
+const DEEP: f64 = 12.0;
+/// Gauss points of a panel.
+const POINTS: usize = 16;
+/// Largest length of a panel in radii of the patch, and in half thicknesses.
+const PANEL: f64 = 3.0;
+/// Radius of the inner part of a patch over that of the whole, from which the growth with the patch is taken.
+const INSIDE: f64 = 0.5;
+
+/// Kirchhoff's modes of a plate in closed form.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Waves {
+    plate: Plate,
+    /// k of each elastic mode, one more than there are modes.
+    parameter: Vec<f64>,
+}
+
+/// A wave number with its share in a flexibility.
+struct Share {
+    /// Between patches on the same face, without the half-space, in m/N.
+    own: f64,
+    /// Between patches on opposite faces, in m/N.
+    mutual: f64,
+    /// Transforms of both patches and of their inner parts.
+    weight: [f64; 4],
+}
+
+impl Waves {
+    /// The `modes` lowest elastic modes of `plate`, at most 200.
+    pub fn new(plate: &Plate, modes: usize) -> Self {
+        let parameter = frequency_parameters(plate.edge, plate.material.poisson_ratio, modes + 1);
+        Self { plate: plate.clone(), parameter }
+    }
+
+    /// Number of elastic modes.
+    pub fn modes(&self) -> usize {
+        self.parameter.len() - 1
+    }
+
+    /// Frequency in rad/s of about mode number `n` as [`Waves::layer`] has it, from the asymptote k = n pi.
+    pub fn frequency(&self, n: usize) -> f64 {
+        self.lower_wave(n as f64 * PI / self.plate.radius).0
+    }
+
+    /// Kirchhoff's plate with its `modes` lowest elastic modes, and before them the rigid motion of a free one.
+    pub fn kirchhoff(&self, modes: usize) -> ModalBody {
+        let plate = &self.plate;
+        let bending = rigidity(plate.material.youngs_modulus, plate.material.poisson_ratio, plate.thickness);
+        let speed = (bending / self.mass_per_area()).sqrt() / plate.radius.powi(2);
+        let mut body = self.rigid();
+        for &k in &self.parameter[..modes.min(self.modes())] {
+            body.omega.push(k * k * speed);
+            body.damping_ratio.push(plate.damping_ratio);
+            body.participation.push([self.amplitude() * centre_deflection(plate.edge, k); 2]);
+        }
+        body
+    }
+
+    /// Mass-normalised deflections at `radii` in m in the modes of [`Waves::kirchhoff`], kg^(-1/2). Shape (modes, radii).
+    pub fn shapes(&self, modes: usize, radii: &[f64]) -> Vec<Vec<f64>> {
+        let unit: Vec<f64> = radii.iter().map(|r| (r / self.plate.radius).min(1.0)).collect();
+        let mut shapes = Vec::new();
+        if self.plate.edge == Edge::Free {
+            shapes.push(vec![1.0 / self.plate.mass().sqrt(); radii.len()]);
+        }
+        for &k in &self.parameter[..modes.min(self.modes())] {
+            let shape = deflection(self.plate.edge, k, &unit);
+            shapes.push(shape.into_iter().map(|w| w * self.amplitude()).collect());
+        }
+        shapes
+    }
+
+    /// The plate as an elastic layer, for contact patches of the radii `patch` in m (outer, inner face), with its elastic
+    /// modes and the next one. It has no mesh: its number of degrees of freedom is 0.
+    pub fn layer(&self, patch: [f64; 2]) -> ContinuumPlate {
+        let plate = &self.plate;
+        let mut layer = ContinuumPlate {
+            omega: Vec::new(),
+            participation: Vec::new(),
+            flexibility: [[0.0; 2]; 2],
+            patch_growth: [[0.0; 2]; 2],
+            patch_radius: patch,
+            free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
+            damping_ratio: plate.damping_ratio,
+            degrees_of_freedom: 0,
+        };
+        let shares = self.shares(patch);
+        for i in 0..2 {
+            for j in 0..2 {
+                // between the whole patch j and the whole patch i or its inner part
+                let between = |part: usize| -> f64 {
+                    let share = |s: &Share| if i == j { s.own } else { s.mutual };
+                    shares.iter().map(|s| share(s) * s.weight[part] * s.weight[j]).sum()
+                };
+                let (whole, inner) = (between(i), between(i + 2));
+                layer.flexibility[i][j] = whole;
+                layer.patch_growth[i][j] = (whole - inner) / ((1.0 - INSIDE * INSIDE) * patch[i].powi(2));
+            }
+        }
+        for &k in &self.parameter {
+            let xi = k / plate.radius;
+            let (omega, share) = self.lower_wave(xi);
+            let phi = self.amplitude() * centre_deflection(plate.edge, k) * share.sqrt();
+            layer.omega.push(omega);
+            layer.participation.push(patch.map(|a| phi * patch_transform(xi * a)));
+        }
+        layer
+    }
+
+    /// Frequency in rad/s of the lower wave of Mindlin's plate with the wave number `xi` in 1/m, and the share of its mass that
+    /// moves across the plate.
+    fn lower_wave(&self, xi: f64) -> (f64, f64) {
+        let Plate { thickness, material, .. } = &self.plate;
+        let bending = rigidity(material.youngs_modulus, material.poisson_ratio, *thickness);
+        let shear = 5.0 / (6.0 - material.poisson_ratio) * material.youngs_modulus
+            / (2.0 * (1.0 + material.poisson_ratio))
+            * thickness;
+        let (mass, rotary) = (self.mass_per_area(), self.mass_per_area() * thickness.powi(2) / 12.0);
+        // deflection and rotation, mass-normalised: [[a, b], [b, c]]
+        let (a, c) = (shear * xi * xi / mass, (bending * xi * xi + shear) / rotary);
+        let b = shear * xi / (mass * rotary).sqrt();
+        let product = bending * shear * xi.powi(4) / (mass * rotary);
+        let upper = 0.5 * (a + c + (a + c).mul_add(a + c, -4.0 * product).max(0.0).sqrt());
+        let lower = product / upper;
+        (lower.sqrt(), 1.0 / (1.0 + ((a - lower) / b).powi(2)))
+    }
+
+    /// Shares of all wave numbers in the flexibilities between patches of the radii `patch` in m.
+    fn shares(&self, patch: [f64; 2]) -> Vec<Share> {
+        let (plate, modes) = (&self.plate, self.modes());
+        let half = 0.5 * plate.thickness;
+        let half_space = |xi: f64| 1.0 / (plate.material.plane_strain_modulus() * xi);
+        let bent = |xi: f64| half_space(xi) * bending_ratio(xi * half);
+        let squeezed = |xi: f64| half_space(xi) * squeezing_ratio(xi * half);
+        let radii = [patch[0], patch[1], INSIDE * patch[0], INSIDE * patch[1]];
+        let weight = |xi: f64| radii.map(|a| patch_transform(xi * a));
+        let mut shares: Vec<Share> = self.parameter[..modes]
+            .iter()
+            .map(|&k| {
+                let (xi, amplitude) = (k / plate.radius, self.amplitude() * centre_deflection(plate.edge, k));
+                let bent = amplitude * amplitude * self.mass_per_area() * bent(xi);
+                Share { own: bent, mutual: bent, weight: weight(xi) }
+            })
+            .collect();
+        let cut = 0.5 * (self.parameter[modes - 1] + self.parameter[modes]) / plate.radius;
+        let rule = gauss_legendre(POINTS);
+        let panel = PANEL * patch[0].max(patch[1]).recip().min(half.recip());
+        let mut integrate = |from: f64, to: f64, continuous: bool| {
+            let panels = ((to - from) / panel).ceil().max(0.0) as usize;
+            let step = (to - from) / panels as f64;
+            for p in 0..panels {
+                for (x, w) in rule.0.iter().zip(&rule.1) {
+                    let xi = from + step * (p as f64 + 0.5 * (x + 1.0));
+                    let per = 0.5 * step * w * xi / (2.0 * PI);
+                    let bent = if continuous { bent(xi) } else { 0.0 };
+                    shares.push(Share {
+                        own: per * (bent + squeezed(xi) - 2.0 * half_space(xi)),
+                        mutual: per * (bent - squeezed(xi)),
+                        weight: weight(xi),
+                    });
+                }
+            }
+        };
+        integrate(0.0, cut, false);
+        integrate(cut, DEEP / half, true);
+        shares
+    }
+
+    /// The rigid motion of a free plate, or nothing.
+    fn rigid(&self) -> ModalBody {
+        let free = self.plate.edge == Edge::Free;
+        ModalBody {
+            omega: if free { vec![0.0] } else { Vec::new() },
+            damping_ratio: if free { vec![0.0] } else { Vec::new() },
+            participation: if free { vec![[1.0 / self.plate.mass().sqrt(); 2]] } else { Vec::new() },
+            residual: [[0.0; 2]; 2],
+            patch_growth: [[0.0; 2]; 2],
+        }
+    }
+
+    fn mass_per_area(&self) -> f64 {
+        self.plate.material.density * self.plate.thickness
+    }
+
+    /// Amplitude of a mass-normalised mode per that of a plate of unit radius and mass per area.
+    fn amplitude(&self) -> f64 {
+        1.0 / (self.plate.radius * self.mass_per_area().sqrt())
+    }
+}
+
+/// Net flexibility of a layer in bending over that of a half-space, x = xi h.
+fn bending_ratio(x: f64) -> f64 {
+    if x > DEEP {
+        return 1.0;
+    }
+    let y = 2.0 * x;
+    let below = if y < 0.3 {
+        y.powi(3) / 6.0 * (1.0 + y * y / 20.0 * (1.0 + y * y / 42.0 * (1.0 + y * y / 72.0)))
+    } else {
+        y.sinh() - y
+    };
+    2.0 * x.cosh().powi(2) / below
+}
+
+/// Net flexibility of a layer in squeezing over that of a half-space, x = xi h.
+fn squeezing_ratio(x: f64) -> f64 {
+    if x > DEEP {
+        return 1.0;
+    }
+    2.0 * x.sinh().powi(2) / ((2.0 * x).sinh() + 2.0 * x)
+}

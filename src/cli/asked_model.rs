@@ -1,0 +1,66 @@
+//! Reduced models as the command line names them: A, B, C, or `auto`.
+
+use crate::impact::Choice;
+use crate::scene::Model;
+use std::str::FromStr;
+
+/// A reduced model, or the program's choice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum AskedModel {
+    Named(Model),
+    Auto,
+}
+
+impl FromStr for AskedModel {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(AskedModel::Auto);
+        }
+        let unknown = |_| format!("`{text}` is not a reduced model; there are A, B and C, and auto");
+        text.parse().map(AskedModel::Named).map_err(unknown)
+    }
+}
+
+impl std::fmt::Display for AskedModel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            AskedModel::Named(model) => model.fmt(f),
+            AskedModel::Auto => f.write_str("auto"),
+        }
+    }
+}
+
+/// Parses a relative error, as a number or in percent.
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(number) => (number.trim_end(), 0.01),
+        None => (text, 1.0),
+    };
+    match number.parse::<f64>().map(|value| value * unit) {
+        Ok(value) if (1e-12..=0.3).contains(&value) => Ok(value),
+        Ok(_) => Err(format!("{text} is not within 1e-12 to 0.3 (30 %)")),
+        Err(e) => Err(e.to_string()),
+    }
+}
+
+/// What was chosen, from what, and why, in lines.
+pub(super) fn told(choice: &Choice) -> String {
+    let percent = |error: Option<f64>| error.map_or("unknown".to_owned(), |e| format!("{:.2} %", 100.0 * e));
+    let mut lines = vec![format!(
+        "auto, tolerance {:.4} % of {}: estimated error {}",
+        100.0 * choice.tolerance,
+        choice.covers.join(", "),
+        percent(choice.estimated_error)
+    )];
+    for tried in &choice.tried {
+        let kind = if tried.model == "C" { "bending " } else { "" };
+        let plural = if tried.modes == 1 { "" } else { "s" };
+        let name = format!("model {}, {} {kind}mode{plural}", tried.model, tried.modes);
+        let quantity = tried.quantity.as_ref().map_or(String::new(), |q| format!(" ({q})"));
+        lines.push(format!("  {name:<26} {:>10}{quantity}", percent(tried.estimated_error)));
+    }
+    lines.push(format!("  {}", choice.reason));
+    lines.join("\n")
+}

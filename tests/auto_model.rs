@@ -1,0 +1,246 @@
+//! Model `auto`: the closed forms it estimates with against finite elements, its choice, and its estimate against converged
+//! solutions.
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use assert_cmd::Command;
+use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, sphere_residual};
+use impactcheck::body::layer::Waves;
+use impactcheck::body::{free_sphere, kirchhoff};
+use impactcheck::impact::reduced::Reduced;
+use impactcheck::reference::Store;
+use impactcheck::scene::{Edge, Material, Model, Plate, Scene, resolve};
+use impactcheck::study::auto;
+use impactcheck::study::{Cell, Study};
+use serde_json::Value;
+
+const EDGES: [Edge; 3] = [Edge::Clamped, Edge::SimplySupported, Edge::Free];
+
+fn material(poisson_ratio: f64) -> Material {
+    Material { name: "m".into(), youngs_modulus: 210e9, poisson_ratio, density: 7780.0 }
+}
+
+fn plate(edge: Edge, thickness_over_radius: f64) -> Plate {
+    let radius = 33e-3;
+    Plate {
+        radius,
+        thickness: thickness_over_radius * radius,
+        edge,
+        material: material(0.3),
+        damping_ratio: 0.0,
+    }
+}
+
+/// What a sphere yields beyond its half-space, in 1/(E r): of the size of 0.4.
+#[test]
+fn free_sphere_of_lure_is_that_of_finite_elements() {
+    let radius = 10e-3;
+    for poisson in [0.0, 0.2, 0.3, 0.45] {
+        let m = material(poisson);
+        for patch in [0.01, 0.03, 0.1] {
+            let unit = 1.0 / (m.youngs_modulus * radius);
+            let fe = sphere_residual(radius, &m, patch * radius, &MeshOptions::default()).unwrap() / unit;
+            let closed = free_sphere::sphere_residual(radius, &m, patch * radius) / unit;
+            // finite elements are off by 3e-4 of the whole flexibility, that of the half-space
+            assert_abs_diff_eq!(closed, fe, epsilon = 0.016 + 3e-4 * 0.6 / patch);
+        }
+    }
+}
+
+#[test]
+fn waves_in_closed_form_are_kirchhoffs_finite_elements() {
+    for edge in EDGES {
+        let plate = plate(edge, 0.05);
+        let waves = Waves::new(&plate, 12);
+        let (closed, elements) = (waves.kirchhoff(12), kirchhoff::modes(&plate, 12).unwrap());
+        let radii = [0.0, 3e-3, 20e-3, 33e-3];
+        let (w, v) = (waves.shapes(12, &radii), kirchhoff::shapes(&plate, 12, &radii).unwrap());
+        for k in 0..closed.omega.len() {
+            assert_relative_eq!(closed.omega[k], elements.omega[k], max_relative = 1e-8);
+            assert_relative_eq!(
+                closed.participation[k][0],
+                elements.participation[k][0],
+                max_relative = 1e-6
+            );
+            for (w, v) in w[k].iter().zip(&v[k]) {
+                assert_abs_diff_eq!(*w, *v, epsilon = 1e-6 * closed.participation[k][0]);
+            }
+        }
+    }
+}
+
+/// On a thin plate the layer is the continuum: frequencies of the bending modes, flexibilities, growth with the patch.
+#[test]
+fn layer_of_a_thin_plate_is_the_continuum() {
+    for edge in EDGES {
+        let plate = plate(edge, 0.02);
+        let patch = [0.2 * plate.thickness; 2];
+        let layer = Waves::new(&plate, 16).layer(patch);
+        let fe = ContinuumPlate::new(&plate, patch, 8, &MeshOptions::default()).unwrap();
+        let bending: Vec<f64> = fe
+            .omega
+            .iter()
+            .zip(&fe.participation)
+            .filter(|(_, phi)| phi[0] * phi[1] > 0.0)
+            .map(|(omega, _)| *omega)
+            .collect();
+        assert!(bending.len() >= 6);
+        for (ours, exact) in layer.omega.iter().zip(&bending) {
+            assert_relative_eq!(ours, exact, max_relative = 3e-3);
+        }
+        for i in 0..2 {
+            for j in 0..2 {
+                assert_relative_eq!(layer.flexibility[i][j], fe.flexibility[i][j], max_relative = 5e-4);
+                assert_relative_eq!(layer.patch_growth[i][j], fe.patch_growth[i][j], max_relative = 0.06);
+            }
+        }
+        // what bending does not tell: the faces against each other, of the size of Hertz's own flexibility
+        let squeezed = |c: [[f64; 2]; 2]| c[0][0] + c[1][1] - c[0][1] - c[1][0];
+        assert_relative_eq!(squeezed(layer.flexibility), squeezed(fe.flexibility), max_relative = 0.02);
+    }
+}
+
+#[test]
+fn a_looser_tolerance_never_takes_a_dearer_model_and_promises_are_kept_on_table_1() {
+    for (name, efficiency, peaks) in
+        [("scaled-plate-r10", 0.6946, [443.1, 352.1]), ("scaled-plate-r6.35", 0.3868, [142.9, 85.35])]
+    {
+        let scene = Scene::read(resolve(name).unwrap()).unwrap();
+        let mut dearest = (Model::C, usize::MAX);
+        for tolerance in [0.003, 0.01, 0.03, 0.1, 0.3] {
+            let reduced = Reduced::auto(&scene, tolerance).unwrap();
+            let chosen = (reduced.model(), reduced.system().modes);
+            assert!(chosen <= dearest, "{name}, {tolerance}: {chosen:?} after {dearest:?}");
+            dearest = chosen;
+            let choice = reduced.choice().unwrap();
+            assert!(choice.met && choice.estimated_error.unwrap() <= tolerance, "{choice:?}");
+            let ours = reduced.point(1e-5).unwrap().quantities;
+            assert_relative_eq!(ours.efficiency, efficiency, max_relative = tolerance + 3e-4);
+            for (ours, exact) in [ours.outer_force_peak, ours.inner_force_peak].into_iter().zip(peaks) {
+                assert_relative_eq!(ours, exact, max_relative = tolerance + 1e-3);
+            }
+        }
+        assert!(dearest.0 < Model::C, "{name}: at 30 % model C is not needed");
+    }
+}
+
+#[test]
+fn what_no_model_meets_is_said_and_is_no_error() {
+    let scene = Scene::read(resolve("scaled-plate-r10").unwrap()).unwrap();
+    let reduced = Reduced::auto(&scene, 1e-4).unwrap();
+    let choice = reduced.choice().unwrap();
+    assert!(!choice.met && choice.estimated_error.unwrap() > 1e-4 && reduced.model() == Model::C);
+    assert!(reduced.run(1e-6).unwrap().warnings.contains(&choice.reason));
+    // too thin for model C: the best of the others
+    let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
+    let thin = text.replace("\"2 mm\"", "\"0.02 mm\"").replace("\"10 mm\"", "\"0.2 mm\"");
+    let thin = Reduced::auto(&Scene::parse("thin.toml", &thin).unwrap(), 0.003).unwrap();
+    assert!(thin.model() < Model::C, "{:?}", thin.choice());
+    assert!(!thin.choice().unwrap().met && thin.choice().unwrap().reason.contains("model C can't be set up"));
+}
+
+/// Bodies whose modes or forces are none of a sphere's on a dry plate.
+#[test]
+fn benders_fluids_compact_bodies_and_free_edges_have_a_choice() {
+    for (name, tolerance) in [
+        ("scenes/examples/wet-valve-plate.toml", 0.01),
+        ("scenes/examples/rocker-bender.toml", 0.03),
+        ("scenes/validation/free-plate.toml", 0.01),
+        ("scenes/validation/inner-gap.toml", 0.01),
+    ] {
+        let scene = Scene::read(resolve(name).unwrap()).unwrap();
+        let reduced = Reduced::auto(&scene, tolerance).unwrap();
+        let exact = Reduced::new(&scene, Model::C, Some(24)).unwrap().point(1e-6).unwrap().quantities;
+        let ours = reduced.point(1e-6).unwrap().quantities;
+        let estimated = reduced.choice().unwrap().estimated_error.unwrap();
+        for quantity in ["efficiency", "outer_force_peak", "inner_force_peak"] {
+            let (ours, exact) = (ours.get(quantity).unwrap(), exact.get(quantity).unwrap());
+            assert_relative_eq!(ours, exact, max_relative = estimated);
+        }
+    }
+}
+
+fn column(study: &Study, name: &str) -> Vec<f64> {
+    let place = study.columns.iter().position(|column| *column == name).unwrap();
+    let number = |cell: &Cell| match cell {
+        Cell::Number(value) => *value,
+        Cell::Count(value) => *value as f64,
+        Cell::Text(_) | Cell::Missing => f64::NAN,
+    };
+    study.rows.iter().map(|row| number(&row[place])).collect()
+}
+
+/// A small part of `impactcheck study auto`, which has 200 scenes.
+#[test]
+fn promises_are_kept_on_random_scenes() {
+    let study = auto::check(12, 11, false, &Store::open(None), &mut |_| ()).unwrap();
+    let (tolerance, exact) = (column(&study, "tolerance"), column(&study, "true_error"));
+    assert_eq!(tolerance.len(), 12 * 3);
+    let promised = column(&study, "promised");
+    assert!(promised.iter().sum::<f64>() >= 30.0, "{promised:?}");
+    let kept = (0..36).filter(|k| promised[*k] == 0.0 || exact[*k] <= tolerance[*k]).count();
+    assert!(kept >= 35, "{kept} of 36: {exact:?}");
+    let svg = auto::figure(&study);
+    assert!(svg.matches("<circle").count() >= 36 && !svg.contains("NaN"));
+}
+
+fn program(arguments: &[&str]) -> (i32, String, String) {
+    let output = Command::cargo_bin("impactcheck")
+        .unwrap()
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+}
+
+#[test]
+fn the_choice_is_in_the_json_and_on_the_terminal() {
+    let (status, out, _) =
+        program(&["reduced", "scaled-plate-r10", "--model", "auto", "--tolerance", "1%", "--json"]);
+    let summary: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!((status, &summary["model"]), (0, &"C".into()));
+    let choice = &summary["choice"];
+    assert_eq!(choice["tolerance"], 0.01);
+    assert_eq!(choice["met"], true);
+    let last = choice["tried"].as_array().unwrap().last().unwrap();
+    assert_eq!(last["estimated_error"], choice["estimated_error"]);
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().display().to_string();
+    let (status, json, error) = program(&[
+        "compare",
+        "scaled-plate-r6.35",
+        "--models",
+        "B,C,auto",
+        "--tolerance",
+        "0.01",
+        "--out",
+        &out,
+        "--json",
+    ]);
+    let comparison: Value = serde_json::from_str(&json).unwrap();
+    let models = comparison["scenes"][0]["models"].as_array().unwrap();
+    assert_eq!((status, models.len()), (0, 2), "{error}");
+    assert!(models[1]["summary"]["choice"]["met"] == true && models[0]["summary"]["choice"].is_null());
+    assert!(error.contains("is the cheapest whose estimated error meets the tolerance"), "{error}");
+}
+
+#[test]
+fn what_makes_no_sense_with_auto_is_refused_in_a_sentence() {
+    for (arguments, said) in [
+        (
+            &["reduced", "scaled-plate-r10", "--model", "auto", "--modes", "3"][..],
+            "chooses the number of modes",
+        ),
+        (&["reduced", "seal-seat-initial", "--model", "auto"], "has model C only"),
+        (
+            &["reduced", "scaled-plate-r10", "--model", "B", "--tolerance", "5%"],
+            "--model auto takes larger ones",
+        ),
+        (&["compare", "scaled-plate-r10", "--tolerance", "1%"], "not among --models"),
+        (&["reduced", "scaled-plate-r10", "--model", "D"], "there are A, B and C, and auto"),
+    ] {
+        let (status, _, error) = program(arguments);
+        assert!(status == 2 && error.contains(said), "{arguments:?}: {error}");
+    }
+}
