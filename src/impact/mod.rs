@@ -1,7 +1,9 @@
 //! The impact: from bodies and contacts to a [`History`] and a [`Summary`].
 
+pub mod assured;
 mod bank;
 mod centre;
+mod clearance;
 pub mod collocation;
 mod contact_forces;
 mod contact_ledger;
