@@ -36,6 +36,8 @@ pub struct Collocation {
     pub points: Points,
     /// The same as `lagrange` for the polynomials through all [`POINTS`] points.
     through_points: [Points; POINTS],
+    /// Weights of the values at all points in the polynomial's values halfway between them. Shape (POINTS, POINTS - 1).
+    middles: [[f64; POINTS - 1]; POINTS],
     /// Weights of the values at the Gauss points in the polynomial's value at the start and at the end.
     pub ends: [Stages; 2],
     /// `slopes[j]`: weights in the polynomial's derivative at Gauss point j, per step.
@@ -58,10 +60,14 @@ impl Default for Collocation {
             lagrange,
             points,
             through_points: self::lagrange(&points),
+            middles: Default::default(),
             ends: Default::default(),
             slopes: Default::default(),
         };
         collocation.ends = [0.0, 1.0].map(|u| collocation.interpolation(u));
+        collocation.middles = collocation.through_points.map(|polynomial| {
+            std::array::from_fn(|m| horner(&polynomial, 0.5 * (points[m] + points[m + 1])))
+        });
         collocation.slopes = nodes.map(|u| collocation.derivative(u));
         collocation
     }
@@ -101,6 +107,18 @@ impl Collocation {
             }
         }
         coefficients
+    }
+
+    /// Values halfway between the points of the polynomial through `values` at them.
+    #[inline(always)]
+    pub fn middles(&self, values: &Points) -> [f64; POINTS - 1] {
+        let mut middles = [0.0; POINTS - 1];
+        for (weights, value) in self.middles.iter().zip(values) {
+            for (middle, weight) in middles.iter_mut().zip(weights) {
+                *middle += weight * value;
+            }
+        }
+        middles
     }
 
     /// Weights of the values at all points of a step in the polynomial's values at the Gauss points of the next step,

@@ -1,6 +1,7 @@
 //! The time integration of a plate impact: steps of adapted length while bodies touch, exact flight between.
 
 use super::bank::in_blocks;
+use super::clearance::touch_between;
 use super::collocation::{Collocation, POINTS, STAGES, horner};
 use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse, bisect};
@@ -50,6 +51,9 @@ pub struct Integration {
     pub losses: Losses,
     /// Accepted steps.
     pub steps: u64,
+    /// Estimated error of the velocities from the time integration, over the impact speed, if it was looked for
+    /// ([`super::assured`]).
+    pub error_estimate: Option<f64>,
     /// Course over time, if asked for.
     pub history: Option<History>,
 }
@@ -75,6 +79,9 @@ pub(super) const NEGLIGIBLE: f64 = 1e-8;
 const ROUNDING: f64 = 1e-12;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
+
+/// Places of a step (0..1) at which it is cut for an event; nearer to its ends shorter steps find it.
+const EVENTS: std::ops::Range<f64> = 0.002..0.99;
 
 /// Integrates the impact.
 ///
@@ -104,6 +111,8 @@ struct Run<'a> {
     course: Course,
     /// Energy of the impact, J.
     energy: f64,
+    /// Energy that the steps so far made from nothing, J.
+    energy_made: f64,
     /// Duration of the outer body's impact on a rigid wall, s.
     contact_time: f64,
     contacts: [ContactLedger; 2],
@@ -133,6 +142,7 @@ impl<'a> Run<'a> {
             bounds: Bounds::new(options.tolerance),
             base_step: 0.25 * hit.duration(),
             energy: system.initial_energy(),
+            energy_made: 0.0,
             contact_time: hit.duration(),
             tables: Ladder::new(q.len()),
             level: START_LEVEL,
@@ -215,7 +225,8 @@ impl<'a> Run<'a> {
             let rest = self.end_time - self.time;
             let shorter = wanted.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
             let scale = self.momentum_scale();
-            let (bank, collocation) = (&self.solver.bank, self.solver.collocation);
+            let (bank, collocation, system) =
+                (&self.solver.bank, self.solver.collocation, self.solver.system);
             let table = match shorter {
                 Some(h) => self.tables.other(bank, collocation, h),
                 None => self.tables.get(bank, collocation, self.level, h),
@@ -232,8 +243,8 @@ impl<'a> Run<'a> {
                 self.level += 1;
                 continue;
             };
-            let energy_bound = self.energy * (self.bounds.energy * h / self.contact_time + ROUNDING);
-            let energy_excess = self.energy_made(&trial).abs() / energy_bound;
+            let made = self.made_by(&trial);
+            let energy_excess = made.abs() / self.energy_bound(made, h);
             let mut excess: f64 = energy_excess;
             let mut event: Option<f64> = None;
             for i in 0..2 {
@@ -250,6 +261,16 @@ impl<'a> Run<'a> {
                 {
                     event = Some(event.map_or(u, |e| e.min(u)));
                 }
+                if is_open(&trial, i)
+                    && let Some(touch) = touch_between(collocation, &trial.local_approach[i])
+                {
+                    let impulse = system.laws[i].force(touch.depth) * h;
+                    let missed = impulse / (scale[i] * self.bounds.kinked);
+                    excess = excess.max(missed);
+                    if missed > 1.0 && EVENTS.contains(&touch.place) {
+                        event = Some(event.map_or(touch.place, |e| e.min(touch.place)));
+                    }
+                }
             }
             if excess > 1.0 {
                 match event {
@@ -261,6 +282,7 @@ impl<'a> Run<'a> {
                 }
                 continue;
             }
+            self.energy_made += made;
             self.accept(trial)?;
             // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
             if excess < 0.5_f64.powi(STAGES as i32 + 2) && shorter.is_none() {
@@ -272,13 +294,21 @@ impl<'a> Run<'a> {
 
     /// Energy in J that the step makes from nothing. Damped bodies lose some: then what the contacts store beyond the work
     /// done on them, which misses vibrations quicker than the step.
-    fn energy_made(&self, trial: &Course) -> f64 {
+    fn made_by(&self, trial: &Course) -> f64 {
         let stored = trial.stored - self.course.stored;
         if self.damped {
             stored - trial.work[0] - trial.work[1]
         } else {
             stored + trial.motion - self.course.motion
         }
+    }
+
+    /// Bound in J of the energy that a step of `h` s may make. Errors of one sign, step after step, have to become smaller.
+    fn energy_bound(&self, made: f64, h: f64) -> f64 {
+        let per_contact = self.bounds.energy * self.energy;
+        let same_sign = (self.energy_made * made.signum()).max(0.0);
+        let left = (0.5 * per_contact / same_sign).min(1.0);
+        per_contact * (left * left) * h / self.contact_time + self.energy * ROUNDING
     }
 
     /// Momenta in N s in relation to which the impulses of both contacts have to be right.
@@ -354,6 +384,7 @@ impl<'a> Run<'a> {
                 ..Losses::default()
             },
             steps: self.steps,
+            error_estimate: None,
             history: self.recorder.map(Recorder::finish),
         }
     }
@@ -375,6 +406,11 @@ fn is_kinked(trial: &Course, contact: usize) -> bool {
     forces.contains(&0.0) && forces.iter().any(|f| *f > 0.0)
 }
 
+/// Whether `contact` is open at all points of the step, but perhaps for a rounding error at its start.
+fn is_open(trial: &Course, contact: usize) -> bool {
+    trial.force[contact][1..] == [0.0; POINTS - 1]
+}
+
 /// Where inside the step (0..1) `contact` first touches or opens, if it does so well away from the ends.
 fn change_inside(collocation: &Collocation, trial: &Course, contact: usize) -> Option<f64> {
     let local = &trial.local_approach[contact];
@@ -386,5 +422,5 @@ fn change_inside(collocation: &Collocation, trial: &Course, contact: usize) -> O
     let u = bisect(collocation.points[point - 1], collocation.points[point], |u| {
         closed(horner(&polynomial, u)) == before
     });
-    (0.002..0.99).contains(&u).then_some(u)
+    EVENTS.contains(&u).then_some(u)
 }

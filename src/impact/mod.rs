@@ -1,8 +1,10 @@
 //! The impact: from bodies and contacts to a [`History`] and a [`Summary`].
 
+pub mod assured;
 mod bank;
 mod centre;
 pub mod choice;
+mod clearance;
 pub mod collocation;
 mod contact_forces;
 mod contact_ledger;

@@ -1,5 +1,6 @@
 //! A reduced model of a scene: bodies reduced to modes, joined and integrated.
 
+use super::assured::{self, assured};
 use super::choice::{self, Choice, Cut};
 use super::integrator::{Integration, Options, integrate};
 use super::system::System;
@@ -151,10 +152,11 @@ impl Reduced {
     }
 
     fn integrate(&self, options: &Options) -> Result<Integration> {
-        match &self.fluid {
-            None => integrate(&self.system, options),
-            Some(fluid) => wet::integrate(&self.system, fluid, options),
-        }
+        let system = &self.system;
+        assured(options, system.speed, |options| match &self.fluid {
+            None => integrate(system, options),
+            Some(fluid) => wet::integrate(system, fluid, options),
+        })
     }
 
     /// Runs the impact without keeping its history; `tolerance` bounds the efficiency's relative error from the
@@ -165,7 +167,7 @@ impl Reduced {
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let start = Instant::now();
         let result = self.integrate(&self.options(tolerance))?;
-        Ok(self.summary(&result, start.elapsed().as_secs_f64()))
+        Ok(self.summary(&result, tolerance, start.elapsed().as_secs_f64()))
     }
 
     /// Runs the impact for its results alone, as a series of many needs them.
@@ -219,8 +221,14 @@ impl Reduced {
         Options { tolerance, end_time: self.scene.run.end_time, sample_interval: None }
     }
 
-    fn summary(&self, result: &Integration, solve_seconds: f64) -> Summary {
+    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Summary {
         let system = &self.system;
+        let unsure = result.error_estimate.filter(|error| *error > assured::ENOUGH * tolerance);
+        let unsure = unsure.map(|error| {
+            format!(
+                "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
+            )
+        });
         Summary {
             schema_version: SCHEMA_VERSION,
             scene: self.scene.name.clone(),
@@ -233,6 +241,7 @@ impl Reduced {
             momentum_residual: result.momentum_residual,
             steps: result.steps,
             solve_seconds,
+            integration_error: result.error_estimate,
             bender: system.drive.map(|drive| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
                 BenderSummary { strain_energy_efficiency: transmitted / drive.strain_energy, drive }
@@ -242,7 +251,7 @@ impl Reduced {
             convergence: None,
             mesh: None,
             solver: None,
-            warnings: self.warnings.clone(),
+            warnings: self.warnings.iter().cloned().chain(unsure).collect(),
             choice: self.choice.clone(),
             samples: None,
             sample_interval: None,

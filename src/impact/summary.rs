@@ -142,6 +142,10 @@ pub struct Summary<Q: Quantities = PlateQuantities> {
     pub steps: u64,
     /// Wall time of the time integration, s.
     pub solve_seconds: f64,
+    /// Estimated error of the final velocities from the time integration, over the impact speed; of impacts with many
+    /// contacts only, which amplify it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integration_error: Option<f64>,
     /// Of a bender only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bender: Option<BenderSummary>,

@@ -9,6 +9,7 @@ pub use draw::{Case, UnitPlates};
 use crate::analytical::hertz::HertzImpact;
 use crate::error::Result;
 use crate::impact::SCHEMA_VERSION;
+use crate::impact::assured::assured;
 use crate::impact::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};
 use crate::impact::integrator::{Options, integrate};
 use rayon::prelude::*;
@@ -132,7 +133,8 @@ fn check(case: &Case) -> Checked {
         failure: None,
     };
     let options = Options { tolerance: TOLERANCE, end_time: Some(case.end_time), sample_interval: None };
-    let result = match integrate(&case.system, &options) {
+    let solve = |options: &Options| integrate(&case.system, options);
+    let result = match assured(&options, case.system.speed, solve) {
         Ok(result) => result,
         Err(error) => {
             checked.failure = failure(error.to_string());

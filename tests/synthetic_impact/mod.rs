@@ -182,6 +182,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         bender: None,
         losses: None,
         solver: None,
+        integration_error: None,
         warnings: Vec::new(),
         samples: None,
         sample_interval: None,

@@ -178,6 +178,7 @@ impl SeatModel {
             momentum_residual: result.momentum_residual,
             steps: result.tally.steps,
             solve_seconds,
+            integration_error: None,
             bender: None,
             losses: None,
             uncertainty: Default::default(),

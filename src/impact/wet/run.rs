@@ -330,6 +330,7 @@ impl Run<'_> {
                 drag: booked.dissipated[1],
             },
             steps: self.steps,
+            error_estimate: None,
             history: self.recorder.map(Recorder::finish),
         }
     }

@@ -1,0 +1,57 @@
+//! Whether a contact that is open at all points of a step touches in between.
+//!
+//! The forces at the points of a step are all it knows of a contact: a short touch between two of them would be passed
+//! without a trace. The approach's polynomial through the points shows it.
+
+use super::collocation::{Collocation, POINTS, Points, horner};
+use super::contact_ledger::bisect;
+
+/// A touch between the points of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Touch {
+    /// Where in the step (0..1) it begins.
+    pub(super) place: f64,
+    /// Its depth in m.
+    pub(super) depth: f64,
+}
+
+/// The touch, if any, of a contact whose approaches at start, Gauss points and end of a step are `approach` in m, none of
+/// them positive but, by a rounding error, that at the start.
+#[inline]
+pub(super) fn touch_between(collocation: &Collocation, approach: &Points) -> Option<Touch> {
+    let middles = collocation.middles(approach);
+    let depth = middles.iter().fold(0.0, |depth: f64, a| depth.max(*a));
+    if depth <= 0.0 {
+        return None;
+    }
+    let before = middles.iter().position(|a| *a > 0.0)?;
+    let [low, high] = [before, before + 1].map(|p| collocation.points[p]);
+    let polynomial = collocation.through(approach);
+    let place = bisect(low, 0.5 * (low + high), |u| horner(&polynomial, u) <= 0.0);
+    debug_assert!(before + 1 < POINTS);
+    Some(Touch { place, depth })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// A parabola that is positive on 0.4..0.6, between the second and the third Gauss point.
+    #[test]
+    fn a_touch_between_two_points_is_found_with_place_and_depth() {
+        let collocation = Collocation::default();
+        let approach = collocation.points.map(|u| 0.01 - (u - 0.5_f64).powi(2));
+        let touch = touch_between(&collocation, &approach).unwrap();
+        assert_relative_eq!(touch.place, 0.4, epsilon = 1e-9);
+        assert_relative_eq!(touch.depth, 0.01, epsilon = 1e-12);
+    }
+
+    #[test]
+    fn a_contact_that_stays_open_has_no_touch() {
+        let collocation = Collocation::default();
+        for open in [|u: f64| -u, |u: f64| u - 1.0, |u: f64| -1e-3 - (u - 0.5).powi(2)] {
+            assert_eq!(touch_between(&collocation, &collocation.points.map(open)), None);
+        }
+    }
+}
