@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Tolerance of auto: relative error of the efficiency, the outer body's final velocity and both force peaks [default: 1%]
     #[arg(long, value_parser = asked_model::tolerance)]
     tolerance: Option<f64>,
-    /// Resolution of the reference
+    /// Resolution of the reference: coarse, paper, fine, or the error of one computed with --target-error, such as 0.2%
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
     /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
@@ -241,7 +241,7 @@ impl<'a> Job<'a> {
             command += &format!(" --tolerance {tolerance}");
         }
         if *resolution != Resolution::Paper {
-            command += &format!(" --resolution {resolution}");
+            command += &format!(" --resolution {}", resolution.argument());
         }
         command
     }
@@ -318,7 +318,11 @@ fn figure_width(text: &str) -> std::result::Result<f64, String> {
     if FIGURE_WIDTHS.contains(&width) {
         Ok(width)
     } else {
-        Err(format!("{width} mm is not within {} to {} mm", FIGURE_WIDTHS.start(), FIGURE_WIDTHS.end()))
+        Err(format!(
+            "{width} mm is not within {} to {} mm (a number without unit is in m)",
+            FIGURE_WIDTHS.start(),
+            FIGURE_WIDTHS.end()
+        ))
     }
 }
 
@@ -390,7 +394,19 @@ fn references<Q: Quantities>(
                 let wish = Wish::default();
                 found.push(reference::compute_as(context, scene, arguments.resolution, &store, &wish)?);
             }
-            other => problems.push(reference::problem(scene, arguments.resolution, &other)),
+            other => {
+                let mut problem = reference::problem(scene, arguments.resolution, &other);
+                let there: Vec<String> =
+                    store.resolutions(scene).into_iter().map(Resolution::argument).collect();
+                if !there.is_empty() {
+                    problem += &format!(
+                        "; there is one for `--resolution {}` in {}",
+                        there.join("`, `--resolution "),
+                        store.root().display()
+                    );
+                }
+                problems.push(problem);
+            }
         }
     }
     Ok(found)

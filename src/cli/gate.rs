@@ -55,12 +55,24 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 
 fn conclude(context: &Context, job: &Job, results: &Results, outputs: &Outputs) -> Result<ExitStatus> {
     let report = job.report(context, results)?;
+    for (file, scene) in job.scenes.iter().filter(|(_, scene)| scene.tolerances.is_empty()) {
+        context.note(format_args!(
+            "warning: {} has no [tolerances]: nothing of scene `{}` is gated; add for example tolerances.C = {{ efficiency = {{ relative = 0.01 }} }}",
+            file.display(),
+            scene.name
+        ));
+    }
     if github::is_running() {
         tell_github(context, job, &report)?;
     }
     Ok(match job.finish(context, report, outputs)?.verdict {
         Verdict::Pass => ExitStatus::Pass,
-        Verdict::Fail => ExitStatus::ToleranceExceeded,
+        Verdict::Fail => {
+            context.note(
+                "if this is right after all: the same command with --update --reason \"why\" changes the tolerances and keeps the reason",
+            );
+            ExitStatus::ToleranceExceeded
+        }
     })
 }
 

@@ -12,7 +12,7 @@ use clap::Args;
 pub struct Arguments {
     /// Scene file, or the name of a shipped scene
     scene: String,
-    /// How fine the mesh is
+    /// How fine the mesh is: coarse, paper or fine
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
     /// Refine until the 95 % band of efficiency and force peaks is at most this, for example 0.2%

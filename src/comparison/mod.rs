@@ -28,7 +28,7 @@ pub(crate) use interpolation::MonotoneCubic;
 pub use iso18571::{Grade, Iso18571, iso18571};
 pub use russell::{Russell, russell};
 pub use sprague_geers::{SpragueGeers, sprague_geers};
-pub use verdict::Verdict;
+pub use verdict::{Shown, Verdict};
 
 use crate::error::Result;
 use crate::impact::{Curves, Outcome, PlateQuantities, Quantities, SCHEMA_VERSION, SeatQuantities, Summary};
@@ -119,6 +119,20 @@ impl<Q: Quantities> SceneComparison<Q> {
     }
 }
 
+impl<Q: Quantities> SceneComparison<Q> {
+    /// The verdict as people are told it.
+    pub fn shown(&self) -> Shown {
+        // that a model is known to be off is said of the model
+        Shown::of(self.verdict, self.models.iter().map(ModelComparison::gated).sum(), 0)
+    }
+
+    /// Gated rows of all models, and how many of them failed.
+    pub fn gated_and_failed(&self) -> (usize, usize) {
+        let gated = || self.models.iter().flat_map(|m| &m.discrepancies).filter(|d| d.tolerance.is_some());
+        (gated().count(), gated().filter(|d| !d.verdict.passed()).count())
+    }
+}
+
 impl SceneComparison {
     /// Adds the discrepancy budget (see [`mod@budget`]) if models B and C are both compared.
     ///
@@ -186,6 +200,16 @@ impl<Q: Quantities> ModelComparison<Q> {
     /// Number of rows that have a tolerance.
     pub fn gated(&self) -> usize {
         self.discrepancies.iter().filter(|d| d.tolerance.is_some()).count()
+    }
+
+    /// Number of gated rows whose tolerance lies about a known discrepancy.
+    fn biased(&self) -> usize {
+        self.discrepancies.iter().filter(|d| d.bias.is_some_and(|bias| bias != 0.0)).count()
+    }
+
+    /// The verdict as people are told it.
+    pub fn shown(&self) -> Shown {
+        Shown::of(self.verdict, self.gated(), self.biased())
     }
 }
 

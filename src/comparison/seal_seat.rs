@@ -15,8 +15,9 @@ impl Compared for SeatQuantities {
         let mut checks = start(setup, history);
         let sphere = (q.sphere_force_peak, q.sphere_contact_end);
         let actuator = (q.actuator_force_peak, q.actuator_contact_end);
-        checks.extend(contact("sphere", summary.source, &history.time, &history.sphere_force, sphere));
-        checks.extend(contact("actuator", summary.source, &history.time, &history.actuator_force, actuator));
+        let of = |name, force, stated| contact(name, summary.source, (&history.time, force), stated, 0.0);
+        checks.extend(of("sphere", &history.sphere_force, sphere));
+        checks.extend(of("actuator", &history.actuator_force, actuator));
         checks.extend(velocities(setup, q, history));
         checks.extend(balances(setup, summary.sample_interval.unwrap_or(0.0), history));
         checks

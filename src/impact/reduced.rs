@@ -14,7 +14,7 @@ use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
 use crate::fluid::FluidForces;
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::scene::{Edge, Material, Model, PlateImpact, Scene, Shape};
+use crate::scene::{self, Edge, Material, Model, PlateImpact, Scene, Shape};
 use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
@@ -224,11 +224,18 @@ impl Reduced {
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Summary {
         let system = &self.system;
         let unsure = result.error_estimate.filter(|error| *error > assured::ENOUGH * tolerance);
-        let unsure = unsure.map(|error| {
+        let mut warnings = scene::doubts(&self.scene);
+        warnings.extend(self.warnings.iter().cloned());
+        warnings.extend(unsure.map(|error| {
             format!(
                 "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
             )
-        });
+        }));
+        for (body, contact) in ["outer", "inner"].iter().zip(&result.contacts) {
+            if contact.contacts == 0 {
+                warnings.push(format!("the {body} body and the plate never touch"));
+            }
+        }
         Summary {
             schema_version: SCHEMA_VERSION,
             scene: self.scene.name.clone(),
@@ -251,7 +258,7 @@ impl Reduced {
             convergence: None,
             mesh: None,
             solver: None,
-            warnings: self.warnings.iter().cloned().chain(unsure).collect(),
+            warnings,
             choice: self.choice.clone(),
             samples: None,
             sample_interval: None,

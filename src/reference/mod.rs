@@ -55,6 +55,28 @@ impl Resolution {
     }
 }
 
+impl Resolution {
+    /// The resolution of the entry called `name` in the store.
+    fn of_folder(name: &str) -> Option<Self> {
+        let millionths = name.strip_prefix("error-").and_then(|rest| rest.strip_suffix("ppm"));
+        match millionths {
+            Some(number) => {
+                let parts_per_million = number.parse().ok()?;
+                Some(Resolution::Within(TargetError { parts_per_million }))
+            }
+            None => Resolution::ALL.into_iter().find(|r| r.first() == name),
+        }
+    }
+
+    /// As it is written on the command line.
+    pub fn argument(self) -> String {
+        match self {
+            Resolution::Within(error) => format!("{}%", f64::from(error.parts_per_million) * 1e-4),
+            fixed => fixed.to_string(),
+        }
+    }
+}
+
 impl std::fmt::Display for Resolution {
     /// Its name in the store; of a fixed resolution also that on the command line.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -76,7 +98,13 @@ impl std::str::FromStr for Resolution {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let found = Resolution::ALL.into_iter().find(|r| r.first() == text);
-        found.ok_or_else(|| format!("`{text}` is not a resolution; there are coarse, paper and fine"))
+        let within = || text.contains('%').then(|| text.parse().map(Resolution::Within));
+        let unknown = || {
+            format!(
+                "`{text}` is not a resolution; there are coarse, paper, fine, and errors such as 0.2% (as of --target-error)"
+            )
+        };
+        found.map(Ok).or_else(within).unwrap_or_else(|| Err(unknown()))
     }
 }
 
@@ -122,6 +150,10 @@ mod tests {
         let error = read("0.25%").expect("valid");
         assert_eq!(error.share(), 0.0025);
         assert_eq!(Resolution::Within(error).to_string(), "error-2500ppm");
+        assert_eq!(Resolution::of_folder("error-2500ppm"), Some(Resolution::Within(error)));
+        assert_eq!(Resolution::Within(error).argument().parse(), Ok(Resolution::Within(error)));
+        assert_eq!("coarse".parse(), Ok(Resolution::Coarse));
+        assert!("0.2".parse::<Resolution>().is_err(), "a share without % could be a slip");
         for bad in ["", "0", "-1%", "NaN", "inf", "60%", "0.001%", "x%"] {
             assert!(read(bad).is_err(), "{bad}");
         }

@@ -5,9 +5,9 @@
 
 use super::entry::{self, Damage, Stored};
 use super::{Resolution, identity};
-use crate::impact::{PlateQuantities, Quantities};
+use crate::impact::{PlateQuantities, Quantities, SeatQuantities};
 use crate::project::project_root;
-use crate::scene::Scene;
+use crate::scene::{Scene, Setup};
 use crate::{Error, Result};
 use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
@@ -102,6 +102,22 @@ impl Store {
                 return lookup;
             }
         }
+    }
+
+    /// Resolutions at which there is a solution of exactly this scene, coarse to fine.
+    pub fn resolutions(&self, scene: &Scene) -> Vec<Resolution> {
+        let folders = fs::read_dir(self.root.join(&scene.name)).into_iter().flatten().flatten();
+        let mut found: Vec<Resolution> = folders
+            .filter_map(|folder| Resolution::of_folder(&folder.file_name().to_string_lossy()))
+            .filter(|resolution| match &scene.setup {
+                Setup::PlateImpact(_) => matches!(self.find(scene, *resolution), Lookup::Found(_)),
+                Setup::SealSeat(_) => {
+                    matches!(self.find_as::<SeatQuantities>(scene, *resolution), Lookup::Found(_))
+                }
+            })
+            .collect();
+        found.sort();
+        found
     }
 
     /// A new work folder on the file system of the entry, after removing what dead runs left.

@@ -1,7 +1,7 @@
 //! Discrepancies, curve metrics and checks of one reduced model as tables of the page.
 
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
-use super::html::{badge, number, scrolled};
+use super::html::{badge, number, scrolled, shown};
 use crate::comparison::{BandVerdict, Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
 use crate::impact::Quantities;
 use maud::{Markup, html};
@@ -9,14 +9,14 @@ use maud::{Markup, html};
 /// Section of one model.
 pub(super) fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
     html! {
-        h2 { "Model " (model_name(&model.model, model.summary.modes)) " " (badge(model.verdict)) }
+        h2 { "Model " (model_name(&model.model, model.summary.modes)) " " (shown(model.shown())) }
         @for warning in &model.summary.warnings { p { strong { "Warning: " } (warning) } }
         (contradictions(&model.model, &model.integrity))
         h3 { "Discrepancies" }
         (scrolled(&format!("Discrepancies of model {}", model.model), &html! { table.discrepancies data-model=(model.model) {
             thead { tr {
                 th scope="col" { "quantity" } th.left scope="col" { "verdict" }
-                @for heading in ["reduced", "reference", "difference", "relative", "95 % band", "|E| against u", "tolerance", "bias"] {
+                @for heading in ["relative", "tolerance", "bias", "reduced", "reference", "difference", "95 % band", "|E| against u"] {
                     th scope="col" { (heading) }
                 }
             } }
@@ -53,16 +53,16 @@ fn discrepancy_row(row: &Discrepancy) -> Markup {
                 @if row.tolerance.is_none() && row.verdict.passed() { span.soft { "not gated" } }
                 @else { (badge(row.verdict)) }
             }
-            (number("reduced", Some(row.reduced), to, 5))
-            (number("reference", Some(row.reference), to, 5))
-            (number("difference", Some(row.difference), to, 3))
             td data-field="relative" data-si=(row.relative.map_or(String::new(), |r| r.to_string())) {
                 (percent(row.relative))
             }
-            (number("uncertainty", row.uncertainty, to, 2))
-            td.left data-field="band_verdict" { (row.band_verdict.map_or("–", BandVerdict::words)) }
             (number("tolerance", row.tolerance, to, 3))
             (number("bias", row.bias, to, 3))
+            (number("reduced", Some(row.reduced), to, 5))
+            (number("reference", Some(row.reference), to, 5))
+            (number("difference", Some(row.difference), to, 3))
+            (number("uncertainty", row.uncertainty, to, 2))
+            td.left data-field="band_verdict" { (row.band_verdict.map_or("–", BandVerdict::words)) }
         }
     }
 }

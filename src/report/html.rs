@@ -3,7 +3,7 @@
 
 use super::format::{Prefixed, model_name, percent, prefixed, significant, with_unit, words};
 use super::{Attachments, Report};
-use crate::comparison::{Discrepancy, ModelComparison, SceneComparison, Verdict};
+use crate::comparison::{Discrepancy, ModelComparison, SceneComparison, Shown, Verdict};
 use crate::impact::Quantities;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -25,6 +25,16 @@ pub(super) fn page(title: &str, styles: &[&str], body: &Markup, scripts: &Markup
         }
     }
     .into_string()
+}
+
+/// A verdict as people are told it.
+pub(super) fn shown(shown: Shown) -> Markup {
+    let class = match shown {
+        Shown::Pass | Shown::PassAboutBias => "verdict pass",
+        Shown::Fail => "verdict fail",
+        Shown::NotGated => "verdict open",
+    };
+    html! { span class=(class) { (shown.words()) } }
 }
 
 pub(super) fn badge(verdict: Verdict) -> Markup {
@@ -50,7 +60,7 @@ pub(super) fn number(field: &str, value: Option<f64>, to: Prefixed, digits: usiz
 pub fn index_page(report: &Report) -> String {
     let verdict = report.comparison().verdict;
     let body = html! {
-        h1 { "impactcheck " (badge(verdict)) }
+        h1 { "impactcheck " (shown(Shown::of(verdict, gated(report), 0))) }
         p.soft { "Reduced models of an impact against explicit finite elements. " (counts(report)) }
         div.cards {
             @for scene in &report.scenes { (card(&scene.scene.description, &scene.comparison, &scene.attachments)) }
@@ -77,6 +87,13 @@ pub fn index_page(report: &Report) -> String {
     page("impactcheck", &[], &body, &html! {})
 }
 
+/// Rows of all scenes that have a tolerance.
+fn gated(report: &Report) -> usize {
+    let scenes = report.scenes.iter().map(|scene| scene.comparison.gated_and_failed().0);
+    let seats = report.seats.iter().map(|seat| seat.comparison.gated_and_failed().0);
+    scenes.chain(seats).sum()
+}
+
 /// How much was gated and failed, in a sentence.
 fn counts(report: &Report) -> String {
     fn rows<Q: Quantities>(scene: &SceneComparison<Q>) -> impl Iterator<Item = &Discrepancy> {
@@ -86,7 +103,10 @@ fn counts(report: &Report) -> String {
         let scenes = report.scenes.iter().flat_map(|scene| rows(&scene.comparison));
         scenes.chain(report.seats.iter().flat_map(|seat| rows(&seat.comparison)))
     };
-    let gated = rows().filter(|row| row.tolerance.is_some()).count();
+    let gated = gated(report);
+    if gated == 0 {
+        return "Nothing is gated: no scene has tolerances.".into();
+    }
     let failed = rows().filter(|row| !row.verdict.passed()).count();
     let scenes = report.scenes.len() + report.seats.len();
     let plural = |n: usize| if n == 1 { "" } else { "s" };
@@ -102,7 +122,7 @@ fn card<Q: Quantities>(
 ) -> Markup {
     html! {
         section.card {
-            h2 { (scene_link(comparison)) " " (badge(comparison.verdict)) }
+            h2 { (scene_link(comparison)) " " (shown(comparison.shown())) }
             p.soft { (description) }
             ul.models { @for model in &comparison.models { li { (model_line(model)) } } }
             @let drifting = attachments.trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
@@ -114,7 +134,7 @@ fn card<Q: Quantities>(
 /// Verdict of a model with its largest discrepancy, the band it is to be seen against, and what the gate makes of it.
 pub(super) fn model_line<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
     html! {
-        (badge(model.verdict)) " model " (model_name(&model.model, model.summary.modes))
+        (shown(model.shown())) " model " (model_name(&model.model, model.summary.modes))
         @if let Some(d) = model.largest() {
             ": largest discrepancy " strong { (percent(d.relative)) } " (" (words(&d.quantity)) (relative_band(d)) ")"
         }
@@ -156,7 +176,7 @@ fn index_row<Q: Quantities>(comparison: &SceneComparison<Q>, model: &ModelCompar
         tr data-scene=(comparison.scene) data-model=(model.model) {
             th scope="row" { (scene_link(comparison)) }
             td.left { (model_name(&model.model, model.summary.modes)) }
-            td.left { (badge(model.verdict)) }
+            td.left { (shown(model.shown())) }
             (number("reduced", efficiency(&model.summary.quantities), plain, 4))
             (number("reference", efficiency(&comparison.reference.quantities), plain, 4))
             td.left { @if let Some(d) = largest { (words(&d.quantity)) " " (percent(d.relative)) } @else { "–" } }

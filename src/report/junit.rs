@@ -1,7 +1,7 @@
 //! JUnit XML for continuous integration: a suite per scene, a case per model and quantity, its figures as properties.
 
 use super::Report;
-use super::format::short;
+use super::format::{percent, short};
 use crate::comparison::{Check, Discrepancy, SceneComparison};
 use crate::error::{Error, Result};
 use crate::impact::Quantities;
@@ -42,14 +42,24 @@ fn named(scene: &str, source: &str, name: &str, failure: Option<String>) -> Test
             status
         }
     };
-    let mut case = TestCase::new(name, status);
+    classed(scene, source, TestCase::new(name, status))
+}
+
+fn classed(scene: &str, source: &str, mut case: TestCase) -> TestCase {
     case.set_classname(format!("{scene}.{source}"));
     case
 }
 
 fn case(scene: &str, model: &str, row: &Discrepancy) -> TestCase {
-    let failure = (!row.verdict.passed()).then(|| failure(row));
-    let mut case = named(scene, model, &row.quantity, failure);
+    let mut case = match (row.verdict.passed(), row.tolerance) {
+        (true, None) => {
+            let mut status = TestCaseStatus::skipped();
+            status.set_message("not gated: the scene has no tolerance for it");
+            classed(scene, model, TestCase::new(row.quantity.as_str(), status))
+        }
+        (true, Some(_)) => named(scene, model, &row.quantity, None),
+        (false, _) => named(scene, model, &row.quantity, Some(failure(row))),
+    };
     case.add_property(Property::new("unit", row.unit.as_str()));
     let numbers = [
         ("reduced", Some(row.reduced)),
@@ -86,13 +96,24 @@ fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
 /// What is wrong with a row, in one sentence with numbers, unit and bound.
 pub(crate) fn failure(row: &Discrepancy) -> String {
     let Discrepancy { quantity, unit, .. } = row;
-    let [reduced, reference, difference] = [row.reduced, row.reference, row.difference].map(short);
+    let [reduced, reference] = [row.reduced, row.reference].map(short);
     let numbers = format!("{quantity}: reduced {reduced} {unit}, reference {reference} {unit}");
-    match (row.tolerance.map(short), row.bias.map(short)) {
+    // what 100 % is, so that bounds stand in the same measure as the difference
+    let whole = row.relative.filter(|r| *r != 0.0).map(|relative| row.difference / relative);
+    let with_share = |value: f64| {
+        let share = whole.map_or(String::new(), |whole| format!(" ({})", percent(Some(value / whole))));
+        format!("{} {unit}{share}", short(value))
+    };
+    let difference = with_share(row.difference);
+    // a bound has no sign
+    let bound = |width| with_share(width).replace("(+", "(\u{b1}");
+    match (row.tolerance, row.bias) {
         (None, _) => format!("{numbers}: not a number"),
-        (Some(bound), None) => format!("{numbers}, difference {difference} {unit}, bound {bound} {unit}"),
-        (Some(bound), Some(bias)) => format!(
-            "{numbers}, difference {difference} {unit} where {bias} {unit} is known, bound {bound} {unit} about it"
+        (Some(width), None) => format!("{numbers}, difference {difference}, bound {}", bound(width)),
+        (Some(width), Some(bias)) => format!(
+            "{numbers}, difference {difference} where {} is known, bound {} about it",
+            with_share(bias),
+            bound(width)
         ),
     }
 }
@@ -101,5 +122,7 @@ pub(crate) fn failure(row: &Discrepancy) -> String {
 pub(crate) fn integrity_failure(check: &Check) -> String {
     // all digits: many of these bounds are a matter of rounding
     let Check { check, unit, found, expected, bound, .. } = check;
-    format!("{check}: found {found} {unit}, expected {expected} {unit} within {bound} {unit}")
+    format!(
+        "{check}: the history says {found} {unit}, the summary or the scene {expected} {unit}; they may differ by {bound} {unit}"
+    )
 }

@@ -2,7 +2,7 @@
 
 use super::Report;
 use super::format::{percent, prefixed, with_unit};
-use crate::comparison::Verdict;
+use crate::comparison::{Shown, Verdict};
 use crate::impact::PlateQuantities;
 use anstyle::{AnsiColor, Style};
 
@@ -15,6 +15,16 @@ const RED: Style = AnsiColor::Red.on_default().bold();
 pub(super) fn coloured(verdict: Verdict) -> String {
     let style = if verdict.passed() { GREEN } else { RED };
     format!("{style}{verdict}{style:#}")
+}
+
+/// A verdict as people are told it, in its colour.
+pub(super) fn told(shown: Shown) -> String {
+    let style = match shown {
+        Shown::Pass | Shown::PassAboutBias => GREEN,
+        Shown::Fail => RED,
+        Shown::NotGated => YELLOW,
+    };
+    format!("{style}{}{style:#}", shown.words())
 }
 
 /// The columns: heading, quantity, unit.
@@ -33,13 +43,13 @@ pub fn terminal(report: &Report) -> String {
     for scene in &report.scenes {
         let comparison = &scene.comparison;
         let reference = &comparison.reference.quantities;
-        text += &format!("{}: {}\n", comparison.scene, coloured(comparison.verdict));
+        text += &format!("{}: {}\n", comparison.scene, told(comparison.shown()));
         let headings: String = COLUMNS.iter().map(|(heading, ..)| format!("{heading:>22}")).collect();
         text += &format!("  {:<10}{headings}  verdict\n", "");
         text += &format!("  {:<10}{}\n", "reference", cells(reference, None));
         for model in &comparison.models {
             let row = cells(&model.summary.quantities, Some(reference));
-            text += &format!("  {:<10}{row}  {}\n", model.model, coloured(model.verdict));
+            text += &format!("  {:<10}{row}  {}\n", model.model, told(model.shown()));
         }
         if let Some(measured) = &comparison.measured {
             text += &format!("  {}\n", super::measured_section::sentence(measured));
@@ -58,12 +68,18 @@ pub fn terminal(report: &Report) -> String {
                 text += &format!("  {}: {}\n", model.model, super::junit::integrity_failure(check));
             }
         }
+        text += &failed(comparison.gated_and_failed());
         text.push('\n');
     }
     for seat in &report.seats {
         text += &super::seal_seat::terminal(seat);
     }
     text
+}
+
+/// How many gated quantities failed, if any did.
+pub(super) fn failed((gated, failed): (usize, usize)) -> String {
+    if failed == 0 { String::new() } else { format!("  {failed} of {gated} gated quantities failed\n") }
 }
 
 fn cells(quantities: &PlateQuantities, reference: Option<&PlateQuantities>) -> String {

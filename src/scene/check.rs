@@ -321,8 +321,13 @@ impl<'a> Checker<'a> {
                     QuantityError::NotANumber => {
                         format!("which is not a number with a unit; {what} in {unit} is needed")
                     }
+                    QuantityError::UnknownUnit(u) if u.starts_with(',') => {
+                        format!("but decimals stand behind a point, not a comma; {what} in {unit} is needed")
+                    }
                     QuantityError::UnknownUnit(u) => {
-                        format!("but `{u}` is not a known unit; {what} in {unit} is needed")
+                        format!(
+                            "but `{u}` is not a known unit; {what} in {unit} is needed (units are written as symbols: mm, um, kg, ms)"
+                        )
                     }
                     QuantityError::MalformedUnit(u) => {
                         format!("but `{u}` is not a product of units; {what} in {unit} is needed")

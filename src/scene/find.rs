@@ -38,6 +38,10 @@ fn resolve_in(folder: &Path, argument: &str) -> Result<PathBuf> {
         // A folder, a pipe: what it is worth shows when it is read.
         return Ok(path);
     }
+    let beside = PathBuf::from(format!("{argument}.toml"));
+    if beside.is_file() {
+        return Ok(beside);
+    }
     let shipped = scenes_in(folder).unwrap_or_default();
     let names: Vec<String> =
         shipped.iter().filter_map(|p| Some(p.file_stem()?.to_string_lossy().into_owned())).collect();

@@ -10,6 +10,7 @@ mod check;
 mod collision;
 mod find;
 pub(crate) mod hash;
+mod plausibility;
 mod problem;
 mod quantity;
 mod read;
@@ -22,6 +23,7 @@ mod template;
 mod tolerances;
 
 pub use find::{resolve, shipped};
+pub use plausibility::doubts;
 pub(crate) use problem::suggestion;
 pub use problem::{Problem, Problems, problems};
 pub(crate) use quantity::in_unit as quantity_in;

@@ -20,7 +20,7 @@ pub mod table2;
 mod write;
 
 pub use plot::{Axis, Panel, figure};
-pub use write::{csv, json, markdown, write};
+pub use write::{MOST_ROWS, csv, json, markdown, told, write};
 
 use crate::error::{Error, Result};
 use crate::scene::{Model, suggestion};

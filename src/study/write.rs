@@ -6,6 +6,9 @@ use crate::report::format::significant;
 use crate::report::{png, write_file};
 use std::path::{Path, PathBuf};
 
+/// Rows of a study that the terminal shows.
+pub const MOST_ROWS: usize = 30;
+
 /// Pixels of the PNG per unit of the drawing, as in the report.
 const PNG_SCALE: f32 = 3.0;
 
@@ -75,6 +78,13 @@ pub fn markdown(study: &Study) -> String {
         text += &format!("\n{}", table(rows));
     }
     text
+}
+
+/// For the terminal: as [`markdown`], of a long table only the first [`MOST_ROWS`] rows.
+pub fn told(study: &Study) -> String {
+    let mut short = study.clone();
+    short.rows.truncate(MOST_ROWS);
+    markdown(&short)
 }
 
 /// Column names, with the unit where there is one.

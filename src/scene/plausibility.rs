@@ -1,0 +1,108 @@
+//! Numbers that are admissible and yet hardly meant: a forgotten unit most often.
+
+use super::{Material, PlateImpact, Scene, Setup, Tolerance};
+
+/// Densities of solids, from aerogel-filled foams to osmium, in kg/m^3.
+const DENSITY: [f64; 2] = [50.0, 23e3];
+/// Young's moduli from soft rubber to diamond, in Pa.
+const MODULUS: [f64; 2] = [1e5, 1.3e12];
+/// Sizes of what is struck and measured with these methods, in m.
+const LENGTH: [f64; 2] = [1e-6, 1.0];
+
+/// One sentence per doubtful number, none if there is none.
+pub fn doubts(scene: &Scene) -> Vec<String> {
+    let mut found = match &scene.setup {
+        Setup::PlateImpact(setup) => plate_impact(setup),
+        Setup::SealSeat(seat) => {
+            [&seat.seat.material, &seat.sphere.material].into_iter().flat_map(material).collect()
+        }
+    };
+    for (model, tolerances) in &scene.tolerances {
+        for (quantity, Tolerance { relative, .. }) in tolerances {
+            if let Some(relative) = relative.filter(|r| *r > 1.0) {
+                found.push(format!(
+                    "tolerances.{model}.{quantity}: relative = {relative} is {} %; a share is meant, 0.05 for 5 %",
+                    100.0 * relative
+                ));
+            }
+        }
+    }
+    found.dedup();
+    found
+}
+
+fn plate_impact(setup: &PlateImpact) -> Vec<String> {
+    let bodies = [&setup.plate.material, &setup.outer.material, &setup.inner.material];
+    let mut found: Vec<String> = Vec::new();
+    for doubt in bodies.into_iter().flat_map(material) {
+        if !found.contains(&doubt) {
+            found.push(doubt);
+        }
+    }
+    let lengths = [
+        ("plate.radius", setup.plate.radius),
+        ("plate.thickness", setup.plate.thickness),
+        ("outer's tip radius", setup.outer.shape.tip_radius()),
+        ("inner's tip radius", setup.inner.shape.tip_radius()),
+    ];
+    found.extend(lengths.into_iter().filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
+    if setup.plate.thickness > 4.0 * setup.plate.radius {
+        found.push(format!(
+            "plate.thickness is {:.3} times plate.radius: a rod rather than a plate; is one of them a diameter?",
+            setup.plate.thickness / setup.plate.radius
+        ));
+    }
+    found
+}
+
+fn material(material: &Material) -> Vec<String> {
+    let name = |key: &str| format!("materials.{}.{key}", material.name);
+    [
+        outside(&name("density"), material.density, DENSITY, "kg/m^3"),
+        outside(&name("youngs_modulus"), material.youngs_modulus, MODULUS, "Pa"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn outside(name: &str, value: f64, [low, high]: [f64; 2], unit: &str) -> Option<String> {
+    (!(low..=high).contains(&value)).then(|| {
+        format!(
+            "{name} = {value:e} {unit} lies outside {low:e} to {high:e} {unit}; a number without unit is in {unit}"
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::doubts;
+    use crate::scene::Scene;
+
+    fn scene(plate: &str, density: &str, relative: &str) -> Scene {
+        let text = format!(
+            r#"
+            name = "x"
+            kind = "plate-impact"
+            materials.steel = {{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = {density} }}
+            plate = {{ radius = {plate}, thickness = "2 mm", edge = "clamped", material = "steel" }}
+            outer = {{ kind = "sphere", radius = "8 mm", material = "steel", speed = "550 mm/s" }}
+            inner = {{ kind = "sphere", radius = "8 mm", material = "steel" }}
+            tolerances.B = {{ efficiency = {{ relative = {relative} }} }}
+            "#
+        );
+        Scene::parse("x.toml", &text).expect("valid")
+    }
+
+    #[test]
+    fn a_forgotten_unit_is_doubted_once() {
+        assert_eq!(doubts(&scene("\"33 mm\"", "7780", "0.05")), Vec::<String>::new());
+        let found = doubts(&scene("33", "7.78", "5"));
+        assert_eq!(found.len(), 3, "{found:?}");
+        assert!(found[0].starts_with("materials.steel.density = 7.78e0 kg/m^3"), "{found:?}");
+        assert!(found[1].starts_with("plate.radius = 3.3e1 m"), "{found:?}");
+        assert!(found[2].contains("500 %"), "{found:?}");
+        let rod = doubts(&scene("\"0.4 mm\"", "7780", "0.05"));
+        assert!(rod[0].contains("5 times plate.radius"), "{rod:?}");
+    }
+}
