@@ -30,4 +30,6 @@ def main(report: Path, sweep: Path | None) -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit("usage: read_results.py REPORT_DIR [SWEEP.csv]")
     main(Path(sys.argv[1]), Path(sys.argv[2]) if len(sys.argv) > 2 else None)

@@ -287,6 +287,10 @@ fn optimum_of_fig_16_with_its_neighbourhood() {
     for name in ["optimum.json", "optimum.svg", "optimum.png"] {
         assert!(fs::metadata(out.join(name)).unwrap().len() > 100);
     }
+    // model C runs there too, as by itself
+    let by_c = json(&["reduced", text(&out.join("optimum.toml")), "--model", "C", "--json"]);
+    let confirmed = document["confirmation"]["efficiency"].as_f64().unwrap();
+    assert!((by_c["efficiency"].as_f64().unwrap() - confirmed).abs() < 1e-4, "{confirmed} {by_c}");
     // the scene it writes has this efficiency
     let again = json(&["reduced", text(&out.join("optimum.toml")), "--model", "B", "--json"]);
     assert_eq!(again["efficiency"].as_f64(), Some(efficiency));

@@ -171,6 +171,12 @@ impl Change {
         acceptance::add(&self.file, entry.clone())?;
         let changed = entry.tolerances.len();
         let tolerances = if changed == 1 { "tolerance" } else { "tolerances" };
+        for change in &entry.tolerances {
+            context.note(format_args!(
+                "{}: tolerances.{}.{}: {} -> {}",
+                self.scene, change.model, change.quantity, change.from, change.to
+            ));
+        }
         context.note(format_args!(
             "{}: {changed} {tolerances} changed, reference accepted; the reason is in {}",
             self.scene,

@@ -4,7 +4,7 @@ use super::{Context, JsonArgument, reference};
 use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Summary;
-use crate::optimise::{Optimum, Problem, Variable};
+use crate::optimise::{Confirmation, Optimum, Problem, Variable, confirm};
 use crate::reference::{Lookup, Resolution, Stored, Wish};
 use crate::report;
 use crate::scene::{self, Model, Scene, Template};
@@ -47,6 +47,9 @@ pub struct Arguments {
 struct Document {
     #[serde(flatten)]
     optimum: Optimum,
+    /// What model C says, if another one searched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    confirmation: Option<Confirmation>,
     #[serde(skip_serializing_if = "Option::is_none")]
     verification: Option<Verification>,
 }
@@ -78,6 +81,10 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     let problem = Problem::new(template, variables, model, arguments.modes)?;
     let optimum = problem.solve(arguments.seed)?;
+    let confirmation = confirm(&problem, &optimum).unwrap_or_else(|error| {
+        context.note(format_args!("warning: model C can't confirm the optimum: {error}"));
+        None
+    });
     let mut failure = None;
     let verification = if arguments.verify {
         let verification = verify(context, arguments, &problem, &optimum);
@@ -92,7 +99,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     } else {
         None
     };
-    let document = Document { optimum, verification };
+    let document = Document { optimum, confirmation, verification };
     if let Some(folder) = &arguments.out {
         write(context, folder, &problem, &document)?;
     }
@@ -170,6 +177,9 @@ fn table(document: &Document) -> String {
             lines.push("    on a bound: there may be a better one beyond".into());
         }
     }
+    if let Some(confirmation) = &document.confirmation {
+        lines.push(confirmed(optimum, confirmation));
+    }
     if let Some(verification) = &document.verification {
         lines.push(match (&verification.reference, &verification.missing) {
             (Some(reference), _) => format!(
@@ -180,4 +190,22 @@ fn table(document: &Document) -> String {
         });
     }
     lines.join("\n")
+}
+
+/// What model C says of the optimum, in a sentence.
+fn confirmed(optimum: &Optimum, confirmation: &Confirmation) -> String {
+    let there = confirmation.efficiency;
+    let off = 100.0 * (there / optimum.efficiency - 1.0);
+    let own = format!("  model C there: efficiency {there:.5} ({off:+.1} %)");
+    match &confirmation.rival {
+        Some(rival) if !confirmation.confirmed => {
+            let unit = if rival.unit == "1" { "" } else { rival.unit };
+            format!(
+                "{own}, and {:.5} at {} = {:.4e} {unit}: the optimum of model {} is not confirmed; search with --model C",
+                rival.efficiency, rival.field, rival.value, optimum.model
+            )
+        }
+        Some(rival) => format!("{own}; the best of other peaks and bounds is {:.5}", rival.efficiency),
+        None => own,
+    }
 }

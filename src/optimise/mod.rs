@@ -1,8 +1,10 @@
 //! Optimisation: the numbers of a scene, within bounds, with which most energy is transmitted.
 
+mod confirmation;
 mod neighbourhood;
 pub mod search;
 
+pub use confirmation::{Confirmation, Rival, confirm};
 pub use neighbourhood::{Neighbourhood, PROFILE_POINTS};
 
 use crate::body::kirchhoff::UnitPlates;
@@ -177,6 +179,15 @@ impl Problem {
     /// The efficiency with `values` for the variables; `None` where there is no result.
     fn efficiency(&self, values: &[f64]) -> Option<f64> {
         Some(self.reduced(values).ok()?.point(TOLERANCE).ok()?.quantities.efficiency)
+    }
+
+    /// The efficiency by `model`, with as many modes as it takes by itself.
+    ///
+    /// # Errors
+    /// Those of the model.
+    fn efficiency_of(&self, model: Model, values: &[f64]) -> Result<f64> {
+        let reduced = Reduced::in_series(self.scene(values)?, model, None, &self.plates)?;
+        Ok(reduced.point(TOLERANCE)?.quantities.efficiency)
     }
 
     /// The impact with `values` for the variables, with its history.
