@@ -52,6 +52,16 @@ impl Oscillator {
         }
     }
 
+    /// The first two moments, all that free vibration needs: impulse response and its slope, [S_-2, S_-1].
+    pub fn free(&self, t: f64) -> [f64; 2] {
+        if self.alpha == 0.0 && self.omega > 0.0 {
+            let (sine, cosine) = (self.omega * t).sin_cos();
+            return [cosine, sine / self.omega];
+        }
+        let [slope, impulse, ..] = self.moments(t);
+        [slope, impulse]
+    }
+
     /// Small omega t: power series for the two highest moments, recurrence downwards.
     fn series(&self, t: f64) -> [f64; MOMENTS] {
         let (w2, a2) = (self.omega * self.omega, 2.0 * self.alpha);
@@ -199,6 +209,19 @@ mod tests {
                         .sum();
                     assert_relative_eq!(moments[p + 2], integral, epsilon = 1e-13, max_relative = 1e-9);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn free_vibration_is_the_first_two_moments() {
+        for omega in [0.0, 1e-6, 0.3, 1.9, 2.1, 40.0] {
+            for zeta in [0.0, 0.02, 1.3] {
+                let oscillator = Oscillator { omega, alpha: zeta * omega };
+                let [slope, impulse, ..] = oscillator.moments(1.0);
+                let free = oscillator.free(1.0);
+                assert_relative_eq!(free[0], slope, epsilon = 1e-14);
+                assert_relative_eq!(free[1], impulse, epsilon = 1e-14);
             }
         }
     }

@@ -104,7 +104,7 @@ pub fn safe_step(system: &System, q: &[f64], v: &[f64]) -> f64 {
 /// The state after `time` s of free flight, in place.
 pub fn advance(system: &System, time: f64, q: &mut [f64], v: &mut [f64]) {
     for (oscillator, (q, v)) in system.oscillators.iter().zip(q.iter_mut().zip(v)) {
-        let [slope, impulse, ..] = oscillator.moments(time);
+        let [slope, impulse] = oscillator.free(time);
         let start = *q;
         *q = (slope + 2.0 * oscillator.alpha * impulse) * start + impulse * *v;
         *v = slope * *v - oscillator.omega.powi(2) * impulse * start;
@@ -169,7 +169,7 @@ impl GapBounds {
         let (mut gap, mut rate) = (self.rigid_gap + self.rigid_rate * time, self.rigid_rate);
         for (k, oscillator) in system.oscillators.iter().enumerate() {
             if oscillator.omega > 0.0 {
-                let [slope, impulse, ..] = oscillator.moments(time);
+                let [slope, impulse] = oscillator.free(time);
                 gap -= b[k] * ((slope + 2.0 * oscillator.alpha * impulse) * q[k] + impulse * v[k]);
                 rate -= b[k] * (slope * v[k] - oscillator.omega.powi(2) * impulse * q[k]);
             }

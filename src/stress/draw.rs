@@ -4,8 +4,10 @@ use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::kirchhoff::UnitPlate;
 use crate::error::Result;
+use crate::fluid::FluidForces;
+use crate::fluid::added_mass::{immersed, mass_factor};
 use crate::impact::system::System;
-use crate::scene::{Edge, Inner, Material, Outer, Plate, PlateImpact, Shape};
+use crate::scene::{Edge, Fluid, Inner, Material, Outer, Plate, PlateImpact, Shape, ShearThinning};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
@@ -13,6 +15,9 @@ use std::sync::{Arc, Mutex};
 const TIERS: [usize; 3] = [16, 64, 256];
 /// Poisson's ratios of plates: each is an eigenproblem of its own.
 const PLATE_POISSON: [f64; 5] = [-0.9, -0.2, 0.0, 0.3, 0.499];
+/// Most modes of a case that is also solved in a fluid, and one in how many of these is.
+const WET_MODES: usize = 24;
+const WET_SHARE: u8 = 4;
 /// Length of a run in durations of a Hertz contact.
 const DURATIONS: f64 = 6.0;
 
@@ -44,11 +49,65 @@ pub struct Case {
     pub system: System,
     /// End of the run in s.
     pub end_time: f64,
+    /// The same impact in a fluid, for some of the cases.
+    pub wet: Option<Wet>,
+}
+
+/// An impact in a fluid.
+pub struct Wet {
+    /// In words.
+    pub description: String,
+    /// The bodies, with the fluid's mass and damping.
+    pub system: System,
+    /// Film and drag, if there are any.
+    pub forces: Option<FluidForces>,
+}
+
+impl Wet {
+    /// The impact `setup` on a plate reduced to `body` in a random fluid; each of its effects may be absent. `unit` is the
+    /// plate of unit radius.
+    fn draw(
+        random: &mut Random,
+        mut setup: PlateImpact,
+        body: ModalBody,
+        tips: [f64; 2],
+        unit: &UnitPlate,
+    ) -> Result<Self> {
+        let elastic = body.omega.len();
+        let viscosity = random.log(1e-5, 10.0);
+        let fluid = Fluid {
+            viscosity,
+            density: random.log(0.1, 2e4),
+            minimum_gap: random.log(1e-9, 1e-4),
+            squeeze_film: random.0.u8(0..4) > 0,
+            added_mass_frequency_ratio: if random.0.bool() { random.uniform(0.05, 1.0) } else { 1.0 },
+            plate_damping_ratio: if random.0.bool() { random.log(1e-4, 5.0) } else { 0.0 },
+            drag_coefficient: if random.0.bool() { random.log(1e-2, 10.0) } else { 0.0 },
+            shear_thinning: (random.0.u8(0..4) == 0).then(|| ShearThinning {
+                infinite_shear_viscosity: viscosity * random.log(1e-3, 1.0),
+                relaxation_time: random.log(1e-6, 1.0),
+                power_index: random.uniform(0.1, 1.0),
+            }),
+        };
+        let plate = immersed(body, &fluid);
+        let per_mass = mass_factor(fluid.added_mass_frequency_ratio).sqrt().recip();
+        let amplitude =
+            1.0 / (setup.plate.radius * (setup.plate.material.density * setup.plate.thickness).sqrt());
+        let forces = FluidForces::new(&fluid, &setup.plate, &setup.inner, |radii| {
+            let radii: Vec<f64> = radii.iter().map(|r| r / setup.plate.radius).collect();
+            let mut shapes = unit.deflection(&radii);
+            shapes.truncate(elastic);
+            shapes.iter_mut().flatten().for_each(|value| *value *= amplitude * per_mass);
+            Ok::<_, crate::Error>(shapes)
+        })?;
+        let description = format!("in {fluid:?}");
+        setup.fluid = Some(fluid);
+        Ok(Self { description, system: System::new(&setup, &plate, tips), forces })
+    }
 }
 
 impl Case {
-    /// Draws the case of `seed`. Fluid: a scene's fluid changes frequencies and damping, which are drawn freely here, and
-    /// adds the squeeze film's force, which is to be drawn here as soon as a [`System`] has one.
+    /// Draws the case of `seed`.
     ///
     /// # Errors
     /// If the plate's eigenproblem can't be solved.
@@ -99,7 +158,8 @@ impl Case {
             fluid: None,
         };
         let tier = TIERS.iter().position(|tier| *tier >= modes).unwrap_or(TIERS.len() - 1);
-        let mut body = lowest(plates.get(edge, poisson, tier)?.scale(&setup.plate), modes);
+        let unit = plates.get(edge, poisson, tier)?;
+        let mut body = lowest(unit.scale(&setup.plate), modes);
         let dry = System::new(&setup, &body, [0.0; 2]);
         let hit = HertzImpact { mass: outer_mass, speed, stiffness: dry.laws[0].stiffness };
         let (approach, force) = (hit.approach_peak(), hit.force_peak());
@@ -126,7 +186,12 @@ impl Case {
             setup.inner.gap,
             system.residual.is_some(),
         );
-        Ok(Self { seed, description, system, end_time })
+        // a stream of its own: what is drawn above stays the same
+        let mut random = Random(fastrand::Rng::with_seed(!seed));
+        let wet = (modes <= WET_MODES && random.0.u8(0..WET_SHARE) == 0)
+            .then(|| Wet::draw(&mut random, setup, body, tips, &unit))
+            .transpose()?;
+        Ok(Self { seed, description, system, end_time, wet })
     }
 }
 
