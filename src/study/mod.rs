@@ -18,7 +18,7 @@ pub mod sweep;
 pub mod table2;
 mod write;
 
-pub use plot::{Axis, Panel, figure};
+pub use plot::{Axis, Only, Panel, figure};
 pub use write::{csv, json, markdown, write};
 
 use crate::error::{Error, Result};
@@ -123,7 +123,7 @@ pub const STUDIES: [Entry; 11] = [
         about: "Section 4.4: what decides the direction of the sphere out of the flexible seal seat",
         takes_model: false,
         run: |_, note| seal_seat::run(note),
-        panels: &[],
+        panels: &seal_seat::PANELS,
     },
     Entry {
         name: "seal-seat-cost",
