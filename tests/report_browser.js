@@ -59,7 +59,7 @@
 
   async function toggles() {
     const { plots } = window.impactcheck;
-    for (const source of ["B", "reference", "band"]) {
+    for (const source of [json("curves").sources.at(-1).id, "reference", "band"]) {
       const box = document.querySelector(`#controls input[data-source="${source}"]`);
       const shown = () => plots.flatMap((plot) => plot.roles.map((role, k) => [role, plot.series[k].show]).slice(1));
       check(shown().every(([, show]) => show), `all curves are shown before ${source} is switched off`);

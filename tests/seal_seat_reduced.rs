@@ -73,7 +73,7 @@ fn ledgers_of_energy_and_momentum_balance() {
 }
 
 #[test]
-fn launch_converges_in_time_with_second_order_and_across_contact_events_at_least_with_first() {
+fn launch_converges_in_time_with_second_order_across_contact_events() {
     let velocity = |step: f64| sixteen().integrate(step, false).expect("run").state.sphere_velocity;
     let exact = velocity(1e-6 / 32.0);
     let error = |step: f64| {
@@ -82,8 +82,8 @@ fn launch_converges_in_time_with_second_order_and_across_contact_events_at_least
     };
     let errors = [2e-6, 1e-6, 0.5e-6, 0.25e-6].map(error);
     let order = (errors[0] / errors[3]).log(8.0);
-    assert!(order > 1.0, "order {order}: {errors:?}");
-    assert!(errors[3] < 2e-3, "{errors:?}");
+    assert!(order > 1.8, "order {order}: {errors:?}");
+    assert!(errors[3] < 5e-5, "{errors:?}");
 }
 
 #[test]
@@ -312,6 +312,8 @@ fn report_shows_the_seat_among_the_scenes() {
         reduced,
         cost: vec![Cost { setup_seconds: 1.0, dofs: 5929 }],
         provenance: serde_json::json!({"created": "2026-01-01T00:00:00Z"}),
+        section: None,
+        stress: None,
         animation: None,
         command: "impactcheck compare seal-seat-improved".into(),
         attachments: report::Attachments::default(),

@@ -20,6 +20,7 @@ import gmsh
 import numpy as np
 
 from ..errors import SolverError
+from ..solid.collapse import collapse_short_edges
 from ..solid.mesh import TetMesh, check_elements, tetrahedra
 from ..solid.meshing import generate
 from .scene import Ring, SeatScene
@@ -211,6 +212,7 @@ def seat_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
         SolverError: gmsh failed, an element is inverted or degenerate, or the ring is no edge.
     """
     points, corners = generate("seat", lambda: build(scene), seat_size(scene, factor))
+    points, corners = collapse_short_edges(points, corners)
     length = scene.seat.membrane_radius
     # What lies on the plane of symmetry and on the underside up to rounding, lies there exactly.
     for axis in (1, 2):

@@ -17,7 +17,13 @@ from fem_reference.errors import SceneError, SolverError
 from fem_reference.fenicsx import alone
 from fem_reference.mesh import Floats
 from fem_reference.seal_seat.elastic_sphere import sphere_pairs
-from fem_reference.seal_seat.meshing import cad_volume, seat_mesh, sphere_mesh
+from fem_reference.seal_seat.meshing import (
+    build,
+    cad_volume,
+    seat_mesh,
+    seat_size,
+    sphere_mesh,
+)
 from fem_reference.seal_seat.modal import seat_modes
 from fem_reference.seal_seat.model import ELASTIC_SPHERE, LEFT, RIGHT, SeatModel, seat_model
 from fem_reference.seal_seat.motion import sphere_motion
@@ -25,8 +31,10 @@ from fem_reference.seal_seat.run import SeatRun, integrate
 from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
 from fem_reference.seal_seat.solve import HISTORY_COLUMNS, QUANTITIES, history, seat_frequency
 from fem_reference.solid.checkpoint import Checkpoint
+from fem_reference.solid.collapse import collapse_short_edges
 from fem_reference.solid.loop import Loop, make_loop
 from fem_reference.solid.mesh import TetMesh, qualities, surface
+from fem_reference.solid.meshing import generate
 from fem_reference.solid.model import SphereContact
 from fem_reference.solid.spectrum import critical_time_step
 from fem_reference.tests.program import run_program
@@ -70,6 +78,32 @@ def test_the_mesh_fills_the_cad_model(improved: bool) -> None:
         assert qualities(mesh.points, mesh.corners).min() > 0.1
     # Facets on curved faces: second order in their size.
     assert 2.8 * misses[1] < misses[0] < 0.004
+
+
+def test_an_edge_of_the_geometry_that_is_far_too_short_is_no_edge_of_the_mesh() -> None:
+    # At this tilt the crest between the cones meets the side of the island 3 um from its top edge.
+    design = scene(seat__tilt=20.0 * DEGREE)
+    points, corners = generate("seat", lambda: build(design), seat_size(design, 2.0 / 3.0))
+    assert qualities(points, corners).min() < 0.05
+    mended_points, mended = collapse_short_edges(points, corners)
+    assert qualities(mended_points, mended).min() > 0.05
+    assert 0 < len(corners) - len(mended) < 10
+    volume = TetMesh("seat", mended_points, mended).volume()
+    assert volume == pytest.approx(TetMesh("seat", points, corners).volume(), rel=1e-6)
+
+
+def test_sound_meshes_and_long_edges_are_left_as_they_are(
+    coarse: SeatModel,
+) -> None:
+    mesh = coarse.mesh
+    corners = mesh.corners
+    points = mesh.points[: corners.max() + 1]
+    same_points, same = collapse_short_edges(points, corners)
+    assert np.array_equal(points, same_points) and np.array_equal(corners, same)
+    # A flat element on long edges stays, for the check of the mesh to find it.
+    flat = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, 0.5, 1e-3], [0, 0, 1], [1, 1, 1]])
+    flat_corners = np.array([[0, 1, 2, 3], [0, 1, 3, 4], [1, 2, 3, 5]])
+    assert np.array_equal(collapse_short_edges(flat, flat_corners)[1], flat_corners)
 
 
 def test_nodes_of_the_ring_lie_on_the_sphere_and_nothing_penetrates(coarse: SeatModel) -> None:

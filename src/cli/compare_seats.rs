@@ -69,6 +69,9 @@ pub(super) fn report(
         reduced: reduced.clone(),
         cost: cost.clone(),
         provenance: stored.provenance.clone(),
+        // what can't be drawn is left out
+        section: stored.section().ok(),
+        stress: stored.section_near(instant_of_peak(stored)).ok().flatten(),
         // the same on every machine, so that equal results give equal reports
         animation: animation
             .is_file()
@@ -76,4 +79,11 @@ pub(super) fn report(
         command,
         attachments: Attachments { bands: stored.bands.clone(), acceptances, ..Attachments::default() },
     })
+}
+
+/// When the sphere's force is largest, s.
+fn instant_of_peak(stored: &Stored<SeatQuantities>) -> f64 {
+    let history = &stored.outcome.history;
+    let forces = history.time.iter().zip(&history.sphere_force);
+    forces.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0.0, |(time, _)| *time)
 }

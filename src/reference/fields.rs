@@ -5,7 +5,7 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use resvg::usvg::roxmltree::{Document, Node};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Number of a quadrilateral among VTK's cell types.
 const VTK_QUAD: f64 = 9.0;
@@ -37,21 +37,26 @@ impl Stored {
     /// # Errors
     /// One sentence that says what is wrong with a file.
     pub fn stress_near(&self, time: f64) -> Result<Option<(f64, FieldMesh)>, String> {
-        let series = self.folder.join("stress.pvd");
-        if !series.is_file() {
-            return Ok(None);
-        }
-        let text = fs::read_to_string(&series).map_err(|e| format!("{}: {e}", series.display()))?;
-        let document = Document::parse(&text).map_err(|e| format!("{}: {e}", series.display()))?;
-        let entries = document.descendants().filter(|node| node.has_tag_name("DataSet")).filter_map(|node| {
-            let instant: f64 = node.attribute("timestep")?.parse().ok()?;
-            // a name that leads elsewhere would show another solution's field
-            let name = node.attribute("file").filter(|name| !name.contains(['/', '\\']))?;
-            Some((instant, name))
-        });
-        let nearest = entries.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs()));
-        nearest.map(|(instant, name)| Ok((instant, read(&self.folder.join(name))?))).transpose()
+        let nearest = series_nearest(&self.folder, time)?;
+        nearest.map(|(instant, file)| Ok((instant, read(&file)?))).transpose()
     }
+}
+
+/// Instant in s and file of the field in the series of `folder` that is nearest to `time` (s); `None` without series.
+pub(super) fn series_nearest(folder: &Path, time: f64) -> Result<Option<(f64, PathBuf)>, String> {
+    let series = folder.join("stress.pvd");
+    if !series.is_file() {
+        return Ok(None);
+    }
+    let text = fs::read_to_string(&series).map_err(|e| format!("{}: {e}", series.display()))?;
+    let document = Document::parse(&text).map_err(|e| format!("{}: {e}", series.display()))?;
+    let entries = document.descendants().filter(|node| node.has_tag_name("DataSet")).filter_map(|node| {
+        let instant: f64 = node.attribute("timestep")?.parse().ok()?;
+        // a name that leads elsewhere would show another solution's field
+        let name = node.attribute("file").filter(|name| !name.contains(['/', '\\']))?;
+        Some((instant, folder.join(name)))
+    });
+    Ok(entries.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs())))
 }
 
 /// Reads a .vtu file as `fem_reference` writes it: one piece of quadrilaterals, data in base64 or as text.
@@ -61,32 +66,58 @@ fn read(path: &Path) -> Result<FieldMesh, String> {
     parse(&text).map_err(|what| fail(&what))
 }
 
-fn parse(text: &str) -> Result<FieldMesh, String> {
-    let document = Document::parse(text).map_err(|e| e.to_string())?;
-    let root = document.root_element();
-    if root.attribute("compressor").is_some() || root.attribute("byte_order") == Some("BigEndian") {
-        return Err("compressed and big-endian data are not read".into());
+/// The data arrays of a .vtu file of one piece.
+pub(super) struct Arrays<'a> {
+    document: Document<'a>,
+    /// Whether lengths before binary data have eight bytes.
+    wide: bool,
+}
+
+impl<'a> Arrays<'a> {
+    /// Reads the structure of a file.
+    pub(super) fn parse(text: &'a str) -> Result<Self, String> {
+        let document = Document::parse(text).map_err(|e| e.to_string())?;
+        let root = document.root_element();
+        if root.attribute("compressor").is_some() || root.attribute("byte_order") == Some("BigEndian") {
+            return Err("compressed and big-endian data are not read".into());
+        }
+        let wide = root.attribute("header_type") == Some("UInt64");
+        Ok(Self { document, wide })
     }
-    let wide = root.attribute("header_type") == Some("UInt64");
-    let section = |name: &str| root.descendants().find(|node| node.has_tag_name(name));
-    let array = |section_name: &str, name: &str| {
-        let found = section(section_name).and_then(|node| {
+
+    /// The array `name` of a section (Points, Cells, CellData), if there is one.
+    pub(super) fn get(&self, section: &str, name: &str) -> Result<Option<Vec<f64>>, String> {
+        let section = self.document.root_element().descendants().find(|node| node.has_tag_name(section));
+        let found = section.and_then(|node| {
             node.children().find(|n| n.has_tag_name("DataArray") && n.attribute("Name") == Some(name))
         });
-        found.map(|node| numbers(node, wide).map_err(|what| format!("{name}: {what}"))).transpose()
-    };
-    let needed = |section: &str, name: &str| array(section, name)?.ok_or_else(|| format!("no {name}"));
-    let points = needed("Points", "Points")?;
+        found.map(|node| numbers(node, self.wide).map_err(|what| format!("{name}: {what}"))).transpose()
+    }
+
+    /// As [`Arrays::get`], of an array that has to be there.
+    pub(super) fn needed(&self, section: &str, name: &str) -> Result<Vec<f64>, String> {
+        self.get(section, name)?.ok_or_else(|| format!("no {name}"))
+    }
+
+    /// The array `name` of the cells as numbers of nodes, of which there are `nodes`.
+    pub(super) fn indices(&self, name: &str, nodes: usize) -> Result<Vec<usize>, String> {
+        let index = |number: &f64| Some(*number as usize).filter(|n| *number >= 0.0 && *n < nodes);
+        let found: Option<Vec<usize>> = self.needed("Cells", name)?.iter().map(index).collect();
+        found.ok_or_else(|| "a cell has a node that does not exist".into())
+    }
+}
+
+fn parse(text: &str) -> Result<FieldMesh, String> {
+    let arrays = Arrays::parse(text)?;
+    let points = arrays.needed("Points", "Points")?;
     let points: Vec<[f64; 2]> = points.chunks_exact(3).map(|p| [p[0], p[1]]).collect();
-    if needed("Cells", "types")?.iter().any(|kind| *kind != VTK_QUAD) {
+    if arrays.needed("Cells", "types")?.iter().any(|kind| *kind != VTK_QUAD) {
         return Err("not all cells are quadrilaterals".into());
     }
-    let index = |number: &f64| Some(*number as usize).filter(|n| *number >= 0.0 && *n < points.len());
-    let nodes: Option<Vec<usize>> = needed("Cells", "connectivity")?.iter().map(index).collect();
-    let nodes = nodes.ok_or("a cell has a node that does not exist")?;
+    let nodes = arrays.indices("connectivity", points.len())?;
     let quads: Vec<[usize; 4]> = nodes.chunks_exact(4).map(|q| [q[0], q[1], q[2], q[3]]).collect();
-    let bodies: Vec<usize> = needed("CellData", "body")?.iter().map(|b| *b as usize).collect();
-    let von_mises = array("CellData", "von_mises")?;
+    let bodies: Vec<usize> = arrays.needed("CellData", "body")?.iter().map(|b| *b as usize).collect();
+    let von_mises = arrays.get("CellData", "von_mises")?;
     let lengths = [Some(bodies.len()), von_mises.as_ref().map(Vec::len)];
     if quads.is_empty() || lengths.into_iter().flatten().any(|n| n != quads.len()) {
         return Err("the numbers of cells and of their data differ".into());

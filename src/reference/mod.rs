@@ -13,6 +13,7 @@ mod identity;
 mod modes;
 mod python;
 mod seat_mesh;
+mod section;
 mod solve;
 mod store;
 
@@ -25,6 +26,7 @@ pub use identity::settings_hash;
 pub use modes::{plate_modes, seat_frequencies};
 pub use python::{python, versions};
 pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_meshes};
+pub use section::MeshSection;
 pub use solve::{Wish, solve, solve_as, solve_with};
 pub use store::{Lookup, Store};
 

@@ -181,7 +181,7 @@ fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
 }
 
 /// Half widths of the 95 % bands of the reference's curves; empty if they are not known.
-pub(super) fn bands(report: &SceneReport, axis: CommonAxis) -> Vec<SampledCurve> {
+fn bands(report: &SceneReport, axis: CommonAxis) -> Vec<SampledCurve> {
     let Some(bands) = &report.attachments.bands else { return Vec::new() };
     let band = |(quantity, _)| Some(SampledCurve { quantity, values: bands.sampled(quantity, &axis)? });
     CURVES.into_iter().filter_map(band).collect()

@@ -1,22 +1,15 @@
 //! Mesh and stress of the reference in section, after Fig. 9 of the paper.
 
 use super::SceneReport;
-use super::field_raster::{Raster, View, cividis};
-use super::figure::x2;
+use super::field_raster::{Raster, View};
 use super::format::{prefixed, with_unit};
-use super::ticks::{tick_label, ticks};
+use super::section_frame::{Bounds, Frame};
 use crate::error::Result;
 use crate::reference::FieldMesh;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use maud::{Markup, html};
 
-/// Width of a picture's drawing, and of the picture in it, in px of the drawing.
-const WIDTH: f64 = 400.0;
-const LEFT: f64 = 52.0;
-const RIGHT: f64 = 10.0;
-const TOP: f64 = 8.0;
-const FONT_SIZE: f64 = 13.0;
 /// Pixels of the picture.
 const PIXELS: usize = 676;
 /// Share of the whole scene's section whose stress the scale of colours covers: the contacts would leave nothing to see.
@@ -80,60 +73,15 @@ fn views(mesh: &FieldMesh, report: &SceneReport) -> Option<[View; 2]> {
 
 /// A picture with its axes and, for a field, the scale of its colours.
 fn picture(raster: &Raster, view: View, largest: Option<f64>, id: &str) -> Result<Markup> {
-    let width = WIDTH - LEFT - RIGHT;
-    let height = width * raster.aspect();
-    let bottom = TOP + height;
     let image = BASE64_STANDARD.encode(raster.png(largest.is_some())?);
-    let x_of = |r: f64| LEFT + width * (r * 1e-3 + view.radius) / (2.0 * view.radius);
-    let y_of = |z: f64| TOP + height * (view.high - z * 1e-3) / (view.high - view.low);
-    let (r_marks, z_marks) = (
-        ticks(-view.radius * 1e3, view.radius * 1e3, 5),
-        ticks(view.low * 1e3, view.high * 1e3, (height / 50.0) as usize),
-    );
-    let total = bottom + if largest.is_some() { 92.0 } else { 44.0 };
+    let bounds = Bounds { across: [-view.radius, view.radius], up: [view.low, view.high] };
     let name = if largest.is_some() { "Von Mises stress in section" } else { "Mesh in section" };
-    Ok(html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {total:.1}")) role="img"
-            font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) aria-labelledby=(format!("{id}-title")) {
-            title id=(format!("{id}-title")) { (name) }
-            image x=(LEFT) y=(TOP) width=(x2(width)) height=(x2(height)) preserveAspectRatio="none"
+    let frame = Frame { bounds, aspect: Some(raster.aspect()), across: "r in mm", largest, name, id };
+    Ok(frame.around(|place| {
+        let [x, y, width, height] = place.rectangle();
+        html! {
+            image x=(x) y=(y) width=(width) height=(height) preserveAspectRatio="none"
                 href=(format!("data:image/png;base64,{image}")) {}
-            rect.fig-frame x=(LEFT) y=(TOP) width=(x2(width)) height=(x2(height)) {}
-            @for r in &r_marks {
-                line.fig-frame x1=(x2(x_of(*r))) x2=(x2(x_of(*r))) y1=(x2(bottom)) y2=(x2(bottom + 4.0)) {}
-                text.fig-text x=(x2(x_of(*r))) y=(x2(bottom + 18.0)) text-anchor="middle" { (tick_label(*r, &r_marks)) }
-            }
-            text.fig-text x=(x2(LEFT + 0.5 * width)) y=(x2(bottom + 36.0)) text-anchor="middle" { "r in mm" }
-            @for z in &z_marks {
-                line.fig-frame x1=(LEFT - 4.0) x2=(LEFT) y1=(x2(y_of(*z))) y2=(x2(y_of(*z))) {}
-                text.fig-text x=(LEFT - 7.0) y=(x2(y_of(*z) + 4.7)) text-anchor="end" { (tick_label(*z, &z_marks)) }
-            }
-            text.fig-text transform=(format!("translate(13 {:.2}) rotate(-90)", TOP + 0.5 * height)) text-anchor="middle" {
-                "z in mm"
-            }
-            @if let Some(largest) = largest { (colour_scale(largest, bottom + 46.0, id)) }
         }
-    })
-}
-
-fn colour_scale(largest: f64, top: f64, id: &str) -> Markup {
-    const STOPS: usize = 12;
-    let width = WIDTH - LEFT - RIGHT;
-    let to = 1e-6 * largest;
-    let marks = ticks(0.0, to, 5);
-    html! {
-        defs { linearGradient id=(format!("{id}-scale")) {
-            @for k in 0..=STOPS {
-                @let share = k as f64 / STOPS as f64;
-                @let [r, g, b] = cividis(share);
-                stop offset=(x2(share)) stop-color=(format!("rgb({r},{g},{b})")) {}
-            }
-        } }
-        rect.fig-edge x=(LEFT) y=(x2(top)) width=(x2(width)) height="10" fill=(format!("url(#{id}-scale)")) {}
-        @for mark in &marks {
-            @let x = LEFT + if to > 0.0 { width * mark / to } else { 0.0 };
-            text.fig-text x=(x2(x)) y=(x2(top + 24.0)) text-anchor="middle" { (tick_label(*mark, &marks)) }
-        }
-        text.fig-text x=(x2(LEFT + 0.5 * width)) y=(x2(top + 41.0)) text-anchor="middle" { "von Mises stress in MPa" }
-    }
+    }))
 }

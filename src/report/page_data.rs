@@ -1,55 +1,60 @@
 //! What a scene's page carries for its script: the curves on the common axis, and the comparison document of the scene.
 
-use super::SceneReport;
-use super::figure::{QUANTITIES, bands, dash};
+use super::figure::{QUANTITIES, Quantity, dash};
 use super::format::model_name;
 use crate::comparison::{CommonAxis, SampledCurve, sample};
+use crate::impact::{Outcome, Quantities};
+use crate::reference::CurveBands;
 use serde_json::{Value, json};
 
 /// Significant digits of a curve's peak that are kept.
 const DIGITS: i32 = 5;
 
+/// A panel of a page: curves of one quantity over time.
+pub(super) struct PanelOf {
+    /// Quantity and unit, beside the axis.
+    pub(super) label: &'static str,
+    /// From SI to that unit.
+    pub(super) factor: f64,
+    /// What the panel calls each curve, and its name in [`crate::impact::Curves::NAMES`].
+    pub(super) curves: Vec<(&'static str, String)>,
+}
+
+/// The panels of a plate impact.
+pub(super) fn plate_panels() -> Vec<PanelOf> {
+    let panel = |quantity: &Quantity| PanelOf {
+        label: quantity.label,
+        factor: quantity.factor,
+        curves: quantity.bodies.iter().map(|body| (*body, format!("{body}_{}", quantity.suffix))).collect(),
+    };
+    QUANTITIES.iter().map(panel).collect()
+}
+
+/// What the panels show: results of one scene on the window of their comparison.
+pub(super) struct Shown<'a, Q: Quantities> {
+    pub(super) window: Option<CommonAxis>,
+    pub(super) reference: &'a Outcome<Q>,
+    pub(super) reduced: &'a [Outcome<Q>],
+    /// Of the reference's curves.
+    pub(super) bands: Option<&'a CurveBands>,
+}
+
 /// JSON of the curves, values in the units of the panels; without times if the reference's history can't be used.
-pub(super) fn curves(report: &SceneReport) -> Value {
-    let Some(axis) = report.comparison.window else {
+pub(super) fn curves<Q: Quantities>(shown: &Shown<Q>, panels: &[PanelOf]) -> Value {
+    let Some(axis) = shown.window else {
         return json!({"time": [], "sources": [], "panels": []});
     };
     let reference =
-        ("reference".to_owned(), "FE reference".to_owned(), sample(axis, &report.reference.history));
-    let reduced = report.reduced.iter().map(|outcome| {
+        ("reference".to_owned(), "FE reference".to_owned(), sample(axis, &shown.reference.history));
+    let reduced = shown.reduced.iter().map(|outcome| {
         let model = outcome.summary.model.clone().unwrap_or_default();
         let name = format!("model {}", model_name(&model, outcome.summary.modes));
         (model, name, sample(axis, &outcome.history))
     });
     let sources: Vec<_> = std::iter::once(reference).chain(reduced).collect();
-    let bands = bands(report, axis);
-    let panels: Vec<Value> = QUANTITIES
-        .iter()
-        .map(|quantity| {
-            let named =
-                |curves: &[SampledCurve], name: &str| curves.iter().find(|c| c.quantity == name).cloned();
-            let belongs = |c: &&SampledCurve| c.quantity.ends_with(quantity.suffix);
-            let values = sources.iter().flat_map(|(_, _, curves)| curves.iter().filter(belongs)).flat_map(|c| &c.values);
-            let peak = values.filter(|v| v.is_finite()).fold(0.0_f64, |p, v| p.max(v.abs())) * quantity.factor;
-            let decimals = if peak > 0.0 { (DIGITS - 1 - peak.log10().floor() as i32).clamp(0, 12) } else { 0 };
-            let rounded = |curve: &SampledCurve| rounded(&curve.values, quantity.factor, decimals);
-            let curves: Vec<Value> = quantity
-                .bodies
-                .iter()
-                .map(|body| {
-                    let name = format!("{body}_{}", quantity.suffix);
-                    let values: serde_json::Map<String, Value> = sources
-                        .iter()
-                        .filter_map(|(id, _, curves)| Some((id.clone(), rounded(&named(curves, &name)?))))
-                        .collect();
-                    let band = named(&bands, &name).map(|band| rounded(&band));
-                    json!({"body": body, "name": name, "values": values, "band": band})
-                })
-                .collect();
-            json!({"label": quantity.label, "factor": quantity.factor, "decimals": decimals.max(1) - 1, "curves": curves})
-        })
-        .collect();
-    let of_source = |(id, name, _): &(String, String, Vec<SampledCurve>)| {
+    let panels: Vec<Value> =
+        panels.iter().map(|panel| of_panel(panel, &sources, axis, shown.bands)).collect();
+    let of_source = |(id, name, _): &Source| {
         let is_reference = id == "reference";
         let dashes: Vec<f64> = if is_reference {
             Vec::new()
@@ -63,6 +68,28 @@ pub(super) fn curves(report: &SceneReport) -> Value {
         })
     };
     json!({"time": times(axis), "sources": sources.iter().map(of_source).collect::<Vec<_>>(), "panels": panels})
+}
+
+/// Identifier, name and curves of a result.
+type Source = (String, String, Vec<SampledCurve>);
+
+fn of_panel(panel: &PanelOf, sources: &[Source], axis: CommonAxis, bands: Option<&CurveBands>) -> Value {
+    let named = |curves: &[SampledCurve], name: &str| curves.iter().find(|c| c.quantity == name).cloned();
+    let belongs = |c: &&SampledCurve| panel.curves.iter().any(|(_, name)| c.quantity == *name);
+    let values =
+        sources.iter().flat_map(|(_, _, curves)| curves.iter().filter(belongs)).flat_map(|c| &c.values);
+    let peak = values.filter(|v| v.is_finite()).fold(0.0_f64, |p, v| p.max(v.abs())) * panel.factor;
+    let decimals = if peak > 0.0 { (DIGITS - 1 - peak.log10().floor() as i32).clamp(0, 12) } else { 0 };
+    let shortened = |values: &[f64]| rounded(values, panel.factor, decimals);
+    let curves = panel.curves.iter().map(|(body, name)| {
+        let of_source =
+            |(id, _, curves): &Source| Some((id.clone(), shortened(&named(curves, name)?.values)));
+        let values: serde_json::Map<String, Value> = sources.iter().filter_map(of_source).collect();
+        let band = bands.and_then(|bands| bands.sampled(name, &axis)).map(|band| shortened(&band));
+        json!({"body": body, "name": name, "values": values, "band": band})
+    });
+    let curves: Vec<Value> = curves.collect();
+    json!({"label": panel.label, "factor": panel.factor, "decimals": decimals.max(1) - 1, "curves": curves})
 }
 
 /// Instants in us.

@@ -2,16 +2,18 @@
 
 use super::attachments::Attachments;
 use super::chart::{ChartPanel, Series, chart};
-use super::discrepancy_section::{checks, contradictions, model_section};
-use super::facts::facts;
+use super::discrepancy_section::model_section;
 use super::format::{model_name, percent, prefixed, significant, with_unit};
-use super::html::{badge, page};
+use super::html::page;
 use super::junit::{failure, integrity_failure};
+use super::page_data::{PanelOf, Shown};
 use super::seal_seat_picture::{Arrow, seat_picture};
 use super::terminal::coloured;
+use super::{interactive, page_end};
 use crate::comparison::{SceneComparison, align};
 use crate::error::{Error, Result};
 use crate::impact::{Curves, Outcome, SEAT_CURVES, SeatQuantities};
+use crate::reference::MeshSection;
 use crate::scene::{Scene, Setup};
 use maud::{Markup, PreEscaped, html};
 
@@ -39,6 +41,10 @@ pub struct SeatReport {
     pub cost: Vec<Cost>,
     /// How the reference was made, as its store says.
     pub provenance: serde_json::Value,
+    /// Section of the reference's mesh in the plane of symmetry.
+    pub section: Option<MeshSection>,
+    /// The same with the stress at an instant (s), if the reference has kept one.
+    pub stress: Option<(f64, MeshSection)>,
     /// The series of deformed states that ParaView plays, if the reference has one.
     pub animation: Option<std::path::PathBuf>,
     /// Command line that makes this comparison again.
@@ -104,21 +110,51 @@ pub fn seat_curves(report: &SeatReport) -> String {
     )
 }
 
+/// The panels of a seal seat's page.
+fn panels() -> Vec<PanelOf> {
+    let panel = |label, factor, curves: &[(&'static str, &str)]| PanelOf {
+        label,
+        factor,
+        curves: curves.iter().map(|(body, name)| (*body, (*name).to_owned())).collect(),
+    };
+    vec![
+        panel(
+            "Displacement in µm",
+            1e6,
+            &[
+                ("sphere x", "sphere_displacement_x"),
+                ("sphere z", "sphere_displacement_z"),
+                ("actuator", "actuator_displacement"),
+            ],
+        ),
+        panel(
+            "Velocity in mm/s",
+            1e3,
+            &[
+                ("sphere x", "sphere_velocity_x"),
+                ("sphere z", "sphere_velocity_z"),
+                ("actuator", "actuator_velocity"),
+            ],
+        ),
+        panel("Contact force in N", 1.0, &[("actuator", "actuator_force"), ("sphere", "sphere_force")]),
+    ]
+}
+
 /// The page of one scene.
 pub fn seat_page(report: &SeatReport) -> String {
     let comparison = &report.comparison;
     let name = &comparison.scene;
     let body = html! {
-        nav { a href="index.html" { "all scenes" } }
-        h1 { (name) " " (badge(comparison.verdict)) }
-        p.soft { (report.scene.description) }
-        (contradictions("reference", &comparison.integrity))
+        (page_end::head(&report.scene, comparison))
         h2 { "Flight of the sphere" }
         @if let Some(section) = seat_section(report) { figure { (PreEscaped(section)) } }
         (directions(report))
-        figure { (PreEscaped(seat_curves(report))) }
-        p.soft { a href=(format!("{name}-section.svg")) { "section as SVG" } " · " a href=(format!("{name}.svg")) { "curves as SVG" }
-            " · " a href=(format!("{name}.csv")) { "curves as CSV" } }
+        h2 { "Curves" }
+        (interactive::panels(seat_curves(report)))
+        p.soft { "Displacement and velocity along x and z, and contact forces, of sphere and actuator; z points away from the "
+            "actuator, forces are magnitudes. Shaded: the 95 % band of the reference. "
+            a href=(format!("{name}.svg")) { "curves as SVG" } " · " a href=(format!("{name}.csv")) { "curves as CSV" } " · "
+            a href=(format!("{name}-section.svg")) { "section as SVG" } }
         @if let Some(animation) = &report.animation {
             p { "The deformed seat over time, for ParaView: " code { (animation.display()) } }
         }
@@ -126,20 +162,18 @@ pub fn seat_page(report: &SeatReport) -> String {
         h2 { "Cost" }
         (cost(report))
         h2 { "Mesh and solver" }
-        (facts(&[("mesh", comparison.reference.mesh.as_ref()), ("solver", comparison.reference.solver.as_ref())]))
-        details {
-            summary { "Checks of the reference against itself (" (comparison.integrity.len()) ")" }
-            (checks(&comparison.integrity))
-        }
-        (super::trend_section::trends_html(&report.attachments))
-        (super::acceptance_section::acceptances_html(&report.attachments))
-        h2 { "Provenance" }
-        p { "Scene hash " code { (comparison.reference.scene_hash) } }
-        details { summary { "How the reference was made" } (facts(&[("", Some(&report.provenance))])) }
-        h2 { "Make it again" }
-        pre tabindex="0" { (report.command) }
+        (super::seal_seat_mesh::mesh_html(report))
+        (page_end::numbers(comparison))
+        (page_end::end(comparison, &report.attachments, &report.provenance, &report.command))
     };
-    page(&format!("{name} · impactcheck"), &[], &body, &html! {})
+    let shown = Shown {
+        window: comparison.window,
+        reference: &report.reference,
+        reduced: &report.reduced,
+        bands: report.attachments.bands.as_ref(),
+    };
+    let scripts = interactive::scripts(comparison, &shown, &panels());
+    page(&format!("{name} · impactcheck"), &[interactive::STYLE], &body, &scripts)
 }
 
 /// Size and direction of the velocity, and how far it is from the intended direction.

@@ -16,6 +16,8 @@ pub const PANELS: [Panel; 1] = [Panel {
     x: Axis { column: "youngs_modulus", label: "Young's modulus in GPa", factor: 1e-9 },
     y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
     series: Some(Axis { column: "body", label: "", factor: 1.0 }),
+    only: None,
+    band: None,
 }];
 
 fn with_modulus(body: &str, modulus: f64) -> PlateImpact {

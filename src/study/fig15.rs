@@ -17,6 +17,8 @@ pub const PANELS: [Panel; 1] = [Panel {
     x: Axis { column: "thickness", label: "Thickness of the plate in mm", factor: 1e3 },
     y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
     series: Some(Axis { column: "edge", label: "", factor: 1.0 }),
+    only: None,
+    band: None,
 }];
 
 /// The study.

@@ -27,11 +27,15 @@ pub const PANELS: [Panel; 2] = [
         x: Axis { column: "plate_radius", label: "Radius of the plate in mm", factor: 1e3 },
         y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
         series: Some(Axis { column: "thickness", label: "mm", factor: 1e3 }),
+        only: None,
+        band: None,
     },
     Panel {
         x: Axis { column: "plate_radius", label: "Radius of the plate in mm", factor: 1e3 },
         y: Axis { column: "contact_over_half_period", label: "Contact over half period", factor: 1.0 },
         series: Some(Axis { column: "thickness", label: "mm", factor: 1e3 }),
+        only: None,
+        band: None,
     },
 ];
 

@@ -17,6 +17,8 @@ pub const PANELS: [Panel; 1] = [Panel {
     x: Axis { column: "tip_radius", label: "Tip radius in mm", factor: 1e3 },
     y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
     series: None,
+    only: None,
+    band: None,
 }];
 
 fn with_tips(tip_radius: f64) -> PlateImpact {

@@ -50,6 +50,8 @@ const fn panel(column: &'static str, label: &'static str) -> Panel {
         x: Axis { column: "thickness", label: "Plate thickness in mm", factor: 1e3 },
         y: Axis { column, label, factor: 1.0 },
         series: Some(Axis { column: "effect", label: "", factor: 1.0 }),
+        only: None,
+        band: None,
     }
 }
 

@@ -16,6 +16,8 @@ pub const PANELS: [Panel; 1] = [Panel {
     x: Axis { column: "contact_over_half_period", label: "Contact over half the first period", factor: 1.0 },
     y: Axis { column: "efficiency_over_best", label: "Efficiency over its best", factor: 1.0 },
     series: Some(Axis { column: "thickness", label: "mm", factor: 1e3 }),
+    only: None,
+    band: None,
 }];
 
 /// The study.

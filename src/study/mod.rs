@@ -19,7 +19,7 @@ pub mod sweep;
 pub mod table2;
 mod write;
 
-pub use plot::{Axis, Panel, figure};
+pub use plot::{Axis, Only, Panel, figure};
 pub use write::{MOST_ROWS, csv, json, markdown, told, write};
 
 use crate::error::{Error, Result};
@@ -160,7 +160,7 @@ pub const STUDIES: [Entry; 12] = [
         about: "Section 4.4: what decides the direction of the sphere out of the flexible seal seat",
         takes_model: false,
         run: |_, note| seal_seat::run(note),
-        panels: &[],
+        panels: &seal_seat::PANELS,
         drawing: None,
     },
     Entry {

@@ -24,6 +24,19 @@ pub struct Panel {
     pub y: Axis,
     /// Rows with the same value in this column are one curve; `None` = all rows are.
     pub series: Option<Axis>,
+    /// The rows that are drawn, in ascending order of the horizontal axis; `None` = all as they stand.
+    pub only: Option<Only>,
+    /// A band across the panel, in the units of the axis: middle and half width.
+    pub band: Option<(f64, f64)>,
+}
+
+/// Rows with one of some texts in a column.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Only {
+    /// Name of the column.
+    pub column: &'static str,
+    /// The texts.
+    pub texts: &'static [&'static str],
 }
 
 /// The figure as a stand-alone SVG.
@@ -36,14 +49,20 @@ pub fn figure(study: &Study, panels: &[Panel]) -> Result<String> {
 }
 
 fn drawn(study: &Study, panel: &Panel) -> Result<ChartPanel> {
-    let index = |axis: &Axis| {
-        let found = study.columns.iter().position(|column| *column == axis.column);
-        found.ok_or_else(|| Error::Internal(format!("study {} has no column {}", study.study, axis.column)))
+    let index = |name: &str| {
+        let found = study.columns.iter().position(|column| *column == name);
+        found.ok_or_else(|| Error::Internal(format!("study {} has no column {name}", study.study)))
     };
-    let (x, y) = (index(&panel.x)?, index(&panel.y)?);
-    let by = panel.series.as_ref().map(index).transpose()?;
+    let (x, y) = (index(panel.x.column)?, index(panel.y.column)?);
+    let by = panel.series.map(|axis| index(axis.column)).transpose()?;
+    let mut rows: Vec<_> = study.rows.iter().collect();
+    if let Some(only) = panel.only {
+        let column = index(only.column)?;
+        rows.retain(|row| matches!(row[column], Cell::Text(text) if only.texts.contains(&text)));
+        rows.sort_by(|a, b| number(a[x]).total_cmp(&number(b[x])));
+    }
     let mut series: Vec<Series> = Vec::new();
-    for row in &study.rows {
+    for row in rows {
         let name = match (by.map(|by| row[by]), panel.series) {
             (Some(cell), Some(axis)) => name(cell, &axis),
             _ => String::new(),
@@ -61,7 +80,7 @@ fn drawn(study: &Study, panel: &Panel) -> Result<ChartPanel> {
         y_label: panel.y.label.into(),
         series,
         counted: false,
-        band: None,
+        band: panel.band,
     })
 }
 

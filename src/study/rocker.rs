@@ -50,6 +50,8 @@ const fn panel(column: &'static str, label: &'static str) -> Panel {
         },
         y: Axis { column, label, factor: 1.0 },
         series: Some(Axis { column: "case", label: "", factor: 1.0 }),
+        only: None,
+        band: None,
     }
 }
 

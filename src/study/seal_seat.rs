@@ -3,12 +3,13 @@
 //! Around both shipped designs one quantity at a time is varied: aperture angle, tilt, place of impact, notch, membrane.
 //! Each geometry is meshed (coarse, the meshes stay in the cache); the paper publishes no dimensions, only what it found.
 
-use super::{Cell, Claim, Note, SCHEMA_VERSION, Study};
+use super::{Axis, Cell, Claim, Note, Only, Panel, SCHEMA_VERSION, Study};
 use crate::body::cache::Cache;
 use crate::error::Result;
 use crate::impact::SeatQuantities;
 use crate::impact::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
-use crate::reference::{self, Resolution};
+use crate::project::project_root;
+use crate::reference::{self, Lookup, Resolution, Store};
 use crate::scene::{self, Model, Notch, Scene, SealSeat, Setup};
 
 /// How far the improved design's direction may lie from the intended one, rad.
@@ -22,7 +23,60 @@ const DESIGNS: [(&str, &str); 2] = [("initial", "seal-seat-initial"), ("improved
 struct Case {
     design: &'static str,
     varied: &'static str,
+    /// What is changed, one of [`PARAMETERS`], or [`NOTHING`].
+    parameter: &'static str,
     scene: Scene,
+}
+
+/// In the place of a parameter: the design itself, a point of every curve.
+const NOTHING: &str = "none";
+const PARAMETERS: [&str; 5] = ["aperture angle", "tilt", "impact", "notch", "membrane"];
+
+/// Deviation from the intended direction and efficiency over each parameter; shaded: what counts as the intended direction.
+pub const PANELS: [Panel; 10] = {
+    const APERTURE: (Axis, &[&str]) =
+        (axis("aperture_angle", "aperture angle γ, °", IN_DEGREES), &[NOTHING, PARAMETERS[0]]);
+    const TILT: (Axis, &[&str]) = (axis("tilt", "tilt α, °", IN_DEGREES), &[NOTHING, PARAMETERS[1]]);
+    const IMPACT: (Axis, &[&str]) =
+        (axis("outermost_tip", "place of impact, mm from the centre", 1e3), &[NOTHING, PARAMETERS[2]]);
+    const NOTCH: (Axis, &[&str]) =
+        (axis("notch_width", "width of the notch, mm (0 = none)", 1e3), &[NOTHING, PARAMETERS[3]]);
+    const MEMBRANE: (Axis, &[&str]) =
+        (axis("membrane_thickness", "thickness of the membrane, mm", 1e3), &[NOTHING, PARAMETERS[4]]);
+    [
+        direction(APERTURE),
+        efficiency(APERTURE),
+        direction(TILT),
+        efficiency(TILT),
+        direction(IMPACT),
+        efficiency(IMPACT),
+        direction(NOTCH),
+        efficiency(NOTCH),
+        direction(MEMBRANE),
+        efficiency(MEMBRANE),
+    ]
+};
+
+const IN_DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+const fn axis(column: &'static str, label: &'static str, factor: f64) -> Axis {
+    Axis { column, label, factor }
+}
+
+const fn direction((x, texts): (Axis, &'static [&'static str])) -> Panel {
+    let y = axis("deviation", "direction − intended, °", IN_DEGREES);
+    Panel { x, y, series: Some(DESIGN), only: only(texts), band: Some((0.0, IN_DEGREES * INTENDED_WITHIN)) }
+}
+
+const fn efficiency((x, texts): (Axis, &'static [&'static str])) -> Panel {
+    let y = axis("efficiency", "efficiency, %", 100.0);
+    Panel { x, y, series: Some(DESIGN), only: only(texts), band: None }
+}
+
+const DESIGN: Axis = axis("design", "", 1.0);
+
+const fn only(texts: &'static [&'static str]) -> Option<Only> {
+    Some(Only { column: "parameter", texts })
 }
 
 impl Case {
@@ -43,7 +97,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
     let mut results = Vec::new();
     for (k, case) in cases.iter().enumerate() {
         note(&format!("{} of {}: {} design, {}", k + 1, cases.len(), case.design, case.varied));
-        // A geometry that gmsh meshes badly at one size it meshes well at another; if at none, its row stays empty.
+        // a geometry that can't be meshed at one size perhaps can at another; if at none, its row stays empty
         let solved = solve(&case.scene, Resolution::Coarse, &cache);
         let solved = solved.or_else(|_| solve(&case.scene, Resolution::Paper, &cache));
         if let Err(error) = &solved {
@@ -51,8 +105,14 @@ pub fn run(note: &mut Note) -> Result<Study> {
         }
         results.push(solved.ok());
     }
-    let rows =
-        cases.iter().zip(&results).map(|(case, result)| row(case, result.as_ref())).collect::<Result<_>>()?;
+    let corners = CORNERS.map(|corner| corner.reference(note));
+    let reference = |case: &Case| {
+        let corner = CORNERS.iter().position(|c| (c.design, c.varied) == (case.design, case.varied));
+        corner.and_then(|k| corners[k].as_ref())
+    };
+    let rows = cases.iter().zip(&results);
+    let rows = rows.map(|(case, result)| row(case, result.as_ref(), reference(case)));
+    let rows = rows.collect::<Result<_>>()?;
     let intended = improved.seal_seat()?.intended_angle;
     let angle = |design: &str, varied: &str| {
         let case = cases.iter().position(|c| c.design == design && c.varied == varied);
@@ -64,8 +124,9 @@ pub fn run(note: &mut Note) -> Result<Study> {
         description: "Section 4.4 of the paper: direction and speed of the sphere out of the flexible seal seat, model C on coarse \
              meshes, each design with one quantity changed. The paper publishes no dimensions; it finds that the \
              initial design, hit at its centre, throws the sphere to the wrong side, and that notch and hits on both \
-             sides together bring the intended direction."
-            .into(),
+             sides together bring the intended direction. "
+            .to_owned()
+            + &notch_and_impact(&angle, &corners),
         columns: vec![
             "design",
             "varied",
@@ -80,11 +141,71 @@ pub fn run(note: &mut Note) -> Result<Study> {
             "efficiency",
             "sphere_force_peak",
             "actuator_force_peak",
+            "parameter",
+            "reference_angle",
+            "reference_speed",
         ],
-        units: vec!["1", "1", "rad", "rad", "m", "m", "m", "rad", "rad", "m/s", "1", "N", "N"],
+        units: vec![
+            "1", "1", "rad", "rad", "m", "m", "m", "rad", "rad", "m/s", "1", "N", "N", "1", "rad", "m/s",
+        ],
         rows,
         claims: claims(intended, &angle),
     })
+}
+
+/// A corner of the table of notch and impact, and the scene whose reference is asked for its verdict.
+struct Corner {
+    design: &'static str,
+    varied: &'static str,
+    scene: &'static str,
+}
+
+/// Without notch and with it, hit at the centre and on both sides.
+const CORNERS: [Corner; 4] = [
+    Corner { design: "initial", varied: "nothing", scene: "seal-seat-initial" },
+    Corner { design: "improved", varied: "no notch", scene: "scenes/validation/seal-seat-no-notch.toml" },
+    Corner {
+        design: "improved",
+        varied: "hit at the centre",
+        scene: "scenes/validation/seal-seat-notch-centre.toml",
+    },
+    Corner { design: "improved", varied: "nothing", scene: "seal-seat-improved" },
+];
+
+impl Corner {
+    /// What the stored reference says; without one it is told how to get it.
+    fn reference(&self, note: &mut Note) -> Option<SeatQuantities> {
+        let path = project_root().join(self.scene);
+        let scene = if path.is_file() { Scene::read(path) } else { shipped(self.scene) }.ok()?;
+        match Store::open(None).find_as::<SeatQuantities>(&scene, Resolution::Paper) {
+            Lookup::Found(stored) => Some(stored.outcome.summary.quantities),
+            _ => {
+                note(&format!(
+                    "{} design, {}: no reference stored; `impactcheck reference {}` computes it",
+                    self.design, self.varied, self.scene
+                ));
+                None
+            }
+        }
+    }
+}
+
+/// The directions at the corners in words, and what the references say.
+fn notch_and_impact(
+    angle: &dyn Fn(&str, &str) -> Option<f64>,
+    references: &[Option<SeatQuantities>; 4],
+) -> String {
+    let degrees =
+        |angle: Option<f64>| angle.map_or("none stored".into(), |a| format!("{:+.1}°", a.to_degrees()));
+    let corner = |k: usize| {
+        let own = degrees(angle(CORNERS[k].design, CORNERS[k].varied));
+        format!("{own} (reference {})", degrees(references[k].as_ref().map(|q| q.sphere_angle)))
+    };
+    let [centre, sides, notch_centre, notch_sides] = [0, 1, 2, 3].map(corner);
+    format!(
+        "Directions by notch and place of impact: no notch, at the centre {centre}; no notch, on both sides {sides}; \
+         notch, at the centre {notch_centre}; notch, on both sides {notch_sides}."
+    )
 }
 
 /// What the paper says of the directions, and what follows from the table of notch and impact.
@@ -134,30 +255,35 @@ fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     let notch = improved.seal_seat()?.seat.notch;
     for ((design, _), base) in DESIGNS.into_iter().zip([initial, improved]) {
-        let mut add = |varied: &'static str, change: &dyn Fn(&mut SealSeat)| {
+        let mut add = |parameter: &'static str, varied: &'static str, change: &dyn Fn(&mut SealSeat)| {
             let mut scene = base.clone();
             if let Setup::SealSeat(setup) = &mut scene.setup {
                 change(setup);
             }
-            cases.push(Case { design, varied, scene });
+            cases.push(Case { design, varied, parameter, scene });
         };
-        add("nothing", &|_| {});
-        add("aperture angle -10°", &|s| s.seat.aperture_angle -= 10.0 * DEGREE);
-        add("aperture angle +10°", &|s| s.seat.aperture_angle += 10.0 * DEGREE);
-        add("tilt -5°", &|s| s.seat.tilt -= 5.0 * DEGREE);
-        add("tilt +5°", &|s| s.seat.tilt += 5.0 * DEGREE);
-        add("membrane -20 %", &|s| s.seat.membrane_thickness *= 0.8);
-        add("membrane +20 %", &|s| s.seat.membrane_thickness *= 1.2);
+        let [aperture, tilt, impact, slot, membrane] = PARAMETERS;
+        add(NOTHING, "nothing", &|_| {});
+        add(aperture, "aperture angle -10°", &|s| s.seat.aperture_angle -= 10.0 * DEGREE);
+        add(aperture, "aperture angle -5°", &|s| s.seat.aperture_angle -= 5.0 * DEGREE);
+        add(aperture, "aperture angle +5°", &|s| s.seat.aperture_angle += 5.0 * DEGREE);
+        add(aperture, "aperture angle +10°", &|s| s.seat.aperture_angle += 10.0 * DEGREE);
+        add(tilt, "tilt -5°", &|s| s.seat.tilt -= 5.0 * DEGREE);
+        add(tilt, "tilt -2.5°", &|s| s.seat.tilt -= 2.5 * DEGREE);
+        add(tilt, "tilt +2.5°", &|s| s.seat.tilt += 2.5 * DEGREE);
+        add(tilt, "tilt +5°", &|s| s.seat.tilt += 5.0 * DEGREE);
+        add(membrane, "membrane -20 %", &|s| s.seat.membrane_thickness *= 0.8);
+        add(membrane, "membrane +20 %", &|s| s.seat.membrane_thickness *= 1.2);
         if design == "initial" {
-            add("hit at half the island", &|s| at(s, 0.25));
-            add("hit on both sides", &|s| at(s, 0.45));
-            add("notch", &|s| s.seat.notch = notch);
+            add(impact, "hit at half the island", &|s| at(s, 0.25));
+            add(impact, "hit on both sides", &|s| at(s, 0.45));
+            add(slot, "notch", &|s| s.seat.notch = notch);
         } else {
-            add("hit at the centre", &|s| s.actuator.tip_positions = vec![0.0]);
-            add("hit at half the island", &|s| at(s, 0.25));
-            add("no notch", &|s| s.seat.notch = None);
-            add("notch half as wide", &|s| widen(s, 0.5));
-            add("notch half as wide again", &|s| widen(s, 1.5));
+            add(impact, "hit at the centre", &|s| s.actuator.tip_positions = vec![0.0]);
+            add(impact, "hit at half the island", &|s| at(s, 0.25));
+            add(slot, "no notch", &|s| s.seat.notch = None);
+            add(slot, "notch half as wide", &|s| widen(s, 0.5));
+            add(slot, "notch half as wide again", &|s| widen(s, 1.5));
         }
     }
     // Without a notch its floor is no membrane: a thicker membrane than that is one of the notched design only.
@@ -187,7 +313,11 @@ fn solve(scene: &Scene, resolution: Resolution, cache: &Cache) -> Result<SeatQua
     Ok(model.run(DEFAULT_TOLERANCE)?.quantities)
 }
 
-fn row(case: &Case, result: Option<&SeatQuantities>) -> Result<Vec<Cell>> {
+fn row(
+    case: &Case,
+    result: Option<&SeatQuantities>,
+    reference: Option<&SeatQuantities>,
+) -> Result<Vec<Cell>> {
     let scene = case.seat()?;
     let outermost = scene.actuator.tip_positions.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let geometry = [
@@ -208,5 +338,8 @@ fn row(case: &Case, result: Option<&SeatQuantities>) -> Result<Vec<Cell>> {
     row.extend(geometry.map(Cell::Number));
     row.extend(found.map(|value| Cell::from(result.map(value))));
     row.insert(8, result.map(|q| q.sphere_angle - scene.intended_angle).into());
+    row.push(Cell::Text(case.parameter));
+    row.push(reference.map(|q| q.sphere_angle).into());
+    row.push(reference.map(|q| q.sphere_speed).into());
     Ok(row)
 }

@@ -183,6 +183,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         losses: None,
         solver: None,
         integration_error: None,
+        choice: None,
         warnings: Vec::new(),
         samples: None,
         sample_interval: None,

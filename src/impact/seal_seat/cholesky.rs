@@ -29,8 +29,8 @@ impl Cholesky {
         }
     }
 
-    /// Factorises the matrix whose lower triangle is `entry(row, column)`; whether it is positive definite.
-    pub fn factorise(&mut self, size: usize, entry: impl Fn(usize, usize) -> f64) -> bool {
+    /// Factorises the matrix whose lower triangle is `entry(row, column)`, asked for column by column from the diagonal on; whether it is positive definite.
+    pub fn factorise(&mut self, size: usize, mut entry: impl FnMut(usize, usize) -> f64) -> bool {
         self.size = size;
         for column in 0..size {
             for row in column..size {

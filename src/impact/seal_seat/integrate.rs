@@ -1,8 +1,12 @@
 //! Time integration of the reduced seal seat.
 //!
-//! Strang splitting: contact forces as kicks, between them modes and rigid bodies move exactly, so that high
-//! modes need no small steps. Symmetric, symplectic and of second order; the contact forces derive from an energy and are
-//! continuous, with kinks where a node touches or lets go.
+//! Splitting: contact forces as kicks, between them modes and rigid bodies move exactly, so that high modes need no small
+//! steps. The kicks are those of the potential V - h^2/24 |grad V|^2 (metric of the masses): what is left of Strang's error of
+//! second order is then a change of coordinates, which vanishes where no contact acts, before the impact and after it
+//! (Takahashi & Imada 1984, J. Phys. Soc. Jpn 53, 3765; Wisdom, Holman & Touma 1996, Fields Inst. Commun. 10, 217). So the
+//! launch converges with fourth order as far as the contact forces are smooth; they are continuous, with kinks where a node
+//! touches or lets go. In contact positions and velocities are off by that change of coordinates, of second order; the corrected
+//! forces are those at the places without it.
 
 use super::contact::Loads;
 use super::integration::{Integration, Sample, Tally};
@@ -12,10 +16,10 @@ use crate::error::{Error, Result};
 /// Most time steps of a run.
 const MOST_STEPS: u64 = 2_000_000;
 /// Steps between two surveys of all candidates, and between two looks whether contact is still possible.
-const INTERVAL: u64 = 8;
+const INTERVAL: u64 = 4;
 /// Gap below which an open candidate is watched until the next survey at least, over the actuator's way in between. Should
 /// one be missed, the steps since the last survey are done again with more.
-const MARGIN: f64 = 0.05;
+const MARGIN: f64 = 0.1;
 
 /// Settings of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +58,7 @@ impl Rotation {
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     let mut run = Running::new(system, options);
     run.workspace.survey(system, &run.state, run.margin());
-    run.workspace.forces(system, &run.state, &mut run.forces)?;
+    run.workspace.forces(system, &run.state, options.step, &mut run.forces)?;
     run.sample();
     while !run.is_over() {
         if run.tally.steps >= MOST_STEPS {
@@ -160,7 +164,7 @@ impl<'a> Running<'a> {
         let step = self.options.step;
         self.kick(0.5 * step);
         self.drift(step);
-        self.workspace.forces(self.system, &self.state, &mut self.forces)?;
+        self.workspace.forces(self.system, &self.state, step, &mut self.forces)?;
         self.kick(0.5 * step);
         self.tally.steps += 1;
         self.sample();
@@ -178,9 +182,7 @@ impl<'a> Running<'a> {
         for (impulse, force) in self.tally.flank_impulse.iter_mut().zip(self.forces.flanks) {
             *impulse += 2.0 * step * force;
         }
-        let active = self.workspace.contact.active();
-        self.tally.seat_impulse +=
-            step * active.iter().map(|&i| self.workspace.contact.force_vector(i)[2]).sum::<f64>();
+        self.tally.seat_impulse += step * self.forces.seat;
     }
 
     fn drift(&mut self, step: f64) {
@@ -307,9 +309,11 @@ mod tests {
     fn spring(modes: &[(f64, f64)]) -> System {
         let residual = [[FLEXIBILITY, 0.0, 0.0], [0.0, FLEXIBILITY, 0.0], [0.0, 0.0, FLEXIBILITY]].concat();
         let place = [0.0; 3];
+        let participation: Vec<Vec<f64>> = modes.iter().map(|m| vec![0.0, 0.0, m.1]).collect();
         System {
+            nodes: Nodes::new(vec![place], vec![1], &participation, &residual),
             omega: modes.iter().map(|m| m.0).collect(),
-            participation: modes.iter().map(|m| vec![0.0, 0.0, m.1]).collect(),
+            participation,
             candidates: vec![Candidate {
                 node: 0,
                 place,
@@ -324,7 +328,6 @@ mod tests {
                 Ball { centre: [0.0, 0.0, 1.0], radius: 1e-3 },
                 Ball { centre: [0.0, 0.0, -3e-3], radius: 3e-3 },
             ],
-            nodes: Nodes::new(vec![place], vec![1], &residual),
         }
     }
 
@@ -346,13 +349,13 @@ mod tests {
     }
 
     #[test]
-    fn time_integration_is_of_second_order_before_the_release_and_at_least_first_after_it() {
+    fn time_integration_is_of_fourth_order_before_the_release_and_at_least_second_after_it() {
         let system = spring(&[(4e4, 12.0), (1.1e5, -9.0)]);
         let duration = PI * (MASS * FLEXIBILITY).sqrt();
         let error = |end: f64, steps: f64, exact: f64| {
             (run(&system, steps, Some(end)).state.actuator_velocity - exact).abs()
         };
-        for (end, least) in [(0.5 * duration, 1.9), (3.0 * duration, 1.0)] {
+        for (end, least) in [(0.5 * duration, 3.8), (3.0 * duration, 2.0)] {
             let exact = run(&system, 51200.0, Some(end)).state.actuator_velocity;
             let errors = [100.0, 400.0, 1600.0].map(|steps| error(end, steps, exact));
             let observed = (errors[0] / errors[2]).log(16.0);

@@ -4,16 +4,19 @@
 //! Without friction the sphere's rotation idles: it has no torque, and of the three degrees of freedom in the plane two
 //! move.
 
+mod accumulate;
 mod body;
 mod candidates;
 mod cholesky;
 pub mod contact;
+mod contact_set;
 pub mod integrate;
 pub mod integration;
 mod model;
 pub mod nodes;
 mod survey;
 pub mod system;
+mod watch;
 
 pub use body::{SeatBody, SeatMesh, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};

@@ -17,7 +17,7 @@ pub const DEFAULT_MODES: usize = 16;
 /// Relative error of the sphere's velocity from the time integration when the caller names none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 /// Steps tried first: per period of the highest mode, and over the actuator's contact if the seat were a heavy half-space.
-const FIRST_STEPS: (f64, f64) = (6.0, 60.0);
+const FIRST_STEPS: (f64, f64) = (3.0, 30.0);
 /// Halvings of the step before the tolerance is given up.
 const HALVINGS: u32 = 12;
 /// Widenings of the zones of contact candidates before the mesh is given up.

@@ -9,25 +9,32 @@ pub struct Ball {
     pub radius: f64,
 }
 
-/// The nodes that may be touched.
+/// The nodes that may be touched: an elastic body as seen from them.
 #[derive(Debug, Clone)]
 pub struct Nodes {
     /// Places at rest in m. Shape (n).
     pub(super) place: Vec<[f64; 3]>,
     /// Number of the ball each one meets. Shape (n).
     pub(super) ball: Vec<usize>,
-    /// Residual flexibility R_ij in m/N, 3 x 3 blocks row by row. Shape (n, n).
-    residual: Vec<[f64; 9]>,
+    /// Mass-normalised shapes in kg^(-1/2). Shape (N, 3, n).
+    pub(super) shapes: Vec<f64>,
+    /// Residual flexibility in m/N, as columns. Shape (n of the force, 3, 3 of the displacement, n).
+    columns: Vec<f32>,
 }
 
 impl Nodes {
-    /// Candidates at `place`, each against the ball of the number in `ball`, with the `residual` flexibility
-    /// (x, y, z of each candidate; shape (3 n, 3 n), row by row) in m/N.
-    pub fn new(place: Vec<[f64; 3]>, ball: Vec<usize>, residual: &[f64]) -> Self {
+    /// Candidates at `place`, each against the ball of the number in `ball`, with the `shapes` of the modes (x, y, z of each
+    /// candidate; shape (N, 3 n)) in kg^(-1/2) and the symmetric `residual` flexibility (shape (3 n, 3 n), row by row) in m/N.
+    pub fn new(place: Vec<[f64; 3]>, ball: Vec<usize>, shapes: &[Vec<f64>], residual: &[f64]) -> Self {
         let n = place.len();
-        let entry = |i: usize, j: usize, k: usize| residual[(3 * i + k / 3) * 3 * n + 3 * j + k % 3];
-        let residual = (0..n * n).map(|ij| std::array::from_fn(|k| entry(ij / n, ij % n, k))).collect();
-        Self { place, ball, residual }
+        // from x, y, z of each node to x of all nodes, then y, then z
+        let apart = |row: &[f64]| (0..3 * n).map(|k| row[3 * (k % n) + k / n]).collect::<Vec<f64>>();
+        Self {
+            place,
+            ball,
+            shapes: shapes.iter().flat_map(|shape| apart(shape)).collect(),
+            columns: residual.chunks(3 * n.max(1)).flat_map(apart).map(|r| r as f32).collect(),
+        }
     }
 
     /// Number of candidates.
@@ -40,35 +47,11 @@ impl Nodes {
         self.place.is_empty()
     }
 
-    /// Flexibility of candidate `i` under forces on all.
-    pub(super) fn row(&self, i: usize) -> &[[f64; 9]] {
-        &self.residual[i * self.len()..(i + 1) * self.len()]
+    /// Displacements in m/N of all candidates under unit forces on `j`. Shape (3 of the force, 3, n).
+    pub(super) fn column(&self, j: usize) -> &[f32] {
+        let size = 9 * self.len();
+        &self.columns[j * size..][..size]
     }
-
-    /// Displacement in m of candidate `i` under the forces `push` on candidates.
-    pub(super) fn displaced(&self, i: usize, push: &[(usize, [f64; 3])]) -> [f64; 3] {
-        displaced(self.row(i), push)
-    }
-
-    /// Displacement in m of candidate `i` along its normal under a unit force on `j` along its own: n_i^T R_ij n_j.
-    pub(super) fn compliance(&self, i: usize, j: usize, normal: &[[f64; 3]]) -> f64 {
-        let (r, p, q) = (&self.residual[i * self.len() + j], normal[i], normal[j]);
-        p[0] * (r[0] * q[0] + r[1] * q[1] + r[2] * q[2])
-            + p[1] * (r[3] * q[0] + r[4] * q[1] + r[5] * q[2])
-            + p[2] * (r[6] * q[0] + r[7] * q[1] + r[8] * q[2])
-    }
-}
-
-/// sum_j R_j f_j in m over the pairs (j, f_j) of `push`.
-pub(super) fn displaced(row: &[[f64; 9]], push: &[(usize, [f64; 3])]) -> [f64; 3] {
-    let mut u = [0.0; 3];
-    for (j, [x, y, z]) in push {
-        let r = &row[*j];
-        u[0] += r[0] * x + r[1] * y + r[2] * z;
-        u[1] += r[3] * x + r[4] * y + r[5] * z;
-        u[2] += r[6] * x + r[7] * y + r[8] * z;
-    }
-    u
 }
 
 pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -1,12 +1,15 @@
 //! Which candidates are watched from one look at all of them to the next.
 
+use super::accumulate::{add_modes, yield_under};
 use super::contact::{CLOSED, Contact};
-use super::nodes::Ball;
+use super::nodes::{Ball, dot};
 
 /// Margin of the next survey over that which was needed before.
-const RESERVE: f64 = 2.0;
-/// Place of a candidate that is not watched.
-pub(super) const UNWATCHED: usize = usize::MAX;
+const RESERVE: f64 = 3.0;
+/// Those who are watched anew are chosen for this many margins, so that they do for several surveys.
+const AHEAD: f64 = 2.0;
+/// They are chosen anew if they are more than this many times those needed.
+const MOST_IDLE: usize = 2;
 
 /// What a look at all candidates has shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,46 +21,44 @@ pub struct Survey {
 }
 
 impl Contact<'_> {
-    /// Looks at all candidates after [`Contact::solve`], and watches from now on those with gaps below `margin` in m, or
-    /// below twice the margin that would have been needed since the last survey.
+    /// Looks at all candidates after [`Contact::solve`], and sees to it that those with gaps below `margin` in m, or
+    /// below some times the margin that would have been needed since the last survey, are watched from now on.
     pub fn survey(&mut self, modal: &[f64], balls: &[Ball], margin: f64) -> Survey {
-        let mut survey = Survey { missed: false, needed: 0.0 };
+        let (nodes, n) = (self.nodes, self.nodes.len());
         self.collect_push();
-        let (mut active, mut watched) = (0, 0);
-        for i in 0..self.nodes.len() {
-            let was_watched = self.loads.watched.get(watched) == Some(&i);
-            watched += usize::from(was_watched);
+        yield_under(&mut self.displaced, 0..n, |j| nodes.column(j), &self.push);
+        add_modes(&mut self.displaced, &nodes.shapes, modal);
+        let mut survey = Survey { missed: false, needed: 0.0 };
+        let mut active = 0;
+        for i in 0..n {
             let touches = self.loads.active.get(active) == Some(&i);
-            if touches {
-                active += 1;
-                self.gap[i] = 0.0;
-            } else {
-                self.yielding[i] = self.nodes.displaced(i, &self.push);
-                self.look(i, modal, balls);
-            }
-            let passed = !was_watched && self.gap[i] < -CLOSED * balls[self.nodes.ball[i]].radius;
+            active += usize::from(touches);
+            let ball = &balls[nodes.ball[i]];
+            let d = [0, 1, 2].map(|c| nodes.place[i][c] + self.displaced[c * n + i] - ball.centre[c]);
+            let gap = if touches { 0.0 } else { dot(d, d).sqrt() - ball.radius };
+            let passed = !self.watch.contains(i) && gap < -CLOSED * ball.radius;
             survey.missed |= passed;
             if touches || passed {
                 survey.needed = survey.needed.max(self.surveyed[i]);
             }
+            self.surveyed[i] = gap;
         }
-        self.surveyed.clone_from(&self.gap);
-        self.watch(margin.max(RESERVE * survey.needed));
+        self.choose(margin.max(RESERVE * survey.needed));
         survey
     }
 
-    /// Watches the candidates whose gaps at the last survey were below `margin` in m.
-    fn watch(&mut self, margin: f64) {
-        self.loads.watched.clear();
-        self.loads.watched.extend((0..self.nodes.len()).filter(|&i| self.surveyed[i] < margin));
-        self.slot.fill(UNWATCHED);
-        for (slot, &i) in self.loads.watched.iter().enumerate() {
-            self.slot[i] = slot;
+    /// Watches at least the candidates whose gaps at the last survey were below `margin` in m.
+    fn choose(&mut self, margin: f64) {
+        let needed = (0..self.nodes.len()).filter(|&i| self.surveyed[i] < margin);
+        let (count, within) =
+            needed.fold((0, true), |(count, within), i| (count + 1, within && self.watch.contains(i)));
+        if !within || self.watch.len() > MOST_IDLE * count {
+            self.chosen.clear();
+            self.chosen.extend((0..self.nodes.len()).filter(|&i| self.surveyed[i] < AHEAD * margin));
+            // those in contact come first, so that what concerns only them concerns few slots
+            self.chosen.sort_by(|a, b| self.surveyed[*a].total_cmp(&self.surveyed[*b]));
+            self.watch.choose(self.nodes, &self.chosen);
         }
-        self.compact.clear();
-        for &i in &self.loads.watched {
-            let row = self.nodes.row(i);
-            self.compact.extend(self.loads.watched.iter().map(|&j| row[j]));
-        }
+        self.watch.yield_under(self.nodes, &self.push, 0..self.watch.len());
     }
 }

@@ -4,7 +4,7 @@
 
 use super::candidates::{Candidate, Partner};
 use super::contact::Contact;
-use super::nodes::{Ball, Nodes};
+use super::nodes::{Ball, Nodes, dot};
 use super::survey::Survey;
 use crate::body::solid::InterfaceBody;
 use crate::error::{Error, Result};
@@ -63,7 +63,12 @@ impl System {
             sphere_mass: 0.5 * scene.sphere.mass,
             actuator_mass: 0.5 * scene.actuator.mass,
             speed: scene.actuator.speed,
-            nodes: Nodes::new(place, candidates.iter().map(ball).collect(), &residual),
+            nodes: Nodes::new(
+                place,
+                candidates.iter().map(ball).collect(),
+                &body.participation[..modes],
+                &residual,
+            ),
             balls,
         })
     }
@@ -99,7 +104,7 @@ pub struct State {
     pub actuator_velocity: f64,
 }
 
-/// Forces of the contacts at one instant, of the half bodies.
+/// Forces of the contacts at one instant, of the half bodies; see [`Workspace::forces`].
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Forces {
     /// Generalised forces on the modes in N kg^(-1/2). Shape (N).
@@ -108,10 +113,38 @@ pub struct Forces {
     pub sphere: [f64; 2],
     /// Force on the actuator along z in N: not positive.
     pub actuator: f64,
+    /// Force on the seat along z in N.
+    pub seat: f64,
     /// Sums of the normal forces on the flanks at the -x and the +x side of the seat's axis in N.
     pub flanks: [f64; 2],
     /// Largest distance in m of a loaded candidate from where its partner touches first, of sphere and tips.
     pub reach: [f64; 2],
+}
+
+impl Forces {
+    fn clear(&mut self, modes: usize) {
+        self.modal.clear();
+        self.modal.resize(modes, 0.0);
+        (self.sphere, self.actuator, self.seat) = ([0.0; 2], 0.0, 0.0);
+        (self.flanks, self.reach) = ([0.0; 2], [0.0; 2]);
+    }
+
+    /// Adds the normal force `force` in N at candidate `i`.
+    fn add(&mut self, system: &System, i: usize, normal: [f64; 3], force: f64) {
+        let (f, candidate) = (normal.map(|n| n * force), &system.candidates[i]);
+        for (sum, shape) in self.modal.iter_mut().zip(&system.participation) {
+            *sum += shape[3 * i] * f[0] + shape[3 * i + 1] * f[1] + shape[3 * i + 2] * f[2];
+        }
+        self.seat += f[2];
+        match candidate.partner {
+            Partner::Sphere => {
+                self.sphere[0] -= f[0];
+                self.sphere[1] -= f[2];
+                self.flanks[usize::from(candidate.right_flank)] += force;
+            }
+            Partner::Tip(_) => self.actuator -= f[2],
+        }
+    }
 }
 
 /// Room for the evaluation of forces, and the contact problem's last solution.
@@ -119,67 +152,68 @@ pub struct Forces {
 pub struct Workspace<'a> {
     /// Contact problem.
     pub contact: Contact<'a>,
-    displaced: Vec<f64>,
+    /// Of the modes; as many as them.
+    accelerations: Vec<f64>,
     balls: Vec<Ball>,
 }
 
 impl<'a> Workspace<'a> {
     /// Room for `system`.
     pub fn new(system: &'a System) -> Self {
-        Self {
-            contact: Contact::new(&system.nodes),
-            displaced: vec![0.0; 3 * system.candidates.len()],
-            balls: system.balls.clone(),
-        }
+        Self { contact: Contact::new(&system.nodes), accelerations: Vec::new(), balls: system.balls.clone() }
     }
 
-    /// Evaluates the contact forces at `state`.
+    /// Evaluates the contact forces at `state`, corrected for kicks over steps of `step` in s: F - step^2/12 H M^-1 F with the
+    /// masses M and the stiffness H of the contacts, the forces at the place that the accelerations would shift by step^2/12.
+    /// Where a node touches or lets go H is that of the contact set.
     ///
     /// # Errors
     /// As [`Contact::solve`].
-    pub fn forces(&mut self, system: &System, state: &State, forces: &mut Forces) -> Result<()> {
+    pub fn forces(&mut self, system: &System, state: &State, step: f64, forces: &mut Forces) -> Result<()> {
         self.place(system, state);
-        self.contact.solve(&self.displaced, &self.balls)?;
-        forces.modal.clear();
-        forces.modal.resize(system.omega.len(), 0.0);
-        (forces.sphere, forces.actuator, forces.flanks, forces.reach) = ([0.0; 2], 0.0, [0.0; 2], [0.0; 2]);
+        self.contact.solve(&state.modal, &self.balls)?;
+        forces.clear(system.omega.len());
         for &i in self.contact.active() {
-            let f = self.contact.force_vector(i);
-            let candidate = &system.candidates[i];
-            for (sum, shape) in forces.modal.iter_mut().zip(&system.participation) {
-                *sum += shape[3 * i] * f[0] + shape[3 * i + 1] * f[1] + shape[3 * i + 2] * f[2];
-            }
-            let partner = match candidate.partner {
-                Partner::Sphere => {
-                    forces.sphere[0] -= f[0];
-                    forces.sphere[1] -= f[2];
-                    forces.flanks[usize::from(candidate.right_flank)] += self.contact.force(i);
-                    0
-                }
-                Partner::Tip(_) => {
-                    forces.actuator -= f[2];
-                    1
-                }
-            };
-            if self.contact.force(i) > 0.0 {
-                forces.reach[partner] = forces.reach[partner].max(candidate.offset);
+            let (normal, force) = (self.contact.normal(i), self.contact.force(i));
+            forces.add(system, i, normal, force);
+            let partner = usize::from(system.candidates[i].partner != Partner::Sphere);
+            if force > 0.0 {
+                forces.reach[partner] = forces.reach[partner].max(system.candidates[i].offset);
             }
         }
+        if !self.contact.active().is_empty() {
+            self.correct(system, step * step / 12.0, forces);
+        }
         Ok(())
+    }
+
+    /// Adds what the contacts answer when all accelerations under `forces` act for `shift` in s^2.
+    fn correct(&mut self, system: &System, shift: f64, forces: &mut Forces) {
+        let Self { contact, accelerations, .. } = self;
+        accelerations.clone_from(&forces.modal);
+        let [x, z] = forces.sphere.map(|f| f / system.sphere_mass);
+        let actuator = forces.actuator / system.actuator_mass;
+        let opening = |i: usize, normal: [f64; 3]| {
+            let mut a = match system.candidates[i].partner {
+                Partner::Sphere => [-x, 0.0, -z],
+                Partner::Tip(_) => [0.0, 0.0, -actuator],
+            };
+            for (q, shape) in accelerations.iter().zip(&system.participation) {
+                a.iter_mut().zip(&shape[3 * i..]).for_each(|(a, s)| *a += q * s);
+            }
+            shift * dot(normal, a)
+        };
+        contact.respond(opening, |i, normal, change| forces.add(system, i, normal, change));
     }
 
     /// Looks at all candidates at `state`, whose forces have been evaluated: see [`Contact::survey`].
     pub fn survey(&mut self, system: &System, state: &State, margin: f64) -> Survey {
         self.place(system, state);
-        self.contact.survey(&self.displaced, &self.balls, margin)
+        self.contact.survey(&state.modal, &self.balls, margin)
     }
 
-    /// Puts the candidates without contact, and the balls, where `state` has them.
+    /// Puts the balls where `state` has them.
     fn place(&mut self, system: &System, state: &State) {
-        self.displaced.fill(0.0);
-        for (shape, &q) in system.participation.iter().zip(&state.modal) {
-            self.displaced.iter_mut().zip(shape).for_each(|(u, phi)| *u += q * phi);
-        }
         for (number, (ball, start)) in self.balls.iter_mut().zip(&system.balls).enumerate() {
             if number == 0 {
                 ball.centre[0] = start.centre[0] + state.sphere[0];

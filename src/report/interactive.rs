@@ -1,0 +1,48 @@
+//! The interactive panels of a scene's page, their data and scripts; the page stays whole without scripts and on paper.
+
+use super::page_data::{PanelOf, Shown, curves, embedded};
+use crate::comparison::SceneComparison;
+use crate::impact::Quantities;
+use maud::{Markup, PreEscaped, html};
+
+/// uPlot by Leon Sorokin, MIT.
+const PLOTTING: &str = include_str!("assets/uPlot.iife.min.js");
+const PLOTTING_LICENCE: &str = include_str!("assets/LICENSE.uPlot");
+const PANELS: &str = include_str!("assets/panels.js");
+/// Style sheet of the panels.
+pub(super) const STYLE: &str = include_str!("assets/uPlot.min.css");
+
+/// The place of the panels: `drawn` (SVG) for print and without scripts, made interactive by the script.
+pub(super) fn panels(drawn: String) -> Markup {
+    html! {
+        div.live {
+            div #controls role="group" aria-label="Curves shown" {}
+            div #panels {}
+            div #time role="group" aria-label="Time axis of all panels" {}
+            p.soft { "Drag across a panel to zoom all of them, double-click to see everything again." }
+        }
+        figure.drawn { (PreEscaped(drawn)) }
+    }
+}
+
+/// The comparison and the curves as the page carries them, and the scripts that show them.
+pub(super) fn scripts<Q: Quantities>(
+    comparison: &SceneComparison<Q>,
+    shown: &Shown<Q>,
+    panels: &[PanelOf],
+) -> Markup {
+    html! {
+        script type="application/json" id="comparison" { (PreEscaped(embedded(comparison))) }
+        @if shown.window.is_some() {
+            script type="application/json" id="curves" { (PreEscaped(embedded(&curves(shown, panels)))) }
+            script type="text/javascript" { (PreEscaped(script(PLOTTING, PLOTTING_LICENCE))) }
+            script type="text/javascript" { (PreEscaped(PANELS)) }
+        }
+    }
+}
+
+/// A library with its licence in place of the line that names its address.
+fn script(library: &str, licence: &str) -> String {
+    let code = library.split_once('\n').map_or(library, |(_, code)| code);
+    format!("/*! uPlot 1.6.32\n{licence}*/\n{code}")
+}

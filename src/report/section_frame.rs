@@ -1,0 +1,120 @@
+//! Frame of a picture in section: axes in mm and, for a field, the scale of its colours.
+
+use super::field_raster::cividis;
+use super::figure::x2;
+use super::ticks::{tick_label, ticks};
+use maud::{Markup, html};
+
+/// Width of the drawing, and margins around the picture in it, in px of the drawing.
+const WIDTH: f64 = 400.0;
+const LEFT: f64 = 52.0;
+const RIGHT: f64 = 10.0;
+const TOP: f64 = 8.0;
+const FONT_SIZE: f64 = 13.0;
+
+/// What is shown, in m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Bounds {
+    /// From left to right.
+    pub(super) across: [f64; 2],
+    /// From below to above, along z.
+    pub(super) up: [f64; 2],
+}
+
+/// What stands around a picture.
+pub(super) struct Frame<'a> {
+    pub(super) bounds: Bounds,
+    /// Height over width of the picture; `None` = that of the bounds.
+    pub(super) aspect: Option<f64>,
+    /// Label of the horizontal axis.
+    pub(super) across: &'static str,
+    /// Value in Pa at the end of the scale of colours; `None` = no scale.
+    pub(super) largest: Option<f64>,
+    pub(super) name: &'static str,
+    /// Unique on the page.
+    pub(super) id: &'a str,
+}
+
+/// From places in m to the drawing.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    bounds: Bounds,
+    height: f64,
+}
+
+impl Place {
+    /// Left, top, width and height of the picture.
+    pub(super) fn rectangle(&self) -> [String; 4] {
+        [LEFT, TOP, WIDTH - LEFT - RIGHT, self.height].map(x2)
+    }
+
+    pub(super) fn x(&self, across: f64) -> f64 {
+        let [left, right] = self.bounds.across;
+        LEFT + (WIDTH - LEFT - RIGHT) * (across - left) / (right - left)
+    }
+
+    pub(super) fn y(&self, up: f64) -> f64 {
+        let [low, high] = self.bounds.up;
+        TOP + self.height * (high - up) / (high - low)
+    }
+}
+
+impl Frame<'_> {
+    /// The drawing with `content` in the frame.
+    pub(super) fn around(&self, content: impl FnOnce(&Place) -> Markup) -> Markup {
+        let Bounds { across: [left, right], up: [low, high] } = self.bounds;
+        let width = WIDTH - LEFT - RIGHT;
+        let height = width * self.aspect.unwrap_or((high - low) / (right - left));
+        let place = Place { bounds: self.bounds, height };
+        let bottom = TOP + height;
+        let marks = ticks(left * 1e3, right * 1e3, 5);
+        let marks_up = ticks(low * 1e3, high * 1e3, ((height / 50.0) as usize).max(2));
+        let total = bottom + if self.largest.is_some() { 92.0 } else { 44.0 };
+        let [x, y, w, h] = place.rectangle();
+        html! {
+            svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {total:.1}")) role="img"
+                font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) aria-labelledby=(format!("{}-title", self.id)) {
+                title id=(format!("{}-title", self.id)) { (self.name) }
+                (content(&place))
+                rect.fig-frame x=(x) y=(y) width=(w) height=(h) {}
+                @for mark in &marks {
+                    @let x = x2(place.x(mark * 1e-3));
+                    line.fig-frame x1=(x) x2=(x) y1=(x2(bottom)) y2=(x2(bottom + 4.0)) {}
+                    text.fig-text x=(x) y=(x2(bottom + 18.0)) text-anchor="middle" { (tick_label(*mark, &marks)) }
+                }
+                text.fig-text x=(x2(LEFT + 0.5 * width)) y=(x2(bottom + 36.0)) text-anchor="middle" { (self.across) }
+                @for mark in &marks_up {
+                    @let y = place.y(mark * 1e-3);
+                    line.fig-frame x1=(LEFT - 4.0) x2=(LEFT) y1=(x2(y)) y2=(x2(y)) {}
+                    text.fig-text x=(LEFT - 7.0) y=(x2(y + 4.7)) text-anchor="end" { (tick_label(*mark, &marks_up)) }
+                }
+                text.fig-text transform=(format!("translate(13 {:.2}) rotate(-90)", TOP + 0.5 * height)) text-anchor="middle" {
+                    "z in mm"
+                }
+                @if let Some(largest) = self.largest { (colour_scale(largest, bottom + 46.0, self.id)) }
+            }
+        }
+    }
+}
+
+fn colour_scale(largest: f64, top: f64, id: &str) -> Markup {
+    const STOPS: usize = 12;
+    let width = WIDTH - LEFT - RIGHT;
+    let to = 1e-6 * largest;
+    let marks = ticks(0.0, to, 5);
+    html! {
+        defs { linearGradient id=(format!("{id}-scale")) {
+            @for k in 0..=STOPS {
+                @let share = k as f64 / STOPS as f64;
+                @let [r, g, b] = cividis(share);
+                stop offset=(x2(share)) stop-color=(format!("rgb({r},{g},{b})")) {}
+            }
+        } }
+        rect.fig-edge x=(LEFT) y=(x2(top)) width=(x2(width)) height="10" fill=(format!("url(#{id}-scale)")) {}
+        @for mark in &marks {
+            @let x = LEFT + if to > 0.0 { width * mark / to } else { 0.0 };
+            text.fig-text x=(x2(x)) y=(x2(top + 24.0)) text-anchor="middle" { (tick_label(*mark, &marks)) }
+        }
+        text.fig-text x=(x2(LEFT + 0.5 * width)) y=(x2(top + 41.0)) text-anchor="middle" { "von Mises stress in MPa" }
+    }
+}
