@@ -1,6 +1,9 @@
 //! Round numbers for the marks of an axis.
 
-/// Marks at multiples of 1, 2 or 5 times a power of ten within `low..=high`, about `wanted` of them.
+/// Fewer marks than these don't show a scale.
+const LEAST: usize = 3;
+
+/// Marks at multiples of 1, 2 or 5 times a power of ten within `low..=high`, about `wanted` of them, but at least three.
 pub(super) fn ticks(low: f64, high: f64, wanted: usize) -> Vec<f64> {
     let span = high - low;
     if !(span.is_finite() && span > 0.0) {
@@ -11,7 +14,9 @@ pub(super) fn ticks(low: f64, high: f64, wanted: usize) -> Vec<f64> {
     let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= raw).unwrap_or(raw);
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
-    (first..=last).map(|k| k as f64 * step).collect()
+    let marks: Vec<f64> = (first..=last).map(|k| k as f64 * step).collect();
+    // half the step, at most, each time: three marks are there before long
+    if marks.len() < LEAST { ticks(low, high, 2 * wanted.max(1)) } else { marks }
 }
 
 /// The mark's number with as many decimals as its distance to the others asks for.
@@ -30,6 +35,7 @@ mod tests {
     fn marks_are_round_and_inside() {
         assert_eq!(ticks(0.0, 198.0, 5), [0.0, 50.0, 100.0, 150.0]);
         assert_eq!(ticks(-600.0, 350.0, 5), [-600.0, -400.0, -200.0, 0.0, 200.0]);
+        assert_eq!(ticks(-660.0, 390.0, 2), [-600.0, -400.0, -200.0, 0.0, 200.0]);
         let small = ticks(0.0, 0.5, 5);
         assert_eq!(tick_label(small[1], &small), "0.1");
         assert_eq!(tick_label(-200.0, &[-200.0, 0.0]), "−200");
