@@ -1,6 +1,6 @@
 //! The time integration against general-purpose integrators on the same equations.
 
-use super::{Bench, OURS, WorkPrecision, timed};
+use super::{Bench, OURS, Settings, WorkPrecision, timed};
 use crate::analytical::hertz::HertzImpact;
 use crate::error::{Error, Result};
 use crate::impact::explicit_runge_kutta::{
@@ -16,19 +16,13 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 const SCENE: &str = "scaled-plate-r10";
-/// Tolerances of this program's integrator.
-const TOLERANCES: [f64; 15] =
-    [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9];
-/// Relative tolerances of the peers.
-const PEER_TOLERANCES: [f64; 15] =
-    [1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10];
 /// Evaluations times state entries that a compiled peer's run may cost.
 const PEER_WORK: f64 = 4e9;
 /// Wall time in s that a run of SciPy may take.
 const SCIPY_BUDGET: f64 = 20.0;
 
 /// Runs model B with `modes` modes by all integrators.
-pub(super) fn run(modes: usize, bench: &mut Bench) -> Result<()> {
+pub(super) fn run(modes: usize, settings: &Settings, bench: &mut Bench) -> Result<()> {
     let scene = Scene::read(scene::resolve(SCENE)?)?;
     let reduced = Reduced::new(&scene, Model::B, Some(modes))?;
     let system = reduced.system();
@@ -49,14 +43,14 @@ pub(super) fn run(modes: usize, bench: &mut Bench) -> Result<()> {
             seconds_with_setup: None,
         });
     };
-    for tolerance in TOLERANCES {
+    for &tolerance in &settings.tolerances {
         let (result, seconds) = timed(300, || integrate(system, &options(tolerance)))?;
         add(OURS, tolerance, result.velocity[1], seconds);
     }
     let equations = Equations::new(system);
     let (start, scale) = equations.start(hertz(system).duration());
     for method in [DORMAND_PRINCE_5, DORMAND_PRINCE_8] {
-        for relative in PEER_TOLERANCES {
+        for &relative in &settings.peer_tolerances {
             let max_evaluations = (PEER_WORK / start.len() as f64) as u64;
             let tolerances = Tolerances { relative, absolute: relative, max_evaluations };
             let (velocity, seconds) = timed(50, || {
@@ -69,7 +63,10 @@ pub(super) fn run(modes: usize, bench: &mut Bench) -> Result<()> {
             add(&format!("{} (Rust)", method.name), relative, velocity, seconds);
         }
     }
-    match scipy(system, &start, &scale, end_time) {
+    if !settings.scipy {
+        return Ok(());
+    }
+    match scipy(system, (&start, &scale), end_time, &settings.peer_tolerances) {
         Ok(runs) => {
             for run in runs {
                 let velocity = run.inner_rate / system.masses[1].sqrt();
@@ -95,7 +92,12 @@ struct Run {
 }
 
 /// All runs of SciPy's integrators.
-fn scipy(system: &System, start: &[f64], scale: &[f64], end_time: f64) -> Result<Vec<Run>> {
+fn scipy(
+    system: &System,
+    (start, scale): (&[f64], &[f64]),
+    end_time: f64,
+    tolerances: &[f64],
+) -> Result<Vec<Run>> {
     const SCRIPT: &str = include_str!("peers.py");
     let failed = |what: String| Error::Solver(format!("SciPy's integrators can't be run: {what}"));
     let problem = serde_json::json!({
@@ -108,7 +110,7 @@ fn scipy(system: &System, start: &[f64], scale: &[f64], end_time: f64) -> Result
         "scale": scale,
         "end_time": end_time,
         "methods": ["RK45", "DOP853", "LSODA", "Radau"],
-        "tolerances": PEER_TOLERANCES,
+        "tolerances": tolerances,
         "repeats": 3,
         "budget": SCIPY_BUDGET,
     });

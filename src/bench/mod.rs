@@ -70,14 +70,46 @@ pub struct Bench {
     pub notes: Vec<String>,
 }
 
+/// What is run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Numbers of modes at which integrators are compared.
+    pub modes: Vec<usize>,
+    /// Tolerances of this program's integrator.
+    pub tolerances: Vec<f64>,
+    /// Relative tolerances of the peers.
+    pub peer_tolerances: Vec<f64>,
+    /// Whether SciPy's integrators are among them.
+    pub scipy: bool,
+    /// Whether models over their modes, and the reference's meshes, are compared as well.
+    pub models: bool,
+}
+
+impl Default for Settings {
+    /// 1 and 16 modes, half decades of tolerance, everything else on.
+    fn default() -> Self {
+        let half_decades = |from: i32, to: i32| {
+            let pairs = (to..from).rev().flat_map(|n| [10f64.powi(n + 1), 3.0 * 10f64.powi(n)]);
+            pairs.chain([10f64.powi(to)]).collect()
+        };
+        Self {
+            modes: vec![1, 16],
+            tolerances: half_decades(-2, -9),
+            peer_tolerances: half_decades(-3, -10),
+            scipy: true,
+            models: true,
+        }
+    }
+}
+
 /// Errors at which solvers are compared.
 const ERRORS: [f64; 4] = [1e-3, 1e-4, 1e-6, 1e-8];
 
-/// Runs the benchmark for the numbers of modes; `note` is told what is going on.
+/// Runs the benchmark; `note` is told what is going on.
 ///
 /// # Errors
 /// If one of this program's own solvers fails; a peer that is missing is noted in the document.
-pub fn run(modes: &[usize], store: &Store, note: &dyn Fn(&str)) -> Result<Bench> {
+pub fn run(settings: &Settings, store: &Store, note: &dyn Fn(&str)) -> Result<Bench> {
     let mut bench = Bench {
         schema_version: SCHEMA_VERSION,
         machine: machine(),
@@ -85,12 +117,14 @@ pub fn run(modes: &[usize], store: &Store, note: &dyn Fn(&str)) -> Result<Bench>
         ratios: Vec::new(),
         notes: Vec::new(),
     };
-    for &modes in modes {
+    for &modes in &settings.modes {
         note(&format!("integrators with {modes} modes"));
-        integrators::run(modes, &mut bench)?;
+        integrators::run(modes, settings, &mut bench)?;
     }
-    note("models and meshes");
-    models::run(store, &mut bench)?;
+    if settings.models {
+        note("models and meshes");
+        models::run(store, &mut bench)?;
+    }
     bench.ratios.splice(0..0, integrator_ratios(&bench.work_precision));
     Ok(bench)
 }
@@ -155,4 +189,18 @@ fn machine() -> String {
         .map_or("unknown processor", |rest| rest.trim_start_matches([' ', '\t', ':']));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     format!("{name}, {cores} cores, {} {}", std::env::consts::OS, std::env::consts::ARCH)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Settings;
+
+    #[test]
+    fn tolerances_are_half_decades() {
+        let settings = Settings::default();
+        assert_eq!((settings.tolerances.len(), settings.peer_tolerances.len()), (15, 15));
+        assert_eq!(settings.tolerances[..3], [1e-2, 3e-3, 1e-3]);
+        assert!((settings.peer_tolerances[14] / 1e-10 - 1.0).abs() < 1e-12);
+        assert!(settings.tolerances.windows(2).all(|pair| pair[1] < pair[0]));
+    }
 }

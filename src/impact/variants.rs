@@ -98,6 +98,11 @@ impl<'a> Variants<'a> {
         })
     }
 
+    /// Thickness of the plate in m.
+    pub fn thickness(&self) -> f64 {
+        self.setup.plate.thickness
+    }
+
     /// The scene under `simplification` with `modes` elastic modes of the plate.
     pub fn system(&self, simplification: Simplification, modes: usize) -> System {
         let rigid = [0.0; 2];

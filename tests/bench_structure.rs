@@ -1,0 +1,47 @@
+//! `impactcheck bench` on its smallest setting: what is run, that errors are measured and fall, and nothing of time.
+
+use impactcheck::bench::{OURS, Settings, WorkPrecision, figure, run};
+use impactcheck::reference::Store;
+
+#[test]
+fn errors_of_every_integrator_fall_with_its_tolerance_and_ratios_follow_from_the_runs() {
+    let settings = Settings {
+        modes: vec![2],
+        tolerances: vec![1e-2, 1e-4, 1e-6, 1e-8],
+        peer_tolerances: vec![1e-3, 1e-6, 1e-9],
+        scipy: false,
+        models: false,
+    };
+    let bench = run(&settings, &Store::open(None), &|_| ()).unwrap();
+    let mut solvers: Vec<&str> = bench.work_precision.iter().map(|run| run.solver.as_str()).collect();
+    solvers.dedup();
+    assert_eq!(solvers.len(), 3, "{solvers:?}");
+    for solver in solvers {
+        let runs: Vec<&WorkPrecision> =
+            bench.work_precision.iter().filter(|run| run.solver == solver).collect();
+        let error = |k: usize| runs[k].relative_error;
+        let last = runs.len() - 1;
+        assert_eq!(last, if solver == OURS { 3 } else { 2 });
+        assert!(
+            error(last) < 1e-3 * error(0) && error(last) < 1e-7,
+            "{solver}: {} {}",
+            error(0),
+            error(last)
+        );
+        assert!(runs.iter().all(|run| run.seconds > 0.0 && run.modes == Some(2)));
+        if solver == OURS {
+            // what is promised: the tolerance bounds the error of the efficiency
+            assert!(runs.iter().all(|run| run.relative_error <= run.tolerance.unwrap()), "{runs:?}");
+        }
+    }
+    assert!(!bench.ratios.is_empty());
+    for ratio in &bench.ratios {
+        let best = |solver: &str| {
+            let sound = bench.work_precision.iter().filter(|run| run.solver == solver);
+            let good = sound.filter(|run| run.relative_error <= ratio.relative_error).map(|run| run.seconds);
+            good.fold(f64::INFINITY, f64::min)
+        };
+        assert_eq!(ratio.ratio, best(&ratio.peer) / best(OURS), "{ratio:?}");
+    }
+    assert!(figure(&bench).matches("<polyline").count() == 3);
+}
