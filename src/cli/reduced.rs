@@ -9,6 +9,7 @@ use crate::impact::reduced::Reduced;
 use crate::impact::seal_seat::{self, SeatMesh, SeatModel};
 use crate::impact::{Curves, History, Quantities, SeatHistory, SeatSummary, Summary};
 use crate::reference::{self, Resolution};
+use crate::report::format::{prefixed, with_unit};
 use crate::scene::{self, Model, Scene, Setup};
 use clap::Args;
 use std::path::PathBuf;
@@ -169,14 +170,15 @@ pub fn table<Q: Quantities>(summary: &Summary<Q>) -> String {
     let mut lines = vec![format!("{} ({who})", summary.scene)];
     for (name, unit) in Q::NAMES {
         let value = summary.quantities.value(name).unwrap_or(f64::NAN);
-        let unit = if *unit == "1" { "" } else { unit };
-        let band = summary.uncertainty.get(*name).map_or_else(String::new, |u| format!(" +- {u:.2e}"));
-        lines.push(format!("  {name:<22} {:>14}{band} {unit}", significant(value)));
+        let to = prefixed(unit, value);
+        let band = summary.uncertainty.get(*name);
+        let band = band.map_or_else(String::new, |u| format!(" ± {}", with_unit(*u, to, 2)));
+        lines.push(format!("  {name:<24} {:>14}{band}", with_unit(value, to, 6)));
     }
     let bender = summary.bender.iter().flat_map(|bender| {
         let drive = &bender.drive;
         [
-            ("strain_energy_efficiency", bender.strain_energy_efficiency, ""),
+            ("strain_energy_efficiency", bender.strain_energy_efficiency, "1"),
             ("torque", drive.torque, "N*m"),
             ("tip_deflection", drive.tip_deflection, "m"),
             ("strain_energy", drive.strain_energy, "J"),
@@ -192,24 +194,14 @@ pub fn table<Q: Quantities>(summary: &Summary<Q>) -> String {
         ]
     });
     for (name, value, unit) in bender.chain(losses) {
-        lines.push(format!("  {name:<24} {:>12} {unit}", significant(value)));
+        lines.push(format!("  {name:<24} {:>14}", with_unit(value, prefixed(unit, value), 6)));
     }
-    lines.push(format!("  {:<22} {:>14.1e}", "energy_residual", summary.energy_residual));
-    lines.push(format!("  {:<22} {:>14.1e}", "momentum_residual", summary.momentum_residual));
-    lines.push(format!("  {} steps in {:.3e} s", summary.steps, summary.solve_seconds));
+    lines.push(format!("  {:<24} {:>14.1e}", "energy_residual", summary.energy_residual));
+    lines.push(format!("  {:<24} {:>14.1e}", "momentum_residual", summary.momentum_residual));
+    let seconds = with_unit(summary.solve_seconds, prefixed("s", summary.solve_seconds), 3);
+    lines.push(format!("  {} steps in {seconds}, set-up apart", summary.steps));
     lines.extend(summary.choice.as_ref().map(asked_model::told));
     lines.join("\n")
-}
-
-/// Six significant digits, in scientific notation only where it is needed.
-fn significant(value: f64) -> String {
-    if value == value.trunc() && value.abs() < 1e6 {
-        format!("{value}")
-    } else if value.abs() >= 1e-3 && value.abs() < 1e6 {
-        format!("{value:.*}", (5 - value.abs().log10().floor() as i32).max(0) as usize)
-    } else {
-        format!("{value:.5e}")
-    }
 }
 
 /// The history as a CSV file with the columns of a reference's history.

@@ -2,13 +2,13 @@
 
 /// Unit with a prefix: a value in the unit times `factor` is the number to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Prefixed {
+pub(crate) struct Prefixed {
     pub(super) unit: &'static str,
     pub(super) factor: f64,
 }
 
 /// Prefix of `unit` that suits a value of magnitude `scale`.
-pub(super) fn prefixed(unit: &str, scale: f64) -> Prefixed {
+pub(crate) fn prefixed(unit: &str, scale: f64) -> Prefixed {
     let of = |unit, factor| Prefixed { unit, factor };
     let small = scale.abs();
     match unit {
@@ -25,6 +25,11 @@ pub(super) fn prefixed(unit: &str, scale: f64) -> Prefixed {
         "N*s" => of("mN s", 1e3),
         "Hz" if small >= 1e3 => of("kHz", 1e-3),
         "Hz" => of("Hz", 1.0),
+        "J" if small < 1e-3 => of("µJ", 1e6),
+        "J" if small < 1.0 => of("mJ", 1e3),
+        "J" => of("J", 1.0),
+        "N*m" => of("mN m", 1e3),
+        "rad" => of("°", 180.0 / std::f64::consts::PI),
         _ => of("", 1.0),
     }
 }
@@ -58,11 +63,16 @@ fn minus(text: String) -> String {
 }
 
 /// `value` in the unit, with digits and unit.
-pub(super) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
+pub(crate) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
     // Numbers of something are shown as such.
     let whole = to.unit.is_empty() && value.fract() == 0.0 && value.abs() < 1e6;
     let number = if whole { minus(format!("{value}")) } else { significant(value * to.factor, digits) };
-    if to.unit.is_empty() || !value.is_finite() { number } else { format!("{number} {}", to.unit) }
+    match to.unit {
+        _ if !value.is_finite() => number,
+        "" => number,
+        "°" => number + "°",
+        unit => format!("{number} {unit}"),
+    }
 }
 
 /// A relative value in per cent with its sign.
