@@ -206,8 +206,10 @@ fn the_choice_is_in_the_json_and_on_the_terminal() {
     let choice = &summary["choice"];
     assert_eq!(choice["tolerance"], 0.01);
     assert_eq!(choice["met"], true);
-    let last = choice["tried"].as_array().unwrap().last().unwrap();
-    assert_eq!(last["estimated_error"], choice["estimated_error"]);
+    let tried = choice["tried"].as_array().unwrap();
+    let chosen: Vec<&Value> = tried.iter().filter(|candidate| candidate["chosen"] == true).collect();
+    assert_eq!(chosen.len(), 1);
+    assert_eq!(chosen[0]["estimated_error"], choice["estimated_error"]);
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().display().to_string();
     let (status, json, error) = program(&[

@@ -10,7 +10,8 @@
 //! with the error that model C itself was found to have against the finite-element reference as the floor.
 
 use super::integrator::{Options, integrate};
-use super::reduced::{DEFAULT_MODES, Rough, fluid_forces, quantities};
+use super::reduced::{DEFAULT_MODES, fluid_forces, quantities};
+use super::rough::Rough;
 use super::system::System;
 use super::{OuterBody, PlateQuantities, validity, wet};
 use crate::body::continuum::ContinuumPlate;
@@ -56,6 +57,8 @@ pub struct Candidate {
     pub estimated_error: Option<f64>,
     /// The quantity with that error.
     pub quantity: Option<String>,
+    /// Whether it was chosen.
+    pub chosen: bool,
 }
 
 /// What was chosen for a scene, from what, and why.
@@ -331,6 +334,7 @@ impl Search {
             modes,
             estimated_error: error,
             quantity: quantity.map(str::to_owned),
+            chosen: false,
         });
     }
 
@@ -366,11 +370,21 @@ impl Search {
             tried: self.tried,
             reason,
         };
-        Plan { choice, model, modes, cut, rough, second }
+        let mut plan = Plan { choice, model, modes, cut, rough, second };
+        plan.mark();
+        plan
     }
 }
 
 impl Plan {
+    /// Marks the candidate that is chosen.
+    fn mark(&mut self) {
+        let model = self.model.to_string();
+        for candidate in &mut self.choice.tried {
+            candidate.chosen = candidate.model == model && candidate.modes == self.modes;
+        }
+    }
+
     /// The plan without model C, which can't be set up as `error` says; `None` if there is nothing else.
     pub(super) fn without_continuum(mut self, error: &crate::Error) -> Option<Self> {
         let (model, modes, estimate) = self.second?;
@@ -381,6 +395,7 @@ impl Plan {
             100.0 * estimate
         );
         (self.model, self.modes, self.cut, self.second) = (model, modes, None, None);
+        self.mark();
         Some(self)
     }
 }

@@ -152,10 +152,10 @@ fn references(store: &Store) -> Result<Vec<Case>> {
                 _ => None,
             }
         });
-        if let Some(reference) = found {
-            if let Some(truth) = Truth::new(&scene, Some(reference))? {
-                cases.push(Case { scene, truth, exact: "reference" });
-            }
+        if let Some(reference) = found
+            && let Some(truth) = Truth::new(&scene, Some(reference))?
+        {
+            cases.push(Case { scene, truth, exact: "reference" });
         }
     }
     Ok(cases)
@@ -249,7 +249,10 @@ fn claims(rows: &[Vec<Cell>], known: usize) -> Vec<Claim> {
     let share = |rows: &[&Vec<Cell>], misses: &dyn Fn(&[Cell]) -> bool| {
         (!rows.is_empty()).then(|| rows.iter().filter(|row| misses(row)).count() as f64 / rows.len() as f64)
     };
-    let missed = |row: &[Cell]| !(number(row, "true_error") <= number(row, "tolerance"));
+    let missed = |row: &[Cell]| {
+        let error = number(row, "true_error");
+        error.is_nan() || error > number(row, "tolerance")
+    };
     for tolerance in TOLERANCES {
         let asked = |row: &&Vec<Cell>| number(row, "tolerance") == tolerance;
         let percent = 100.0 * tolerance;
