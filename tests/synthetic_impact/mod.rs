@@ -183,6 +183,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         losses: None,
         solver: None,
         warnings: Vec::new(),
+        choice: None,
         samples: None,
         sample_interval: None,
     }
