@@ -87,9 +87,10 @@ fn bessel_i0(x: f64) -> f64 {
     sum
 }
 
-/// I1(x) / I0(x) by its continued fraction (Gauss), x > 0.
+/// I1(x) / I0(x) by its continued fraction (Gauss), x > 0. Every level n reduces what the levels beyond it lack by the square of
+/// I_n/I_(n-1), about exp(-2 n/x) for n below x: 7 sqrt(x) levels are enough for the last bit.
 fn bessel_i_ratio(x: f64) -> f64 {
-    let terms = 30 + (2.0 * x) as usize;
+    let terms = 30 + (7.0 * x.sqrt()) as usize;
     (1..=terms).rev().fold(0.0, |tail, n| 1.0 / (2.0 * n as f64 / x + tail))
 }
 
@@ -129,6 +130,20 @@ mod tests {
             for (k, square) in frequency_parameters(edge, 0.3, squares.len()).iter().zip(squares) {
                 assert_relative_eq!(k * k, square, max_relative = 1e-5);
             }
+        }
+    }
+
+    #[test]
+    fn ratio_of_bessel_functions_is_the_series_at_small_and_the_asymptote_at_large_arguments() {
+        // I1 = I0'
+        for x in [0.5, 5.0, 40.0, 300.0] {
+            let step = 1e-5 * x;
+            let slope = (bessel_i0(x + step) - bessel_i0(x - step)) / (2.0 * step);
+            assert_relative_eq!(bessel_i_ratio(x), slope / bessel_i0(x), max_relative = 1e-4);
+        }
+        for x in [100.0_f64, 1000.0, 5000.0] {
+            let asymptote = 1.0 - 0.5 / x - 0.125 / x.powi(2) - 0.125 / x.powi(3) - 25.0 / 128.0 / x.powi(4);
+            assert_relative_eq!(bessel_i_ratio(x), asymptote, max_relative = 1e-10);
         }
     }
 }

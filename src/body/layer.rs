@@ -34,6 +34,8 @@ pub struct Waves {
     plate: Plate,
     /// k of each elastic mode, one more than there are modes.
     parameter: Vec<f64>,
+    /// Mass-normalised deflection of the centre in each, kg^(-1/2).
+    centre: Vec<f64>,
 }
 
 /// A wave number with its share in a flexibility.
@@ -50,7 +52,11 @@ impl Waves {
     /// The `modes` lowest elastic modes of `plate`, at most 200.
     pub fn new(plate: &Plate, modes: usize) -> Self {
         let parameter = frequency_parameters(plate.edge, plate.material.poisson_ratio, modes + 1);
-        Self { plate: plate.clone(), parameter }
+        let mut waves = Self { plate: plate.clone(), parameter, centre: Vec::new() };
+        let amplitude = waves.amplitude();
+        waves.centre =
+            waves.parameter.iter().map(|k| amplitude * centre_deflection(plate.edge, *k)).collect();
+        waves
     }
 
     /// Number of elastic modes.
@@ -69,10 +75,10 @@ impl Waves {
         let bending = rigidity(plate.material.youngs_modulus, plate.material.poisson_ratio, plate.thickness);
         let speed = (bending / self.mass_per_area()).sqrt() / plate.radius.powi(2);
         let mut body = self.rigid();
-        for &k in &self.parameter[..modes.min(self.modes())] {
+        for (k, centre) in self.parameter.iter().zip(&self.centre).take(modes.min(self.modes())) {
             body.omega.push(k * k * speed);
             body.damping_ratio.push(plate.damping_ratio);
-            body.participation.push([self.amplitude() * centre_deflection(plate.edge, k); 2]);
+            body.participation.push([*centre; 2]);
         }
         body
     }
@@ -118,10 +124,10 @@ impl Waves {
                 layer.patch_growth[i][j] = (whole - inner) / ((1.0 - INSIDE * INSIDE) * patch[i].powi(2));
             }
         }
-        for &k in &self.parameter {
+        for (k, centre) in self.parameter.iter().zip(&self.centre) {
             let xi = k / plate.radius;
             let (omega, share) = self.lower_wave(xi);
-            let phi = self.amplitude() * centre_deflection(plate.edge, k) * share.sqrt();
+            let phi = centre * share.sqrt();
             layer.omega.push(omega);
             layer.participation.push(patch.map(|a| phi * patch_transform(xi * a)));
         }
@@ -155,11 +161,11 @@ impl Waves {
         let squeezed = |xi: f64| half_space(xi) * squeezing_ratio(xi * half);
         let radii = [patch[0], patch[1], INSIDE * patch[0], INSIDE * patch[1]];
         let weight = |xi: f64| radii.map(|a| patch_transform(xi * a));
-        let mut shares: Vec<Share> = self.parameter[..modes]
-            .iter()
-            .map(|&k| {
-                let (xi, amplitude) = (k / plate.radius, self.amplitude() * centre_deflection(plate.edge, k));
-                let bent = amplitude * amplitude * self.mass_per_area() * bent(xi);
+        let waves = self.parameter.iter().zip(&self.centre).take(modes);
+        let mut shares: Vec<Share> = waves
+            .map(|(k, centre)| {
+                let xi = k / plate.radius;
+                let bent = centre * centre * self.mass_per_area() * bent(xi);
                 Share { own: bent, mutual: bent, weight: weight(xi) }
             })
             .collect();

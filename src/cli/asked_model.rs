@@ -1,8 +1,11 @@
 //! Reduced models as the command line names them: A, B, C, or `auto`.
 
-use crate::impact::Choice;
-use crate::scene::Model;
+use crate::error::Result;
+use crate::impact::reduced::Reduced;
+use crate::impact::{Choice, choice};
+use crate::scene::{Model, Scene};
 use std::str::FromStr;
+use std::time::Instant;
 
 /// A reduced model, or the program's choice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +17,7 @@ pub(super) enum AskedModel {
 impl FromStr for AskedModel {
     type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
         if text == "auto" {
             return Ok(AskedModel::Auto);
         }
@@ -33,7 +36,7 @@ impl std::fmt::Display for AskedModel {
 }
 
 /// Parses a relative error, as a number or in percent.
-pub(super) fn tolerance(text: &str) -> Result<f64, String> {
+pub(super) fn tolerance(text: &str) -> std::result::Result<f64, String> {
     let (number, unit) = match text.strip_suffix('%') {
         Some(number) => (number.trim_end(), 0.01),
         None => (text, 1.0),
@@ -59,8 +62,41 @@ pub(super) fn told(choice: &Choice) -> String {
         let plural = if tried.modes == 1 { "" } else { "s" };
         let name = format!("model {}, {} {kind}mode{plural}", tried.model, tried.modes);
         let quantity = tried.quantity.as_ref().map_or(String::new(), |q| format!(" ({q})"));
-        lines.push(format!("  {name:<26} {:>10}{quantity}", percent(tried.estimated_error)));
+        let mark = if tried.chosen { "  <- chosen" } else { "" };
+        lines.push(format!("  {name:<26} {:>10}{quantity}{mark}", percent(tried.estimated_error)));
     }
     lines.push(format!("  {}", choice.reason));
     lines.join("\n")
+}
+
+/// The `models` of `scene`, each once, in the order asked for, with the time in s that each took to set up. A model that is
+/// named and also chosen by auto is compared as auto chose it.
+pub(super) fn set_up(
+    scene: &Scene,
+    models: &[AskedModel],
+    tolerance: Option<f64>,
+) -> Result<Vec<(Reduced, f64)>> {
+    let timed = |set_up: &dyn Fn() -> Result<Reduced>| {
+        let start = Instant::now();
+        set_up().map(|body| (body, start.elapsed().as_secs_f64()))
+    };
+    let mut chosen = None;
+    if models.contains(&AskedModel::Auto) {
+        let tolerance = tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
+        chosen = Some(timed(&|| Reduced::auto(scene, tolerance))?);
+    }
+    let auto = chosen.as_ref().map(|(body, _)| body.model());
+    let mut done = Vec::new();
+    let mut bodies = Vec::new();
+    for asked in models {
+        match *asked {
+            AskedModel::Auto => bodies.extend(chosen.take()),
+            AskedModel::Named(model) if auto != Some(model) && !done.contains(&model) => {
+                done.push(model);
+                bodies.push(timed(&|| Reduced::new(scene, model, None))?);
+            }
+            AskedModel::Named(_) => {}
+        }
+    }
+    Ok(bodies)
 }

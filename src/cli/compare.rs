@@ -7,8 +7,6 @@ use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
 use crate::comparison::{CommonAxis, Comparison, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
-use crate::impact::choice;
-use crate::impact::reduced::Reduced;
 use crate::impact::{Outcome, Quantities};
 use crate::measured::{self, Record, Speed};
 use crate::reference::{Lookup, Resolution, Stored, Wish};
@@ -169,7 +167,8 @@ impl<'a> Job<'a> {
         for (scene, stored) in plates.into_iter().zip(&references) {
             // the models' curves are drawn and compared as far as the reference's
             let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
-            let outcomes = models(scene, self.arguments)?.into_iter().map(|(body, set_up)| {
+            let models = asked_model::set_up(scene, &self.arguments.models, self.arguments.tolerance)?;
+            let outcomes = models.into_iter().map(|(body, set_up)| {
                 let outcome = body.run_with_history_until(TOLERANCE, end)?;
                 context.detail(format_args!(
                     "{}: model {} set up in {:.1} ms, run in {:.2} ms",
@@ -428,32 +427,4 @@ fn all_found(mut problems: Vec<String>) -> Result<()> {
             .into(),
     );
     Err(Error::Reference(problems.join("\n  ")))
-}
-
-/// The models to compare, each once, in the order asked for, with the time in s that each took to set up. A model that is
-/// named and also chosen by auto is compared as auto chose it.
-fn models(scene: &Scene, arguments: &Arguments) -> Result<Vec<(Reduced, f64)>> {
-    let timed = |set_up: &dyn Fn() -> Result<Reduced>| {
-        let start = Instant::now();
-        set_up().map(|body| (body, start.elapsed().as_secs_f64()))
-    };
-    let mut chosen = None;
-    if arguments.models.contains(&AskedModel::Auto) {
-        let tolerance = arguments.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
-        chosen = Some(timed(&|| Reduced::auto(scene, tolerance))?);
-    }
-    let auto = chosen.as_ref().map(|(body, _)| body.model());
-    let mut done = Vec::new();
-    let mut models = Vec::new();
-    for asked in &arguments.models {
-        match *asked {
-            AskedModel::Auto => models.extend(chosen.take()),
-            AskedModel::Named(model) if auto != Some(model) && !done.contains(&model) => {
-                done.push(model);
-                models.push(timed(&|| Reduced::new(scene, model, None))?);
-            }
-            AskedModel::Named(_) => {}
-        }
-    }
-    Ok(models)
 }

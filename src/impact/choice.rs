@@ -10,7 +10,8 @@
 //! with the error that model C itself was found to have against the finite-element reference as the floor.
 
 use super::integrator::{Options, integrate};
-use super::reduced::{DEFAULT_MODES, Rough, fluid_forces, quantities};
+use super::reduced::{DEFAULT_MODES, fluid_forces, quantities};
+use super::rough::Rough;
 use super::system::System;
 use super::{OuterBody, PlateQuantities, validity, wet};
 use crate::body::continuum::ContinuumPlate;
@@ -30,8 +31,8 @@ pub const DEFAULT_TOLERANCE: f64 = 0.01;
 const SMALL_EFFICIENCY: f64 = 0.05;
 /// Share of the tolerance that is left to the time integration.
 const INTEGRATION_SHARE: f64 = 0.01;
-/// Error over the difference to the layer: the layer is itself off by up to a fifth of what it corrects.
-const SAFETY: f64 = 1.25;
+/// Error over the difference to the layer, which is mostly within a tenth of what it corrects.
+const SAFETY: f64 = 1.15;
 /// Part of (contact frequency / lowest frequency left out)^2 that a truncated series of continuum modes may be off by beyond
 /// what the layer, which has no longitudinal modes, tells.
 const TRUNCATION_SHARE: f64 = 0.1;
@@ -42,7 +43,8 @@ const LEFT_OUT_SHARE: f64 = 0.25;
 /// Numbers of Kirchhoff modes tried: model A and then B.
 const KIRCHHOFF_RUNGS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 /// Numbers of bending modes tried for model C.
-const CONTINUUM_RUNGS: [usize; 15] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192];
+const CONTINUUM_RUNGS: [usize; 26] =
+    [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192];
 
 /// A model that was considered.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -55,6 +57,8 @@ pub struct Candidate {
     pub estimated_error: Option<f64>,
     /// The quantity with that error.
     pub quantity: Option<String>,
+    /// Whether it was chosen.
+    pub chosen: bool,
 }
 
 /// What was chosen for a scene, from what, and why.
@@ -276,7 +280,7 @@ impl Search {
         best
     }
 
-    /// Numbers of bending modes of model C until one is enough, at most `most`; it and its estimate.
+    /// The smallest number of bending modes of model C that is enough, at most `most`, by bisection, and its estimate.
     fn continuum(
         &mut self,
         trials: &Trials,
@@ -286,31 +290,37 @@ impl Search {
     ) -> (usize, Option<f64>) {
         let floor = self.floor.unwrap_or(self.tolerance);
         // what the floor leaves; where it leaves nothing, so much that the modes hardly matter beside it
-        let room = if floor < self.tolerance {
-            (self.tolerance.powi(2) - floor.powi(2)).sqrt()
-        } else {
-            0.5 * floor
+        let room = match floor < self.tolerance {
+            true => (self.tolerance.powi(2) - floor.powi(2)).sqrt(),
+            false => 0.5 * floor,
         };
-        let mut last = (most, None);
-        for modes in CONTINUUM_RUNGS.into_iter().take_while(|n| *n <= most) {
-            let alone = truncation(trials.layer.omega_next(modes));
-            // modes of the contact's own frequency are always missed
-            if alone > 1.0 && modes < most {
-                continue;
-            }
+        let alone = |modes: usize| truncation(trials.layer.omega_next(modes));
+        // without the modes of the contact's own frequency nothing is right
+        let rungs: Vec<usize> =
+            CONTINUUM_RUNGS.into_iter().filter(|n| *n == most || *n < most && alone(*n) <= 1.0).collect();
+        let mut attempt = |modes: usize| {
             let difference = match (reference, trials.continuum(modes)) {
                 (Some(exact), Ok(ours)) => Some(largest_error(&ours, exact, trials.setup.outer.speed)),
                 _ => None,
             };
-            let truncated = difference.map_or(alone, |(error, _)| SAFETY * error + TRUNCATION_SHARE * alone);
+            let truncated = difference
+                .map_or(alone(modes), |(error, _)| SAFETY * error + TRUNCATION_SHARE * alone(modes));
             let error = self.total(truncated);
             self.note(Model::C, modes, error, difference.map(|(_, name)| name));
-            last = (modes, error);
-            if truncated <= room {
-                break;
+            (truncated <= room, error)
+        };
+        let (mut low, mut high) = (0, rungs.len() - 1);
+        let mut found = None;
+        while low < high {
+            let middle = (low + high) / 2;
+            match attempt(rungs[middle]) {
+                (true, error) => (high, found) = (middle, Some(error)),
+                (false, _) => low = middle + 1,
             }
         }
-        last
+        let error = found.unwrap_or_else(|| attempt(rungs[high]).1);
+        self.tried.sort_by(|a, b| (&a.model, a.modes).cmp(&(&b.model, b.modes)));
+        (rungs[high], error)
     }
 
     /// An error with the floor; `None` where there is none.
@@ -324,6 +334,7 @@ impl Search {
             modes,
             estimated_error: error,
             quantity: quantity.map(str::to_owned),
+            chosen: false,
         });
     }
 
@@ -359,11 +370,21 @@ impl Search {
             tried: self.tried,
             reason,
         };
-        Plan { choice, model, modes, cut, rough, second }
+        let mut plan = Plan { choice, model, modes, cut, rough, second };
+        plan.mark();
+        plan
     }
 }
 
 impl Plan {
+    /// Marks the candidate that is chosen.
+    fn mark(&mut self) {
+        let model = self.model.to_string();
+        for candidate in &mut self.choice.tried {
+            candidate.chosen = candidate.model == model && candidate.modes == self.modes;
+        }
+    }
+
     /// The plan without model C, which can't be set up as `error` says; `None` if there is nothing else.
     pub(super) fn without_continuum(mut self, error: &crate::Error) -> Option<Self> {
         let (model, modes, estimate) = self.second?;
@@ -374,6 +395,7 @@ impl Plan {
             100.0 * estimate
         );
         (self.model, self.modes, self.cut, self.second) = (model, modes, None, None);
+        self.mark();
         Some(self)
     }
 }

@@ -18,6 +18,7 @@ mod outer_body;
 mod point_laws;
 mod recorder;
 pub mod reduced;
+mod rough;
 pub mod seal_seat;
 mod seat_result;
 mod step_bounds;

@@ -12,7 +12,7 @@
 //! The residual flexibility is taken as quadratic in the patch radii (see [`crate::contact::Residual`]); with a patch
 //! as wide as the plate is thick it is not.
 
-use super::reduced::Rough;
+use super::rough::Rough;
 use crate::body::ModalBody;
 use crate::scene::{Model, PlateImpact};
 

@@ -20,7 +20,8 @@
 //! [`Variants::run`] then fails; there is no plate theory with half-space contact to speak of.
 
 use super::integrator::{Options, integrate};
-use super::reduced::{Rough, quantities, tip_residuals};
+use super::reduced::{quantities, tip_residuals};
+use super::rough::Rough;
 use super::summary::PlateQuantities;
 use super::system::System;
 use super::validity;

@@ -185,6 +185,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         integration_error: None,
         choice: None,
         warnings: Vec::new(),
+        choice: None,
         samples: None,
         sample_interval: None,
     }
