@@ -1,5 +1,6 @@
 //! A reduced model of a scene: bodies reduced to modes, joined and integrated.
 
+use super::LEAN;
 use super::assured::{self, assured};
 use super::integrator::{Integration, Options, integrate};
 use super::system::System;
@@ -73,6 +74,12 @@ impl Reduced {
             (_, modes) => modes.or(scene.reduced.modes),
         };
         let Built { system, fluid, warnings } = build(setup, model, modes, plates)?;
+        if LEAN && (fluid.is_some() || system.is_damped() || system.residual.is_some()) {
+            return Err(Error::Usage(
+                "this program was built without fluid, damping and residual flexibility (feature `lean`)"
+                    .into(),
+            ));
+        }
         Ok(Self { model, system, fluid, warnings, scene })
     }
 
@@ -83,7 +90,7 @@ impl Reduced {
 
     fn integrate(&self, options: &Options) -> Result<Integration> {
         let system = &self.system;
-        assured(options, system.speed, |options| match &self.fluid {
+        assured(options, system.speed, |options| match self.fluid.as_ref().filter(|_| !LEAN) {
             None => integrate(system, options),
             Some(fluid) => wet::integrate(system, fluid, options),
         })
