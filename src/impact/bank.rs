@@ -4,6 +4,7 @@
 //! time. Nothing depends on the order of the oscillators; the last block is filled up with rigid coordinates no
 //! contact acts on, which stay at rest.
 
+use super::LEAN;
 use super::collocation::STAGES;
 use super::duhamel::{MOMENTS, Oscillator};
 use super::system::System;
@@ -76,7 +77,7 @@ impl Bank {
     #[inline(always)]
     pub fn moments(&self, k: usize, t: f64, powers: &[f64; STAGES]) -> [f64x4; MOMENTS] {
         let angle = self.omega[k] * t;
-        if self.damped[k] || angle.simd_lt(f64x4::splat(MAX_ANGLE)).to_bitmask() != 0b1111 {
+        if (!LEAN && self.damped[k]) || angle.simd_lt(f64x4::splat(MAX_ANGLE)).to_bitmask() != 0b1111 {
             return self.one_by_one(k, t);
         }
         match angle.simd_lt(f64x4::splat(SERIES)).to_bitmask() {

@@ -38,6 +38,10 @@ pub use summary::{
     BenderSummary, PLATE_QUANTITIES, PlateQuantities, Quantities, SCHEMA_VERSION, Source, Summary,
 };
 
+/// Whether this build leaves out fluid, damping, residual flexibility and histories (feature `lean`), to measure what they
+/// cost where they are not used.
+const LEAN: bool = cfg!(feature = "lean");
+
 /// What a run gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome<Q: Quantities = PlateQuantities> {

@@ -1,5 +1,6 @@
 //! A reduced model of a scene: bodies reduced to modes, joined and integrated.
 
+use super::LEAN;
 use super::assured::{self, assured};
 use super::choice::{self, Choice, Cut};
 use super::integrator::{Integration, Options, integrate};
@@ -102,7 +103,7 @@ impl Reduced {
                 continuum(setup, modes.map_or(Wanted::Estimate, Wanted::Modes), &rough, cache)?
             }
         };
-        Ok(Self::of(built, model, scene, None))
+        Self::of(built, model, scene, None)
     }
 
     /// The cheapest model and number of modes whose estimated error meets `tolerance`, or what comes nearest; see
@@ -123,18 +124,24 @@ impl Reduced {
         let mut plan = choice::plan(scene, tolerance)?;
         if let Some(cut) = plan.cut {
             match continuum(setup, Wanted::Below(cut), &plan.rough, cache) {
-                Ok(built) => return Ok(Self::of(built, Model::C, scene.clone(), Some(plan.choice))),
+                Ok(built) => return Self::of(built, Model::C, scene.clone(), Some(plan.choice)),
                 Err(error) => plan = plan.without_continuum(&error).ok_or(error)?,
             }
         }
         let built = kirchhoff(setup, plan.modes, &UnitPlates::default())?;
-        Ok(Self::of(built, plan.model, scene.clone(), Some(plan.choice)))
+        Self::of(built, plan.model, scene.clone(), Some(plan.choice))
     }
 
-    fn of(built: Built, model: Model, scene: Scene, choice: Option<Choice>) -> Self {
+    fn of(built: Built, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
         let Built { system, fluid, mut warnings } = built;
+        if LEAN && (fluid.is_some() || system.is_damped() || system.residual.is_some()) {
+            return Err(Error::Usage(
+                "this program was built without fluid, damping and residual flexibility (feature `lean`)"
+                    .into(),
+            ));
+        }
         warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
-        Self { model, system, fluid, warnings, choice, scene }
+        Ok(Self { model, system, fluid, warnings, choice, scene })
     }
 
     /// The model.
@@ -154,7 +161,7 @@ impl Reduced {
 
     fn integrate(&self, options: &Options) -> Result<Integration> {
         let system = &self.system;
-        assured(options, system.speed, |options| match &self.fluid {
+        assured(options, system.speed, |options| match self.fluid.as_ref().filter(|_| !LEAN) {
             None => integrate(system, options),
             Some(fluid) => wet::integrate(system, fluid, options),
         })

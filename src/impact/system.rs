@@ -6,6 +6,7 @@
 //! its force acts back as q_k'' + 2 alpha_k q_k' + omega_k^2 q_k = -sum_i b_ik F_i.
 //! Contact 0 joins outer body and plate, contact 1 plate and inner body.
 
+use super::LEAN;
 use super::centre::LocalCentre;
 use super::duhamel::Oscillator;
 use super::outer_body::{Drive, OuterBody};
@@ -132,6 +133,11 @@ impl System {
         }
     }
 
+    #[inline(always)]
+    fn residual(&self) -> Option<&Residual> {
+        self.residual.as_ref().filter(|_| !LEAN)
+    }
+
     /// Whether any oscillator is damped.
     pub fn is_damped(&self) -> bool {
         self.oscillators.iter().any(|o| o.alpha > 0.0)
@@ -140,7 +146,7 @@ impl System {
     /// Change of both contact forces in N per modal approach of both in m, with the patches `local` as
     /// [`Self::local_approach`] gives them.
     pub fn tangent(&self, local: [f64; 2]) -> [[f64; 2]; 2] {
-        match &self.residual {
+        match self.residual() {
             None => [[self.laws[0].tangent(local[0]), 0.0], [0.0, self.laws[1].tangent(local[1])]],
             Some(residual) => {
                 let per = |rate| residual.rates(&self.laws, local, rate).1;
@@ -181,7 +187,7 @@ impl System {
     #[inline(always)]
     pub fn stored_energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
         let p = p.map(|p| p.max(0.0));
-        match &self.residual {
+        match self.residual() {
             None => 0.4 * (f[0] * p[0] + f[1] * p[1]),
             Some(residual) => residual.energy(f, p),
         }
@@ -195,13 +201,13 @@ impl System {
     /// Patches of both contacts, squared radius over tip radius in m, at the modal approach `y` in m and the forces `f` in
     /// N that go with it; where a contact is open, the distance, negative.
     pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
-        self.residual.map_or(y, |residual| residual.local_approach(&self.laws, y, f))
+        self.residual().map_or(y, |residual| residual.local_approach(&self.laws, y, f))
     }
 
     /// Forces of both contacts in N with the patches `p` in m.
     #[inline(always)]
     pub fn forces(&self, p: [f64; 2]) -> [f64; 2] {
-        match &self.residual {
+        match self.residual() {
             None => [self.laws[0].force(p[0]), self.laws[1].force(p[1])],
             Some(residual) => residual.forces(&self.laws, p),
         }
@@ -211,7 +217,7 @@ impl System {
     /// the patches of a nearby state; `None` if there is no equilibrium.
     #[inline]
     pub fn contact(&self, y: [f64; 2], guess: [f64; 2]) -> Option<([f64; 2], [f64; 2])> {
-        match &self.residual {
+        match self.residual() {
             None => Some((y, [self.laws[0].force(y[0]), self.laws[1].force(y[1])])),
             Some(residual) => residual.solve(&self.laws, y, guess),
         }

@@ -68,9 +68,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 /// # Errors
 /// [`Error::Io`] naming the folder.
 pub fn check_writable(dir: &Path) -> Result<()> {
-    let fail = |e: io::Error| {
-        Error::Usage(format!("{} can't be written into: {e}; choose another folder", dir.display()))
-    };
+    let fail = |e| Error::io("writing (choose another folder?) into", dir, e);
     // The nearest folder that exists takes the test file; a file in the way is no folder.
     let start = if dir.as_os_str().is_empty() { Path::new(".") } else { dir };
     let mut existing = start;

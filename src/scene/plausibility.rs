@@ -102,7 +102,7 @@ mod tests {
         assert!(found[0].starts_with("materials.steel.density = 7.78e0 kg/m^3"), "{found:?}");
         assert!(found[1].starts_with("plate.radius = 3.3e1 m"), "{found:?}");
         assert!(found[2].contains("500 %"), "{found:?}");
-        let rod = doubts(&scene("\"0.4 mm\"", "7780", "0.05"));
-        assert!(rod[0].contains("5 times plate.radius"), "{rod:?}");
+        let rod = doubts(&scene("\"0.3 mm\"", "7780", "0.05"));
+        assert!(rod[0].contains("6.667 times plate.radius"), "{rod:?}");
     }
 }

@@ -229,3 +229,60 @@ fn judge(
     }
     solved
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn draw(seed: u64) -> Case {
+        Case::draw(seed, &UnitPlates::default()).unwrap()
+    }
+
+    fn options(case: &Case, tolerance: f64) -> Options {
+        Options { tolerance, end_time: Some(case.end_time), sample_interval: None }
+    }
+
+    /// Largest difference of a velocity to the solution at the tightest tolerance, over the impact speed.
+    fn error(case: &Case, result: &Integration) -> f64 {
+        let exact = integrate(&case.system, &options(case, 1e-12)).unwrap();
+        let apart = |i: usize| (result.velocity[i] - exact.velocity[i]).abs() / case.system.speed;
+        apart(0).max(apart(1))
+    }
+
+    /// The ninth touch of the light inner body lasts 0.2 % of a contact, between two Gauss points of a step.
+    #[test]
+    fn a_short_touch_is_not_passed() {
+        let case = draw(242_304);
+        let result = integrate(&case.system, &options(&case, 1e-7)).unwrap();
+        assert_eq!(result.contacts[1].contacts, 9);
+        assert!(error(&case, &result) < 1e-6, "{:e}", error(&case, &result));
+    }
+
+    /// Ten contacts amplify the errors of the steps a thousand times; the estimate sees it, and smaller steps mend it.
+    #[test]
+    fn amplified_errors_are_estimated_and_mended() {
+        let case = draw(236_931);
+        let (system, asked) = (&case.system, options(&case, 1e-7));
+        let plain = integrate(system, &asked).unwrap();
+        assert!(error(&case, &plain) > 1e-5 && plain.error_estimate.is_none());
+        let sure = assured(&asked, system.speed, |options| integrate(system, options)).unwrap();
+        let estimate = sure.error_estimate.unwrap();
+        assert!(error(&case, &sure) <= estimate && estimate <= 1e-6, "{estimate:e}");
+    }
+
+    /// 113 damped modes, of which every step makes a little energy.
+    #[test]
+    fn energy_made_by_many_steps_is_bounded() {
+        let case = draw(100_019);
+        let result = integrate(&case.system, &options(&case, 1e-7)).unwrap();
+        assert!(result.energy_gained < 1e-6, "{:e}", result.energy_gained);
+    }
+
+    #[test]
+    fn dry_and_wet_cases_hold() {
+        let report = run(24, 700_000, &|| ()).unwrap();
+        assert_eq!(report.failures, []);
+        assert!(report.compared > 5 && report.wet > 0, "{} compared, {} wet", report.compared, report.wet);
+        assert!(report.worst.contains_key("wet_momentum"));
+    }
+}

@@ -1,0 +1,94 @@
+//! Kernels of the reduced models, by criterion: `cargo bench --bench kernels`.
+
+use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use impactcheck::body::kirchhoff::{UnitPlate, UnitPlates};
+use impactcheck::contact::{Hertz, Residual};
+use impactcheck::impact::duhamel::Oscillator;
+use impactcheck::impact::reduced::Reduced;
+use impactcheck::scene::{Edge, Model, Scene};
+use std::hint::black_box;
+use std::time::Duration;
+
+const SCENE: &str = include_str!("../scenes/scaled-plate-r10.toml");
+
+fn scene(from: &str, to: &str) -> Scene {
+    Scene::parse("scene.toml", &SCENE.replacen(from, to, 1)).expect("a valid scene")
+}
+
+/// Answer of one oscillator to polynomial forces, by power series and in closed form.
+fn moments(c: &mut Criterion) {
+    let mut group = c.benchmark_group("duhamel_moments");
+    for (name, angle, damping) in
+        [("series", 0.5, 0.0), ("closed_form", 20.0, 0.0), ("overdamped", 20.0, 3.0)]
+    {
+        let oscillator = Oscillator { omega: angle, alpha: damping * angle };
+        group.bench_function(name, |b| b.iter(|| black_box(oscillator).moments(black_box(1.0))));
+    }
+}
+
+/// Forces of both contacts, with Hertz alone and with the bodies' residual flexibility.
+fn contact(c: &mut Criterion) {
+    let laws =
+        [Hertz { stiffness: 1.5e10, tip_radius: 0.01 }, Hertz { stiffness: 0.9e10, tip_radius: 0.005 }];
+    let residual =
+        Residual { flexibility: [[2e-9, -6e-10], [-6e-10, 1e-9]], growth: [[-3e-5, 4e-5], [-2e-5, 6e-5]] };
+    let approach = [8e-6, 5e-6];
+    let mut group = c.benchmark_group("contact");
+    group.bench_function("hertz", |b| {
+        b.iter(|| [0, 1].map(|i| laws[i].force(black_box(approach[i]))));
+    });
+    group.bench_function("residual_newton", |b| {
+        b.iter(|| residual.newton(&laws, black_box(approach), black_box([7e-6, 4e-6])));
+    });
+    group.bench_function("residual_solve", |b| {
+        b.iter(|| residual.solve(&laws, black_box(approach), black_box([7e-6, 4e-6])));
+    });
+}
+
+/// Eigenproblem of a plate, solved once for all plates of one edge and Poisson's ratio.
+fn plate(c: &mut Criterion) {
+    let mut group = c.benchmark_group("plate_frequencies");
+    for modes in [1, 16, 64] {
+        group.bench_with_input(BenchmarkId::from_parameter(modes), &modes, |b, modes| {
+            b.iter(|| UnitPlate::new(Edge::Clamped, 0.3, *modes).expect("modes"));
+        });
+    }
+}
+
+/// One impact with model B at a tolerance of 1e-6, and one with a free flight before its second contact.
+fn impact(c: &mut Criterion) {
+    let mut group = c.benchmark_group("impact");
+    for modes in [1, 16, 64] {
+        let reduced = Reduced::new(&scene("", ""), Model::B, Some(modes)).expect("a model");
+        group.bench_with_input(BenchmarkId::from_parameter(modes), &reduced, |b, reduced| {
+            b.iter(|| reduced.point(1e-6).expect("an impact"));
+        });
+    }
+    let apart = scene("[inner]\n", "[inner]\ngap = \"0.1 mm\"\n");
+    let flight = Reduced::new(&apart, Model::B, Some(16)).expect("a model");
+    group.bench_function("with_free_flight", |b| b.iter(|| flight.point(1e-6).expect("an impact")));
+}
+
+/// A point of a sweep: the scene's model from known modes, and its impact.
+fn sweep_point(c: &mut Criterion) {
+    let (scene, plates) = (scene("", ""), UnitPlates::default());
+    Reduced::in_series(scene.clone(), Model::B, Some(16), &plates).expect("modes that are known from now on");
+    c.bench_function("sweep_point", |b| {
+        b.iter_batched(
+            || scene.clone(),
+            |scene| Reduced::in_series(scene, Model::B, Some(16), &plates).and_then(|r| r.point(1e-5)),
+            BatchSize::SmallInput,
+        );
+    });
+}
+
+criterion_group! {
+    name = kernels;
+    config = Criterion::default()
+        .without_plots()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(500));
+    targets = moments, contact, plate, impact, sweep_point
+}
+criterion_main!(kernels);
