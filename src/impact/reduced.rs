@@ -3,7 +3,7 @@
 use super::integrator::{Integration, Options, integrate};
 use super::system::System;
 use super::validity;
-use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
+use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::continuum::{MeshOptions, cached};
@@ -152,13 +152,6 @@ impl Reduced {
     fn summary(&self, result: &Integration, solve_seconds: f64) -> Summary {
         let system = &self.system;
         Summary {
-            schema_version: SCHEMA_VERSION,
-            scene: self.scene.name.clone(),
-            scene_hash: self.scene.hash(),
-            source: Source::Reduced,
-            model: Some(self.model.to_string()),
-            modes: Some(system.modes),
-            quantities: quantities(system, result),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
@@ -168,13 +161,8 @@ impl Reduced {
                 BenderSummary { strain_energy_efficiency: transmitted / drive.strain_energy, drive }
             }),
             losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
-            uncertainty: Default::default(),
-            convergence: None,
-            mesh: None,
-            solver: None,
             warnings: self.warnings.clone(),
-            samples: None,
-            sample_interval: None,
+            ..Summary::of_reduced(&self.scene, self.model, system.modes, quantities(system, result))
         }
     }
 }
