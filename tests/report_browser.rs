@@ -151,7 +151,7 @@ fn pages_work_in_a_browser_in_light_dark_and_on_a_phone() {
     });
     const DARK: &str = "--blink-settings=preferredColorScheme=0";
     const PHONE: &str = "--window-size=500,900";
-    let views: [(&str, &[&str]); 4] = [
+    let views: [(&str, &[&str]); 5] = [
         (&plate, &[]),
         (&plate, &[DARK, PHONE]),
         (&seat, &[DARK]),
