@@ -91,6 +91,18 @@ fn the_ring_is_where_cone_and_sphere_touch() {
 }
 
 #[test]
+fn bounds_of_an_angle_are_told_in_the_unit_of_the_value() {
+    for (value, said) in [
+        ("\"-3 deg\"", "at least 0 deg and less than 90 deg"),
+        ("\"2 rad\"", "at least 0 rad and less than 1.57"),
+        ("2.0", "at least 0 rad and less than 1.57"),
+    ] {
+        let found = faults(&with(&[("tilt", value)]));
+        assert!(found.iter().any(|fault| fault.message.contains(said)), "{value}: {found:#?}");
+    }
+}
+
+#[test]
 fn colliding_features_are_named() {
     collides(
         &[("bore_depth", "\"3.2 mm\"")],

@@ -125,29 +125,40 @@ def _revolved(scene: SeatScene, ring: Ring) -> int:
     return int(next(tag for dimension, tag in made if dimension == 3))
 
 
-def build(scene: SeatScene) -> None:
-    """Add the half seat to gmsh's OCC model."""
+def _cut_out(scene: SeatScene, together: bool) -> int:
+    """Add the half seat to gmsh's OCC model; the number of its pieces."""
     seat, occ = scene.seat, gmsh.model.occ
     length, width, height = seat.island_length, seat.island_width, seat.island_height
     membrane = occ.addCylinder(
         0.0, 0.0, 0.0, 0.0, 0.0, seat.membrane_thickness, seat.membrane_radius, -1, math.pi
     )
     island = occ.addBox(-0.5 * length, 0.0, 0.0, length, 0.5 * width, height)
-    body, _ = occ.fuse([(3, membrane)], [(3, island)])
+    cut, _ = occ.fuse([(3, membrane)], [(3, island)])
     tools = [(3, _revolved(scene, scene.ring(side))) for side in (-1.0, 1.0)]
     if seat.notch is not None:
         notch = seat.notch
         slot = occ.addBox(-0.5 * notch.width, -width, notch.floor, notch.width, 2.0 * width, height)
         tools.append((3, slot))
-    cut, _ = occ.cut(body, tools)
+    for group in [tools] if together else [[tool] for tool in tools]:
+        cut, _ = occ.cut(cut, group)
     # A node where each tip touches first: otherwise the force peaks scatter with the nodes' places.
     touched = [(0, occ.addPoint(x, 0.0, 0.0)) for x in scene.actuator.tip_positions]
     whole, _ = occ.fragment(cut, touched)
-    solids = [tag for dimension, tag in whole if dimension == 3]
-    if len(solids) != 1:
-        raise SolverError(
-            f"the seal seat falls into {len(solids)} pieces: its features cut it through"
-        )
+    return sum(dimension == 3 for dimension, _ in whole)
+
+
+def build(scene: SeatScene) -> None:
+    """Add the half seat to gmsh's OCC model.
+
+    OpenCASCADE sometimes leaves parts of tools that overlap each other; taken out one after the
+    other they are gone.
+    """
+    pieces = _cut_out(scene, together=True)
+    if pieces != 1:
+        gmsh.model.occ.remove(gmsh.model.occ.getEntities(), recursive=True)
+        pieces = _cut_out(scene, together=False)
+    if pieces != 1:
+        raise SolverError(f"the seal seat falls into {pieces} pieces: its features cut it through")
 
 
 def cad_volume(scene: SeatScene) -> float:

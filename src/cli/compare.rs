@@ -162,7 +162,8 @@ impl<'a> Job<'a> {
             tell_reused(context, &stored.outcome.summary.scene, &stored.provenance);
         }
         let seats = seats.into_iter().zip(stored);
-        let seats = seats.map(|(scene, stored)| compare_seats::run(scene, stored)).collect::<Result<_>>()?;
+        let seats =
+            seats.map(|(scene, stored)| compare_seats::run(context, scene, stored)).collect::<Result<_>>()?;
         let mut reduced = Vec::new();
         for (scene, stored) in plates.into_iter().zip(&references) {
             // the models' curves are drawn and compared as far as the reference's

@@ -1,6 +1,8 @@
 //! The seal-seat scenes of `compare` and `gate`: the reduced model on the very mesh of the stored reference.
 
+use super::Context;
 use super::asked_model::AskedModel;
+use super::progress::Bar;
 use crate::body::cache::Cache;
 use crate::ci::acceptance;
 use crate::comparison::compare_scene;
@@ -40,9 +42,13 @@ pub(super) fn check_models(scene: &Scene, models: &[AskedModel]) -> Result<()> {
 }
 
 /// Runs the reduced model.
-pub(super) fn run(scene: &Scene, stored: Stored<SeatQuantities>) -> Result<SeatRun> {
+pub(super) fn run(context: &Context, scene: &Scene, stored: Stored<SeatQuantities>) -> Result<SeatRun> {
     let mesh = SeatMesh::open(&stored.folder.join("mesh.vtu"))?;
-    let model = SeatModel::new(scene, Model::C, None, &mesh, &Cache::from_environment())?;
+    let bar = Bar::new(context, &scene.name);
+    let cache = Cache::from_environment();
+    let watch = &mut |part, done| bar.part(part, done);
+    let model = SeatModel::new_with(scene, Model::C, None, &mesh, &cache, watch)?;
+    drop(bar);
     let (summary, history) = model.run_with_history(DEFAULT_TOLERANCE)?;
     let reduced = vec![Outcome { summary, history }];
     let cost = vec![Cost { setup_seconds: model.setup_seconds, dofs: model.dofs }];

@@ -1,5 +1,6 @@
 //! `impactcheck mesh`: meshes the seat of a seal-seat scene.
 
+use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::reference::{self, Resolution};
@@ -33,7 +34,10 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
     scene.seal_seat()?;
     let python = reference::python()?;
+    let bar = Bar::new(context, &scene.name);
+    bar.part("mesh: gmsh", 0.0);
     let info = reference::make_seat_mesh(&python, &scene, arguments.resolution, factor, &arguments.out)?;
+    drop(bar);
     if arguments.json.json {
         super::print_json(&info)?;
     } else {

@@ -5,6 +5,7 @@ use crate::reference::Progress;
 use crate::study::sweep;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::time::Duration;
 
 /// Bar over the phases of a reference solution.
 pub struct Bar(ProgressBar);
@@ -29,6 +30,14 @@ impl Bar {
     pub fn show(&self, progress: &Progress) {
         self.0.set_message(format!("{}: {}", progress.phase, progress.message));
         self.0.set_position((1000.0 * progress.done.clamp(0.0, 1.0)) as u64);
+    }
+
+    /// Shows the part of a set-up that is being done; `done` is the share before it, 0 to 1.
+    pub fn part(&self, part: &'static str, done: f64) {
+        self.0.set_message(part);
+        self.0.set_position((1000.0 * done.clamp(0.0, 1.0)) as u64);
+        // the next call may be seconds away
+        self.0.enable_steady_tick(Duration::from_millis(200));
     }
 }
 

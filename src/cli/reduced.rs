@@ -1,6 +1,7 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
 use super::asked_model::{self, AskedModel};
+use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::body::cache::Cache;
 use crate::error::{Error, ExitStatus, Result};
@@ -117,11 +118,18 @@ fn seat(
         None => scene.reduced.model.unwrap_or(Model::C),
     };
     let cache = Cache::from_environment();
+    let bar = Bar::new(context, &scene.name);
     let mesh = match &arguments.mesh {
         Some(path) => SeatMesh::open(path)?,
-        None => SeatMesh::open(&reference::seat_mesh(scene, Resolution::Paper, &cache)?)?,
+        None => {
+            let show = &mut |step: &_| bar.show(step);
+            SeatMesh::open(&reference::seat_mesh_with(scene, Resolution::Paper, &cache, show)?)?
+        }
     };
-    let reduced = SeatModel::new(scene, model, arguments.modes, &mesh, &cache)?;
+    let reduced = SeatModel::new_with(scene, model, arguments.modes, &mesh, &cache, &mut |part, done| {
+        bar.part(part, done)
+    })?;
+    drop(bar);
     context.note(format_args!(
         "mesh {}, {} degrees of freedom; set up in {:.2} s",
         mesh.path().display(),

@@ -7,7 +7,7 @@ use super::integrator::{Integration, Options, integrate};
 use super::rough::Rough;
 use super::system::System;
 use super::validity;
-use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, SCHEMA_VERSION, Source, Summary, wet};
+use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::cache::Cache;
@@ -245,13 +245,6 @@ impl Reduced {
             }
         }
         Summary {
-            schema_version: SCHEMA_VERSION,
-            scene: self.scene.name.clone(),
-            scene_hash: self.scene.hash(),
-            source: Source::Reduced,
-            model: Some(self.model.to_string()),
-            modes: Some(system.modes),
-            quantities: quantities(system, result),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
@@ -262,14 +255,9 @@ impl Reduced {
                 BenderSummary { strain_energy_efficiency: transmitted / drive.strain_energy, drive }
             }),
             losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
-            uncertainty: Default::default(),
-            convergence: None,
-            mesh: None,
-            solver: None,
             warnings,
             choice: self.choice.clone(),
-            samples: None,
-            sample_interval: None,
+            ..Summary::of_reduced(&self.scene, self.model, system.modes, quantities(system, result))
         }
     }
 }

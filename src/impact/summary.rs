@@ -2,6 +2,7 @@
 
 use super::history::{Curves, History};
 use super::{Drive, Losses};
+use crate::scene::{Model, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -176,4 +177,34 @@ pub struct Summary<Q: Quantities = PlateQuantities> {
     /// Distance of the samples in s, if it is the same between all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sample_interval: Option<f64>,
+}
+
+impl<Q: Quantities> Summary<Q> {
+    /// What a reduced model of `scene` says; balances, steps and time are still to be told.
+    pub(in crate::impact) fn of_reduced(scene: &Scene, model: Model, modes: usize, quantities: Q) -> Self {
+        Self {
+            schema_version: SCHEMA_VERSION,
+            scene: scene.name.clone(),
+            scene_hash: scene.hash(),
+            source: Source::Reduced,
+            model: Some(model.to_string()),
+            modes: Some(modes),
+            quantities,
+            energy_residual: f64::NAN,
+            momentum_residual: f64::NAN,
+            steps: 0,
+            solve_seconds: 0.0,
+            bender: None,
+            losses: None,
+            integration_error: None,
+            choice: None,
+            uncertainty: BTreeMap::new(),
+            convergence: None,
+            mesh: None,
+            solver: None,
+            warnings: Vec::new(),
+            samples: None,
+            sample_interval: None,
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Meshes of seal seats: files made by `fem_reference`, each with a description that says what it is a mesh of.
 
-use super::{Resolution, child, identity, python};
+use super::{Progress, Resolution, child, identity, python};
 use crate::body::cache::Cache;
 use crate::project::project_root;
 use crate::scene::Scene;
@@ -59,6 +59,19 @@ pub fn seat_meshes(folder: &Path, scene: &Scene) -> Result<Vec<(PathBuf, SeatMes
 /// # Errors
 /// [`Error::Scene`] if it is no seal seat, [`Error::Solver`] if there is none and none can be made.
 pub fn seat_mesh(scene: &Scene, resolution: Resolution, cache: &Cache) -> Result<PathBuf> {
+    seat_mesh_with(scene, resolution, cache, &mut |_| {})
+}
+
+/// As [`seat_mesh`], telling when a mesh has to be made.
+///
+/// # Errors
+/// As [`seat_mesh`].
+pub fn seat_mesh_with(
+    scene: &Scene,
+    resolution: Resolution,
+    cache: &Cache,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<PathBuf> {
     let shipped = project_root().join("meshes");
     let found = if resolution == Resolution::Paper && shipped.is_dir() {
         seat_meshes(&shipped, scene)?
@@ -77,6 +90,7 @@ pub fn seat_mesh(scene: &Scene, resolution: Resolution, cache: &Cache) -> Result
     let path = folder.join("meshes").join(format!("{name}.vtu"));
     if intact(&path).is_none() {
         std::fs::create_dir_all(folder.join("meshes")).map_err(|e| Error::io("writing", &path, e))?;
+        progress(&Progress { phase: "mesh".into(), done: 0.0, message: "gmsh".into() });
         make_seat_mesh(&python::python()?, scene, resolution, 1.0, &path)?;
     }
     Ok(path)

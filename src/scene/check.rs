@@ -295,7 +295,13 @@ impl<'a> Checker<'a> {
         bound: Bound,
     ) -> Option<f64> {
         let (what, unit, sample) = dimension.describe();
-        let range = bound.describe(unit);
+        let in_degrees = dimension == Dimension::ANGLE
+            && matches!(value.get_ref(), DeValue::String(text) if text.trim_end().ends_with("deg"));
+        let (unit, range) = if in_degrees {
+            ("deg", bound.in_degrees().describe("deg"))
+        } else {
+            (unit, bound.describe(unit))
+        };
         let help = if dimension == Dimension::NONE {
             format!("write a number that is {range}, for example {sample}")
         } else {

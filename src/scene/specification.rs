@@ -24,6 +24,13 @@ impl Bound {
         value.is_finite() && above && below
     }
 
+    /// The same range of an angle in degrees; rounding is left out.
+    pub(super) fn in_degrees(&self) -> Self {
+        let of =
+            |end: Option<(f64, bool)>| end.map(|(b, valid)| ((b.to_degrees() * 1e9).round() / 1e9, valid));
+        Self { low: of(self.low), high: of(self.high) }
+    }
+
     /// "greater than 0 m", "at least 0 and less than 1".
     pub(super) fn describe(&self, unit: &str) -> String {
         let unit = if unit == "1" { String::new() } else { format!(" {unit}") };

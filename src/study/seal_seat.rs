@@ -28,6 +28,26 @@ struct Case {
     scene: Scene,
 }
 
+/// Columns of the table with their units.
+const COLUMNS: [(&str, &str); 16] = [
+    ("design", "1"),
+    ("varied", "1"),
+    ("aperture_angle", "rad"),
+    ("tilt", "rad"),
+    ("outermost_tip", "m"),
+    ("notch_width", "m"),
+    ("membrane_thickness", "m"),
+    ("sphere_angle", "rad"),
+    ("deviation", "rad"),
+    ("sphere_speed", "m/s"),
+    ("efficiency", "1"),
+    ("sphere_force_peak", "N"),
+    ("actuator_force_peak", "N"),
+    ("parameter", "1"),
+    ("reference_angle", "rad"),
+    ("reference_speed", "m/s"),
+];
+
 /// In the place of a parameter: the design itself, a point of every curve.
 const NOTHING: &str = "none";
 const PARAMETERS: [&str; 5] = ["aperture angle", "tilt", "impact", "notch", "membrane"];
@@ -127,27 +147,8 @@ pub fn run(note: &mut Note) -> Result<Study> {
              sides together bring the intended direction. "
             .to_owned()
             + &notch_and_impact(&angle, &corners),
-        columns: vec![
-            "design",
-            "varied",
-            "aperture_angle",
-            "tilt",
-            "outermost_tip",
-            "notch_width",
-            "membrane_thickness",
-            "sphere_angle",
-            "deviation",
-            "sphere_speed",
-            "efficiency",
-            "sphere_force_peak",
-            "actuator_force_peak",
-            "parameter",
-            "reference_angle",
-            "reference_speed",
-        ],
-        units: vec![
-            "1", "1", "rad", "rad", "m", "m", "m", "rad", "rad", "m/s", "1", "N", "N", "1", "rad", "m/s",
-        ],
+        columns: COLUMNS.iter().map(|(name, _)| *name).collect(),
+        units: COLUMNS.iter().map(|(_, unit)| *unit).collect(),
         rows,
         claims: claims(intended, &angle),
     })
@@ -342,4 +343,65 @@ fn row(
     row.push(reference.map(|q| q.sphere_angle).into());
     row.push(reference.map(|q| q.sphere_speed).into());
     Ok(row)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::figure;
+
+    /// The study's table as [`run`] makes it, without solving anything.
+    fn unsolved() -> Study {
+        let [initial, improved] = DESIGNS.map(|(_, name)| shipped(name).expect("scene"));
+        let cases = cases(&initial, &improved).expect("cases");
+        let found = SeatQuantities {
+            efficiency: 0.1,
+            sphere_velocity_x: 0.0,
+            sphere_velocity_z: 1.0,
+            sphere_speed: 1.0,
+            sphere_angle: 0.2,
+            sphere_force_peak: 5.0,
+            actuator_force_peak: 20.0,
+            actuator_velocity_final: -0.5,
+            sphere_contact_end: 1e-4,
+            actuator_contact_end: 2e-4,
+            left_flank_impulse: 1e-4,
+            right_flank_impulse: 1e-4,
+            first_frequency: 4e3,
+        };
+        Study {
+            schema_version: SCHEMA_VERSION,
+            study: "seal-seat",
+            description: String::new(),
+            columns: COLUMNS.iter().map(|(name, _)| *name).collect(),
+            units: COLUMNS.iter().map(|(_, unit)| *unit).collect(),
+            rows: cases.iter().map(|case| row(case, Some(&found), None).expect("row")).collect(),
+            claims: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn every_case_is_a_scene_of_its_own_that_could_be_written() {
+        let study = unsolved();
+        assert!(study.rows.iter().all(|row| row.len() == COLUMNS.len()));
+        for (k, row) in study.rows.iter().enumerate() {
+            assert!(study.rows[..k].iter().all(|other| other[..2] != row[..2]), "{:?}", &row[..2]);
+        }
+        for corner in &CORNERS {
+            let there = |row: &&Vec<Cell>| row[..2] == [Cell::Text(corner.design), Cell::Text(corner.varied)];
+            assert_eq!(study.rows.iter().filter(there).count(), 1, "{}", corner.varied);
+        }
+    }
+
+    #[test]
+    fn each_parameter_is_drawn_around_both_designs() {
+        let study = unsolved();
+        let svg = figure(&study, &PANELS).expect("figure");
+        // every panel has a curve per design
+        assert_eq!(svg.matches("stroke-linejoin=\"round\"").count(), 2 * PANELS.len());
+        for parameter in PARAMETERS {
+            let varied = study.rows.iter().filter(|row| row[13] == Cell::Text(parameter)).count();
+            assert!(varied >= 3, "{parameter}: {varied}");
+        }
+    }
 }

@@ -219,7 +219,7 @@ impl<'a> Contact<'a> {
 
     /// Gap and normal of the watched candidate `i`; the radius in m of its ball.
     fn look(&mut self, i: usize, balls: &[Ball]) -> f64 {
-        let (d, ball) = self.watch.from_centre(i);
+        let (d, ball) = self.watch.off_centre(i);
         let (distance, radius) = (dot(d, d).sqrt(), balls[ball].radius);
         self.gap[i] = distance - radius;
         self.loads.normal[i] = d.map(|d| d / distance);

@@ -18,7 +18,7 @@ mod survey;
 pub mod system;
 mod watch;
 
-pub use body::{SeatBody, SeatMesh, supports};
+pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
-pub use model::{DEFAULT_MODES, DEFAULT_TOLERANCE, SeatModel, quantities};
+pub use model::{DEFAULT_TOLERANCE, SeatModel, quantities};
 pub use survey::Survey;

@@ -1,6 +1,6 @@
 //! A reduced seal seat of a scene, ready to run.
 
-use super::body::{SeatBody, SeatMesh};
+use super::body::{SeatBody, SeatMesh, Watch};
 use super::candidates::Zones;
 use super::integrate::{Options, integrate};
 use super::integration::{Integration, Sample};
@@ -8,12 +8,11 @@ use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::cache::Cache;
 use crate::error::{Error, Result};
-use crate::impact::{SCHEMA_VERSION, SeatHistory, SeatQuantities, SeatSummary, Source};
+use crate::impact::reduced::DEFAULT_MODES;
+use crate::impact::{SeatHistory, SeatQuantities, SeatSummary};
 use crate::scene::{Model, Scene, SealSeat, SphereBody};
 use std::time::Instant;
 
-/// Modes when neither the scene nor the caller names a number.
-pub const DEFAULT_MODES: usize = 16;
 /// Relative error of the sphere's velocity from the time integration when the caller names none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 /// Steps tried first: per period of the highest mode, and over the actuator's contact if the seat were a heavy half-space.
@@ -52,6 +51,21 @@ impl SeatModel {
         mesh: &SeatMesh,
         cache: &Cache,
     ) -> Result<Self> {
+        Self::new_with(scene, model, modes, mesh, cache, &mut |_, _| {})
+    }
+
+    /// As [`SeatModel::new`], telling how far it is.
+    ///
+    /// # Errors
+    /// As [`SeatModel::new`].
+    pub fn new_with(
+        scene: &Scene,
+        model: Model,
+        modes: Option<usize>,
+        mesh: &SeatMesh,
+        cache: &Cache,
+        watch: &mut Watch,
+    ) -> Result<Self> {
         let started = Instant::now();
         let setup = scene.seal_seat()?;
         if model != Model::C {
@@ -65,8 +79,9 @@ impl SeatModel {
         }
         let mut zones = Zones::expected(setup);
         for _ in 0..WIDENINGS {
-            let seat = mesh.body(setup, &zones, modes, cache)?;
+            let seat = mesh.body_with(setup, &zones, modes, cache, watch)?;
             let built = Self::with(scene, setup, &seat, modes)?;
+            watch("impact", 0.95);
             let rough = built.integrate(built.first_step, false)?;
             match zones.widened(rough.tally.reach) {
                 Some(wider) => zones = wider,
@@ -166,29 +181,14 @@ impl SeatModel {
     }
 
     fn summary(&self, result: &Integration, solve_seconds: f64) -> SeatSummary {
+        let (system, modes) = (&self.system, self.system.omega.len());
         SeatSummary {
-            schema_version: SCHEMA_VERSION,
-            scene: self.scene.name.clone(),
-            scene_hash: self.scene.hash(),
-            source: Source::Reduced,
-            model: Some(Model::C.to_string()),
-            modes: Some(self.system.omega.len()),
-            quantities: quantities(&self.system, result),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.tally.steps,
             solve_seconds,
-            integration_error: None,
-            bender: None,
-            losses: None,
-            uncertainty: Default::default(),
-            convergence: None,
-            mesh: None,
-            solver: None,
             warnings: self.warnings.clone(),
-            choice: None,
-            samples: None,
-            sample_interval: None,
+            ..SeatSummary::of_reduced(&self.scene, Model::C, modes, quantities(system, result))
         }
     }
 }

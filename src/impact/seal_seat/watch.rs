@@ -142,7 +142,7 @@ impl Watch {
     }
 
     /// Vector in m from the centre of its ball to the watched candidate `i`, and the number of the ball.
-    pub fn from_centre(&self, i: usize) -> ([f64; 3], usize) {
+    pub fn off_centre(&self, i: usize) -> ([f64; 3], usize) {
         let (w, slot) = (self.len(), self.slot[i]);
         ([0, 1, 2].map(|c| self.base[c * w + slot] + self.yielding[c * w + slot]), self.ball[slot])
     }
