@@ -185,7 +185,6 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         integration_error: None,
         choice: None,
         warnings: Vec::new(),
-        choice: None,
         samples: None,
         sample_interval: None,
     }
