@@ -397,8 +397,8 @@ mod tests {
     fn each_parameter_is_drawn_around_both_designs() {
         let study = unsolved();
         let svg = figure(&study, &PANELS).expect("figure");
-        // every panel has a curve per design
-        assert_eq!(svg.matches("stroke-linejoin=\"round\"").count(), 2 * PANELS.len());
+        // every panel has a curve per design, and the legend one
+        assert_eq!(svg.matches("stroke-linejoin=\"round\"").count(), 2 * (PANELS.len() + 1));
         for parameter in PARAMETERS {
             let varied = study.rows.iter().filter(|row| row[13] == Cell::Text(parameter)).count();
             assert!(varied >= 3, "{parameter}: {varied}");
