@@ -82,5 +82,11 @@ evidence: setup
 	for study in fig14 fig15 fig16 fig17 half-period; do $(RUN) study $$study --model C --out $(OUT)/studies || exit 1; done
 	$(RUN) bench --out $(OUT)/bench
 	$(RUN) stress --cases 100000
+	cp target/release/impactcheck $(OUT)/impactcheck-full
+	cargo build --release --features lean && mv target/release/impactcheck $(OUT)/impactcheck-lean
+	cargo build --release
+	$(PYTHON) benches/unneeded.py $(OUT)/impactcheck-full $(OUT)/impactcheck-lean --out $(OUT)/unneeded
+	fuzz/run.sh scene 1800
+	fuzz/run.sh store 1800
 	PROPTEST_CASES=200000 cargo test --release --test random_input
 	.ci/fenicsx-0.9
