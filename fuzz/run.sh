@@ -21,5 +21,11 @@ store)
     ;;
 *) echo "unknown target $target: scene or store" >&2; exit 2 ;;
 esac
-exec cargo fuzz run --sanitizer none "$target" -- -max_total_time="$seconds" -max_len=8192 -timeout=20 \
-    -print_final_stats=1 ${3:+"$3"}
+host=$(rustc -vV | sed -n 's/^host: //p')
+# as cargo-fuzz does it, without an address sanitizer: the stable toolchain is enough
+RUSTFLAGS="--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+-Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+-Cllvm-args=-sanitizer-coverage-trace-compares" cargo build --release --target "$host" --bin "$target"
+mkdir -p artifacts
+exec "target/$host/release/$target" "$corpus" -max_total_time="$seconds" -max_len=8192 -timeout=20 \
+    -artifact_prefix="artifacts/$target-" -print_final_stats=1

@@ -61,7 +61,12 @@ fn arrows(report: &SeatReport) -> Vec<Arrow> {
     if let Setup::SealSeat(setup) = &report.scene.setup {
         let (sin, cos) = setup.intended_angle.sin_cos();
         let velocity = [sin, cos].map(|c| c * reference.sphere_speed);
-        arrows.push(Arrow { name: "intended direction".into(), velocity, colour: "#777777", dashes: "3 4" });
+        arrows.push(Arrow {
+            name: "intended, drawn with the reference's speed".into(),
+            velocity,
+            colour: "#777777",
+            dashes: "3 4",
+        });
     }
     arrows.push(Arrow { name: "reference".into(), velocity: of(reference), colour: "#1a1a1a", dashes: "" });
     for model in &report.comparison.models {
@@ -156,7 +161,7 @@ pub fn seat_page(report: &SeatReport) -> String {
             a href=(format!("{name}.svg")) { "curves as SVG" } " · " a href=(format!("{name}.csv")) { "curves as CSV" } " · "
             a href=(format!("{name}-section.svg")) { "section as SVG" } }
         @if let Some(animation) = &report.animation {
-            p { "The deformed seat over time, for ParaView: " code { (animation.display()) } }
+            p { "Fields of the stored solution, for ParaView (`impactcheck reference SCENE --fields 40` makes a series): " code { (animation.display()) } }
         }
         @for model in &comparison.models { (model_section(model)) }
         h2 { "Cost" }
