@@ -1,17 +1,19 @@
 //! `impactcheck compare`: the main job, scene to verdict.
 
 use super::asked_model::{self, AskedModel};
+use super::compare_inputs;
 use super::compare_seats::{self, SeatRun};
-use super::{Context, JsonArgument, reference};
+use super::stored_references::{all_found, look_up, tell_reused};
+use super::{Context, JsonArgument};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
 use crate::comparison::{CommonAxis, Comparison, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
-use crate::impact::{Outcome, Quantities};
+use crate::impact::Outcome;
 use crate::measured::{self, Record, Speed};
-use crate::reference::{Lookup, Resolution, Stored, Wish};
-use crate::report::{self, Attachments, FIGURE_WIDTHS, FigureFormat, Report, SceneReport};
-use crate::scene::{self, Model, Scene, Setup};
+use crate::reference::{Resolution, Stored};
+use crate::report::{self, Attachments, FigureFormat, Report, SceneReport};
+use crate::scene::{Model, Scene, Setup};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -42,7 +44,7 @@ pub struct Arguments {
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
     measured: Vec<PathBuf>,
     /// Bandwidth of the instrument, to which the models' curves are filtered
-    #[arg(long, default_value = "100 kHz", value_name = "FREQUENCY", value_parser = bandwidth)]
+    #[arg(long, default_value = "100 kHz", value_name = "FREQUENCY", value_parser = compare_inputs::bandwidth)]
     bandwidth: f64,
     /// Where the outer body's measured speed comes from: scene (the signal may have an offset) or measured (it has none)
     #[arg(long, default_value = "scene", value_name = "SOURCE")]
@@ -51,7 +53,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
     /// Width of that figure: 85 mm is one column, 175 mm a page
-    #[arg(long, default_value = "175 mm", value_name = "LENGTH", value_parser = figure_width, requires = "figure")]
+    #[arg(long, default_value = "175 mm", value_name = "LENGTH", value_parser = compare_inputs::figure_width, requires = "figure")]
     figure_width: f64,
     /// Results over commits to draw in the report [default: trends.jsonl in the report's folder, if it exists]
     #[arg(long, value_name = "FILE")]
@@ -107,7 +109,7 @@ impl<'a> Job<'a> {
                 "--tolerance {tolerance} is for the model auto, which is not among --models"
             )));
         }
-        let mut scenes = read(&arguments.scenes)?;
+        let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
         // refused before anything is computed; of all shipped scenes those are compared that have one of the models
         if arguments.scenes.is_empty() && !arguments.models.contains(&AskedModel::Named(Model::C)) {
             scenes.retain(|(_, scene)| !is_seat(scene));
@@ -116,8 +118,8 @@ impl<'a> Job<'a> {
         if let Some((_, seat)) = scenes.iter().find(|(_, scene)| is_seat(scene)) {
             compare_seats::check_models(seat, &arguments.models)?;
         }
-        let records = records(arguments, &scenes)?;
-        let figures = figures(arguments, &scenes)?;
+        let records = compare_inputs::records(&arguments.measured, &scenes)?;
+        let figures = compare_inputs::figures(arguments.figure.as_ref(), &scenes)?;
         Ok(Job { start, arguments, scenes, records, figures })
     }
 
@@ -151,9 +153,10 @@ impl<'a> Job<'a> {
     pub(super) fn results(&self, context: &Context) -> Result<Results> {
         let plates: Vec<&Scene> = self.plates().map(|(_, scene)| scene).collect();
         let seats: Vec<&Scene> = self.seats().map(|(_, scene)| scene).collect();
+        let Arguments { resolution, compute, .. } = *self.arguments;
         let mut problems = Vec::new();
-        let references = references(context, self.arguments, &plates, &mut problems)?;
-        let stored = self::references(context, self.arguments, &seats, &mut problems)?;
+        let references = look_up(context, resolution, compute, &plates, &mut problems)?;
+        let stored = look_up(context, resolution, compute, &seats, &mut problems)?;
         all_found(problems)?;
         for stored in &references {
             tell_reused(context, &stored.outcome.summary.scene, &stored.provenance);
@@ -287,65 +290,8 @@ impl<'a> Job<'a> {
     }
 }
 
-fn is_seat(scene: &Scene) -> bool {
+pub(super) fn is_seat(scene: &Scene) -> bool {
     matches!(scene.setup, Setup::SealSeat(_))
-}
-
-/// The file of every scene's figure; none if none is asked for. Refused before anything is computed.
-fn figures(arguments: &Arguments, scenes: &[(PathBuf, Scene)]) -> Result<Vec<(PathBuf, FigureFormat)>> {
-    let Some(file) = &arguments.figure else { return Ok(Vec::new()) };
-    let format = FigureFormat::of(file)?;
-    if let Some((_, seat)) = scenes.iter().find(|(_, scene)| is_seat(scene)) {
-        return Err(Error::Usage(format!(
-            "--figure draws plate impacts, and scene `{0}` is a seal seat; its drawings {0}.svg and {0}-section.svg are in the folder of the report",
-            seat.name
-        )));
-    }
-    if scenes.len() == 1 {
-        return Ok(vec![(file.clone(), format)]);
-    }
-    let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
-    let (stem, ending) = (part(file.file_stem()), part(file.extension()));
-    let named = |(_, scene): &(PathBuf, Scene)| {
-        (file.with_file_name(format!("{stem}-{}.{ending}", scene.name)), format)
-    };
-    Ok(scenes.iter().map(named).collect())
-}
-
-/// Parses the width of a figure, in mm.
-fn figure_width(text: &str) -> std::result::Result<f64, String> {
-    let width = 1e3 * scene::quantity_in(text, "m")?;
-    if FIGURE_WIDTHS.contains(&width) {
-        Ok(width)
-    } else {
-        Err(format!(
-            "{width} mm is not within {} to {} mm (a number without unit is in m)",
-            FIGURE_WIDTHS.start(),
-            FIGURE_WIDTHS.end()
-        ))
-    }
-}
-
-/// The measured files; they belong to one scene.
-fn records(arguments: &Arguments, scenes: &[(PathBuf, Scene)]) -> Result<Vec<Record>> {
-    let plates = scenes.iter().filter(|(_, scene)| !is_seat(scene)).count();
-    if !arguments.measured.is_empty() && (plates != 1 || scenes.len() != 1) {
-        return Err(Error::Usage(format!(
-            "--measured needs exactly one plate impact, to which the files belong; there are {} scenes, {plates} of that kind",
-            scenes.len()
-        )));
-    }
-    arguments.measured.iter().map(|file| Record::read(file)).collect()
-}
-
-/// Parses a bandwidth that a filter can be made for.
-fn bandwidth(text: &str) -> std::result::Result<f64, String> {
-    let value = scene::quantity_in(text, "Hz")?;
-    if (1e3..=1e8).contains(&value) {
-        Ok(value)
-    } else {
-        Err(format!("{value} Hz is not within 1 kHz to 100 MHz"))
-    }
 }
 
 /// The comparison with its discrepancy budget. A budget that can't be drawn up is said to be missing: the comparison
@@ -356,76 +302,4 @@ fn compared(context: &Context, scene: &Scene, reference: &Outcome, reduced: &[Ou
         context.note(format_args!("scene `{}` has no discrepancy budget: {error}", scene.name));
     }
     comparison
-}
-
-/// The scenes named, or all shipped ones.
-fn read(names: &[String]) -> Result<Vec<(PathBuf, Scene)>> {
-    let paths = if names.is_empty() {
-        scene::shipped()?
-    } else {
-        names.iter().map(|name| scene::resolve(name)).collect::<Result<Vec<_>>>()?
-    };
-    let read = |path: PathBuf| Scene::read(&path).map(|scene| (path, scene));
-    let scenes = paths.into_iter().map(read).collect::<Result<Vec<_>>>()?;
-    for (i, (_, scene)) in scenes.iter().enumerate() {
-        if scenes[..i].iter().any(|(_, other)| other.name == scene.name) {
-            return Err(Error::Usage(format!(
-                "two scenes are called `{}`; a report needs different names",
-                scene.name
-            )));
-        }
-    }
-    Ok(scenes)
-}
-
-/// The references of `scenes`, from the store or computed; `problems` gets a sentence for every one that can't be used.
-fn references<Q: Quantities>(
-    context: &Context,
-    arguments: &Arguments,
-    scenes: &[&Scene],
-    problems: &mut Vec<String>,
-) -> Result<Vec<Stored<Q>>> {
-    let store = context.store();
-    let mut found = Vec::new();
-    for scene in scenes {
-        match store.find_as(scene, arguments.resolution) {
-            Lookup::Found(stored) => found.push(*stored),
-            Lookup::Missing | Lookup::Stale { .. } if arguments.compute => {
-                let wish = Wish::default();
-                found.push(reference::compute_as(context, scene, arguments.resolution, &store, &wish)?);
-            }
-            other => {
-                let mut problem = reference::problem(scene, arguments.resolution, &other);
-                let there: Vec<String> =
-                    store.resolutions(scene).into_iter().map(Resolution::argument).collect();
-                if !there.is_empty() {
-                    problem += &format!(
-                        "; there is one for `--resolution {}` in {}",
-                        there.join("`, `--resolution "),
-                        store.root().display()
-                    );
-                }
-                problems.push(problem);
-            }
-        }
-    }
-    Ok(found)
-}
-
-/// Where a reference comes from.
-fn tell_reused(context: &Context, scene: &str, provenance: &serde_json::Value) {
-    let made = provenance["created"].as_str().map_or(String::new(), |when| format!(", made {when}"));
-    context.detail(format_args!("{scene}: reference from the store{made}"));
-}
-
-/// One error that names every reference that can't be used, if there is any.
-fn all_found(mut problems: Vec<String>) -> Result<()> {
-    if problems.is_empty() {
-        return Ok(());
-    }
-    problems.push(
-        "compute references with `impactcheck reference SCENE` or `--compute` (`impactcheck doctor` tells what that needs)"
-            .into(),
-    );
-    Err(Error::Reference(problems.join("\n  ")))
 }

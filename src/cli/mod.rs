@@ -3,6 +3,7 @@
 mod asked_model;
 mod bench;
 mod compare;
+mod compare_inputs;
 mod compare_seats;
 mod doctor;
 mod gate;
@@ -14,6 +15,7 @@ mod reduced;
 mod reference;
 mod schema;
 mod shell;
+mod stored_references;
 mod stress;
 mod study;
 mod sweep;

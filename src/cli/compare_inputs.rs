@@ -1,0 +1,88 @@
+//! What a comparison is asked to use, checked before anything is computed.
+
+use super::compare::is_seat;
+use crate::error::{Error, Result};
+use crate::measured::Record;
+use crate::report::{FIGURE_WIDTHS, FigureFormat};
+use crate::scene::{self, Scene};
+use std::path::PathBuf;
+
+/// The scenes named, or all shipped ones.
+pub(super) fn scenes(names: &[String]) -> Result<Vec<(PathBuf, Scene)>> {
+    let paths = if names.is_empty() {
+        scene::shipped()?
+    } else {
+        names.iter().map(|name| scene::resolve(name)).collect::<Result<Vec<_>>>()?
+    };
+    let read = |path: PathBuf| Scene::read(&path).map(|scene| (path, scene));
+    let scenes = paths.into_iter().map(read).collect::<Result<Vec<_>>>()?;
+    for (i, (_, scene)) in scenes.iter().enumerate() {
+        if scenes[..i].iter().any(|(_, other)| other.name == scene.name) {
+            return Err(Error::Usage(format!(
+                "two scenes are called `{}`; a report needs different names",
+                scene.name
+            )));
+        }
+    }
+    Ok(scenes)
+}
+
+/// The file of every scene's figure; none if none is asked for. Refused before anything is computed.
+pub(super) fn figures(
+    file: Option<&PathBuf>,
+    scenes: &[(PathBuf, Scene)],
+) -> Result<Vec<(PathBuf, FigureFormat)>> {
+    let Some(file) = file else { return Ok(Vec::new()) };
+    let format = FigureFormat::of(file)?;
+    if let Some((_, seat)) = scenes.iter().find(|(_, scene)| is_seat(scene)) {
+        return Err(Error::Usage(format!(
+            "--figure draws plate impacts, and scene `{0}` is a seal seat; its drawings {0}.svg and {0}-section.svg are in the folder of the report",
+            seat.name
+        )));
+    }
+    if scenes.len() == 1 {
+        return Ok(vec![(file.clone(), format)]);
+    }
+    let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let (stem, ending) = (part(file.file_stem()), part(file.extension()));
+    let named = |(_, scene): &(PathBuf, Scene)| {
+        (file.with_file_name(format!("{stem}-{}.{ending}", scene.name)), format)
+    };
+    Ok(scenes.iter().map(named).collect())
+}
+
+/// Parses the width of a figure, in mm.
+pub(super) fn figure_width(text: &str) -> std::result::Result<f64, String> {
+    let width = 1e3 * scene::quantity_in(text, "m")?;
+    if FIGURE_WIDTHS.contains(&width) {
+        Ok(width)
+    } else {
+        Err(format!(
+            "{width} mm is not within {} to {} mm (a number without unit is in m)",
+            FIGURE_WIDTHS.start(),
+            FIGURE_WIDTHS.end()
+        ))
+    }
+}
+
+/// The measured files; they belong to one scene.
+pub(super) fn records(files: &[PathBuf], scenes: &[(PathBuf, Scene)]) -> Result<Vec<Record>> {
+    let plates = scenes.iter().filter(|(_, scene)| !is_seat(scene)).count();
+    if !files.is_empty() && (plates != 1 || scenes.len() != 1) {
+        return Err(Error::Usage(format!(
+            "--measured needs exactly one plate impact, to which the files belong; there are {} scenes, {plates} of that kind",
+            scenes.len()
+        )));
+    }
+    files.iter().map(|file| Record::read(file)).collect()
+}
+
+/// Parses a bandwidth that a filter can be made for.
+pub(super) fn bandwidth(text: &str) -> std::result::Result<f64, String> {
+    let value = scene::quantity_in(text, "Hz")?;
+    if (1e3..=1e8).contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("{value} Hz is not within 1 kHz to 100 MHz"))
+    }
+}

@@ -1,0 +1,60 @@
+//! The stored references of several scenes, for a comparison.
+
+use super::{Context, reference};
+use crate::error::{Error, Result};
+use crate::impact::Quantities;
+use crate::reference::{Lookup, Resolution, Stored, Wish};
+use crate::scene::Scene;
+
+/// The references of `scenes`, from the store or computed; `problems` gets a sentence for every one that can't be used.
+pub(super) fn look_up<Q: Quantities>(
+    context: &Context,
+    resolution: Resolution,
+    compute: bool,
+    scenes: &[&Scene],
+    problems: &mut Vec<String>,
+) -> Result<Vec<Stored<Q>>> {
+    let store = context.store();
+    let mut found = Vec::new();
+    for scene in scenes {
+        match store.find_as(scene, resolution) {
+            Lookup::Found(stored) => found.push(*stored),
+            Lookup::Missing | Lookup::Stale { .. } if compute => {
+                let wish = Wish::default();
+                found.push(reference::compute_as(context, scene, resolution, &store, &wish)?);
+            }
+            other => {
+                let mut problem = reference::problem(scene, resolution, &other);
+                let there: Vec<String> =
+                    store.resolutions(scene).into_iter().map(Resolution::argument).collect();
+                if !there.is_empty() {
+                    problem += &format!(
+                        "; there is one for `--resolution {}` in {}",
+                        there.join("`, `--resolution "),
+                        store.root().display()
+                    );
+                }
+                problems.push(problem);
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Where a reference comes from.
+pub(super) fn tell_reused(context: &Context, scene: &str, provenance: &serde_json::Value) {
+    let made = provenance["created"].as_str().map_or(String::new(), |when| format!(", made {when}"));
+    context.detail(format_args!("{scene}: reference from the store{made}"));
+}
+
+/// One error that names every reference that can't be used, if there is any.
+pub(super) fn all_found(mut problems: Vec<String>) -> Result<()> {
+    if problems.is_empty() {
+        return Ok(());
+    }
+    problems.push(
+        "compute references with `impactcheck reference SCENE` or `--compute` (`impactcheck doctor` tells what that needs)"
+            .into(),
+    );
+    Err(Error::Reference(problems.join("\n  ")))
+}
