@@ -91,7 +91,7 @@ fn show<Q: Quantities>(
 
 /// What is wrong with what the store has.
 pub fn problem<Q: Quantities>(scene: &Scene, resolution: Resolution, lookup: &Lookup<Q>) -> String {
-    let which = format!("the {resolution} reference of `{}`", scene.name);
+    let which = format!("the {} reference of `{}`", resolution.argument(), scene.name);
     match lookup {
         Lookup::Found(_) => format!("{which} is there"),
         Lookup::Missing => format!("{which} is missing"),
