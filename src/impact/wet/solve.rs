@@ -12,6 +12,11 @@ use crate::impact::system::{INNER, System};
 
 /// Iterations for the forces of a step; more means that the step is too long.
 const MAX_ITERATIONS: usize = 30;
+/// Part of the bearable force error to which the iteration goes on while it gains: over thousands of steps of one sign, what
+/// is left unbalances the momenta by less than 1e-10.
+const POLISHED: f64 = 1e-3;
+/// Error of an iteration over that of the last above which it gains no more, be it for round-off.
+const STAGNANT: f64 = 0.5;
 /// Unknowns of Newton's step: both contact forces and the film's part along g at every Gauss point.
 const UNKNOWNS: usize = 3 * STAGES;
 
@@ -49,23 +54,7 @@ impl Wet<'_> {
     /// Solves for the forces of a step from the state (`q`, `v`), from those in `trial` on; `false` if the iteration
     /// does not settle within `force_error` N or the contact has no equilibrium.
     pub fn solve(&self, table: &Table, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
-        let mut settled = false;
-        for _ in 0..MAX_ITERATIONS {
-            table.motion(q, v, &self.generalised(trial), &mut trial.motion);
-            let Some(defect) = self.defect(trial) else { return false };
-            let size = self.size(&defect);
-            if !size.is_finite() {
-                return false;
-            }
-            if size <= force_error {
-                settled = true;
-                break;
-            }
-            if !self.newton(table, &defect, trial) {
-                return false;
-            }
-        }
-        if !settled {
+        if !self.iterate(table, q, v, force_error, trial) {
             return false;
         }
         let (q, v) = (&trial.motion.q[STAGES], &trial.motion.v[STAGES]);
@@ -76,6 +65,23 @@ impl Wet<'_> {
             None => return false,
         }
         true
+    }
+
+    fn iterate(&self, table: &Table, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
+        let mut last = f64::INFINITY;
+        for _ in 0..MAX_ITERATIONS {
+            table.motion(q, v, &self.generalised(trial), &mut trial.motion);
+            let Some(defect) = self.defect(trial) else { return false };
+            let size = self.size(&defect);
+            if size <= force_error && (size <= POLISHED * force_error || size > STAGNANT * last) {
+                return true;
+            }
+            if !size.is_finite() || !self.newton(table, &defect, trial) {
+                return false;
+            }
+            last = size;
+        }
+        false
     }
 
     /// Generalised forces of contacts and fluid at the Gauss points. Shape (n).
