@@ -73,6 +73,16 @@ impl Deflection {
         weights.iter().zip(&table[index..index + 4]).map(|(w, value)| w * value).sum()
     }
 
+    /// Value at `r` of every shape. Shape (modes).
+    pub fn shapes_at(&self, r: f64, values: &mut [f64]) {
+        let (index, weights) = self.stencil(r);
+        values.fill(0.0);
+        let rows = self.by_radius.chunks_exact(self.modes()).skip(index);
+        for (weight, row) in weights.into_iter().zip(rows) {
+            values.iter_mut().zip(row).for_each(|(value, shape)| *value += weight * shape);
+        }
+    }
+
     /// Adds `loads` in N at the radii `radius` as generalised forces on the modes, N kg^(-1/2). It is the transpose
     /// of [`Deflection::sum`] and [`Deflection::value`]: loads and motions give the same power on either side.
     pub fn generalised(&self, radius: &[f64], loads: &[f64], forces: &mut [f64]) {

@@ -21,6 +21,11 @@ impl Drag {
         (coefficient > 0.0).then_some(Self { coefficient })
     }
 
+    /// Change of the resistance per velocity in N s/m at `velocity` m/s.
+    pub fn damping(&self, velocity: f64) -> f64 {
+        2.0 * self.coefficient * velocity.abs()
+    }
+
     /// Force in N along z on the body that moves with `velocity` m/s.
     pub fn force(&self, velocity: f64) -> f64 {
         -self.coefficient * velocity * velocity.abs()

@@ -49,6 +49,25 @@ pub struct FilmForces {
     pub resistance: f64,
     /// Power dissipated in W.
     pub dissipation: f64,
+    /// Flow through the outer face of each cell. Shape (cells), or empty where there is no film.
+    pub faces: Vec<Face>,
+}
+
+/// Flow through the outer face of a cell of the film.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Face {
+    /// Radius of the face in m.
+    pub radius: f64,
+    /// Area of the cell inside of it in m^2.
+    pub area: f64,
+    /// Fall of the pressure to the next cell in Pa.
+    pub fall: f64,
+    /// Change of the fall per flow outwards, Pa s/m^3.
+    pub per_flow: f64,
+    /// Change of the fall per widening of the gap at the face, Pa/m.
+    pub per_gap: f64,
+    /// Fall against a uniform closing speed of 1 m/s at the present viscosity, Pa s/m.
+    unit_fall: f64,
 }
 
 /// Cells of the film unless asked for otherwise.
@@ -73,6 +92,7 @@ impl Film {
         forces.radius.clear();
         forces.load.clear();
         forces.unit_load.clear();
+        forces.faces.clear();
         (forces.force, forces.resistance, forces.dissipation) = (0.0, 0.0, 0.0);
         // the tip is a paraboloid, which is what lubrication theory resolves of a sphere: with the sphere's own
         // shape the force would be further from Stokes flow (Brenner 1961), 2.4 % too low at a gap of R/700
@@ -91,9 +111,6 @@ impl Film {
         let (ratio, mut power) = (growth.exp(), 1.0);
         let mut face = start;
         let (mut flow, mut unit_flow) = (0.0, 0.0);
-        // pressure differences between a cell and the next further out
-        let mut falls: Vec<[f64; 2]> = Vec::with_capacity(self.cells);
-        let mut areas = Vec::with_capacity(self.cells);
         for cell in 0..self.cells {
             power *= ratio;
             let next = if cell + 1 == self.cells { end } else { start + scale * (power - 1.0) };
@@ -104,24 +121,32 @@ impl Film {
             // what is squeezed out inside of the outer face flows through it
             flow -= profile.rate(radius) * area;
             unit_flow += area;
-            let width = gap(next).max(self.minimum_gap);
-            let rate = 6.0 * flow.abs() / (2.0 * PI * next.sqrt() * width * width);
-            let viscosity = self.viscosity.at(rate);
+            let (face_radius, face_gap) = (next.sqrt(), gap(next));
+            let width = face_gap.max(self.minimum_gap);
+            let rate = 6.0 * flow.abs() / (2.0 * PI * face_radius * width * width);
+            let (viscosity, slope) = self.viscosity.with_slope(rate);
             // with x = r^2: flow = -2 pi r h^3/(12 mu) dp/dr = -pi x h^3/(3 mu) dp/dx
             let resistance = 3.0 * viscosity * (next_centre - centre) / (PI * next * width.powi(3));
-            forces.dissipation += flow * flow * resistance;
-            falls.push([flow * resistance, unit_flow * resistance]);
-            areas.push(area);
+            let fall = flow * resistance;
+            forces.dissipation += flow * fall;
+            forces.faces.push(Face {
+                radius: face_radius,
+                area,
+                fall,
+                unit_fall: unit_flow * resistance,
+                per_flow: (1.0 + slope) * resistance,
+                per_gap: if face_gap > self.minimum_gap { -(3.0 + 2.0 * slope) * fall / width } else { 0.0 },
+            });
             forces.radius.push(radius);
             face = next;
         }
         forces.load.resize(self.cells, 0.0);
         forces.unit_load.resize(self.cells, 0.0);
         let mut pressure = [0.0; 2];
-        for cell in (0..self.cells).rev() {
-            pressure = [pressure[0] + falls[cell][0], pressure[1] + falls[cell][1]];
-            forces.load[cell] = pressure[0] * areas[cell];
-            forces.unit_load[cell] = pressure[1] * areas[cell];
+        for (cell, face) in forces.faces.iter().enumerate().rev() {
+            pressure = [pressure[0] + face.fall, pressure[1] + face.unit_fall];
+            forces.load[cell] = pressure[0] * face.area;
+            forces.unit_load[cell] = pressure[1] * face.area;
             forces.force += forces.load[cell];
             forces.resistance += forces.unit_load[cell];
         }

@@ -120,4 +120,112 @@ impl FluidForces {
             load.dissipation[1] = -load.drag_force * velocity;
         }
     }
+
+    /// How the forces change with the motion, in the state with velocities `v` that `load` was evaluated in.
+    pub fn tangent(&self, v: &[f64], load: &FluidLoad) -> Tangent {
+        let n = self.size();
+        let (_, per_mass) = self.inner;
+        let mut tangent = Tangent { size: n, per_rate: vec![0.0; n * n], per_place: vec![0.0; n * n] };
+        if let Some((_, deflection)) = &self.film {
+            // flow through a face per rate of each coordinate, and the gap there per coordinate
+            let (mut flow, mut gap, mut shapes) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+            let at = |radius: f64, values: &mut [f64]| {
+                values[0] = -per_mass;
+                deflection.shapes_at(radius, &mut values[1..]);
+            };
+            for (face, &centre) in load.film.faces.iter().zip(&load.film.radius) {
+                at(centre, &mut shapes);
+                flow.iter_mut().zip(&shapes).for_each(|(flow, shape)| *flow -= face.area * shape);
+                at(face.radius, &mut gap);
+                for k in 0..n {
+                    // a fall of the pressure loads everything inside of the face
+                    let (per_flow, per_gap) = (-flow[k] * face.per_flow, -flow[k] * face.per_gap);
+                    for l in 0..n {
+                        tangent.per_rate[k * n + l] += per_flow * flow[l];
+                        tangent.per_place[k * n + l] += per_gap * gap[l];
+                    }
+                }
+            }
+        }
+        if let Some(drag) = &self.drag {
+            tangent.per_rate[0] -= per_mass * per_mass * drag.damping(per_mass * v[INNER]);
+        }
+        tangent
+    }
+}
+
+/// Changes of the fluid's generalised forces with rates and places of the coordinates, the cells of the film where they are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tangent {
+    /// Number n of the coordinates.
+    pub size: usize,
+    /// Force k per rate of coordinate l, 1/s. Shape (n, n).
+    pub per_rate: Vec<f64>,
+    /// Force k per coordinate l, 1/s^2. Shape (n, n).
+    pub per_place: Vec<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::ShearThinning;
+    use approx::assert_relative_eq;
+
+    /// Against differences of the forces themselves; what the cells' motion adds is small.
+    #[test]
+    fn the_tangent_is_the_derivative_of_the_forces() {
+        let law = ShearThinning { infinite_shear_viscosity: 1e-4, relaxation_time: 1e-3, power_index: 0.5 };
+        for shear_thinning in [None, Some(law)] {
+            let fluid = Fluid {
+                viscosity: 0.02,
+                density: 900.0,
+                minimum_gap: 1e-6,
+                squeeze_film: true,
+                added_mass_frequency_ratio: 1.0,
+                plate_damping_ratio: 0.0,
+                drag_coefficient: 0.5,
+                shear_thinning,
+            };
+            let shape = |r: f64| [40.0 * (1.0 - (r / 4e-3).powi(2)), 30.0 * (800.0 * r).cos()];
+            let deflection = |radii: &[f64]| {
+                (0..2).map(|k| radii.iter().map(|r| shape(*r)[k]).collect()).collect::<Vec<Vec<f64>>>()
+            };
+            let rim = 3e-3;
+            let film = Film::new(Viscosity::new(&fluid), fluid.minimum_gap, 5e-3, rim, CELLS);
+            let forces = FluidForces {
+                film: Some((film, Deflection::new(rim, &deflection(&Deflection::radii(rim))))),
+                drag: Some(Drag { coefficient: 1e-4 }),
+                inner: (2e-5, 1.0 / 3e-3f64.sqrt()),
+            };
+            let (q, v) = ([0.0, 2e-7, 3e-8, -2e-8], [0.0, 0.02, 3e-3, -1e-3]);
+            let at = |q: &[f64], v: &[f64]| {
+                let mut load = FluidLoad::default();
+                forces.evaluate(q, v, &mut load);
+                load
+            };
+            let tangent = forces.tangent(&v, &at(&q, &v));
+            let size = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            for l in 0..3 {
+                for (per, places, values, step) in
+                    [(&tangent.per_rate, false, v, 1e-6), (&tangent.per_place, true, q, 1e-11)]
+                {
+                    let moved = |by: f64| {
+                        let mut values = values;
+                        values[INNER + l] += by;
+                        if places { at(&values, &v) } else { at(&q, &values) }.force
+                    };
+                    let (above, below) = (moved(step), moved(-step));
+                    for k in 0..3 {
+                        let difference = (above[k] - below[k]) / (2.0 * step);
+                        assert_relative_eq!(
+                            per[k * 3 + l],
+                            difference,
+                            epsilon = 1e-2 * size(per),
+                            max_relative = 1e-2
+                        );
+                    }
+                }
+            }
+        }
+    }
 }

@@ -13,5 +13,5 @@ mod viscosity;
 pub use deflection::Deflection;
 pub use drag::Drag;
 pub use film::{Film, FilmForces, Profile};
-pub use forces::{FluidForces, FluidLoad};
+pub use forces::{FluidForces, FluidLoad, Tangent};
 pub use viscosity::Viscosity;

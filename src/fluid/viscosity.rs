@@ -40,13 +40,18 @@ impl Viscosity {
 
     /// Effective viscosity in Pa s at the apparent shear rate `rate` >= 0 in 1/s.
     pub fn at(&self, rate: f64) -> f64 {
+        self.with_slope(rate).0
+    }
+
+    /// Effective viscosity in Pa s at the apparent shear rate `rate` >= 0 in 1/s, and d ln(viscosity)/d ln(rate).
+    pub fn with_slope(&self, rate: f64) -> (f64, f64) {
         match self {
-            Viscosity::Newtonian(viscosity) => *viscosity,
+            Viscosity::Newtonian(viscosity) => (*viscosity, 0.0),
             Viscosity::ShearThinning { rate: rates, viscosity } => {
                 let x = rate.max(f64::MIN_POSITIVE).ln().clamp(rates[0], rates[rates.len() - 1]);
                 let after = rates.partition_point(|r| *r < x).clamp(1, rates.len() - 1);
-                let share = (x - rates[after - 1]) / (rates[after] - rates[after - 1]);
-                (viscosity[after - 1] + share * (viscosity[after] - viscosity[after - 1])).exp()
+                let slope = (viscosity[after] - viscosity[after - 1]) / (rates[after] - rates[after - 1]);
+                ((viscosity[after - 1] + slope * (x - rates[after - 1])).exp(), slope)
             }
         }
     }

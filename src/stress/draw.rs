@@ -9,7 +9,6 @@ use crate::fluid::added_mass::{immersed, mass_factor};
 use crate::impact::system::System;
 use crate::scene::{Edge, Fluid, Inner, Material, Outer, Plate, PlateImpact, Shape, ShearThinning};
 use std::collections::HashMap;
-use std::f64::consts::PI;
 use std::sync::{Arc, Mutex};
 
 /// Most modes of a case, and the numbers for which eigenproblems are solved; a case takes the lowest of the next.
@@ -19,8 +18,6 @@ const PLATE_POISSON: [f64; 5] = [-0.9, -0.2, 0.0, 0.3, 0.499];
 /// Most modes of a case that is also solved in a fluid, and one in how many of these is.
 const WET_MODES: usize = 24;
 const WET_SHARE: u8 = 4;
-/// Films that stop the inner body sooner than this part of a contact are left out: each such run takes minutes.
-const STIFFEST: f64 = 100.0;
 /// Length of a run in durations of a Hertz contact.
 const DURATIONS: f64 = 6.0;
 
@@ -64,16 +61,9 @@ pub struct Wet {
     pub system: System,
     /// Film and drag, if there are any.
     pub forces: Option<FluidForces>,
-    /// Resistance in N s/m of the film at its smallest gap, by Taylor's 6 pi mu R^2/h; 0 without one.
-    resistance: f64,
 }
 
 impl Wet {
-    /// How much sooner than a contact of `duration` s the film at its smallest gap brings the inner body to rest.
-    fn stiffness(&self, duration: f64) -> f64 {
-        self.resistance * duration / self.system.masses[1]
-    }
-
     /// The impact `setup` on a plate reduced to `body` in a random fluid; each of its effects may be absent. `unit` is the
     /// plate of unit radius.
     fn draw(
@@ -111,10 +101,8 @@ impl Wet {
             Ok::<_, crate::Error>(shapes)
         })?;
         let description = format!("in {fluid:?}");
-        let taylor = 6.0 * PI * fluid.viscosity * setup.inner.shape.tip_radius().powi(2) / fluid.minimum_gap;
-        let resistance = if fluid.squeeze_film { taylor } else { 0.0 };
         setup.fluid = Some(fluid);
-        Ok(Self { description, system: System::new(&setup, &plate, tips), forces, resistance })
+        Ok(Self { description, system: System::new(&setup, &plate, tips), forces })
     }
 }
 
@@ -202,8 +190,7 @@ impl Case {
         let mut random = Random(fastrand::Rng::with_seed(!seed));
         let wet = (modes <= WET_MODES && random.0.u8(0..WET_SHARE) == 0)
             .then(|| Wet::draw(&mut random, setup, body, tips, &unit))
-            .transpose()?
-            .filter(|wet| wet.stiffness(hit.duration()) <= STIFFEST);
+            .transpose()?;
         Ok(Self { seed, description, system, end_time, wet })
     }
 }

@@ -6,6 +6,7 @@
 //! the film, the step is as long as its accuracy permits. There is no free flight, since the film acts at
 //! any distance.
 
+mod full_newton;
 mod run;
 mod solve;
 mod table;

@@ -3,7 +3,8 @@
 //! The film's answer to the rates is a matrix over inner body and modes. Nearly all of it is what it does
 //! against a uniform closing speed: D = g g^T/R with the generalised forces g per unit speed and their resultant R.
 //! With that in place of the full matrix a step has twelve unknowns (two contacts and the film's part along g,
-//! at four points) however many modes there are; what D leaves out is found by the iteration.
+//! at four points) however many modes there are; what D leaves out is found by the iteration, or, where that is slow, by
+//! Newton's step with the whole matrix.
 
 use super::table::{Motion, Table};
 use crate::fluid::{FluidForces, FluidLoad};
@@ -17,6 +18,8 @@ const MAX_ITERATIONS: usize = 30;
 const POLISHED: f64 = 1e-3;
 /// Error of an iteration over that of the last above which it gains no more, be it for round-off.
 const STAGNANT: f64 = 0.5;
+/// Error of an iteration over that of the last from which on the fluid's whole tangent is worth its price.
+const SLOW: f64 = 0.3;
 /// Unknowns of Newton's step: both contact forces and the film's part along g at every Gauss point.
 const UNKNOWNS: usize = 3 * STAGES;
 
@@ -68,7 +71,7 @@ impl Wet<'_> {
     }
 
     fn iterate(&self, table: &Table, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
-        let mut last = f64::INFINITY;
+        let (mut last, mut whole) = (f64::INFINITY, false);
         for _ in 0..MAX_ITERATIONS {
             table.motion(q, v, &self.generalised(trial), &mut trial.motion);
             let Some(defect) = self.defect(trial) else { return false };
@@ -76,7 +79,14 @@ impl Wet<'_> {
             if size <= force_error && (size <= POLISHED * force_error || size > STAGNANT * last) {
                 return true;
             }
-            if !size.is_finite() || !self.newton(table, &defect, trial) {
+            whole |= size > SLOW * last;
+            let solved = size.is_finite()
+                && if whole {
+                    self.full_newton(table, &defect, trial)
+                } else {
+                    self.newton(table, &defect, trial)
+                };
+            if !solved {
                 return false;
             }
             last = size;
@@ -207,11 +217,11 @@ impl Wet<'_> {
 }
 
 /// Forces that are missing at the Gauss points.
-struct Defect {
-    contact: [Stages; 2],
+pub(super) struct Defect {
+    pub contact: [Stages; 2],
     /// Change of both contact forces per modal approach of both. Shape (STAGES, 2, 2).
-    tangent: [[[f64; 2]; 2]; STAGES],
-    fluid: Vec<Stages>,
+    pub tangent: [[[f64; 2]; 2]; STAGES],
+    pub fluid: Vec<Stages>,
 }
 
 /// Solution of the linear equations with the right-hand side in the last column, by Gauss with row pivots.

@@ -1,0 +1,72 @@
+//! Newton's step for the forces of a step with the whole tangent of the fluid.
+//!
+//! Where a film lies over several waves of a soft plate, what it does against the uniform closing speed is not nearly all
+//! of it, and the iteration with that alone settles for very short steps only. Here all generalised forces of the fluid
+//! are unknowns: with n coordinates that it acts on, (2 + n) times the Gauss points.
+
+use super::solve::{Defect, Trial, Wet};
+use super::table::Table;
+use crate::impact::collocation::STAGES;
+use crate::impact::system::INNER;
+use faer::Mat;
+use faer::linalg::solvers::Solve;
+
+impl Wet<'_> {
+    /// Improves the forces; `false` if the equations are singular.
+    pub(super) fn full_newton(&self, table: &Table, defect: &Defect, trial: &mut Trial) -> bool {
+        let fluid = trial.fluid.len();
+        let size = (2 + fluid) * STAGES;
+        let contact = |i: usize, stage: usize| i * STAGES + stage;
+        let load = |k: usize, stage: usize| (2 + k) * STAGES + stage;
+        let mut matrix = Mat::<f64>::identity(size, size);
+        let mut right = Mat::<f64>::zeros(size, 1);
+        for j in 0..STAGES {
+            let tangent = self.fluid.tangent(&trial.motion.v[j], &trial.loads[j]);
+            for i in 0..2 {
+                right[(contact(i, j), 0)] = defect.contact[i][j];
+            }
+            for k in 0..fluid {
+                right[(load(k, j), 0)] = defect.fluid[k][j];
+            }
+            for l in 0..self.system.size() {
+                let approach = [0, 1].map(|i| self.system.approach[i][l]);
+                let [place, rate] = table.per_force(j, l);
+                for s in 0..STAGES {
+                    // what coordinate l answers at j to a force on it at s moves contacts and fluid at j
+                    let moved = |row: usize, answer: f64, matrix: &mut Mat<f64>| {
+                        for i in 0..2 {
+                            matrix[(row, contact(i, s))] += answer * approach[i];
+                        }
+                        if l >= INNER && l - INNER < fluid {
+                            matrix[(row, load(l - INNER, s))] -= answer;
+                        }
+                    };
+                    for i in 0..2 {
+                        let [d0, d1] = defect.tangent[j][i];
+                        moved(contact(i, j), (d0 * approach[0] + d1 * approach[1]) * place[s], &mut matrix);
+                    }
+                    if l >= INNER && l - INNER < fluid {
+                        for k in 0..fluid {
+                            let at = k * fluid + l - INNER;
+                            let answer = tangent.per_rate[at] * rate[s] + tangent.per_place[at] * place[s];
+                            moved(load(k, j), answer, &mut matrix);
+                        }
+                    }
+                }
+            }
+        }
+        let change = matrix.partial_piv_lu().solve(&right);
+        if !(0..size).all(|row| change[(row, 0)].is_finite()) {
+            return false;
+        }
+        for j in 0..STAGES {
+            for i in 0..2 {
+                trial.forces[i][j] += change[(contact(i, j), 0)];
+            }
+            for k in 0..fluid {
+                trial.fluid[k][j] += change[(load(k, j), 0)];
+            }
+        }
+        true
+    }
+}
