@@ -124,5 +124,12 @@ pub fn compute_as<Q: Quantities>(
     let stored = crate::reference::solve_as(&python, scene, resolution, store, wish, &mut |p| bar.show(p))?;
     drop(bar);
     context.note(format_args!("computed {}", stored.folder.display()));
+    if let Some(earlier) = &stored.earlier {
+        context.note(format_args!(
+            "what was there, of another scene named `{}` or with other settings, is kept in {}",
+            scene.name,
+            earlier.display()
+        ));
+    }
     Ok(stored)
 }
