@@ -210,6 +210,11 @@ fn shown(content: &[u8]) -> Vec<u16> {
                     if content[k] == b'\\' {
                         k += 1;
                         bytes.push(match content[k] {
+                            b'0'..=b'7' => {
+                                let octal = std::str::from_utf8(&content[k..k + 3]).unwrap();
+                                k += 2;
+                                u8::from_str_radix(octal, 8).unwrap()
+                            }
                             b'n' => b'\n',
                             b'r' => b'\r',
                             b't' => b'\t',

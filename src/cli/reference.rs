@@ -69,6 +69,15 @@ fn show<Q: Quantities>(
             if let Some(lookup @ (Lookup::Stale { .. } | Lookup::Damaged { .. })) = &other {
                 context.note(format_args!("{}; computing it again", problem(scene, resolution, lookup)));
             }
+            if let (Some(Lookup::Missing), Lookup::Found(shipped)) =
+                (&other, Store::shipped().find_as::<Q>(scene, resolution))
+            {
+                context.note(format_args!(
+                    "computing it for {}; comparisons would find {} as well",
+                    store.root().display(),
+                    shipped.folder.display()
+                ));
+            }
             let wish = Wish {
                 stress_at: arguments.stress_at.clone(),
                 fields: arguments.fields,
