@@ -92,22 +92,51 @@ fn figures_for_papers_have_their_width_readable_type_and_everything_inside() {
             xml.descendants().filter_map(|n| n.attribute("font-size")).map(|s| s.parse::<f64>().unwrap());
         let smallest = sizes.fold(f64::INFINITY, f64::min);
         assert!(points(smallest) >= 7.0, "{} pt at {width} mm", points(smallest));
-        // nothing leaves the drawing, text as the embedded font draws it
-        let mut options = resvg::usvg::Options { font_family: "DejaVu Sans".into(), ..Default::default() };
-        let font = concat!(env!("CARGO_MANIFEST_DIR"), "/src/report/fonts/DejaVuSans.ttf");
-        options.fontdb_mut().load_font_data(std::fs::read(font).unwrap());
-        let tree = resvg::usvg::Tree::from_str(&svg, &options).unwrap();
-        let inside = tree.root().abs_stroke_bounding_box();
-        assert!(inside.left() > -0.5 && inside.right() < tree.size().width() + 0.5, "{width} mm: {inside:?}");
-        assert!(
-            inside.top() > -0.5 && inside.bottom() < tree.size().height() + 0.5,
-            "{width} mm: {inside:?}"
-        );
+        assert_inside(&svg, &format!("{width} mm"));
         let texts: Vec<_> = xml.descendants().filter_map(|n| n.text()).collect();
         for text in ["Displacement in µm", "Velocity in mm/s", "Contact force in N", "Time in µs"] {
             assert!(texts.contains(&text), "{width} mm: {text}");
         }
         assert!(texts.iter().any(|t| t.contains("69.") || t.contains(" %")), "efficiencies at {width} mm");
+    }
+}
+
+/// Nothing leaves the drawing, text as the embedded font draws it.
+fn assert_inside(svg: &str, what: &str) {
+    let mut options = resvg::usvg::Options { font_family: "DejaVu Sans".into(), ..Default::default() };
+    let font = concat!(env!("CARGO_MANIFEST_DIR"), "/src/report/fonts/DejaVuSans.ttf");
+    options.fontdb_mut().load_font_data(std::fs::read(font).unwrap());
+    let tree = resvg::usvg::Tree::from_str(svg, &options).unwrap();
+    let inside = tree.root().abs_stroke_bounding_box();
+    assert!(inside.left() > -0.5 && inside.right() < tree.size().width() + 0.5, "{what}: {inside:?}");
+    assert!(inside.top() > -0.5 && inside.bottom() < tree.size().height() + 0.5, "{what}: {inside:?}");
+}
+
+/// The page has a drawing as narrow as a phone, with the same panels and type that is not shrunk there.
+#[test]
+fn a_phone_gets_a_drawing_of_its_own_width() {
+    let data = Data::new();
+    let report = data.report();
+    let page = scene_page(&report.scenes[0]);
+    let labels = |svg: &str| -> Vec<String> {
+        let xml = Document::parse(svg).unwrap();
+        let of = |n: resvg::usvg::roxmltree::Node| n.text().map(str::to_owned);
+        let all = xml.descendants().filter(|n| n.has_tag_name("text")).filter_map(of);
+        all.filter(|text| text.contains(" in ")).collect()
+    };
+    let wide = between(&page, "<div class=\"wide\">", "</div>");
+    let narrow = between(&page, "<div class=\"narrow\">", "</div>");
+    assert_eq!(labels(wide), labels(narrow));
+    let xml = Document::parse(narrow).unwrap();
+    let root = xml.root_element();
+    let width: f64 = root.attribute("viewBox").unwrap().split(' ').nth(2).unwrap().parse().unwrap();
+    let size: f64 = root.attribute("font-size").unwrap().parse().unwrap();
+    // on a screen 375 px wide the page's margins leave 350
+    assert!(size * 350.0 / width >= 12.0, "{size} px in {width}");
+    assert_inside(narrow, "phone");
+    for class in ["fig-reference", "fig-A", "fig-B"] {
+        // legend and eight curves; the efficiencies stand in the legend
+        assert_eq!(narrow.matches(&format!("path class=\"{class}\"")).count(), 1 + CURVES.len(), "{class}");
     }
 }
 
