@@ -30,11 +30,11 @@ impl Bar {
     pub fn show(&self, progress: &Progress) {
         // of several meshes the bar shows all together, and the time left is that of all
         let share = progress.series.unwrap_or(progress.done);
-        let phase = match progress.series {
-            Some(_) => format!("{} {:.0} %", progress.phase, 100.0 * progress.done),
-            None => progress.phase.clone(),
-        };
-        self.0.set_message(format!("{phase}: {}", progress.message));
+        let Progress { phase, message, done, .. } = progress;
+        self.0.set_message(match progress.series {
+            Some(_) => format!("{message} ({phase}, {:.0} %)", 100.0 * done),
+            None => format!("{phase}: {message}"),
+        });
         self.0.set_position((1000.0 * share.clamp(0.0, 1.0)) as u64);
     }
 

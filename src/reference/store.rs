@@ -189,18 +189,19 @@ impl Store {
                     earlier = kept.or(earlier);
                 }
             }
+            // What an earlier change of the scene has left is older. Moved before the new entry is there: another run
+            // may move that one to the same place at once.
+            let (left, superseded) =
+                (self.earlier_folder(scene, resolution), work.path().join(format!("superseded-{attempt}")));
+            let _ = fs::rename(&left, &superseded);
             match fs::rename(made, &folder) {
-                Ok(()) => {
-                    // Newer than what an earlier change of the scene may have left.
-                    let _ =
-                        fs::rename(self.earlier_folder(scene, resolution), work.path().join("superseded"));
-                    return Ok(Installed { folder, earlier });
-                }
+                Ok(()) => return Ok(Installed { folder, earlier }),
                 // Another run was faster: its entry goes aside as well.
                 Err(e) if matches!(e.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists) => {}
                 Err(e) => {
                     // What was there is better than nothing.
                     let _ = fs::rename(&aside, &folder);
+                    let _ = fs::rename(&superseded, &left);
                     return Err(failed(e));
                 }
             }
