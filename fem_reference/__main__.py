@@ -35,6 +35,9 @@ def _parser() -> argparse.ArgumentParser:
     solve = commands.add_parser("solve", help="solve a scene, write a result folder")
     solve.add_argument("--scene", type=Path, required=True, help="scene.json")
     solve.add_argument("--out", type=Path, required=True, help="result folder, made when complete")
+    solve.add_argument(
+        "--replace", action="store_true", help="even if OUT holds a solution of another scene"
+    )
     solve.add_argument("--resolution", choices=RESOLUTION_NAMES, default="paper")
     solve.add_argument("--stress-at", type=_times, default=(), metavar="T1,T2", help="seconds")
     solve.add_argument(
@@ -94,6 +97,10 @@ def _run(arguments: argparse.Namespace) -> None:
                 raise SolverError("in some quantity fewer than nine of ten scenes keep their band")
             return
         document = read_document(arguments.scene)
+        if arguments.command == "solve" and isinstance(document, dict):
+            from .output import require_replaceable
+
+            require_replaceable(arguments.out, document, arguments.replace)
         if isinstance(document, dict) and document.get("kind") == "seal-seat":
             from .seal_seat.command import run
 

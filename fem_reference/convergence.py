@@ -12,7 +12,7 @@ from .explicit import Run
 from .mesh import Floats
 from .modal import first_frequency
 from .output import HISTORY_COLUMNS, Sampled, history, resampled
-from .progress import Progress
+from .progress import MeshOfSeries, Progress
 from .scene import Scene
 from .solve import Solution, compute
 from .system import System
@@ -21,6 +21,8 @@ from .uncertainty import Estimate, curve_band, least_squares
 RATIO = 0.84
 """Elements of a mesh over those of the next finer one: four steps halve them."""
 MESHES = 5
+COST_ORDER = 3
+"""A run costs the elements in a direction to this power: two for their number, one for steps."""
 CURVE_REACH = 0.02
 """Half width of the window of the curves' band over the Hertz contact duration."""
 
@@ -124,20 +126,23 @@ def solve_sequence(
         known: solutions by factor that need not be made again; new ones are added.
     """
     known = {} if known is None else known
+    factors = [factor * RATIO**number for number in range(MESHES)]
+    costs = [share**COST_ORDER for share in factors]
+
+    def reporting(number: int) -> Progress | None:
+        return MeshOfSeries(progress, number + 1, costs) if progress is not None else None
+
     finest = known.get(factor)
     if finest is None or snapshot_times:
         finest = compute(
-            scene, factor, courant=courant, snapshot_times=snapshot_times, progress=progress
+            scene, factor, courant=courant, snapshot_times=snapshot_times, progress=reporting(0)
         )
     solutions = [finest]
     for number in range(1, MESHES):
-        coarser = factor * RATIO**number
+        coarser = factors[number]
         near = next((s for f, s in known.items() if abs(f / coarser - 1.0) < 1e-9), None)
         if near is None or near.radii != finest.radii:
-            label = f"coarser mesh {number} of {MESHES - 1}: "
-            near = compute(
-                scene, coarser, courant=courant, progress=progress, label=label, like=finest
-            )
+            near = compute(scene, coarser, courant=courant, progress=reporting(number), like=finest)
         solutions.append(near)
     known.update({solution.factor: solution for solution in solutions})
     sizes = np.array([1.0 / solution.factor for solution in solutions])

@@ -24,6 +24,7 @@ from .scene import Scene
 from .system import System
 
 CHECKSUMS = "checksums.sha256"
+PROVENANCE = "provenance.json"
 PARTIAL_PREFIX = ".partial-"
 SAMPLES = 2000
 """About how many samples a history has."""
@@ -39,6 +40,41 @@ HISTORY_COLUMNS = (
     "inner_velocity",
     "inner_force",
 )
+
+
+def require_replaceable(target: Path, document: Any, replace: bool) -> None:
+    """Refuse to put the result of ``document`` (a decoded scene.json) where something else lies.
+
+    A result of the same scene with the same settings is computed again without asking; another
+    result only if ``replace``; what is no result, never.
+
+    Raises:
+        SolverError: naming what is there.
+    """
+    if not target.exists() or (target.is_dir() and not any(target.iterdir())):
+        return
+    if not (target / PROVENANCE).is_file():
+        raise SolverError(
+            f"the output {target} exists and is no result folder (it has no {PROVENANCE}); "
+            "choose another --out"
+        )
+    if replace:
+        return
+    try:
+        there = json.loads((target / PROVENANCE).read_text(encoding="utf-8"))
+        name = there["scene"]["name"]
+        same = all(there[key] == document.get(key) for key in ("scene_hash", "settings_hash"))
+    except (OSError, ValueError, LookupError, TypeError) as error:
+        raise SolverError(
+            f"the output folder {target} holds a {PROVENANCE} that cannot be read ({error}); "
+            "choose another --out, or give --replace"
+        ) from error
+    if not same:
+        raise SolverError(
+            f"the output folder {target} holds a solution of another scene or with other settings "
+            f"(scene {name!r}, scene_hash {there['scene_hash'][:12]}); choose another --out, or "
+            "give --replace"
+        )
 
 
 @contextmanager

@@ -19,14 +19,20 @@ class Progress:
         self._last = -1.0
         self._phase = ""
 
-    def report(self, phase: str, done: float, message: str) -> None:
-        """Report ``done`` (0..1) of ``phase`` (mesh, assembly, stepping, writing)."""
+    def report(self, phase: str, done: float, message: str, series: float | None = None) -> None:
+        """Report ``done`` (0..1) of ``phase`` (mesh, assembly, stepping, writing).
+
+        ``series`` is the share (0..1) of all meshes together, where there are several.
+        """
         now = time.monotonic()
         if phase == self._phase and done < 1.0 and now - self._last < INTERVAL:
             return
         self._phase, self._last = phase, now
         done = round(min(max(done, 0.0), 1.0), 4)
-        self._write({"phase": phase, "done": done, "message": message})
+        line: dict[str, object] = {"phase": phase, "done": done, "message": message}
+        if series is not None:
+            line["series"] = round(min(max(series, 0.0), 1.0), 4)
+        self._write(line)
 
     def error(self, message: str) -> None:
         """Report the failure; the last line of a failed run."""
@@ -35,3 +41,28 @@ class Progress:
     def _write(self, line: dict[str, object]) -> None:
         self._stream.write(json.dumps(line) + "\n")
         self._stream.flush()
+
+
+class MeshOfSeries(Progress):
+    """Reports one of several meshes: which it is, and the share of all of them.
+
+    Args:
+        progress: where to report.
+        number: of this mesh, from 1.
+        costs: of all meshes in the order they are solved, in any unit.
+    """
+
+    def __init__(self, progress: Progress, number: int, costs: list[float]) -> None:
+        super().__init__()
+        self._progress, self._number, self._costs = progress, number, costs
+        self._reached = 0.0
+
+    def report(self, phase: str, done: float, message: str, series: float | None = None) -> None:
+        """As `Progress.report`; the time loop is what counts of a mesh."""
+        if phase == "stepping":
+            # A mesh that is made again begins again; the series does not go back.
+            self._reached = max(self._reached, done)
+        before, own = sum(self._costs[: self._number - 1]), self._costs[self._number - 1]
+        share = (before + own * self._reached) / sum(self._costs)
+        label = f"mesh {self._number} of {len(self._costs)}: "
+        self._progress.report(phase, done, label + message, share)

@@ -168,7 +168,7 @@ def solve(
         else:
             sequence = refine(scene, factor, target_error, **options)
         solution = sequence.finest
-        progress.report("writing", 0.0, "writing the results")
+        progress.report("writing", 0.0, "writing the results", series=1.0)
         found = versions()
         summary = _summary(scene, sequence, resolution_name, found)
         table, interval = history(solution.run)
@@ -191,7 +191,7 @@ def solve(
         provenance = _provenance(scene, solution, resolution_name, courant, found)
         provenance["settings"]["target_error"] = target_error
         write_json(folder / "provenance.json", provenance)
-        progress.report("writing", 1.0, "done")
+        progress.report("writing", 1.0, "done", series=1.0)
 
 
 def _provenance(

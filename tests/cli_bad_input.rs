@@ -122,8 +122,9 @@ fn reference_that_is_not_there_ends_with_11_and_says_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
     let store = folder.path().join("store");
     let out = folder.path().join("report");
+    let file = scene_with(folder.path(), "scaled-plate-r10", "another-plate");
     let arguments =
-        ["gate", "scaled-plate-r10", "--store", store.to_str().unwrap(), "--out", out.to_str().unwrap()];
+        ["gate", file.to_str().unwrap(), "--store", store.to_str().unwrap(), "--out", out.to_str().unwrap()];
     let ended = impactcheck(&arguments, &[]);
     assert_eq!(ended.status, 11, "{}", ended.error);
     assert!(ended.error.contains("impactcheck reference"), "{}", ended.error);

@@ -273,7 +273,8 @@ fn page_markdown_and_json_show_the_budget_and_bars_have_its_lengths() {
     }
     assert!(text.contains("### Discrepancy budget") && text.contains("| Kirchhoff kinematics |"));
 
-    let start = page.find("<figure class=\"budget\">").unwrap() + "<figure class=\"budget\">".len();
+    let start = page.find("<figure class=\"budget\">").unwrap();
+    let start = start + page[start..].find("<svg").unwrap();
     let svg = &page[start..start + page[start..].find("</svg>").unwrap() + "</svg>".len()];
     let svg = Document::parse(svg).unwrap();
     let bars: Vec<f64> = svg

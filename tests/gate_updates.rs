@@ -161,6 +161,56 @@ fn a_tolerance_changes_with_a_reason_only_and_comments_stay() {
     assert_eq!(repository.accepted().len(), 1);
 }
 
+#[test]
+fn a_tolerance_loosened_by_hand_is_told_until_there_is_a_reason() {
+    let repository = Repository::new();
+    assert!(!repository.gate(&[]).1.contains("without a reason"), "nothing was accepted yet");
+    assert_eq!(repository.gate(&["--update", "--reason", "first reference"]).0, 0);
+    assert!(!repository.gate(&[]).1.contains("without a reason"));
+    let text = fs::read_to_string(repository.scene()).unwrap();
+    let line = 2 + text[..text.find("[tolerances.C]").unwrap()].matches('\n').count();
+    repository.replace(
+        "[tolerances.C]\nefficiency           = { absolute = 0.002 }",
+        "[tolerances.C]\nefficiency           = { absolute = 0.02 }",
+    );
+    let output =
+        repository.gate_in(&[("GITHUB_ACTIONS", "true")], &["--json", "--quiet", "--junit", "gate.xml"]);
+    assert_eq!(output.status.code(), Some(0), "a warning, no failure");
+    let told = "tolerances.C.efficiency was accepted as { absolute = 0.002 } and is now { absolute = 0.02 }";
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains(&format!("warning: {SCENE}: {told}")), "{said}");
+    assert!(said.contains(&format!("::warning file=scene.toml,line={line},")), "{line}: {said}");
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let changed = &json["scenes"][0]["changed_tolerances"];
+    assert_eq!(changed.as_array().unwrap().len(), 1, "{changed}");
+    assert_eq!(changed[0]["model"], "C");
+    assert_eq!(changed[0]["quantity"], "efficiency");
+    assert_eq!(changed[0]["accepted"], "{ absolute = 0.002 }");
+    assert_eq!(changed[0]["now"], "{ absolute = 0.02 }");
+    let junit = fs::read_to_string(repository.path("gate.xml")).unwrap();
+    let property = "name=\"changed_tolerance.C.efficiency\" value=\"accepted { absolute = 0.002 }, now";
+    assert!(junit.contains(property), "{junit}");
+    let page = fs::read_to_string(repository.path(&format!("reports/{SCENE}.html"))).unwrap();
+    assert!(page.contains("changed since, without a reason"));
+    // with a reason it is one of the accepted changes
+    let (status, said) = repository.gate(&["--update", "--reason", "model C without its residual"]);
+    assert_eq!(status, 0, "{said}");
+    let record = repository.accepted();
+    assert_eq!(record.len(), 2);
+    assert_eq!(record[1]["tolerances"][0]["from"], "{ absolute = 0.002 }");
+    assert_eq!(record[1]["tolerances"][0]["to"], "{ absolute = 0.02 }");
+    assert!(!repository.gate(&[]).1.contains("without a reason"));
+    // a gate that was taken away is missed as well
+    repository.replace("efficiency           = { absolute = 0.02 }\n", "");
+    let said = repository.gate(&[]).1;
+    assert!(
+        said.contains(
+            "tolerances.C.efficiency was accepted as { absolute = 0.02 } and is not there any more"
+        ),
+        "{said}"
+    );
+}
+
 /// A residual has no bias: its bound is raised above what was found.
 #[test]
 fn a_residuals_bound_is_raised() {

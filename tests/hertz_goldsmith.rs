@@ -6,7 +6,10 @@ use approx::assert_relative_eq;
 use impactcheck::analytical::hertz::HertzImpact;
 use impactcheck::body::ModalBody;
 use impactcheck::impact::integrator::{Options, integrate};
+use impactcheck::impact::reduced::Reduced;
 use impactcheck::impact::system::System;
+use impactcheck::scene::{Model, Scene, resolve};
+use std::f64::consts::PI;
 
 #[test]
 fn sphere_rebounds_from_a_rigid_half_space() {
@@ -28,4 +31,29 @@ fn sphere_rebounds_from_a_rigid_half_space() {
         assert_relative_eq!(result.velocity[0], speed, max_relative = 1e-8);
         assert_relative_eq!(contact.impulse, 2.0 * closed.mass * speed, max_relative = 1e-8);
     }
+}
+
+/// Pressure and patch of a contact against Hertz's closed forms in force, radius and moduli (Johnson, Contact Mechanics,
+/// 1985, eqs. 3.22 to 3.24), and against the definition: the mean pressure is two thirds of the largest.
+#[test]
+fn pressure_at_the_force_peak_is_hertzs() {
+    let scene = Scene::read(resolve("scaled-plate-r10").unwrap()).unwrap();
+    let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-7).unwrap();
+    let pressure = summary.contact_pressure.expect("a plate impact");
+    // steel on steel, 210 GPa and 0.3 on both sides
+    let modulus = 210e9 / (2.0 * (1.0 - 0.3_f64.powi(2)));
+    let peaks = [summary.quantities.outer_force_peak, summary.quantities.inner_force_peak];
+    for (patch, force) in [pressure.outer, pressure.inner].iter().zip(peaks) {
+        let closed = (6.0 * force * modulus.powi(2) / (PI.powi(3) * 0.01_f64.powi(2))).cbrt();
+        assert_relative_eq!(patch.maximum_pressure, closed, max_relative = 1e-9);
+        assert_relative_eq!(
+            patch.contact_radius,
+            (0.75 * force * 0.01 / modulus).cbrt(),
+            max_relative = 1e-9
+        );
+        let mean = force / (PI * patch.contact_radius.powi(2));
+        assert_relative_eq!(patch.maximum_pressure, 1.5 * mean, max_relative = 1e-9);
+    }
+    let document = serde_json::to_value(&summary).unwrap();
+    assert_eq!(document["contact_pressure"]["outer"]["maximum_pressure"], pressure.outer.maximum_pressure);
 }

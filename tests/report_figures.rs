@@ -92,22 +92,51 @@ fn figures_for_papers_have_their_width_readable_type_and_everything_inside() {
             xml.descendants().filter_map(|n| n.attribute("font-size")).map(|s| s.parse::<f64>().unwrap());
         let smallest = sizes.fold(f64::INFINITY, f64::min);
         assert!(points(smallest) >= 7.0, "{} pt at {width} mm", points(smallest));
-        // nothing leaves the drawing, text as the embedded font draws it
-        let mut options = resvg::usvg::Options { font_family: "DejaVu Sans".into(), ..Default::default() };
-        let font = concat!(env!("CARGO_MANIFEST_DIR"), "/src/report/fonts/DejaVuSans.ttf");
-        options.fontdb_mut().load_font_data(std::fs::read(font).unwrap());
-        let tree = resvg::usvg::Tree::from_str(&svg, &options).unwrap();
-        let inside = tree.root().abs_stroke_bounding_box();
-        assert!(inside.left() > -0.5 && inside.right() < tree.size().width() + 0.5, "{width} mm: {inside:?}");
-        assert!(
-            inside.top() > -0.5 && inside.bottom() < tree.size().height() + 0.5,
-            "{width} mm: {inside:?}"
-        );
+        assert_inside(&svg, &format!("{width} mm"));
         let texts: Vec<_> = xml.descendants().filter_map(|n| n.text()).collect();
         for text in ["Displacement in µm", "Velocity in mm/s", "Contact force in N", "Time in µs"] {
             assert!(texts.contains(&text), "{width} mm: {text}");
         }
         assert!(texts.iter().any(|t| t.contains("69.") || t.contains(" %")), "efficiencies at {width} mm");
+    }
+}
+
+/// Nothing leaves the drawing, text as the embedded font draws it.
+fn assert_inside(svg: &str, what: &str) {
+    let mut options = resvg::usvg::Options { font_family: "DejaVu Sans".into(), ..Default::default() };
+    let font = concat!(env!("CARGO_MANIFEST_DIR"), "/src/report/fonts/DejaVuSans.ttf");
+    options.fontdb_mut().load_font_data(std::fs::read(font).unwrap());
+    let tree = resvg::usvg::Tree::from_str(svg, &options).unwrap();
+    let inside = tree.root().abs_stroke_bounding_box();
+    assert!(inside.left() > -0.5 && inside.right() < tree.size().width() + 0.5, "{what}: {inside:?}");
+    assert!(inside.top() > -0.5 && inside.bottom() < tree.size().height() + 0.5, "{what}: {inside:?}");
+}
+
+/// The page has a drawing as narrow as a phone, with the same panels and type that is not shrunk there.
+#[test]
+fn a_phone_gets_a_drawing_of_its_own_width() {
+    let data = Data::new();
+    let report = data.report();
+    let page = scene_page(&report.scenes[0]);
+    let labels = |svg: &str| -> Vec<String> {
+        let xml = Document::parse(svg).unwrap();
+        let of = |n: resvg::usvg::roxmltree::Node| n.text().map(str::to_owned);
+        let all = xml.descendants().filter(|n| n.has_tag_name("text")).filter_map(of);
+        all.filter(|text| text.contains(" in ")).collect()
+    };
+    let wide = between(&page, "<div class=\"wide\">", "</div>");
+    let narrow = between(&page, "<div class=\"narrow\">", "</div>");
+    assert_eq!(labels(wide), labels(narrow));
+    let xml = Document::parse(narrow).unwrap();
+    let root = xml.root_element();
+    let width: f64 = root.attribute("viewBox").unwrap().split(' ').nth(2).unwrap().parse().unwrap();
+    let size: f64 = root.attribute("font-size").unwrap().parse().unwrap();
+    // on a screen 375 px wide the page's margins leave 350
+    assert!(size * 350.0 / width >= 12.0, "{size} px in {width}");
+    assert_inside(narrow, "phone");
+    for class in ["fig-reference", "fig-A", "fig-B"] {
+        // legend and eight curves; the efficiencies stand in the legend
+        assert_eq!(narrow.matches(&format!("path class=\"{class}\"")).count(), 1 + CURVES.len(), "{class}");
     }
 }
 
@@ -150,6 +179,116 @@ fn pdf_holds_every_line_of_the_svg_on_a_page_of_its_size() {
         };
         assert_eq!(content.lines().filter(is_colour).count(), lines.count(), "{class}");
     }
+}
+
+/// What a reader of PDF files finds: every word of the SVG once, each where it stands.
+#[test]
+fn text_of_a_pdf_can_be_searched() {
+    let data = Data::new();
+    let report = data.report();
+    let scene = &report.scenes[0];
+    for width in [85.0, 175.0] {
+        let pdf = figure_file(scene, width, FigureFormat::Pdf).unwrap();
+        let streams = streams(&pdf);
+        let (content, cmap) = (&streams[0], &streams[2]);
+        // ToUnicode: <glyph> <text in UTF-16>
+        let mut text_of = std::collections::BTreeMap::new();
+        for line in String::from_utf8_lossy(cmap).lines() {
+            let hex: Vec<&str> = line.split(['<', '>', ' ']).filter(|part| !part.is_empty()).collect();
+            if let [glyph, text] = hex[..]
+                && line.starts_with('<')
+                && glyph.len() == 4
+            {
+                let units: Vec<u16> = (0..text.len() / 4)
+                    .map(|k| u16::from_str_radix(&text[4 * k..4 * k + 4], 16).unwrap())
+                    .collect();
+                text_of.insert(u16::from_str_radix(glyph, 16).unwrap(), String::from_utf16(&units).unwrap());
+            }
+        }
+        assert!(text_of.len() > 20, "{text_of:?}");
+        let mut found: Vec<String> = vec![];
+        let mut place = 0;
+        while let Some(start) = position(content, b"BT\n", place) {
+            place = position(content, b"ET", start).unwrap();
+            let mut text = String::new();
+            for glyph in shown(&content[start..place]) {
+                text += &text_of[&glyph];
+            }
+            found.push(text);
+        }
+        let svg = printed_figure(scene, width);
+        let xml = Document::parse(&svg).unwrap();
+        let texts = xml.descendants().filter(|n| {
+            n.has_tag_name("text") && !n.attribute("class").is_some_and(|c| c.contains("fig-halo"))
+        });
+        let expected: Vec<String> = texts.map(|n| n.text().unwrap_or_default().to_owned()).collect();
+        assert!(expected.contains(&"Contact force in N".to_owned()));
+        assert_eq!(found, expected, "{width} mm");
+    }
+}
+
+/// Two bytes a glyph in the strings that are shown: `(..) Tj` with escapes, or `<..> Tj`.
+fn shown(content: &[u8]) -> Vec<u16> {
+    let mut bytes = vec![];
+    let mut k = 0;
+    while k < content.len() {
+        match content[k] {
+            b'(' => {
+                k += 1;
+                while content[k] != b')' {
+                    if content[k] == b'\\' {
+                        k += 1;
+                        bytes.push(match content[k] {
+                            b'0'..=b'7' => {
+                                let octal = std::str::from_utf8(&content[k..k + 3]).unwrap();
+                                k += 2;
+                                u8::from_str_radix(octal, 8).unwrap()
+                            }
+                            b'n' => b'\n',
+                            b'r' => b'\r',
+                            b't' => b'\t',
+                            b'b' => 8,
+                            b'f' => 12,
+                            other => other,
+                        });
+                    } else {
+                        bytes.push(content[k]);
+                    }
+                    k += 1;
+                }
+            }
+            b'<' => {
+                let end = k + content[k..].iter().position(|b| *b == b'>').unwrap();
+                let hex = std::str::from_utf8(&content[k + 1..end]).unwrap();
+                bytes.extend(
+                    (0..hex.len() / 2).map(|j| u8::from_str_radix(&hex[2 * j..2 * j + 2], 16).unwrap()),
+                );
+                k = end;
+            }
+            _ => {}
+        }
+        k += 1;
+    }
+    assert_eq!(bytes.len() % 2, 0);
+    bytes.chunks(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect()
+}
+
+fn position(bytes: &[u8], what: &[u8], from: usize) -> Option<usize> {
+    bytes[from..].windows(what.len()).position(|w| w == what).map(|at| from + at)
+}
+
+/// The streams of a PDF file, unpacked: the page, the font, what its glyphs read as.
+fn streams(pdf: &[u8]) -> Vec<Vec<u8>> {
+    use std::io::Read;
+    let mut found = vec![];
+    let mut place = 0;
+    while let Some(start) = position(pdf, b"\nstream\n", place) {
+        place = position(pdf, b"endstream", start + 8).unwrap();
+        let mut bytes = vec![];
+        flate2::read::ZlibDecoder::new(&pdf[start + 8..place]).read_to_end(&mut bytes).unwrap();
+        found.push(bytes);
+    }
+    found
 }
 
 #[test]

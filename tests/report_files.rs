@@ -57,6 +57,32 @@ fn writes_every_file_and_leaves_nothing_else() {
     assert_eq!(contents(&dir), first);
 }
 
+/// A run that took another time leaves the files alone; another result writes them all, with its times.
+#[test]
+fn equal_results_leave_the_files_as_they_are() {
+    let (scene, reference, first) = (scene(), reference(), [reduced()]);
+    let root = tempfile::tempdir().unwrap();
+    write(&report(&scene, &reference, &first), root.path()).unwrap();
+    let before = contents(root.path());
+    let mut slower = first.clone();
+    slower[0].summary.solve_seconds *= 3.0;
+    fs::remove_file(root.path().join("synthetic.csv")).unwrap();
+    let written = write(&report(&scene, &reference, &slower), root.path()).unwrap();
+    assert_eq!(written.len(), before.len());
+    assert_eq!(contents(root.path()), before, "what is missing comes back, the rest stays");
+    slower[0].summary.quantities.efficiency *= 1.0 + 1e-12;
+    write(&report(&scene, &reference, &slower), root.path()).unwrap();
+    let after = contents(root.path());
+    for name in ["comparison.json", "synthetic.html"] {
+        let text = String::from_utf8(after[name].clone()).unwrap();
+        assert!(
+            text.contains(&format!("\"solve_seconds\": {:?}", slower[0].summary.solve_seconds))
+                || text.contains(&format!("\"solve_seconds\":{:?}", slower[0].summary.solve_seconds)),
+            "{name}"
+        );
+    }
+}
+
 /// The error names the folder; what was there stays as it was.
 #[test]
 fn impossible_folders_are_errors_that_name_them() {

@@ -217,6 +217,13 @@ fn unknown_keys_are_refused_at_every_level() {
     refuses(&extra("name  ", "nmae"), 1, &["`nmae`", "did you mean `name`"]);
     refuses(&extra("youngs_modulus", "densty"), 6, &["materials.steel.densty", "did you mean `density`"]);
     refuses(&extra("thickness", "raduis"), 12, &["plate.raduis", "did you mean `radius`", "edge"]);
+    let diameter = |value: &str, said: &str| {
+        let text = edited("thickness", &format!("diameter = {value}\nthickness"));
+        refuses(&text, 12, &["plate.diameter", "give the radius instead, radius = diameter / 2", said]);
+    };
+    diameter("\"66 mm\"", ": radius = \"33 mm\"; ");
+    diameter("0.066", ": radius = 0.033; ");
+    diameter("true", "/ 2; ");
     refuses(&extra("speed", "sped"), 20, &["outer.sped", "did you mean `speed`"]);
     refuses(&edited("\n[reduced]", "speed = 1\n[reduced]"), 26, &["inner.speed", "gap"]);
     refuses(&extra("modes", "mods"), 29, &["reduced.mods", "did you mean `modes`"]);

@@ -228,3 +228,28 @@ fn what_is_not_physics_leaves_the_entry_valid() {
     let renamed = Scene::parse("scene.toml", &SCENE.replace("steel", "iron")).expect("valid");
     assert!(matches!(store.find(&renamed, PAPER), Lookup::Found(_)));
 }
+
+#[test]
+fn the_projects_own_store_is_read_where_ones_own_has_nothing() {
+    let root = tempfile::tempdir().expect("folder");
+    let (store, shipped) = (Store::open(Some(root.path())), Store::shipped());
+    let find = || store.find_here_or_shipped::<impactcheck::impact::PlateQuantities>(&scene(), PAPER);
+    let folder_of = |lookup| match lookup {
+        Lookup::Found(stored) => stored.folder,
+        other => panic!("not found: {other:?}"),
+    };
+    assert_eq!(folder_of(find()), shipped.folder(&scene(), PAPER));
+    assert_eq!(store.find(&scene(), PAPER), Lookup::Missing, "only this way of looking");
+    // Of another scene of the name: no better than nothing.
+    write_entry(&store.folder(&scene(), PAPER), &scene_with("550 mm/s", "600 mm/s"), PAPER);
+    assert_eq!(folder_of(find()), shipped.folder(&scene(), PAPER));
+    // One's own comes first, and a damaged one is not passed over in silence.
+    write_entry(&store.folder(&scene(), PAPER), &scene(), PAPER);
+    assert_eq!(folder_of(find()), store.folder(&scene(), PAPER));
+    std::fs::write(store.folder(&scene(), PAPER).join("history.csv"), "").expect("file");
+    assert!(matches!(find(), Lookup::Damaged { .. }));
+    // What is nowhere is as it is here.
+    let other = scene_with("550 mm/s", "610 mm/s");
+    let other = store.find_here_or_shipped::<impactcheck::impact::PlateQuantities>(&other, PAPER);
+    assert!(matches!(other, Lookup::Damaged { .. }));
+}

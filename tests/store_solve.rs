@@ -5,6 +5,7 @@
 mod store_fixture;
 
 use impactcheck::reference::{Lookup, Progress, Resolution, Store, Wish, solve_with};
+use impactcheck::scene::Scene;
 use impactcheck::{Error, ExitStatus, Result};
 use serde_json::json;
 use std::fs::{self, File};
@@ -227,7 +228,70 @@ fn an_older_entry_stays_until_a_new_one_is_proven() {
     assert!(matches!(bench.store.find(&scene(), PAPER), Lookup::Stale { .. }));
     bench.solve(COPY).expect("success");
     assert!(matches!(bench.store.find(&scene(), PAPER), Lookup::Found(_)));
-    assert_eq!(bench.contents(), ["paper"]);
+}
+
+#[test]
+fn a_solution_of_another_scene_of_the_same_name_is_kept_and_found_again() {
+    let bench = Bench::new();
+    let faster = scene_with("550 mm/s", "600 mm/s");
+    write_entry(&bench.path("prepared-faster"), &faster, PAPER);
+    let solve = |scene: &Scene, script: &str| {
+        let python = bench.solver(script);
+        solve_with(&python, scene, PAPER, &bench.store, &Wish::default(), &mut |_| ()).expect("success")
+    };
+    let copy_faster = "cp -r \"$here/prepared-faster\" \"$out\"";
+    let found = |scene: &Scene| match bench.store.find(scene, PAPER) {
+        Lookup::Found(stored) => stored,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(solve(&faster, copy_faster).earlier, None);
+    let slower = solve(&scene(), COPY);
+    let kept = slower.earlier.expect("the faster one made room");
+    assert_eq!(found(&faster).folder, kept);
+    assert_eq!(found(&faster).outcome.summary.scene_hash, faster.hash());
+    assert_eq!(found(&scene()).folder, slower.folder);
+    assert_eq!(bench.store.resolutions(&faster), [PAPER]);
+    // Computed again, the kept one would be out of date: one of each is there, whatever the order.
+    let again = solve(&faster, copy_faster);
+    assert_eq!((again.folder, bench.contents().len()), (slower.folder, 2));
+    assert!(!kept.exists() && found(&scene()).folder == again.earlier.expect("kept"));
+    // The same scene takes its own place.
+    assert_eq!(solve(&faster, copy_faster).earlier, None);
+    assert_eq!(bench.contents().len(), 2);
+    // What says not of what it is, is not worth keeping.
+    fs::write(bench.store.folder(&scene(), PAPER).join("provenance.json"), "{").expect("file");
+    assert_eq!(solve(&faster, copy_faster).earlier, None);
+    // Other settings are another solution.
+    let finer = scene_with("radius = 12", "radius = 14");
+    write_entry(&bench.path("finer"), &finer, PAPER);
+    assert!(solve(&finer, "cp -r \"$here/finer\" \"$out\"").earlier.is_some());
+    assert_eq!([&faster, &scene(), &finer].map(|s| found(s).outcome.summary.scene_hash.clone()).len(), 3);
+}
+
+#[test]
+fn scenes_of_one_name_solved_at_once_are_all_kept() {
+    let bench = Bench::new();
+    let scenes: Vec<Scene> = (0..4).map(|k| scene_with("550 mm/s", &format!("{} mm/s", 500 + k))).collect();
+    for (k, scene) in scenes.iter().enumerate() {
+        write_entry(&bench.path(&format!("prepared-{k}")), scene, PAPER);
+        let text = format!("#!/bin/sh\ncp -r '{}' \"$7\"\n", bench.path(&format!("prepared-{k}")).display());
+        let path = bench.path(&format!("python-{k}"));
+        fs::write(&path, text).expect("script");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("executable");
+    }
+    std::thread::scope(|scope| {
+        for (k, scene) in scenes.iter().enumerate() {
+            let (python, store) = (bench.path(&format!("python-{k}")), &bench.store);
+            scope.spawn(move || {
+                for _ in 0..5 {
+                    solve_with(&python, scene, PAPER, store, &Wish::default(), &mut |_| ()).expect("success");
+                }
+            });
+        }
+    });
+    for scene in &scenes {
+        assert!(matches!(bench.store.find(scene, PAPER), Lookup::Found(_)), "{:?}", bench.contents());
+    }
 }
 
 #[test]

@@ -17,7 +17,7 @@ import numpy as np
 from ..errors import SolverError
 from ..mesh import Floats
 from ..output import result_folder, write_json
-from ..progress import Progress
+from ..progress import MeshOfSeries, Progress
 from ..settings import require_instants, require_share
 from ..uncertainty import Estimate, least_squares
 from .checkpoint import Checkpoint, exclusive
@@ -26,6 +26,8 @@ from .loop import Loop
 from .model import Model
 
 MESHES = 5
+COST_ORDER = 4
+"""A run costs the elements in a direction to this power: three for their number, one for steps."""
 MOST_REFINED = 4.0
 """Refining towards a target ends beyond this factor on the number of elements."""
 
@@ -233,9 +235,9 @@ def solve_series(
         series = _Series(problem, factor, comm, options, folder, progress)
         solution, meshes = series.solve()
         if comm.rank == 0:
-            progress.report("writing", 0.0, "writing the results")
+            progress.report("writing", 0.0, "writing the results", series=1.0)
             problem.write(partial, solution, meshes)
-            progress.report("writing", 1.0, "done")
+            progress.report("writing", 1.0, "done", series=1.0)
             shutil.rmtree(folder, ignore_errors=True)
         comm.barrier()
 
@@ -260,7 +262,7 @@ class _Series(Generic[S]):
         finest = 0
         while True:
             coarser = [self._kept(finest + step, step) for step in range(MESHES - 1, 0, -1)]
-            solution = self._compute(finest, "", with_fields=True)
+            solution = self._compute(finest, 0, with_fields=True)
             meshes = [self._result(finest, solution), *reversed(coarser)]
             aim = self.options.target_error
             if aim is None:
@@ -282,10 +284,14 @@ class _Series(Generic[S]):
     def _label(self, number: int) -> str:
         return f"mesh{number:+d}"
 
-    def _compute(self, number: int, says: str, *, with_fields: bool) -> S:
+    def _compute(self, number: int, step: int, *, with_fields: bool) -> S:
+        """Solve mesh ``number``, ``step`` meshes coarser than the finest, which comes last."""
+        costs = [self.problem.ratio ** (COST_ORDER * k) for k in range(MESHES - 1, -1, -1)]
+        progress = MeshOfSeries(self.progress, MESHES - step, costs)
+
         def report(phase: str, done: float, message: str) -> None:
             if self.comm.rank == 0:
-                self.progress.report(phase, done, says + message)
+                progress.report(phase, done, message)
 
         options = self.options
         settings = Settings(
@@ -312,8 +318,7 @@ class _Series(Generic[S]):
         found = self._load(number) if self.comm.rank == 0 else None
         found = cast("MeshResult | None", self.comm.bcast(found))
         if found is None:
-            says = f"mesh {MESHES - step} of {MESHES}, for the uncertainty: "
-            found = self._result(number, self._compute(number, says, with_fields=False))
+            found = self._result(number, self._compute(number, step, with_fields=False))
             self._keep(number, found)
         return found
 

@@ -16,7 +16,13 @@ import meshio
 import numpy as np
 import pytest
 
-from fem_reference.output import HISTORY_COLUMNS, PARTIAL_PREFIX, result_folder
+from fem_reference.errors import SolverError
+from fem_reference.output import (
+    HISTORY_COLUMNS,
+    PARTIAL_PREFIX,
+    require_replaceable,
+    result_folder,
+)
 
 from .conftest import document
 
@@ -66,7 +72,11 @@ def solved(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, str]:
 def test_output_is_progress_lines_only(solved: tuple[Path, str, str]) -> None:
     lines = [json.loads(line) for line in solved[1].splitlines()]
     assert {line["phase"] for line in lines} == {"mesh", "assembly", "stepping", "writing"}
-    assert all(set(line) == {"phase", "done", "message"} for line in lines)
+    assert all(set(line) == {"phase", "done", "message", "series"} for line in lines)
+    shares = [line["series"] for line in lines]
+    assert shares[0] == 0.0 and shares[-1] == 1.0 and shares == sorted(shares)
+    named = [line["message"].split(": ")[0] for line in lines if line["phase"] == "mesh"]
+    assert named == [f"mesh {k} of 5" for k in range(1, 6)]
     assert all(0.0 <= line["done"] <= 1.0 for line in lines)
     assert lines[-1]["done"] == 1.0
     assert "FFCx" not in solved[2]
@@ -293,6 +303,44 @@ def test_failure_while_writing_keeps_the_old_result(tmp_path: Path) -> None:
         (folder / "a").write_text("new")
     assert (target / "a").read_text() == "new"
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_solution_of_another_scene_is_not_replaced_unasked(
+    solved: tuple[Path, str, str], tmp_path: Path
+) -> None:
+    target = tmp_path / "out"
+    shutil.copytree(solved[0], target)
+    before = (target / "checksums.sha256").read_text()
+    other = scene_file(tmp_path, scene_hash="1", outer__speed=0.6)
+    refused = call("solve", "--scene", other, "--out", target, "--resolution", "coarse")
+    assert refused.returncode == 12
+    message = json.loads(refused.stdout.splitlines()[-1])["message"]
+    assert "another scene" in message and "--replace" in message and str(target) in message
+    assert (target / "checksums.sha256").read_text() == before
+    # What is no result is not touched, asked or not.
+    (tmp_path / "letters").mkdir()
+    (tmp_path / "letters" / "a.txt").write_text("dear")
+    refused = call("solve", "--scene", other, "--out", tmp_path / "letters", "--replace")
+    assert refused.returncode == 12
+    assert "is no result folder" in json.loads(refused.stdout.splitlines()[-1])["message"]
+    assert (tmp_path / "letters" / "a.txt").read_text() == "dear"
+
+
+def test_what_may_be_replaced(solved: tuple[Path, str, str], tmp_path: Path) -> None:
+    same = json.loads((solved[0] / "provenance.json").read_text())["scene"]
+    require_replaceable(solved[0], same, replace=False)
+    require_replaceable(tmp_path / "new", same, replace=False)
+    require_replaceable(tmp_path, same, replace=False)
+    for key in ("scene_hash", "settings_hash"):
+        other = {**same, key: "f" * 64}
+        with pytest.raises(SolverError, match="other settings"):
+            require_replaceable(solved[0], other, replace=False)
+        require_replaceable(solved[0], other, replace=True)
+    damaged = tmp_path / "damaged"
+    damaged.mkdir()
+    (damaged / "provenance.json").write_text("{")
+    with pytest.raises(SolverError, match="cannot be read"):
+        require_replaceable(damaged, same, replace=False)
 
 
 def test_versions_without_dolfinx(tmp_path: Path) -> None:

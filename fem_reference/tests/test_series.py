@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import json
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,6 +13,7 @@ import numpy as np
 import pytest
 
 from fem_reference.errors import SceneError, SolverError
+from fem_reference.progress import MeshOfSeries, Progress
 from fem_reference.solid import series
 from fem_reference.solid.series import MeshResult, Options, Problem, Settings, solve_series
 
@@ -42,7 +45,9 @@ class Convergent:
         """A value whose error falls with the order."""
         assert settings.courant == 0.5
         self.factors.append(factor)
-        report("stepping", 1.0, "done")
+        report("mesh", 0.0, "meshing")
+        for done in (0.0, 0.5, 1.0):
+            report("stepping", done, "half")
         row = np.full((3, 1), EXACT + 0.1 * factor**-self.order)
         run = SimpleNamespace(
             times=np.arange(3.0), rows=row, steps=2, loop_seconds=0.0, energy_residual=0.0
@@ -128,3 +133,28 @@ def test_meshes_kept_by_a_failed_series_are_used_by_the_same_method_only(
     with pytest.raises(SolverError):
         solve(target_error=1e-5)
     assert len(solve(revision=2).factors) == series.MESHES
+
+
+def test_meshes_are_reported_as_one_series(tmp_path: Path) -> None:
+    stream = io.StringIO()
+    method = Convergent(2.0)
+    options = Options(courant=0.5)
+    solve_series(method.problem(), tmp_path / "out", 1.0, Alone(), options, Progress(stream))
+    lines = [json.loads(line) for line in stream.getvalue().splitlines()]
+    ends = [line for line in lines if line["phase"] == "stepping" and line["done"] == 1.0]
+    assert [line["message"] for line in ends] == [f"mesh {k} of 5: half" for k in range(1, 6)]
+    # What a mesh adds is what its degrees of freedom and steps cost: coarse ones little.
+    costs = np.array(method.factors) ** 4
+    expected = np.cumsum(costs) / costs.sum()
+    assert [line["series"] for line in ends] == pytest.approx(expected, abs=1e-4)
+    shares = [line["series"] for line in lines]
+    assert shares == sorted(shares) and shares[-1] == 1.0
+
+
+def test_a_mesh_made_again_does_not_turn_the_series_back() -> None:
+    stream = io.StringIO()
+    mesh = MeshOfSeries(Progress(stream), 2, [1.0, 3.0])
+    for phase, done in (("mesh", 0.0), ("stepping", 1.0), ("mesh", 0.0), ("stepping", 0.2)):
+        mesh.report(phase, done, "")
+    shares = [json.loads(line)["series"] for line in stream.getvalue().splitlines()]
+    assert shares == [0.25, 1.0, 1.0, 1.0]

@@ -4,6 +4,7 @@
 //! bands of both, the gate fails until somebody says why.
 
 use super::json_lines;
+use super::tolerance_watch::Standing;
 use crate::comparison::{Check, Verdict};
 use crate::error::Result;
 use crate::impact::{Quantities, Summary};
@@ -30,6 +31,9 @@ pub struct Acceptance {
     pub tolerances: Vec<ToleranceChange>,
     /// The reference at that time.
     pub reference: AcceptedReference,
+    /// All tolerances after the change; empty in records of earlier versions.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub standing: Standing,
 }
 
 /// One tolerance, as it stands in the scene file.

@@ -1,7 +1,7 @@
 //! Messages for GitHub Actions: annotations at the tolerance that is exceeded, and the summary of the job.
 
 use super::tolerance_edit::line_of;
-use crate::comparison::{Check, Discrepancy, ModelComparison, SceneComparison};
+use crate::comparison::{ChangedTolerance, Check, Discrepancy, ModelComparison, SceneComparison};
 use crate::impact::Quantities;
 use crate::report::Report;
 use crate::report::format::{model_name, percent, significant, words};
@@ -27,13 +27,32 @@ pub fn annotations(report: &Report, place: impl Fn(&str) -> (String, String)) ->
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let more = found.len().saturating_sub(SHOWN);
+    let plates = report.scenes.iter().flat_map(|s| warnings(&s.comparison, &place));
+    let seats = report.seats.iter().flat_map(|s| warnings(&s.comparison, &place));
+    let changed: Vec<String> = plates.chain(seats).collect();
     let mut commands: Vec<String> = found.into_iter().take(SHOWN).map(|(_, command)| command).collect();
     if more > 0 {
         commands.push(format!(
             "::notice title=impactcheck::{more} more failures are in the job summary and in the report"
         ));
     }
+    commands.extend(changed);
     commands
+}
+
+/// A workflow command per tolerance that was changed since it was accepted.
+fn warnings<Q: Quantities>(
+    comparison: &SceneComparison<Q>,
+    place: impl Fn(&str) -> (String, String),
+) -> Vec<String> {
+    let command = |changed: &ChangedTolerance| {
+        let (file, text) = place(&comparison.scene);
+        let line = line_of(&text, &changed.model, &changed.quantity);
+        let line = line.map_or(String::new(), |line| format!(",line={line}"));
+        let title = property(&format!("{}, tolerance changed", comparison.scene));
+        format!("::warning file={}{line},title={title}::{}", property(&file), data(&changed.sentence()))
+    };
+    comparison.changed_tolerances.iter().map(command).collect()
 }
 
 /// How far beyond its bound, and the command.

@@ -49,7 +49,7 @@ pub fn edited<Q: Quantities>(
 }
 
 /// A value without the comment behind it.
-fn shown(item: &Item) -> String {
+pub(super) fn shown(item: &Item) -> String {
     item.as_value().map_or_else(|| item.to_string(), |value| value.clone().decorated("", "").to_string())
 }
 

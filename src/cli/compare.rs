@@ -159,10 +159,10 @@ impl<'a> Job<'a> {
         let stored = look_up(context, resolution, compute, &seats, &mut problems)?;
         all_found(problems)?;
         for stored in &references {
-            tell_reused(context, &stored.outcome.summary.scene, &stored.provenance);
+            tell_reused(context, stored);
         }
         for stored in &stored {
-            tell_reused(context, &stored.outcome.summary.scene, &stored.provenance);
+            tell_reused(context, stored);
         }
         let seats = seats.into_iter().zip(stored);
         let seats =
@@ -205,6 +205,7 @@ impl<'a> Job<'a> {
             let mut comparison = compared(context, scene, &stored.outcome, reduced);
             let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
             comparison.add_reference_checks(checks);
+            comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
             reports.push(SceneReport {
                 scene,
                 comparison,

@@ -1,11 +1,14 @@
 //! What a comparison is asked to use, checked before anything is computed.
 
 use super::compare::is_seat;
+use crate::ci::acceptance::Acceptance;
+use crate::ci::tolerance_watch;
+use crate::comparison::ChangedTolerance;
 use crate::error::{Error, Result};
 use crate::measured::Record;
 use crate::report::{FIGURE_WIDTHS, FigureFormat};
 use crate::scene::{self, Scene};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The scenes named, or all shipped ones.
 pub(super) fn scenes(names: &[String]) -> Result<Vec<(PathBuf, Scene)>> {
@@ -85,4 +88,10 @@ pub(super) fn bandwidth(text: &str) -> std::result::Result<f64, String> {
     } else {
         Err(format!("{value} Hz is not within 1 kHz to 100 MHz"))
     }
+}
+
+/// Tolerances in the scene `file` that are not those accepted last.
+pub(super) fn changed_tolerances(file: &Path, record: &[Acceptance]) -> Result<Vec<ChangedTolerance>> {
+    let text = std::fs::read_to_string(file).map_err(|e| Error::io("reading", file, e))?;
+    tolerance_watch::changed(record, &text)
 }

@@ -2,6 +2,7 @@
 
 use super::Context;
 use super::asked_model::AskedModel;
+use super::compare_inputs;
 use super::progress::Bar;
 use crate::body::cache::Cache;
 use crate::ci::acceptance;
@@ -67,6 +68,7 @@ pub(super) fn report(
     let acceptances = acceptance::read(file)?;
     let mut comparison = compare_scene(scene, &stored.outcome, reduced);
     comparison.add_reference_checks(acceptance::checks(&acceptances, &stored.outcome.summary, resolution));
+    comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
     let animation = stored.folder.join(ANIMATION);
     Ok(SeatReport {
         scene: scene.clone(),

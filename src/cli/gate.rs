@@ -2,8 +2,8 @@
 
 use super::Context;
 use super::compare::{self, Job, Outputs, Results};
-use crate::ci::acceptance::{self, Acceptance, AcceptedReference};
-use crate::ci::{commit, github, tolerance_edit};
+use crate::ci::acceptance::{self, Acceptance, AcceptedReference, ToleranceChange};
+use crate::ci::{commit, github, tolerance_edit, tolerance_watch};
 use crate::comparison::{SceneComparison, Verdict};
 use crate::error::{Error, ExitStatus, Result};
 use crate::impact::Quantities;
@@ -61,6 +61,10 @@ fn conclude(context: &Context, job: &Job, results: &Results, outputs: &Outputs) 
             file.display(),
             scene.name
         ));
+    }
+    for changed in report.changed_tolerances() {
+        // not a note: --quiet must not hide that the gate is another one
+        eprintln!("warning: {changed}");
     }
     if github::is_running() {
         tell_github(context, job, &report)?;
@@ -145,12 +149,26 @@ impl Change {
         acceptable(comparison)?;
         let old = std::fs::read_to_string(file).map_err(|e| Error::io("reading", file, e))?;
         let (text, tolerances) = tolerance_edit::edited(&old, comparison)?;
+        let mut tolerances = tolerances;
+        // changed by hand, and now with a reason; of those edited that is said already
+        for changed in &comparison.changed_tolerances {
+            let is_same = |t: &ToleranceChange| t.model == changed.model && t.quantity == changed.quantity;
+            if !tolerances.iter().any(is_same) {
+                tolerances.push(ToleranceChange {
+                    model: changed.model.clone(),
+                    quantity: changed.quantity.clone(),
+                    from: changed.accepted.clone(),
+                    to: changed.now.clone().unwrap_or_else(|| tolerance_watch::REMOVED.to_owned()),
+                });
+            }
+        }
         let reference = AcceptedReference::of(&comparison.reference, resolution);
         let known = attachments.acceptances.iter().any(|a| a.reference == reference);
         // what was written has to be read back as what was meant, before it is written
         Scene::parse(&file.display().to_string(), &text)?;
         let date = acceptance::today();
-        let entry = Acceptance { date, reason: reason.to_owned(), tolerances, reference };
+        let standing = tolerance_watch::standing(&text)?;
+        let entry = Acceptance { date, reason: reason.to_owned(), tolerances, reference, standing };
         let nothing = entry.tolerances.is_empty() && known;
         Ok(Change {
             scene: comparison.scene.clone(),

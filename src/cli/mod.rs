@@ -32,7 +32,8 @@ use std::path::PathBuf;
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Folder of the stored references [default: $IMPACTCHECK_STORE, else the project's fem_reference/solutions]
+    /// Folder of the stored references [default: $IMPACTCHECK_STORE, else the project's fem_reference/solutions, where what is
+    /// not in DIR is looked for all the same, except by `reference`, which fills DIR]
     #[arg(long, global = true, value_name = "DIR")]
     store: Option<PathBuf>,
     /// Say nothing but results and errors

@@ -132,7 +132,7 @@ fn verify(
 
 fn reference_of(context: &Context, arguments: &Arguments, scene: &Scene) -> Result<Stored> {
     let store = context.store();
-    match store.find(scene, arguments.resolution) {
+    match store.find_here_or_shipped(scene, arguments.resolution) {
         Lookup::Found(stored) => Ok(*stored),
         _ => reference::compute(context, scene, arguments.resolution, &store, &Wish::default()),
     }

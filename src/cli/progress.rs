@@ -28,8 +28,14 @@ impl Bar {
 
     /// Shows how far the solution is.
     pub fn show(&self, progress: &Progress) {
-        self.0.set_message(format!("{}: {}", progress.phase, progress.message));
-        self.0.set_position((1000.0 * progress.done.clamp(0.0, 1.0)) as u64);
+        // of several meshes the bar shows all together, and the time left is that of all
+        let share = progress.series.unwrap_or(progress.done);
+        let Progress { phase, message, done, .. } = progress;
+        self.0.set_message(match progress.series {
+            Some(_) => format!("{message} ({phase}, {:.0} %)", 100.0 * done),
+            None => format!("{phase}: {message}"),
+        });
+        self.0.set_position((1000.0 * share.clamp(0.0, 1.0)) as u64);
     }
 
     /// Shows the part of a set-up that is being done; `done` is the share before it, 0 to 1.

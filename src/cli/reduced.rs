@@ -8,7 +8,7 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::impact::choice;
 use crate::impact::reduced::Reduced;
 use crate::impact::seal_seat::{self, SeatMesh, SeatModel};
-use crate::impact::{Curves, History, Quantities, SeatHistory, SeatSummary, Summary};
+use crate::impact::{ContactPressure, Curves, History, Quantities, SeatHistory, SeatSummary, Summary};
 use crate::reference::{self, Resolution};
 use crate::report::format::{prefixed, with_unit};
 use crate::scene::{self, Model, Scene, Setup};
@@ -201,7 +201,8 @@ pub fn table<Q: Quantities>(summary: &Summary<Q>) -> String {
             ("lost to drag", losses.drag, "J"),
         ]
     });
-    for (name, value, unit) in bender.chain(losses) {
+    let patches = summary.contact_pressure.iter().flat_map(ContactPressure::rows);
+    for (name, value, unit) in patches.chain(bender).chain(losses) {
         lines.push(format!("  {name:<24} {:>14}", with_unit(value, prefixed(unit, value), 6)));
     }
     lines.push(format!("  {:<24} {:>14.1e}", "energy_residual", summary.energy_residual));

@@ -69,6 +69,15 @@ fn show<Q: Quantities>(
             if let Some(lookup @ (Lookup::Stale { .. } | Lookup::Damaged { .. })) = &other {
                 context.note(format_args!("{}; computing it again", problem(scene, resolution, lookup)));
             }
+            if let (Some(Lookup::Missing), Lookup::Found(shipped)) =
+                (&other, Store::shipped().find_as::<Q>(scene, resolution))
+            {
+                context.note(format_args!(
+                    "computing it for {}; comparisons would find {} as well",
+                    store.root().display(),
+                    shipped.folder.display()
+                ));
+            }
             let wish = Wish {
                 stress_at: arguments.stress_at.clone(),
                 fields: arguments.fields,
@@ -124,5 +133,12 @@ pub fn compute_as<Q: Quantities>(
     let stored = crate::reference::solve_as(&python, scene, resolution, store, wish, &mut |p| bar.show(p))?;
     drop(bar);
     context.note(format_args!("computed {}", stored.folder.display()));
+    if let Some(earlier) = &stored.earlier {
+        context.note(format_args!(
+            "what was there, of another scene named `{}` or with other settings, is kept in {}",
+            scene.name,
+            earlier.display()
+        ));
+    }
     Ok(stored)
 }

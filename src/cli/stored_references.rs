@@ -3,7 +3,7 @@
 use super::{Context, reference};
 use crate::error::{Error, Result};
 use crate::impact::Quantities;
-use crate::reference::{Lookup, Resolution, Stored, Wish};
+use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
 use crate::scene::Scene;
 
 /// The references of `scenes`, from the store or computed; `problems` gets a sentence for every one that can't be used.
@@ -17,7 +17,7 @@ pub(super) fn look_up<Q: Quantities>(
     let store = context.store();
     let mut found = Vec::new();
     for scene in scenes {
-        match store.find_as(scene, resolution) {
+        match store.find_here_or_shipped(scene, resolution) {
             Lookup::Found(stored) => found.push(*stored),
             Lookup::Missing | Lookup::Stale { .. } if compute => {
                 let wish = Wish::default();
@@ -25,14 +25,17 @@ pub(super) fn look_up<Q: Quantities>(
             }
             other => {
                 let mut problem = reference::problem(scene, resolution, &other);
-                let there: Vec<String> =
-                    store.resolutions(scene).into_iter().map(Resolution::argument).collect();
-                if !there.is_empty() {
-                    problem += &format!(
-                        "; there is one for `--resolution {}` in {}",
-                        there.join("`, `--resolution "),
-                        store.root().display()
-                    );
+                let shipped = Some(Store::shipped()).filter(|shipped| *shipped != store);
+                for store in [Some(&store), shipped.as_ref()].into_iter().flatten() {
+                    let there: Vec<String> =
+                        store.resolutions(scene).into_iter().map(Resolution::argument).collect();
+                    if !there.is_empty() {
+                        problem += &format!(
+                            "; there is one for `--resolution {}` in {}",
+                            there.join("`, `--resolution "),
+                            store.root().display()
+                        );
+                    }
                 }
                 problems.push(problem);
             }
@@ -41,10 +44,16 @@ pub(super) fn look_up<Q: Quantities>(
     Ok(found)
 }
 
-/// Where a reference comes from.
-pub(super) fn tell_reused(context: &Context, scene: &str, provenance: &serde_json::Value) {
-    let made = provenance["created"].as_str().map_or(String::new(), |when| format!(", made {when}"));
-    context.detail(format_args!("{scene}: reference from the store{made}"));
+/// Where a reference comes from: that it is not from the caller's own store is always said.
+pub(super) fn tell_reused<Q: Quantities>(context: &Context, stored: &Stored<Q>) {
+    let scene = &stored.outcome.summary.scene;
+    let made = stored.provenance["created"].as_str().map_or(String::new(), |when| format!(", made {when}"));
+    if stored.folder.starts_with(context.store().root()) {
+        context.detail(format_args!("{scene}: reference from the store{made}"));
+    } else {
+        let folder = stored.folder.display();
+        context.note(format_args!("{scene}: reference shipped with the project, {folder}{made}"));
+    }
 }
 
 /// One error that names every reference that can't be used, if there is any.

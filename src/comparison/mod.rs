@@ -8,6 +8,7 @@
 mod alignment;
 mod balance;
 pub mod budget;
+mod changed_tolerance;
 mod curve_metrics;
 mod discrepancy;
 mod dynamic_time_warping;
@@ -21,6 +22,7 @@ mod sprague_geers;
 mod verdict;
 
 pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
+pub use changed_tolerance::ChangedTolerance;
 pub use curve_metrics::CurveMetrics;
 pub use discrepancy::{BandVerdict, Discrepancy};
 pub use integrity::{Check, Compared};
@@ -103,6 +105,9 @@ pub struct SceneComparison<Q: Quantities = PlateQuantities> {
     /// What causes the difference between model B and the reference, one entry per quantity; empty unless
     /// [`SceneComparison::add_budget`] was called and found models B and C.
     pub budget: Vec<QuantityBudget>,
+    /// Tolerances that are not those accepted last; told, not gated. Filled by whoever knows the scene file's record.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub changed_tolerances: Vec<ChangedTolerance>,
     /// Measured records beside reference and models, if there are any; reported, not gated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
@@ -236,6 +241,7 @@ pub fn compare_scene<Q: Compared>(
         window,
         models,
         budget: Vec::new(),
+        changed_tolerances: Vec::new(),
         measured: None,
     }
 }

@@ -54,4 +54,10 @@ impl Hertz {
     pub fn contact_radius(&self, force: f64) -> f64 {
         (self.tip_radius * self.approach(force.max(0.0))).sqrt()
     }
+
+    /// Pressure at the patch's centre in Pa under `force` N: 3 F / (2 pi a^2); 0 without force.
+    pub fn maximum_pressure(&self, force: f64) -> f64 {
+        let area = std::f64::consts::PI * self.contact_radius(force).powi(2);
+        if area > 0.0 { 1.5 * force / area } else { 0.0 }
+    }
 }

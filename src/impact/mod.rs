@@ -8,6 +8,7 @@ mod clearance;
 pub mod collocation;
 mod contact_forces;
 mod contact_ledger;
+mod contact_pressure;
 pub mod duhamel;
 pub mod explicit_runge_kutta;
 mod free_flight;
@@ -30,6 +31,7 @@ pub mod wet;
 
 pub use choice::{Candidate, Choice};
 pub use contact_ledger::ContactLedger;
+pub use contact_pressure::{ContactPatch, ContactPressure};
 pub use history::{CURVES, Curves, History, Motion};
 pub use integrator::Losses;
 pub use outer_body::{Drive, OuterBody};

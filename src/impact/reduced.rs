@@ -7,7 +7,7 @@ use super::integrator::{Integration, Options, integrate};
 use super::rough::Rough;
 use super::system::System;
 use super::validity;
-use super::{BenderSummary, Outcome, OuterBody, PlateQuantities, Summary, wet};
+use super::{BenderSummary, ContactPressure, Outcome, OuterBody, PlateQuantities, Summary, wet};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::cache::Cache;
@@ -254,6 +254,10 @@ impl Reduced {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
                 BenderSummary { strain_energy_efficiency: transmitted / drive.strain_energy, drive }
             }),
+            contact_pressure: Some(ContactPressure::new(
+                &system.laws,
+                [result.contacts[0].force_peak, result.contacts[1].force_peak],
+            )),
             losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
             warnings,
             choice: self.choice.clone(),

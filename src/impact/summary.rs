@@ -1,7 +1,7 @@
 //! The result of a run in a few numbers, the same type for reduced models and the reference.
 
 use super::history::{Curves, History};
-use super::{Drive, Losses};
+use super::{ContactPressure, Drive, Losses};
 use crate::scene::{Model, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -150,6 +150,9 @@ pub struct Summary<Q: Quantities = PlateQuantities> {
     /// Of a bender only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bender: Option<BenderSummary>,
+    /// Reduced models of plate impacts: contact patches at the force peaks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact_pressure: Option<ContactPressure>,
     /// Energy lost to damping and fluid, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub losses: Option<Losses>,
@@ -195,6 +198,7 @@ impl<Q: Quantities> Summary<Q> {
             steps: 0,
             solve_seconds: 0.0,
             bender: None,
+            contact_pressure: None,
             losses: None,
             integration_error: None,
             choice: None,

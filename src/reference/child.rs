@@ -15,6 +15,9 @@ pub struct Progress {
     pub done: f64,
     /// For people.
     pub message: String,
+    /// Share of all meshes together that is done, 0 to 1, where there are several.
+    #[serde(default)]
+    pub series: Option<f64>,
 }
 
 /// One line a solver writes to its standard output.

@@ -87,7 +87,7 @@ fn store_folder(store: &Store) -> Check {
 
 /// The state of one entry. Only the `paper` resolution is expected to be there.
 fn entry<Q: Quantities>(store: &Store, scene: &Scene, resolution: Resolution) -> Option<Check> {
-    let (found, needed_for) = match store.find_as::<Q>(scene, resolution) {
+    let (found, needed_for) = match store.find_here_or_shipped::<Q>(scene, resolution) {
         Lookup::Missing if resolution != Resolution::Paper => return None,
         Lookup::Missing => (None, "comparing; it is not stored".to_owned()),
         Lookup::Stale { reason } => (None, format!("comparing; what is stored is stale: {reason}")),

@@ -22,6 +22,9 @@ pub struct Stored<Q: Quantities = PlateQuantities> {
     pub provenance: Value,
     /// Where it lies.
     pub folder: PathBuf,
+    /// Where the solution of another scene of this name, or with other settings, was moved when this one was computed and
+    /// took its place.
+    pub earlier: Option<PathBuf>,
 }
 
 /// A file that is not what it should be.
@@ -58,12 +61,28 @@ pub(super) fn load<Q: Quantities>(folder: &Path) -> Result<Stored<Q>, Damage> {
             format!("scene_hash is {}, but {} in {SUMMARY}", provenance["scene_hash"], summary.scene_hash);
         return Err(damage(PROVENANCE, reason));
     }
-    Ok(Stored { outcome: Outcome { summary, history }, bands, provenance, folder: folder.to_path_buf() })
+    Ok(Stored {
+        outcome: Outcome { summary, history },
+        bands,
+        provenance,
+        folder: folder.to_path_buf(),
+        earlier: None,
+    })
 }
 
 /// Text of the checksum file; what tells one version of an entry from the next.
 pub(super) fn fingerprint(folder: &Path) -> Option<String> {
     std::fs::read_to_string(folder.join(CHECKSUMS)).ok()
+}
+
+/// Hashes of the scene and the settings of the entry in `folder`, if it says what they are; nothing is verified.
+pub(super) fn hashes(folder: &Path) -> Option<(String, String)> {
+    let provenance: Value = read_json(folder, PROVENANCE).ok()?;
+    let hash = |key: &str| {
+        let text = provenance[key].as_str()?;
+        (text.len() >= 8 && text.bytes().all(|b| b.is_ascii_hexdigit())).then(|| text.to_owned())
+    };
+    hash("scene_hash").zip(hash("settings_hash"))
 }
 
 fn read_json<T: serde::de::DeserializeOwned>(folder: &Path, name: &str) -> Result<T, Damage> {

@@ -90,7 +90,7 @@ pub fn seat_mesh_with(
     let path = folder.join("meshes").join(format!("{name}.vtu"));
     if intact(&path).is_none() {
         std::fs::create_dir_all(folder.join("meshes")).map_err(|e| Error::io("writing", &path, e))?;
-        progress(&Progress { phase: "mesh".into(), done: 0.0, message: "gmsh".into() });
+        progress(&Progress { phase: "mesh".into(), done: 0.0, message: "gmsh".into(), series: None });
         make_seat_mesh(&python::python()?, scene, resolution, 1.0, &path)?;
     }
     Ok(path)

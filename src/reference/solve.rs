@@ -2,6 +2,7 @@
 
 use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
+use super::store::Installed;
 use super::{Resolution, Store, identity, python};
 use crate::impact::Quantities;
 use crate::scene::{Geometry, Scene};
@@ -23,7 +24,8 @@ pub struct Wish {
 /// Computes the reference of `scene` at `resolution` and puts it into `store`.
 ///
 /// The result is verified first: checksums, format, and that it is one of this scene with these
-/// settings. Until then an older entry stays, and a failed run leaves the store as it was.
+/// settings. Until then an older entry stays, and a failed run leaves the store as it was. A solution of another scene of
+/// the same name, or with other settings, is kept beside the new one ([`Stored::earlier`]).
 /// The states of a solid run are kept beside its place in the store, and a run that was killed
 /// goes on from there.
 ///
@@ -111,8 +113,8 @@ pub fn solve_as<Q: Quantities>(
     if let Some(reason) = identity::staleness(&stored.provenance, scene, resolution)? {
         return Err(unusable(format!("its result is not one of this scene: {reason}")));
     }
-    let folder = store.install(&work, &output, scene, resolution)?;
-    Ok(Stored { folder, ..stored })
+    let Installed { folder, earlier } = store.install(&work, &output, scene, resolution)?;
+    Ok(Stored { folder, earlier, ..stored })
 }
 
 /// The error a failed run ends with.

@@ -2,6 +2,8 @@
 //!
 //! Entries appear by renaming a complete folder, so a reader never sees half of one. Work in
 //! progress lies in `.partial-*` folders that hold a locked file while their maker lives.
+//! A solution of another scene of the same name, or with other settings, is not replaced: it moves to a folder beside that
+//! is named after its hashes (`paper.0123abcd-4567ef89`), where it is found when its scene is asked for again.
 
 use super::entry::{self, Damage, Stored};
 use super::{Resolution, identity};
@@ -62,7 +64,7 @@ impl Store {
     pub fn open(root: Option<&Path>) -> Store {
         let variable = || std::env::var_os(STORE_VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
         let root = root.map(Path::to_path_buf).or_else(variable);
-        Store { root: root.unwrap_or_else(|| project_root().join("fem_reference").join("solutions")) }
+        root.map_or_else(Store::shipped, |root| Store { root })
     }
 
     /// The folder all entries lie in.
@@ -85,6 +87,11 @@ impl Store {
         Ok(parent.join(format!(".checkpoint-{}", resolution)))
     }
 
+    /// The project's own store.
+    pub fn shipped() -> Store {
+        Store { root: project_root().join("fem_reference").join("solutions") }
+    }
+
     /// Looks for the solution of `scene`, a plate impact, at `resolution`. Every file is verified by its checksum.
     pub fn find(&self, scene: &Scene, resolution: Resolution) -> Lookup {
         self.find_as(scene, resolution)
@@ -92,23 +99,43 @@ impl Store {
 
     /// As [`Store::find`], for a scene of the kind that has the quantities `Q`.
     pub fn find_as<Q: Quantities>(&self, scene: &Scene, resolution: Resolution) -> Lookup<Q> {
-        let folder = self.folder(scene, resolution);
-        loop {
-            let before = entry::fingerprint(&folder);
-            let lookup = examine(&folder, scene, resolution);
-            // An entry that is replaced while it is read looks damaged or gone, but is neither.
-            let replaced = before.is_some() && entry::fingerprint(&folder) != before;
-            if !replaced || matches!(lookup, Lookup::Found(_)) {
-                return lookup;
-            }
+        let lookup = settled(&self.folder(scene, resolution), scene, resolution);
+        if matches!(lookup, Lookup::Found(_)) {
+            return lookup;
         }
+        match settled(&self.earlier_folder(scene, resolution), scene, resolution) {
+            Lookup::Found(stored) => Lookup::Found(stored),
+            _ => lookup,
+        }
+    }
+
+    /// As [`Store::find_as`]; what is missing or stale here is looked for in the project's own store too, which is only read.
+    pub fn find_here_or_shipped<Q: Quantities>(&self, scene: &Scene, resolution: Resolution) -> Lookup<Q> {
+        let lookup = self.find_as(scene, resolution);
+        if !matches!(lookup, Lookup::Missing | Lookup::Stale { .. }) {
+            return lookup;
+        }
+        match Store::shipped().find_as(scene, resolution) {
+            Lookup::Found(stored) => Lookup::Found(stored),
+            _ => lookup,
+        }
+    }
+
+    /// The folder the solution of `scene` at `resolution` moves to when that of another scene takes its place.
+    fn earlier_folder(&self, scene: &Scene, resolution: Resolution) -> PathBuf {
+        let name =
+            earlier_name(resolution, scene.hash().as_ref(), &identity::settings_hash(scene, resolution));
+        self.folder(scene, resolution).with_file_name(name)
     }
 
     /// Resolutions at which there is a solution of exactly this scene, coarse to fine.
     pub fn resolutions(&self, scene: &Scene) -> Vec<Resolution> {
         let folders = fs::read_dir(self.root.join(&scene.name)).into_iter().flatten().flatten();
         let mut found: Vec<Resolution> = folders
-            .filter_map(|folder| Resolution::of_folder(&folder.file_name().to_string_lossy()))
+            .filter_map(|folder| {
+                let name = folder.file_name().to_string_lossy().into_owned();
+                Resolution::of_folder(name.split('.').next().unwrap_or(&name))
+            })
             .filter(|resolution| match &scene.setup {
                 Setup::PlateImpact(_) => matches!(self.find(scene, *resolution), Lookup::Found(_)),
                 Setup::SealSeat(_) => {
@@ -117,6 +144,7 @@ impl Store {
             })
             .collect();
         found.sort();
+        found.dedup();
         found
     }
 
@@ -136,34 +164,99 @@ impl Store {
     }
 
     /// Puts the complete folder `made` in the place of the entry of `scene` at `resolution`.
-    /// An older entry goes only now, and two that do this at once leave one complete entry.
+    /// An older entry of the same goes only now, and two that do this at once leave one complete entry; one of another
+    /// scene or with other settings is kept beside it.
     pub(super) fn install(
         &self,
         work: &WorkFolder,
         made: &Path,
         scene: &Scene,
         resolution: Resolution,
-    ) -> Result<PathBuf> {
+    ) -> Result<Installed> {
         let folder = self.folder(scene, resolution);
         let failed = |e| Error::io("putting the solution into", &folder, e);
+        let mut earlier = None;
         for attempt in 0..100 {
             let aside = work.path().join(format!("replaced-{attempt}"));
             match fs::rename(&folder, &aside) {
                 Err(e) if e.kind() != ErrorKind::NotFound => return Err(failed(e)),
-                _ => {}
+                Err(_) => {}
+                Ok(()) => {
+                    let kept = self.keep(work, &aside, scene, resolution, attempt).map_err(|e| {
+                        let _ = fs::rename(&aside, &folder);
+                        failed(e)
+                    })?;
+                    earlier = kept.or(earlier);
+                }
             }
+            // What an earlier change of the scene has left is older. Moved before the new entry is there: another run
+            // may move that one to the same place at once.
+            let (left, superseded) =
+                (self.earlier_folder(scene, resolution), work.path().join(format!("superseded-{attempt}")));
+            let _ = fs::rename(&left, &superseded);
             match fs::rename(made, &folder) {
-                Ok(()) => return Ok(folder),
+                Ok(()) => return Ok(Installed { folder, earlier }),
                 // Another run was faster: its entry goes aside as well.
                 Err(e) if matches!(e.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists) => {}
                 Err(e) => {
                     // What was there is better than nothing.
                     let _ = fs::rename(&aside, &folder);
+                    let _ = fs::rename(&superseded, &left);
                     return Err(failed(e));
                 }
             }
         }
         Err(Error::Internal(format!("{} is replaced again and again by others", folder.display())))
+    }
+
+    /// Moves the entry in `aside` to where it will be found, unless it is one of `scene` at `resolution` itself or says
+    /// not of what it is. Where it went.
+    fn keep(
+        &self,
+        work: &WorkFolder,
+        aside: &Path,
+        scene: &Scene,
+        resolution: Resolution,
+        attempt: usize,
+    ) -> std::io::Result<Option<PathBuf>> {
+        let Some((scene_hash, settings_hash)) = entry::hashes(aside) else { return Ok(None) };
+        let name = earlier_name(resolution, &scene_hash, &settings_hash);
+        let kept = self.folder(scene, resolution).with_file_name(name);
+        if kept == self.earlier_folder(scene, resolution) {
+            return Ok(None);
+        }
+        let older = work.path().join(format!("older-{attempt}"));
+        match fs::rename(&kept, older) {
+            Err(e) if e.kind() != ErrorKind::NotFound => return Err(e),
+            _ => {}
+        }
+        fs::rename(aside, &kept)?;
+        Ok(Some(kept))
+    }
+}
+
+/// Where a new entry lies, and where the one went that lay there before.
+pub(super) struct Installed {
+    pub(super) folder: PathBuf,
+    pub(super) earlier: Option<PathBuf>,
+}
+
+/// Name of the folder of a solution that had to make room: the resolution and the beginnings of its hashes.
+fn earlier_name(resolution: Resolution, scene_hash: &str, settings_hash: &str) -> String {
+    let short = |hash: &str| hash.chars().take(8).collect::<String>();
+    format!("{resolution}.{}-{}", short(scene_hash), short(settings_hash))
+}
+
+/// As [`examine`], of one and the same version of the entry.
+fn settled<Q: Quantities>(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup<Q> {
+    loop {
+        let before = entry::fingerprint(folder);
+        let lookup = examine(folder, scene, resolution);
+        // An entry that is replaced while it is read looks damaged or gone, but is neither.
+        let replaced = before.is_some() && entry::fingerprint(folder) != before;
+        if !replaced || matches!(lookup, Lookup::Found(_)) {
+            return lookup;
+        }
     }
 }
 

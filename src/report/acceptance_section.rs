@@ -3,16 +3,24 @@
 use super::Attachments;
 use super::format::words;
 use super::html::scrolled;
+use crate::comparison::ChangedTolerance;
 use maud::{Markup, html};
 
 /// Section of a scene's page; nothing if nothing was accepted.
-pub(super) fn acceptances_html(attachments: &Attachments) -> Markup {
+pub(super) fn acceptances_html(attachments: &Attachments, changed: &[ChangedTolerance]) -> Markup {
     let record = &attachments.acceptances;
     if record.is_empty() {
         return html! {};
     }
     html! {
         h2 { "Accepted changes" }
+        @if !changed.is_empty() {
+            p { "Tolerances changed since, without a reason:" }
+            ul { @for c in changed { li {
+                "model " (c.model) ", " (words(&c.quantity)) ": accepted " code { (c.accepted) } ", now "
+                @match &c.now { Some(now) => code { (now) }, None => "none" }
+            } } }
+        }
         (scrolled("Accepted changes", &html! { table.accepted {
             thead { tr {
                 th scope="col" { "date" } th.left scope="col" { "reason" } th.left scope="col" { "tolerances changed" }

@@ -2,7 +2,7 @@
 
 use super::budget_figure::{budget_figure, cause_name};
 use super::format::{Prefixed, prefixed, with_unit, words};
-use super::html::scrolled;
+use super::html::{detailed, scrolled};
 use crate::comparison::budget::{Part, QuantityBudget};
 use maud::{Markup, html};
 
@@ -19,7 +19,7 @@ pub(super) fn budget_html(rows: &[QuantityBudget]) -> Markup {
         h2 { "Discrepancy budget" }
         p.soft { (EXPLANATION) }
         figure.budget {
-            (budget_figure(rows))
+            (detailed("Discrepancy budget, drawn", &html! { (budget_figure(rows)) }))
             figcaption { "Relative to the reference, one scale for all. Thin line: uncertainty of a part. "
                 "Grey: bound of the remainder." }
         }

@@ -4,7 +4,8 @@ use super::polyline::{Point, path};
 use super::ticks::{tick_label, ticks};
 use maud::{Markup, PreEscaped, html};
 
-const WIDTH: f64 = 760.0;
+/// Width in px, if no other is asked for.
+pub(super) const CHART_WIDTH: f64 = 760.0;
 const LEFT: f64 = 74.0;
 const RIGHT: f64 = 16.0;
 const PANEL_HEIGHT: f64 = 300.0;
@@ -52,19 +53,24 @@ pub struct ChartPanel {
 
 /// The chart as a stand-alone SVG; values that are not finite are left out.
 pub fn chart(title: &str, panels: &[ChartPanel]) -> String {
+    chart_of_width(CHART_WIDTH, title, panels)
+}
+
+/// As [`chart`], `width` px wide, with type of the same size.
+pub(super) fn chart_of_width(width: f64, title: &str, panels: &[ChartPanel]) -> String {
     let names: Vec<&Series> = panels.first().map_or_else(Vec::new, |panel| panel.series.iter().collect());
-    let legend = legend(&names);
+    let legend = legend(&names, width);
     let top = 14.0 + LEGEND_ROW * legend.rows as f64;
     let height = top + panels.len() as f64 * (PANEL_HEIGHT + PANEL_GAP);
     html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height}")) width=(WIDTH) height=(height)
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {width} {height}")) width=(width) height=(height)
             font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) role="img" {
             title { (title) }
             style { (PreEscaped("text{fill:#1a1a1a}.frame{stroke:#444;fill:none}.grid{stroke:#e3e3e3}.band{fill:#ececec}")) }
-            rect width=(WIDTH) height=(height) fill="#ffffff" {}
+            rect width=(width) height=(height) fill="#ffffff" {}
             (legend.drawing)
             @for (k, panel) in panels.iter().enumerate() {
-                (draw(panel, top + k as f64 * (PANEL_HEIGHT + PANEL_GAP)))
+                (draw(panel, width, top + k as f64 * (PANEL_HEIGHT + PANEL_GAP)))
             }
         }
     }
@@ -76,12 +82,12 @@ struct Legend {
     drawing: Markup,
 }
 
-fn legend(series: &[&Series]) -> Legend {
+fn legend(series: &[&Series], page: f64) -> Legend {
     let (mut x, mut row) = (LEFT, 0);
     let mut items = Vec::new();
     for (k, series) in series.iter().enumerate().filter(|(_, series)| !series.name.is_empty()) {
         let width = 50.0 + 0.62 * FONT_SIZE * series.name.chars().count() as f64;
-        if x > LEFT && x + width > WIDTH - RIGHT {
+        if x > LEFT && x + width > page - RIGHT {
             (x, row) = (LEFT, row + 1);
         }
         items.push((k, x, 16.0 + LEGEND_ROW * row as f64, *series));
@@ -121,7 +127,7 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     }
 }
 
-fn draw(panel: &ChartPanel, top: f64) -> Markup {
+fn draw(panel: &ChartPanel, page: f64, top: f64) -> Markup {
     let points = || panel.series.iter().flat_map(|series| &series.points);
     let band = panel.band.map(|(middle, half)| [middle - half, middle + half]);
     let (left, right) = range(points().map(|p| p.0));
@@ -133,10 +139,10 @@ fn draw(panel: &ChartPanel, top: f64) -> Markup {
     // marks at the very edge would be cut
     let side = if panel.series.iter().any(|series| series.marks) { 0.03 * (right - left) } else { 0.0 };
     let (left, right) = (left - side, right + side);
-    let width = WIDTH - LEFT - RIGHT;
+    let width = page - LEFT - RIGHT;
     let x_of = |x: f64| LEFT + width * (x - left) / (right - left);
     let y_of = |y: f64| top + PANEL_HEIGHT * (high - y) / (high - low);
-    let (mut x_marks, y_marks) = (ticks(left, right, 9), ticks(low, high, 6));
+    let (mut x_marks, y_marks) = (ticks(left, right, (width / 70.0) as usize), ticks(low, high, 6));
     x_marks.retain(|x| !panel.counted || x.fract() == 0.0);
     let at = |value: f64| format!("{value:.2}");
     html! {

@@ -3,7 +3,7 @@
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::html::{badge, number, scrolled, shown};
 use crate::comparison::{BandVerdict, Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
-use crate::impact::Quantities;
+use crate::impact::{ContactPatch, ContactPressure, Quantities};
 use maud::{Markup, html};
 
 /// Section of one model.
@@ -25,6 +25,7 @@ pub(super) fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> Markup
         p.soft { "Difference is reduced minus reference. A row without tolerance is not gated. Bias is the known "
             "discrepancy about which the tolerance lies. A distance of curves is relative to the reference's peak. "
             "|E| against u (ASME V&V 20): a difference within the reference's 95 % band proves no error of the model." }
+        @if let Some(pressure) = &model.summary.contact_pressure { (pressures(pressure)) }
         h3 { "Curve metrics" }
         (scrolled(&format!("Curve metrics of model {}", model.model), &html! { table.curves data-model=(model.model) {
             thead { tr {
@@ -41,6 +42,19 @@ pub(super) fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> Markup
             summary { "Checks of the result against itself (" (model.integrity.len()) ")" }
             (checks(&model.integrity))
         }
+    }
+}
+
+/// Contact patches at the force peaks, in a sentence.
+fn pressures(pressure: &ContactPressure) -> Markup {
+    let patch = |of: &ContactPatch| {
+        let [radius, highest] = [("m", of.contact_radius), ("Pa", of.maximum_pressure)]
+            .map(|(unit, value)| with_unit(value, prefixed(unit, value), 3));
+        format!("{highest} at the centre of a patch of radius {radius}")
+    };
+    html! {
+        p { "Contact pressure at the force peaks (Hertz, elastic): outer body " (patch(&pressure.outer)) "; inner body "
+            (patch(&pressure.inner)) "." }
     }
 }
 

@@ -17,6 +17,8 @@ use maud::{Markup, PreEscaped, html};
 pub(super) const FONT_SIZE: f64 = 13.0;
 /// Height of a row of the legend in px.
 const LEGEND_ROW: f64 = 20.0;
+/// Width of a drawing for phones in px.
+pub(super) const PHONE_WIDTH: f64 = 360.0;
 /// Widths in mm a figure of its own can have.
 pub const FIGURE_WIDTHS: std::ops::RangeInclusive<f64> = 75.0..=300.0;
 
@@ -45,6 +47,17 @@ impl Geometry {
         bottom: 50.0,
         boxes: true,
         millimetres: None,
+    };
+
+    /// For a phone held upright: as wide as its screen, so that type is not shrunk.
+    const PHONE: Geometry = Geometry {
+        width: PHONE_WIDTH,
+        left: 62.0,
+        right: 8.0,
+        panel_height: 220.0,
+        gap: 14.0,
+        boxes: false,
+        ..Geometry::PAGE
     };
 
     /// For a figure `width` mm wide: type of 8.5 pt, in one column of a paper (below 120 mm) of 7.5 pt.
@@ -226,6 +239,11 @@ pub fn figure(report: &SceneReport, theme: Theme) -> String {
     scene_drawing(report, &Geometry::PAGE, theme)
 }
 
+/// The figure for a page on a phone: its panels as narrow as the screen, with type of the same size as on a wide page.
+pub(super) fn phone_figure(report: &SceneReport) -> String {
+    scene_drawing(report, &Geometry::PHONE, Theme::Inline)
+}
+
 /// The figure for a paper, `width` mm wide (within [`FIGURE_WIDTHS`]), as stand-alone SVG with its size in mm and type of
 /// 7.5 pt or more.
 pub fn printed_figure(report: &SceneReport, width: f64) -> String {
@@ -246,10 +264,19 @@ fn scene_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> Str
 /// The figure of the first measured record beside reference and models (Fig. 12): displacement and velocity of the
 /// bodies, filtered to the instrument's bandwidth. `None` if nothing was measured.
 pub fn measured_figure(report: &SceneReport, theme: Theme) -> Option<String> {
+    measured_drawing(report, &Geometry::PAGE, theme)
+}
+
+/// As [`measured_figure`], for a page on a phone.
+pub(super) fn phone_measured_figure(report: &SceneReport) -> Option<String> {
+    measured_drawing(report, &Geometry::PHONE, Theme::Inline)
+}
+
+fn measured_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> Option<String> {
     let measured = report.comparison.measured.as_ref()?;
     let title = format!("{}: measurement, reduced models and finite-element reference", report.scene.name);
     let lines = measured_lines(measured);
-    Some(drawing(&title, &Geometry::PAGE, &MEASURED, &lines, Some(measured.window), theme))
+    Some(drawing(&title, geometry, &MEASURED, &lines, Some(measured.window), theme))
 }
 
 fn drawing(

@@ -12,7 +12,7 @@ const RESOLUTION: f32 = 600.0;
 pub enum FigureFormat {
     /// Vector drawing for the web and for editors; text stays text.
     Svg,
-    /// Vector drawing for LaTeX; text as outlines.
+    /// Vector drawing for LaTeX; text stays text, in an embedded font.
     Pdf,
     /// 600 dots per inch.
     Png,

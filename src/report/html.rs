@@ -46,6 +46,16 @@ pub(super) fn scrolled(name: &str, content: &Markup) -> Markup {
     html! { div.scroll role="region" tabindex="0" aria-label=(name) { (content) } }
 }
 
+/// A drawing as wide as a page, and the same as wide as a phone; the screen decides which is seen.
+pub(super) fn drawn(wide: &str, narrow: &str) -> Markup {
+    html! { div.wide { (PreEscaped(wide)) } div.narrow { (PreEscaped(narrow)) } }
+}
+
+/// A drawing with type that must not shrink with the screen: it scrolls by itself.
+pub(super) fn detailed(name: &str, drawing: &Markup) -> Markup {
+    html! { div.scroll.detailed role="region" tabindex="0" aria-label=(name) { (drawing) } }
+}
+
 /// A cell with a number: SI value in `data-si`, shown with its prefix. Empty `data-si` = not a number.
 pub(super) fn number(field: &str, value: Option<f64>, to: Prefixed, digits: usize) -> Markup {
     let finite = value.filter(|v| v.is_finite());
@@ -67,7 +77,7 @@ pub fn index_page(report: &Report) -> String {
             @for seat in &report.seats { (card(&seat.scene.description, &seat.comparison, &seat.attachments)) }
         }
         h2 { "Verdicts" }
-        (scrolled("Verdicts", &html! { table {
+        (scrolled("Verdicts", &html! { table.verdicts {
             thead { tr {
                 th scope="col" { "scene" } th.left scope="col" { "model" } th.left scope="col" { "verdict" }
                 th scope="col" { "efficiency" } th scope="col" { "reference" }

@@ -1,5 +1,6 @@
 //! The interactive panels of a scene's page, their data and scripts; the page stays whole without scripts and on paper.
 
+use super::html::drawn;
 use super::page_data::{PanelOf, Shown, curves, embedded};
 use crate::comparison::SceneComparison;
 use crate::impact::Quantities;
@@ -12,8 +13,9 @@ const PANELS: &str = include_str!("assets/panels.js");
 /// Style sheet of the panels.
 pub(super) const STYLE: &str = include_str!("assets/uPlot.min.css");
 
-/// The place of the panels: `drawn` (SVG) for print and without scripts, made interactive by the script.
-pub(super) fn panels(drawn: String) -> Markup {
+/// The place of the panels: drawn (SVG, for a wide page and for a phone) for print and without scripts, made interactive by
+/// the script.
+pub(super) fn panels(wide: &str, narrow: &str) -> Markup {
     html! {
         div.live {
             div #controls role="group" aria-label="Curves shown" {}
@@ -21,7 +23,7 @@ pub(super) fn panels(drawn: String) -> Markup {
             div #time role="group" aria-label="Time axis of all panels" {}
             p.soft { "Drag across a panel to zoom all of them, double-click to see everything again." }
         }
-        figure.drawn { (PreEscaped(drawn)) }
+        figure.drawn { (drawn(wide, narrow)) }
     }
 }
 

@@ -21,6 +21,11 @@ pub fn junit(report: &Report) -> Result<String> {
 fn suite<Q: Quantities>(comparison: &SceneComparison<Q>) -> TestSuite {
     let mut suite = TestSuite::new(comparison.scene.clone());
     suite.add_property(Property::new("scene_hash", comparison.reference.scene_hash.as_str()));
+    for changed in &comparison.changed_tolerances {
+        let name = format!("changed_tolerance.{}.{}", changed.model, changed.quantity);
+        let now = changed.now.as_deref().unwrap_or("none");
+        suite.add_property(Property::new(name, format!("accepted {}, now {now}", changed.accepted)));
+    }
     suite.add_test_cases(
         comparison.integrity.iter().map(|c| integrity_case(&comparison.scene, "reference", c)),
     );

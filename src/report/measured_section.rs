@@ -1,11 +1,12 @@
 //! The measured records in the report: alignment, efficiencies, curve metrics.
 
+use super::figure::phone_measured_figure;
 use super::format::{prefixed, significant, with_unit, words};
-use super::html::scrolled;
+use super::html::{drawn, scrolled};
 use super::{ChartPanel, SceneReport, Series, Theme, chart, measured_figure};
 use crate::impact::CURVES;
 use crate::measured::{AlignedRecord, Measured, Partner};
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// Rows of a table, the heading first.
 type Rows = Vec<Vec<String>>;
@@ -140,7 +141,9 @@ pub(super) fn measured_html(report: &SceneReport) -> Markup {
         h2 { "Measurement" }
         p { (sentence(measured)) }
         figure {
-            @if let Some(figure) = measured_figure(report, Theme::Inline) { (PreEscaped(figure)) }
+            @if let Some((wide, narrow)) = measured_figure(report, Theme::Inline).zip(phone_measured_figure(report)) {
+                (drawn(&wide, &narrow))
+            }
             figcaption {
                 "The first record beside reference and models. " (bandwidth(measured)) " "
                 a href=(format!("{}-measured.svg", report.comparison.scene)) { "SVG" } " · "

@@ -28,8 +28,10 @@ mod mesh_section;
 mod page_data;
 mod page_end;
 mod pdf;
+mod pdf_text;
 mod png;
 mod polyline;
+mod run_times;
 mod scene_page;
 mod seal_seat;
 mod seal_seat_mesh;
@@ -58,7 +60,7 @@ pub use seal_seat_picture::{Arrow, seat_picture};
 pub use terminal::terminal;
 pub use write::{check_writable, write, write_file};
 
-use crate::comparison::{Comparison, SceneComparison};
+use crate::comparison::{ChangedTolerance, Comparison, SceneComparison};
 use crate::impact::Outcome;
 use crate::scene::Scene;
 
@@ -95,5 +97,15 @@ impl Report<'_> {
     pub fn comparison(&self) -> Comparison {
         Comparison::new(self.scenes.iter().map(|s| s.comparison.clone()).collect())
             .with_seats(self.seats.iter().map(|s| s.comparison.clone()).collect())
+    }
+
+    /// A sentence per tolerance that was changed since it was accepted.
+    pub fn changed_tolerances(&self) -> impl Iterator<Item = String> {
+        let plates = self.scenes.iter().map(|s| (&s.comparison.scene, &s.comparison.changed_tolerances));
+        let seats = self.seats.iter().map(|s| (&s.comparison.scene, &s.comparison.changed_tolerances));
+        let sentence = |(scene, changed): (&String, &Vec<ChangedTolerance>)| {
+            changed.iter().map(|c| format!("{scene}: {}", c.sentence())).collect::<Vec<_>>()
+        };
+        plates.chain(seats).flat_map(sentence)
     }
 }

@@ -44,7 +44,7 @@ pub(super) fn end<Q: Quantities>(
             (checks(&comparison.integrity))
         }
         (super::trend_section::trends_html(attachments))
-        (super::acceptance_section::acceptances_html(attachments))
+        (super::acceptance_section::acceptances_html(attachments, &comparison.changed_tolerances))
         h2 { "Provenance" }
         p { "Scene hash " code { (comparison.reference.scene_hash) } }
         details {

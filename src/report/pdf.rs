@@ -1,14 +1,17 @@
-//! PDF of a figure: the paths of its SVG, text as outlines of the embedded font.
+//! PDF of a figure: the paths of its SVG, and its text, which can be searched and copied.
 
+use super::pdf_text::{self, Glyphs};
 use crate::error::{Error, Result};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Pdf, Rect, Ref, TextStr};
-use resvg::tiny_skia::{PathSegment, Point};
-use resvg::usvg::{FillRule, Group, LineCap, LineJoin, Node, Paint, PaintOrder, Path, Tree};
+use resvg::tiny_skia::{PathSegment, Point, Transform};
+use resvg::usvg::{FillRule, Group, LineCap, LineJoin, Node, Paint, PaintOrder, Path, Text, Tree};
 use std::io::Write;
 
+/// Number of the font's first object.
+const FIRST_OF_FONT: i32 = 6;
 /// Points of a PDF per px of an SVG.
 const POINTS: f32 = 72.0 / super::png::SVG_RESOLUTION;
 
@@ -22,7 +25,8 @@ fn internal(what: impl std::fmt::Display) -> Error {
 /// [`Error::Internal`] if the SVG is not valid, or has what figures don't have: images, gradients, translucency.
 pub(super) fn pdf(svg: &str, title: &str) -> Result<Vec<u8>> {
     let tree = super::png::tree(svg)?;
-    let content = compressed(&content(&tree)?)?;
+    let glyphs = Glyphs::of(tree.root());
+    let content = compressed(&content(&tree, &glyphs)?)?;
     let [catalog, pages, page, contents, info] = [1, 2, 3, 4, 5].map(Ref::new);
     let mut pdf = Pdf::new();
     pdf.catalog(catalog).pages(pages);
@@ -30,9 +34,10 @@ pub(super) fn pdf(svg: &str, title: &str) -> Result<Vec<u8>> {
     let (width, height) = (tree.size().width() * POINTS, tree.size().height() * POINTS);
     let mut sheet = pdf.page(page);
     sheet.media_box(Rect::new(0.0, 0.0, width, height)).parent(pages).contents(contents);
-    sheet.resources();
+    sheet.resources().fonts().pair(pdf_text::RESOURCE, Ref::new(FIRST_OF_FONT));
     sheet.finish();
     pdf.stream(contents, &content).filter(Filter::FlateDecode);
+    glyphs.write_font(&mut pdf, FIRST_OF_FONT, compressed)?;
     pdf.document_info(info).title(TextStr(title)).creator(TextStr("impactcheck"));
     Ok(pdf.finish())
 }
@@ -42,23 +47,24 @@ fn compressed(bytes: &[u8]) -> Result<Vec<u8>> {
     encoder.write_all(bytes).and_then(|()| encoder.finish()).map_err(internal)
 }
 
-fn content(tree: &Tree) -> Result<Vec<u8>> {
+fn content(tree: &Tree, glyphs: &Glyphs) -> Result<Vec<u8>> {
     let mut content = Content::new();
     // y points up in a PDF
     content.transform([POINTS, 0.0, 0.0, -POINTS, 0.0, tree.size().height() * POINTS]);
-    group(&mut content, tree.root())?;
+    group(&mut content, tree.root(), glyphs)?;
     Ok(content.finish().to_vec())
 }
 
-fn group(content: &mut Content, of: &Group) -> Result<()> {
+fn group(content: &mut Content, of: &Group, glyphs: &Glyphs) -> Result<()> {
     if of.opacity().get() < 1.0 || of.clip_path().is_some() || of.mask().is_some() || !of.filters().is_empty()
     {
         return Err(internal("groups with opacity, clip, mask or filter"));
     }
     for node in of.children() {
         match node {
-            Node::Group(inner) => group(content, inner)?,
-            Node::Text(text) => group(content, text.flattened())?,
+            Node::Group(inner) => group(content, inner, glyphs)?,
+            Node::Text(text) if pdf_text::is_written(text) => write(content, text, glyphs)?,
+            Node::Text(text) => group(content, text.flattened(), glyphs)?,
             Node::Path(path) if path.is_visible() => draw(content, path)?,
             Node::Path(_) => {}
             Node::Image(_) => return Err(internal("an image")),
@@ -67,10 +73,26 @@ fn group(content: &mut Content, of: &Group) -> Result<()> {
     Ok(())
 }
 
+fn write(content: &mut Content, text: &Text, glyphs: &Glyphs) -> Result<()> {
+    content.save_state();
+    transform(content, text.abs_transform());
+    for span in text.layouted().iter().filter(|span| span.visible) {
+        let Some(fill) = &span.fill else { continue };
+        let [r, g, b] = colour(fill.paint(), fill.opacity().get())?;
+        content.set_fill_rgb(r, g, b);
+        glyphs.write(content, span);
+    }
+    content.restore_state();
+    Ok(())
+}
+
+fn transform(content: &mut Content, t: Transform) {
+    content.transform([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty]);
+}
+
 fn draw(content: &mut Content, path: &Path) -> Result<()> {
     content.save_state();
-    let t = path.abs_transform();
-    content.transform([t.sx, t.ky, t.kx, t.sy, t.tx, t.ty]);
+    transform(content, path.abs_transform());
     match path.paint_order() {
         PaintOrder::FillAndStroke => {
             fill(content, path)?;

@@ -5,7 +5,7 @@ use resvg::{tiny_skia, usvg};
 use std::sync::Arc;
 
 /// DejaVu Sans; licence in `fonts/LICENSE.DejaVu`. Embedded so that the picture is the same everywhere.
-const FONT: &[u8] = include_bytes!("fonts/DejaVuSans.ttf");
+pub(super) const FONT: &[u8] = include_bytes!("fonts/DejaVuSans.ttf");
 /// Pixels of an SVG per inch.
 pub(super) const SVG_RESOLUTION: f32 = 96.0;
 

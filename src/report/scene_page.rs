@@ -1,6 +1,7 @@
 //! The page of one plate impact: verdict, interactive panels, discrepancies, budget, mesh and stress, provenance.
 
 use super::discrepancy_section::model_section;
+use super::figure::phone_figure;
 use super::format::{prefixed, with_unit};
 use super::html::page;
 use super::page_data::{Shown, plate_panels};
@@ -43,7 +44,7 @@ fn curves(report: &SceneReport) -> Markup {
     let scene = &report.comparison.scene;
     html! {
         h2 { "Curves" }
-        (interactive::panels(figure(report, Theme::Inline)))
+        (interactive::panels(&figure(report, Theme::Inline), &phone_figure(report)))
         p.soft {
             "Displacement, velocity and contact force of outer body, plate and inner body, signed along z "
             "(from the inner to the outer side; forces positive in compression). Shaded: the 95 % band of the reference. "

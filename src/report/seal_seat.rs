@@ -1,12 +1,14 @@
 //! The report of a seal-seat scene: page, row of the index, lines for the terminal, Markdown, curves.
 
 use super::attachments::Attachments;
-use super::chart::{ChartPanel, Series, chart};
+use super::chart::{CHART_WIDTH, ChartPanel, Series, chart_of_width};
 use super::discrepancy_section::model_section;
+use super::figure::PHONE_WIDTH;
 use super::format::{model_name, percent, prefixed, significant, with_unit};
-use super::html::page;
+use super::html::{detailed, page};
 use super::junit::{failure, integrity_failure};
 use super::page_data::{PanelOf, Shown};
+use super::run_times::marked;
 use super::seal_seat_picture::{Arrow, seat_picture};
 use super::terminal::coloured;
 use super::{interactive, page_end};
@@ -89,6 +91,10 @@ pub fn seat_section(report: &SeatReport) -> Option<String> {
 
 /// Forces and velocities over time, as a stand-alone SVG.
 pub fn seat_curves(report: &SeatReport) -> String {
+    curves(report, CHART_WIDTH)
+}
+
+fn curves(report: &SeatReport, width: f64) -> String {
     let panel = |quantity: &str, label: &str| {
         let series = |name: String, outcome: &Outcome<SeatQuantities>| {
             let values = outcome.history.values(quantity).unwrap_or_default();
@@ -104,7 +110,8 @@ pub fn seat_curves(report: &SeatReport) -> String {
             ..ChartPanel::default()
         }
     };
-    chart(
+    chart_of_width(
+        width,
         "Forces and velocities of sphere and actuator",
         &[
             panel("sphere_force", "force on the sphere, N"),
@@ -152,10 +159,10 @@ pub fn seat_page(report: &SeatReport) -> String {
     let body = html! {
         (page_end::head(&report.scene, comparison))
         h2 { "Flight of the sphere" }
-        @if let Some(section) = seat_section(report) { figure { (PreEscaped(section)) } }
+        @if let Some(section) = seat_section(report) { figure { (detailed("Section of the seat", &html! { (PreEscaped(section)) })) } }
         (directions(report))
         h2 { "Curves" }
-        (interactive::panels(seat_curves(report)))
+        (interactive::panels(&seat_curves(report), &curves(report, PHONE_WIDTH)))
         p.soft { "Displacement and velocity along x and z, and contact forces, of sphere and actuator; z points away from the "
             "actuator, forces are magnitudes. Shaded: the 95 % band of the reference. "
             a href=(format!("{name}.svg")) { "curves as SVG" } " · " a href=(format!("{name}.csv")) { "curves as CSV" } " · "
@@ -222,9 +229,9 @@ fn cost(report: &SeatReport) -> Markup {
         @for (model, cost) in report.comparison.models.iter().zip(&report.cost) {
             @let own = model.summary.solve_seconds;
             p { "Time loop of the reference " (with_unit(reference, prefixed("s", reference), 3)) " when it was made; model "
-                (model_name(&model.model, model.summary.modes)) " " (with_unit(own, prefixed("s", own), 3)) " now, after "
-                (with_unit(cost.setup_seconds, prefixed("s", cost.setup_seconds), 3)) " of set-up on the same mesh ("
-                (cost.dofs) " degrees of freedom; from the cache if it was there): " (significant(reference / own, 3))
+                (model_name(&model.model, model.summary.modes)) " " (marked(&with_unit(own, prefixed("s", own), 3))) " when this page was made, after "
+                (marked(&with_unit(cost.setup_seconds, prefixed("s", cost.setup_seconds), 3))) " of set-up on the same mesh ("
+                (cost.dofs) " degrees of freedom; from the cache if it was there): " (marked(&significant(reference / own, 3)))
                 " times as fast." }
         }
     }

@@ -1,8 +1,9 @@
 //! The report's files, complete or not at all.
 
+use super::run_times::same_but_for_run_times;
 use super::{Report, Theme};
 use crate::error::{Error, Result};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -14,7 +15,9 @@ const PNG_SCALE: f32 = 3.0;
 /// figure (SVG, PNG) and curves (CSV) into `dir`, which is made if it does not exist.
 ///
 /// Everything is made in a temporary folder inside `dir` first and then renamed into place; on an error
-/// before that, no file of the report has changed. Returns the paths, sorted.
+/// before that, no file of the report has changed. If all files of an earlier report say the same but for run times, they
+/// stay as they are, run times included, and only what is missing is written: equal results leave a working tree clean.
+/// Returns the paths of the report's files, sorted.
 ///
 /// # Errors
 /// [`Error::Io`] naming the folder or file; [`Error::Usage`] for scenes whose names can't be file
@@ -28,6 +31,15 @@ pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
         }
     }
     fs::create_dir_all(dir).map_err(|e| Error::io("creating", dir, e))?;
+    let there: BTreeMap<String, Vec<u8>> =
+        files.iter().filter_map(|(name, _)| Some((name.clone(), fs::read(dir.join(name)).ok()?))).collect();
+    let differs = |(name, bytes): &(String, Vec<u8>)| {
+        there.get(name).is_some_and(|old| !same_but_for_run_times(old, bytes))
+    };
+    let keep_old = !files.iter().any(differs);
+    let written: Vec<PathBuf> = files.iter().map(|(name, _)| dir.join(name)).collect();
+    let files = files.into_iter().filter(|(name, _)| !(keep_old && there.contains_key(name)));
+    let files: Vec<_> = files.collect();
     let partial = tempfile::Builder::new()
         .prefix(".partial-")
         .tempdir_in(dir)
@@ -35,12 +47,11 @@ pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
     for (name, bytes) in &files {
         fs::write(partial.path().join(name), bytes).map_err(|e| Error::io("writing", dir.join(name), e))?;
     }
-    let mut written = Vec::with_capacity(files.len());
     for (name, _) in files {
         let target = dir.join(&name);
         fs::rename(partial.path().join(&name), &target).map_err(|e| Error::io("writing", &target, e))?;
-        written.push(target);
     }
+    let mut written = written;
     written.sort();
     Ok(written)
 }

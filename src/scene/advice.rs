@@ -4,7 +4,7 @@ use super::check::Place;
 use super::quantity::Dimension;
 use super::specification::{Choice, Field, Kind};
 use toml::Spanned;
-use toml::de::DeValue;
+use toml::de::{DeTable, DeValue};
 
 /// The choice a value makes, if it is one.
 pub(super) fn chosen<'f>(field: &'f Field, value: &Spanned<DeValue>) -> Option<&'f Choice> {
@@ -59,4 +59,28 @@ pub(super) fn example(place: &Place, field: &Field) -> String {
         Kind::Flag => format!("`{key} = true`: {doc}"),
         _ => format!("`{key} = \"...\"`: {doc}"),
     }
+}
+
+/// What to write instead of the diameter `name`, if there is the radius among `valid`.
+pub(super) fn half_of_it(name: &str, table: &DeTable, valid: &[&str]) -> Option<String> {
+    let radius = name.to_lowercase().replace("diameter", "radius");
+    if radius == name.to_lowercase() || !valid.contains(&&*radius) {
+        return None;
+    }
+    let text = match table.get(name)?.get_ref() {
+        DeValue::String(text) => text.to_string(),
+        DeValue::Float(number) => number.as_str().to_owned(),
+        DeValue::Integer(number) => number.as_str().to_owned(),
+        _ => String::new(),
+    };
+    let (number, unit) = text.trim().split_once(char::is_whitespace).unwrap_or((text.trim(), ""));
+    let half = number.parse::<f64>().ok().filter(|d| d.is_finite()).map(|d| 0.5 * d);
+    let value = half.map(|half| {
+        if unit.is_empty() {
+            format!(": {radius} = {half}")
+        } else {
+            format!(": {radius} = \"{half} {unit}\"")
+        }
+    });
+    Some(format!("give the radius instead, {radius} = {name} / 2{}; ", value.unwrap_or_default()))
 }

@@ -1,6 +1,6 @@
 //! Walks the tree of a TOML file along the specification and notes every fault.
 
-use super::advice::{alternatives, chosen, example, needed};
+use super::advice::{alternatives, chosen, example, half_of_it, needed};
 use super::problem::{Collector, did_you_mean};
 use super::quantity::{self, Dimension, QuantityError};
 use super::specification::{Bound, DEFAULT_GEOMETRY, Field, Kind};
@@ -145,7 +145,8 @@ impl<'a> Checker<'a> {
                 "unknown key",
                 format!(
                     "{}{} has: {}",
-                    did_you_mean(name, valid.iter().copied()),
+                    half_of_it(name, table, &valid)
+                        .unwrap_or_else(|| did_you_mean(name, valid.iter().copied())),
                     place.name(),
                     valid.join(", ")
                 ),

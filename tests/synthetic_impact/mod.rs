@@ -180,6 +180,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         convergence: None,
         mesh: None,
         bender: None,
+        contact_pressure: None,
         losses: None,
         solver: None,
         integration_error: None,
