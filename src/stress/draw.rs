@@ -18,6 +18,9 @@ const PLATE_POISSON: [f64; 5] = [-0.9, -0.2, 0.0, 0.3, 0.499];
 /// Most modes of a case that is also solved in a fluid, and one in how many of these is.
 const WET_MODES: usize = 24;
 const WET_SHARE: u8 = 4;
+/// Most radians the highest mode of a case in a fluid turns through. The film feels every turn, so that longer cases cost
+/// hundreds of thousands of steps.
+const WET_TURNS: f64 = 5e5;
 /// Length of a run in durations of a Hertz contact.
 const DURATIONS: f64 = 6.0;
 
@@ -64,6 +67,11 @@ pub struct Wet {
 }
 
 impl Wet {
+    /// Highest angular frequency in rad/s.
+    fn fastest(&self) -> f64 {
+        self.system.oscillators.iter().map(|o| o.omega).fold(0.0, f64::max)
+    }
+
     /// The impact `setup` on a plate reduced to `body` in a random fluid; each of its effects may be absent. `unit` is the
     /// plate of unit radius.
     fn draw(
@@ -190,7 +198,8 @@ impl Case {
         let mut random = Random(fastrand::Rng::with_seed(!seed));
         let wet = (modes <= WET_MODES && random.0.u8(0..WET_SHARE) == 0)
             .then(|| Wet::draw(&mut random, setup, body, tips, &unit))
-            .transpose()?;
+            .transpose()?
+            .filter(|wet| wet.fastest() * end_time <= WET_TURNS);
         Ok(Self { seed, description, system, end_time, wet })
     }
 }

@@ -278,6 +278,23 @@ mod tests {
         assert!(result.energy_gained < 1e-6, "{:e}", result.energy_gained);
     }
 
+    /// The film lies over the waves of a soft plate: with its resistance against the uniform closing speed alone the iteration
+    /// settles for steps a thousand times shorter.
+    #[test]
+    fn a_stiff_film_over_a_soft_plate_costs_few_steps() {
+        let case = draw(1_000_823);
+        let wet = case.wet.as_ref().unwrap();
+        let solve = |tolerance| {
+            wet::integrate(&wet.system, wet.forces.as_ref().unwrap(), &options(&case, tolerance)).unwrap()
+        };
+        let (result, finer) = (solve(1e-7), solve(1e-9));
+        assert!(result.steps < 3000, "{} steps", result.steps);
+        assert!(result.momentum_residual < 1e-10 && result.energy_gained < 1e-6);
+        for i in 0..2 {
+            assert!((result.velocity[i] - finer.velocity[i]).abs() < 1e-6 * case.system.speed);
+        }
+    }
+
     #[test]
     fn dry_and_wet_cases_hold() {
         let report = run(24, 700_000, &|| ()).unwrap();
