@@ -16,6 +16,7 @@ import scipy.integrate
 from fem_reference.errors import SceneError, SolverError
 from fem_reference.fenicsx import alone
 from fem_reference.mesh import Floats
+from fem_reference.seal_seat import meshing
 from fem_reference.seal_seat.elastic_sphere import sphere_pairs
 from fem_reference.seal_seat.meshing import (
     build,
@@ -78,6 +79,28 @@ def test_the_mesh_fills_the_cad_model(improved: bool) -> None:
         assert qualities(mesh.points, mesh.corners).min() > 0.1
     # Facets on curved faces: second order in their size.
     assert 2.8 * misses[1] < misses[0] < 0.004
+
+
+def test_what_gmsh_cannot_mesh_in_metres_it_meshes_in_millimetres(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    largest = []
+
+    def only_millimetres(name: str, add: Any, size: Any) -> Any:
+        largest.append(size.largest)
+        if size.largest < 0.1:
+            raise SolverError("Impossible to mesh periodic surface 24")
+        return generate(name, add, size)
+
+    design = scene(reference__element_order=1)
+    monkeypatch.setattr(meshing, "generate", only_millimetres)
+    mesh = seat_mesh(design, 0.6)
+    assert largest[1] == pytest.approx(1e3 * largest[0])
+    assert mesh.volume() == pytest.approx(cad_volume(design), rel=4e-3)
+    assert qualities(mesh.points, mesh.corners).min() > 0.1
+    monkeypatch.setattr(meshing, "CAD_UNITS", (1.0,))
+    with pytest.raises(SolverError, match="periodic surface 24"):
+        seat_mesh(design, 0.6)
 
 
 def test_an_edge_of_the_geometry_that_is_far_too_short_is_no_edge_of_the_mesh() -> None:
