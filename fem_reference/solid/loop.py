@@ -156,9 +156,8 @@ class Loop(ABC):
         """(bodies, 3) momentum of each elastic body half a step after u, kg m/s."""
         weighted = self.mass[:, None] * self.v.reshape(-1, 3)
         count = len(self.model.elastic)
-        result = np.zeros((count, 3))
-        np.add.at(result, self.body, weighted)
-        return self.total(result)
+        sums = [scatter_sum(self.body, weighted[:, axis], count) for axis in range(3)]
+        return self.total(np.stack(sums, axis=1))
 
     def body_masses(self) -> Floats:
         """(bodies,) kg."""

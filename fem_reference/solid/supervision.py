@@ -23,8 +23,8 @@ from .spectrum import critical_time_step
 LARGEST_ENERGY_RESIDUAL = 1e-5
 """Of a run with sub-cycling; beyond it levels have resonated, and the run is made without them."""
 
-CHUNK_SAMPLES = 16
-"""Samples between two looks at energy, end and clock."""
+CHUNK_SAMPLES, CHUNK_STEPS = 16, 200
+"""At least so many samples and steps between two looks at energy, end and clock."""
 
 R = TypeVar("R", bound="Balanced")
 
@@ -143,10 +143,11 @@ def supervise(
         loop.problem.restore(saved["problem"])
         rows = list(saved["rows"])
         seconds = float(saved["seconds"])
+    chunk = max(CHUNK_SAMPLES, math.ceil(CHUNK_STEPS / stride))
     started = time.perf_counter()
     while len(rows) < wanted:
         chunk_started = time.perf_counter()
-        for _ in range(min(CHUNK_SAMPLES, wanted - len(rows))):
+        for _ in range(min(chunk, wanted - len(rows))):
             if frames is not None:
                 frames(len(rows), loop)
             rows.append(sample(stride))
