@@ -91,24 +91,25 @@ def compute(
     seat: SeatModel = comm.bcast(made)
     nodes = int(seat.model.first[-1])
     report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
-    recorder = settings.recorder()
+    recorders: list[Recorder] = []
 
     def step(most_levels: int) -> tuple[Loop, SeatRun]:
         loop = make_loop(seat.model, comm)
+        recorders.append(settings.recorder(f"-{most_levels}"))
         return loop, integrate(
             loop,
             seat,
             scene,
             courant=settings.courant,
             most_levels=most_levels,
-            fields=recorder,
+            fields=recorders[-1],
             checkpoint=settings.checkpoint([*method(scene), most_levels], seat.model),
             on_progress=lambda done, message: report("stepping", done, message),
         )
 
     loop, run = stable(step)
     needed = memory_needed(nodes, scene.element_order, comm.size)
-    return Solution(run, seat, loop, recorder, needed, peak_memory(comm))
+    return Solution(run, seat, loop, recorders[-1], needed, peak_memory(comm))
 
 
 def seat_frequency(loop: Loop, seat: SeatModel) -> float:

@@ -121,17 +121,17 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         plate: PlateModel = comm.bcast(made)
         nodes = int(plate.model.first[-1])
         report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
-        suffix = f"-{attempt}"
-        recorder = settings.recorder(suffix)
+        recorders: list[Recorder] = []
 
         def step(
             most_levels: int,
             plate: PlateModel = plate,
-            suffix: str = suffix,
-            recorder: Recorder = recorder,
+            suffix: str = f"-{attempt}",
+            recorders: list[Recorder] = recorders,
         ) -> tuple[Loop, SolidRun]:
             loop = make_loop(plate.model, comm)
             kept = [*method(scene), most_levels]
+            recorders.append(settings.recorder(f"{suffix}-{most_levels}"))
             return loop, integrate(
                 loop,
                 plate,
@@ -139,7 +139,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
                 estimate.duration,
                 courant=settings.courant,
                 most_levels=most_levels,
-                fields=recorder,
+                fields=recorders[-1],
                 checkpoint=settings.checkpoint(kept, plate.model, suffix),
                 on_progress=lambda done, message: report("stepping", done, message),
             )
@@ -159,7 +159,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
                 found,
                 wavelength,
                 per_wave,
-                recorder,
+                recorders[-1],
                 memory_needed(nodes, scene.element_order, comm.size),
                 peak_memory(comm),
             )
