@@ -281,7 +281,7 @@ def test_a_mirrored_seat_throws_the_sphere_the_other_way(coarse: SeatModel) -> N
 
 
 def test_a_run_that_is_cut_off_goes_on_from_its_checkpoint(tmp_path: Path) -> None:
-    design = scene(True, reference__element_order=1, run={"end_time": 8e-6})
+    design = scene(True, reference__element_order=1, run={"end_time": 16e-6})
     whole = launch(design, 0.4)[2]
 
     class CutOffError(Exception):
