@@ -207,6 +207,20 @@ def petsc_rows(matrix: Any) -> scipy.sparse.csr_matrix:
     return scipy.sparse.csr_matrix((values, indices, indptr), shape=(indptr.size - 1, columns))
 
 
+def block_rows(rows: scipy.sparse.csr_matrix, comm: Any) -> Any:
+    """PETSc's matrix in 3x3 blocks from the rows that this process owns."""
+    whole = rows.tobsr((3, 3)).tocsr()
+    size = (rows.shape[0], rows.shape[1])
+    matrix = PETSc.Mat().createAIJ(
+        ((size[0], size[1]), (size[0], size[1])),
+        bsize=3,
+        csr=(whole.indptr.astype(PETSc.IntType), whole.indices.astype(PETSc.IntType), whole.data),
+        comm=comm,
+    )
+    matrix.assemble()
+    return block_matrix(matrix)
+
+
 def petsc_vectors(matrix: Any) -> tuple[Any, Any]:
     """Vectors x and y of a product y = K x."""
     x, y = matrix.createVecs()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import scipy.sparse
 
 from .elasticity import scatter
@@ -47,21 +48,32 @@ def element_levels(system: System, time_step: float, most: int = MOST_LEVELS) ->
 
     Elements at the contacts have level 0.
     """
-    ratio = LEVEL_MARGIN * system.element_time_steps / time_step
-    level = np.floor(np.log2(np.maximum(ratio, 1.0))).astype(np.int64)
-    level = np.minimum(level, max(0, most - 1))
-    nodes = system.element_nodes
     touching = np.zeros(system.mass.size, dtype=bool)
     for pairs in system.contacts:
         touching[pairs.sphere_nodes] = True
         touching[pairs.plate_nodes] = True
+    steps = system.element_time_steps / time_step
+    return graded_levels(steps, system.element_nodes, touching, most)
+
+
+def graded_levels(steps: Floats, nodes: Ints, touching: npt.NDArray[np.bool_], most: int) -> Ints:
+    """(m,) level of each element of any mesh.
+
+    Args:
+        steps: (m,) critical time steps of the elements over that of level 0.
+        nodes: (m, k) of the elements.
+        touching: (n,) nodes whose elements have level 0.
+        most: levels.
+    """
+    level = np.floor(np.log2(np.maximum(LEVEL_MARGIN * steps, 1.0))).astype(np.int64)
+    level = np.minimum(level, max(0, most - 1))
     level[touching[nodes].any(axis=1)] = 0
     # A level begins only `BUFFER` layers behind the elements two levels faster, and not within
     # `BUFFER` layers of an element that is too fast for it.
     for bound in range(int(level.max())):
         near = level <= bound
         for _ in range(BUFFER):
-            reached = np.zeros(system.mass.size, dtype=bool)
+            reached = np.zeros(touching.size, dtype=bool)
             reached[nodes[near]] = True
             near = reached[nodes].any(axis=1)
         level[near & (level > bound + 1)] = bound + 1
@@ -80,12 +92,18 @@ def _fill(level: Ints) -> Ints:
         level = np.where(level > gaps[0], level - 1, level)
 
 
+def fastest_levels(level: Ints, nodes: Ints, count: int) -> Ints:
+    """(count,) level with which each node moves: that of its fastest element."""
+    fastest = np.full(count, np.iinfo(np.int64).max)
+    for corner in range(nodes.shape[1]):
+        np.minimum.at(fastest, nodes[:, corner], level)
+    return fastest
+
+
 def level_matrices(system: System, level: Ints) -> list[LevelMatrix]:
     """The stiffness of every level; their sum is the whole."""
     count = system.mass.size
-    fastest = np.full(count, np.iinfo(np.int64).max)
-    for corner in range(4):
-        np.minimum.at(fastest, system.element_nodes[:, corner], level)
+    fastest = fastest_levels(level, system.element_nodes, count)
     supported = np.zeros(count, dtype=bool)
     supported[system.supports] = True
     result = []

@@ -13,6 +13,7 @@ exact surface is (`Ring.on_cone`), so that nothing penetrates at the start.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import dataclass
 
@@ -20,6 +21,7 @@ import gmsh
 import numpy as np
 
 from ..errors import SolverError
+from ..mesh import Floats, Ints
 from ..solid.collapse import collapse_short_edges
 from ..solid.mesh import TetMesh, check_elements, tetrahedra
 from ..solid.meshing import generate
@@ -35,6 +37,14 @@ THROUGH_MEMBRANE = 1.0
 """Least number of elements through the membrane; quadratic ones bend well with one."""
 THROUGH_ISLAND = 2.5
 """Least number of elements over the island's height."""
+CAD_UNITS = (1.0, 1e-3)
+"""Units of length of the CAD model, m, tried in this order.
+
+OpenCASCADE intersects surfaces to 1e-7 units. In metres that leaves the crest of the cones up to
+5e-6 rad off in a cone's parameter plane. gmsh then joins curves to 3e-3, in v as in the angle: as
+much as the whole cone is long in metres. Version 4.8 gets over it, 4.13 does not ("Impossible to
+mesh periodic surface").
+"""
 
 
 def _ring_distance(ring: Ring) -> str:
@@ -216,13 +226,33 @@ def sphere_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
     return mesh
 
 
+def _corner_mesh(scene: SeatScene, factor: float, unit: float) -> tuple[Floats, Ints]:
+    """Points (n, 3), m, and elements (m, 4) of the half seat, its CAD model built in ``unit``.
+
+    Raises:
+        SolverError: gmsh failed.
+    """
+    cad = scene.lengths_over(unit)
+    points, corners = generate("seat", lambda: build(cad), seat_size(cad, factor))
+    return points * unit, corners
+
+
+def _generated(scene: SeatScene, factor: float) -> tuple[Floats, Ints]:
+    """The same in the first unit with which gmsh succeeds."""
+    *others, last = CAD_UNITS
+    for unit in others:
+        with contextlib.suppress(SolverError):
+            return _corner_mesh(scene, factor, unit)
+    return _corner_mesh(scene, factor, last)
+
+
 def seat_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
     """The half seat with ``factor`` times the elements asked for, in every direction.
 
     Raises:
         SolverError: gmsh failed, an element is inverted or degenerate, or the ring is no edge.
     """
-    points, corners = generate("seat", lambda: build(scene), seat_size(scene, factor))
+    points, corners = _generated(scene, factor)
     points, corners = collapse_short_edges(points, corners)
     length = scene.seat.membrane_radius
     # What lies on the plane of symmetry and on the underside up to rounding, lies there exactly.

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import SolverError
 from ..estimate import hertz_stiffness
+from ..levels import MOST_LEVELS
 from ..mesh import Floats
 from ..solid.checkpoint import Checkpoint
 from ..solid.fields import Frames
@@ -79,6 +80,7 @@ def integrate(
     scene: SeatScene,
     *,
     courant: float = 0.9,
+    most_levels: int = MOST_LEVELS,
     fields: Callable[[float], Frames] | None = None,
     checkpoint: Checkpoint | None = None,
     on_progress: Callable[[float, str], None] = lambda done, message: None,
@@ -86,7 +88,8 @@ def integrate(
     """Step from the first touch to ``scene.end_time``, or until no further contact is possible.
 
     ``fields`` makes the recorder of fields from the sampling interval. A run whose ``checkpoint``
-    holds a state goes on from there.
+    holds a state goes on from there. ``most_levels`` is that of sub-cycling; 1: every element acts
+    at every step.
 
     Raises:
         SolverError: time step above the critical one, divergence, no end found, or a contact that
@@ -105,6 +108,7 @@ def integrate(
         lambda stride: _sample(loop, seat, scene, stride),
         lambda: Ending(loop, seat, scene),
         courant=courant,
+        most_levels=most_levels,
         fields=fields,
         checkpoint=checkpoint,
         on_progress=on_progress,

@@ -7,7 +7,7 @@ the seats at x = -+ half their distance; the sphere rests in the one at x < 0.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,18 @@ from ..mesh import Floats
 from ..scene import Material, Reader, read_material
 
 KIND = "seal-seat"
+
+SEAT_LENGTHS = (
+    "membrane_radius",
+    "membrane_thickness",
+    "island_length",
+    "island_width",
+    "island_height",
+    "seat_distance",
+    "seated_height",
+    "bore_radius",
+    "bore_depth",
+)
 
 
 @dataclass(frozen=True)
@@ -149,6 +161,23 @@ class SeatScene:
             half,
         )
 
+    def lengths_over(self, unit: float) -> SeatScene:
+        """The same geometry with all lengths as multiples of ``unit`` (m)."""
+        seat, notch, actuator = self.seat, self.seat.notch, self.actuator
+        if notch is not None:
+            notch = Notch(notch.width / unit, notch.floor / unit)
+        lengths = {name: getattr(seat, name) / unit for name in SEAT_LENGTHS}
+        return replace(
+            self,
+            seat=replace(seat, notch=notch, **lengths),
+            sphere_radius=self.sphere_radius / unit,
+            actuator=replace(
+                actuator,
+                tip_radius=actuator.tip_radius / unit,
+                tip_positions=tuple(x / unit for x in actuator.tip_positions),
+            ),
+        )
+
     @property
     def initial_energy(self) -> float:
         """Kinetic energy of the actuator before the impact, J."""
@@ -156,18 +185,7 @@ class SeatScene:
 
 
 def _seat(reader: Reader) -> Seat:
-    lengths = (
-        "membrane_radius",
-        "membrane_thickness",
-        "island_length",
-        "island_width",
-        "island_height",
-        "seat_distance",
-        "seated_height",
-        "bore_radius",
-        "bore_depth",
-    )
-    reader.allow("material", "tilt", "aperture_angle", "notch", *lengths)
+    reader.allow("material", "tilt", "aperture_angle", "notch", *SEAT_LENGTHS)
     notch = None
     if reader.node.get("notch") is not None:
         child = reader.child("notch")
@@ -178,7 +196,7 @@ def _seat(reader: Reader) -> Seat:
         tilt=reader.number("tilt", "rad", below=0.5 * math.pi, inclusive=True),
         aperture_angle=reader.number("aperture_angle", "rad", below=math.pi),
         notch=notch,
-        **{name: reader.number(name, "m") for name in lengths},
+        **{name: reader.number(name, "m") for name in SEAT_LENGTHS},
     )
 
 

@@ -14,12 +14,13 @@ from ..solid.loop import Loop, make_loop
 from ..solid.memory import memory_needed, peak_memory, require_memory
 from ..solid.series import Recorder, Report, Settings
 from ..solid.spectrum import first_frequency
+from ..solid.supervision import stable
 from .meshing import seat_mesh, sphere_mesh
 from .model import SeatModel, seat_model
 from .run import SeatRun, integrate
 from .scene import SeatScene
 
-REVISION = 1
+REVISION = 2
 """Counts changes of the method that make older checkpoints useless."""
 
 QUANTITIES = (
@@ -90,19 +91,25 @@ def compute(
     seat: SeatModel = comm.bcast(made)
     nodes = int(seat.model.first[-1])
     report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
-    loop = make_loop(seat.model, comm)
-    recorder = settings.recorder()
-    run = integrate(
-        loop,
-        seat,
-        scene,
-        courant=settings.courant,
-        fields=recorder,
-        checkpoint=settings.checkpoint(method(scene), seat.model),
-        on_progress=lambda done, message: report("stepping", done, message),
-    )
+    recorders: list[Recorder] = []
+
+    def step(most_levels: int) -> tuple[Loop, SeatRun]:
+        loop = make_loop(seat.model, comm)
+        recorders.append(settings.recorder(f"-{most_levels}"))
+        return loop, integrate(
+            loop,
+            seat,
+            scene,
+            courant=settings.courant,
+            most_levels=most_levels,
+            fields=recorders[-1],
+            checkpoint=settings.checkpoint([*method(scene), most_levels], seat.model),
+            on_progress=lambda done, message: report("stepping", done, message),
+        )
+
+    loop, run = stable(step)
     needed = memory_needed(nodes, scene.element_order, comm.size)
-    return Solution(run, seat, loop, recorder, needed, peak_memory(comm))
+    return Solution(run, seat, loop, recorders[-1], needed, peak_memory(comm))
 
 
 def seat_frequency(loop: Loop, seat: SeatModel) -> float:

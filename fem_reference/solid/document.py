@@ -10,6 +10,7 @@ import numpy as np
 from ..contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from ..result import SCHEMA_VERSION, convergence_part
 from ..settings import RESOLUTIONS
+from .loop import Loop
 from .series import MeshResult, Run, estimates
 
 
@@ -34,7 +35,11 @@ class Described(Protocol):
 
 
 class Remembering(Protocol):
-    """Memory of a solution, bytes."""
+    """Loop and memory (bytes) of a solution."""
+
+    @property
+    def loop(self) -> Loop:
+        """At the end."""
 
     @property
     def memory_used(self) -> float:
@@ -91,8 +96,9 @@ def _residuals(run: Verified) -> dict[str, float]:
 
 
 def machine(versions: dict[str, str | None], comm: Any, solution: Remembering) -> dict[str, Any]:
-    """What a run needed of the machine: versions, processes, memory in bytes."""
+    """What a run needed of the machine: versions, processes, memory in bytes; its levels."""
     return {
+        "nodes_per_level": list(solution.loop.levels),
         "versions": versions,
         "processes": comm.size,
         "peak_memory": solution.memory_used,

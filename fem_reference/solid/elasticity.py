@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+import scipy.sparse
 import ufl
 from scipy.spatial import cKDTree
 
 from ..errors import SolverError
-from ..fenicsx import TetDomain
+from ..fenicsx import TetDomain, petsc_rows
 from ..mesh import Floats, Ints
 from ..scene import Material
 from .mesh import TetMesh, scatter_sum, volumes
@@ -90,19 +92,30 @@ class Assembly:
         number[used] = np.arange(used.size)
         self.domain = TetDomain(points[used], number[corners], order, comm)
         counts = [mesh.cells.shape[0] for mesh in meshes]
-        self.lame = self._constants([m.lame_lambda for m in materials], counts)
-        self.shear = self._constants([m.shear_modulus for m in materials], counts)
+        self._lame = np.repeat([m.lame_lambda for m in materials], counts)
+        self._shear = np.repeat([m.shear_modulus for m in materials], counts)
+        self.lame = self.domain.cell_constants(self._lame)
+        self.shear = self.domain.cell_constants(self._shear)
         distance, self.owned = cKDTree(points).query(self.domain.owned_points())
         scale = float(np.ptp(points[:, 0]))
         if distance.size and distance.max() > 1e-9 * scale:
             raise SolverError("dolfinx's nodes are not those of the mesh")
 
-    def _constants(self, values: Sequence[float], counts: Sequence[int]) -> Any:
-        return self.domain.cell_constants(np.repeat(values, counts))
-
     def stiffness(self) -> Any:
         """PETSc matrix, N/m."""
         return self.domain.petsc_matrix(stiffness_form(self.domain, self.lame, self.shear))
+
+    def part(self, chosen: npt.NDArray[np.bool_]) -> scipy.sparse.csr_matrix:
+        """This process' rows of the stiffness of some elements, N/m.
+
+        Args:
+            chosen: (m,) whether an element counts, body after body.
+        """
+        lame = self.domain.cell_constants(np.where(chosen, self._lame, 0.0))
+        shear = self.domain.cell_constants(np.where(chosen, self._shear, 0.0))
+        rows = petsc_rows(self.domain.petsc_matrix(stiffness_form(self.domain, lame, shear)))
+        rows.eliminate_zeros()
+        return rows
 
 
 def cell_stress(mesh: TetMesh, material: Material, displacement: Floats, comm: Any) -> Floats:

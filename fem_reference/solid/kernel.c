@@ -1,4 +1,5 @@
-/* Time loop of the three-dimensional reference: central differences, lumped mass, contact.
+/* Time loop of the three-dimensional reference: central differences, lumped mass, contact,
+ * sub-cycling by levels.
  *
  * One step, n -> n+1 (Carpenter, Taylor & Katona 1991, Int. J. Numer. Meth. Eng. 32, 103):
  *   predictor   v <- v_{n-1/2} - dt M^-1 K u_n,  u <- u_n + dt v
@@ -7,6 +8,9 @@
  *   corrector   v_{n+1/2} = v + dt M^-1 G^T lambda,  u_{n+1} = u + dt^2 M^-1 G^T lambda
  * Contact sees only the surface nodes that can touch, in a numbering of their own, so that a
  * parallel run solves it redundantly in every process and gets the same forces.
+ *
+ * Sub-cycling as in ../kernel.c: K = sum K_l, and K_l acts at every 2^l-th step with 2^l times the
+ * impulse. Nodes that can touch have elements of level 0 only.
  */
 #include <math.h>
 #include <stdint.h>
@@ -71,28 +75,38 @@ typedef struct {
     double reaction[3];     /* impulse of the supports on the bodies so far, N s */
 } Problem;
 
+/* The elements of one level. First come the rows of nodes that also have faster elements (they only
+ * receive the impulse), then those of nodes that move with this level. */
+typedef struct {
+    int64_t shared;         /* end of the first group */
+    int64_t rows;
+    const int32_t *node;    /* (rows) */
+    const int64_t *row;     /* (rows + 1) first block of each row */
+    const int32_t *column;  /* the row's own node, then those of later rows */
+    const double *block;    /* (9 per block) 3x3, row by row; the upper half of K_l */
+} Level;
+
 typedef struct {
     int64_t nodes;
-    const int64_t *row;     /* (nodes + 1) first block of each node */
-    const int32_t *column;  /* the node itself, then its later neighbours */
-    const double *block;    /* (9 per block) 3x3, row by row; the upper half of K */
+    int64_t levels;
+    const Level *level;
     const double *inverse;  /* (3 nodes) 1/m, zero where fixed */
     double *u;              /* (3 nodes) displacement */
     double *v;              /* (3 nodes) velocity at half steps */
-    double *f;              /* (3 nodes) K u of the last step */
-    int64_t fixed;
-    const int32_t *fixed_dof;
+    double *f;              /* (3 nodes) work space, zero between sweeps */
     Problem *problem;
 } State;
 
 enum { MAX_SWEEPS = 1000 };
 
-/* Row i of K x, complete once the rows before it have been done (see ../kernel.c). */
-static inline void row_product(const State *s, const double *restrict x, double *restrict y,
-                               int64_t i) {
-    const double *restrict b = s->block + 9 * s->row[i];
-    const int32_t *restrict column = s->column + s->row[i];
-    const int64_t count = s->row[i + 1] - s->row[i];
+/* Row i of K_l x, into y at the row's node; complete once the rows before it have been done (see
+ * ../kernel.c). */
+static inline void row_product(const Level *l, const double *restrict x, double *restrict y,
+                               int64_t row) {
+    const double *restrict b = l->block + 9 * l->row[row];
+    const int32_t *restrict column = l->column + l->row[row];
+    const int64_t count = l->row[row + 1] - l->row[row];
+    const int64_t i = l->node[row];
     const double x0 = x[3 * i], x1 = x[3 * i + 1], x2 = x[3 * i + 2];
     double s0 = y[3 * i] + b[0] * x0 + b[1] * x1 + b[2] * x2;
     double s1 = y[3 * i + 1] + b[3] * x0 + b[4] * x1 + b[5] * x2;
@@ -113,10 +127,11 @@ static inline void row_product(const State *s, const double *restrict x, double 
     y[3 * i + 2] = s2;
 }
 
-/* y = K x */
-void stiffness_product(const State *s, const double *x, double *y) {
+/* y = (K_first + ... + K_{end-1}) x */
+void stiffness_product(const State *s, int64_t first, int64_t end, const double *x, double *y) {
     memset(y, 0, 3 * (size_t)s->nodes * sizeof *y);
-    for (int64_t i = 0; i < s->nodes; ++i) row_product(s, x, y, i);
+    for (int64_t k = first; k < end; ++k)
+        for (int64_t i = 0; i < s->level[k].rows; ++i) row_product(&s->level[k], x, y, i);
 }
 
 static inline double dot(const double *a, const double *b) {
@@ -328,29 +343,49 @@ void contact_step(Problem *p) {
     ++p->step;
 }
 
+/* The impulse of one level, and the motion of its nodes over its time step h. */
+static void sweep(const State *s, const Level *l, double h, double *reaction) {
+    double *restrict u = s->u, *restrict v = s->v, *restrict f = s->f;
+    const double *restrict inverse = s->inverse;
+    for (int64_t i = 0; i < l->rows; ++i) {
+        row_product(l, u, f, i);
+        const int64_t n = 3 * (int64_t)l->node[i];
+        for (int d = 0; d < 3; ++d) {
+            v[n + d] -= h * inverse[n + d] * f[n + d];
+            if (inverse[n + d] == 0.0) reaction[d] += h * f[n + d];
+            f[n + d] = 0.0;
+        }
+        if (i < l->shared) continue;
+        /* No later row reads u of this node any more. */
+        for (int d = 0; d < 3; ++d) u[n + d] += h * v[n + d];
+    }
+}
+
+/* Step number ``step`` without contact. Slower levels come first: they still need u_n of the faster
+ * nodes. */
+static void predict(const State *s, int64_t step, double *reaction) {
+    for (int64_t k = s->levels - 1; k >= 0; --k) {
+        const int64_t every = (int64_t)1 << k;
+        if (step % every == 0) sweep(s, &s->level[k], s->problem->dt * (double)every, reaction);
+    }
+}
+
+/* Advances the elastic bodies alone by a number of steps, from an instant at which all levels meet;
+ * neither contact nor ledger. */
+void drift(State *s, int64_t steps) {
+    double reaction[3] = {0.0, 0.0, 0.0};
+    for (int64_t n = 0; n < steps; ++n) predict(s, n, reaction);
+}
+
 /* Advances a system that lies in one process by a number of steps. */
 void advance(State *s, int64_t steps) {
     Problem *p = s->problem;
     const double dt = p->dt;
-    const int64_t nodes = s->nodes;
-    double *restrict u = s->u, *restrict v = s->v, *restrict f = s->f;
-    const double *restrict inverse = s->inverse;
+    double *u = s->u, *v = s->v;
     for (int64_t n = 0; n < steps; ++n) {
         for (int64_t i = 0; i < p->nodes; ++i)
             memcpy(p->before + 3 * i, v + 3 * (int64_t)p->global[i], 3 * sizeof *v);
-        memset(f, 0, 3 * (size_t)nodes * sizeof *f);
-        for (int64_t i = 0; i < nodes; ++i) {
-            row_product(s, u, f, i);
-            /* No later row reads u of this node any more. */
-            for (int64_t d = 3 * i; d < 3 * i + 3; ++d) {
-                v[d] -= dt * inverse[d] * f[d];
-                u[d] += dt * v[d];
-            }
-        }
-        for (int64_t i = 0; i < s->fixed; ++i) {
-            const int32_t d = s->fixed_dof[i];
-            p->reaction[d % 3] += dt * f[d];
-        }
+        predict(s, p->step, p->reaction);
         for (int64_t i = 0; i < p->nodes; ++i) {
             const int64_t g = 3 * (int64_t)p->global[i];
             memcpy(p->u + 3 * i, u + g, 3 * sizeof *u);
@@ -360,7 +395,7 @@ void advance(State *s, int64_t steps) {
         for (int64_t i = 0; i < p->nodes; ++i) {
             const int64_t g = 3 * (int64_t)p->global[i];
             for (int d = 0; d < 3; ++d) {
-                const double change = dt * inverse[g + d] * p->force[3 * i + d];
+                const double change = dt * s->inverse[g + d] * p->force[3 * i + d];
                 v[g + d] += change;
                 u[g + d] += dt * change;
             }
@@ -369,6 +404,7 @@ void advance(State *s, int64_t steps) {
 }
 
 int64_t layout(int32_t what) {
-    const size_t size[] = {sizeof(Rigid), sizeof(Contact), sizeof(Problem), sizeof(State)};
+    const size_t size[] = {sizeof(Rigid), sizeof(Contact), sizeof(Problem), sizeof(Level),
+                           sizeof(State)};
     return (int64_t)size[what];
 }

@@ -86,20 +86,30 @@ class Problem(ctypes.Structure):
     )
 
 
+class Level(ctypes.Structure):
+    """Mirror of ``Level`` in kernel.c."""
+
+    _fields_ = (
+        ("shared", ctypes.c_int64),
+        ("rows", ctypes.c_int64),
+        ("node", _INT32),
+        ("row", _INT64),
+        ("column", _INT32),
+        ("block", _DOUBLE),
+    )
+
+
 class State(ctypes.Structure):
     """Mirror of ``State`` in kernel.c."""
 
     _fields_ = (
         ("nodes", ctypes.c_int64),
-        ("row", _INT64),
-        ("column", _INT32),
-        ("block", _DOUBLE),
+        ("levels", ctypes.c_int64),
+        ("level", ctypes.POINTER(Level)),
         ("inverse", _DOUBLE),
         ("u", _DOUBLE),
         ("v", _DOUBLE),
         ("f", _DOUBLE),
-        ("fixed", ctypes.c_int64),
-        ("fixed_dof", _INT32),
         ("problem", ctypes.POINTER(Problem)),
     )
 
@@ -116,9 +126,17 @@ def load() -> Any:
     kernel.advance.restype = None
     kernel.contact_step.argtypes = [ctypes.POINTER(Problem)]
     kernel.contact_step.restype = None
-    kernel.stiffness_product.argtypes = [ctypes.POINTER(State), _DOUBLE, _DOUBLE]
+    kernel.drift.argtypes = [ctypes.POINTER(State), ctypes.c_int64]
+    kernel.drift.restype = None
+    kernel.stiffness_product.argtypes = [
+        ctypes.POINTER(State),
+        ctypes.c_int64,
+        ctypes.c_int64,
+        _DOUBLE,
+        _DOUBLE,
+    ]
     kernel.stiffness_product.restype = None
-    for number, mirror in enumerate((Rigid, Contact, Problem, State)):
+    for number, mirror in enumerate((Rigid, Contact, Problem, Level, State)):
         if kernel.layout(number) != ctypes.sizeof(mirror):
             raise SolverError(
                 f"the compiled time loop and its Python side disagree on {mirror.__name__}"

@@ -1,5 +1,7 @@
 """The state of a run and how it advances: in one process (compiled), or in several (PETSc).
 
+Sub-cycling: K is the sum of the levels' K_l, and K_l acts at every 2^l-th step (see `levels`).
+
 Both know vectors of their own nodes only; what concerns the whole system is summed over the
 processes. Every process solves the contact problem with all surface nodes, redundantly.
 """
@@ -8,27 +10,35 @@ from __future__ import annotations
 
 import ctypes
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import scipy.sparse
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from ..fenicsx import block_matrix, petsc_rows, petsc_vectors
+from ..fenicsx import block_matrix, block_rows, petsc_rows, petsc_vectors
 from ..mesh import Floats, Ints
 from . import kernel
 from .elasticity import Assembly, lumped_mass
+from .levels import model_levels
 from .mesh import scatter_sum
 from .model import Model
 from .problem import Arrays, ContactProblem
 
+Mask = npt.NDArray[np.bool_]
+
 
 @dataclass(frozen=True)
 class Energies:
-    """Discrete energy (1/2 v_{n+1/2} M v_{n+1/2} + 1/2 u_n K u_{n+1}), J.
+    """Discrete energy of the part that is modelled, J.
 
-    Of the part that is modelled; central differences conserve it without contact.
+    1/2 w M w + 1/2 u_n K' u_{n+1}, w = (u_{n+1} - u_n)/D, with the step D at whose ends all levels
+    meet and u_{n+1} - 2 u_n + u_{n-1} = -D^2 M^-1 K' u_n. With one level K' = K, and the loop
+    without contact conserves it. With several, K' is close to K and nearly symmetric for what is
+    slower than D: 1e-6 is missed in a run, 1 % with white noise.
     """
 
     elastic: tuple[float, ...]
@@ -74,12 +84,34 @@ class Loop(ABC):
         self.v[self.inverse == 0.0] = 0.0
         self.problem = ContactProblem(model, inverse, 0.0, 1)
         self._kernel = kernel.load()
+        self.levels: tuple[int, ...] = (masses.size,)
 
-    def set_step(self, time_step: float, split: int) -> None:
-        """Time step, s, and how many steps of separation divide two contacts."""
+    def set_step(self, time_step: float, split: int, most_levels: int = 1) -> None:
+        """Set what a run is stepped with.
+
+        Args:
+            time_step: s.
+            split: how many steps of separation divide two contacts.
+            most_levels: of sub-cycling; 1: every element at every step.
+        """
         self.problem.state.dt = time_step
         for contact in self.problem.contacts:
             contact.split = split
+        element, node = model_levels(self.model, self.problem.nodes, time_step, most_levels)
+        count = int(element.max()) + 1
+        if count == 1 == len(self.levels):
+            return
+        self._take_levels(element, node[self.owned], count)
+        self.levels = tuple(np.bincount(node, minlength=count).tolist())
+
+    @abstractmethod
+    def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
+        """Split K by the level of each element; ``node`` (n,) has the levels of own nodes."""
+
+    @property
+    def meeting(self) -> int:
+        """Steps after which all levels meet."""
+        return 1 << (len(self.levels) - 1)
 
     @property
     def dt(self) -> float:
@@ -89,6 +121,14 @@ class Loop(ABC):
     @abstractmethod
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
+
+    @abstractmethod
+    def drift(self, steps: int) -> None:
+        """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
+
+    @abstractmethod
+    def level_product(self, level: int, x: Floats) -> Floats:
+        """K_l x."""
 
     @abstractmethod
     def product(self, x: Floats) -> Floats:
@@ -116,19 +156,21 @@ class Loop(ABC):
         """(bodies, 3) momentum of each elastic body half a step after u, kg m/s."""
         weighted = self.mass[:, None] * self.v.reshape(-1, 3)
         count = len(self.model.elastic)
-        result = np.zeros((count, 3))
-        np.add.at(result, self.body, weighted)
-        return self.total(result)
+        sums = [scatter_sum(self.body, weighted[:, axis], count) for axis in range(3)]
+        return self.total(np.stack(sums, axis=1))
 
     def body_masses(self) -> Floats:
         """(bodies,) kg."""
         return np.add.reduceat(self.all_masses, self.model.first[:-1])
 
     def energies(self) -> Energies:
-        """Discrete energies between u_n and u_{n+1}."""
-        before = self.u - self.dt * self.v
+        """Discrete energies at an instant at which all levels meet."""
+        if self.meeting == 1:
+            other, velocity, force = self.u - self.dt * self.v, self.v, self.product(self.u)
+        else:
+            other, velocity, force = self._long_step()
         mass = np.repeat(self.mass, 3)
-        density = 0.5 * mass * self.v**2 + 0.5 * before * self.product(self.u)
+        density = 0.5 * mass * velocity**2 + 0.5 * other * force
         count = len(self.model.elastic)
         each = density.reshape(-1, 3).sum(axis=1)
         elastic = self.total(scatter_sum(self.body, each, count))
@@ -137,6 +179,23 @@ class Loop(ABC):
             0.5 * r.mass * sum(x * x for x in r.v) for r in self.problem.rigids[: self.rigid_count]
         ]
         return Energies(tuple(elastic.tolist()), tuple(mean.tolist()), tuple(rigid))
+
+    def _long_step(self) -> tuple[Floats, Floats, Floats]:
+        """u_{n+1}, w and K' u_n of `Energies`, without contact; the state stays as it is."""
+        now, velocity = self.u.copy(), self.v.copy()
+        long_step = self.meeting * self.dt
+        self.drift(self.meeting)
+        following = self.u.copy()
+        # One step from rest leads to (u_{n+1} + u_{n-1}) / 2: half the impulses, which the step
+        # itself gives in full.
+        self.u[:], self.v[:] = now, 0.0
+        for level in range(len(self.levels)):
+            impulse = 0.5 * 2**level * self.dt * self.level_product(level, now)
+            self.v += self.inverse * impulse
+        self.drift(self.meeting)
+        force = 2.0 * np.repeat(self.mass, 3) * (now - self.u) / long_step**2
+        self.u[:], self.v[:] = now, velocity
+        return following, (following - now) / long_step, force
 
     @property
     def rigid_count(self) -> int:
@@ -165,48 +224,86 @@ def _bandwidth_order(matrix: scipy.sparse.bsr_matrix) -> Ints:
     return np.asarray(reverse_cuthill_mckee(pattern, symmetric_mode=True), dtype=np.int64)
 
 
+def _level(matrix: scipy.sparse.csr_matrix, moves: Mask, arrays: Arrays) -> kernel.Level:
+    """A level from its stiffness, all nodes, and a mask of the nodes that move with it."""
+    touched = np.flatnonzero(np.diff(matrix.indptr)[::3])
+    nodes = np.concatenate([touched[~moves[touched]], touched[moves[touched]]])
+    rows = (3 * nodes[:, None] + np.arange(3)).ravel()
+    blocks = _upper_blocks(matrix[rows][:, rows])
+    level = kernel.Level()
+    level.shared, level.rows = np.count_nonzero(~moves[touched]), nodes.size
+    level.node = arrays.pointer(nodes, np.int32)
+    level.row = arrays.pointer(blocks.indptr, np.int64)
+    level.column = arrays.pointer(nodes[blocks.indices], np.int32)
+    level.block = arrays.pointer(blocks.data, np.float64)
+    return level
+
+
 class SerialLoop(Loop):
     """One process: half of K in 3x3 blocks, product and update in one sweep of compiled code."""
 
     def __init__(self, model: Model, comm: Any) -> None:
-        assembly = Assembly(
+        self._assembly = Assembly(
             [body.mesh for body in model.elastic], [b.material for b in model.elastic], comm
         )
-        matrix = petsc_rows(assembly.stiffness())
-        order = _bandwidth_order(matrix.tobsr((3, 3)))
-        super().__init__(model, comm, assembly.owned[order])
-        rows = (3 * order[:, None] + np.arange(3)).ravel()
-        self.diagonal = matrix.diagonal()[rows]
-        blocks = _upper_blocks(matrix[rows][:, rows])
+        matrix = petsc_rows(self._assembly.stiffness())
+        self._order = _bandwidth_order(matrix.tobsr((3, 3)))
+        super().__init__(model, comm, self._assembly.owned[self._order])
+        self.diagonal = matrix.diagonal()[self._rows()]
         arrays = Arrays()
         state = kernel.State()
-        state.nodes = order.size
-        state.row = arrays.pointer(blocks.indptr, np.int64)
-        state.column = arrays.pointer(blocks.indices, np.int32)
-        state.block = arrays.pointer(blocks.data, np.float64)
+        state.nodes = self._order.size
         for name in ("inverse", "u", "v"):
             setattr(state, name, arrays.pointer(getattr(self, name), np.float64))
-        state.f = arrays.pointer(np.zeros(3 * order.size), np.float64)
-        fixed = np.flatnonzero(self.inverse == 0.0)
-        state.fixed = fixed.size
-        state.fixed_dof = arrays.pointer(fixed, np.int32)
-        local = np.empty(order.size, dtype=np.int64)
-        local[self.owned] = np.arange(order.size)
+        state.f = arrays.pointer(np.zeros(3 * self._order.size), np.float64)
+        local = np.empty(self._order.size, dtype=np.int64)
+        local[self.owned] = np.arange(self._order.size)
         self.problem.state.map = arrays.pointer(local[self.problem.nodes], np.int32)
         state.problem = ctypes.pointer(self.problem.state)
         self._state, self._arrays = state, arrays
+        self._point_at([(matrix, np.ones(self._order.size, dtype=bool))])
+
+    def _rows(self) -> Ints:
+        """Rows as dolfinx numbers them, in the order of the loop."""
+        return np.asarray((3 * self._order[:, None] + np.arange(3)).ravel())
+
+    def _point_at(self, parts: Iterable[tuple[scipy.sparse.csr_matrix, Mask]]) -> None:
+        """Make these the levels: stiffness in dolfinx's order, and the nodes that move with it."""
+        rows, arrays = self._rows(), Arrays()
+        levels = [_level(matrix[rows][:, rows], moves, arrays) for matrix, moves in parts]
+        structures = (kernel.Level * len(levels))(*levels)
+        self._state.levels = len(levels)
+        self._state.level = ctypes.cast(structures, ctypes.POINTER(kernel.Level))
+        self._level_arrays = (structures, arrays)
+
+    def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
+        self._state.levels = 0
+        del self._level_arrays
+        self._point_at((self._assembly.part(element == k), node == k) for k in range(count))
+
+    def drift(self, steps: int) -> None:
+        """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
+        self._kernel.drift(ctypes.byref(self._state), steps)
 
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
         self._kernel.advance(ctypes.byref(self._state), steps)
 
+    def level_product(self, level: int, x: Floats) -> Floats:
+        """K_l x."""
+        return self._product(x, level, level + 1)
+
     def product(self, x: Floats) -> Floats:
         """K x."""
+        return self._product(x, 0, len(self.levels))
+
+    def _product(self, x: Floats, first: int, end: int) -> Floats:
         x = np.ascontiguousarray(x)
         y = np.empty_like(x)
         pointer = ctypes.POINTER(ctypes.c_double)
+        state = ctypes.byref(self._state)
         self._kernel.stiffness_product(
-            ctypes.byref(self._state), x.ctypes.data_as(pointer), y.ctypes.data_as(pointer)
+            state, first, end, x.ctypes.data_as(pointer), y.ctypes.data_as(pointer)
         )
         return y
 
@@ -215,13 +312,14 @@ class ParallelLoop(Loop):
     """Several processes: PETSc's block matrix, partitioned by dolfinx."""
 
     def __init__(self, model: Model, comm: Any) -> None:
-        assembly = Assembly(
+        self._assembly = Assembly(
             [body.mesh for body in model.elastic], [b.material for b in model.elastic], comm
         )
-        self._matrix = block_matrix(assembly.stiffness())
-        self._x, self._y = petsc_vectors(self._matrix)
-        self.diagonal = np.array(self._matrix.getDiagonal().array)
-        super().__init__(model, comm, assembly.owned)
+        whole = block_matrix(self._assembly.stiffness())
+        self._x, self._y = petsc_vectors(whole)
+        self.diagonal = np.array(whole.getDiagonal().array)
+        super().__init__(model, comm, self._assembly.owned)
+        self._parts: list[tuple[Any, Any]] = [(whole, slice(None))]
         local = np.full(self.all_masses.size, -1, dtype=np.int64)
         local[self.owned] = np.arange(self.owned.size)
         mine = np.flatnonzero(local[self.problem.nodes] >= 0)
@@ -231,26 +329,58 @@ class ParallelLoop(Loop):
         self._order = np.concatenate(comm.allgather(self._mine)).reshape(-1, 3)
         self._exchanged = np.empty(9 * self.problem.nodes.size)
         self._fixed = np.flatnonzero(self.inverse == 0.0)
-        self._reaction = np.zeros(3)
+
+    def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
+        for matrix, _ in self._parts:
+            matrix.destroy()
+        self._parts = [
+            (
+                block_rows(self._assembly.part(element == k), self.comm),
+                np.flatnonzero(np.repeat(node == k, 3)),
+            )
+            for k in range(count)
+        ]
+
+    def level_product(self, level: int, x: Floats) -> Floats:
+        """K_l x."""
+        self._x.array[:] = x
+        self._parts[level][0].mult(self._x, self._y)
+        return np.asarray(self._y.array).copy()
 
     def product(self, x: Floats) -> Floats:
         """K x."""
-        self._x.array[:] = x
-        self._matrix.mult(self._x, self._y)
-        return np.asarray(self._y.array).copy()
+        result = self.level_product(0, x)
+        for level in range(1, len(self.levels)):
+            result += self.level_product(level, x)
+        return result
+
+    def _predict(self, step: int) -> Floats:
+        """A step without contact; (3,) impulse of the supports on this process' nodes, N s."""
+        u, v, reaction = self.u, self.v, np.zeros(3)
+        # Slower levels come first: they still need u_n of the faster nodes.
+        for level in range(len(self._parts) - 1, -1, -1):
+            if step % (1 << level) == 0:
+                h = self.dt * (1 << level)
+                f = self.level_product(level, u)
+                v -= h * self.inverse * f
+                moves = self._parts[level][1]
+                u[moves] += h * v[moves]
+                np.add.at(reaction, self._fixed % 3, h * f[self._fixed])
+        return reaction
+
+    def drift(self, steps: int) -> None:
+        """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
+        for step in range(steps):
+            self._predict(step)
 
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
         u, v, dt, problem = self.u, self.v, self.dt, self.problem
-        scale = dt * self.inverse
-        scale_surface = scale[self._surface]
+        scale_surface = (dt * self.inverse)[self._surface]
         reaction = np.zeros(3)
         for _ in range(steps):
             before = v[self._surface]
-            f = self.product(u)
-            v -= scale * f
-            u += dt * v
-            np.add.at(reaction, self._fixed % 3, dt * f[self._fixed])
+            reaction += self._predict(problem.state.step)
             self._exchange(u[self._surface], v[self._surface], before)
             self._kernel.contact_step(ctypes.byref(problem.state))
             change = scale_surface * problem.force[self._mine]

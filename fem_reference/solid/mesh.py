@@ -118,9 +118,8 @@ def surface(mesh: TetMesh) -> Ints:
 
 def scatter_sum(nodes: Ints, values: Floats, count: int) -> Floats:
     """(count,) sums of the values that belong to each node."""
-    sums = np.zeros(count)
-    np.add.at(sums, nodes.ravel(), np.broadcast_to(values, nodes.shape).ravel())
-    return sums
+    weights = np.broadcast_to(values, nodes.shape).ravel()
+    return np.asarray(np.bincount(nodes.ravel(), weights, count), dtype=np.float64)
 
 
 def shape_functions(barycentric: Floats, order: int) -> Floats:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..contact import ContactRecord, peak_force
+from ..levels import MOST_LEVELS
 from ..mesh import Floats
 from ..scene import Scene
 from . import kernel
@@ -152,6 +153,7 @@ def integrate(
     contact_duration: float,
     *,
     courant: float = 0.9,
+    most_levels: int = MOST_LEVELS,
     fields: Callable[[float], Frames] | None = None,
     checkpoint: Checkpoint | None = None,
     on_progress: Callable[[float, str], None] = lambda done, message: None,
@@ -159,7 +161,8 @@ def integrate(
     """Step from the first touch to ``scene.end_time``, or until no further contact is possible.
 
     ``fields`` makes the recorder of fields from the sampling interval. A run whose ``checkpoint``
-    holds a state goes on from there.
+    holds a state goes on from there. ``most_levels`` is that of sub-cycling; 1: every element acts
+    at every step.
 
     Raises:
         SolverError: time step above the critical one, divergence, or no end found.
@@ -178,6 +181,7 @@ def integrate(
         lambda stride: _sample(loop, plate, bodies, stride),
         lambda: _Ending(loop, plate, scene, bodies),
         courant=courant,
+        most_levels=most_levels,
         fields=fields,
         checkpoint=checkpoint,
         on_progress=on_progress,

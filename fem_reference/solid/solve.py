@@ -27,8 +27,9 @@ from .plate import PLATE, PlateModel, plate_model
 from .run import SolidRun, integrate
 from .series import Recorder, Report, Settings
 from .spectrum import first_frequency
+from .supervision import stable
 
-REVISION = 3
+REVISION = 4
 """Counts changes of the method that make older checkpoints useless."""
 
 RADIUS_STEP = 1.04
@@ -120,19 +121,30 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         plate: PlateModel = comm.bcast(made)
         nodes = int(plate.model.first[-1])
         report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
-        loop = make_loop(plate.model, comm)
-        suffix = f"-{attempt}"
-        recorder = settings.recorder(suffix)
-        run = integrate(
-            loop,
-            plate,
-            scene,
-            estimate.duration,
-            courant=settings.courant,
-            fields=recorder,
-            checkpoint=settings.checkpoint(method(scene), plate.model, suffix),
-            on_progress=lambda done, message: report("stepping", done, message),
-        )
+        recorders: list[Recorder] = []
+
+        def step(
+            most_levels: int,
+            plate: PlateModel = plate,
+            suffix: str = f"-{attempt}",
+            recorders: list[Recorder] = recorders,
+        ) -> tuple[Loop, SolidRun]:
+            loop = make_loop(plate.model, comm)
+            kept = [*method(scene), most_levels]
+            recorders.append(settings.recorder(f"{suffix}-{most_levels}"))
+            return loop, integrate(
+                loop,
+                plate,
+                scene,
+                estimate.duration,
+                courant=settings.courant,
+                most_levels=most_levels,
+                fields=recorders[-1],
+                checkpoint=settings.checkpoint(kept, plate.model, suffix),
+                on_progress=lambda done, message: report("stepping", done, message),
+            )
+
+        loop, run = stable(step)
         found = _elements_per_radius(scene, plate, run)
         reach = max(contact.outermost_radius for contact in run.contacts)
         inside = reach < 0.95 * plate.zone
@@ -147,7 +159,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
                 found,
                 wavelength,
                 per_wave,
-                recorder,
+                recorders[-1],
                 memory_needed(nodes, scene.element_order, comm.size),
                 peak_memory(comm),
             )

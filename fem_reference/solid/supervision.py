@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import math
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from ..contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
-from ..errors import SolverError
+from ..errors import DivergedError, SolverError
+from ..levels import MOST_LEVELS
 from ..mesh import Floats
 from .checkpoint import Checkpoint
 from .fields import Frames
 from .loop import Energies, Loop
 from .spectrum import critical_time_step
 
-CHUNK_SAMPLES = 16
-"""Samples between two looks at energy, end and clock."""
+LARGEST_ENERGY_RESIDUAL = 1e-5
+"""Of a run with sub-cycling; beyond it levels have resonated, and the run is made without them."""
+
+CHUNK_SAMPLES, CHUNK_STEPS = 16, 200
+"""At least so many samples and steps between two looks at energy, end and clock."""
+
+R = TypeVar("R", bound="Balanced")
 
 Sample = Callable[[int], Floats]
 """Advances by so many steps; the row of the first of them."""
@@ -60,6 +67,35 @@ class Course:
         return self.interval * np.arange(self.rows.shape[0])
 
 
+class Balanced(Protocol):
+    """What `stable` needs of a run."""
+
+    @property
+    def energy_residual(self) -> float:
+        """Energy that the ledger misses over the initial energy."""
+
+
+def stable(attempt: Callable[[int], tuple[Loop, R]]) -> tuple[Loop, R]:
+    """A run with sub-cycling, or without where that diverges or its ledger cannot be read.
+
+    Args:
+        attempt: makes the loop and its run with at most so many levels.
+    """
+    try:
+        loop, run = attempt(MOST_LEVELS)
+    except DivergedError as error:
+        failed = str(error)
+    else:
+        if len(loop.levels) == 1 or run.energy_residual <= LARGEST_ENERGY_RESIDUAL:
+            return loop, run
+        failed = (
+            f"energy residual {run.energy_residual:.2g} with sub-cycling, "
+            f"{LARGEST_ENERGY_RESIDUAL:g} is allowed"
+        )
+    print(f"{failed}; stepping again without sub-cycling", file=sys.stderr)
+    return attempt(1)
+
+
 def supervise(
     loop: Loop,
     plan: Plan,
@@ -67,6 +103,7 @@ def supervise(
     make_ended: Callable[[], Ended],
     *,
     courant: float,
+    most_levels: int,
     fields: Callable[[float], Frames] | None,
     checkpoint: Checkpoint | None,
     on_progress: Callable[[float, str], None],
@@ -79,6 +116,8 @@ def supervise(
         sample: see `Sample`.
         make_ended: called once the step is set, if the plan has no end.
         courant: time step over the critical one.
+        most_levels: of sub-cycling; 1: every element at every step. A run with a given end, which
+            may cut a contact, has one level: only then can its energy be read.
         fields: makes the recorder of fields from the sampling interval.
         checkpoint: a run whose checkpoint holds a state goes on from there.
         on_progress: gets the share done and a message.
@@ -89,9 +128,12 @@ def supervise(
     saved: dict[str, Any] = (checkpoint.load() if checkpoint else None) or {}
     critical = float(saved["critical"]) if saved else critical_time_step(loop)
     time_step, stride, wanted = _steps(plan, courant * critical, critical)
+    levels = 1 if plan.end_time is not None else min(most_levels, stride.bit_length())
+    loop.set_step(time_step, max(1, round(CHATTER_FRACTION * plan.duration / time_step)), levels)
+    # Samples fall on steps at which all levels meet.
+    stride = loop.meeting * max(1, round(stride / loop.meeting))
     interval = stride * time_step
     frames = fields(interval) if fields is not None else None
-    loop.set_step(time_step, max(1, round(CHATTER_FRACTION * plan.duration / time_step)))
     ended = make_ended() if plan.end_time is None else None
     rows: list[Floats] = []
     seconds = 0.0
@@ -101,10 +143,11 @@ def supervise(
         loop.problem.restore(saved["problem"])
         rows = list(saved["rows"])
         seconds = float(saved["seconds"])
+    chunk = max(CHUNK_SAMPLES, math.ceil(CHUNK_STEPS / stride))
     started = time.perf_counter()
     while len(rows) < wanted:
         chunk_started = time.perf_counter()
-        for _ in range(min(CHUNK_SAMPLES, wanted - len(rows))):
+        for _ in range(min(chunk, wanted - len(rows))):
             if frames is not None:
                 frames(len(rows), loop)
             rows.append(sample(stride))
@@ -112,7 +155,7 @@ def supervise(
         now = len(rows) * interval
         energies = loop.energies()
         if not energies.total <= 10.0 * plan.initial_energy:
-            raise SolverError(
+            raise DivergedError(
                 f"the solution diverged at {now:.4g} s: energy {energies.total:.3g} J, at the "
                 f"start {plan.initial_energy:.3g} J"
             )
@@ -128,7 +171,7 @@ def supervise(
                 f"a further contact is still possible at {len(rows) * interval:.4g} s; "
                 "set run.end_time"
             )
-    rows.append(sample(1))
+    rows.append(sample(loop.meeting))
     return Course(np.array(rows), interval, critical, seconds)
 
 

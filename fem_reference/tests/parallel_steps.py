@@ -12,6 +12,7 @@ import numpy as np
 
 from fem_reference.estimate import estimate_contact
 from fem_reference.fenicsx import world
+from fem_reference.levels import MOST_LEVELS
 from fem_reference.scene import read_scene
 from fem_reference.solid.loop import make_loop
 from fem_reference.solid.plate import plate_model
@@ -28,7 +29,7 @@ def main(scene_path: Path, steps: int, out: Path) -> None:
     made = plate_model(scene, estimate, waves, 0.6) if comm.rank == 0 else None
     loop = make_loop(comm.bcast(made).model, comm)
     critical = critical_time_step(loop)
-    loop.set_step(0.9 * critical, 1)
+    loop.set_step(0.9 * critical, 1, MOST_LEVELS)
     loop.advance(steps)
     u, v = loop.gather(loop.u), loop.gather(loop.v)
     energy = loop.energies().total
@@ -39,6 +40,7 @@ def main(scene_path: Path, steps: int, out: Path) -> None:
             out,
             **{"u": u, "v": v, "force": np.array(force), "reaction": np.array(state.reaction)},
             **{"energy": energy, "critical": critical, "processes": comm.size},
+            **{"levels": np.array(loop.levels)},
         )
 
 

@@ -1,0 +1,93 @@
+"""Sub-cycling of tetrahedra: the elements' critical time steps, and which of them act when.
+
+The rules are those of the axisymmetric elements (`..levels`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..levels import fastest_levels, graded_levels
+from ..mesh import Floats, Ints
+from ..scene import Material
+from .elasticity import LUMPED_SHARES
+from .mesh import EDGES, TetMesh, volumes
+from .model import Model
+
+CHUNK = 2000
+"""Elements whose stiffness is held at once."""
+_A, _B = 0.5854101966249685, 0.1381966011250105
+QUADRATURE = np.full((4, 4), _B) + (_A - _B) * np.eye(4)
+"""Barycentric coordinates of four points of equal weight, exact to second degree (Keast 1986)."""
+
+
+def _gradients(points: Floats, cells: Ints) -> tuple[Floats, Floats]:
+    """(4, m, n, 3) gradients of the shape functions at the quadrature's points, (m,) volumes."""
+    corners = points[cells[:, :4]]
+    inverse = np.linalg.inv(corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1)
+    flat = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
+    volume = volumes(points, cells[:, :4])
+    if cells.shape[1] == 4:
+        return np.broadcast_to(flat, (4, *flat.shape)), volume
+    at = []
+    for place in QUADRATURE:
+        corner = (4.0 * place - 1.0)[None, :, None] * flat
+        midside = [4.0 * (place[a] * flat[:, b] + place[b] * flat[:, a]) for a, b in EDGES]
+        at.append(np.concatenate([corner, np.stack(midside, axis=1)], axis=1))
+    return np.stack(at), volume
+
+
+def element_stiffness(points: Floats, cells: Ints, material: Material) -> Floats:
+    """(m, 3 n, 3 n) stiffness of elements with straight edges, row 3 * node + component, N/m."""
+    gradients, volume = _gradients(points, cells)
+    count, size = cells.shape
+    lame, shear = material.lame_lambda, material.shear_modulus
+    stiffness = np.zeros((count, size, 3, size, 3))
+    for g in gradients:
+        outer = np.einsum("eai,ebj->eaibj", g, g)
+        stiffness += lame * outer + shear * outer.transpose(0, 1, 4, 3, 2)
+        inner = shear * np.einsum("eak,ebk->eab", g, g)
+        for direction in range(3):
+            stiffness[:, :, direction, :, direction] += inner
+    scaled = stiffness * (0.25 * volume)[:, None, None, None, None]
+    return np.asarray(scaled.reshape(count, 3 * size, 3 * size))
+
+
+def element_time_steps(mesh: TetMesh, material: Material) -> Floats:
+    """(m,) critical time step of each element alone with its lumped mass, 2 / omega_max, s.
+
+    That of a body is at least the smallest of its elements'.
+    """
+    nodes = mesh.cells.shape[1]
+    corner, midside = LUMPED_SHARES[mesh.order]
+    shares = np.repeat([corner] * 4 + [midside] * (nodes - 4), 3)
+    steps = np.empty(mesh.cells.shape[0])
+    for start in range(0, steps.size, CHUNK):
+        cells = mesh.cells[start : start + CHUNK]
+        mass = material.density * volumes(mesh.points, cells[:, :4])[:, None] * shares
+        stiffness = element_stiffness(mesh.points, cells, material)
+        stiffness /= np.sqrt(mass[:, :, None] * mass[:, None, :])
+        steps[start : start + CHUNK] = 2.0 / np.sqrt(np.linalg.eigvalsh(stiffness)[:, -1])
+    return steps
+
+
+def model_levels(model: Model, touching: Ints, time_step: float, most: int) -> tuple[Ints, Ints]:
+    """Level of each element, body after body, and of each node, that of its fastest element.
+
+    Args:
+        model: its bodies.
+        touching: nodes that can touch; their elements have level 0.
+        time_step: of level 0, s.
+        most: levels.
+    """
+    count = int(model.first[-1])
+    nodes = np.concatenate(
+        [body.mesh.cells + offset for body, offset in zip(model.elastic, model.first, strict=False)]
+    )
+    if most <= 1:
+        return np.zeros(nodes.shape[0], np.int64), np.zeros(count, np.int64)
+    steps = np.concatenate([element_time_steps(b.mesh, b.material) for b in model.elastic])
+    at_contact = np.zeros(count, dtype=bool)
+    at_contact[touching] = True
+    level = graded_levels(steps / time_step, nodes, at_contact, most)
+    return level, fastest_levels(level, nodes, count)
