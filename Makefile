@@ -80,7 +80,8 @@ evidence: setup
 	    --scene fem_reference/solutions/$$scene/paper/provenance.json || exit 1; done
 	for study in table2 rocker fluid insensitivity seal-seat seal-seat-cost; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done
 	for study in fig14 fig15 fig16 fig17 half-period; do $(RUN) study $$study --model C --out $(OUT)/studies || exit 1; done
-	$(RUN) bench --out $(OUT)/bench
+	cargo build --release --manifest-path benches/diffsol/Cargo.toml
+	$(RUN) bench --peer benches/diffsol/target/release/diffsol-peer --out $(OUT)/bench
 	$(RUN) stress --cases 100000
 	cp target/release/impactcheck $(OUT)/impactcheck-full
 	cargo build --release --features lean && mv target/release/impactcheck $(OUT)/impactcheck-lean

@@ -10,6 +10,7 @@ fn errors_of_every_integrator_fall_with_its_tolerance_and_ratios_follow_from_the
         tolerances: vec![1e-2, 1e-4, 1e-6, 1e-8],
         peer_tolerances: vec![1e-3, 1e-6, 1e-9],
         scipy: false,
+        peers: vec!["/bin/false".into()],
         models: false,
     };
     let bench = run(&settings, &Store::open(None), &|_| ()).unwrap();
@@ -34,6 +35,11 @@ fn errors_of_every_integrator_fall_with_its_tolerance_and_ratios_follow_from_the
             assert!(runs.iter().all(|run| run.relative_error <= run.tolerance.unwrap()), "{runs:?}");
         }
     }
+    assert!(
+        bench.notes.len() == 1 && bench.notes[0].starts_with("false with 2 modes can't be run"),
+        "{:?}",
+        bench.notes
+    );
     assert!(!bench.ratios.is_empty());
     for ratio in &bench.ratios {
         let best = |solver: &str| {

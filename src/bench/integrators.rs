@@ -2,7 +2,7 @@
 
 use super::{Bench, OURS, Settings, WorkPrecision, timed};
 use crate::analytical::hertz::HertzImpact;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::impact::explicit_runge_kutta::{
     self as runge_kutta, DORMAND_PRINCE_5, DORMAND_PRINCE_8, Equations, Tolerances,
 };
@@ -18,8 +18,8 @@ use std::process::{Command, Stdio};
 const SCENE: &str = "scaled-plate-r10";
 /// Evaluations times state entries that a compiled peer's run may cost.
 const PEER_WORK: f64 = 4e9;
-/// Wall time in s that a run of SciPy may take.
-const SCIPY_BUDGET: f64 = 20.0;
+/// Wall time in s that a run of a peer may take.
+const PEER_BUDGET: f64 = 20.0;
 
 /// Runs model B with `modes` modes by all integrators.
 pub(super) fn run(modes: usize, settings: &Settings, bench: &mut Bench) -> Result<()> {
@@ -31,11 +31,11 @@ pub(super) fn run(modes: usize, settings: &Settings, bench: &mut Bench) -> Resul
     // the bodies have parted for good: the inner velocity is final
     let end_time = 1.001 * exact.contacts[0].end.max(exact.contacts[1].end);
     let error = |velocity: f64| (velocity / exact.velocity[1]).powi(2) - 1.0;
-    let problem = format!("{SCENE}, model B, time integration");
+    let label = format!("{SCENE}, model B, time integration");
     let mut add = |solver: &str, tolerance: f64, velocity: f64, seconds: f64| {
         bench.work_precision.push(WorkPrecision {
             solver: solver.to_owned(),
-            problem: problem.clone(),
+            problem: label.clone(),
             modes: Some(modes),
             tolerance: Some(tolerance),
             relative_error: error(velocity).abs(),
@@ -63,26 +63,42 @@ pub(super) fn run(modes: usize, settings: &Settings, bench: &mut Bench) -> Resul
             add(&format!("{} (Rust)", method.name), relative, velocity, seconds);
         }
     }
-    if !settings.scipy {
-        return Ok(());
-    }
-    match scipy(system, (&start, &scale), end_time, &settings.peer_tolerances) {
-        Ok(runs) => {
-            for run in runs {
-                let velocity = run.inner_rate / system.masses[1].sqrt();
-                add(&format!("SciPy {}", run.solver), run.tolerance, velocity, run.seconds);
+    let problem = problem(system, (&start, &scale), end_time, &settings.peer_tolerances);
+    for (name, command) in peers(settings)? {
+        match ask(command, &problem) {
+            Ok(runs) => {
+                for run in runs {
+                    let velocity = run.inner_rate / system.masses[1].sqrt();
+                    add(&format!("{name} {}", run.solver), run.tolerance, velocity, run.seconds);
+                }
             }
+            Err(what) => bench.notes.push(format!("{name} with {modes} modes can't be run: {what}")),
         }
-        Err(error) => bench.notes.push(format!("SciPy with {modes} modes: {error}")),
     }
     Ok(())
+}
+
+/// The peers that are programs of their own.
+fn peers(settings: &Settings) -> Result<Vec<(String, Command)>> {
+    const SCRIPT: &str = include_str!("peers.py");
+    let mut peers = Vec::new();
+    if settings.scipy {
+        let mut command = Command::new(python()?);
+        command.args(["-c", SCRIPT]);
+        peers.push(("SciPy".to_owned(), command));
+    }
+    for program in &settings.peers {
+        let name = program.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        peers.push((name.trim_end_matches("-peer").to_owned(), Command::new(program)));
+    }
+    Ok(peers)
 }
 
 fn hertz(system: &System) -> HertzImpact {
     HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness }
 }
 
-/// A run of SciPy.
+/// A run of a peer.
 #[derive(Deserialize)]
 struct Run {
     solver: String,
@@ -91,16 +107,15 @@ struct Run {
     seconds: f64,
 }
 
-/// All runs of SciPy's integrators.
-fn scipy(
+/// The equations, and what is asked of a peer.
+fn problem(
     system: &System,
     (start, scale): (&[f64], &[f64]),
     end_time: f64,
     tolerances: &[f64],
-) -> Result<Vec<Run>> {
-    const SCRIPT: &str = include_str!("peers.py");
-    let failed = |what: String| Error::Solver(format!("SciPy's integrators can't be run: {what}"));
-    let problem = serde_json::json!({
+) -> serde_json::Value {
+    const { assert!(INNER == 1, "the peers read the inner body's rate there") };
+    serde_json::json!({
         "omega": system.oscillators.iter().map(|o| o.omega).collect::<Vec<_>>(),
         "alpha": system.oscillators.iter().map(|o| o.alpha).collect::<Vec<_>>(),
         "approach": system.approach,
@@ -112,31 +127,32 @@ fn scipy(
         "methods": ["RK45", "DOP853", "LSODA", "Radau"],
         "tolerances": tolerances,
         "repeats": 3,
-        "budget": SCIPY_BUDGET,
-    });
-    const { assert!(INNER == 1, "the script reads the inner body's rate there") };
-    let mut child = Command::new(python()?)
-        .args(["-c", SCRIPT])
+        "budget": PEER_BUDGET,
+    })
+}
+
+/// All runs of a peer, or why there are none.
+fn ask(mut command: Command, problem: &serde_json::Value) -> std::result::Result<Vec<Run>, String> {
+    let mut child = command
         // one core, as this program's integrator
         .envs([("OMP_NUM_THREADS", "1"), ("OPENBLAS_NUM_THREADS", "1")])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
-        .map_err(|e| failed(e.to_string()))?;
-    let mut input = child.stdin.take().ok_or_else(|| failed("no standard input".into()))?;
-    input.write_all(problem.to_string().as_bytes()).map_err(|e| failed(e.to_string()))?;
+        .map_err(|e| e.to_string())?;
+    let mut input = child.stdin.take().ok_or("no standard input")?;
+    // a peer that ends without reading says why below
+    let written = input.write_all(problem.to_string().as_bytes());
     drop(input);
-    let output = child.wait_with_output().map_err(|e| failed(e.to_string()))?;
+    let output = child.wait_with_output().map_err(|e| e.to_string())?;
     if !output.status.success() {
         let log = String::from_utf8_lossy(&output.stderr);
-        return Err(failed(log.lines().last().unwrap_or("it says nothing").to_owned()));
+        return Err(log.lines().last().unwrap_or("it says nothing").to_owned());
     }
+    written.map_err(|e| e.to_string())?;
     let text = String::from_utf8_lossy(&output.stdout);
     text.lines()
-        .skip(1)
-        .map(|line| {
-            serde_json::from_str(line).map_err(|e| failed(format!("unexpected answer `{line}` ({e})")))
-        })
+        .map(|line| serde_json::from_str(line).map_err(|e| format!("unexpected answer `{line}` ({e})")))
         .collect()
 }

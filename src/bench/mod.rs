@@ -13,6 +13,7 @@ use crate::error::Result;
 use crate::impact::SCHEMA_VERSION;
 use crate::reference::Store;
 use serde::Serialize;
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Name of this program's integrator in the documents.
@@ -81,6 +82,8 @@ pub struct Settings {
     pub peer_tolerances: Vec<f64>,
     /// Whether SciPy's integrators are among them.
     pub scipy: bool,
+    /// Programs that solve the same equations with other integrators, as `benches/diffsol` does.
+    pub peers: Vec<PathBuf>,
     /// Whether models over their modes, and the reference's meshes, are compared as well.
     pub models: bool,
 }
@@ -97,6 +100,7 @@ impl Default for Settings {
             tolerances: half_decades(-2, -9),
             peer_tolerances: half_decades(-3, -10),
             scipy: true,
+            peers: Vec::new(),
             models: true,
         }
     }

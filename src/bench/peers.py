@@ -8,7 +8,6 @@ import sys
 import time
 
 import numpy as np
-import scipy
 from scipy.integrate import solve_ivp
 
 
@@ -45,7 +44,6 @@ def main():
         J[n:, n:] = -np.diag(damping)
         return J
 
-    print(json.dumps({"scipy": scipy.__version__}), flush=True)
     for method in problem["methods"]:
         options = {"jac": jacobian} if method in ("Radau", "LSODA") else {}
         for rtol in problem["tolerances"]:

@@ -12,6 +12,9 @@ pub struct Arguments {
     /// Numbers of modes at which integrators are compared; the default takes a minute or two, 1,16,64,256 about an hour
     #[arg(long, value_delimiter = ',', default_value = "1,16", value_name = "N,…")]
     modes: Vec<usize>,
+    /// Also run these programs that solve the same equations, as benches/diffsol does: one JSON document in, one line per run out
+    #[arg(long = "peer", value_name = "PROGRAM")]
+    peers: Vec<PathBuf>,
     /// Write the document and the diagrams (JSON, SVG, PNG) into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -25,7 +28,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         // refused before anything is computed
         report::check_writable(folder)?;
     }
-    let settings = Settings { modes: arguments.modes.clone(), ..Settings::default() };
+    let settings =
+        Settings { modes: arguments.modes.clone(), peers: arguments.peers.clone(), ..Settings::default() };
     let bench = bench::run(&settings, &context.store(), &|text| context.note(text))?;
     if let Some(folder) = &arguments.out {
         let svg = bench::figure(&bench);
