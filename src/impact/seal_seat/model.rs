@@ -29,6 +29,8 @@ pub struct SeatModel {
     system: System,
     end_time: Option<f64>,
     first_step: f64,
+    /// Velocity of the sphere in m/s at the end of a run with the first step; that run found the contact zones.
+    rough: [f64; 2],
     warnings: Vec<String>,
     /// Wall time in s that building took, the cache's help included.
     pub setup_seconds: f64,
@@ -85,7 +87,11 @@ impl SeatModel {
             let rough = built.integrate(built.first_step, false)?;
             match zones.widened(rough.tally.reach) {
                 Some(wider) => zones = wider,
-                None => return Ok(Self { setup_seconds: started.elapsed().as_secs_f64(), ..built }),
+                None => {
+                    let (rough, setup_seconds) =
+                        (rough.state.sphere_velocity, started.elapsed().as_secs_f64());
+                    return Ok(Self { rough, setup_seconds, ..built });
+                }
             }
         }
         Err(Error::Solver(format!(
@@ -107,6 +113,7 @@ impl SeatModel {
             scene: scene.clone(),
             first_step: period.min(contact_duration(setup) / FIRST_STEPS.1),
             end_time: scene.run.end_time,
+            rough: [f64::NAN; 2],
             system,
             warnings,
             setup_seconds: 0.0,
@@ -161,21 +168,18 @@ impl SeatModel {
         Ok((summary, history))
     }
 
-    /// The first result that meets the tolerance, and its step. The first two runs are done side by side: hardly ever
-    /// are more needed.
+    /// The first result that meets the tolerance, and its step.
     fn converged(&self, tolerance: f64) -> Result<(Integration, f64)> {
-        let mut step = 0.5 * self.first_step;
-        let (coarse, fine) =
-            rayon::join(|| self.integrate(self.first_step, false), || self.integrate(step, false));
-        let (mut coarse, mut fine) = (coarse?, fine?);
+        let (mut step, mut coarse) = (self.first_step, self.rough);
         for _ in 0..HALVINGS {
-            let [a, b] = [&coarse, &fine].map(|run| run.state.sphere_velocity);
-            let change = (a[0] - b[0]).hypot(a[1] - b[1]);
-            if change <= 3.0 * tolerance * b[0].hypot(b[1]) {
-                return Ok((fine, step));
-            }
             step *= 0.5;
-            coarse = std::mem::replace(&mut fine, self.integrate(step, false)?);
+            let result = self.integrate(step, false)?;
+            let fine = result.state.sphere_velocity;
+            let change = (coarse[0] - fine[0]).hypot(coarse[1] - fine[1]);
+            if change <= 3.0 * tolerance * fine[0].hypot(fine[1]) {
+                return Ok((result, step));
+            }
+            coarse = fine;
         }
         Err(Error::Solver(format!(
             "the sphere's velocity does not reach a relative error of {tolerance} with steps down to {step:e} s"
