@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import DivergedError, SolverError
+from .errors import SolverError
 from .estimate import (
     MINOR_FORCE,
     ContactEstimate,
@@ -21,6 +21,7 @@ from .explicit import Run, integrate
 from .mesh import edge_lengths
 from .meshing import ImpactMesh, mesh_impact
 from .progress import Progress
+from .resonance import stable_run
 from .scene import Material, Scene
 from .settings import mesh_settings
 from .system import System, build_system
@@ -37,10 +38,6 @@ WAVE_FREQUENCY = 3.0
 The spectrum of Hertz's pulse (about a half sine to the power 3/2) is below 1 % of its value at
 zero from there on.
 """
-
-
-LARGEST_ENERGY_RESIDUAL = 1e-5
-"""Of a run with sub-cycling; beyond it levels have resonated, and the run is made without them."""
 
 
 @dataclass(frozen=True)
@@ -138,27 +135,18 @@ def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Re
     )
 
 
-def _stable_run(scene: Scene, system: System, duration: float, **options: Any) -> Run:
-    """Step with sub-cycling, and without it where that fails or its ledger cannot be read.
+def _stepped(scene: Scene, system: System, duration: float, **options: Any) -> Run:
+    """Step with sub-cycling where that can be; a run that the scene cuts short has one level.
 
-    The discrete energy of a run with levels is exact only while bodies do not touch; a run that
-    the scene cuts short may end in the middle of a contact.
+    It may end in the middle of a contact, where the energy of a run with levels cannot be read.
     """
-    if scene.end_time is None:
-        try:
-            run = integrate(system, scene.speed, duration, **options)
-        except DivergedError as error:
-            print(f"{error}; stepping again without sub-cycling", file=sys.stderr)
-        else:
-            residual = run.balance.energy_residual
-            if residual <= LARGEST_ENERGY_RESIDUAL or len(run.levels) == 1:
-                return run
-            print(
-                f"energy residual {residual:.2g} with sub-cycling, {LARGEST_ENERGY_RESIDUAL:g} is "
-                "allowed; stepping again without it",
-                file=sys.stderr,
-            )
-    return integrate(system, scene.speed, duration, most_levels=1, **options)
+
+    def attempt(most_levels: int) -> Run:
+        return integrate(system, scene.speed, duration, most_levels=most_levels, **options)
+
+    if scene.end_time is not None:
+        return attempt(1)
+    return stable_run(attempt, lambda run: (len(run.levels), run.balance.energy_residual))
 
 
 def compute(
@@ -214,7 +202,7 @@ def compute(
         nodes = sum(body.points.shape[0] for body in (mesh.outer, mesh.plate, mesh.inner))
         report("assembly", 0.0, f"{nodes} nodes")
         system = build_system(scene, mesh)
-        run = _stable_run(
+        run = _stepped(
             scene,
             system,
             estimate.duration,

@@ -10,7 +10,7 @@ fn errors_of_every_integrator_fall_with_its_tolerance_and_ratios_follow_from_the
         tolerances: vec![1e-2, 1e-4, 1e-6, 1e-8],
         peer_tolerances: vec![1e-3, 1e-6, 1e-9],
         scipy: false,
-        peers: vec!["/bin/false".into()],
+        peers: vec!["false".into()],
         models: false,
     };
     let bench = run(&settings, &Store::open(None), &|_| ()).unwrap();

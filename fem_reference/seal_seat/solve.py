@@ -10,11 +10,11 @@ import numpy as np
 
 from ..mesh import Floats
 from ..output import SAMPLES
+from ..resonance import stable_run
 from ..solid.loop import Loop, make_loop
 from ..solid.memory import memory_needed, peak_memory, require_memory
 from ..solid.series import Recorder, Report, Settings
 from ..solid.spectrum import first_frequency
-from ..solid.supervision import stable
 from .meshing import seat_mesh, sphere_mesh
 from .model import SeatModel, seat_model
 from .run import SeatRun, integrate
@@ -91,25 +91,27 @@ def compute(
     seat: SeatModel = comm.bcast(made)
     nodes = int(seat.model.first[-1])
     report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
-    recorders: list[Recorder] = []
 
-    def step(most_levels: int) -> tuple[Loop, SeatRun]:
+    def attempt(most_levels: int) -> tuple[Loop, SeatRun, Recorder]:
         loop = make_loop(seat.model, comm)
-        recorders.append(settings.recorder(f"-{most_levels}"))
-        return loop, integrate(
+        recorder = settings.recorder(f"-{most_levels}")
+        run = integrate(
             loop,
             seat,
             scene,
             courant=settings.courant,
             most_levels=most_levels,
-            fields=recorders[-1],
+            fields=recorder,
             checkpoint=settings.checkpoint([*method(scene), most_levels], seat.model),
             on_progress=lambda done, message: report("stepping", done, message),
         )
+        return loop, run, recorder
 
-    loop, run = stable(step)
+    loop, run, recorder = stable_run(
+        attempt, lambda made: (len(made[0].levels), made[1].energy_residual)
+    )
     needed = memory_needed(nodes, scene.element_order, comm.size)
-    return Solution(run, seat, loop, recorders[-1], needed, peak_memory(comm))
+    return Solution(run, seat, loop, recorder, needed, peak_memory(comm))
 
 
 def seat_frequency(loop: Loop, seat: SeatModel) -> float:

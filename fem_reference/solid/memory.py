@@ -12,7 +12,7 @@ from ..errors import SolverError
 BASE = 0.25e9
 """Interpreter, modules and the compiler of the forms, bytes per process.
 
-Measured: 0.20e9, and 0.21e9 where the forms are not in the cache of FEniCSx yet."""
+Measured: 0.21e9, and 0.22e9 where the forms are not in FEniCSx' cache yet."""
 PER_NODE = {1: 8.2e3, 2: 13.0e3}
 """Largest use per node by element order, bytes: during assembly, where K exists several times.
 

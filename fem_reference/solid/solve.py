@@ -18,6 +18,7 @@ from ..estimate import (
     estimate_contact,
     hertz_contact_radius,
 )
+from ..resonance import stable_run
 from ..scene import Scene
 from ..solve import ACCEPTED_SHARE, MOST_MESHES, shortest_wavelengths
 from .loop import Loop, make_loop
@@ -27,7 +28,6 @@ from .plate import PLATE, PlateModel, plate_model
 from .run import SolidRun, integrate
 from .series import Recorder, Report, Settings
 from .spectrum import first_frequency
-from .supervision import stable
 
 REVISION = 4
 """Counts changes of the method that make older checkpoints useless."""
@@ -99,6 +99,34 @@ def rounded(radius: float) -> float:
     return math.exp(step * round(math.log(radius) / step))
 
 
+def _stepped(
+    scene: Scene,
+    plate: PlateModel,
+    duration: float,
+    settings: Settings,
+    suffix: str,
+    comm: Any,
+    report: Report,
+) -> tuple[Loop, SolidRun, Recorder]:
+    def attempt(most_levels: int) -> tuple[Loop, SolidRun, Recorder]:
+        loop = make_loop(plate.model, comm)
+        recorder = settings.recorder(f"{suffix}-{most_levels}")
+        run = integrate(
+            loop,
+            plate,
+            scene,
+            duration,
+            courant=settings.courant,
+            most_levels=most_levels,
+            fields=recorder,
+            checkpoint=settings.checkpoint([*method(scene), most_levels], plate.model, suffix),
+            on_progress=lambda done, message: report("stepping", done, message),
+        )
+        return loop, run, recorder
+
+    return stable_run(attempt, lambda made: (len(made[0].levels), made[1].energy_residual))
+
+
 def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: Report) -> Solution:
     """Solve a scene with ``factor`` times the elements asked for, in every direction.
 
@@ -121,30 +149,9 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         plate: PlateModel = comm.bcast(made)
         nodes = int(plate.model.first[-1])
         report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
-        recorders: list[Recorder] = []
-
-        def step(
-            most_levels: int,
-            plate: PlateModel = plate,
-            suffix: str = f"-{attempt}",
-            recorders: list[Recorder] = recorders,
-        ) -> tuple[Loop, SolidRun]:
-            loop = make_loop(plate.model, comm)
-            kept = [*method(scene), most_levels]
-            recorders.append(settings.recorder(f"{suffix}-{most_levels}"))
-            return loop, integrate(
-                loop,
-                plate,
-                scene,
-                estimate.duration,
-                courant=settings.courant,
-                most_levels=most_levels,
-                fields=recorders[-1],
-                checkpoint=settings.checkpoint(kept, plate.model, suffix),
-                on_progress=lambda done, message: report("stepping", done, message),
-            )
-
-        loop, run = stable(step)
+        loop, run, recorder = _stepped(
+            scene, plate, estimate.duration, settings, f"-{attempt}", comm, report
+        )
         found = _elements_per_radius(scene, plate, run)
         reach = max(contact.outermost_radius for contact in run.contacts)
         inside = reach < 0.95 * plate.zone
@@ -159,7 +166,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
                 found,
                 wavelength,
                 per_wave,
-                recorders[-1],
+                recorder,
                 memory_needed(nodes, scene.element_order, comm.size),
                 peak_memory(comm),
             )

@@ -3,30 +3,23 @@
 from __future__ import annotations
 
 import math
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeVar
+from typing import Any
 
 import numpy as np
 
 from ..contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from ..errors import DivergedError, SolverError
-from ..levels import MOST_LEVELS
 from ..mesh import Floats
 from .checkpoint import Checkpoint
 from .fields import Frames
 from .loop import Energies, Loop
 from .spectrum import critical_time_step
 
-LARGEST_ENERGY_RESIDUAL = 1e-5
-"""Of a run with sub-cycling; beyond it levels have resonated, and the run is made without them."""
-
 CHUNK_SAMPLES, CHUNK_STEPS = 16, 200
 """At least so many samples and steps between two looks at energy, end and clock."""
-
-R = TypeVar("R", bound="Balanced")
 
 Sample = Callable[[int], Floats]
 """Advances by so many steps; the row of the first of them."""
@@ -65,35 +58,6 @@ class Course:
     def times(self) -> Floats:
         """(m,) instants of the samples, s."""
         return self.interval * np.arange(self.rows.shape[0])
-
-
-class Balanced(Protocol):
-    """What `stable` needs of a run."""
-
-    @property
-    def energy_residual(self) -> float:
-        """Energy that the ledger misses over the initial energy."""
-
-
-def stable(attempt: Callable[[int], tuple[Loop, R]]) -> tuple[Loop, R]:
-    """A run with sub-cycling, or without where that diverges or its ledger cannot be read.
-
-    Args:
-        attempt: makes the loop and its run with at most so many levels.
-    """
-    try:
-        loop, run = attempt(MOST_LEVELS)
-    except DivergedError as error:
-        failed = str(error)
-    else:
-        if len(loop.levels) == 1 or run.energy_residual <= LARGEST_ENERGY_RESIDUAL:
-            return loop, run
-        failed = (
-            f"energy residual {run.energy_residual:.2g} with sub-cycling, "
-            f"{LARGEST_ENERGY_RESIDUAL:g} is allowed"
-        )
-    print(f"{failed}; stepping again without sub-cycling", file=sys.stderr)
-    return attempt(1)
 
 
 def supervise(

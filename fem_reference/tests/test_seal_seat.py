@@ -38,6 +38,7 @@ from fem_reference.solid.mesh import TetMesh, qualities, surface
 from fem_reference.solid.meshing import generate
 from fem_reference.solid.model import SphereContact
 from fem_reference.solid.spectrum import critical_time_step
+from fem_reference.tests.cut_off import CutOffError, cut_off
 from fem_reference.tests.program import run_program
 from fem_reference.tests.seal_seat_scenes import DEGREE, seat_document
 
@@ -284,16 +285,9 @@ def test_a_run_that_is_cut_off_goes_on_from_its_checkpoint(tmp_path: Path) -> No
     design = scene(True, reference__element_order=1, run={"end_time": 16e-6})
     whole = launch(design, 0.4)[2]
 
-    class CutOffError(Exception):
-        pass
-
-    def stop(done: float, message: str) -> None:
-        if done > 0.5:
-            raise CutOffError
-
     checkpoint = Checkpoint(tmp_path / "run.npz", "x", 0.0)
     with pytest.raises(CutOffError):
-        launch(design, 0.4, checkpoint=checkpoint, on_progress=stop)
+        launch(design, 0.4, checkpoint=checkpoint, on_progress=cut_off)
     assert checkpoint.path.is_file()
     first = []
     resumed = launch(

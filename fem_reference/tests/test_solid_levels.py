@@ -13,6 +13,7 @@ from fem_reference.errors import DivergedError
 from fem_reference.fenicsx import alone
 from fem_reference.levels import BUFFER, LEVEL_MARGIN, MOST_LEVELS
 from fem_reference.mesh import Ints
+from fem_reference.resonance import LARGEST_ENERGY_RESIDUAL, stable_run
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import SeatModel, seat_model
 from fem_reference.seal_seat.run import SeatRun, integrate
@@ -21,7 +22,7 @@ from fem_reference.solid.checkpoint import Checkpoint
 from fem_reference.solid.levels import element_stiffness, element_time_steps, model_levels
 from fem_reference.solid.loop import SerialLoop
 from fem_reference.solid.spectrum import critical_time_step
-from fem_reference.solid.supervision import LARGEST_ENERGY_RESIDUAL, stable
+from fem_reference.tests.cut_off import CutOffError, cut_off
 from fem_reference.tests.seal_seat_scenes import seat_document
 
 
@@ -146,16 +147,9 @@ def test_sub_cycling_gives_the_answer_of_one_time_step(
 def test_a_run_with_levels_goes_on_from_its_checkpoint(
     linear: SeatModel, runs: dict[int, tuple[SerialLoop, SeatRun]], tmp_path: Path
 ) -> None:
-    class CutOffError(Exception):
-        pass
-
-    def stop(done: float, message: str) -> None:
-        if done > 0.5:
-            raise CutOffError
-
     checkpoint = Checkpoint(tmp_path / "run.npz", "x", 0.0)
     with pytest.raises(CutOffError):
-        stepped(linear, checkpoint=checkpoint, on_progress=stop)
+        stepped(linear, checkpoint=checkpoint, on_progress=cut_off)
     shares: list[float] = []
     _, resumed = stepped(
         linear, checkpoint=checkpoint, on_progress=lambda done, message: shares.append(done)
@@ -176,7 +170,10 @@ def test_a_given_end_has_one_level(linear: SeatModel) -> None:
 def test_resonance_is_stepped_again_without_levels(
     runs: dict[int, tuple[SerialLoop, SeatRun]], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert stable(lambda most: runs[most])[1] is runs[MOST_LEVELS][1]
+    def account(made: tuple[SerialLoop, SeatRun]) -> tuple[int, float]:
+        return len(made[0].levels), made[1].energy_residual
+
+    assert stable_run(lambda most: runs[most], account)[1] is runs[MOST_LEVELS][1]
     assert capsys.readouterr().err == ""
 
     def diverges(most: int) -> tuple[SerialLoop, SeatRun]:
@@ -184,5 +181,9 @@ def test_resonance_is_stepped_again_without_levels(
             raise DivergedError("the solution diverged at 1 s")
         return runs[1]
 
-    assert stable(diverges)[1] is runs[1][1]
+    assert stable_run(diverges, account)[1] is runs[1][1]
     assert "diverged at 1 s; stepping again without" in capsys.readouterr().err
+    gaining = 2.0 * LARGEST_ENERGY_RESIDUAL
+    made = stable_run(lambda most: runs[most], lambda made: (account(made)[0], gaining))
+    assert made[1] is runs[1][1]
+    assert "energy residual 2e-05 with sub-cycling" in capsys.readouterr().err

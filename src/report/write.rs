@@ -37,7 +37,8 @@ pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
         there.get(name).is_some_and(|old| !same_but_for_run_times(old, bytes))
     };
     let keep_old = !files.iter().any(differs);
-    let written: Vec<PathBuf> = files.iter().map(|(name, _)| dir.join(name)).collect();
+    let mut written: Vec<PathBuf> = files.iter().map(|(name, _)| dir.join(name)).collect();
+    written.sort();
     let files = files.into_iter().filter(|(name, _)| !(keep_old && there.contains_key(name)));
     let files: Vec<_> = files.collect();
     let partial = tempfile::Builder::new()
@@ -51,8 +52,6 @@ pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
         let target = dir.join(&name);
         fs::rename(partial.path().join(&name), &target).map_err(|e| Error::io("writing", &target, e))?;
     }
-    let mut written = written;
-    written.sort();
     Ok(written)
 }
 
