@@ -37,6 +37,9 @@ pub enum Error {
     /// A solver failed.
     #[error("{0}")]
     Solver(String),
+    /// The bodies do what the model does not know of.
+    #[error("{0}")]
+    BeyondModel(String),
     /// A file or folder can't be read or written.
     #[error("{action} {path}: {source}")]
     Io {
@@ -59,7 +62,7 @@ impl Error {
             Error::Usage(_) => ExitStatus::Usage,
             Error::Scene(_) => ExitStatus::InvalidScene,
             Error::Reference(_) => ExitStatus::Reference,
-            Error::Solver(_) => ExitStatus::Solver,
+            Error::Solver(_) | Error::BeyondModel(_) => ExitStatus::Solver,
             Error::Io { .. } | Error::Internal(_) => ExitStatus::Internal,
         }
     }

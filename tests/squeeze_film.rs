@@ -176,3 +176,55 @@ fn force_is_finite_and_continuous_from_ten_millimetres_to_overlap_and_back() {
         assert!((pair[1] - pair[0]).abs() < 0.02 * largest, "{pair:?}");
     }
 }
+
+/// A plate that bends around the tip: with the tip's paraboloid the gap is gap + slope x + curve x^2 in x = r^2.
+struct Around {
+    gap: f64,
+    slope: f64,
+    curve: f64,
+}
+
+impl Profile for Around {
+    fn gap(&self, r: f64) -> f64 {
+        let x = r * r;
+        self.gap + (self.slope - 0.5 / RADIUS) * x + self.curve * x * x
+    }
+    fn rate(&self, _: f64) -> f64 {
+        -0.1
+    }
+}
+
+#[test]
+fn overlap_beside_the_axis_is_told() {
+    let film = sphere(1e-7, 512);
+    // deepest at x = -slope/(2 curve), by slope^2/(4 curve)
+    let (slope, curve) = (-20.0, 2e7);
+    let (place, dip) = ((-slope / (2.0 * curve)).sqrt(), slope * slope / (4.0 * curve));
+    for gap in [1e-6, 0.0, -1e-12, -1e-6] {
+        let overlap = solve(&film, &Around { gap, slope, curve }).overlap.expect("an overlap");
+        assert_relative_eq!(overlap.depth, dip - gap.max(0.0), max_relative = 0.05);
+        assert_relative_eq!(overlap.radius, place, max_relative = 0.2);
+    }
+    // less than the minimal gap deeper, or not deeper than on the axis
+    assert_eq!(solve(&film, &Around { gap: dip - 0.5e-7, slope, curve }).overlap, None);
+    for gap in [1e-6, -1e-6] {
+        assert_eq!(solve(&film, &Around { gap, slope: 100.0, curve: 0.0 }).overlap, None);
+    }
+}
+
+#[test]
+fn the_film_begins_where_the_overlap_around_the_axis_first_ends() {
+    // zeros of the gap at x = 1e-8, 2e-7 and 3e-7 m^2; a contact patch, then waves of the plate
+    struct Waves;
+    impl Profile for Waves {
+        fn gap(&self, r: f64) -> f64 {
+            let x = r * r;
+            1e14 * (x - 1e-8) * (x - 2e-7) * (x - 3e-7) - 0.5 / RADIUS * x
+        }
+        fn rate(&self, _: f64) -> f64 {
+            -0.1
+        }
+    }
+    let first = solve(&sphere(1e-7, 512), &Waves).radius[0];
+    assert!((1e-8f64.sqrt()..1.1e-4).contains(&first), "{first:e}");
+}

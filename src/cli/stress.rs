@@ -49,6 +49,13 @@ fn table(report: &StressReport) -> String {
             report.undecided.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")
         ));
     }
+    if !report.beyond_model.is_empty() {
+        lines.push(format!(
+            "  refused, since the plate bends around the inner body in the fluid: {} of {}",
+            report.beyond_model.len(),
+            report.wet
+        ));
+    }
     for (name, worst) in &report.worst {
         let bound = worst.bound.map_or_else(String::new, |b| format!(" (bound {b:.0e})"));
         lines.push(format!("  worst {name:<20} {:>9.2e}{bound}, seed {}", worst.value, worst.seed));

@@ -49,8 +49,19 @@ pub struct FilmForces {
     pub resistance: f64,
     /// Power dissipated in W.
     pub dissipation: f64,
+    /// Where they overlap most, if that is deeper than on the axis by more than the minimal gap.
+    pub overlap: Option<Overlap>,
     /// Flow through the outer face of each cell. Shape (cells), or empty where there is no film.
     pub faces: Vec<Face>,
+}
+
+/// Overlap of plate and inner body beside the axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overlap {
+    /// Radius in m.
+    pub radius: f64,
+    /// How much deeper than on the axis, m.
+    pub depth: f64,
 }
 
 /// Flow through the outer face of a cell of the film.
@@ -72,6 +83,8 @@ pub struct Face {
 
 /// Cells of the film unless asked for otherwise.
 pub const CELLS: usize = 64;
+/// Parts into which an overlap is divided to look for its deepest place.
+const OVERLAP_SAMPLES: u32 = 8;
 /// First length of the graded cells over the width of the pressure, both in r^2.
 const FINENESS: f64 = 1.0;
 
@@ -87,20 +100,40 @@ impl Film {
         self.rim
     }
 
+    /// The deeper one of `before` and the overlap with `gap` m at `radius` m, if that is one.
+    fn deeper(&self, before: Option<Overlap>, axis_gap: f64, radius: f64, gap: f64) -> Option<Overlap> {
+        let depth = axis_gap.min(0.0) - gap;
+        if depth > before.map_or(self.minimum_gap, |o| o.depth) {
+            Some(Overlap { radius, depth })
+        } else {
+            before
+        }
+    }
+
+    /// The deepest overlap inside r^2 = `start`.
+    fn deepest_inside(&self, gap: impl Fn(f64) -> f64, axis_gap: f64, start: f64) -> Option<Overlap> {
+        (1..OVERLAP_SAMPLES)
+            .map(|i| start * f64::from(i) / f64::from(OVERLAP_SAMPLES))
+            .fold(None, |found, square| self.deeper(found, axis_gap, square.sqrt(), gap(square)))
+    }
+
     /// Solves for the pressure and writes its loads into `forces`.
     pub fn solve(&self, profile: &impl Profile, forces: &mut FilmForces) {
         forces.radius.clear();
         forces.load.clear();
         forces.unit_load.clear();
         forces.faces.clear();
-        (forces.force, forces.resistance, forces.dissipation) = (0.0, 0.0, 0.0);
+        (forces.force, forces.resistance, forces.dissipation, forces.overlap) = (0.0, 0.0, 0.0, None);
         // the tip is a paraboloid, which is what lubrication theory resolves of a sphere: with the sphere's own
         // shape the force would be further from Stokes flow (Brenner 1961), 2.4 % too low at a gap of R/700
         let curvature = 0.5 / self.tip_radius;
         let gap = |square: f64| profile.gap(square.sqrt()) + curvature * square;
         let end = self.rim * self.rim;
         let axis_gap = gap(0.0);
-        let start = if axis_gap >= 0.0 { 0.0 } else { edge_of_overlap(gap, axis_gap, end) };
+        // where the overlap would end on a flat plate
+        let flat = (-axis_gap).max(0.0) / curvature;
+        let start = if flat > 0.0 { edge_of_overlap(gap, axis_gap, flat, end) } else { 0.0 };
+        forces.overlap = (start > flat).then(|| self.deepest_inside(gap, axis_gap, start)).flatten();
         // nothing is wet, or nothing that matters
         if start >= end * (1.0 - 1e-9) {
             return;
@@ -122,6 +155,9 @@ impl Film {
             flow -= profile.rate(radius) * area;
             unit_flow += area;
             let (face_radius, face_gap) = (next.sqrt(), gap(next));
+            if face_gap < 0.0 {
+                forces.overlap = self.deeper(forces.overlap, axis_gap, face_radius, face_gap);
+            }
             let width = face_gap.max(self.minimum_gap);
             let rate = 6.0 * flow.abs() / (2.0 * PI * face_radius * width * width);
             let (viscosity, slope) = self.viscosity.with_slope(rate);
@@ -153,13 +189,20 @@ impl Film {
     }
 }
 
-/// Where in r^2, between 0 and `end`, the overlap ends: the gap, `axis_gap` < 0 on the axis, is zero. `end` if there
-/// is an overlap at the end as well.
-fn edge_of_overlap(gap: impl Fn(f64) -> f64, axis_gap: f64, end: f64) -> f64 {
+/// Where in r^2, between 0 and `end`, the overlap around the axis ends: the gap, `axis_gap` < 0 there, is zero for the first
+/// time. `flat` is where it would end on a flat plate. `end` if there is an overlap up to the end.
+///
+/// The waves of the plate can bring it to the other body farther out again; that is no end of this overlap.
+fn edge_of_overlap(gap: impl Fn(f64) -> f64, axis_gap: f64, flat: f64, end: f64) -> f64 {
     // regula falsi after Illinois: the gap is nearly linear in r^2
-    let (mut low, mut high) = ((0.0, axis_gap), (end, gap(end)));
-    if high.1 <= 0.0 {
-        return end;
+    let mut low = (0.0, axis_gap);
+    let mut high = (flat.min(end), gap(flat.min(end)));
+    while high.1 <= 0.0 {
+        if high.0 >= end {
+            return end;
+        }
+        let next = (2.0 * high.0).min(end);
+        (low, high) = (high, (next, gap(next)));
     }
     let mut last = 0;
     for _ in 0..100 {

@@ -1,7 +1,7 @@
 //! Forces of the fluid on the coordinates of a wet impact.
 
 use super::deflection::PlateProfile;
-use super::film::{CELLS, Film, FilmForces};
+use super::film::{CELLS, Film, FilmForces, Overlap};
 use super::{Deflection, Drag, Viscosity};
 use crate::impact::system::{INNER, PLATE};
 use crate::scene::{Fluid, Inner, Plate};
@@ -31,6 +31,13 @@ pub struct FluidLoad {
     /// Power dissipated in the film, and by the drag, W.
     pub dissipation: [f64; 2],
     film: FilmForces,
+}
+
+impl FluidLoad {
+    /// Overlap of plate and inner body beside the axis, where the model knows no contact: the film between them is not one.
+    pub fn overlap(&self) -> Option<Overlap> {
+        self.film.overlap
+    }
 }
 
 impl FluidForces {

@@ -10,7 +10,7 @@ use super::free_flight::{self, Flight};
 use super::history::History;
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::step_bounds::Bounds;
+use super::step_bounds::{Bounds, EnergyAccount, momentum_scale};
 use super::system::{INNER, PLATE, System, dot};
 use crate::analytical::hertz::HertzImpact;
 use crate::error::{Error, Result};
@@ -76,8 +76,6 @@ const MAX_STEPS: u64 = 5_000_000;
 const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
 pub(super) const NEGLIGIBLE: f64 = 1e-8;
-/// Rounding error of the energy of a step, over the energy of the impact.
-const ROUNDING: f64 = 1e-12;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
 
@@ -113,12 +111,7 @@ struct Run<'a> {
     next_v: Vec<f64x4>,
     /// The latest step.
     course: Course,
-    /// Energy of the impact, J.
-    energy: f64,
-    /// Energy that the steps so far made from nothing, J.
-    energy_made: f64,
-    /// Duration of the outer body's impact on a rigid wall, s.
-    contact_time: f64,
+    energy: EnergyAccount,
     contacts: [ContactLedger; 2],
     steps: u64,
     damped: bool,
@@ -140,14 +133,13 @@ impl<'a> Run<'a> {
         let (q, v) = (in_blocks(&q), in_blocks(&v));
         let hit =
             HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
+        let bounds = Bounds::new(options.tolerance);
         Self {
             recorder,
             end_time: options.end_time.unwrap_or(f64::INFINITY),
-            bounds: Bounds::new(options.tolerance),
             base_step: 0.25 * hit.duration(),
-            energy: system.initial_energy(),
-            energy_made: 0.0,
-            contact_time: hit.duration(),
+            energy: EnergyAccount::new(&hit, system.initial_energy(), bounds.energy),
+            bounds,
             tables: Ladder::new(q.len()),
             level: START_LEVEL,
             time: 0.0,
@@ -228,9 +220,9 @@ impl<'a> Run<'a> {
             let h = self.base_step * 0.5_f64.powi(self.level);
             let rest = self.end_time - self.time;
             let shorter = wanted.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
-            let scale = self.momentum_scale();
             let (bank, collocation, system) =
                 (&self.solver.bank, self.solver.collocation, self.solver.system);
+            let scale = momentum_scale(system, &self.contacts);
             let table = match shorter {
                 Some(h) => self.tables.other(bank, collocation, h),
                 None => self.tables.get(bank, collocation, self.level, h),
@@ -248,7 +240,7 @@ impl<'a> Run<'a> {
                 continue;
             };
             let made = self.made_by(&trial);
-            let energy_excess = made.abs() / self.energy_bound(made, h);
+            let energy_excess = self.energy.excess(made, h);
             let mut excess: f64 = energy_excess;
             let mut event: Option<f64> = None;
             for i in 0..2 {
@@ -286,7 +278,7 @@ impl<'a> Run<'a> {
                 }
                 continue;
             }
-            self.energy_made += made;
+            self.energy.book(made);
             self.accept(trial)?;
             // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
             if excess < 0.5_f64.powi(STAGES as i32 + 2) && shorter.is_none() {
@@ -305,23 +297,6 @@ impl<'a> Run<'a> {
         } else {
             stored + trial.motion - self.course.motion
         }
-    }
-
-    /// Bound in J of the energy that a step of `h` s may make. Errors of one sign, step after step, have to become smaller.
-    fn energy_bound(&self, made: f64, h: f64) -> f64 {
-        let per_contact = self.bounds.energy * self.energy;
-        let same_sign = (self.energy_made * made.signum()).max(0.0);
-        let left = (0.5 * per_contact / same_sign).min(1.0);
-        per_contact * (left * left) * h / self.contact_time + self.energy * ROUNDING
-    }
-
-    /// Momenta in N s in relation to which the impulses of both contacts have to be right.
-    fn momentum_scale(&self) -> [f64; 2] {
-        let system = self.solver.system;
-        let initial = system.masses[0] * system.speed;
-        let light = initial.min(system.masses[1] * system.speed);
-        // a light inner body feels an error that the heavy outer one would not
-        [initial.min(3.0 * light), self.contacts[1].impulse.max(0.01 * light)]
     }
 
     /// Distance between the force at the end of the step and the polynomial of the step, as an impulse in N s.

@@ -1,5 +1,12 @@
 //! What a step may be wrong by for the tolerance asked for.
 
+use super::contact_ledger::ContactLedger;
+use super::system::System;
+use crate::analytical::hertz::HertzImpact;
+
+/// Share of the impact's energy by which one step's rounding errors may change it.
+const ROUNDING: f64 = 1e-12;
+
 /// Defects that a step may have, as impulses over the momentum.
 pub(super) struct Bounds {
     /// Where the force is smooth.
@@ -8,7 +15,7 @@ pub(super) struct Bounds {
     pub(super) edge: f64,
     /// Where a contact touches or opens within the step.
     pub(super) kinked: f64,
-    /// Energy made from nothing per duration of a Hertz contact, over the energy of the impact.
+    /// Energy made from nothing per duration of a Hertz contact, over the energy of the impact ([`energy_bound`]).
     pub(super) energy: f64,
     /// Error of a step's impulses from ending the sweeps.
     pub(super) impulse: f64,
@@ -29,9 +36,55 @@ impl Bounds {
             smooth,
             kinked,
             edge: 10.0 * kinked,
-            energy: (5.0 * tolerance).max(1e-9),
+            energy: energy_bound(tolerance),
             impulse: 0.02 * smooth,
             force,
         }
     }
+}
+
+/// Energy that may be made from nothing per duration of a Hertz contact, over that of the impact, for a relative error
+/// `tolerance` of the efficiency.
+pub(super) fn energy_bound(tolerance: f64) -> f64 {
+    (5.0 * tolerance).max(1e-9)
+}
+
+/// Energy that an integration makes from nothing, against what it may.
+pub(super) struct EnergyAccount {
+    /// Energy of the impact, J.
+    initial: f64,
+    /// Bound per `contact_time` in J.
+    per_contact: f64,
+    /// Duration of the outer body's impact on a rigid wall, s.
+    contact_time: f64,
+    /// Made so far, J.
+    made: f64,
+}
+
+impl EnergyAccount {
+    /// Of an impact `hit` with `initial` J, in which `share` of it may be made per duration of a Hertz contact.
+    pub(super) fn new(hit: &HertzImpact, initial: f64, share: f64) -> Self {
+        Self { initial, per_contact: share * initial, contact_time: hit.duration(), made: 0.0 }
+    }
+
+    /// Energy `made` in a step of `h` s over what may be. Errors of one sign, step after step, have to become smaller.
+    pub(super) fn excess(&self, made: f64, h: f64) -> f64 {
+        let same_sign = (self.made * made.signum()).max(0.0);
+        let left = (0.5 * self.per_contact / same_sign).min(1.0);
+        let bound = self.per_contact * (left * left) * h / self.contact_time + self.initial * ROUNDING;
+        made.abs() / bound
+    }
+
+    /// Books the energy made in an accepted step, J.
+    pub(super) fn book(&mut self, made: f64) {
+        self.made += made;
+    }
+}
+
+/// Momenta in N s in relation to which the impulses of both contacts have to be right.
+pub(super) fn momentum_scale(system: &System, contacts: &[ContactLedger; 2]) -> [f64; 2] {
+    let initial = system.masses[0] * system.speed;
+    let light = initial.min(system.masses[1] * system.speed);
+    // a light inner body feels an error that the heavy outer one would not
+    [initial.min(3.0 * light), contacts[1].impulse.max(0.01 * light)]
 }
