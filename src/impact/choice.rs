@@ -99,6 +99,8 @@ pub(super) struct Plan {
     /// Of model C.
     pub(super) cut: Option<Cut>,
     pub(super) rough: Rough,
+    /// Kirchhoff's plate in closed form: models A and B need no eigenproblem any more.
+    pub(super) waves: Waves,
     /// A or B with the smallest estimated error, if model C can't be set up.
     pub(super) second: Option<(Model, usize, f64)>,
 }
@@ -117,18 +119,22 @@ pub fn largest_error(
 ) -> (f64, &'static str) {
     let error = |name: &'static str| {
         let value = |q: &PlateQuantities| q.get(name).unwrap_or(f64::NAN);
-        let scale = match name {
-            "efficiency" => exact.efficiency.abs().max(SMALL_EFFICIENCY),
-            "outer_velocity_final" => speed,
-            _ => value(exact).abs(),
-        };
         let difference = (value(candidate) - value(exact)).abs();
-        (if difference == 0.0 { 0.0 } else { difference / scale }, name)
+        (if difference == 0.0 { 0.0 } else { difference / scale(name, exact, speed) }, name)
     };
     // a value that is not a number is the largest of all
     let larger =
         |a: (f64, &'static str), b: (f64, &'static str)| if a.0 >= b.0 || a.0.is_nan() { a } else { b };
     COVERED.into_iter().map(error).fold((0.0, COVERED[0]), larger)
+}
+
+/// What an error of the quantity `name` is relative to, in its unit; `speed` in m/s is that of the impact.
+pub fn scale(name: &str, exact: &PlateQuantities, speed: f64) -> f64 {
+    match name {
+        "efficiency" => exact.efficiency.abs().max(SMALL_EFFICIENCY),
+        "outer_velocity_final" => speed,
+        _ => exact.get(name).map_or(f64::NAN, f64::abs),
+    }
 }
 
 /// Plans `auto` for `scene`.
@@ -160,11 +166,11 @@ pub(super) fn plan(scene: &Scene, tolerance: f64) -> Result<Plan> {
     };
     let kirchhoff = search.kirchhoff(&trials, reference.as_ref());
     if let Some((model, modes, error)) = kirchhoff.filter(|(_, _, error)| *error <= tolerance) {
-        return Ok(search.plan(model, modes, None, Some(error), rough, None));
+        return Ok(search.plan(trials, model, modes, None, Some(error), None));
     }
     let (modes, error) = search.continuum(&trials, reference.as_ref(), most, &truncation);
     let cut = trials.cut(modes);
-    Ok(search.plan(Model::C, modes, Some(cut), error, rough, kirchhoff))
+    Ok(search.plan(trials, Model::C, modes, Some(cut), error, kirchhoff))
 }
 
 /// Joins plate and bodies.
@@ -340,11 +346,11 @@ impl Search {
 
     fn plan(
         self,
+        trials: Trials,
         model: Model,
         modes: usize,
         cut: Option<Cut>,
         error: Option<f64>,
-        rough: Rough,
         second: Option<(Model, usize, f64)>,
     ) -> Plan {
         let met = error.is_some_and(|error| error <= self.tolerance);
@@ -370,7 +376,8 @@ impl Search {
             tried: self.tried,
             reason,
         };
-        let mut plan = Plan { choice, model, modes, cut, rough, second };
+        let Trials { rough, waves, .. } = trials;
+        let mut plan = Plan { choice, model, modes, cut, rough, waves, second };
         plan.mark();
         plan
     }

@@ -128,7 +128,8 @@ impl Reduced {
                 Err(error) => plan = plan.without_continuum(&error).ok_or(error)?,
             }
         }
-        let built = kirchhoff(setup, plan.modes, &UnitPlates::default())?;
+        let shapes = |radii: &[f64]| Ok(plan.waves.shapes(plan.modes, radii));
+        let built = kirchhoff_plate(setup, plan.waves.kirchhoff(plan.modes), shapes)?;
         Self::of(built, plan.model, scene.clone(), Some(plan.choice))
     }
 
@@ -319,8 +320,20 @@ fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> R
 /// Models A and B with `modes` elastic modes.
 fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<Built> {
     let shapes = |radii: &[f64]| plates.shapes(&setup.plate, modes, radii);
-    let system = kirchhoff_system(setup, modes, plates)?;
-    Ok(Built { system, fluid: fluid_forces(setup, shapes)?, warnings: Vec::new() })
+    kirchhoff_plate(setup, plates.modes(&setup.plate, modes)?, shapes)
+}
+
+/// Models A and B of a `plate` that is reduced to modes; `shapes` as [`FluidForces::new`] takes them.
+fn kirchhoff_plate(
+    setup: &PlateImpact,
+    plate: ModalBody,
+    shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
+) -> Result<Built> {
+    Ok(Built {
+        system: join(setup, plate, [0.0; 2])?,
+        fluid: fluid_forces(setup, shapes)?,
+        warnings: Vec::new(),
+    })
 }
 
 /// Model C.
