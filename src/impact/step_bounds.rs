@@ -68,6 +68,7 @@ impl EnergyAccount {
     }
 
     /// Energy `made` in a step of `h` s over what may be. Errors of one sign, step after step, have to become smaller.
+    #[inline]
     pub(super) fn excess(&self, made: f64, h: f64) -> f64 {
         let same_sign = (self.made * made.signum()).max(0.0);
         let left = (0.5 * self.per_contact / same_sign).min(1.0);
@@ -76,12 +77,14 @@ impl EnergyAccount {
     }
 
     /// Books the energy made in an accepted step, J.
+    #[inline]
     pub(super) fn book(&mut self, made: f64) {
         self.made += made;
     }
 }
 
 /// Momenta in N s in relation to which the impulses of both contacts have to be right.
+#[inline]
 pub(super) fn momentum_scale(system: &System, contacts: &[ContactLedger; 2]) -> [f64; 2] {
     let initial = system.masses[0] * system.speed;
     let light = initial.min(system.masses[1] * system.speed);
