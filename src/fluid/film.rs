@@ -49,7 +49,7 @@ pub struct FilmForces {
     pub resistance: f64,
     /// Power dissipated in W.
     pub dissipation: f64,
-    /// Where they overlap most, if that is deeper than on the axis by more than the minimal gap.
+    /// Where the bodies overlap most, if that is deeper than on the axis by more than the minimal gap.
     pub overlap: Option<Overlap>,
     /// Flow through the outer face of each cell. Shape (cells), or empty where there is no film.
     pub faces: Vec<Face>,
