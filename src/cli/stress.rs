@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Number of random scenes
-    #[arg(long, value_name = "N", default_value_t = 1000)]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     cases: u64,
     /// Seed of the first scene; the others follow
     #[arg(long, value_name = "S", default_value_t = 0)]
