@@ -113,6 +113,7 @@ impl SeatModel {
             scene: scene.clone(),
             first_step: period.min(contact_duration(setup) / FIRST_STEPS.1),
             end_time: scene.run.end_time,
+            // until the run that finds the contact zones has been made
             rough: [f64::NAN; 2],
             system,
             warnings,
