@@ -120,7 +120,7 @@ pub fn largest_error(
     let error = |name: &'static str| {
         let value = |q: &PlateQuantities| q.get(name).unwrap_or(f64::NAN);
         let difference = (value(candidate) - value(exact)).abs();
-        (if difference == 0.0 { 0.0 } else { difference / scale(name, exact, speed) }, name)
+        (if difference == 0.0 { 0.0 } else { difference / error_scale(name, exact, speed) }, name)
     };
     // a value that is not a number is the largest of all
     let larger =
@@ -129,7 +129,7 @@ pub fn largest_error(
 }
 
 /// What an error of the quantity `name` is relative to, in its unit; `speed` in m/s is that of the impact.
-pub fn scale(name: &str, exact: &PlateQuantities, speed: f64) -> f64 {
+pub fn error_scale(name: &str, exact: &PlateQuantities, speed: f64) -> f64 {
     match name {
         "efficiency" => exact.efficiency.abs().max(SMALL_EFFICIENCY),
         "outer_velocity_final" => speed,

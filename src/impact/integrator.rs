@@ -133,13 +133,12 @@ impl<'a> Run<'a> {
         let (q, v) = (in_blocks(&q), in_blocks(&v));
         let hit =
             HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
-        let bounds = Bounds::new(options.tolerance);
         Self {
             recorder,
             end_time: options.end_time.unwrap_or(f64::INFINITY),
             base_step: 0.25 * hit.duration(),
-            energy: EnergyAccount::new(&hit, system.initial_energy(), bounds.energy),
-            bounds,
+            energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
+            bounds: Bounds::new(options.tolerance),
             tables: Ladder::new(q.len()),
             level: START_LEVEL,
             time: 0.0,

@@ -15,8 +15,6 @@ pub(super) struct Bounds {
     pub(super) edge: f64,
     /// Where a contact touches or opens within the step.
     pub(super) kinked: f64,
-    /// Energy made from nothing per duration of a Hertz contact, over the energy of the impact ([`energy_bound`]).
-    pub(super) energy: f64,
     /// Error of a step's impulses from ending the sweeps.
     pub(super) impulse: f64,
     /// Relative error of its forces from the same.
@@ -32,21 +30,8 @@ impl Bounds {
         let kinked = 1e-3 * tolerance.powf(0.95);
         // a force that is off makes energy however short the step is
         let force = (0.5 * tolerance).clamp(1e-11, 1e-5);
-        Self {
-            smooth,
-            kinked,
-            edge: 10.0 * kinked,
-            energy: energy_bound(tolerance),
-            impulse: 0.02 * smooth,
-            force,
-        }
+        Self { smooth, kinked, edge: 10.0 * kinked, impulse: 0.02 * smooth, force }
     }
-}
-
-/// Energy that may be made from nothing per duration of a Hertz contact, over that of the impact, for a relative error
-/// `tolerance` of the efficiency.
-pub(super) fn energy_bound(tolerance: f64) -> f64 {
-    (5.0 * tolerance).max(1e-9)
 }
 
 /// Energy that an integration makes from nothing, against what it may.
@@ -62,8 +47,9 @@ pub(super) struct EnergyAccount {
 }
 
 impl EnergyAccount {
-    /// Of an impact `hit` with `initial` J, in which `share` of it may be made per duration of a Hertz contact.
-    pub(super) fn new(hit: &HertzImpact, initial: f64, share: f64) -> Self {
+    /// Of an impact `hit` with `initial` J, for a relative error `tolerance` of the efficiency.
+    pub(super) fn new(hit: &HertzImpact, initial: f64, tolerance: f64) -> Self {
+        let share = (5.0 * tolerance).max(1e-9);
         Self { initial, per_contact: share * initial, contact_time: hit.duration(), made: 0.0 }
     }
 

@@ -10,7 +10,7 @@ use crate::impact::contact_ledger::{ContactLedger, StepCourse, work};
 use crate::impact::free_flight;
 use crate::impact::integrator::{Integration, Losses, NEGLIGIBLE, Options};
 use crate::impact::recorder::Recorder;
-use crate::impact::step_bounds::{EnergyAccount, energy_bound, momentum_scale};
+use crate::impact::step_bounds::{EnergyAccount, momentum_scale};
 use crate::impact::system::{INNER, PLATE, System, dot};
 use std::collections::BTreeMap;
 
@@ -60,7 +60,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         trial,
         contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
         booked: Booked::default(),
-        energy: EnergyAccount::new(&hit, system.initial_energy(), energy_bound(options.tolerance)),
+        energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
         steps: 0,
     };
     run.go()?;
@@ -87,6 +87,15 @@ impl Booked {
         self.dissipated[1] += step.dissipated[1];
         self.work += step.work;
     }
+}
+
+/// What is booked of a step.
+struct StepAccount {
+    fluid: Booked,
+    /// Work of both contacts' force polynomials, J.
+    contact_work: [f64; 2],
+    /// Energy made from nothing, J.
+    made: f64,
 }
 
 struct Run<'a> {
@@ -182,17 +191,23 @@ impl Run<'_> {
                 self.level += 1;
                 continue;
             }
-            let fluid = self.fluid_in_step(h);
-            let made = self.made_in_step(&fluid);
-            let excess = (self.defect(h, scale) / self.defect_bound).max(self.energy.excess(made, h));
+            let account = self.account(h);
+            let excess = (self.defect(h, scale) / self.defect_bound).max(self.energy.excess(account.made, h));
             if excess > 1.0 {
                 self.level += ((excess.log2() / (STAGES + 1) as f64).ceil() as i32).clamp(1, 8);
                 continue;
             }
-            if may_end && self.ends_in_this_step(h) {
+            if may_end && let Some(end) = self.end_in_step(h) {
+                let table = Table::new(system, self.collocation, end);
+                let force_error = settled_force(self.defect_bound, scale[1], end);
+                if !self.wet.solve(&table, &self.q, &self.v, force_error, &mut self.trial) {
+                    self.level += 1;
+                    continue;
+                }
+                self.accept(end, &self.account(end))?;
                 return Ok(true);
             }
-            self.accept(h, &fluid, made)?;
+            self.accept(h, &account)?;
             // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
             if excess < 0.5_f64.powi(STAGES as i32 + 2) {
                 self.level -= 1;
@@ -201,10 +216,10 @@ impl Run<'_> {
         }
     }
 
-    /// Whether no contact is possible any more after the step just solved. If so, the step is taken, but only up to
-    /// the instant from which that holds: the fluid slows the inner body for ever, and the end has to be the same
-    /// whatever the steps.
-    fn ends_in_this_step(&mut self, h: f64) -> bool {
+    /// When in the step of `h` s just solved, in s from its start, contact ceases to be possible; `None` if it is possible
+    /// after it. A run ends there and not with the step: the fluid slows the inner body for ever, and the end has to be
+    /// the same whatever the steps.
+    fn end_in_step(&self, h: f64) -> Option<f64> {
         let system = self.wet.system;
         let forces = self.wet.generalised(&self.trial);
         let at = |t: f64| -> (Vec<f64>, Vec<f64>) {
@@ -227,22 +242,14 @@ impl Run<'_> {
             is_open(system.modal_approach(&q)) && free_flight::is_over(system, &q, &v)
         };
         if !over(h) {
-            return false;
+            return None;
         }
         let (mut early, mut late) = (0.0, h);
         for _ in 0..40 {
             let middle = 0.5 * (early + late);
             if over(middle) { late = middle } else { early = middle }
         }
-        let table = Table::new(system, self.collocation, late);
-        let scale = momentum_scale(system, &self.contacts);
-        let force_error = settled_force(self.defect_bound, scale[1], late);
-        if !self.wet.solve(&table, &self.q, &self.v, force_error, &mut self.trial) {
-            return false;
-        }
-        let fluid = self.fluid_in_step(late);
-        let made = self.made_in_step(&fluid);
-        self.accept(late, &fluid, made).is_ok()
+        Some(late)
     }
 
     /// Distance between the forces at the end of the step and the polynomials of the step, as an impulse in relation
@@ -282,27 +289,26 @@ impl Run<'_> {
         }
     }
 
-    /// Energy in J that the step just solved makes from nothing, with what the `fluid` does in it.
-    fn made_in_step(&self, fluid: &Booked) -> f64 {
+    /// The account of the step of `h` s just solved.
+    fn account(&self, h: f64) -> StepAccount {
         let (system, trial) = (self.wet.system, &self.trial);
+        let fluid = self.fluid_in_step(h);
+        let contact_work = [0, 1].map(|i| {
+            let approach = joined(self.approach[i], &trial.approach[i], trial.end_approach[i]);
+            work(self.collocation, &trial.forces[i], &approach)
+        });
         let stored = system.stored_energy(trial.end_force, trial.end_local)
             - system.stored_energy(self.force, self.local);
-        let contact_work = self.contact_work(0) + self.contact_work(1);
-        stored - contact_work + fluid.dissipated[0] + fluid.dissipated[1] + fluid.work
+        let dissipated = fluid.dissipated[0] + fluid.dissipated[1];
+        let made = stored - (contact_work[0] + contact_work[1]) + dissipated + fluid.work;
+        StepAccount { fluid, contact_work, made }
     }
 
-    /// Work of `contact` in the step just solved, J.
-    fn contact_work(&self, contact: usize) -> f64 {
-        let (trial, i) = (&self.trial, contact);
-        let approach = joined(self.approach[i], &trial.approach[i], trial.end_approach[i]);
-        work(self.collocation, &trial.forces[i], &approach)
-    }
-
-    /// Books the step just solved, in which the `fluid` did what it says and energy was `made`, J.
+    /// Books the step of `h` s just solved.
     ///
     /// # Errors
     /// [`Error::BeyondModel`] if the plate overlaps the inner body beside the axis.
-    fn accept(&mut self, h: f64, fluid: &Booked, made: f64) -> Result<()> {
+    fn accept(&mut self, h: f64, account: &StepAccount) -> Result<()> {
         if let Some(overlap) = self.trial.loads.iter().find_map(FluidLoad::overlap) {
             return Err(Error::BeyondModel(format!(
                 "reduced model: at t = {:.6e} s the plate bends around the inner body: at r = {:.2e} m they overlap by {:.2e} m more than on the axis, beyond the film's minimal gap; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`",
@@ -320,14 +326,14 @@ impl Run<'_> {
             let course = StepCourse {
                 time: self.time,
                 h,
-                work: self.contact_work(i),
+                work: account.contact_work[i],
                 local_approach: joined(self.local[i], &trial.local[i], trial.end_local[i]),
                 force: joined(self.force[i], &trial.forces[i], trial.end_force[i]),
             };
             self.contacts[i].book(self.collocation, &course);
         }
-        self.booked.add(fluid);
-        self.energy.book(made);
+        self.booked.add(&account.fluid);
+        self.energy.book(account.made);
         let trial = &mut self.trial;
         std::mem::swap(&mut self.q, &mut trial.motion.q[STAGES]);
         std::mem::swap(&mut self.v, &mut trial.motion.v[STAGES]);

@@ -12,7 +12,7 @@ use super::{Cell, Claim, Note, SCHEMA_VERSION, Settings, Study};
 use crate::body::cache::Cache;
 use crate::error::{Error, Result};
 use crate::impact::Summary;
-use crate::impact::choice::{COVERED, integration_tolerance, largest_error, scale};
+use crate::impact::choice::{COVERED, error_scale, integration_tolerance, largest_error};
 use crate::impact::reduced::Reduced;
 use crate::project::project_root;
 use crate::reference::{Lookup, Resolution, Store};
@@ -112,8 +112,8 @@ pub fn check(extent: &Extent, store: &Store, note: &mut Note) -> Result<Study> {
         description: format!(
             "The model that auto chooses for a tolerance, its estimated and its true error (the largest of efficiency, final \
              velocity of the outer body and both force peaks), and its cost against the cheapest setting that meets the tolerance. \
-             {known} scenes against their stored finite-element reference ({}; those with 95 % bands above 1 % are left out), {} random ones (seed {seed}, {refused} draws left out \
-             because no converged solution is known) against model C with so many modes that twice as many change nothing. Where no \
+             {known} scenes against their stored finite-element reference ({}; those with 95 % bands above 1 % are left \
+             out), {} random ones (seed {seed}, {refused} draws left out because no converged solution is known) against model C with so many modes that twice as many change nothing. Where no \
              model is estimated to meet the tolerance (promised = 0), auto says so. Times are wall times on this machine.",
             if names.is_empty() { "none".to_owned() } else { names.join(", ") },
             cases.len() - known,
@@ -170,7 +170,7 @@ fn references(store: &Store) -> Result<Vec<Case>> {
 fn is_sharp(reference: &Summary, speed: f64) -> bool {
     COVERED.iter().all(|name| {
         let band = reference.uncertainty.get(*name).copied().unwrap_or(f64::INFINITY);
-        band <= SHARP * scale(name, &reference.quantities, speed)
+        band <= SHARP * error_scale(name, &reference.quantities, speed)
     })
 }
 
