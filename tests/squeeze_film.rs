@@ -229,3 +229,26 @@ fn the_film_begins_where_the_overlap_around_the_axis_first_ends() {
     let first = solve(&sphere(1e-7, 512), &Waves).radius[0];
     assert!((1e-3..1.05e-3).contains(&first), "{first:e}");
 }
+
+#[test]
+fn a_pocket_between_two_overlaps_is_told() {
+    // zeros of the gap at x = 1e-6 and 3.2e-6 m^2: the bodies overlap around the axis and again up to the rim, there less
+    // deeply than on the axis
+    struct Pocket;
+    impl Profile for Pocket {
+        fn gap(&self, r: f64) -> f64 {
+            let x = r * r;
+            -2e6 * (x - 1e-6) * (x - 3.2e-6) - 0.5 / RADIUS * x
+        }
+        fn rate(&self, _: f64) -> f64 {
+            -0.1
+        }
+    }
+    let solved = solve(&sphere(1e-7, 512), &Pocket);
+    assert!((1e-3..1.05e-3).contains(&solved.radius[0]), "{:e}", solved.radius[0]);
+    let rim = solved.faces.last().expect("faces").radius;
+    let depth = 2e6 * (rim * rim - 1e-6) * (rim * rim - 3.2e-6);
+    let overlap = solved.overlap.expect("the overlap at the rim");
+    assert!(depth < 0.8 * 6.4e-6, "{depth:e}");
+    assert_relative_eq!(overlap.depth, depth, max_relative = 1e-9);
+}

@@ -49,18 +49,18 @@ pub struct FilmForces {
     pub resistance: f64,
     /// Power dissipated in W.
     pub dissipation: f64,
-    /// Where the bodies overlap most, if that is deeper than on the axis by more than the minimal gap.
+    /// Where the bodies overlap most beside the contact on the axis, if by more than the minimal gap.
     pub overlap: Option<Overlap>,
     /// Flow through the outer face of each cell. Shape (cells), or empty where there is no film.
     pub faces: Vec<Face>,
 }
 
-/// Overlap of plate and inner body beside the axis.
+/// Overlap of plate and inner body beside the contact on the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
     /// Radius in m.
     pub radius: f64,
-    /// How much deeper than on the axis, m.
+    /// Within the overlap around the axis how much deeper than there, else how deep, m.
     pub depth: f64,
 }
 
@@ -83,7 +83,7 @@ pub struct Face {
 
 /// Cells of the film unless asked for otherwise.
 pub const CELLS: usize = 64;
-/// Parts into which an overlap is divided to look for its deepest place.
+/// Parts into which an overlap is divided to look for its deepest place, or for its end.
 const OVERLAP_SAMPLES: u32 = 8;
 /// First length of the graded cells over the width of the pressure, both in r^2.
 const FINENESS: f64 = 1.0;
@@ -100,9 +100,9 @@ impl Film {
         self.rim
     }
 
-    /// The deeper one of `before` and the overlap with `gap` m at `radius` m, if that is one.
-    fn deeper(&self, before: Option<Overlap>, axis_gap: f64, radius: f64, gap: f64) -> Option<Overlap> {
-        let depth = axis_gap.min(0.0) - gap;
+    /// The deeper one of `before` and the overlap with `gap` m at `radius` m, if that is one: below `level` m.
+    fn deeper(&self, before: Option<Overlap>, level: f64, radius: f64, gap: f64) -> Option<Overlap> {
+        let depth = level - gap;
         if depth > before.map_or(self.minimum_gap, |o| o.depth) {
             Some(Overlap { radius, depth })
         } else {
@@ -156,7 +156,7 @@ impl Film {
             unit_flow += area;
             let (face_radius, face_gap) = (next.sqrt(), gap(next));
             if face_gap < 0.0 {
-                forces.overlap = self.deeper(forces.overlap, axis_gap, face_radius, face_gap);
+                forces.overlap = self.deeper(forces.overlap, 0.0, face_radius, face_gap);
             }
             let width = face_gap.max(self.minimum_gap);
             let rate = 6.0 * flow.abs() / (2.0 * PI * face_radius * width * width);
@@ -198,11 +198,19 @@ fn edge_of_overlap(gap: impl Fn(f64) -> f64, axis_gap: f64, flat: f64, end: f64)
     let mut low = (0.0, axis_gap);
     let mut high = (flat.min(end), gap(flat.min(end)));
     while high.1 <= 0.0 {
-        if high.0 >= end {
+        // a plate that bends around the body may have left it and come back
+        let left = (1..OVERLAP_SAMPLES)
+            .map(|i| low.0 + (high.0 - low.0) * f64::from(i) / f64::from(OVERLAP_SAMPLES))
+            .map(|at| (at, gap(at)))
+            .find(|(_, gap)| *gap > 0.0);
+        if let Some(left) = left {
+            high = left;
+        } else if high.0 >= end {
             return end;
+        } else {
+            let next = (2.0 * high.0).min(end);
+            (low, high) = (high, (next, gap(next)));
         }
-        let next = (2.0 * high.0).min(end);
-        (low, high) = (high, (next, gap(next)));
     }
     let mut last = 0;
     for _ in 0..100 {

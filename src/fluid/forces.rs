@@ -144,13 +144,12 @@ impl FluidForces {
                 at(centre, &mut shapes);
                 flow.iter_mut().zip(&shapes).for_each(|(flow, shape)| *flow -= face.area * shape);
                 at(face.radius, &mut gap);
-                for k in 0..n {
+                let rows = tangent.per_rate.chunks_exact_mut(n).zip(tangent.per_place.chunks_exact_mut(n));
+                for ((per_rate, per_place), own) in rows.zip(&flow) {
                     // a fall of the pressure loads everything inside of the face
-                    let (per_flow, per_gap) = (-flow[k] * face.per_flow, -flow[k] * face.per_gap);
-                    for l in 0..n {
-                        tangent.per_rate[k * n + l] += per_flow * flow[l];
-                        tangent.per_place[k * n + l] += per_gap * gap[l];
-                    }
+                    let (per_flow, per_gap) = (-own * face.per_flow, -own * face.per_gap);
+                    per_rate.iter_mut().zip(&flow).for_each(|(entry, flow)| *entry += per_flow * flow);
+                    per_place.iter_mut().zip(&gap).for_each(|(entry, gap)| *entry += per_gap * gap);
                 }
             }
         }

@@ -5,6 +5,17 @@
 
 use super::collocation::{Collocation, POINTS, Points, horner};
 use super::contact_ledger::bisect;
+use std::sync::LazyLock;
+
+/// Weights of the values at all points in the polynomial's values halfway between them. Shape (POINTS, POINTS - 1).
+static MIDDLES: LazyLock<[[f64; POINTS - 1]; POINTS]> = LazyLock::new(|| {
+    let collocation = Collocation::default();
+    let points = collocation.points;
+    std::array::from_fn(|l| {
+        let polynomial = collocation.through(&std::array::from_fn(|p| if p == l { 1.0 } else { 0.0 }));
+        std::array::from_fn(|m| horner(&polynomial, 0.5 * (points[m] + points[m + 1])))
+    })
+});
 
 /// A touch between the points of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +30,12 @@ pub(super) struct Touch {
 /// them positive but, by a rounding error, that at the start.
 #[inline]
 pub(super) fn touch_between(collocation: &Collocation, approach: &Points) -> Option<Touch> {
-    let middles = collocation.middles(approach);
+    let mut middles = [0.0; POINTS - 1];
+    for (weights, value) in MIDDLES.iter().zip(approach) {
+        for (middle, weight) in middles.iter_mut().zip(weights) {
+            *middle += weight * value;
+        }
+    }
     let depth = middles.iter().fold(0.0, |depth: f64, a| depth.max(*a));
     if depth <= 0.0 {
         return None;

@@ -5,10 +5,14 @@
 //! high modes neither limit the step nor resonate with it. What is left is a system for the forces at the
 //! Gauss points whose size does not depend on the number of modes. With smooth forces the velocities
 //! after the step are of order 2 STAGES (Gauss quadrature), the forces inside of order STAGES.
+//!
+//! Forces that damp are another matter: to one that would stop a motion within a part of the step Gauss's points
+//! answer with a motion that comes back undamped. Radau's points, of which the last is the end, stop it
+//! (L-stability: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5), at order 2 STAGES - 1.
 
 use super::bank::Bank;
 use super::duhamel::{MOMENTS, Oscillator};
-use crate::body::quadrature::gauss_legendre;
+use crate::body::quadrature::{gauss_legendre, gauss_radau};
 use wide::f64x4;
 
 /// Gauss points of a step.
@@ -20,56 +24,42 @@ pub type Stages = [f64; STAGES];
 /// Points of a step at which a contact is known: its start, the Gauss points, its end.
 pub const POINTS: usize = STAGES + 2;
 
+/// The same with Radau's points, of which the last is the end.
+pub const RADAU_POINTS: usize = STAGES + 1;
+
 /// Values at start, Gauss points and end of a step.
 pub type Points = [f64; POINTS];
 
-/// Gauss points on 0..1 and their interpolation polynomials.
+/// Gauss or Radau points on 0..1 and their interpolation polynomials; `P` points of a step are known, the ends included.
 #[derive(Debug, Clone)]
-pub struct Collocation {
-    /// Gauss points, ascending.
+pub struct Collocation<const P: usize = POINTS> {
+    /// Gauss (Radau) points, ascending.
     pub nodes: Stages,
-    /// Gauss weights on 0..1.
+    /// Their weights on 0..1.
     pub weights: Stages,
     /// `lagrange[l][p]`: coefficient of u^p in the polynomial that is 1 at node l and 0 at the others.
     pub lagrange: [Stages; STAGES],
-    /// Start, Gauss points and end on 0..1.
-    pub points: Points,
-    /// The same as `lagrange` for the polynomials through all [`POINTS`] points.
-    through_points: [Points; POINTS],
-    /// Weights of the values at all points in the polynomial's values halfway between them. Shape (POINTS, POINTS - 1).
-    middles: [[f64; POINTS - 1]; POINTS],
-    /// Weights of the values at the Gauss points in the polynomial's value at the start and at the end.
+    /// Start, Gauss (Radau) points and end on 0..1.
+    pub points: [f64; P],
+    /// The same as `lagrange` for the polynomials through all `P` points.
+    through_points: [[f64; P]; P],
+    /// Weights of the values at the nodes in the polynomial's value at the start and at the end.
     pub ends: [Stages; 2],
-    /// `slopes[j]`: weights in the polynomial's derivative at Gauss point j, per step.
+    /// `slopes[j]`: weights in the polynomial's derivative at node j, per step.
     pub slopes: [Stages; STAGES],
 }
 
 impl Default for Collocation {
+    /// Gauss's points.
     fn default() -> Self {
-        let (points, weights) = gauss_legendre(STAGES);
-        let nodes: Stages = std::array::from_fn(|j| 0.5 * (1.0 + points[j]));
-        let lagrange = lagrange(&nodes);
-        let points: Points = std::array::from_fn(|i| match i {
-            0 => 0.0,
-            _ if i == POINTS - 1 => 1.0,
-            _ => nodes[i - 1],
-        });
-        let mut collocation = Self {
-            nodes,
-            weights: std::array::from_fn(|j| 0.5 * weights[j]),
-            lagrange,
-            points,
-            through_points: self::lagrange(&points),
-            middles: Default::default(),
-            ends: Default::default(),
-            slopes: Default::default(),
-        };
-        collocation.ends = [0.0, 1.0].map(|u| collocation.interpolation(u));
-        collocation.middles = collocation.through_points.map(|polynomial| {
-            std::array::from_fn(|m| horner(&polynomial, 0.5 * (points[m] + points[m + 1])))
-        });
-        collocation.slopes = nodes.map(|u| collocation.derivative(u));
-        collocation
+        Self::new(&gauss_legendre(STAGES))
+    }
+}
+
+impl Collocation<RADAU_POINTS> {
+    /// Radau's points, for forces that damp.
+    pub fn radau() -> Self {
+        Self::new(&gauss_radau(STAGES))
     }
 }
 
@@ -96,40 +86,50 @@ pub fn horner(coefficients: &[f64], u: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * u + c)
 }
 
-impl Collocation {
-    /// Coefficients of the polynomial through `values` at start, Gauss points and end.
+impl<const P: usize> Collocation<P> {
+    /// From points in (-1, 1] and their weights.
+    fn new((points, weights): &(Vec<f64>, Vec<f64>)) -> Self {
+        let nodes: Stages = std::array::from_fn(|j| 0.5 * (1.0 + points[j]));
+        let points: [f64; P] = std::array::from_fn(|i| match i {
+            0 => 0.0,
+            _ if i == P - 1 => 1.0,
+            _ => nodes[i - 1],
+        });
+        let mut collocation = Self {
+            nodes,
+            weights: std::array::from_fn(|j| 0.5 * weights[j]),
+            lagrange: lagrange(&nodes),
+            points,
+            through_points: self::lagrange(&points),
+            ends: Default::default(),
+            slopes: Default::default(),
+        };
+        collocation.ends = [0.0, 1.0].map(|u| collocation.interpolation(u));
+        collocation.slopes = nodes.map(|u| collocation.derivative(u));
+        collocation
+    }
+
+    /// Coefficients of the polynomial through `values` at all points.
     #[inline(always)]
-    pub fn through(&self, values: &Points) -> Points {
-        let mut coefficients = [0.0; POINTS];
-        for l in 0..POINTS {
-            for p in 0..POINTS {
+    pub fn through(&self, values: &[f64; P]) -> [f64; P] {
+        let mut coefficients = [0.0; P];
+        for l in 0..P {
+            for p in 0..P {
                 coefficients[p] += self.through_points[l][p] * values[l];
             }
         }
         coefficients
     }
 
-    /// Values halfway between the points of the polynomial through `values` at them.
-    #[inline(always)]
-    pub fn middles(&self, values: &Points) -> [f64; POINTS - 1] {
-        let mut middles = [0.0; POINTS - 1];
-        for (weights, value) in self.middles.iter().zip(values) {
-            for (middle, weight) in middles.iter_mut().zip(weights) {
-                *middle += weight * value;
-            }
-        }
-        middles
-    }
-
     /// Weights of the values at all points of a step in the polynomial's values at the Gauss points of the next step,
-    /// which is `ratio` times as long. Shape (POINTS, STAGES).
-    pub fn extrapolation(&self, ratio: f64) -> [f64x4; POINTS] {
+    /// which is `ratio` times as long. Shape (P, STAGES).
+    pub fn extrapolation(&self, ratio: f64) -> [f64x4; P] {
         self.through_points
             .map(|polynomial| f64x4::from(self.nodes.map(|node| horner(&polynomial, 1.0 + node * ratio))))
     }
 
     /// Weights of the values at the Gauss points in the polynomial's value at `u` (in units of the step).
-    fn interpolation(&self, u: f64) -> Stages {
+    pub fn interpolation(&self, u: f64) -> Stages {
         self.lagrange.map(|polynomial| horner(&polynomial, u))
     }
 

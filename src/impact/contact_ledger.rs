@@ -1,18 +1,18 @@
 //! What is booked about one contact: impulse, peak force, touches and releases.
 
-use super::collocation::{Collocation, POINTS, Points, STAGES, Stages, horner};
+use super::collocation::{Collocation, STAGES, Stages, horner};
 use super::system::dot;
 
-/// Course of one contact over one step.
-pub struct StepCourse {
+/// Course of one contact over one step, known at `P` points of it: start, Gauss (Radau) points and end.
+pub struct StepCourse<const P: usize> {
     /// Start of the step and its length, s.
     pub time: f64,
     /// Length of the step in s.
     pub h: f64,
-    /// Local approach, positive where the bodies touch, at start, Gauss points and end, m.
-    pub local_approach: Points,
-    /// Force at start, Gauss points and end, N.
-    pub force: Points,
+    /// Local approach, positive where the bodies touch, m.
+    pub local_approach: [f64; P],
+    /// Force in N.
+    pub force: [f64; P],
     /// Work of the force polynomial along the approach, J (see [`work`]).
     pub work: f64,
 }
@@ -47,7 +47,7 @@ impl ContactLedger {
     }
 
     /// Books a step.
-    pub fn book(&mut self, collocation: &Collocation, course: &StepCourse) {
+    pub fn book<const P: usize>(&mut self, collocation: &Collocation<P>, course: &StepCourse<P>) {
         let gauss: &Stages = course.force[1..=STAGES].try_into().expect("STAGES values");
         let before = self.impulse;
         self.impulse += course.h * gauss.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
@@ -56,7 +56,7 @@ impl ContactLedger {
         if largest > self.force_peak {
             self.force_peak = largest.max(self.interpolated_peak(collocation, course, highest));
         }
-        for point in 1..POINTS {
+        for point in 1..P {
             let closed = course.local_approach[point] > 0.0;
             if closed && !self.closed {
                 self.contacts += 1;
@@ -73,28 +73,34 @@ impl ContactLedger {
     }
 
     /// Peak of the polynomial through all points of the step, around the highest of them.
-    fn interpolated_peak(&self, collocation: &Collocation, course: &StepCourse, highest: usize) -> f64 {
-        if highest == 0 || highest == POINTS - 1 || course.force.contains(&0.0) {
+    fn interpolated_peak<const P: usize>(
+        &self,
+        collocation: &Collocation<P>,
+        course: &StepCourse<P>,
+        highest: usize,
+    ) -> f64 {
+        if highest == 0 || highest == P - 1 || course.force.contains(&0.0) {
             return course.force[highest];
         }
         let polynomial = collocation.through(&course.force);
-        let slope: [f64; POINTS - 1] = std::array::from_fn(|p| (p + 1) as f64 * polynomial[p + 1]);
+        let slope: [f64; P] =
+            std::array::from_fn(|p| polynomial.get(p + 1).map_or(0.0, |c| (p + 1) as f64 * c));
         let u = &collocation.points;
         horner(&polynomial, bisect(u[highest - 1], u[highest + 1], |u| horner(&slope, u) > 0.0))
     }
 }
 
 /// Integral of the force polynomial over the approach in J, by parts: F delta at the ends less the integral of delta dF.
-pub fn work(collocation: &Collocation, force: &Stages, approach: &Points) -> f64 {
+pub fn work<const P: usize>(collocation: &Collocation<P>, force: &Stages, approach: &[f64; P]) -> f64 {
     let [start, end] = collocation.ends.map(|weights| dot(&weights, force));
     let inside: f64 = (0..STAGES)
         .map(|j| collocation.weights[j] * approach[j + 1] * dot(&collocation.slopes[j], force))
         .sum();
-    end * approach[POINTS - 1] - start * approach[0] - inside
+    end * approach[P - 1] - start * approach[0] - inside
 }
 
 /// Where in the step (0..1), before `point`, the local approach passes zero.
-fn release(collocation: &Collocation, course: &StepCourse, point: usize) -> f64 {
+fn release<const P: usize>(collocation: &Collocation<P>, course: &StepCourse<P>, point: usize) -> f64 {
     let polynomial = collocation.through(&course.local_approach);
     let u = &collocation.points;
     bisect(u[point - 1], u[point], |u| horner(&polynomial, u) > 0.0)

@@ -1,28 +1,28 @@
 //! Sampling of the course over time; a run that is not asked for its history has no recorder.
 
-use super::collocation::{Collocation, Stages};
+use super::collocation::{Collocation, POINTS, Stages};
 use super::history::History;
 use super::system::{INNER, System, dot};
 use crate::error::Result;
 
 /// Collects a [`History`] with samples at most `interval` s apart and at the end of every step.
-pub struct Recorder<'a> {
+pub struct Recorder<'a, const P: usize = POINTS> {
     system: &'a System,
-    collocation: &'a Collocation,
+    collocation: &'a Collocation<P>,
     interval: f64,
     history: History,
 }
 
-impl<'a> Recorder<'a> {
+impl<'a, const P: usize> Recorder<'a, P> {
     /// Starts with the sample at t = 0.
-    pub fn new(system: &'a System, collocation: &'a Collocation, interval: f64) -> Self {
+    pub fn new(system: &'a System, collocation: &'a Collocation<P>, interval: f64) -> Self {
         let mut recorder = Self { system, collocation, interval, history: History::default() };
         let (q, v) = system.initial_state();
         recorder.push(0.0, &q, &v);
         recorder
     }
 
-    /// Samples the step of length `h` that starts at `time` in the state (`q`, `v`) under `forces` at the Gauss points.
+    /// Samples the step of length `h` that starts at `time` in the state (`q`, `v`) under `forces` at the nodes.
     ///
     /// # Errors
     /// As the contact's system of equations.
@@ -33,7 +33,7 @@ impl<'a> Recorder<'a> {
         })
     }
 
-    /// As [`Recorder::step`], under the generalised forces `forces` of each oscillator at the Gauss points.
+    /// As [`Recorder::step`], under the generalised forces `forces` of each oscillator at the nodes.
     ///
     /// # Errors
     /// As the contact's system of equations.

@@ -1,11 +1,11 @@
 //! Steps of adapted length through a wet impact, and what is booked on the way.
 
-use super::solve::{Trial, Wet};
+use super::solve::{END, Trial, Wet};
 use super::table::Table;
 use crate::analytical::hertz::HertzImpact;
 use crate::error::{Error, Result};
 use crate::fluid::{FluidForces, FluidLoad};
-use crate::impact::collocation::{Collocation, Points, STAGES, Stages};
+use crate::impact::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
 use crate::impact::contact_ledger::{ContactLedger, StepCourse, work};
 use crate::impact::free_flight;
 use crate::impact::integrator::{Integration, Losses, NEGLIGIBLE, Options};
@@ -20,6 +20,8 @@ const MAX_STEPS: u64 = 300_000;
 const LAST_LEVEL: i32 = 44;
 /// Longest step without a touch in sight, as a power of 2 of the base length.
 const LONGEST: i32 = -8;
+/// Length of a step over that of the step before up to which its forces are extrapolated.
+const FARTHEST: f64 = 2.5;
 /// Share of a step's admissible defect at which its iteration may end.
 const SETTLED: f64 = 1e-3;
 
@@ -29,7 +31,7 @@ const SETTLED: f64 = 1e-3;
 /// [`Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does
 /// not end.
 pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Result<Integration> {
-    let collocation = Collocation::default();
+    let collocation = Collocation::radau();
     let recorder = options.sample_interval.map(|interval| Recorder::new(system, &collocation, interval));
     let hit =
         HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
@@ -38,7 +40,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
     fluid.evaluate(&q, &v, &mut start);
     let trial = Trial {
         fluid: vec![[0.0; STAGES]; fluid.size()],
-        loads: vec![FluidLoad::default(); STAGES + 1],
+        loads: vec![FluidLoad::default(); STAGES],
         ..Trial::default()
     };
     let mut run = Run {
@@ -58,6 +60,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         q,
         v,
         trial,
+        before: Forces::default(),
         contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
         booked: Booked::default(),
         energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
@@ -98,10 +101,21 @@ struct StepAccount {
     made: f64,
 }
 
+/// Forces of the latest step at Radau's points.
+#[derive(Default)]
+struct Forces {
+    /// Length of the step in s; 0 before the first.
+    h: f64,
+    /// Of both contacts, N.
+    forces: [Stages; 2],
+    /// Generalised ones of the fluid. Shape (size).
+    fluid: Vec<Stages>,
+}
+
 struct Run<'a> {
     wet: Wet<'a>,
-    collocation: &'a Collocation,
-    recorder: Option<Recorder<'a>>,
+    collocation: &'a Collocation<RADAU_POINTS>,
+    recorder: Option<Recorder<'a, RADAU_POINTS>>,
     end_time: f64,
     defect_bound: f64,
     base_step: f64,
@@ -117,6 +131,7 @@ struct Run<'a> {
     load: FluidLoad,
     /// The latest step; its vectors are used again.
     trial: Trial,
+    before: Forces,
     contacts: [ContactLedger; 2],
     booked: Booked,
     energy: EnergyAccount,
@@ -162,6 +177,8 @@ impl Run<'_> {
         }
         loop {
             if self.level > LAST_LEVEL {
+                // the film's law jumps where an overlap begins
+                self.check_overlap(0.0)?;
                 return Err(Error::Solver(format!(
                     "reduced model: the time step fell below {:.1e} s at t = {:.6e} s without meeting the tolerance",
                     self.length(LAST_LEVEL),
@@ -169,6 +186,7 @@ impl Run<'_> {
                 )));
             }
             let (h, rest) = (self.length(self.level), self.end_time - self.time);
+            self.guess(h.min(rest));
             let system = self.wet.system;
             let last;
             let table = if rest < h {
@@ -178,13 +196,6 @@ impl Run<'_> {
                 self.tables.entry(self.level).or_insert_with(|| Table::new(system, self.collocation, h))
             };
             let h = table.h;
-            // the forces at the start are the first guess
-            for i in 0..2 {
-                self.trial.forces[i] = [self.force[i]; STAGES];
-            }
-            for (fluid, force) in self.trial.fluid.iter_mut().zip(&self.load.force) {
-                *fluid = [*force; STAGES];
-            }
             let scale = momentum_scale(system, &self.contacts);
             let force_error = settled_force(self.defect_bound, scale[1], h);
             if !self.wet.solve(table, &self.q, &self.v, force_error, &mut self.trial) {
@@ -213,6 +224,25 @@ impl Run<'_> {
                 self.level -= 1;
             }
             return Ok(false);
+        }
+    }
+
+    /// First guess of the forces of a step of `h` s: extrapolated from the step before, if that was long enough, or as at
+    /// the start.
+    fn guess(&mut self, h: f64) {
+        let Self { trial, before, .. } = self;
+        if h > FARTHEST * before.h {
+            trial.forces = self.force.map(|force| [force; STAGES]);
+            for (fluid, force) in trial.fluid.iter_mut().zip(&self.load.force) {
+                *fluid = [*force; STAGES];
+            }
+            return;
+        }
+        let weights = self.collocation.nodes.map(|u| self.collocation.interpolation(1.0 + u * h / before.h));
+        let extrapolated = |stages: &Stages| weights.map(|weights| dot(&weights, stages));
+        trial.forces = before.forces.map(|stages| extrapolated(&stages).map(|force| force.max(0.0)));
+        for (fluid, stages) in trial.fluid.iter_mut().zip(&before.fluid) {
+            *fluid = extrapolated(stages);
         }
     }
 
@@ -252,18 +282,18 @@ impl Run<'_> {
         Some(late)
     }
 
-    /// Distance between the forces at the end of the step and the polynomials of the step, as an impulse in relation
+    /// Distance between the forces at the start of the step and the polynomials of the step, as an impulse in relation
     /// to the momenta.
     fn defect(&self, h: f64, scale: [f64; 2]) -> f64 {
-        let extrapolation = self.collocation.ends[1];
+        let extrapolation = self.collocation.ends[0];
         let film = std::array::from_fn(|j| self.trial.loads[j].film_force);
         let [outer, inner] = self.trial.forces;
-        let ends = [self.trial.end_force[0], self.trial.end_force[1], self.trial.loads[STAGES].film_force];
+        let starts = [self.force[0], self.force[1], self.load.film_force];
         [outer, inner, film]
             .iter()
-            .zip(ends)
+            .zip(starts)
             .zip([scale[0], scale[1], scale[1]])
-            .map(|((stages, end), scale)| (end - dot(&extrapolation, stages)).abs() * h / scale)
+            .map(|((stages, start), scale)| (start - dot(&extrapolation, stages)).abs() * h / scale)
             .fold(0.0, f64::max)
     }
 
@@ -294,29 +324,36 @@ impl Run<'_> {
         let (system, trial) = (self.wet.system, &self.trial);
         let fluid = self.fluid_in_step(h);
         let contact_work = [0, 1].map(|i| {
-            let approach = joined(self.approach[i], &trial.approach[i], trial.end_approach[i]);
+            let approach = joined(self.approach[i], &trial.approach[i]);
             work(self.collocation, &trial.forces[i], &approach)
         });
-        let stored = system.stored_energy(trial.end_force, trial.end_local)
+        let stored = system.stored_energy(trial.end_force, trial.local.map(|p| p[END]))
             - system.stored_energy(self.force, self.local);
         let dissipated = fluid.dissipated[0] + fluid.dissipated[1];
         let made = stored - (contact_work[0] + contact_work[1]) + dissipated + fluid.work;
         StepAccount { fluid, contact_work, made }
     }
 
+    /// Looks whether the plate overlaps the inner body beside the axis in the step of `h` s just tried.
+    ///
+    /// # Errors
+    /// [`Error::BeyondModel`] if it does.
+    fn check_overlap(&self, h: f64) -> Result<()> {
+        let Some(overlap) = self.trial.loads.iter().find_map(FluidLoad::overlap) else { return Ok(()) };
+        Err(Error::BeyondModel(format!(
+            "reduced model: at t = {:.6e} s the plate bends around the inner body: at r = {:.2e} m they overlap by {:.2e} m more than on the axis, beyond the film's minimal gap; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`",
+            self.time + h,
+            overlap.radius,
+            overlap.depth
+        )))
+    }
+
     /// Books the step of `h` s just solved.
     ///
     /// # Errors
-    /// [`Error::BeyondModel`] if the plate overlaps the inner body beside the axis.
+    /// [`Error::BeyondModel`] as [`Run::check_overlap`].
     fn accept(&mut self, h: f64, account: &StepAccount) -> Result<()> {
-        if let Some(overlap) = self.trial.loads.iter().find_map(FluidLoad::overlap) {
-            return Err(Error::BeyondModel(format!(
-                "reduced model: at t = {:.6e} s the plate bends around the inner body: at r = {:.2e} m they overlap by {:.2e} m more than on the axis, beyond the film's minimal gap; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`",
-                self.time + h,
-                overlap.radius,
-                overlap.depth
-            )));
-        }
+        self.check_overlap(h)?;
         if let Some(recorder) = &mut self.recorder {
             let forces = self.wet.generalised(&self.trial);
             recorder.step_under(self.time, h, &self.q, &self.v, |k| forces[k])?;
@@ -327,18 +364,24 @@ impl Run<'_> {
                 time: self.time,
                 h,
                 work: account.contact_work[i],
-                local_approach: joined(self.local[i], &trial.local[i], trial.end_local[i]),
-                force: joined(self.force[i], &trial.forces[i], trial.end_force[i]),
+                local_approach: joined(self.local[i], &trial.local[i]),
+                force: joined(self.force[i], &trial.forces[i]),
             };
             self.contacts[i].book(self.collocation, &course);
         }
         self.booked.add(&account.fluid);
         self.energy.book(account.made);
         let trial = &mut self.trial;
-        std::mem::swap(&mut self.q, &mut trial.motion.q[STAGES]);
-        std::mem::swap(&mut self.v, &mut trial.motion.v[STAGES]);
-        std::mem::swap(&mut self.load, &mut trial.loads[STAGES]);
-        (self.approach, self.local, self.force) = (trial.end_approach, trial.end_local, trial.end_force);
+        self.before.h = h;
+        self.before.forces = trial.forces;
+        self.before.fluid.clone_from(&trial.fluid);
+        std::mem::swap(&mut self.q, &mut trial.motion.q[END]);
+        std::mem::swap(&mut self.v, &mut trial.motion.v[END]);
+        std::mem::swap(&mut self.load, &mut trial.loads[END]);
+        self.force = trial.end_force;
+        for i in 0..2 {
+            (self.approach[i], self.local[i]) = (trial.approach[i][END], trial.local[i][END]);
+        }
         self.time += h;
         self.steps += 1;
         Ok(())
@@ -389,13 +432,9 @@ impl Run<'_> {
     }
 }
 
-/// Values at the start, the Gauss points and the end of a step.
-fn joined(start: f64, stages: &Stages, end: f64) -> Points {
-    std::array::from_fn(|p| match p {
-        0 => start,
-        _ if p == STAGES + 1 => end,
-        _ => stages[p - 1],
-    })
+/// Values at the start and Radau's points of a step.
+fn joined(start: f64, stages: &Stages) -> [f64; RADAU_POINTS] {
+    std::array::from_fn(|p| if p == 0 { start } else { stages[p - 1] })
 }
 
 /// Whether both contacts are open at these approaches.

@@ -1,4 +1,4 @@
-//! The forces of one step: contacts and fluid at the Gauss points, by Newton's iteration.
+//! The forces of one step: contacts and fluid at Radau's points, by Newton's iteration.
 //!
 //! The film's answer to the rates is a matrix over inner body and modes. Nearly all of it is what it does
 //! against a uniform closing speed: D = g g^T/R with the generalised forces g per unit speed and their resultant R.
@@ -6,6 +6,7 @@
 //! at four points) however many modes there are; what D leaves out is found by the iteration, or, where that is slow, by
 //! Newton's step with the whole matrix.
 
+use super::full_newton::Factors;
 use super::table::{Motion, Table};
 use crate::fluid::{FluidForces, FluidLoad};
 use crate::impact::collocation::{STAGES, Stages};
@@ -20,30 +21,35 @@ const POLISHED: f64 = 1e-3;
 const STAGNANT: f64 = 0.5;
 /// Error of an iteration over that of the last from which on the fluid's whole tangent is worth its price.
 const SLOW: f64 = 0.3;
-/// Unknowns of Newton's step: both contact forces and the film's part along g at every Gauss point.
+/// Force errors with which a step is in order once the iteration has gained nothing [`STALLS`] times: a film against which
+/// fast bodies hardly move answers to the rounding errors of their rates.
+const ROUNDED: f64 = 100.0;
+const STALLS: u32 = 2;
+/// Unknowns of Newton's step: both contact forces and the film's part along g at every point of a step.
 const UNKNOWNS: usize = 3 * STAGES;
 
-/// A solved step, not yet accepted.
+/// Last of Radau's points: the end of the step.
+pub const END: usize = STAGES - 1;
+
+/// A solved step, not yet accepted. Everything is at Radau's points, the last of which is the end.
 #[derive(Debug, Clone, Default)]
 pub struct Trial {
-    /// Motion at the Gauss points and at the end.
+    /// Motion.
     pub motion: Motion,
-    /// Modal approach of both contacts at the Gauss points in m.
+    /// Modal approach of both contacts in m.
     pub approach: [Stages; 2],
-    /// Patches of both contacts at the Gauss points, see [`System::contact`].
+    /// Patches of both contacts, see [`System::contact`].
     pub local: [Stages; 2],
-    /// Forces of both contacts at the Gauss points in N.
+    /// Forces of both contacts in N.
     pub forces: [Stages; 2],
-    /// Generalised forces of the fluid at the Gauss points, from the inner body's on. Shape (size).
-    pub fluid: Vec<Stages>,
-    /// What the fluid does at the Gauss points and at the end.
-    pub loads: Vec<FluidLoad>,
-    /// Modal approach of both contacts at the end in m.
-    pub end_approach: [f64; 2],
-    /// Their patches at the end.
-    pub end_local: [f64; 2],
-    /// Forces of both contacts at the end in N.
+    /// What the contacts answer to the motion at the end in N: `forces` there, but for the error of the iteration.
     pub end_force: [f64; 2],
+    /// Generalised forces of the fluid, from the inner body's on. Shape (size).
+    pub fluid: Vec<Stages>,
+    /// What the fluid does. Shape (STAGES).
+    pub loads: Vec<FluidLoad>,
+    /// The equations of Newton's step with the fluid's whole tangent, once it has been worth its price.
+    pub(super) factors: Option<Factors>,
 }
 
 /// The bodies and the fluid between them.
@@ -57,32 +63,29 @@ impl Wet<'_> {
     /// Solves for the forces of a step from the state (`q`, `v`), from those in `trial` on; `false` if the iteration
     /// does not settle within `force_error` N or the contact has no equilibrium.
     pub fn solve(&self, table: &Table, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
-        if !self.iterate(table, q, v, force_error, trial) {
-            return false;
-        }
-        let (q, v) = (&trial.motion.q[STAGES], &trial.motion.v[STAGES]);
-        self.fluid.evaluate(q, v, &mut trial.loads[STAGES]);
-        trial.end_approach = self.system.modal_approach(q);
-        match self.system.contact(trial.end_approach, trial.end_approach) {
-            Some((local, force)) => (trial.end_local, trial.end_force) = (local, force),
-            None => return false,
-        }
-        true
-    }
-
-    fn iterate(&self, table: &Table, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
-        let (mut last, mut whole) = (f64::INFINITY, false);
+        let (mut last, mut stalls) = (f64::INFINITY, 0);
         for _ in 0..MAX_ITERATIONS {
             table.motion(q, v, &self.generalised(trial), &mut trial.motion);
             let Some(defect) = self.defect(trial) else { return false };
             let size = self.size(&defect);
-            if size <= force_error && (size <= POLISHED * force_error || size > STAGNANT * last) {
+            let gains = size <= STAGNANT * last;
+            stalls += u32::from(!gains);
+            let done = size <= force_error && (!gains || size <= POLISHED * force_error);
+            if done || (stalls >= STALLS && size <= ROUNDED * force_error) {
                 return true;
             }
-            whole |= size > SLOW * last;
+            let slow = size > SLOW * last;
             let solved = size.is_finite()
-                && if whole {
-                    self.full_newton(table, &defect, trial)
+                && if slow || trial.factors.is_some() {
+                    let fit = |factors: &Factors| !slow && factors.h == table.h;
+                    let factors = trial
+                        .factors
+                        .take()
+                        .filter(fit)
+                        .unwrap_or_else(|| self.factors(table, &defect, trial));
+                    let solved = self.full_newton(&factors, &defect, trial);
+                    trial.factors = Some(factors);
+                    solved
                 } else {
                     self.newton(table, &defect, trial)
                 };
@@ -94,7 +97,7 @@ impl Wet<'_> {
         false
     }
 
-    /// Generalised forces of contacts and fluid at the Gauss points. Shape (n).
+    /// Generalised forces of contacts and fluid at Radau's points. Shape (n).
     pub fn generalised(&self, trial: &Trial) -> Vec<Stages> {
         let [b0, b1] = &self.system.approach;
         let [f0, f1] = &trial.forces;
@@ -120,6 +123,7 @@ impl Wet<'_> {
             let approach = self.system.modal_approach(q);
             let (local, force) = self.system.contact(approach, approach)?;
             defect.tangent[j] = self.system.tangent(local);
+            trial.end_force = force;
             for i in 0..2 {
                 trial.approach[i][j] = approach[i];
                 trial.local[i][j] = local[i];
@@ -150,7 +154,7 @@ impl Wet<'_> {
     /// Improves the forces; `false` if the equations are singular.
     fn newton(&self, table: &Table, defect: &Defect, trial: &mut Trial) -> bool {
         let n = self.system.size();
-        // directions in which the forces at Gauss point l can change: contact 0, contact 1, film
+        // directions in which the forces at point l can change: contact 0, contact 1, film
         let film: Vec<Vec<f64>> = (0..STAGES)
             .map(|l| {
                 let mut full = vec![0.0; n];
@@ -216,7 +220,7 @@ impl Wet<'_> {
     }
 }
 
-/// Forces that are missing at the Gauss points.
+/// Forces that are missing at Radau's points.
 pub(super) struct Defect {
     pub contact: [Stages; 2],
     /// Change of both contact forces per modal approach of both. Shape (STAGES, 2, 2).

@@ -1,21 +1,18 @@
 //! Answers of all oscillators at all points of a step of one length.
 
-use crate::impact::collocation::{Collocation, Response, STAGES, Stages};
+use crate::impact::collocation::{Collocation, RADAU_POINTS, Response, STAGES, Stages};
 use crate::impact::system::System;
-
-/// Gauss points of a step and its end.
-pub const POINTS: usize = STAGES + 1;
 
 /// Everything about a step of one length that does not depend on the state.
 #[derive(Debug, Clone)]
 pub struct Table {
     /// Length of the step in s.
     pub h: f64,
-    /// Answers at the Gauss points and at the end. Shape (POINTS, n).
+    /// Answers at Radau's points. Shape (STAGES, n).
     answers: Vec<Vec<Response>>,
 }
 
-/// Coordinates and their rates at the points of a step. Shape (POINTS, n) each.
+/// Coordinates and their rates at Radau's points of a step, the last of which is its end. Shape (STAGES, n) each.
 #[derive(Debug, Clone, Default)]
 pub struct Motion {
     /// Coordinates.
@@ -26,19 +23,20 @@ pub struct Motion {
 
 impl Table {
     /// Table of `system` for steps of length `h` s.
-    pub fn new(system: &System, collocation: &Collocation, h: f64) -> Self {
-        let time = |point: usize| collocation.nodes.get(point).map_or(h, |node| node * h);
-        let answers = (0..POINTS)
-            .map(|point| system.oscillators.iter().map(|o| collocation.response(o, time(point), h)).collect())
+    pub fn new(system: &System, collocation: &Collocation<RADAU_POINTS>, h: f64) -> Self {
+        let answers = collocation
+            .nodes
+            .iter()
+            .map(|node| system.oscillators.iter().map(|o| collocation.response(o, node * h, h)).collect())
             .collect();
         Self { h, answers }
     }
 
-    /// Motion from the state (`q`, `v`) at the start of the step under the generalised forces `force` at the Gauss
+    /// Motion from the state (`q`, `v`) at the start of the step under the generalised forces `force` at Radau's
     /// points, shape (n).
     pub fn motion(&self, q: &[f64], v: &[f64], force: &[Stages], motion: &mut Motion) {
-        motion.q.resize(POINTS, Vec::new());
-        motion.v.resize(POINTS, Vec::new());
+        motion.q.resize(STAGES, Vec::new());
+        motion.v.resize(STAGES, Vec::new());
         for (point, answers) in self.answers.iter().enumerate() {
             motion.q[point].clear();
             motion.v[point].clear();
@@ -57,7 +55,7 @@ impl Table {
         }
     }
 
-    /// Change of displacement and rate of coordinate `k` at Gauss point `j` per generalised force at the Gauss points.
+    /// Change of displacement and rate of coordinate `k` at Radau's point `j` per generalised force at them.
     pub fn per_force(&self, j: usize, k: usize) -> [&Stages; 2] {
         let answer = &self.answers[j][k];
         [&answer.displacement_per_force, &answer.velocity_per_force]
