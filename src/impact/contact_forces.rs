@@ -62,6 +62,14 @@ pub struct ForceError {
     pub relative: f64,
 }
 
+impl ForceError {
+    /// Both bounds in N, where the largest force is `largest` N.
+    #[inline(always)]
+    pub fn bound(&self, largest: f64) -> f64 {
+        self.absolute.min(self.relative * largest)
+    }
+}
+
 /// The solver of the steps of one run.
 #[derive(Debug)]
 pub struct StepSolver<'a> {
@@ -199,9 +207,7 @@ impl<'a> StepSolver<'a> {
                 contraction = change / earlier;
             }
             // in a very short step any force gives the right impulse, but not the right energy
-            if change * contraction.clamp(BEST_CONTRACTION, 1.0)
-                <= force_error.absolute.min(force_error.relative * largest)
-            {
+            if change * contraction.clamp(BEST_CONTRACTION, 1.0) <= force_error.bound(largest) {
                 return Some((unknowns, contraction));
             }
             earlier = change;

@@ -10,13 +10,11 @@ use super::full_newton::Factors;
 use super::table::{Motion, Table};
 use crate::fluid::{FluidForces, FluidLoad};
 use crate::impact::collocation::{STAGES, Stages};
+use crate::impact::contact_forces::ForceError;
 use crate::impact::system::{INNER, System};
 
 /// Iterations for the forces of a step; more means that the step is too long.
 const MAX_ITERATIONS: usize = 30;
-/// Part of the bearable force error to which the iteration goes on while it gains: over thousands of steps of one sign, what
-/// is left unbalances the momenta by less than 1e-10.
-const POLISHED: f64 = 1e-3;
 /// Error of an iteration over that of the last above which it gains no more, be it for round-off.
 const STAGNANT: f64 = 0.5;
 /// Error of an iteration over that of the last from which on the fluid's whole tangent is worth its price.
@@ -61,17 +59,24 @@ pub struct Wet<'a> {
 
 impl Wet<'_> {
     /// Solves for the forces of a step from the state (`q`, `v`), from those in `trial` on; `false` if the iteration
-    /// does not settle within `force_error` N or the contact has no equilibrium.
-    pub fn solve(&self, table: &Table, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
+    /// does not settle within `force_error` or the contact has no equilibrium.
+    pub fn solve(
+        &self,
+        table: &Table,
+        q: &[f64],
+        v: &[f64],
+        force_error: ForceError,
+        trial: &mut Trial,
+    ) -> bool {
         let (mut last, mut stalls) = (f64::INFINITY, 0);
         for _ in 0..MAX_ITERATIONS {
             table.motion(q, v, &self.generalised(trial), &mut trial.motion);
             let Some(defect) = self.defect(trial) else { return false };
-            let size = self.size(&defect);
-            let gains = size <= STAGNANT * last;
-            stalls += u32::from(!gains);
-            let done = size <= force_error && (!gains || size <= POLISHED * force_error);
-            if done || (stalls >= STALLS && size <= ROUNDED * force_error) {
+            let size = self.largest(&defect.contact, &defect.fluid);
+            stalls += u32::from(size > STAGNANT * last);
+            let bound = force_error.bound(self.largest(&trial.forces, &trial.fluid));
+            if size <= bound || (stalls >= STALLS && size <= ROUNDED * bound) {
+                self.balance(table, q, v, trial);
                 return true;
             }
             let slow = size > SLOW * last;
@@ -95,6 +100,15 @@ impl Wet<'_> {
             last = size;
         }
         false
+    }
+
+    /// Makes the fluid's last answer the force that acts: to the last digit the same on both sides of the film, so that what
+    /// the iteration leaves can't unbalance the momenta, step after step.
+    fn balance(&self, table: &Table, q: &[f64], v: &[f64], trial: &mut Trial) {
+        for (k, fluid) in trial.fluid.iter_mut().enumerate() {
+            *fluid = std::array::from_fn(|j| trial.loads[j].force[k]);
+        }
+        table.motion(q, v, &self.generalised(trial), &mut trial.motion);
     }
 
     /// Generalised forces of contacts and fluid at Radau's points. Shape (n).
@@ -137,8 +151,8 @@ impl Wet<'_> {
         Some(defect)
     }
 
-    /// Largest force in N that is missing; generalised forces as if they acted on the inner body.
-    fn size(&self, defect: &Defect) -> f64 {
+    /// Largest of the forces in N; generalised forces as if they acted on the inner body.
+    fn largest(&self, contact: &[Stages; 2], fluid: &[Stages]) -> f64 {
         let largest = |values: &[Stages]| {
             // a value that is no number has to come out
             values
@@ -146,8 +160,7 @@ impl Wet<'_> {
                 .flatten()
                 .fold(0.0, |largest: f64, x| if x.abs() <= largest { largest } else { x.abs() })
         };
-        let (contact, fluid) = (largest(&defect.contact), largest(&defect.fluid));
-        let fluid = fluid * self.system.masses[1].sqrt();
+        let (contact, fluid) = (largest(contact), largest(fluid) * self.system.masses[1].sqrt());
         if contact >= fluid || contact.is_nan() { contact } else { fluid }
     }
 
