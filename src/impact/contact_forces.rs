@@ -62,14 +62,6 @@ pub struct ForceError {
     pub relative: f64,
 }
 
-impl ForceError {
-    /// Both bounds in N, where the largest force is `largest` N.
-    #[inline(always)]
-    pub fn bound(&self, largest: f64) -> f64 {
-        self.absolute.min(self.relative * largest)
-    }
-}
-
 /// The solver of the steps of one run.
 #[derive(Debug)]
 pub struct StepSolver<'a> {
@@ -207,7 +199,9 @@ impl<'a> StepSolver<'a> {
                 contraction = change / earlier;
             }
             // in a very short step any force gives the right impulse, but not the right energy
-            if change * contraction.clamp(BEST_CONTRACTION, 1.0) <= force_error.bound(largest) {
+            if change * contraction.clamp(BEST_CONTRACTION, 1.0)
+                <= force_error.absolute.min(force_error.relative * largest)
+            {
                 return Some((unknowns, contraction));
             }
             earlier = change;

@@ -6,12 +6,11 @@ use crate::analytical::hertz::HertzImpact;
 use crate::error::{Error, Result};
 use crate::fluid::{FluidForces, FluidLoad};
 use crate::impact::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
-use crate::impact::contact_forces::ForceError;
 use crate::impact::contact_ledger::{ContactLedger, StepCourse, work};
 use crate::impact::free_flight;
 use crate::impact::integrator::{Integration, Losses, NEGLIGIBLE, Options};
 use crate::impact::recorder::Recorder;
-use crate::impact::step_bounds::{Bounds, EnergyAccount, momentum_scale};
+use crate::impact::step_bounds::{EnergyAccount, momentum_scale};
 use crate::impact::system::{INNER, PLATE, System, dot};
 use std::collections::BTreeMap;
 
@@ -50,7 +49,6 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         recorder,
         end_time: options.end_time.unwrap_or(f64::INFINITY),
         defect_bound: defect_bound(options.tolerance),
-        settled: Bounds::new(options.tolerance).force,
         base_step: 0.25 * hit.duration(),
         tables: BTreeMap::new(),
         level: 8,
@@ -120,8 +118,6 @@ struct Run<'a> {
     recorder: Option<Recorder<'a, RADAU_POINTS>>,
     end_time: f64,
     defect_bound: f64,
-    /// Relative error of a step's forces at which its iteration may end.
-    settled: f64,
     base_step: f64,
     tables: BTreeMap<i32, Table>,
     level: i32,
@@ -202,8 +198,7 @@ impl Run<'_> {
             let h = table.h;
             let scale = momentum_scale(system, &self.contacts);
             let settled = SETTLED * self.defect_bound * scale[1];
-            let force_error = |h: f64| ForceError { absolute: settled / h, relative: self.settled };
-            if !self.wet.solve(table, &self.q, &self.v, force_error(h), &mut self.trial) {
+            if !self.wet.solve(table, &self.q, &self.v, settled / h, &mut self.trial) {
                 self.level += 1;
                 continue;
             }
@@ -215,7 +210,7 @@ impl Run<'_> {
             }
             if may_end && let Some(end) = self.end_in_step(h) {
                 let table = Table::new(system, self.collocation, end);
-                if !self.wet.solve(&table, &self.q, &self.v, force_error(end), &mut self.trial) {
+                if !self.wet.solve(&table, &self.q, &self.v, settled / end, &mut self.trial) {
                     self.level += 1;
                     continue;
                 }
