@@ -28,7 +28,7 @@ pub struct WorkPrecision {
     pub problem: String,
     /// Elastic modes; `None` for finite elements.
     pub modes: Option<usize>,
-    /// The solver's own tolerance; `None` if it has none.
+    /// The tolerance of an integrator; `None` for models, whose name says it if it is a rough one, and meshes.
     pub tolerance: Option<f64>,
     /// Relative error of the efficiency: of an integrator against the converged solution of the same equations, of a
     /// model or mesh against the finest stored reference.
@@ -112,7 +112,8 @@ const ERRORS: [f64; 4] = [1e-3, 1e-4, 1e-6, 1e-8];
 /// Runs the benchmark; `note` is told what is going on.
 ///
 /// # Errors
-/// If one of this program's own solvers fails; a peer that is missing is noted in the document.
+/// If one of this program's own solvers fails; a peer that is missing, or a mesh that can't be solved, is noted in the
+/// document.
 pub fn run(settings: &Settings, store: &Store, note: &dyn Fn(&str)) -> Result<Bench> {
     let mut bench = Bench {
         schema_version: SCHEMA_VERSION,

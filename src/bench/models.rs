@@ -11,9 +11,10 @@ use std::time::Instant;
 
 /// Numbers of modes of models B and C.
 const MODES: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
-/// Tolerances of the time integration: one whose error is none of the model's, and one that does for a rough answer.
-const TOLERANCES: [f64; 2] = [1e-5, 1e-3];
-/// Calls of which the quickest is the time of a whole program.
+/// Tolerances of the time integration, with what they add to the solver's name: one whose error is none of the model's, and
+/// one that does for a rough answer.
+const TOLERANCES: [(f64, &str); 2] = [(1e-5, ""), (1e-3, ", tolerance 1e-3")];
+/// Calls of which the quickest is the time of a whole program, a mesh's or a model's.
 const PROGRAM_CALLS: usize = 3;
 /// Error of the efficiency at which model C is compared with the reference's meshes.
 const ERROR: f64 = 3e-3;
@@ -42,16 +43,12 @@ pub(super) fn run(store: &Store, bench: &mut Bench) -> Result<()> {
             }
         }
         for model in [Model::A, Model::B, Model::C] {
-            for tolerance in TOLERANCES {
-                let solver = match tolerance {
-                    t if t == TOLERANCES[0] => format!("model {model}"),
-                    t => format!("model {model}, tolerance {t:e}"),
-                };
-                for modes in MODES.into_iter().filter(|n| model != Model::A || *n == 1) {
-                    let reduced = Reduced::new(&scene, model, Some(modes))?;
+            for modes in MODES.into_iter().filter(|n| model != Model::A || *n == 1) {
+                let reduced = Reduced::new(&scene, model, Some(modes))?;
+                for (tolerance, name) in TOLERANCES {
                     let (summary, seconds) = timed(200, || reduced.run(tolerance))?;
                     bench.work_precision.push(WorkPrecision {
-                        solver: solver.clone(),
+                        solver: format!("model {model}{name}"),
                         problem: problem.clone(),
                         modes: Some(modes),
                         tolerance: None,
@@ -120,20 +117,23 @@ impl MeshRun {
     }
 }
 
-/// Solves `scene` by finite elements into a store of its own.
+/// Solves `scene` by finite elements, each time into a store of its own.
 fn mesh(scene: &Path, resolution: Resolution) -> Result<MeshRun> {
-    let store = std::env::temp_dir().join(format!("impactcheck-bench-{}", std::process::id()));
-    let mut command = program("reference", scene)?;
-    command.args(["--resolution", &resolution.argument(), "--fresh", "--store"]).arg(&store);
-    let run = output(command);
-    // a folder that was never made is none to remove
-    let _ = std::fs::remove_dir_all(&store);
-    let (document, whole) = run?;
-    let value = |name: &str| {
-        let value = document.get(name).and_then(serde_json::Value::as_f64);
-        value.ok_or_else(|| Error::Internal(format!("`impactcheck reference` gave no `{name}`")))
-    };
-    Ok(MeshRun { efficiency: value("efficiency")?, seconds: value("solve_seconds")?, whole })
+    let mut quickest: Option<MeshRun> = None;
+    for _ in 0..PROGRAM_CALLS {
+        let store = tempfile::tempdir().map_err(|e| Error::Internal(format!("a temporary folder: {e}")))?;
+        let mut command = program("reference", scene)?;
+        command.args(["--resolution", &resolution.argument(), "--fresh", "--store"]).arg(store.path());
+        let (document, whole) = output(command)?;
+        let value = |name: &str| {
+            let value = document.get(name).and_then(serde_json::Value::as_f64);
+            value.ok_or_else(|| Error::Internal(format!("`impactcheck reference` gave no `{name}`")))
+        };
+        let (efficiency, seconds) = (value("efficiency")?, value("solve_seconds")?);
+        let before = quickest.map_or([f64::INFINITY; 2], |run| [run.seconds, run.whole]);
+        quickest = Some(MeshRun { efficiency, seconds: seconds.min(before[0]), whole: whole.min(before[1]) });
+    }
+    quickest.ok_or_else(|| Error::Internal("no run of a mesh".to_owned()))
 }
 
 /// Wall time in s of the program from its start to its result, without a cache of bodies.

@@ -15,10 +15,10 @@ use super::duhamel::{MOMENTS, Oscillator};
 use crate::body::quadrature::{gauss_legendre, gauss_radau};
 use wide::f64x4;
 
-/// Gauss points of a step.
+/// Gauss (or Radau) points of a step, its nodes.
 pub const STAGES: usize = 4;
 
-/// Values at the Gauss points.
+/// Values at the nodes.
 pub type Stages = [f64; STAGES];
 
 /// Points of a step at which a contact is known: its start, the Gauss points, its end.
@@ -128,12 +128,12 @@ impl<const P: usize> Collocation<P> {
             .map(|polynomial| f64x4::from(self.nodes.map(|node| horner(&polynomial, 1.0 + node * ratio))))
     }
 
-    /// Weights of the values at the Gauss points in the polynomial's value at `u` (in units of the step).
+    /// Weights of the values at the nodes in the polynomial's value at `u` (in units of the step).
     pub fn interpolation(&self, u: f64) -> Stages {
         self.lagrange.map(|polynomial| horner(&polynomial, u))
     }
 
-    /// Weights of the values at the Gauss points in the polynomial's derivative at `u`, per step.
+    /// Weights of the values at the nodes in the polynomial's derivative at `u`, per step.
     fn derivative(&self, u: f64) -> Stages {
         std::array::from_fn(|l| {
             (1..STAGES).rev().fold(0.0, |sum, p| sum * u + p as f64 * self.lagrange[l][p])
@@ -154,7 +154,7 @@ impl<const P: usize> Collocation<P> {
         }
     }
 
-    /// Answer per force at each Gauss point of a step of length `h`, from the answers to tau^p / p!.
+    /// Answer per force at each node of a step of length `h`, from the answers to tau^p / p!.
     fn per_force(&self, moments: &[f64], h: f64) -> Stages {
         let mut answer = [0.0; STAGES];
         // the polynomials are in (tau/h)^p
@@ -171,7 +171,7 @@ impl<const P: usize> Collocation<P> {
     }
 }
 
-/// Answer of an oscillator to its state at the start of the step and to the force at the Gauss points.
+/// Answer of an oscillator to its state at the start of the step and to the force at the nodes.
 #[derive(Debug, Clone, Copy)]
 pub struct Response {
     /// q(t) per q(0).
@@ -182,9 +182,9 @@ pub struct Response {
     pub velocity_per_displacement: f64,
     /// q'(t) per q'(0).
     pub velocity_per_velocity: f64,
-    /// q(t) per generalised force at each Gauss point, s^2.
+    /// q(t) per generalised force at each node, s^2.
     pub displacement_per_force: Stages,
-    /// q'(t) per generalised force at each Gauss point, s.
+    /// q'(t) per generalised force at each node, s.
     pub velocity_per_force: Stages,
 }
 
@@ -331,4 +331,34 @@ fn powers(t: f64) -> [f64; STAGES] {
         powers[p] = powers[p - 1] * t / p as f64;
     }
     powers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use faer::Mat;
+    use faer::linalg::solvers::Solve;
+
+    /// v' = -lambda v over one step of length 1: a force that damps much faster than the step.
+    fn left_of_a_damped_rate<const P: usize>(collocation: &Collocation<P>, lambda: f64) -> f64 {
+        let free = Oscillator { omega: 0.0, alpha: 0.0 };
+        let rows = collocation.nodes.map(|u| collocation.response(&free, u, 1.0).velocity_per_force);
+        let matrix = Mat::from_fn(STAGES, STAGES, |j, l| f64::from(u8::from(j == l)) + lambda * rows[j][l]);
+        let force = matrix.partial_piv_lu().solve(Mat::from_fn(STAGES, 1, |_, _| -lambda));
+        1.0 + collocation.weights.iter().enumerate().map(|(j, w)| w * force[(j, 0)]).sum::<f64>()
+    }
+
+    #[test]
+    fn radau_stops_what_is_damped_within_the_step_and_gauss_does_not() {
+        for lambda in [1e4, 1e8] {
+            assert!(left_of_a_damped_rate(&Collocation::radau(), lambda).abs() < 10.0 / lambda);
+            assert!(left_of_a_damped_rate(&Collocation::default(), lambda).abs() > 0.9);
+        }
+        assert_relative_eq!(
+            left_of_a_damped_rate(&Collocation::radau(), 1.0),
+            (-1.0_f64).exp(),
+            epsilon = 1e-7
+        );
+    }
 }

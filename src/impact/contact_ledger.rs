@@ -48,9 +48,9 @@ impl ContactLedger {
 
     /// Books a step.
     pub fn book<const P: usize>(&mut self, collocation: &Collocation<P>, course: &StepCourse<P>) {
-        let gauss: &Stages = course.force[1..=STAGES].try_into().expect("STAGES values");
+        let stages: &Stages = course.force[1..=STAGES].try_into().expect("STAGES values");
         let before = self.impulse;
-        self.impulse += course.h * gauss.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
+        self.impulse += course.h * stages.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
         self.work += course.work;
         let (highest, largest) = argmax(&course.force);
         if largest > self.force_peak {

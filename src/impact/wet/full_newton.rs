@@ -86,7 +86,9 @@ impl Wet<'_> {
         }
         for j in 0..STAGES {
             for i in 0..2 {
-                trial.forces[i][j] += change[(contact(i, j), 0)];
+                // factors from when the contact was closed know no open one
+                let open = defect.tangent[j][i] == [0.0; 2];
+                trial.forces[i][j] = if open { 0.0 } else { trial.forces[i][j] + change[(contact(i, j), 0)] };
             }
             for k in 0..fluid {
                 trial.fluid[k][j] += change[(load(k, j), 0)];

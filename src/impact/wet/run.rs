@@ -1,5 +1,6 @@
 //! Steps of adapted length through a wet impact, and what is booked on the way.
 
+use super::guess::StepForces;
 use super::solve::{END, Trial, Wet};
 use super::table::Table;
 use crate::analytical::hertz::HertzImpact;
@@ -20,9 +21,7 @@ const MAX_STEPS: u64 = 300_000;
 const LAST_LEVEL: i32 = 44;
 /// Longest step without a touch in sight, as a power of 2 of the base length.
 const LONGEST: i32 = -8;
-/// Length of a step over that of the step before up to which its forces are extrapolated.
-const FARTHEST: f64 = 2.5;
-/// Share of a step's admissible defect at which its iteration may end.
+/// Share of a step's admissible defect at which its iteration may end, if rounding errors permit.
 const SETTLED: f64 = 1e-3;
 
 /// Integrates the impact of `system` in a `fluid`.
@@ -60,7 +59,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         q,
         v,
         trial,
-        before: Forces::default(),
+        before: StepForces::default(),
         contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
         booked: Booked::default(),
         energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
@@ -101,17 +100,6 @@ struct StepAccount {
     made: f64,
 }
 
-/// Forces of the latest step at Radau's points.
-#[derive(Default)]
-struct Forces {
-    /// Length of the step in s; 0 before the first.
-    h: f64,
-    /// Of both contacts, N.
-    forces: [Stages; 2],
-    /// Generalised ones of the fluid. Shape (size).
-    fluid: Vec<Stages>,
-}
-
 struct Run<'a> {
     wet: Wet<'a>,
     collocation: &'a Collocation<RADAU_POINTS>,
@@ -131,7 +119,7 @@ struct Run<'a> {
     load: FluidLoad,
     /// The latest step; its vectors are used again.
     trial: Trial,
-    before: Forces,
+    before: StepForces,
     contacts: [ContactLedger; 2],
     booked: Booked,
     energy: EnergyAccount,
@@ -186,7 +174,8 @@ impl Run<'_> {
                 )));
             }
             let (h, rest) = (self.length(self.level), self.end_time - self.time);
-            self.guess(h.min(rest));
+            let start = (self.force, &self.load.force[..]);
+            self.before.guess(self.collocation, h.min(rest), start, &mut self.trial);
             let system = self.wet.system;
             let last;
             let table = if rest < h {
@@ -223,25 +212,6 @@ impl Run<'_> {
                 self.level -= 1;
             }
             return Ok(false);
-        }
-    }
-
-    /// First guess of the forces of a step of `h` s: extrapolated from the step before, if that was long enough, or as at
-    /// the start.
-    fn guess(&mut self, h: f64) {
-        let Self { trial, before, .. } = self;
-        if h > FARTHEST * before.h {
-            trial.forces = self.force.map(|force| [force; STAGES]);
-            for (fluid, force) in trial.fluid.iter_mut().zip(&self.load.force) {
-                *fluid = [*force; STAGES];
-            }
-            return;
-        }
-        let weights = self.collocation.nodes.map(|u| self.collocation.interpolation(1.0 + u * h / before.h));
-        let extrapolated = |stages: &Stages| weights.map(|weights| dot(&weights, stages));
-        trial.forces = before.forces.map(|stages| extrapolated(&stages).map(|force| force.max(0.0)));
-        for (fluid, stages) in trial.fluid.iter_mut().zip(&before.fluid) {
-            *fluid = extrapolated(stages);
         }
     }
 
@@ -340,7 +310,7 @@ impl Run<'_> {
     fn check_overlap(&self, h: f64) -> Result<()> {
         let Some(overlap) = self.trial.loads.iter().find_map(FluidLoad::overlap) else { return Ok(()) };
         Err(Error::BeyondModel(format!(
-            "reduced model: at t = {:.6e} s the plate bends around the inner body: at r = {:.2e} m they overlap by {:.2e} m more than on the axis, beyond the film's minimal gap; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`",
+            "reduced model: at t = {:.6e} s the plate bends around the inner body: at r = {:.2e} m they overlap by {:.2e} m beside the contact on the axis, more than the film's minimal gap; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`",
             self.time + h,
             overlap.radius,
             overlap.depth
@@ -371,9 +341,7 @@ impl Run<'_> {
         self.booked.add(&account.fluid);
         self.energy.book(account.made);
         let trial = &mut self.trial;
-        self.before.h = h;
-        self.before.forces = trial.forces;
-        self.before.fluid.clone_from(&trial.fluid);
+        self.before.keep(h, trial);
         std::mem::swap(&mut self.q, &mut trial.motion.q[END]);
         std::mem::swap(&mut self.v, &mut trial.motion.v[END]);
         std::mem::swap(&mut self.load, &mut trial.loads[END]);

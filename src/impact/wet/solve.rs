@@ -18,10 +18,11 @@ const MAX_ITERATIONS: usize = 30;
 const STAGNANT: f64 = 0.5;
 /// Error of an iteration over that of the last from which on the fluid's whole tangent is worth its price.
 const SLOW: f64 = 0.3;
-/// Force errors with which a step is in order once the iteration has gained nothing [`STALLS`] times: a film against which
-/// fast bodies hardly move answers to the rounding errors of their rates.
-const ROUNDED: f64 = 100.0;
+/// Iterations in a row without a gain after which rounding errors are what is left: a film against which fast bodies hardly
+/// move answers to those of their rates.
 const STALLS: u32 = 2;
+/// Admissible force errors with which such a step is in order.
+const ROUNDED: f64 = 100.0;
 /// Unknowns of Newton's step: both contact forces and the film's part along g at every point of a step.
 const UNKNOWNS: usize = 3 * STAGES;
 
@@ -43,7 +44,7 @@ pub struct Trial {
     pub end_force: [f64; 2],
     /// Generalised forces of the fluid, from the inner body's on. Shape (size).
     pub fluid: Vec<Stages>,
-    /// What the fluid does. Shape (STAGES).
+    /// What the fluid does, whose forces act: in the motion before the last correction. Shape (STAGES).
     pub loads: Vec<FluidLoad>,
     /// The equations of Newton's step with the fluid's whole tangent, once it has been worth its price.
     pub(super) factors: Option<Factors>,
@@ -60,17 +61,18 @@ impl Wet<'_> {
     /// Solves for the forces of a step from the state (`q`, `v`), from those in `trial` on; `false` if the iteration
     /// does not settle within `force_error` N or the contact has no equilibrium.
     pub fn solve(&self, table: &Table, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
-        let (mut last, mut stalls) = (f64::INFINITY, 0);
+        let (mut last, mut best, mut stalls) = (f64::INFINITY, f64::INFINITY, 0);
         for iteration in 0..MAX_ITERATIONS {
             table.motion(q, v, &self.generalised(trial), &mut trial.motion);
             let Some(defect) = self.defect(trial) else { return false };
-            let size = self.largest(&defect.contact, &defect.fluid);
-            stalls += u32::from(size > STAGNANT * last);
+            let size = self.size(&defect);
+            stalls = if size > STAGNANT * last { stalls + 1 } else { 0 };
+            best = size.min(best);
             // in a very short step any guess gives the right impulse, but not the right energy
             let settled = size <= force_error && iteration > 0;
-            if settled || (stalls >= STALLS && size <= ROUNDED * force_error) {
-                self.balance(table, q, v, trial);
-                return true;
+            let rounded = stalls >= STALLS && size <= 2.0 * best && size <= ROUNDED * force_error;
+            if settled || rounded {
+                return self.balance(table, q, v, trial);
             }
             let slow = size > SLOW * last;
             let solved = size.is_finite()
@@ -96,12 +98,23 @@ impl Wet<'_> {
     }
 
     /// Makes the fluid's last answer the force that acts: to the last digit the same on both sides of the film, so that what
-    /// the iteration leaves can't unbalance the momenta, step after step.
-    fn balance(&self, table: &Table, q: &[f64], v: &[f64], trial: &mut Trial) {
+    /// the iteration leaves can't unbalance the momenta, step after step. The motion follows; the fluid is not asked again,
+    /// since a stiff film would magnify the difference, which the next step stops. `false` if the contact has no
+    /// equilibrium.
+    fn balance(&self, table: &Table, q: &[f64], v: &[f64], trial: &mut Trial) -> bool {
         for (k, fluid) in trial.fluid.iter_mut().enumerate() {
             *fluid = std::array::from_fn(|j| trial.loads[j].force[k]);
         }
         table.motion(q, v, &self.generalised(trial), &mut trial.motion);
+        for j in 0..STAGES {
+            let approach = self.system.modal_approach(&trial.motion.q[j]);
+            let Some((local, force)) = self.system.contact(approach, approach) else { return false };
+            for i in 0..2 {
+                (trial.approach[i][j], trial.local[i][j]) = (approach[i], local[i]);
+            }
+            trial.end_force = force;
+        }
+        true
     }
 
     /// Generalised forces of contacts and fluid at Radau's points. Shape (n).
@@ -144,8 +157,8 @@ impl Wet<'_> {
         Some(defect)
     }
 
-    /// Largest of the forces in N; generalised forces as if they acted on the inner body.
-    fn largest(&self, contact: &[Stages; 2], fluid: &[Stages]) -> f64 {
+    /// Largest force in N that is missing; generalised forces as if they acted on the inner body.
+    fn size(&self, defect: &Defect) -> f64 {
         let largest = |values: &[Stages]| {
             // a value that is no number has to come out
             values
@@ -153,7 +166,8 @@ impl Wet<'_> {
                 .flatten()
                 .fold(0.0, |largest: f64, x| if x.abs() <= largest { largest } else { x.abs() })
         };
-        let (contact, fluid) = (largest(contact), largest(fluid) * self.system.masses[1].sqrt());
+        let (contact, fluid) =
+            (largest(&defect.contact), largest(&defect.fluid) * self.system.masses[1].sqrt());
         if contact >= fluid || contact.is_nan() { contact } else { fluid }
     }
 
