@@ -94,7 +94,7 @@ fn ratios(problem: &str, runs: &[WorkPrecision]) -> Vec<Ratio> {
         .collect()
 }
 
-/// A run of the reference on one mesh, just now.
+/// Runs of the reference on one mesh, made now: stored times are of another day.
 struct MeshRun {
     efficiency: f64,
     /// Of the time loop, s.
@@ -117,7 +117,7 @@ impl MeshRun {
     }
 }
 
-/// Solves `scene` by finite elements, each time into a store of its own.
+/// Solves `scene` by finite elements [`PROGRAM_CALLS`] times, each into a store of its own; the shortest times count.
 fn mesh(scene: &Path, resolution: Resolution) -> Result<MeshRun> {
     let mut quickest: Option<MeshRun> = None;
     for _ in 0..PROGRAM_CALLS {
