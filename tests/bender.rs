@@ -7,10 +7,11 @@ use common::scaled_plate;
 use impactcheck::analytical::cantilever;
 use impactcheck::body::beam::{Beam, Release};
 use impactcheck::body::kirchhoff;
-use impactcheck::impact::OuterBody;
 use impactcheck::impact::integrator::{Integration, Options, integrate};
+use impactcheck::impact::reduced::Reduced;
 use impactcheck::impact::system::System;
-use impactcheck::scene::{Bender, PlateImpact, Scene, Shape};
+use impactcheck::impact::{OuterBody, Summary};
+use impactcheck::scene::{Bender, Model, PlateImpact, Scene, Shape};
 use std::f64::consts::TAU;
 
 /// The bender of section 4.3 at a length of 13.7 mm.
@@ -187,6 +188,19 @@ fn beam_takes_part_in_the_impact() {
     assert_relative_eq!(system.energy(q, v), drive.strain_energy, max_relative = 0.03);
     assert_relative_eq!(drive.kinetic_energy, system.initial_energy(), max_relative = 1e-12);
     assert_relative_eq!(result.velocity[1], -0.58, max_relative = 0.02);
+}
+
+#[test]
+fn contacts_wider_than_the_waves_of_the_modes_keep_an_equilibrium() {
+    let scene = Scene::read(std::path::Path::new("scenes/examples/rocker-bender.toml")).unwrap();
+    let run = |modes| Reduced::new(&scene, Model::C, Some(modes)).unwrap().run(1e-6).unwrap();
+    let few = run(8);
+    for modes in [24, 40] {
+        let many = run(modes);
+        assert!(many.momentum_residual < 1e-10 && many.energy_residual < 1e-5);
+        let efficiency = |summary: &Summary| summary.quantities.efficiency;
+        assert_relative_eq!(efficiency(&many), efficiency(&few), max_relative = 5e-3);
+    }
 }
 
 #[test]

@@ -94,6 +94,17 @@ impl Residual {
         [[own(0) + entry(0, 0), entry(0, 1)], [entry(1, 0), own(1) + entry(1, 1)]]
     }
 
+    /// Determinant of the derivative of the approaches by the patches under the forces `f` in N: 1 for Hertz's contacts
+    /// alone. Where it is not positive the contacts yield without being pressed, and no equilibrium can be followed.
+    pub fn stability(&self, laws: &[Hertz; 2], f: [f64; 2]) -> f64 {
+        let (p, c) = self.patches(laws, f);
+        if c[0] <= 0.0 || c[1] <= 0.0 {
+            return f64::NEG_INFINITY;
+        }
+        let [[a, b], [d, e]] = self.jacobian(laws, &self.state(laws, p));
+        a * e - b * d
+    }
+
     /// Strain energy in J of the contacts under the forces `f` in N with the patches `p` in m that go with them.
     #[inline(always)]
     pub fn energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
@@ -299,6 +310,33 @@ mod tests {
             constant([[1e-9; 2]; 2]).solve(&LAWS, [-1e-6, 0.0], [0.0; 2]),
             Some(([-1e-6, 0.0], [0.0, 0.0]))
         );
+    }
+
+    #[test]
+    fn stability_is_the_change_of_the_approaches_and_ends_where_pressing_further_needs_none() {
+        let residual =
+            Residual { flexibility: [[-2e-8, 0.0], [0.0, 0.0]], growth: [[2e-5, 0.0], [0.0, 0.0]] };
+        // from the module's formulas, the second contact being open
+        let force = |p: f64| {
+            let alone = LAWS[0].force(p);
+            alone / (1.0 - 5.0 * alone * 2e-5)
+        };
+        let approach = |p: f64| {
+            let f = force(p);
+            (1.0 + 5.0 * 2e-5 * f) * p + f * (-2e-8 + 2e-5 * p)
+        };
+        let mut p = 1e-8;
+        let mut stable = true;
+        while stable {
+            let step = 1e-5 * p;
+            let slope = (approach(p + step) - approach(p - step)) / (2.0 * step);
+            assert_relative_eq!(residual.stability(&LAWS, [force(p), 0.0]), slope, epsilon = 1e-6);
+            stable = slope > 0.0;
+            p *= 1.01;
+        }
+        let largest = approach(p / 1.01);
+        assert!(residual.solve(&LAWS, [0.999 * largest, -1.0], [1e-8, -1.0]).is_some());
+        assert_eq!(residual.solve(&LAWS, [1.001 * largest, -1.0], [1e-8, -1.0]), None);
     }
 
     #[test]

@@ -206,14 +206,11 @@ impl<'a> Run<'a> {
     fn step(&mut self) -> Result<()> {
         // the end of a step that an event asked for
         let mut wanted = None;
+        let mut solved = true;
         loop {
             let (start, end) = (*LEVELS.start(), *LEVELS.end());
             if self.level > end {
-                return Err(Error::Solver(format!(
-                    "reduced model: the time step fell below {:.1e} s at t = {:.6e} s without meeting the tolerance",
-                    self.base_step * 0.5_f64.powi(end),
-                    self.time
-                )));
+                return Err(self.stuck(solved));
             }
             self.level = self.level.max(start);
             let h = self.base_step * 0.5_f64.powi(self.level);
@@ -234,6 +231,7 @@ impl<'a> Run<'a> {
                 (&mut self.next_q, &mut self.next_v),
                 ForceError { absolute: self.bounds.impulse * scale[1] / h, relative: self.bounds.force },
             );
+            solved = trial.is_some();
             let Some(trial) = trial else {
                 self.level += 1;
                 continue;
@@ -285,6 +283,23 @@ impl<'a> Run<'a> {
             }
             return Ok(());
         }
+    }
+
+    /// Why no step is short enough; whether the last one could be `solved`.
+    fn stuck(&self, solved: bool) -> Error {
+        let [_, _, [outer, inner]] = self.course.end();
+        Error::Solver(if solved || self.solver.system.residual.is_none() {
+            format!(
+                "reduced model: the time step fell below {:.1e} s at t = {:.6e} s without meeting the tolerance",
+                self.base_step * 0.5_f64.powi(*LEVELS.end()),
+                self.time
+            )
+        } else {
+            format!(
+                "reduced model: at t = {:.6e} s, with contact forces of {outer:.4} N and {inner:.4} N, the contacts find no equilibrium: the residual flexibility of the modes that are left out does not hold for contact patches as wide as these; take fewer modes, or model B",
+                self.time
+            )
+        })
     }
 
     /// Energy in J that the step makes from nothing. Damped bodies lose some: then what the contacts store beyond the work
