@@ -7,10 +7,10 @@ use common::scaled_plate;
 use impactcheck::analytical::cantilever;
 use impactcheck::body::beam::{Beam, Release};
 use impactcheck::body::kirchhoff;
+use impactcheck::impact::OuterBody;
 use impactcheck::impact::integrator::{Integration, Options, integrate};
 use impactcheck::impact::reduced::Reduced;
 use impactcheck::impact::system::System;
-use impactcheck::impact::{OuterBody, Summary};
 use impactcheck::scene::{Bender, Model, PlateImpact, Scene, Shape};
 use std::f64::consts::TAU;
 
@@ -190,17 +190,14 @@ fn beam_takes_part_in_the_impact() {
     assert_relative_eq!(result.velocity[1], -0.58, max_relative = 0.02);
 }
 
+/// Contact patches as wide as the waves of the modes are beyond what model C's residual flexibility describes.
 #[test]
-fn contacts_wider_than_the_waves_of_the_modes_keep_an_equilibrium() {
+fn more_modes_than_the_contact_patches_allow_are_told_of() {
     let scene = Scene::read(std::path::Path::new("scenes/examples/rocker-bender.toml")).unwrap();
-    let run = |modes| Reduced::new(&scene, Model::C, Some(modes)).unwrap().run(1e-6).unwrap();
-    let few = run(8);
-    for modes in [24, 40] {
-        let many = run(modes);
-        assert!(many.momentum_residual < 1e-10 && many.energy_residual < 1e-5);
-        let efficiency = |summary: &Summary| summary.quantities.efficiency;
-        assert_relative_eq!(efficiency(&many), efficiency(&few), max_relative = 5e-3);
-    }
+    let run = |modes| Reduced::new(&scene, Model::C, Some(modes)).unwrap().run(1e-6);
+    assert!(run(8).unwrap().momentum_residual < 1e-10);
+    let error = run(32).unwrap_err().to_string();
+    assert!(error.contains("no equilibrium") && error.contains("take fewer modes"), "{error}");
 }
 
 #[test]

@@ -4,4 +4,4 @@ mod hertz;
 mod residual;
 
 pub use hertz::Hertz;
-pub use residual::Residual;
+pub use residual::{Residual, State};

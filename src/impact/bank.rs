@@ -43,6 +43,8 @@ pub struct Bank {
     damped: Vec<bool>,
     /// Approach of each contact per unit of each coordinate.
     pub approach: [Vec<f64x4>; 2],
+    /// Products of the approaches of a pair of contacts: (0,0), (0,1) = (1,0), (1,1).
+    pub products: [Vec<f64x4>; 3],
 }
 
 impl Bank {
@@ -57,13 +59,17 @@ impl Bank {
         let each = |value: fn(&Oscillator) -> f64| -> Vec<f64x4> {
             oscillators.iter().map(|block| f64x4::from(block.map(|o| value(&o)))).collect()
         };
+        let approach = [in_blocks(&system.approach[0]), in_blocks(&system.approach[1])];
+        let product =
+            |i: usize, j: usize| approach[i].iter().zip(&approach[j]).map(|(a, b)| *a * *b).collect();
         Self {
+            products: [product(0, 0), product(0, 1), product(1, 1)],
             omega: each(|o| o.omega),
             stiffness: each(|o| o.omega * o.omega),
             flexibility: each(|o| if o.omega > 0.0 { 1.0 / (o.omega * o.omega) } else { 0.0 }),
             damping: each(|o| 2.0 * o.alpha),
             damped: oscillators.iter().map(|block| block.iter().any(|o| o.alpha > 0.0)).collect(),
-            approach: [in_blocks(&system.approach[0]), in_blocks(&system.approach[1])],
+            approach,
             oscillators,
         }
     }

@@ -213,7 +213,7 @@ impl Trials<'_> {
 
     /// Model C with a layer in the place of the continuum.
     fn continuum(&self, modes: usize) -> Result<PlateQuantities> {
-        let plate = validity::tempered(self.layer.modal_body(modes), self.tips, self.setup, &self.rough);
+        let plate = validity::tempered(self.layer.modal_body(modes), self.setup, &self.rough);
         self.run(plate, modes, self.tips)
     }
 

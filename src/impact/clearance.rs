@@ -3,8 +3,7 @@
 //! The forces at the points of a step are all it knows of a contact: a short touch between two of them would be passed
 //! without a trace. The approach's polynomial through the points shows it.
 
-use super::collocation::{Collocation, POINTS, Points, horner};
-use super::contact_ledger::bisect;
+use super::collocation::{Collocation, POINTS, Points, crossing, horner};
 use std::sync::LazyLock;
 
 /// Weights of the values at all points in the polynomial's values halfway between them. Shape (POINTS, POINTS - 1).
@@ -43,8 +42,7 @@ pub(super) fn touch_between(collocation: &Collocation, approach: &Points) -> Opt
     let before = middles.iter().position(|a| *a > 0.0)?;
     let [low, high] = [before, before + 1].map(|p| collocation.points[p]);
     let polynomial = collocation.through(approach);
-    let place = bisect(low, 0.5 * (low + high), |u| horner(&polynomial, u) <= 0.0);
-    debug_assert!(before + 1 < POINTS);
+    let place = crossing(&polynomial, [low, 0.5 * (low + high)], [approach[before], middles[before]]);
     Some(Touch { place, depth })
 }
 

@@ -86,6 +86,40 @@ pub fn horner(coefficients: &[f64], u: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * u + c)
 }
 
+/// Newton's steps for a crossing at most.
+const MAX_CROSSING_STEPS: usize = 50;
+/// Change of a place in the step (0..1) at which a crossing is found: the next one is far below rounding errors.
+const CROSSING: f64 = 1e-9;
+
+/// Where between `ends` the polynomial with `coefficients` passes zero, by Newton's method kept between the places with
+/// either sign; `values` are those at the ends, of which the second is positive or, if the first is, not.
+#[inline]
+pub fn crossing<const N: usize>(coefficients: &[f64; N], ends: [f64; 2], values: [f64; 2]) -> f64 {
+    let ([mut low, mut high], rising) = (ends, values[1] > 0.0);
+    let mut place = low + (high - low) * (values[0] / (values[0] - values[1])).clamp(0.0, 1.0);
+    for _ in 0..MAX_CROSSING_STEPS {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for c in coefficients.iter().rev() {
+            slope = slope * place + value;
+            value = value * place + c;
+        }
+        if (value > 0.0) == rising {
+            high = place
+        } else {
+            low = place
+        }
+        let newton = place - value / slope;
+        // false for NaN also
+        let inside = newton >= low && newton <= high;
+        let next = if inside { newton } else { 0.5 * (low + high) };
+        if (next - place).abs() <= CROSSING {
+            return next;
+        }
+        place = next;
+    }
+    place
+}
+
 impl<const P: usize> Collocation<P> {
     /// From points in (-1, 1] and their weights.
     fn new((points, weights): &(Vec<f64>, Vec<f64>)) -> Self {
@@ -193,10 +227,9 @@ pub struct Response {
 pub struct StepTable {
     /// Length of the step in s.
     pub h: f64,
-    /// s' and s of every oscillator at Gauss point j. Shape (STAGES, 2, blocks).
-    node: Vec<f64x4>,
-    /// Moments of every oscillator at the end. Shape (MOMENTS, blocks).
-    end: Vec<f64x4>,
+    /// s' and s of every oscillator at Gauss point j, shape (STAGES, 2, blocks); then its moments at the end, shape
+    /// (MOMENTS, blocks).
+    oscillators: Vec<f64x4>,
     /// `coupling[c][l]`: approaches at all Gauss points lost per force at Gauss point l, in m/N; c is the pair of contacts
     /// (0,0), (0,1) = (1,0), (1,1).
     pub coupling: [[f64x4; STAGES]; 3],
@@ -209,8 +242,7 @@ impl StepTable {
     pub fn empty(blocks: usize) -> Self {
         Self {
             h: 0.0,
-            node: bytemuck::zeroed_vec(STAGES * 2 * blocks),
-            end: bytemuck::zeroed_vec(MOMENTS * blocks),
+            oscillators: bytemuck::zeroed_vec((STAGES * 2 + MOMENTS) * blocks),
             coupling: [[f64x4::ZERO; STAGES]; 3],
             coefficients: Default::default(),
         }
@@ -227,22 +259,21 @@ impl StepTable {
             }
             self.coefficients[p] = std::array::from_fn(|l| scale * collocation.lagrange[l][p]);
         }
-        let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
+        let products: [&[f64x4]; 3] = std::array::from_fn(|pair| &bank.products[pair][..n]);
         let mut rows = [[[0.0; STAGES]; STAGES]; 3];
         for j in 0..STAGES {
             let t = collocation.nodes[j] * h;
             let powers = powers(t);
-            let (slope, impulse) = self.node[2 * j * n..][..2 * n].split_at_mut(n);
+            let (slope, impulse) = self.oscillators[2 * j * n..][..2 * n].split_at_mut(n);
             // answers of the approaches to forces tau^p / p!
             let mut answers = [[f64x4::ZERO; STAGES]; 3];
             for k in 0..n {
                 let moments = bank.moments(k, t, &powers);
                 (slope[k], impulse[k]) = (moments[0], moments[1]);
                 for p in 0..STAGES {
-                    let (first, second) = (b0[k] * moments[p + 2], b1[k] * moments[p + 2]);
-                    answers[0][p] += b0[k] * first;
-                    answers[1][p] += b1[k] * first;
-                    answers[2][p] += b1[k] * second;
+                    for pair in 0..3 {
+                        answers[pair][p] += products[pair][k] * moments[p + 2];
+                    }
                 }
             }
             for (rows, answers) in rows.iter_mut().zip(answers) {
@@ -258,7 +289,7 @@ impl StepTable {
         let powers = powers(h);
         for k in 0..n {
             for (p, moment) in bank.moments(k, h, &powers).into_iter().enumerate() {
-                self.end[p * n + k] = moment;
+                self.oscillators[(2 * STAGES + p) * n + k] = moment;
             }
         }
     }
@@ -269,7 +300,7 @@ impl StepTable {
         let n = q.len();
         let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
         let (damping, v) = (&bank.damping[..n], &v[..n]);
-        let rows: [&[f64x4]; 2 * STAGES] = std::array::from_fn(|row| &self.node[row * n..][..n]);
+        let rows: [&[f64x4]; 2 * STAGES] = std::array::from_fn(|row| &self.oscillators[row * n..][..n]);
         let mut sums = [[f64x4::ZERO; STAGES]; 2];
         for k in 0..n {
             let rate = v[k] + damping[k] * q[k];
@@ -296,7 +327,8 @@ impl StepTable {
         let (v, q_end, v_end) = (&v[..n], &mut q_end[..n], &mut v_end[..n]);
         let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
         let (damping, stiffness) = (&bank.damping[..n], &bank.stiffness[..n]);
-        let rows: [&[f64x4]; MOMENTS] = std::array::from_fn(|p| &self.end[p * n..][..n]);
+        let rows: [&[f64x4]; MOMENTS] =
+            std::array::from_fn(|p| &self.oscillators[(2 * STAGES + p) * n..][..n]);
         let mut polynomial = [[0.0; STAGES]; 2];
         for p in 0..STAGES {
             for l in 0..STAGES {
@@ -347,6 +379,25 @@ mod tests {
         let matrix = Mat::from_fn(STAGES, STAGES, |j, l| f64::from(u8::from(j == l)) + lambda * rows[j][l]);
         let force = matrix.partial_piv_lu().solve(Mat::from_fn(STAGES, 1, |_, _| -lambda));
         1.0 + collocation.weights.iter().enumerate().map(|(j, w)| w * force[(j, 0)]).sum::<f64>()
+    }
+
+    #[test]
+    fn crossings_are_found_wherever_they_are_and_however_flat() {
+        for root in [1e-9_f64, 0.1, 0.37, 0.5, 0.999] {
+            // (u - r)(u^2 + 1), (r - u)(u + 2)^2, (u - r)^3
+            let polynomials = [
+                [-root, 1.0, -root, 1.0],
+                [4.0 * root, 4.0 * root - 4.0, root - 4.0, -1.0],
+                [-root.powi(3), 3.0 * root * root, -3.0 * root, 1.0],
+            ];
+            for (polynomial, accuracy) in polynomials.into_iter().zip([1e-15, 1e-15, 1e-5]) {
+                let values = [0.0, 1.0].map(|u| horner(&polynomial, u));
+                let found = crossing(&polynomial, [0.0, 1.0], values);
+                assert_relative_eq!(found, root, epsilon = accuracy);
+            }
+        }
+        // no sign change: the end that is nearer to one
+        assert!(crossing(&[1.0, 1.0], [0.0, 1.0], [-1e-20, 2.0]) < 1e-9);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::bank::Bank;
 use super::collocation::{Collocation, POINTS, Points, STAGES, Stages, StepTable};
 use super::contact_ledger::work;
 use super::point_laws::{HertzPoints, PointLaw, ResidualPoints, Visit};
-use super::system::System;
+use super::system::{System, dot};
 use wide::f64x4;
 
 /// Sweeps after which a step counts as too long.
@@ -43,13 +43,15 @@ impl Course {
     /// Values at the end: modal approaches in m, local approaches in m, forces in N.
     #[inline(always)]
     pub fn end(&self) -> [[f64; 2]; 3] {
-        [&self.approach, &self.local_approach, &self.force].map(|rows| rows.map(|row| row[POINTS - 1]))
+        let last = |rows: &[Points; 2]| [rows[0][POINTS - 1], rows[1][POINTS - 1]];
+        [last(&self.approach), last(&self.local_approach), last(&self.force)]
     }
 
     /// Forces at the Gauss points in N.
     #[inline(always)]
     pub fn stages(&self) -> [Stages; 2] {
-        self.force.map(|row| std::array::from_fn(|j| row[j + 1]))
+        let inner = |row: &Points| std::array::from_fn(|j| row[j + 1]);
+        [inner(&self.force[0]), inner(&self.force[1])]
     }
 }
 
@@ -119,7 +121,7 @@ impl<'a> StepSolver<'a> {
         self.contraction = contraction;
         let (end, motion) = table.advance(&self.bank, &unknowns.force, now, next);
         let end_approach = [end[0] - self.system.gap[0], end[1] - self.system.gap[1]];
-        let last = unknowns.local.map(|p| p[STAGES - 1]);
+        let last = unknowns.local.map(|p| dot(&self.collocation.ends[1], &p));
         let (end_local, end_force) = self
             .system
             .contact(end_approach, last)
@@ -163,7 +165,7 @@ impl<'a> StepSolver<'a> {
         // the approaches under the newest forces
         let [mut y0, mut y1] = *free;
         for j in 0..STAGES {
-            let f = self.system.forces([local[0][j], local[1][j]]);
+            let f = law.begin(j, [local[0][j], local[1][j]]);
             y0 -= own0[j] * f[0] + mutual[j] * f[1];
             y1 -= mutual[j] * f[0] + own1[j] * f[1];
             [force[0][j], force[1][j]] = f;
@@ -220,12 +222,13 @@ impl<'a> StepSolver<'a> {
             self.extrapolation = (ratio, self.collocation.extrapolation(ratio));
         }
         let (_, weights) = &self.extrapolation;
-        Some(before.local_approach.map(|values| {
+        let at_nodes = |values: &Points| {
             let mut guess = f64x4::ZERO;
             for p in 0..POINTS {
                 guess += weights[p] * values[p];
             }
             guess.to_array()
-        }))
+        };
+        Some([at_nodes(&before.local_approach[0]), at_nodes(&before.local_approach[1])])
     }
 }

@@ -1,6 +1,6 @@
 //! What is booked about one contact: impulse, peak force, touches and releases.
 
-use super::collocation::{Collocation, STAGES, Stages, horner};
+use super::collocation::{Collocation, STAGES, Stages, crossing, horner};
 use super::system::dot;
 
 /// Course of one contact over one step, known at `P` points of it: start, Gauss (Radau) points and end.
@@ -85,8 +85,8 @@ impl ContactLedger {
         let polynomial = collocation.through(&course.force);
         let slope: [f64; P] =
             std::array::from_fn(|p| polynomial.get(p + 1).map_or(0.0, |c| (p + 1) as f64 * c));
-        let u = &collocation.points;
-        horner(&polynomial, bisect(u[highest - 1], u[highest + 1], |u| horner(&slope, u) > 0.0))
+        let around = [collocation.points[highest - 1], collocation.points[highest + 1]];
+        horner(&polynomial, crossing(&slope, around, around.map(|u| horner(&slope, u))))
     }
 }
 
@@ -102,17 +102,8 @@ pub fn work<const P: usize>(collocation: &Collocation<P>, force: &Stages, approa
 /// Where in the step (0..1), before `point`, the local approach passes zero.
 fn release<const P: usize>(collocation: &Collocation<P>, course: &StepCourse<P>, point: usize) -> f64 {
     let polynomial = collocation.through(&course.local_approach);
-    let u = &collocation.points;
-    bisect(u[point - 1], u[point], |u| horner(&polynomial, u) > 0.0)
-}
-
-/// Where between `low` and `high` the condition ends to hold.
-pub fn bisect(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..36 {
-        let middle = 0.5 * (low + high);
-        if holds(middle) { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
+    let around = |values: &[f64; P]| [values[point - 1], values[point]];
+    crossing(&polynomial, around(&collocation.points), around(&course.local_approach))
 }
 
 fn argmax(values: &[f64]) -> (usize, f64) {

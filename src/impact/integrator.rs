@@ -3,9 +3,9 @@
 use super::LEAN;
 use super::bank::in_blocks;
 use super::clearance::touch_between;
-use super::collocation::{Collocation, POINTS, STAGES, horner};
+use super::collocation::{Collocation, POINTS, Points, STAGES, crossing};
 use super::contact_forces::{Course, ForceError, StepSolver};
-use super::contact_ledger::{ContactLedger, StepCourse, bisect};
+use super::contact_ledger::{ContactLedger, StepCourse};
 use super::free_flight::{self, Flight};
 use super::history::History;
 use super::ladder::Ladder;
@@ -233,6 +233,7 @@ impl<'a> Run<'a> {
             );
             solved = trial.is_some();
             let Some(trial) = trial else {
+                wanted = None;
                 self.level += 1;
                 continue;
             };
@@ -411,9 +412,7 @@ fn change_inside(collocation: &Collocation, trial: &Course, contact: usize) -> O
     let point =
         (1..POINTS).find(|p| closed(local[*p]) != closed(local[p - 1]) && (*p > 1 || local[0] != 0.0))?;
     let polynomial = collocation.through(local);
-    let before = closed(local[point - 1]);
-    let u = bisect(collocation.points[point - 1], collocation.points[point], |u| {
-        closed(horner(&polynomial, u)) == before
-    });
+    let around = |values: &Points| [values[point - 1], values[point]];
+    let u = crossing(&polynomial, around(&collocation.points), around(local));
     EVENTS.contains(&u).then_some(u)
 }

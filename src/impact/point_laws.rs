@@ -3,7 +3,7 @@
 //! The point's own forces act back on its approaches at once; a visit is one Newton step for both together.
 
 use super::collocation::{STAGES, Stages, StepTable};
-use crate::contact::{Hertz, Residual};
+use crate::contact::{Hertz, Residual, State};
 use wide::f64x4;
 
 /// What is known of a Gauss point from the visit before.
@@ -24,10 +24,12 @@ pub(super) type Answer = ([f64; 2], [f64; 2]);
 
 /// A way to bring patches and forces of a point closer to equilibrium.
 pub(super) trait PointLaw {
+    /// Before the first sweep: the forces in N at `point` with the patches `local` in m.
+    fn begin(&mut self, point: usize, local: [f64; 2]) -> [f64; 2];
     /// Before each sweep: the patches at all points.
     fn prepare(&mut self, local: &[Stages; 2]);
     /// `None` if there is no equilibrium near.
-    fn visit(&self, visit: Visit) -> Option<Answer>;
+    fn visit(&mut self, visit: Visit) -> Option<Answer>;
 }
 
 /// Hertz's contacts: Newton steps, with the tangents of the sweep before at all points at once.
@@ -52,6 +54,11 @@ impl<'a> HertzPoints<'a> {
 
 impl PointLaw for HertzPoints<'_> {
     #[inline(always)]
+    fn begin(&mut self, _: usize, local: [f64; 2]) -> [f64; 2] {
+        [self.laws[0].force(local[0]), self.laws[1].force(local[1])]
+    }
+
+    #[inline(always)]
     fn prepare(&mut self, local: &[Stages; 2]) {
         let tangent = |i: usize| {
             f64x4::from(local[i]).fast_max(f64x4::ZERO).sqrt() * f64x4::splat(1.5 * self.laws[i].stiffness)
@@ -65,7 +72,7 @@ impl PointLaw for HertzPoints<'_> {
     }
 
     #[inline(always)]
-    fn visit(&self, visit: Visit) -> Option<Answer> {
+    fn visit(&mut self, visit: Visit) -> Option<Answer> {
         let j = visit.point;
         let error = [visit.local[0] - visit.approach[0], visit.local[1] - visit.approach[1]];
         let [a, b, c, e] = &self.inverse;
@@ -85,19 +92,27 @@ pub(super) struct ResidualPoints<'a> {
     coupling: [f64x4; 3],
     /// Whether every visit solves the point fully, from its approaches; else it takes a Newton step.
     full: bool,
+    /// The contacts at every point as the latest visit left them.
+    states: [State; STAGES],
 }
 
 impl<'a> ResidualPoints<'a> {
     pub(super) fn new(laws: &'a [Hertz; 2], residual: Residual, table: &StepTable, full: bool) -> Self {
-        Self { laws, residual, coupling: own(table), full }
+        Self { laws, residual, coupling: own(table), full, states: [State::default(); STAGES] }
     }
 }
 
 impl PointLaw for ResidualPoints<'_> {
+    #[inline(always)]
+    fn begin(&mut self, point: usize, local: [f64; 2]) -> [f64; 2] {
+        self.states[point] = self.residual.state(self.laws, local);
+        self.states[point].f
+    }
+
     fn prepare(&mut self, _: &[Stages; 2]) {}
 
     #[inline(always)]
-    fn visit(&self, visit: Visit) -> Option<Answer> {
+    fn visit(&mut self, visit: Visit) -> Option<Answer> {
         let [own0, mutual, own1] = self.coupling.map(|c| c.as_array()[visit.point]);
         let [f0, f1] = visit.force;
         // the approaches if the forces of this point did not act
@@ -107,7 +122,7 @@ impl PointLaw for ResidualPoints<'_> {
         if self.full {
             return together.solve(self.laws, y, y);
         }
-        let p = together.newton(self.laws, y, visit.local)?;
-        Some((p, self.residual.forces(self.laws, p)))
+        let p = together.newton(&self.states[visit.point], y, visit.local)?;
+        Some((p, self.begin(visit.point, p)))
     }
 }

@@ -339,10 +339,9 @@ fn kirchhoff_plate(
 /// Model C.
 fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<Built> {
     let rigid = usize::from(setup.plate.edge == Edge::Free);
-    let mesh = MeshOptions::default();
-    let tips = tip_residuals(setup, rough.patch_radius, &mesh, cache)?;
-    let plate = validity::tempered(continuum_plate(setup, wanted, rough, cache)?, tips, setup, rough);
+    let plate = validity::tempered(continuum_plate(setup, wanted, rough, cache)?, setup, rough);
     let elastic = plate.omega.len() - rigid;
+    let mesh = MeshOptions::default();
     let shapes = |radii: &[f64]| {
         let mut shapes = cached::face_shapes(&setup.plate, rough.patch_radius, elastic, &mesh, radii)?;
         for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
@@ -352,6 +351,7 @@ fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) 
         Ok(shapes)
     };
     let fluid = fluid_forces(setup, shapes)?;
+    let tips = tip_residuals(setup, rough.patch_radius, &mesh, cache)?;
     Ok(Built { system: join(setup, plate, tips)?, fluid, warnings: validity::warnings(setup, rough) })
 }
 

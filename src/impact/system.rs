@@ -55,28 +55,6 @@ pub struct System {
     pub modes: usize,
 }
 
-/// Hertz's contacts of the outer and the inner body with the plate.
-pub(super) fn laws(setup: &PlateImpact) -> [Hertz; 2] {
-    let law = |shape: &Shape, material| Hertz::new(shape.tip_radius(), material, &setup.plate.material);
-    [law(&setup.outer.shape, &setup.outer.material), law(&setup.inner.shape, &setup.inner.material)]
-}
-
-/// What both contacts yield beyond Hertz's law and the modes: with the plate, and each with its tip, `tip_residual` in m/N.
-pub(super) fn residual(setup: &PlateImpact, plate: &ModalBody, tip_residual: [f64; 2]) -> Residual {
-    // the inner contact closes when the plate moves down
-    let sign = |i: usize, j: usize| if i == j { 1.0 } else { -1.0 };
-    let tip_radius = [setup.outer.shape.tip_radius(), setup.inner.shape.tip_radius()];
-    let mut residual = Residual { flexibility: [[0.0; 2]; 2], growth: [[0.0; 2]; 2] };
-    for i in 0..2 {
-        for j in 0..2 {
-            residual.flexibility[i][j] = sign(i, j) * plate.residual[i][j];
-            residual.growth[i][j] = sign(i, j) * plate.patch_growth[i][j] * tip_radius[i];
-        }
-        residual.flexibility[i][i] += tip_residual[i];
-    }
-    residual
-}
-
 impl System {
     /// Joins the plate, reduced to `plate`, with rigid outer and inner bodies; `tip_residual` is the residual
     /// flexibility in m/N of the outer and the inner body at their contact points (zero for models A and B).
@@ -122,8 +100,19 @@ impl System {
             start[0].push(outer_body.displacement[k]);
             start[1].push(outer_body.velocity[k]);
         }
-        let residual = residual(setup, plate, tip_residual);
-        let laws = laws(setup);
+        // the inner contact closes when the plate moves down
+        let sign = |i: usize, j: usize| if i == j { 1.0 } else { -1.0 };
+        let tip_radius = [outer.shape.tip_radius(), inner.shape.tip_radius()];
+        let mut residual = Residual { flexibility: [[0.0; 2]; 2], growth: [[0.0; 2]; 2] };
+        for i in 0..2 {
+            for j in 0..2 {
+                residual.flexibility[i][j] = sign(i, j) * plate.residual[i][j];
+                residual.growth[i][j] = sign(i, j) * plate.patch_growth[i][j] * tip_radius[i];
+            }
+            residual.flexibility[i][i] += tip_residual[i];
+        }
+        let law = |shape: &Shape, material| Hertz::new(shape.tip_radius(), material, &setup.plate.material);
+        let laws = [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)];
         let elastic = plate.omega.iter().copied().filter(|w| *w > 0.0);
         Self {
             approach,
@@ -213,15 +202,6 @@ impl System {
     /// N that go with it; where a contact is open, the distance, negative.
     pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
         self.residual().map_or(y, |residual| residual.local_approach(&self.laws, y, f))
-    }
-
-    /// Forces of both contacts in N with the patches `p` in m.
-    #[inline(always)]
-    pub fn forces(&self, p: [f64; 2]) -> [f64; 2] {
-        match self.residual() {
-            None => [self.laws[0].force(p[0]), self.laws[1].force(p[1])],
-            Some(residual) => residual.forces(&self.laws, p),
-        }
     }
 
     /// Patches (as [`Self::local_approach`]) and forces in N of both contacts at the modal approach `y` in m, `guess` being

@@ -12,9 +12,7 @@
 //! The residual flexibility is taken as quadratic in the patch radii (see [`crate::contact::Residual`]); with a patch
 //! as wide as the plate is thick it is not.
 
-use super::contact_ledger::bisect;
 use super::rough::Rough;
-use super::system::{laws, residual};
 use crate::body::ModalBody;
 use crate::scene::{Model, PlateImpact};
 
@@ -22,12 +20,8 @@ use crate::scene::{Model, PlateImpact};
 const MEASURED: [(f64, f64); 4] = [(0.46, 0.0022), (0.52, 0.005), (0.70, 0.006), (1.04, 0.15)];
 /// Largest patch radius over the plate's thickness at which the force peaks are within 0.5 % of the reference.
 const LARGEST_PATCH: f64 = 0.55;
-/// Largest change of the relative curvature of a contact by its own force.
+/// Largest change of the relative curvature of a contact by its own force: beyond it the contacts may have no equilibrium.
 const LARGEST_CURVATURE: f64 = 1.0;
-/// Forces, over the peaks expected, under which the contacts have to be stable.
-const LOADS: [[f64; 2]; 6] = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.25, 1.25], [1.25, 0.75], [0.75, 1.25]];
-/// What has to be left of the stability that they have without growth; without any they have no equilibrium.
-const LEAST_STABILITY: f64 = 0.3;
 
 /// Relative error of the force peaks that model C was found to have with contact patches of the radii `patch` in m on a plate of
 /// `thickness` m, linear between what was measured; `None` beyond.
@@ -42,42 +36,26 @@ pub(super) fn measured_error(patch: [f64; 2], thickness: f64) -> Option<f64> {
     })
 }
 
-/// `plate` between tips of the residual flexibility `tips` in m/N, with its growth with the patches reduced, where it is
-/// too strong to be true, to what the contacts stand; at the patches of the impact the residual flexibility stays.
-pub(super) fn tempered(plate: ModalBody, tips: [f64; 2], setup: &PlateImpact, rough: &Rough) -> ModalBody {
+/// `plate` with its growth with the patches reduced, where it is too strong to be true, to what the contact stands;
+/// at the patches of the impact the residual flexibility stays.
+pub(super) fn tempered(mut plate: ModalBody, setup: &PlateImpact, rough: &Rough) -> ModalBody {
     let tip = [setup.outer.shape.tip_radius(), setup.inner.shape.tip_radius()];
-    let curvature = |i: usize| (5.0 * plate.patch_growth[i][i] * tip[i] * rough.force_peak[i]).abs();
-    let most = (LARGEST_CURVATURE / curvature(0).max(curvature(1))).min(1.0);
-    let laws = laws(setup);
-    let stability = |share: f64| {
-        let residual = residual(setup, &with_growth(&plate, share, rough), tips);
-        let under = |load: [f64; 2]| {
-            residual.stability(&laws, [load[0] * rough.force_peak[0], load[1] * rough.force_peak[1]])
-        };
-        LOADS.into_iter().map(under).fold(f64::INFINITY, f64::min)
-    };
-    let least = LEAST_STABILITY * stability(0.0);
-    let share =
-        if stability(most) >= least { most } else { bisect(0.0, most, |share| stability(share) >= least) };
-    with_growth(&plate, share, rough)
-}
-
-/// `plate` with `share` of its growth with the patches and all its residual flexibility at the patches of the impact.
-fn with_growth(plate: &ModalBody, share: f64, rough: &Rough) -> ModalBody {
-    let mut with = plate.clone();
-    if share == 1.0 {
-        return with;
+    let curvature =
+        |i: usize| (5.0 * plate.patch_growth[i][i] * tip[i] * rough.force_peak[i]).abs() / LARGEST_CURVATURE;
+    let excess = curvature(0).max(curvature(1));
+    if excess <= 1.0 {
+        return plate;
     }
-    let growth = &plate.patch_growth;
+    let growth = plate.patch_growth;
     let square = rough.patch_radius.map(|a| a * a);
     for i in 0..2 {
         for j in 0..2 {
-            let cut = 1.0 - share;
-            with.patch_growth[i][j] -= cut * growth[i][j];
-            with.residual[i][j] += cut * (growth[i][j] * square[i] + growth[j][i] * square[j]);
+            let cut = 1.0 - 1.0 / excess;
+            plate.patch_growth[i][j] -= cut * growth[i][j];
+            plate.residual[i][j] += cut * (growth[i][j] * square[i] + growth[j][i] * square[j]);
         }
     }
-    with
+    plate
 }
 
 /// What a user has to know before relying on model C of `setup`: one sentence per reason, none if there is no reason.

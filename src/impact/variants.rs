@@ -107,13 +107,12 @@ impl<'a> Variants<'a> {
     /// The scene under `simplification` with `modes` elastic modes of the plate.
     pub fn system(&self, simplification: Simplification, modes: usize) -> System {
         let rigid = [0.0; 2];
-        let continuum =
-            |tips| validity::tempered(self.plate.modal_body(modes), tips, self.setup, &self.rough);
+        let continuum = || validity::tempered(self.plate.modal_body(modes), self.setup, &self.rough);
         let (plate, tips) = match simplification {
             Simplification::KirchhoffPlate => (lowest(&self.kirchhoff, modes), rigid),
             Simplification::MeanOfFaces => (mean_of_faces(&self.plate.modal_body(modes)), rigid),
-            Simplification::RigidTips => (continuum(rigid), rigid),
-            Simplification::None => (continuum(self.tips), self.tips),
+            Simplification::RigidTips => (continuum(), rigid),
+            Simplification::None => (continuum(), self.tips),
         };
         System::new(self.setup, &plate, tips)
     }
