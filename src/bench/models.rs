@@ -46,13 +46,13 @@ pub(super) fn run(store: &Store, bench: &mut Bench) -> Result<()> {
             for modes in MODES.into_iter().filter(|n| model != Model::A || *n == 1) {
                 let reduced = Reduced::new(&scene, model, Some(modes))?;
                 for (tolerance, name) in TOLERANCES {
-                    let (summary, seconds) = timed(200, || reduced.run(tolerance))?;
+                    let (point, seconds) = timed(200, || reduced.point(tolerance))?;
                     bench.work_precision.push(WorkPrecision {
                         solver: format!("model {model}{name}"),
                         problem: problem.clone(),
                         modes: Some(modes),
                         tolerance: None,
-                        relative_error: (summary.quantities.efficiency / exact - 1.0).abs(),
+                        relative_error: (point.quantities.efficiency / exact - 1.0).abs(),
                         seconds,
                         seconds_with_setup: Some(reduced_program(&path, model, modes, tolerance)?),
                     });

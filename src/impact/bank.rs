@@ -28,71 +28,70 @@ const INVERSE_FACTORIAL: [f64; 27] = {
     table
 };
 
-/// The oscillators of a [`System`] and what the contacts see of them, in blocks. Each of shape (blocks).
+/// Some oscillators of a [`System`] and what the contacts see of them.
+#[derive(Debug, Clone)]
+pub struct Block {
+    omega: f64x4,
+    /// omega^2.
+    pub stiffness: f64x4,
+    /// 1/omega^2; 0 for a rigid motion, whose moments never divide by it.
+    flexibility: f64x4,
+    /// 2 alpha.
+    pub damping: f64x4,
+    /// Approach of each contact per unit of each coordinate.
+    pub approach: [f64x4; 2],
+    /// Products of the approaches of a pair of contacts: (0,0), (0,1) = (1,0), (1,1).
+    pub products: [f64x4; 3],
+    /// Whether there is any damping.
+    damped: bool,
+    oscillators: [Oscillator; LANES],
+}
+
+/// All blocks of a [`System`].
 #[derive(Debug, Clone)]
 pub struct Bank {
-    oscillators: Vec<[Oscillator; LANES]>,
-    omega: Vec<f64x4>,
-    /// omega^2.
-    pub stiffness: Vec<f64x4>,
-    /// 1/omega^2; 0 for a rigid motion, whose moments never divide by it.
-    flexibility: Vec<f64x4>,
-    /// 2 alpha.
-    pub damping: Vec<f64x4>,
-    /// Whether a block has any damping.
-    damped: Vec<bool>,
-    /// Approach of each contact per unit of each coordinate.
-    pub approach: [Vec<f64x4>; 2],
-    /// Products of the approaches of a pair of contacts: (0,0), (0,1) = (1,0), (1,1).
-    pub products: [Vec<f64x4>; 3],
+    /// In the order of the oscillators.
+    pub blocks: Vec<Block>,
 }
 
 impl Bank {
     /// The oscillators of `system`.
     pub fn new(system: &System) -> Self {
         let rest = Oscillator { omega: 0.0, alpha: 0.0 };
-        let oscillators: Vec<[Oscillator; LANES]> = system
-            .oscillators
-            .chunks(LANES)
-            .map(|chunk| std::array::from_fn(|i| chunk.get(i).copied().unwrap_or(rest)))
-            .collect();
-        let each = |value: fn(&Oscillator) -> f64| -> Vec<f64x4> {
-            oscillators.iter().map(|block| f64x4::from(block.map(|o| value(&o)))).collect()
+        let block = |(chunk, start): (&[Oscillator], usize)| {
+            let oscillators: [Oscillator; LANES] =
+                std::array::from_fn(|i| chunk.get(i).copied().unwrap_or(rest));
+            let each = |value: fn(&Oscillator) -> f64| f64x4::from(oscillators.map(|o| value(&o)));
+            let approach = [0, 1].map(|i| filled_up(&system.approach[i][start..][..chunk.len()]));
+            Block {
+                omega: each(|o| o.omega),
+                stiffness: each(|o| o.omega * o.omega),
+                flexibility: each(|o| if o.omega > 0.0 { 1.0 / (o.omega * o.omega) } else { 0.0 }),
+                damping: each(|o| 2.0 * o.alpha),
+                approach,
+                products: [approach[0] * approach[0], approach[0] * approach[1], approach[1] * approach[1]],
+                damped: oscillators.iter().any(|o| o.alpha > 0.0),
+                oscillators,
+            }
         };
-        let approach = [in_blocks(&system.approach[0]), in_blocks(&system.approach[1])];
-        let product =
-            |i: usize, j: usize| approach[i].iter().zip(&approach[j]).map(|(a, b)| *a * *b).collect();
-        Self {
-            products: [product(0, 0), product(0, 1), product(1, 1)],
-            omega: each(|o| o.omega),
-            stiffness: each(|o| o.omega * o.omega),
-            flexibility: each(|o| if o.omega > 0.0 { 1.0 / (o.omega * o.omega) } else { 0.0 }),
-            damping: each(|o| 2.0 * o.alpha),
-            damped: oscillators.iter().map(|block| block.iter().any(|o| o.alpha > 0.0)).collect(),
-            approach,
-            oscillators,
-        }
+        Self { blocks: system.oscillators.chunks(LANES).zip((0..).step_by(LANES)).map(block).collect() }
     }
+}
 
-    /// Number of blocks.
-    pub fn blocks(&self) -> usize {
-        self.omega.len()
-    }
-
-    /// The moments of block `k` at time `t` > 0, as [`Oscillator::moments`]; `powers` are t^p / p! for p < STAGES.
+impl Block {
+    /// The moments at time `t` > 0, as [`Oscillator::moments`]; `powers` are t^p / p! for p < STAGES.
     #[inline(always)]
-    pub fn moments(&self, k: usize, t: f64, powers: &[f64; STAGES]) -> [f64x4; MOMENTS] {
-        let angle = self.omega[k] * t;
-        if (!LEAN && self.damped[k]) || angle.simd_lt(f64x4::splat(MAX_ANGLE)).to_bitmask() != 0b1111 {
-            return self.one_by_one(k, t);
+    pub fn moments(&self, t: f64, powers: &[f64; STAGES]) -> [f64x4; MOMENTS] {
+        let angle = self.omega * t;
+        if (!LEAN && self.damped) || angle.simd_lt(f64x4::splat(MAX_ANGLE)).to_bitmask() != 0b1111 {
+            return self.one_by_one(t);
         }
         match angle.simd_lt(f64x4::splat(SERIES)).to_bitmask() {
-            0b1111 => self.series(k, t, powers, angle * angle),
-            0 => self.closed_form(k, powers, angle),
+            0b1111 => self.series(t, powers, angle * angle),
+            0 => self.closed_form(powers, angle),
             _ => {
                 let small = angle.simd_lt(f64x4::splat(SERIES));
-                let (near, far) =
-                    (self.series(k, t, powers, angle * angle), self.closed_form(k, powers, angle));
+                let (near, far) = (self.series(t, powers, angle * angle), self.closed_form(powers, angle));
                 std::array::from_fn(|p| small.select(near[p], far[p]))
             }
         }
@@ -101,7 +100,7 @@ impl Bank {
     /// Small omega t: S_(p-2) = t^p c_p with Stumpff's functions c_p = sum of (-(omega t)^2)^m / (p + 2m)! for the two
     /// highest, recurrence downwards.
     #[inline(always)]
-    fn series(&self, k: usize, t: f64, powers: &[f64; STAGES], square: f64x4) -> [f64x4; MOMENTS] {
+    fn series(&self, t: f64, powers: &[f64; STAGES], square: f64x4) -> [f64x4; MOMENTS] {
         // up to (omega t)^2 = 4, or 0.25
         let terms = if square.simd_lt(f64x4::splat(0.25)).to_bitmask() == 0b1111 { 6 } else { 10 };
         let stumpff = |p: usize| {
@@ -116,19 +115,19 @@ impl Bank {
         moments[MOMENTS - 2] = stumpff(MOMENTS - 2) * high;
         moments[MOMENTS - 1] = stumpff(MOMENTS - 1) * (high * t);
         for p in (0..STAGES).rev() {
-            moments[p] = f64x4::splat(powers[p]) - self.stiffness[k] * moments[p + 2];
+            moments[p] = f64x4::splat(powers[p]) - self.stiffness * moments[p + 2];
         }
         moments
     }
 
     /// Large omega t: impulse response in closed form, recurrence upwards.
     #[inline(always)]
-    fn closed_form(&self, k: usize, powers: &[f64; STAGES], angle: f64x4) -> [f64x4; MOMENTS] {
+    fn closed_form(&self, powers: &[f64; STAGES], angle: f64x4) -> [f64x4; MOMENTS] {
         let (sine, cosine) = sin_cos(angle);
-        let flexibility = self.flexibility[k];
+        let flexibility = self.flexibility;
         let mut moments = [f64x4::ZERO; MOMENTS];
         moments[0] = cosine;
-        moments[1] = sine * self.omega[k] * flexibility;
+        moments[1] = sine * self.omega * flexibility;
         for p in 0..STAGES {
             moments[p + 2] = (f64x4::splat(powers[p]) - moments[p]) * flexibility;
         }
@@ -137,30 +136,20 @@ impl Bank {
 
     #[cold]
     #[inline(never)]
-    fn one_by_one(&self, k: usize, t: f64) -> [f64x4; MOMENTS] {
-        let moments = self.oscillators[k].map(|oscillator| oscillator.moments(t));
+    fn one_by_one(&self, t: f64) -> [f64x4; MOMENTS] {
+        let moments = self.oscillators.map(|oscillator| oscillator.moments(t));
         std::array::from_fn(|p| f64x4::from(moments.map(|m| m[p])))
     }
+}
 
-    /// Approaches of both contacts, without their gaps, at the coordinates `q`.
-    #[inline]
-    pub fn approaches(&self, q: &[f64x4]) -> [f64; 2] {
-        let (b0, b1) = (&self.approach[0][..q.len()], &self.approach[1][..q.len()]);
-        let (mut first, mut second) = (f64x4::ZERO, f64x4::ZERO);
-        for k in 0..q.len() {
-            first += b0[k] * q[k];
-            second += b1[k] * q[k];
-        }
-        [first.reduce_add(), second.reduce_add()]
-    }
+/// At most [`LANES`] `values`, filled up with zeros.
+fn filled_up(values: &[f64]) -> f64x4 {
+    f64x4::from(std::array::from_fn(|i| values.get(i).copied().unwrap_or(0.0)))
 }
 
 /// `values` in blocks, filled up with zeros.
 pub fn in_blocks(values: &[f64]) -> Vec<f64x4> {
-    values
-        .chunks(LANES)
-        .map(|chunk| f64x4::from(std::array::from_fn(|i| chunk.get(i).copied().unwrap_or(0.0))))
-        .collect()
+    values.chunks(LANES).map(filled_up).collect()
 }
 
 /// Sine and cosine of 0 <= x < [`MAX_ANGLE`]: reduction by quarter turns in three parts (Cody and Waite), polynomials of

@@ -10,7 +10,7 @@
 //! answer with a motion that comes back undamped. Radau's points, of which the last is the end, stop it
 //! (L-stability: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5), at order 2 STAGES - 1.
 
-use super::bank::Bank;
+use super::bank::{Bank, Block};
 use super::duhamel::{MOMENTS, Oscillator};
 use crate::body::quadrature::{gauss_legendre, gauss_radau};
 use wide::f64x4;
@@ -250,7 +250,7 @@ impl StepTable {
 
     /// Makes these the tables of `bank` for steps of length `h` s.
     pub fn fill(&mut self, bank: &Bank, collocation: &Collocation, h: f64) {
-        let n = bank.blocks();
+        let n = bank.blocks.len();
         self.h = h;
         let mut scale = 1.0;
         for p in 0..STAGES {
@@ -259,7 +259,6 @@ impl StepTable {
             }
             self.coefficients[p] = std::array::from_fn(|l| scale * collocation.lagrange[l][p]);
         }
-        let products: [&[f64x4]; 3] = std::array::from_fn(|pair| &bank.products[pair][..n]);
         let mut rows = [[[0.0; STAGES]; STAGES]; 3];
         for j in 0..STAGES {
             let t = collocation.nodes[j] * h;
@@ -267,12 +266,12 @@ impl StepTable {
             let (slope, impulse) = self.oscillators[2 * j * n..][..2 * n].split_at_mut(n);
             // answers of the approaches to forces tau^p / p!
             let mut answers = [[f64x4::ZERO; STAGES]; 3];
-            for k in 0..n {
-                let moments = bank.moments(k, t, &powers);
+            for (k, block) in bank.blocks.iter().enumerate() {
+                let moments = block.moments(t, &powers);
                 (slope[k], impulse[k]) = (moments[0], moments[1]);
                 for p in 0..STAGES {
                     for pair in 0..3 {
-                        answers[pair][p] += products[pair][k] * moments[p + 2];
+                        answers[pair][p] += block.products[pair] * moments[p + 2];
                     }
                 }
             }
@@ -287,8 +286,8 @@ impl StepTable {
         }
         self.coupling = rows.map(|columns| columns.map(f64x4::from));
         let powers = powers(h);
-        for k in 0..n {
-            for (p, moment) in bank.moments(k, h, &powers).into_iter().enumerate() {
+        for (k, block) in bank.blocks.iter().enumerate() {
+            for (p, moment) in block.moments(h, &powers).into_iter().enumerate() {
                 self.oscillators[(2 * STAGES + p) * n + k] = moment;
             }
         }
@@ -298,16 +297,15 @@ impl StepTable {
     #[inline]
     pub fn free_approach(&self, bank: &Bank, gap: [f64; 2], q: &[f64x4], v: &[f64x4]) -> [f64x4; 2] {
         let n = q.len();
-        let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
-        let (damping, v) = (&bank.damping[..n], &v[..n]);
+        let (blocks, v) = (&bank.blocks[..n], &v[..n]);
         let rows: [&[f64x4]; 2 * STAGES] = std::array::from_fn(|row| &self.oscillators[row * n..][..n]);
         let mut sums = [[f64x4::ZERO; STAGES]; 2];
         for k in 0..n {
-            let rate = v[k] + damping[k] * q[k];
+            let rate = v[k] + blocks[k].damping * q[k];
             for j in 0..STAGES {
                 let value = rows[2 * j][k] * q[k] + rows[2 * j + 1][k] * rate;
-                sums[0][j] += b0[k] * value;
-                sums[1][j] += b1[k] * value;
+                sums[0][j] += blocks[k].approach[0] * value;
+                sums[1][j] += blocks[k].approach[1] * value;
             }
         }
         std::array::from_fn(|i| f64x4::from(sums[i].map(f64x4::reduce_add)) - f64x4::splat(gap[i]))
@@ -325,8 +323,7 @@ impl StepTable {
     ) -> ([f64; 2], f64) {
         let n = q.len();
         let (v, q_end, v_end) = (&v[..n], &mut q_end[..n], &mut v_end[..n]);
-        let (b0, b1) = (&bank.approach[0][..n], &bank.approach[1][..n]);
-        let (damping, stiffness) = (&bank.damping[..n], &bank.stiffness[..n]);
+        let blocks = &bank.blocks[..n];
         let rows: [&[f64x4]; MOMENTS] =
             std::array::from_fn(|p| &self.oscillators[(2 * STAGES + p) * n..][..n]);
         let mut polynomial = [[0.0; STAGES]; 2];
@@ -338,18 +335,19 @@ impl StepTable {
         }
         let (mut sums, mut energy) = ([f64x4::ZERO; 2], f64x4::ZERO);
         for k in 0..n {
+            let Block { stiffness, damping, approach: [b0, b1], .. } = blocks[k];
             let (slope, impulse) = (rows[0][k], rows[1][k]);
-            let mut displacement = slope * q[k] + impulse * (v[k] + damping[k] * q[k]);
-            let mut rate = slope * v[k] - stiffness[k] * impulse * q[k];
+            let mut displacement = slope * q[k] + impulse * (v[k] + damping * q[k]);
+            let mut rate = slope * v[k] - stiffness * impulse * q[k];
             for p in 0..STAGES {
-                let force = b0[k] * polynomial[0][p] + b1[k] * polynomial[1][p];
+                let force = b0 * polynomial[0][p] + b1 * polynomial[1][p];
                 displacement -= rows[p + 2][k] * force;
                 rate -= rows[p + 1][k] * force;
             }
             (q_end[k], v_end[k]) = (displacement, rate);
-            sums[0] += b0[k] * displacement;
-            sums[1] += b1[k] * displacement;
-            energy += rate * rate + stiffness[k] * (displacement * displacement);
+            sums[0] += b0 * displacement;
+            sums[1] += b1 * displacement;
+            energy += rate * rate + stiffness * (displacement * displacement);
         }
         (sums.map(f64x4::reduce_add), 0.5 * energy.reduce_add())
     }
