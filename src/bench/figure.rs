@@ -38,7 +38,7 @@ pub fn figure(bench: &Bench) -> String {
             @for (i, solver) in solvers.iter().enumerate() {
                 @let x = 20.0 + (i % COLUMNS) as f64 * PANEL.0;
                 @let y = rows as f64 * PANEL.1 + 20.0 + (i / COLUMNS) as f64 * LEGEND_LINE;
-                circle cx=(x) cy=(y - 4.0) r="4" fill=(colour(i)) {}
+                (mark(x, y - 4.0, 4.0, i))
                 text x=(x + 12.0) y=(y) fill="#1a1a1a" { (solver) }
             }
             text x="20" y=(height - 8.0) fill="#555555" { (bench.machine) }
@@ -76,6 +76,15 @@ fn names(runs: &[WorkPrecision]) -> Vec<String> {
 
 fn colour(solver: usize) -> &'static str {
     COLOURS[solver % COLOURS.len()]
+}
+
+/// The mark of a solver's run; hollow where the colours are used a second time.
+fn mark(x: f64, y: f64, radius: f64, solver: usize) -> Markup {
+    let fill = if solver < COLOURS.len() { colour(solver) } else { "#ffffff" };
+    html! {
+        circle cx=(format!("{x:.1}")) cy=(format!("{y:.1}")) r=(radius) fill=(fill) stroke=(colour(solver))
+            stroke-width="1.2" {}
+    }
 }
 
 /// A decade axis that holds the values: from and to as powers of ten.
@@ -121,7 +130,7 @@ fn draw(panel: &Panel, solvers: &[String]) -> Markup {
                     points=(PreEscaped(points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" "))) {}
             }
             @for (x, y) in &points {
-                circle cx=(format!("{x:.1}")) cy=(format!("{y:.1}")) r="2.6" fill=(colour(i)) {}
+                (mark(*x, *y, 2.6, i))
             }
         }
     }
