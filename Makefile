@@ -49,7 +49,7 @@ live: setup
 	$(RUN) doctor
 	$(RUN) --store $(OUT)/live/store reference scaled-plate-r6.35 --resolution coarse
 	$(RUN) --store $(OUT)/live/store gate scaled-plate-r6.35 --resolution coarse --out $(OUT)/live/report
-	IMPACTCHECK_LIVE=1 cargo test --release --test guide
+	IMPACTCHECK_LIVE=1 cargo test --release --test command_line guide
 
 # the gate on the stored references
 gate:
@@ -89,5 +89,5 @@ evidence: setup
 	$(PYTHON) benches/unneeded.py $(OUT)/impactcheck-full $(OUT)/impactcheck-lean --out $(OUT)/unneeded
 	fuzz/run.sh scene 1800
 	fuzz/run.sh store 1800
-	PROPTEST_CASES=200000 cargo test --release --test random_input
+	PROPTEST_CASES=200000 cargo test --release --test store random_input
 	.ci/fenicsx-0.9

@@ -3,7 +3,7 @@
 //! The first byte of the input chooses the file and whether the checksums fit.
 #![no_main]
 
-#[path = "../../tests/store_fixture/mod.rs"]
+#[path = "../../tests/support/store_fixture.rs"]
 #[allow(dead_code)]
 mod store_fixture;
 

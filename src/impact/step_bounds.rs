@@ -24,7 +24,7 @@ pub(super) struct Bounds {
 impl Bounds {
     /// For a relative error `tolerance` of the efficiency. The error of a step is of about twice the order of its
     /// defect where the forces are smooth, so that the bound may fall more slowly than the tolerance; factors and
-    /// exponents are measured over scenes and numbers of modes (tests/integrator_runge_kutta.rs).
+    /// exponents are measured over scenes and numbers of modes (tests/physics/integrator_runge_kutta.rs).
     pub(super) fn new(tolerance: f64) -> Self {
         let smooth = 0.6 * tolerance.powf(0.7);
         let kinked = 1e-3 * tolerance.powf(0.95);

@@ -2,19 +2,18 @@
 //!
 //! `PROPTEST_CASES=200000 cargo test --release --test random_input` fuzzes for longer.
 
-mod store_fixture;
 
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::scene::Scene;
 use proptest::prelude::*;
 use std::fs;
-use store_fixture::{scene, seal, write_entry};
+use crate::store_fixture::{scene, seal, write_entry};
 
 const SHIPPED: [&str; 4] = [
-    include_str!("../scenes/scaled-plate-r6.35.toml"),
-    include_str!("../scenes/seal-seat-improved.toml"),
-    include_str!("../scenes/examples/wet-valve-plate.toml"),
-    include_str!("../scenes/examples/rocker-bender.toml"),
+    include_str!("../../scenes/scaled-plate-r6.35.toml"),
+    include_str!("../../scenes/seal-seat-improved.toml"),
+    include_str!("../../scenes/examples/wet-valve-plate.toml"),
+    include_str!("../../scenes/examples/rocker-bender.toml"),
 ];
 
 /// What is put into a scene: pieces of TOML, numbers at the edge, units, and anything.

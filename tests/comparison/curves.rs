@@ -1,12 +1,12 @@
 //! Curves of differently sampled histories on one axis, and the JSON document of a comparison.
 
-mod synthetic_impact;
 
+use crate::synthetic_impact;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use impactcheck::comparison::{Comparison, compare_scene};
 use impactcheck::impact::{CURVES, PLATE_QUANTITIES, Source};
 use std::f64::consts::PI;
-use synthetic_impact::{REDUCED, REFERENCE, SAMPLE_INTERVAL, history, reduced, reference, scene};
+use crate::synthetic_impact::{REDUCED, REFERENCE, SAMPLE_INTERVAL, history, reduced, reference, scene};
 
 /// The same solution, sampled differently, differs by the interpolation error only.
 #[test]

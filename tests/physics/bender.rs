@@ -1,9 +1,8 @@
 //! The piezo bender (section 4.3 of the paper): beam elements against closed forms, release and strike, impact.
 
-mod common;
 
 use approx::assert_relative_eq;
-use common::scaled_plate;
+use crate::common::scaled_plate;
 use impactcheck::analytical::cantilever;
 use impactcheck::body::beam::{Beam, Release};
 use impactcheck::body::kirchhoff;

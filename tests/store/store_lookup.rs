@@ -1,13 +1,12 @@
 //! The store gives out a reference only if it is intact and of exactly this scene; otherwise it
 //! says which file is damaged or what has changed since.
 
-mod store_fixture;
 
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::scene::Scene;
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use store_fixture::*;
+use crate::store_fixture::*;
 
 const PAPER: Resolution = Resolution::Paper;
 

@@ -67,7 +67,7 @@ fn scene_json(text: &str) -> Value {
     serde_json::to_value(value).expect("JSON")
 }
 
-const VALID: &str = include_str!("fixtures/plate-impact.toml");
+const VALID: &str = include_str!("../fixtures/plate-impact.toml");
 
 #[test]
 fn schema_accepts_the_shipped_scenes() {
@@ -138,7 +138,7 @@ fn schema_and_reader_agree() {
     }
 }
 
-const SEAT: &str = include_str!("fixtures/seal-seat.toml");
+const SEAT: &str = include_str!("../fixtures/seal-seat.toml");
 
 #[test]
 fn schema_and_reader_agree_on_seal_seats() {

@@ -1,6 +1,6 @@
 //! What a person sees: every command's help, and an error of every exit status, as snapshots.
 //!
-//! After a change that is meant: `INSTA_UPDATE=always cargo test --release --test cli_snapshots`, and read the diff.
+//! After a change that is meant: `INSTA_UPDATE=always cargo test --release --test command_line snapshots`, and read the diff.
 
 use assert_cmd::Command;
 use insta::{assert_snapshot, with_settings};

@@ -1,12 +1,10 @@
 //! The drawings: figures of the report and for papers, mesh and stress.
 
-mod report_data;
-mod synthetic_impact;
 
 use impactcheck::impact::{CURVES, Outcome};
 use impactcheck::reference::{CurveBands, FieldMesh};
 use impactcheck::report::{FigureFormat, Theme, figure, figure_file, png, printed_figure, scene_page};
-use report_data::{Data, between};
+use crate::report_data::{Data, between};
 use resvg::usvg::roxmltree::Document;
 
 #[test]

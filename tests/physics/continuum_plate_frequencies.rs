@@ -5,10 +5,9 @@
 //! closed form for thin plates (Leissa, Vibration of Plates, NASA SP-160, tables 2.1, 2.3, 2.4), the mass,
 //! the order of convergence.
 
-mod continuum_support;
 
 use approx::assert_relative_eq;
-use continuum_support::{plate_of, steel, titanium};
+use crate::continuum_support::{plate_of, steel, titanium};
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, eigenfrequencies};
 use impactcheck::scene::Edge;
 use std::f64::consts::TAU;

@@ -11,7 +11,7 @@ use std::process::{Command as Process, Stdio};
 
 const PLATE: &str = "scaled-plate-r10";
 const SEAT: &str = "seal-seat-improved";
-const TEST: &str = include_str!("report_browser.js");
+const TEST: &str = include_str!("browser.js");
 
 /// Chromium, by the environment variable `CHROMIUM` or one of its names.
 fn chromium() -> PathBuf {

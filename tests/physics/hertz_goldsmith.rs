@@ -1,7 +1,7 @@
 //! A sphere on a rigidly held half-space against Hertz's closed form (Goldsmith, Impact, 1960, chapter 4).
 
-mod common;
 
+use crate::common;
 use approx::assert_relative_eq;
 use impactcheck::analytical::hertz::HertzImpact;
 use impactcheck::body::ModalBody;

@@ -4,7 +4,7 @@
 use impactcheck::scene::{Notch, Problem, Scene, SealSeat, SphereBody, Template, problems};
 use impactcheck::{Error, ExitStatus};
 
-const VALID: &str = include_str!("fixtures/seal-seat.toml");
+const VALID: &str = include_str!("../fixtures/seal-seat.toml");
 
 fn parse(text: &str) -> Scene {
     Scene::parse("scene.toml", text).expect("valid scene")

@@ -1,6 +1,5 @@
 //! Writing the report: complete or not at all, the same for the same results.
 
-mod synthetic_impact;
 
 use impactcheck::comparison::compare_scene;
 use impactcheck::impact::Outcome;
@@ -10,7 +9,7 @@ use impactcheck::{Error, ExitStatus};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use synthetic_impact::{reduced, reference, scene};
+use crate::synthetic_impact::{reduced, reference, scene};
 
 fn report<'a>(scene: &'a Scene, reference: &'a Outcome, reduced: &'a [Outcome]) -> Report<'a> {
     let comparison = compare_scene(scene, reference, reduced);

@@ -1,8 +1,8 @@
 //! A sphere on a plate so large that no wave returns during the contact, against Zener's equation
 //! (Phys. Rev. 59, 1941, 669) for the infinite plate.
 
-mod common;
 
+use crate::common;
 use approx::assert_relative_eq;
 use impactcheck::analytical::{circular_plate::rigidity, zener};
 use impactcheck::body::kirchhoff;

@@ -1,12 +1,10 @@
 //! The collocation integrator against classical Runge-Kutta with tiny steps, against conservation of momentum and
 //! energy, and against itself at other tolerances.
 
-mod common;
-#[path = "common/runge_kutta.rs"]
-mod runge_kutta;
 
+use crate::runge_kutta;
 use approx::assert_relative_eq;
-use common::scaled_plate;
+use crate::common::scaled_plate;
 use impactcheck::body::kirchhoff;
 use impactcheck::impact::integrator::{Integration, Options, integrate};
 use impactcheck::impact::system::System;

@@ -4,7 +4,7 @@
 use impactcheck::scene::{self, Edge, Geometry, Model, PlateImpact, Problem, Rigid, Scene, Shape, problems};
 use impactcheck::{Error, ExitStatus};
 
-const VALID: &str = include_str!("fixtures/plate-impact.toml");
+const VALID: &str = include_str!("../fixtures/plate-impact.toml");
 
 fn parse(text: &str) -> Scene {
     Scene::parse("scene.toml", text).expect("valid scene")

@@ -1,12 +1,12 @@
 //! Test of the harness itself: errors put into a history must make the verdict fail, with the
 //! summary left untouched; the untouched results pass.
 
-mod synthetic_impact;
 
+use crate::synthetic_impact;
 use impactcheck::comparison::{Verdict, compare_scene};
 use impactcheck::impact::{CURVES, History, Outcome, PLATE_QUANTITIES};
 use impactcheck::scene::Scene;
-use synthetic_impact::{gated_scene, reduced, reference, scene};
+use crate::synthetic_impact::{gated_scene, reduced, reference, scene};
 
 /// The curve called `name`, to be changed.
 fn curve_mut<'a>(history: &'a mut History, name: &str) -> &'a mut Vec<f64> {

@@ -1,10 +1,9 @@
 //! Impacts in a fluid (section 3.5 of the paper): the implicit integrator against explicit Runge-Kutta, against the
 //! dry integrator, conservation and closed forms.
 
-mod common;
 
 use approx::assert_relative_eq;
-use common::scaled_plate;
+use crate::common::scaled_plate;
 use impactcheck::body::continuum::{self, MeshOptions};
 use impactcheck::body::kirchhoff;
 use impactcheck::fluid::added_mass::immersed;

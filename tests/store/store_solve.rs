@@ -2,7 +2,6 @@
 //! leaves in the store, and what is said about it. The solver is a shell script here.
 #![cfg(unix)]
 
-mod store_fixture;
 
 use impactcheck::reference::{Lookup, Progress, Resolution, Store, Wish, solve_with};
 use impactcheck::scene::Scene;
@@ -12,7 +11,7 @@ use std::fs::{self, File};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
-use store_fixture::*;
+use crate::store_fixture::*;
 
 const PAPER: Resolution = Resolution::Paper;
 

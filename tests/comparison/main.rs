@@ -1,0 +1,13 @@
+//! Tests of curves, metrics, budget, verdicts and measured records.
+
+mod curve_metrics_integral;
+mod curve_metrics_iso18571;
+mod curves;
+mod discrepancy_budget;
+mod gate_mutations;
+mod gate_updates;
+mod harness;
+mod measured_signals;
+
+#[path = "../support/synthetic_impact.rs"]
+mod synthetic_impact;

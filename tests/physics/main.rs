@@ -1,0 +1,26 @@
+//! Tests of bodies, contacts, fluids and impacts against closed forms, other discretisations and the paper.
+
+mod auto_model;
+mod bench_structure;
+mod bender;
+mod continuum_cache;
+mod continuum_impact;
+mod continuum_plate_flexibility;
+mod continuum_plate_frequencies;
+mod continuum_sphere;
+mod hertz_goldsmith;
+mod integrator_runge_kutta;
+mod plate_frequencies_leissa;
+mod squeeze_film;
+mod studies_paper;
+mod table1_paper;
+mod table2_paper;
+mod wet_impact;
+mod zener_infinite_plate;
+
+#[path = "../support/common.rs"]
+mod common;
+#[path = "../support/continuum_support.rs"]
+mod continuum_support;
+#[path = "../support/runge_kutta.rs"]
+mod runge_kutta;

@@ -1,0 +1,11 @@
+//! Tests of pages, figures, exports and the page in a browser.
+
+mod browser;
+mod exports;
+mod figures;
+mod files;
+
+#[path = "../support/report_data.rs"]
+mod report_data;
+#[path = "../support/synthetic_impact.rs"]
+mod synthetic_impact;

@@ -1,0 +1,6 @@
+//! Tests of the flexible seal seat's scene, reduced model and stored references.
+
+mod reduced;
+mod reference;
+mod scene;
+

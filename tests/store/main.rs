@@ -1,0 +1,10 @@
+//! Tests of what is read: scenes, stored solutions, and random input to both.
+
+mod random_input;
+mod scene_reading;
+mod scene_schema;
+mod store_lookup;
+mod store_solve;
+
+#[path = "../support/store_fixture.rs"]
+mod store_fixture;
