@@ -2,9 +2,9 @@
 
 use super::tolerance_edit::line_of;
 use crate::comparison::{ChangedTolerance, Check, Discrepancy, ModelComparison, SceneComparison};
-use crate::impact::Quantities;
 use crate::report::Report;
 use crate::report::format::{model_name, percent, significant, words};
+use crate::result::Quantities;
 use std::path::Path;
 
 /// GitHub shows this many errors of a step.

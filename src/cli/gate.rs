@@ -6,9 +6,10 @@ use crate::ci::acceptance::{self, Acceptance, AcceptedReference, ToleranceChange
 use crate::ci::{commit, github, tolerance_edit, tolerance_watch};
 use crate::comparison::{SceneComparison, Verdict};
 use crate::error::{Error, ExitStatus, Result};
-use crate::impact::Quantities;
+use crate::file::write_file;
 use crate::reference::Resolution;
 use crate::report::{self, Attachments, Report};
+use crate::result::Quantities;
 use crate::scene::Scene;
 use clap::Args;
 use std::io::Write;
@@ -184,7 +185,7 @@ impl Change {
             return Ok(());
         };
         if let Some(text) = &self.text {
-            report::write_file(&self.file, text.as_bytes())?;
+            write_file(&self.file, text.as_bytes())?;
         }
         acceptance::add(&self.file, entry.clone())?;
         let changed = entry.tolerances.len();

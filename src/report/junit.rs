@@ -4,7 +4,7 @@ use super::Report;
 use super::format::{percent, short};
 use crate::comparison::{Check, Discrepancy, SceneComparison};
 use crate::error::{Error, Result};
-use crate::impact::Quantities;
+use crate::result::Quantities;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
 /// JUnit XML. It holds no times, so that equal results give equal files.

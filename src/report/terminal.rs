@@ -3,7 +3,7 @@
 use super::Report;
 use super::format::{percent, prefixed, with_unit};
 use crate::comparison::{Shown, Verdict};
-use crate::impact::PlateQuantities;
+use crate::result::PlateQuantities;
 use anstyle::{AnsiColor, Style};
 
 /// Styles; whoever prints takes them away where they can't be seen.
