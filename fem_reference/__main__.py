@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 from .errors import RunError, SceneError, SolverError
+from .processes import end_with_parent
 from .progress import Progress
 
 RESOLUTION_NAMES = ("coarse", "paper", "fine")
@@ -83,9 +84,9 @@ def _parser() -> argparse.ArgumentParser:
 def _run(arguments: argparse.Namespace) -> None:
     # Only `versions` must work without the finite-element modules: import late.
     if arguments.command == "versions":
-        from .versions import versions
+        from .versions import package, versions
 
-        print(json.dumps(versions(), indent=2))
+        print(json.dumps({"fem_reference": package(), **versions()}, indent=2))
         return
     from .scene import parse_scene, read_document
 
@@ -162,6 +163,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 def main() -> int:
     """Run; returns the exit status."""
+    end_with_parent()
     arguments = _parser().parse_args()
     # FFCx and its compiler driver log through the root logger.
     logging.disable(logging.WARNING)

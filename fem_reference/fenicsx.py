@@ -22,7 +22,10 @@ try:  # up to 0.5 the functions hang off fem.petsc only after an explicit import
 except ImportError as error:  # pragma: no cover - a dolfinx without PETSc
     raise ImportError("dolfinx was built without PETSc") from error
 
+from .jit_cache import clear_unfinished
 from .mesh import BodyMesh, Floats, Ints
+
+clear_unfinished()
 
 # FFCx logs through the root logger, at INFO and WARNING.
 for _name in ("FFCx", "UFL", "ffcx", "root"):

@@ -41,7 +41,7 @@ pub struct Arguments {
     #[arg(long)]
     compute: bool,
     /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
-    /// repeated impacts
+    /// repeated impacts, with commas or spaces between them
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
     measured: Vec<PathBuf>,
     /// Bandwidth of the instrument, to which the models' curves are filtered
@@ -101,6 +101,19 @@ pub(super) struct Outputs {
     pub(super) record: Option<(PathBuf, Commit)>,
 }
 
+impl Arguments {
+    /// Tables among the scenes belong to `--measured`, whose files a shell lists with spaces between them.
+    pub(super) fn with_tables_measured(mut self) -> Self {
+        if !self.measured.is_empty() {
+            let is_table = |name: &String| name.to_lowercase().ends_with(".csv");
+            let (tables, scenes) = self.scenes.into_iter().partition(is_table);
+            self.scenes = scenes;
+            self.measured.extend(Vec::into_iter(tables).map(PathBuf::from));
+        }
+        self
+    }
+}
+
 impl<'a> Job<'a> {
     pub(super) fn read(context: &Context, arguments: &'a Arguments) -> Result<Self> {
         let start = Instant::now();
@@ -109,6 +122,9 @@ impl<'a> Job<'a> {
             return Err(Error::Usage(format!(
                 "--tolerance {tolerance} is for the model auto, which is not among --models"
             )));
+        }
+        if let Some(file) = arguments.trends.as_ref().filter(|file| !file.is_file()) {
+            return Err(Error::Usage(format!("--trends: there is no file {}", file.display())));
         }
         let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
         // refused before anything is computed; of all shipped scenes those are compared that have one of the models
@@ -152,8 +168,8 @@ impl<'a> Job<'a> {
 
     /// References from the store (or computed), and the reduced models' runs.
     pub(super) fn results(&self, context: &Context) -> Result<Results> {
-        let plates: Vec<&Scene> = self.plates().map(|(_, scene)| scene).collect();
-        let seats: Vec<&Scene> = self.seats().map(|(_, scene)| scene).collect();
+        let plates: Vec<_> = self.plates().collect();
+        let seats: Vec<_> = self.seats().collect();
         let Arguments { resolution, compute, .. } = *self.arguments;
         let mut problems = Vec::new();
         let references = look_up(context, resolution, compute, &plates, &mut problems)?;
@@ -166,10 +182,11 @@ impl<'a> Job<'a> {
             tell_reused(context, stored);
         }
         let seats = seats.into_iter().zip(stored);
-        let seats =
-            seats.map(|(scene, stored)| compare_seats::run(context, scene, stored)).collect::<Result<_>>()?;
+        let seats = seats
+            .map(|((_, scene), stored)| compare_seats::run(context, scene, stored))
+            .collect::<Result<_>>()?;
         let mut reduced = Vec::new();
-        for (scene, stored) in plates.into_iter().zip(&references) {
+        for ((_, scene), stored) in plates.into_iter().zip(&references) {
             // the models' curves are drawn and compared as far as the reference's
             let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
             let models = asked_model::set_up(scene, &self.arguments.models, self.arguments.tolerance)?;

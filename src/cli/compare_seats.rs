@@ -70,7 +70,7 @@ pub(super) fn report(
     let mut comparison = compare_scene(scene, &stored.outcome, reduced);
     comparison.add_reference_checks(acceptance::checks(&acceptances, &stored.outcome.summary, resolution));
     comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
-    let animation = stored.folder.join(ANIMATION);
+    let (animation, root) = (stored.folder.join(ANIMATION), project_root()?);
     Ok(SeatReport {
         scene: scene.clone(),
         comparison,
@@ -84,7 +84,7 @@ pub(super) fn report(
         // the same on every machine, so that equal results give equal reports
         animation: animation
             .is_file()
-            .then(|| animation.strip_prefix(project_root()).map(Path::to_owned).unwrap_or(animation)),
+            .then(|| animation.strip_prefix(root).map(Path::to_owned).unwrap_or(animation)),
         command,
         attachments: Attachments { bands: stored.bands.clone(), acceptances, ..Attachments::default() },
     })

@@ -7,12 +7,12 @@ use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
 use crate::result::PlateQuantities;
 use crate::result::Quantities;
 use crate::result::SeatQuantities;
-use crate::scene::{self, Geometry, Scene, Setup};
+use crate::scene::{Geometry, Scene, Setup};
 use clap::Args;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, or the name of a shipped scene
+    /// Scene file, the name of a shipped scene, or `-` for standard input
     scene: String,
     /// How fine the mesh is: coarse, paper or fine
     #[arg(long, default_value = "paper")]
@@ -38,14 +38,14 @@ pub struct Arguments {
 
 /// Finds or computes the reference and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
+    let (file, scene) = super::read_scene(&arguments.scene)?;
     if arguments.np != 1 && scene.reference.geometry == Geometry::Axisymmetric {
         return Err(Error::Usage(format!(
             "--np {}: an axisymmetric reference runs as one process",
             arguments.np
         )));
     }
-    let store = context.store();
+    let store = context.store().for_scene_in(&file);
     let resolution = arguments.target_error.map_or(arguments.resolution, Resolution::Within);
     match scene.setup {
         Setup::PlateImpact(_) => show::<PlateQuantities>(context, arguments, &scene, resolution, &store),
@@ -71,8 +71,8 @@ fn show<Q: Quantities>(
             if let Some(lookup @ (Lookup::Stale { .. } | Lookup::Damaged { .. })) = &other {
                 context.note(format_args!("{}; computing it again", problem(scene, resolution, lookup)));
             }
-            if let (Some(Lookup::Missing), Lookup::Found(shipped)) =
-                (&other, Store::shipped().find_as::<Q>(scene, resolution))
+            if let (Some(Lookup::Missing), Ok(Lookup::Found(shipped))) =
+                (&other, Store::shipped().map(|shipped| shipped.find_as::<Q>(scene, resolution)))
             {
                 context.note(format_args!(
                     "computing it for {}; comparisons would find {} as well",

@@ -105,13 +105,14 @@ fn command_lines_that_make_no_sense_end_with_2() {
 }
 
 #[test]
-fn output_folder_that_cannot_be_written_ends_with_1_before_anything_is_computed() {
+fn output_folder_that_is_a_file_ends_with_2_and_one_that_cannot_be_written_with_1_before_anything_is_computed()
+ {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "not a folder").unwrap();
-    for out in [file.join("report"), PathBuf::from("/proc/report")] {
+    for (out, status) in [(file.clone(), 2), (file.join("report"), 2), (PathBuf::from("/proc/report"), 1)] {
         let ended = impactcheck(&["compare", "scaled-plate-r10", "--out", out.to_str().unwrap()], &[]);
-        assert_eq!(ended.status, 1, "{}", ended.error);
+        assert_eq!(ended.status, status, "{}", ended.error);
         assert!(ended.error.contains(out.to_str().unwrap()), "{}", ended.error);
     }
     assert_eq!(fs::read_to_string(&file).unwrap(), "not a folder");
