@@ -5,15 +5,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem_reference import system as system_module
-from fem_reference.elasticity import BodyMatrices
-from fem_reference.errors import SolverError
-from fem_reference.explicit import Run, integrate
-from fem_reference.levels import LEVEL_MARGIN, MOST_LEVELS, element_levels, level_matrices
-from fem_reference.loop import Loop
-from fem_reference.mesh import Ints
-from fem_reference.scene import Scene, parse_scene
-from fem_reference.system import INNER, OUTER, System, critical_time_step, patch_flexibility
+from fem_reference.axisymmetric import system as system_module
+from fem_reference.axisymmetric.elasticity import BodyMatrices
+from fem_reference.axisymmetric.system import (
+    INNER,
+    OUTER,
+    System,
+    critical_time_step,
+    patch_flexibility,
+)
+from fem_reference.common.arrays import Ints
+from fem_reference.common.errors import SolverError
+from fem_reference.explicit.levels import LEVEL_MARGIN, MOST_LEVELS, element_levels, level_matrices
+from fem_reference.explicit.loop import Loop
+from fem_reference.plate_impact.axisymmetric_run import Run, integrate
+from fem_reference.plate_impact.scene import Scene, parse_scene
 
 from .conftest import document, make_system
 
