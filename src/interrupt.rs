@@ -1,7 +1,7 @@
 //! Ctrl-C and SIGTERM: what runs is ended, what is half made goes, then the program ends as the signal wants it to.
 //!
 //! Nothing else is needed for children whose parent dies without a word: `fem_reference` asks the system to be told
-//! (`fem_reference/processes.py`).
+//! (`fem_reference/common/parent.py`).
 
 use std::io;
 use std::path::{Path, PathBuf};

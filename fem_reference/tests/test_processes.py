@@ -14,10 +14,10 @@ from typing import Any
 
 import pytest
 
-from fem_reference.processes import PARENT
+from fem_reference.common.parent import PARENT
 from fem_reference.tests.conftest import document
 from fem_reference.tests.program import ROOT
-from fem_reference.versions import MODULES
+from fem_reference.common.versions import MODULES
 
 PROGRAM = f"""
 import os, subprocess, sys
@@ -69,7 +69,7 @@ def test_a_run_ends_with_the_program_that_started_it(tmp_path: Path, processes: 
 
 
 def test_a_run_started_by_hand_is_left_alone() -> None:
-    code = f"import os; os.environ.pop({PARENT!r}, None); from fem_reference.processes import *; "
+    code = f"import os; os.environ.pop({PARENT!r}, None); from fem_reference.common.parent import *; "
     read = "import ctypes; s = ctypes.c_int(); ctypes.CDLL(None).prctl(2, ctypes.byref(s)); "
     told = subprocess.run(
         [sys.executable, "-c", f"{code} end_with_parent(); {read} print(s.value)"],
@@ -104,7 +104,7 @@ def test_a_compilation_that_was_killed_does_not_stop_the_next_run(tmp_path: Path
     cache.mkdir()
     names = ("libffcx_forms_0.c", "libffcx_forms_1.c", "libffcx_forms_1.c.cached", "other.c")
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
-    code = "import fem_reference.jit_cache as j; j.clear_unfinished(); "
+    code = "import fem_reference.common.jit_cache as j; j.clear_unfinished(); "
 
     def left() -> list[str]:
         for name in names:
