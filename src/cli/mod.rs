@@ -84,7 +84,7 @@ enum Command {
     /// Try the time integration on random scenes over the whole admissible range
     #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
     Stress(stress::Arguments),
-    /// Tell what is installed, and the command that installs what is missing
+    /// Tell what is installed, and the command that installs what is missing (exit status 12 if anything is)
     #[command(after_help = "Example: impactcheck doctor")]
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors

@@ -99,6 +99,7 @@ fn purpose(module: &str) -> (&'static str, &'static str) {
         "cffi" => (": compiled element kernels", "python3-cffi"),
         "numpy" => (": arrays", "python3-numpy"),
         "scipy" => (": sparse matrices", "python3-scipy"),
+        "slepc4py" => (": eigenmodes", "python3-slepc4py"),
         _ => (": finite elements", "python3-dolfinx"),
     }
 }

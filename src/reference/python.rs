@@ -11,8 +11,7 @@ use std::process::{Command, Stdio};
 const PYTHON_VARIABLE: &str = "IMPACTCHECK_PYTHON";
 
 /// How the modules are installed on Debian.
-pub(super) const INSTALL: &str =
-    "`sudo apt-get update` and `sudo apt-get install python3-dolfinx python3-gmsh python3-meshio`";
+pub(super) const INSTALL: &str = "`sudo apt-get update` and `sudo apt-get install python3-dolfinx python3-slepc4py python3-gmsh python3-meshio python3-scipy`";
 
 /// An interpreter and the versions of what it can import; `None` = missing.
 #[derive(Debug, Clone, PartialEq)]

@@ -168,7 +168,9 @@ fn doctor_tells_what_the_solver_cannot_import_and_where_the_files_are() {
     let answer = r#"echo '{"python": "3.11", "fem_reference": null, "dolfinx": "0.5.2", "meshio": null}'"#;
     fs::write(elsewhere.path("python"), format!("#!/bin/sh\n{answer}\n")).expect("script");
     let checks = |variables: &[(&str, &Path)]| -> Vec<serde_json::Value> {
-        serde_json::from_str(&elsewhere.does("here", &["doctor", "--json"], variables)).expect("JSON")
+        let output = elsewhere.run("here", &["doctor", "--json"], variables);
+        assert_eq!(output.status.code(), Some(12), "ill");
+        serde_json::from_slice(&output.stdout).expect("JSON")
     };
     let told = checks(&[]);
     let check = |name: &str| told.iter().find(|c| c["name"] == name).unwrap_or_else(|| panic!("{name}"));
