@@ -162,6 +162,8 @@ impl Store {
         }
         match Store::shipped().map(|shipped| shipped.find_here(scene, resolution)) {
             Ok(Lookup::Found(stored)) => Lookup::Found(stored),
+            // why the only one there is can't be used
+            Ok(other) if !self.named && lookup == Lookup::Missing => other,
             _ => lookup,
         }
     }
