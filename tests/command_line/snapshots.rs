@@ -49,6 +49,7 @@ fn check(name: &str, seen: &str, folder: &Path) {
     with_settings!({ prepend_module_to_snapshot => false, omit_expression => true, filters => [
         (r"\d+\.\d+ s\b", "[TIME]"),
         (r"[0-9a-f]{64}", "[HASH]"),
+        (r"\.partial-\w+", ".partial-[RANDOM]"),
     ] }, { assert_snapshot!(name, seen); });
 }
 
