@@ -4,8 +4,7 @@ use super::tolerance_edit::line_of;
 use crate::comparison::{
     AMONG, ChangedTolerance, Check, Discrepancy, GateRules, ModelComparison, SceneComparison, Undecided, Verdict,
 };
-use crate::result::Quantities;
-use crate::report::Report;
+use crate::report::{Report, SceneReport};
 use crate::report::format::{model_name, percent, significant, words};
 use std::path::Path;
 
@@ -21,9 +20,8 @@ pub fn is_running() -> bool {
 /// farthest beyond its bound first. `place` gives the file of the scene of that name, as seen from the repository, and its text.
 pub fn annotations(report: &Report, place: impl Fn(&str) -> (String, String)) -> Vec<String> {
     let rules = report.rules;
-    let plates = report.scenes.iter().flat_map(|s| annotations_of(&s.comparison, rules, &place));
-    let seats = report.seats.iter().flat_map(|s| annotations_of(&s.comparison, rules, &place));
-    let mut found: Vec<Annotation> = plates.chain(seats).collect();
+    let of_scene = |s: &SceneReport| annotations_of(&s.comparison, rules, &place);
+    let mut found: Vec<Annotation> = report.scenes.iter().flat_map(of_scene).collect();
     found.sort_by(|a, b| b.size.total_cmp(&a.size));
     let mut commands = Vec::new();
     for (level, what) in [("error", "failures"), ("warning", "undecided rows")] {
@@ -35,17 +33,12 @@ pub fn annotations(report: &Report, place: impl Fn(&str) -> (String, String)) ->
             ));
         }
     }
-    let plates = report.scenes.iter().flat_map(|s| warnings(&s.comparison, &place));
-    let seats = report.seats.iter().flat_map(|s| warnings(&s.comparison, &place));
-    commands.extend(plates.chain(seats));
+    commands.extend(report.scenes.iter().flat_map(|s| warnings(&s.comparison, &place)));
     commands
 }
 
 /// A workflow command per tolerance that was changed since it was accepted.
-fn warnings<Q: Quantities>(
-    comparison: &SceneComparison<Q>,
-    place: impl Fn(&str) -> (String, String),
-) -> Vec<String> {
+fn warnings(comparison: &SceneComparison, place: impl Fn(&str) -> (String, String)) -> Vec<String> {
     let command = |changed: &ChangedTolerance| {
         let (file, text) = place(&comparison.scene);
         let line = line_of(&text, &changed.model, &changed.quantity);
@@ -64,8 +57,8 @@ struct Annotation {
     command: String,
 }
 
-fn annotations_of<Q: Quantities>(
-    comparison: &SceneComparison<Q>,
+fn annotations_of(
+    comparison: &SceneComparison,
     rules: GateRules,
     place: impl Fn(&str) -> (String, String),
 ) -> Vec<Annotation> {
@@ -101,7 +94,7 @@ struct Finding<'a> {
 }
 
 /// All that is to be told of a scene.
-fn findings<Q: Quantities>(comparison: &SceneComparison<Q>, rules: GateRules) -> Vec<Finding<'_>> {
+fn findings(comparison: &SceneComparison, rules: GateRules) -> Vec<Finding<'_>> {
     let broken = |of: &str, checks: &'_ [Check]| -> Vec<Finding<'_>> {
         let failed = checks.iter().filter(|c| c.verdict.failed());
         let finding = |check: &Check| {
@@ -140,10 +133,6 @@ pub fn job_summary(report: &Report) -> String {
         text += &summary_rows(&scene.comparison);
         listed.extend(list(&scene.comparison, report.rules));
     }
-    for seat in &report.seats {
-        text += &summary_rows(&seat.comparison);
-        listed.extend(list(&seat.comparison, report.rules));
-    }
     text += &format!("\n{AMONG}\n");
     for (heading, undecided) in [("What failed", false), ("What is undecided", true)] {
         let own: String = listed.iter().filter(|l| (l.0 == Verdict::Undecided) == undecided).map(|l| &*l.1).collect();
@@ -154,8 +143,8 @@ pub fn job_summary(report: &Report) -> String {
     text
 }
 
-fn summary_rows<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
-    let row = |model: &ModelComparison<Q>| {
+fn summary_rows(comparison: &SceneComparison) -> String {
+    let row = |model: &ModelComparison| {
         let largest = model
             .largest()
             .map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
@@ -174,7 +163,7 @@ fn summary_rows<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
 }
 
 /// Verdict and line of every finding.
-fn list<Q: Quantities>(comparison: &SceneComparison<Q>, rules: GateRules) -> Vec<(Verdict, String)> {
+fn list(comparison: &SceneComparison, rules: GateRules) -> Vec<(Verdict, String)> {
     let line = |finding: Finding| {
         // the row's message begins with its quantity
         let of = finding.model.map_or(finding.of, |model| format!("model {model}"));

@@ -8,8 +8,7 @@ use crate::comparison::{GateRules, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::reference::Resolution;
-use crate::report::{self, Attachments, Report};
-use crate::result::Quantities;
+use crate::report::{self, Attachments, Report, SceneReport};
 use crate::scene::Scene;
 use clap::Args;
 use std::io::Write;
@@ -65,7 +64,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 fn conclude(
     context: &Context,
     job: &Job,
-    results: &Results,
+    results: &[Results],
     outputs: &Outputs,
     rules: GateRules,
 ) -> Result<ExitStatus> {
@@ -141,16 +140,13 @@ fn tell_github(context: &Context, job: &Job, report: &Report) -> Result<()> {
 }
 
 /// Changes what fails in the scene files, and records why. Whether anything was changed.
-fn update(context: &Context, job: &Job, results: &Results, reason: &str) -> Result<bool> {
+fn update(context: &Context, job: &Job, results: &[Results], reason: &str) -> Result<bool> {
     let report = job.report(context, results)?;
-    let (plates, seats) = (job.plates().zip(&report.scenes), job.seats().zip(&report.seats));
-    let mut changes = Vec::new();
-    for ((file, _), scene) in plates {
-        changes.push(Change::of(file, &scene.comparison, &scene.attachments, job.resolution(), reason)?);
-    }
-    for ((file, _), seat) in seats {
-        changes.push(Change::of(file, &seat.comparison, &seat.attachments, job.resolution(), reason)?);
-    }
+    let scenes = job.scenes.iter().zip(&report.scenes);
+    let change = |((file, _), scene): (&(PathBuf, Scene), &SceneReport)| {
+        Change::of(file, &scene.comparison, &scene.attachments, job.resolution(), reason)
+    };
+    let changes = scenes.map(change).collect::<Result<Vec<_>>>()?;
     for change in &changes {
         change.make(context)?;
     }
@@ -169,9 +165,9 @@ struct Change {
 
 impl Change {
     /// The change that makes `comparison` pass, checked, not yet made.
-    fn of<Q: Quantities>(
+    fn of(
         file: &Path,
-        comparison: &SceneComparison<Q>,
+        comparison: &SceneComparison,
         attachments: &Attachments,
         resolution: Resolution,
         reason: &str,
@@ -235,7 +231,7 @@ impl Change {
 }
 
 /// A result that contradicts itself can't be accepted; a reference that is not the accepted one can.
-fn acceptable<Q: Quantities>(comparison: &SceneComparison<Q>) -> Result<()> {
+fn acceptable(comparison: &SceneComparison) -> Result<()> {
     let of_reference = comparison.integrity.iter().filter(|c| !c.check.starts_with(acceptance::CHECK));
     let of_models = comparison.models.iter().flat_map(|model| &model.integrity);
     match of_reference.chain(of_models).find(|check| check.verdict.failed()) {

@@ -2,13 +2,13 @@
 
 use super::discrepancy::Discrepancy;
 use super::verdict::Verdict;
-use crate::impact::{Quantities, Summary};
+use crate::result::Summary;
 
 /// Smallest relative band that a reference can be asked for.
 const SMALLEST_TARGET: f64 = 1e-4;
 
 /// Says of every undecided row what would decide it.
-pub(super) fn tell<Q: Quantities>(rows: &mut [Discrepancy], reference: &Summary<Q>) {
+pub(super) fn tell(rows: &mut [Discrepancy], reference: &Summary) {
     let reached = targeted_band(reference);
     for row in rows.iter_mut().filter(|row| row.verdict == Verdict::Undecided) {
         row.would_decide = sentence(row, reached);
@@ -16,9 +16,9 @@ pub(super) fn tell<Q: Quantities>(rows: &mut [Discrepancy], reference: &Summary<
 }
 
 /// Largest relative band of what `--target-error` is about: efficiency and force peaks.
-fn targeted_band<Q: Quantities>(reference: &Summary<Q>) -> Option<f64> {
+fn targeted_band(reference: &Summary) -> Option<f64> {
     let targeted = |name: &str| name == "efficiency" || name.ends_with("_force_peak");
-    let relative = |(name, band): (&String, &f64)| Some(band / reference.quantities.value(name)?.abs());
+    let relative = |(name, band): (&String, &f64)| Some(band / reference.value(name)?.abs());
     let bands = reference.uncertainty.iter().filter(|(name, _)| targeted(name)).filter_map(relative);
     bands.filter(|band| band.is_finite()).reduce(f64::max)
 }
@@ -59,7 +59,7 @@ mod tests {
     fn row(reduced: f64, band: f64) -> Discrepancy {
         let tolerance = Tolerance { relative: Some(0.01), ..Tolerance::default() };
         let scales = Scales { value: 100.0, peak: 100.0 };
-        Discrepancy::new(("x", "N"), (reduced, 100.0), scales, Some(&tolerance), Some(band))
+        Discrepancy::new(("x", "N"), (Some(reduced), Some(100.0)), scales, Some(&tolerance), Some(band))
     }
 
     #[test]

@@ -5,11 +5,10 @@ use super::html::{badge, model_badge, named, number, scrolled};
 use crate::comparison::{BandVerdict, Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
 use crate::result::ContactPatch;
 use crate::result::ContactPressure;
-use crate::result::Quantities;
 use maud::{Markup, html};
 
 /// Section of one model.
-pub(super) fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
+pub(super) fn model_section(model: &ModelComparison) -> Markup {
     html! {
         h2 { "Model " (model_name(&model.model, model.summary.modes)) " " (model_badge(model)) }
         @for warning in &model.summary.warnings { p { strong { "Warning: " } (warning) } }
@@ -73,7 +72,7 @@ fn pressures(pressure: &ContactPressure) -> Markup {
 }
 
 fn discrepancy_row(row: &Discrepancy) -> Markup {
-    let to = prefixed(&row.unit, row.reference.abs().max(row.reduced.abs()));
+    let to = prefixed(&row.unit, row.size());
     html! {
         tr data-quantity=(row.quantity) {
             th scope="row" { (named(&row.quantity)) }
@@ -85,9 +84,9 @@ fn discrepancy_row(row: &Discrepancy) -> Markup {
             }
             (number("tolerance", row.tolerance, to, 3))
             (number("bias", row.bias, to, 3))
-            (number("reduced", Some(row.reduced), to, 5))
-            (number("reference", Some(row.reference), to, 5))
-            (number("difference", Some(row.difference), to, 3))
+            (number("reduced", row.reduced, to, 5))
+            (number("reference", row.reference, to, 5))
+            (number("difference", row.difference, to, 3))
             (number("uncertainty", row.uncertainty, to, 2))
             td.left data-field="band_verdict" { (row.band_verdict.map_or("–", BandVerdict::words)) }
         }

@@ -2,9 +2,9 @@
 //! inside, nothing is loaded. Every number carries its SI value in `data-si`.
 
 use super::format::{Prefixed, model_name, percent, prefixed, significant, with_unit, words};
-use super::{Attachments, Report};
+use super::{Report, SceneReport};
 use crate::comparison::{AMONG, Discrepancy, ModelComparison, SceneComparison, Verdict};
-use crate::result::Quantities;
+use crate::result::Summary;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("assets/style.css");
@@ -32,7 +32,7 @@ pub(super) fn badge(verdict: Verdict) -> Markup {
 }
 
 /// The verdict of a model, of which it may be known that it is off.
-pub(super) fn model_badge<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
+pub(super) fn model_badge(model: &ModelComparison) -> Markup {
     worded(model.verdict, model.verdict_in_words())
 }
 
@@ -90,8 +90,7 @@ pub fn index_page(report: &Report) -> String {
         h1 { "impactcheck " (badge(report.comparison().verdict)) }
         p.soft { "Reduced models of an impact against explicit finite elements. " (counts(report)) }
         div.cards {
-            @for scene in &report.scenes { (card(&scene.scene.description, &scene.comparison, &scene.attachments)) }
-            @for seat in &report.seats { (card(&seat.scene.description, &seat.comparison, &seat.attachments)) }
+            @for scene in &report.scenes { (card(scene)) }
         }
         h2 { "Verdicts" }
         (scrolled("Verdicts", &html! { table.verdicts {
@@ -103,7 +102,6 @@ pub fn index_page(report: &Report) -> String {
             } }
             tbody {
                 @for scene in &report.scenes { (index_rows(&scene.comparison)) }
-                @for seat in &report.seats { (index_rows(&seat.comparison)) }
             }
         } }))
         p.soft { (EFFICIENCY) } p.soft { (AMONG) }
@@ -118,14 +116,13 @@ pub fn index_page(report: &Report) -> String {
 
 /// How much was gated and what came of it, in a sentence.
 fn counts(report: &Report) -> String {
-    let plates = report.scenes.iter().flat_map(|scene| scene.comparison.gated_verdicts());
-    let seats = report.seats.iter().flat_map(|seat| seat.comparison.gated_verdicts());
-    let verdicts: Vec<Verdict> = plates.chain(seats).collect();
+    let verdicts = report.scenes.iter().flat_map(|scene| scene.comparison.gated_verdicts());
+    let verdicts: Vec<Verdict> = verdicts.collect();
     if verdicts.is_empty() {
         return "Nothing is gated: no scene has tolerances.".into();
     }
     let count = |verdict| verdicts.iter().filter(|v| **v == verdict).count();
-    let scenes = report.scenes.len() + report.seats.len();
+    let scenes = report.scenes.len();
     let plural = |n: usize| if n == 1 { "" } else { "s" };
     format!(
         "{scenes} scene{}, {} gated quantities: {} within their tolerances, {} undecided, {} not within.",
@@ -138,24 +135,21 @@ fn counts(report: &Report) -> String {
 }
 
 /// A scene in short.
-fn card<Q: Quantities>(
-    description: &str,
-    comparison: &SceneComparison<Q>,
-    attachments: &Attachments,
-) -> Markup {
+fn card(scene: &SceneReport) -> Markup {
+    let (comparison, trends) = (&scene.comparison, &scene.attachments.trends);
     html! {
         section.card {
             h2 { (scene_link(comparison)) " " (badge(comparison.verdict)) }
-            p.soft { (description) }
+            p.soft { (scene.scene.description) }
             ul.models { @for model in &comparison.models { li { (model_line(model)) } } }
-            @let drifting = attachments.trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
-            @if drifting > 0 { p { strong { "Drift: " } (drifting) " of " (attachments.trends.len()) " numbers recorded over commits." } }
+            @let drifting = trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
+            @if drifting > 0 { p { strong { "Drift: " } (drifting) " of " (trends.len()) " numbers recorded over commits." } }
         }
     }
 }
 
 /// Verdict of a model with its largest discrepancy, the band it is to be seen against, and what the gate makes of it.
-pub(super) fn model_line<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
+pub(super) fn model_line(model: &ModelComparison) -> Markup {
     html! {
         (model_badge(model)) " model " (model_name(&model.model, model.summary.modes))
         @if let Some(d) = model.largest() {
@@ -170,15 +164,15 @@ pub(super) fn model_line<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
 }
 
 fn relative_band(row: &Discrepancy) -> String {
-    let band = row.uncertainty.map(|u| 100.0 * u / row.reference.abs()).filter(|u| u.is_finite());
+    let band = row.uncertainty.zip(row.reference).map(|(u, m)| 100.0 * u / m.abs()).filter(|u| u.is_finite());
     band.map_or_else(String::new, |band| format!("; 95 % band of the reference ±{} %", significant(band, 2)))
 }
 
-fn scene_link<Q: Quantities>(comparison: &SceneComparison<Q>) -> Markup {
+fn scene_link(comparison: &SceneComparison) -> Markup {
     html! { a href=(format!("{}.html", comparison.scene)) { (comparison.scene) } }
 }
 
-fn index_rows<Q: Quantities>(comparison: &SceneComparison<Q>) -> Markup {
+fn index_rows(comparison: &SceneComparison) -> Markup {
     html! {
         @for model in &comparison.models { (index_row(comparison, model)) }
         @if comparison.models.is_empty() {
@@ -190,8 +184,8 @@ fn index_rows<Q: Quantities>(comparison: &SceneComparison<Q>) -> Markup {
     }
 }
 
-fn index_row<Q: Quantities>(comparison: &SceneComparison<Q>, model: &ModelComparison<Q>) -> Markup {
-    let efficiency = |quantities: &Q| quantities.value("efficiency");
+fn index_row(comparison: &SceneComparison, model: &ModelComparison) -> Markup {
+    let efficiency = |summary: &Summary| summary.value("efficiency");
     let plain = prefixed("1", 1.0);
     let largest = model.largest();
     let tightest = model.tightest();
@@ -200,11 +194,11 @@ fn index_row<Q: Quantities>(comparison: &SceneComparison<Q>, model: &ModelCompar
             th scope="row" { (scene_link(comparison)) }
             td.left { (model_name(&model.model, model.summary.modes)) }
             td.left { (model_badge(model)) }
-            (number("reduced", efficiency(&model.summary.quantities), plain, 4))
-            (number("reference", efficiency(&comparison.reference.quantities), plain, 4))
+            (number("reduced", efficiency(&model.summary), plain, 4))
+            (number("reference", efficiency(&comparison.reference), plain, 4))
             td.left { @if let Some(d) = largest { (words(&d.quantity)) " " (percent(d.relative)) } @else { "–" } }
             @match largest.and_then(|d| d.uncertainty.map(|u| (d, u))) {
-                Some((d, u)) => { (number("uncertainty", Some(u), prefixed(&d.unit, d.reference), 2)) }
+                Some((d, u)) => { (number("uncertainty", Some(u), prefixed(&d.unit, d.reference.unwrap_or(u)), 2)) }
                 None => { td { "–" } }
             }
             td.left { @if let Some(d) = tightest { (words(&d.quantity)) } @else { "–" } }

@@ -5,7 +5,6 @@ use super::Report;
 use super::format::{percent, short};
 use crate::comparison::{Check, Discrepancy, GateRules, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, Result};
-use crate::result::Quantities;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
 /// JUnit XML. It holds no times, so that equal results give equal files.
@@ -15,11 +14,10 @@ use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite}
 pub fn junit(report: &Report) -> Result<String> {
     let mut document = quick_junit::Report::new("impactcheck");
     document.add_test_suites(report.scenes.iter().map(|scene| suite(&scene.comparison, report.rules)));
-    document.add_test_suites(report.seats.iter().map(|seat| suite(&seat.comparison, report.rules)));
     document.to_string().map_err(|e| Error::Internal(format!("writing JUnit XML: {e}")))
 }
 
-fn suite<Q: Quantities>(comparison: &SceneComparison<Q>, rules: GateRules) -> TestSuite {
+fn suite(comparison: &SceneComparison, rules: GateRules) -> TestSuite {
     let mut suite = TestSuite::new(comparison.scene.clone());
     suite.add_property(Property::new("scene_hash", comparison.reference.scene_hash.as_str()));
     for changed in &comparison.changed_tolerances {
@@ -77,9 +75,9 @@ fn case(scene: &str, model: &str, row: &Discrepancy, undecided: Undecided) -> Te
     case.add_property(Property::new("verdict", row.verdict.name()));
     case.add_property(Property::new("unit", row.unit.as_str()));
     let numbers = [
-        ("reduced", Some(row.reduced)),
-        ("reference", Some(row.reference)),
-        ("difference", Some(row.difference)),
+        ("reduced", row.reduced),
+        ("reference", row.reference),
+        ("difference", row.difference),
         ("relative", row.relative),
         ("uncertainty", row.uncertainty),
         ("tolerance", row.tolerance),
@@ -111,15 +109,18 @@ fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
 /// What is wrong with a row, or open, in one sentence with numbers, unit and bound.
 pub(crate) fn told(row: &Discrepancy) -> String {
     let Discrepancy { quantity, unit, .. } = row;
-    let [reduced, reference] = [row.reduced, row.reference].map(short);
-    let numbers = format!("{quantity}: reduced {reduced} {unit}, reference {reference} {unit}");
+    let side = |value: Option<f64>| value.map_or("not determined".into(), |v| format!("{} {unit}", short(v)));
+    let numbers = format!("{quantity}: reduced {}, reference {}", side(row.reduced), side(row.reference));
+    let Some(difference) = row.difference else {
+        return format!("{numbers}; a tolerance needs both: set a later `run.end_time`, or none");
+    };
     // what 100 % is, so that bounds stand in the same measure as the difference
-    let whole = row.relative.filter(|r| *r != 0.0).map(|relative| row.difference / relative);
+    let whole = row.relative.filter(|r| *r != 0.0).map(|relative| difference / relative);
     let with_share = |value: f64| {
         let share = whole.map_or(String::new(), |whole| format!(" ({})", percent(Some(value / whole))));
         format!("{} {unit}{share}", short(value))
     };
-    let difference = with_share(row.difference);
+    let difference = with_share(difference);
     // a bound has no sign
     let bound = |width| with_share(width).replace("(+", "(\u{b1}");
     let bounded = match (row.tolerance, row.bias) {

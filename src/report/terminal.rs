@@ -2,8 +2,9 @@
 
 use super::Report;
 use super::format::{percent, prefixed, with_unit};
+use super::presentation::{self, Column};
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
-use crate::result::{PlateQuantities, Quantities};
+use crate::result::Summary;
 use anstyle::{AnsiColor, Style};
 
 /// Styles; whoever prints takes them away where they can't be seen.
@@ -22,26 +23,30 @@ pub(super) fn coloured(verdict: Verdict, words: &str) -> String {
 }
 
 /// A scene's line.
-pub(super) fn headline<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
+pub(super) fn headline(comparison: &SceneComparison) -> String {
     let verdict = comparison.verdict;
     format!("{}: {}\n", comparison.scene, coloured(verdict, verdict.words()))
 }
 
 /// A model's verdict.
-pub(super) fn of_model<Q: Quantities>(model: &ModelComparison<Q>) -> String {
+pub(super) fn of_model(model: &ModelComparison) -> String {
     coloured(model.verdict, model.verdict_in_words())
 }
 
 /// One per line: warnings, what failed and what is undecided; then how many did.
-pub(super) fn findings<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
+pub(super) fn findings(comparison: &SceneComparison) -> String {
     let mut text = String::new();
     let mut line = |of: &str, what: String| text += &format!("  {of}: {what}\n");
+    let warning = format!("{YELLOW}warning{YELLOW:#}");
+    for of_reference in &comparison.reference.warnings {
+        line(&format!("{warning}: reference"), of_reference.clone());
+    }
     for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
         line("reference", super::junit::integrity_failure(check));
     }
     for model in &comparison.models {
-        for warning in &model.summary.warnings {
-            line(&format!("{YELLOW}warning{YELLOW:#}"), warning.clone());
+        for of_model in &model.summary.warnings {
+            line(&format!("{warning}: {}", model.model), of_model.clone());
         }
         for row in model.discrepancies.iter().filter(|d| d.is_told()) {
             line(&model.model, super::junit::told(row));
@@ -60,28 +65,19 @@ pub(super) fn findings<Q: Quantities>(comparison: &SceneComparison<Q>) -> String
     text
 }
 
-/// The columns: heading, quantity, unit.
-const COLUMNS: [(&str, &str, &str); 5] = [
-    ("efficiency", "efficiency", "1"),
-    ("outer peak", "outer_force_peak", "N"),
-    ("inner peak", "inner_force_peak", "N"),
-    ("outer end", "outer_contact_end", "s"),
-    ("inner end", "inner_contact_end", "s"),
-];
-
 /// Per scene a line for the reference and one per model: values, how far they are from the
 /// reference, verdict; then, one per line, what failed.
 pub fn terminal(report: &Report) -> String {
     let mut text = String::new();
     for scene in &report.scenes {
         let comparison = &scene.comparison;
-        let reference = &comparison.reference.quantities;
+        let (reference, columns) = (&comparison.reference, presentation::of(scene.scene).columns());
         text += &headline(comparison);
-        let headings: String = COLUMNS.iter().map(|(heading, ..)| format!("{heading:>22}")).collect();
+        let headings: String = columns.iter().map(|column| format!("{:>22}", column.heading)).collect();
         text += &format!("  {:<10}{headings}  verdict\n", "");
-        text += &format!("  {:<10}{}\n", "reference", cells(reference, None));
+        text += &format!("  {:<10}{}\n", "reference", cells(columns, reference, None));
         for model in &comparison.models {
-            let row = cells(&model.summary.quantities, Some(reference));
+            let row = cells(columns, &model.summary, Some(reference));
             text += &format!("  {:<10}{row}  {}\n", model.model, of_model(model));
         }
         if let Some(measured) = &comparison.measured {
@@ -90,20 +86,21 @@ pub fn terminal(report: &Report) -> String {
         text += &findings(comparison);
         text.push('\n');
     }
-    for seat in &report.seats {
-        text += &super::seal_seat::terminal(seat);
-    }
     text
 }
 
-fn cells(quantities: &PlateQuantities, reference: Option<&PlateQuantities>) -> String {
-    let cell = |(_, quantity, unit): &(&str, &str, &str)| {
-        let value = |q: &PlateQuantities| q.get(quantity).unwrap_or(f64::NAN);
-        let own = value(quantities);
-        let shown = with_unit(own, prefixed(unit, own), 4);
-        let relative = reference.map(value).filter(|m| *m != 0.0).map(|m| (own - m) / m.abs());
+fn cells(columns: &[Column], summary: &Summary, reference: Option<&Summary>) -> String {
+    let cell = |column: &Column| {
+        let Some(quantity) = summary.quantities.get(column.quantity) else { return String::new() };
+        let Some(own) = quantity.value else { return "not determined".into() };
+        let other = reference.and_then(|reference| reference.value(column.quantity));
+        if column.is_angle {
+            let difference = other.map(|other| format!(" ({:+.2}°)", (own - other).to_degrees()));
+            return format!("{:+.2}°{}", own.to_degrees(), difference.unwrap_or_default());
+        }
+        let relative = other.filter(|other| *other != 0.0).map(|other| (own - other) / other.abs());
         let relative = relative.map_or(String::new(), |r| format!(" ({})", percent(Some(r))));
-        format!("{:>22}", shown + &relative)
+        with_unit(own, prefixed(quantity.unit, own), 4) + &relative
     };
-    COLUMNS.iter().map(cell).collect()
+    columns.iter().map(|column| format!("{:>22}", cell(column))).collect()
 }

@@ -4,7 +4,7 @@ use super::parameter::{Runner, contact_over_half_period, impact, linear, titaniu
 use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
 use crate::error::Result;
 use crate::optimise::search::{Search, maximise};
-use crate::result::PlateQuantities;
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::scene::{Edge, Model, PlateImpact};
 use std::ops::RangeInclusive;
 

@@ -4,7 +4,7 @@ use crate::synthetic_impact;
 use crate::synthetic_impact::{REDUCED, REFERENCE, SAMPLE_INTERVAL, history, reduced, reference, scene};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use impactcheck::comparison::{Comparison, compare_scene};
-use impactcheck::result::CURVES;
+use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::result::PLATE_QUANTITIES;
 use impactcheck::result::Source;
 use std::f64::consts::PI;

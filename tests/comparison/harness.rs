@@ -4,7 +4,7 @@
 use crate::synthetic_impact;
 use crate::synthetic_impact::{gated_scene, reduced, reference, scene};
 use impactcheck::comparison::{Verdict, compare_scene};
-use impactcheck::result::CURVES;
+use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::result::History;
 use impactcheck::result::Outcome;
 use impactcheck::result::PLATE_QUANTITIES;

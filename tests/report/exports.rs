@@ -7,7 +7,7 @@ use impactcheck::comparison::Verdict;
 use impactcheck::report::{
     Report, Theme, curves_csv, figure, index_page, json, junit, markdown, scene_page, terminal,
 };
-use impactcheck::result::CURVES;
+use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::result::PLATE_QUANTITIES;
 use resvg::usvg::roxmltree::Document;
 use serde_json::Value;

@@ -3,7 +3,7 @@
 use crate::report_data::{Data, between};
 use impactcheck::reference::{CurveBands, FieldMesh};
 use impactcheck::report::{FigureFormat, Theme, figure, figure_file, png, printed_figure, scene_page};
-use impactcheck::result::CURVES;
+use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::result::Outcome;
 use resvg::usvg::roxmltree::Document;
 

@@ -8,7 +8,7 @@ use impactcheck::comparison::{GateRules, Verdict, compare_scene};
 use impactcheck::kinds::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
 use impactcheck::report::{self, Cost, Report, SeatReport};
 use impactcheck::result::Outcome;
-use impactcheck::result::SeatQuantities;
+use impactcheck::kinds::seal_seat::SeatQuantities;
 use impactcheck::result::Source;
 use impactcheck::scene::{Model, Scene};
 use serde_json::Value;
@@ -246,7 +246,7 @@ fn what_a_seal_seat_has_not_is_refused_in_one_sentence() {
 }
 
 /// A stand-in for a stored reference: model C with more modes, said to be finite elements.
-fn stand_in() -> Outcome<SeatQuantities> {
+fn stand_in() -> Outcome {
     let (mut summary, history) = model(40).run_with_history(1e-3).expect("run");
     summary.source = Source::Reference;
     summary.model = None;
@@ -275,7 +275,7 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
     assert_eq!(compared.verdict, Verdict::Pass, "{failed:?} {:?}", compared.integrity);
     assert_eq!(compared.models[0].gated(), 4);
     assert_eq!(compared.models[0].curves.len(), 10);
-    type Change = fn(&mut Outcome<SeatQuantities>);
+    type Change = fn(&mut Outcome);
     let changes: [(&str, Change); 12] = [
         ("direction", |o| o.summary.quantities.sphere_angle += 0.0175),
         ("speed", |o| o.summary.quantities.sphere_speed *= 1.02),

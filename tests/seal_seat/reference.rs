@@ -3,10 +3,8 @@
 //! where it is meant to go.
 
 use impactcheck::reference::{Lookup, Resolution, Store, Stored, seat_meshes};
-use impactcheck::result::Curves;
-use impactcheck::result::Quantities;
 use impactcheck::result::SEAT_QUANTITIES;
-use impactcheck::result::SeatQuantities;
+use impactcheck::kinds::seal_seat::SeatQuantities;
 use impactcheck::result::Source;
 use impactcheck::scene::{Scene, Template, resolve};
 use std::path::{Path, PathBuf};
@@ -22,9 +20,9 @@ fn scene_file(name: &str) -> PathBuf {
     resolve(name).unwrap_or_else(|_| root().join("scenes/examples").join(format!("{name}.toml")))
 }
 
-fn stored(name: &str) -> (Scene, Stored<SeatQuantities>) {
+fn stored(name: &str) -> (Scene, Stored) {
     let scene = Scene::read(scene_file(name)).expect("valid scene");
-    match Store::open(None).find_as::<SeatQuantities>(&scene, Resolution::Paper) {
+    match Store::open(None).find(&scene, Resolution::Paper) {
         Lookup::Found(stored) => (scene, *stored),
         other => panic!("{name}: {other:?}"),
     }
@@ -117,7 +115,7 @@ fn a_solution_is_used_for_its_own_scene_only() {
     let template = Template::read(scene_file(DESIGNS[1])).expect("valid scene");
     let fields = ["seat.tilt", "seat.notch_width"].map(|name| template.field(name).expect(name));
     let other = template.with(&[(&fields[0], 0.25), (&fields[1], 0.0015)]).expect("valid");
-    match Store::open(None).find_as::<SeatQuantities>(&other, Resolution::Paper) {
+    match Store::open(None).find(&other, Resolution::Paper) {
         Lookup::Stale { reason } => {
             assert!(reason.contains("seat.tilt: 0.2617") && reason.contains("-> 0.25 rad"), "{reason}");
             assert!(reason.contains("seat.notch.width: 0.0014 -> 0.0015 m"), "{reason}");

@@ -231,7 +231,7 @@ fn what_is_not_physics_leaves_the_entry_valid() {
 fn the_projects_own_store_is_read_where_ones_own_has_nothing() {
     let root = tempfile::tempdir().expect("folder");
     let (store, shipped) = (Store::open(Some(root.path())), Store::shipped());
-    let find = || store.find_here_or_shipped::<impactcheck::result::PlateQuantities>(&scene(), PAPER);
+    let find = || store.find_here_or_shipped(&scene(), PAPER);
     let folder_of = |lookup| match lookup {
         Lookup::Found(stored) => stored.folder,
         other => panic!("not found: {other:?}"),
@@ -248,6 +248,6 @@ fn the_projects_own_store_is_read_where_ones_own_has_nothing() {
     assert!(matches!(find(), Lookup::Damaged { .. }));
     // What is nowhere is as it is here.
     let other = scene_with("550 mm/s", "610 mm/s");
-    let other = store.find_here_or_shipped::<impactcheck::result::PlateQuantities>(&other, PAPER);
+    let other = store.find_here_or_shipped(&other, PAPER);
     assert!(matches!(other, Lookup::Damaged { .. }));
 }

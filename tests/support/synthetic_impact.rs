@@ -6,7 +6,7 @@
 use impactcheck::result::History;
 use impactcheck::result::Motion;
 use impactcheck::result::Outcome;
-use impactcheck::result::PlateQuantities;
+use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::result::SCHEMA_VERSION;
 use impactcheck::result::Source;
 use impactcheck::result::Summary;

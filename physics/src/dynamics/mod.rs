@@ -14,7 +14,7 @@ pub mod integrator;
 mod ladder;
 mod outer_body;
 mod point_laws;
-mod recorder;
+pub(crate) mod recorder;
 mod step_bounds;
 pub mod system;
 pub mod wet;

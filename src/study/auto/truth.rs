@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::kinds::plate_impact::choice::largest_error;
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
-use crate::result::PlateQuantities;
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::scene::{Model, Scene};
 
 /// Kirchhoff modes of model B tried for the cheapest choice.

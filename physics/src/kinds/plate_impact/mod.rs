@@ -2,6 +2,24 @@
 
 pub mod choice;
 pub mod reduced;
+mod results;
 mod rough;
 mod validity;
 pub mod variants;
+
+use crate::result::{Curve, Quantity};
+
+pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
+
+/// The registry's entry.
+pub struct Kind;
+
+impl super::Kind for Kind {
+    fn quantities(&self) -> &'static [Quantity] {
+        PlateQuantities::ALL
+    }
+
+    fn curves(&self) -> &'static [Curve] {
+        &CURVES
+    }
+}

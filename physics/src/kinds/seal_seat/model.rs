@@ -3,15 +3,14 @@
 use super::body::{SeatBody, SeatMesh, Watch};
 use super::candidates::Zones;
 use super::integrate::{Options, integrate};
-use super::integration::{Integration, Sample};
+use super::integration::Integration;
+use super::results::{CURVES, SeatQuantities};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::cache::Cache;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
-use crate::result::SeatHistory;
-use crate::result::SeatQuantities;
-use crate::result::SeatSummary;
+use crate::result::{CUT, History, Outcome, Summary};
 use crate::scene::{Model, Scene, SealSeat, SphereBody};
 use std::time::Instant;
 
@@ -152,7 +151,7 @@ impl SeatModel {
     ///
     /// # Errors
     /// As [`integrate`]; [`Error::Solver`] if the tolerance can't be reached.
-    pub fn run(&self, tolerance: f64) -> Result<SeatSummary> {
+    pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let started = Instant::now();
         let (result, _) = self.converged(tolerance)?;
         Ok(self.summary(&result, started.elapsed().as_secs_f64()))
@@ -162,13 +161,13 @@ impl SeatModel {
     ///
     /// # Errors
     /// As [`SeatModel::run`].
-    pub fn run_with_history(&self, tolerance: f64) -> Result<(SeatSummary, SeatHistory)> {
+    pub fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
         let started = Instant::now();
         let (result, step) = self.converged(tolerance)?;
         let mut summary = self.summary(&result, started.elapsed().as_secs_f64());
         let history = history(&self.integrate(step, true)?);
-        summary.samples = Some(history.time.len());
-        Ok((summary, history))
+        summary.samples = Some(history.len());
+        Ok(Outcome { summary, history })
     }
 
     /// The first result that meets the tolerance, and its step.
@@ -189,15 +188,20 @@ impl SeatModel {
         )))
     }
 
-    fn summary(&self, result: &Integration, solve_seconds: f64) -> SeatSummary {
-        let (system, modes) = (&self.system, self.system.omega.len());
-        SeatSummary {
+    fn summary(&self, result: &Integration, solve_seconds: f64) -> Summary {
+        let mut table = quantities(&self.system, result).table();
+        let mut warnings = self.warnings.clone();
+        if result.is_cut() {
+            table = table.cut();
+            warnings.push(CUT.into());
+        }
+        Summary {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.tally.steps,
             solve_seconds,
-            warnings: self.warnings.clone(),
-            ..SeatSummary::of_reduced(&self.scene, Model::C, modes, quantities(system, result))
+            warnings,
+            ..Summary::of_reduced(&self.scene, Model::C, self.system.omega.len(), table)
         }
     }
 }
@@ -210,7 +214,7 @@ fn contact_duration(scene: &SealSeat) -> f64 {
     HertzImpact { mass: actuator.mass, speed: actuator.speed, stiffness }.duration()
 }
 
-/// The physical results of a run of `system`.
+/// The values at the end of a run of `system`, wherever that is.
 pub fn quantities(system: &System, result: &Integration) -> SeatQuantities {
     let [x, z] = result.state.sphere_velocity;
     let tally = &result.tally;
@@ -232,16 +236,12 @@ pub fn quantities(system: &System, result: &Integration) -> SeatQuantities {
 }
 
 /// The samples of a run as curves.
-fn history(result: &Integration) -> SeatHistory {
-    let curve = |value: &dyn Fn(&Sample) -> f64| result.samples.iter().map(value).collect();
-    SeatHistory {
-        time: curve(&|s| s.time),
-        sphere_displacement: [0, 1].map(|c| curve(&|s| s.sphere[c])),
-        sphere_velocity: [0, 1].map(|c| curve(&|s| s.sphere_velocity[c])),
-        sphere_force: curve(&|s| s.sphere_force[0].hypot(s.sphere_force[1])),
-        sphere_force_components: [0, 1].map(|c| curve(&|s| s.sphere_force[c])),
-        actuator_displacement: curve(&|s| s.actuator),
-        actuator_velocity: curve(&|s| s.actuator_velocity),
-        actuator_force: curve(&|s| s.actuator_force),
+fn history(result: &Integration) -> History {
+    let mut history = History::new(&CURVES);
+    for s in &result.samples {
+        let ([x, z], [vx, vz], [fx, fz]) = (s.sphere, s.sphere_velocity, s.sphere_force);
+        let sample = [x, z, vx, vz, fx.hypot(fz), fx, fz, s.actuator, s.actuator_velocity, s.actuator_force];
+        history.push(s.time, sample);
     }
+    history
 }
