@@ -106,11 +106,7 @@ pub fn today() -> String {
 
 /// Whether `reference` says what the one accepted last for the same scene and resolution says, quantity by quantity;
 /// no check if none was accepted.
-pub fn checks(
-    record: &[Acceptance],
-    reference: &Summary,
-    resolution: Resolution,
-) -> Vec<Check> {
+pub fn checks(record: &[Acceptance], reference: &Summary, resolution: Resolution) -> Vec<Check> {
     let now = AcceptedReference::of(reference, resolution);
     let same = |a: &&AcceptedReference| a.scene_hash == now.scene_hash && a.resolution == now.resolution;
     let Some(accepted) = record.iter().rev().map(|a| &a.reference).find(same) else { return Vec::new() };

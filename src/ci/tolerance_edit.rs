@@ -23,7 +23,9 @@ pub fn edited(text: &str, comparison: &SceneComparison) -> Result<(String, Vec<T
         for row in model.discrepancies.iter().filter(|row| row.verdict.failed()) {
             let place = format!("tolerances.{}.{}", model.model, row.quantity);
             if row.is_undetermined() {
-                return Err(Error::Usage(format!("`{place}`: what a run has not determined can't be accepted")));
+                return Err(Error::Usage(format!(
+                    "`{place}`: what a run has not determined can't be accepted"
+                )));
             }
             if row.tolerance.is_none() || !row.difference.is_some_and(f64::is_finite) {
                 return Err(Error::Usage(format!("`{place}`: what is not a number can't be accepted")));

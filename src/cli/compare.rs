@@ -197,7 +197,11 @@ impl<'a> Job<'a> {
                 reduced,
                 provenance: stored.provenance.clone(),
                 command: self.command(scene),
-                attachments: Attachments { acceptances, cost: cost.clone(), ..Attachments::of(scene, stored) },
+                attachments: Attachments {
+                    acceptances,
+                    cost: cost.clone(),
+                    ..Attachments::of(scene, stored)
+                },
             });
         }
         if let (Some(report), false) = (scenes.first_mut(), self.records.is_empty()) {

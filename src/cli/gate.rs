@@ -95,7 +95,8 @@ fn tell_verdicts(job: &Job, report: &Report) {
         let word = if rules.refuse(verdict) { "error" } else { "warning" };
         match verdict {
             Verdict::NotGated => {
-                let file = job.scenes.iter().find(|(_, s)| s.name == scene).map_or(Path::new(""), |(file, _)| file);
+                let file =
+                    job.scenes.iter().find(|(_, s)| s.name == scene).map_or(Path::new(""), |(file, _)| file);
                 eprintln!(
                     "{word}: nothing of scene `{scene}` is gated: {} has no tolerances of the models compared; add for example tolerances.C = {{ efficiency = {{ relative = 0.01 }} }}",
                     file.display()

@@ -184,8 +184,9 @@ fn table(document: &Document) -> String {
     if let Some(verification) = &document.verification {
         lines.push(match (&verification.reference, &verification.missing) {
             (Some(reference), _) => format!(
-                "  reference: efficiency {:.5}; verdict on the model there: {}",
-                reference.quantities.efficiency, verification.verdict
+                "  reference: efficiency {}; verdict on the model there: {}",
+                reference.value("efficiency").map_or("not determined".into(), |value| format!("{value:.5}")),
+                verification.verdict
             ),
             (_, missing) => format!("  reference: missing; {}", missing.as_deref().unwrap_or_default()),
         });

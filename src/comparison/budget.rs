@@ -168,7 +168,9 @@ pub fn budget(scene: &Scene, reference: &Summary, b: &Summary, c: &Summary) -> R
         }
         shifted.push(links);
     }
-    Ok((0..BUDGET_QUANTITIES.len()).map(|q| quantity_budget(q, modes, &chain, &shifted, (reference, end[q]))).collect())
+    Ok((0..BUDGET_QUANTITIES.len())
+        .map(|q| quantity_budget(q, modes, &chain, &shifted, (reference, end[q])))
+        .collect())
 }
 
 /// Runs a link at `tolerance` or, where round-off forbids it, at ten times that, up to [`LOOSEST`].

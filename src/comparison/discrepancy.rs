@@ -227,8 +227,9 @@ mod tests {
     #[test]
     fn a_difference_smaller_than_the_band_of_the_reference_proves_no_error() {
         let scales = Scales { value: 100.0, peak: 100.0 };
-        let verdict =
-            |reduced, band| Discrepancy::new(("x", "N"), (Some(reduced), Some(100.0)), scales, None, band).band_verdict;
+        let verdict = |reduced, band| {
+            Discrepancy::new(("x", "N"), (Some(reduced), Some(100.0)), scales, None, band).band_verdict
+        };
         assert_eq!(verdict(100.4, Some(0.5)), Some(BandVerdict::Within));
         assert_eq!(verdict(99.4, Some(0.5)), Some(BandVerdict::Beyond));
         assert_eq!(verdict(100.4, None), None);

@@ -236,7 +236,9 @@ fn end(setup: &PlateImpact, summary: &Summary, history: &PlateCurves) -> Vec<Che
         checks.extend(velocity("inner_velocity_final", history.inner.velocity[last]));
     }
     let mass_ratio = inner.shape.mass(&inner.material) / outer.shape.mass(&outer.material);
-    if let (Some(stated), Some(velocity)) = (summary.value("efficiency"), summary.value("inner_velocity_final")) {
+    if let (Some(stated), Some(velocity)) =
+        (summary.value("efficiency"), summary.value("inner_velocity_final"))
+    {
         // Eq. (1).
         let efficiency = mass_ratio * (velocity / outer.speed).powi(2);
         checks.push(Check::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency));

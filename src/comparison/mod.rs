@@ -18,6 +18,7 @@ mod integrity;
 mod interpolation;
 mod iso18571;
 mod russell;
+mod seal_seat;
 mod sprague_geers;
 mod undecided;
 mod verdict;
@@ -34,8 +35,8 @@ pub use sprague_geers::{SpragueGeers, sprague_geers};
 pub use verdict::{GateRules, Undecided, Verdict};
 
 use crate::error::Result;
-use crate::measured::Measured;
 use crate::kinds;
+use crate::measured::Measured;
 use crate::result::{Curve, Outcome, Quantity, SCHEMA_VERSION, Summary};
 use crate::scene::{Model, Scene, Tolerances};
 use budget::QuantityBudget;
@@ -197,11 +198,7 @@ impl ModelComparison {
 ///
 /// All curves are resampled on the window that the reference fixes (see [`CommonAxis::of_reference`]
 /// and [`align`]), so that differently sampled histories don't differ for that reason.
-pub fn compare_scene(
-    scene: &Scene,
-    reference: &Outcome,
-    reduced: &[Outcome],
-) -> SceneComparison {
+pub fn compare_scene(scene: &Scene, reference: &Outcome, reduced: &[Outcome]) -> SceneComparison {
     let integrity = integrity::check(scene, reference);
     let sound = Verdict::of_soundness(integrity.iter().map(|c| c.verdict));
     let window = CommonAxis::of_reference(reference);
@@ -269,8 +266,7 @@ fn quantities(
         // `outer_force_peak` belongs to the curve `outer_force`, and so on; a quantity that
         // belongs to none is its own peak.
         let curve = kind.curves().iter().find(|curve| name.starts_with(curve.name));
-        let peak =
-            curve.and_then(|curve| reference.history.curve(curve.name)).map_or(size, alignment::peak);
+        let peak = curve.and_then(|curve| reference.history.curve(curve.name)).map_or(size, alignment::peak);
         Discrepancy::new(
             (name, unit),
             (reduced.value(name), value),

@@ -13,9 +13,8 @@ pub(super) fn check(setup: &SealSeat, outcome: &Outcome) -> Vec<Check> {
     let summary = &outcome.summary;
     let Some(history) = SeatCurves::of(&outcome.history) else { return Vec::new() };
     let mut checks = start(setup, &history);
-    let of = |name, force| {
-        contact(name, summary.source, (history.time, force), Stated::of(summary, name), 0.0)
-    };
+    let of =
+        |name, force| contact(name, summary.source, (history.time, force), Stated::of(summary, name), 0.0);
     checks.extend(of("sphere", history.sphere_force));
     checks.extend(of("actuator", history.actuator_force));
     if let Some(q) = SeatQuantities::of_table(&summary.quantities) {

@@ -7,8 +7,8 @@
 
 use super::entry::{self, Damage, Stored};
 use super::{Resolution, identity};
-use crate::project::project_root;
 use crate::kinds;
+use crate::project::project_root;
 use crate::scene::Scene;
 use crate::{Error, Result};
 use std::fs::{self, File, TryLockError};

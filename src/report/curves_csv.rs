@@ -18,7 +18,8 @@ pub fn curves_csv(report: &SceneReport) -> Result<String> {
 
     let mut writer = csv::Writer::from_writer(Vec::new());
     let curves = kinds::of(report.scene).curves();
-    let names = sources.iter().flat_map(|(s, _)| curves.iter().map(move |curve| format!("{s}_{}", curve.name)));
+    let names =
+        sources.iter().flat_map(|(s, _)| curves.iter().map(move |curve| format!("{s}_{}", curve.name)));
     writer.write_record(["time".to_owned()].into_iter().chain(names)).map_err(|e| internal(e.to_string()))?;
     if let Some(axis) = report.comparison.window {
         let columns: Vec<Vec<f64>> = sources

@@ -33,7 +33,8 @@ fn suite(comparison: &SceneComparison, rules: GateRules) -> TestSuite {
         suite.add_test_case(named(&comparison.scene, "gate", "tolerances", Some(message)));
     }
     for model in &comparison.models {
-        let rows = model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d, rules.undecided));
+        let rows =
+            model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d, rules.undecided));
         suite.add_test_cases(rows);
         let checks = model.integrity.iter();
         suite.add_test_cases(checks.map(|c| integrity_case(&comparison.scene, &model.model, c)));
@@ -67,7 +68,9 @@ fn case(scene: &str, model: &str, row: &Discrepancy, undecided: Undecided) -> Te
     let mut case = match (row.verdict, undecided) {
         (Verdict::NotGated, _) => skipped("not gated: the scene has no tolerance for it".to_owned()),
         (Verdict::Undecided, Undecided::Warn) => skipped(told(row)),
-        (Verdict::Pass, _) | (Verdict::Undecided, Undecided::Pass) => named(scene, model, &row.quantity, None),
+        (Verdict::Pass, _) | (Verdict::Undecided, Undecided::Pass) => {
+            named(scene, model, &row.quantity, None)
+        }
         (Verdict::Fail, _) | (Verdict::Undecided, Undecided::Fail) => {
             named(scene, model, &row.quantity, Some(told(row)))
         }

@@ -2,8 +2,8 @@
 
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::{Report, SceneReport, presentation};
-use crate::result::Summary;
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison, SceneComparison};
+use crate::result::Summary;
 
 /// Markdown of the whole report.
 pub fn markdown(report: &Report) -> String {

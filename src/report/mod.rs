@@ -102,7 +102,8 @@ impl Report<'_> {
     pub fn changed_tolerances(&self) -> impl Iterator<Item = String> {
         let sentences = |scene: &SceneReport| {
             let comparison = &scene.comparison;
-            let sentence = |changed: &ChangedTolerance| format!("{}: {}", comparison.scene, changed.sentence());
+            let sentence =
+                |changed: &ChangedTolerance| format!("{}: {}", comparison.scene, changed.sentence());
             comparison.changed_tolerances.iter().map(sentence).collect::<Vec<_>>()
         };
         self.scenes.iter().flat_map(sentences)

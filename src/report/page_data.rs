@@ -1,8 +1,8 @@
 //! What a scene's page carries for its script: the curves on the common axis, and the comparison document of the scene.
 
+use super::SceneReport;
 use super::figure::{QUANTITIES, Quantity, dash};
 use super::format::model_name;
-use super::SceneReport;
 use crate::comparison::{CommonAxis, SampledCurve, sample};
 use crate::reference::CurveBands;
 use serde_json::{Value, json};
@@ -43,8 +43,10 @@ pub(super) fn curves(report: &SceneReport, panels: &[PanelOf]) -> Value {
         (model, name, sample(axis, &outcome.history))
     });
     let sources: Vec<_> = std::iter::once(reference).chain(reduced).collect();
-    let panels: Vec<Value> =
-        panels.iter().map(|panel| of_panel(panel, &sources, axis, report.attachments.bands.as_ref())).collect();
+    let panels: Vec<Value> = panels
+        .iter()
+        .map(|panel| of_panel(panel, &sources, axis, report.attachments.bands.as_ref()))
+        .collect();
     let of_source = |(id, name, _): &Source| {
         let is_reference = id == "reference";
         let dashes: Vec<f64> = if is_reference {

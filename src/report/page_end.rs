@@ -1,8 +1,8 @@
 //! What the pages of all scenes share: their head, and checks, trends, provenance and the command that makes them again.
 
+use super::SceneReport;
 use super::discrepancy_section::{checks, contradictions};
 use super::facts::facts;
-use super::SceneReport;
 use super::html::{badge, model_line};
 use crate::comparison::{AMONG, SceneComparison};
 use maud::{Markup, html};

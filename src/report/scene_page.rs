@@ -1,12 +1,12 @@
 //! The page of one plate impact: verdict, interactive panels, discrepancies, budget, mesh and stress, provenance.
 
+use super::attachments::instant_of_peak;
 use super::discrepancy_section::model_section;
 use super::figure::phone_figure;
 use super::format::{prefixed, with_unit};
 use super::html::page;
 use super::page_data::plate_panels;
 use super::presentation::{Column, Drawing, Presentation};
-use super::attachments::instant_of_peak;
 use super::{Attachments, SceneReport, Theme, figure, interactive, page_end};
 use crate::reference::Stored;
 use maud::{Markup, html};

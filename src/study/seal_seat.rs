@@ -319,7 +319,8 @@ fn solve(scene: &Scene, resolution: Resolution, cache: &Cache) -> Result<SeatQua
 /// # Errors
 /// [`Error::Solver`] if it was cut during a contact.
 pub(super) fn determined(summary: &Summary) -> Result<SeatQuantities> {
-    SeatQuantities::of_table(&summary.quantities).ok_or_else(|| Error::Solver(format!("{}: {CUT}", summary.scene)))
+    SeatQuantities::of_table(&summary.quantities)
+        .ok_or_else(|| Error::Solver(format!("{}: {CUT}", summary.scene)))
 }
 
 fn row(

@@ -1,11 +1,11 @@
 //! What the reduced seal seat costs, and the time loop of the finite elements on the same mesh, in one run.
 
+use super::seal_seat::determined;
 use super::{Cell, Claim, Note, SCHEMA_VERSION, Study};
 use crate::body::cache::Cache;
 use crate::error::{Error, Result};
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
 use crate::reference::{self, Resolution, Store, Stored, Wish};
-use super::seal_seat::determined;
 use crate::scene::Model;
 
 /// Ratio of the run times that is wanted at least.

@@ -5,10 +5,10 @@
 use assert_cmd::Command;
 use impactcheck::body::cache::Cache;
 use impactcheck::comparison::{GateRules, Verdict, compare_scene};
-use impactcheck::kinds::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
-use impactcheck::report::{self, Cost, Report, SeatReport};
-use impactcheck::result::Outcome;
 use impactcheck::kinds::seal_seat::SeatQuantities;
+use impactcheck::kinds::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
+use impactcheck::report::{self, Cost, Report, SceneReport};
+use impactcheck::result::Outcome;
 use impactcheck::result::Source;
 use impactcheck::scene::{Model, Scene};
 use serde_json::Value;
@@ -90,7 +90,7 @@ fn launch_converges_in_time_with_second_order_across_contact_events() {
 
 #[test]
 fn tolerance_bounds_the_error_of_the_velocity() {
-    let quantities = |tolerance| sixteen().run(tolerance).expect("run").quantities;
+    let quantities = |tolerance| determined(&sixteen().run(tolerance).expect("run"));
     let exact = quantities(1e-5);
     let found = quantities(1e-3);
     let miss = (found.sphere_velocity_x - exact.sphere_velocity_x)
@@ -100,7 +100,7 @@ fn tolerance_bounds_the_error_of_the_velocity() {
 
 #[test]
 fn ten_modes_and_the_residual_are_as_good_as_many() {
-    let quantities = |model: &SeatModel| model.run(1e-4).expect("run").quantities;
+    let quantities = |model: &SeatModel| determined(&model.run(1e-4).expect("run"));
     let many = quantities(&model(60));
     for modes in [10, 16, 25] {
         let few = quantities(&model(modes));
@@ -247,12 +247,21 @@ fn what_a_seal_seat_has_not_is_refused_in_one_sentence() {
 
 /// A stand-in for a stored reference: model C with more modes, said to be finite elements.
 fn stand_in() -> Outcome {
-    let (mut summary, history) = model(40).run_with_history(1e-3).expect("run");
+    let Outcome { mut summary, history } = model(40).run_with_history(1e-3).expect("run");
     summary.source = Source::Reference;
     summary.model = None;
     summary.modes = None;
     summary.sample_interval = Some(history.time[1]);
     Outcome { summary, history }
+}
+
+fn determined(summary: &Summary) -> SeatQuantities {
+    SeatQuantities::of_table(&summary.quantities).expect("determined")
+}
+
+fn alter(outcome: &mut Outcome, name: &str, change: fn(f64) -> f64) {
+    let value = outcome.summary.quantities.value_mut(name).expect("a quantity");
+    *value = value.map(change);
 }
 
 fn gated_scene() -> Scene {
@@ -268,8 +277,7 @@ fn gated_scene() -> Scene {
 fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
     let scene = gated_scene();
     let reference = stand_in();
-    let (summary, history) = sixteen().run_with_history(1e-3).expect("run");
-    let good = Outcome { summary, history };
+    let good = sixteen().run_with_history(1e-3).expect("run");
     let compared = compare_scene(&scene, &reference, std::slice::from_ref(&good));
     let failed: Vec<_> = compared.models[0].integrity.iter().filter(|c| !c.verdict.passed()).collect();
     assert_eq!(compared.verdict, Verdict::Pass, "{failed:?} {:?}", compared.integrity);
@@ -277,18 +285,18 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
     assert_eq!(compared.models[0].curves.len(), 10);
     type Change = fn(&mut Outcome);
     let changes: [(&str, Change); 12] = [
-        ("direction", |o| o.summary.quantities.sphere_angle += 0.0175),
-        ("speed", |o| o.summary.quantities.sphere_speed *= 1.02),
-        ("peak of the sphere's force", |o| o.summary.quantities.sphere_force_peak *= 1.05),
-        ("peak of the actuator's force", |o| o.summary.quantities.actuator_force_peak *= 0.95),
-        ("efficiency that is not the velocity's", |o| o.summary.quantities.efficiency *= 1.01),
-        ("not a number", |o| o.summary.quantities.left_flank_impulse = f64::NAN),
-        ("force curve", |o| o.history.sphere_force.iter_mut().for_each(|f| *f *= 1.05)),
+        ("direction", |o| alter(o, "sphere_angle", |v| v + 0.0175)),
+        ("speed", |o| alter(o, "sphere_speed", |v| v * 1.02)),
+        ("peak of the sphere's force", |o| alter(o, "sphere_force_peak", |v| v * 1.05)),
+        ("peak of the actuator's force", |o| alter(o, "actuator_force_peak", |v| v * 0.95)),
+        ("efficiency that is not the velocity's", |o| alter(o, "efficiency", |v| v * 1.01)),
+        ("not a number", |o| alter(o, "left_flank_impulse", |_| f64::NAN)),
+        ("force curve", |o| o.history["sphere_force"].iter_mut().for_each(|f| *f *= 1.05)),
         ("one component of the force", |o| {
-            o.history.sphere_force_components[0].iter_mut().for_each(|f| *f = -*f);
+            o.history["sphere_force_x"].iter_mut().for_each(|f| *f = -*f);
         }),
-        ("velocity curve", |o| o.history.sphere_velocity[0].iter_mut().for_each(|v| *v *= 1.05)),
-        ("path", |o| o.history.actuator_displacement.iter_mut().for_each(|x| *x *= 1.05)),
+        ("velocity curve", |o| o.history["sphere_velocity_x"].iter_mut().for_each(|v| *v *= 1.05)),
+        ("path", |o| o.history["actuator_displacement"].iter_mut().for_each(|x| *x *= 1.05)),
         ("a sample lost", |o| {
             o.history.time.pop();
         }),
@@ -305,23 +313,21 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
 fn report_shows_the_seat_among_the_scenes() {
     let scene = gated_scene();
     let reference = stand_in();
-    let (summary, history) = sixteen().run_with_history(1e-3).expect("run");
-    let reduced = vec![Outcome { summary, history }];
-    let seat = SeatReport {
+    let reduced = vec![sixteen().run_with_history(1e-3).expect("run")];
+    let seat = SceneReport {
+        scene: &scene,
         comparison: compare_scene(&scene, &reference, &reduced),
-        scene,
-        reference,
-        reduced,
-        cost: vec![Cost { setup_seconds: 1.0, dofs: 5929 }],
+        reference: &reference,
+        reduced: &reduced,
         provenance: serde_json::json!({"created": "2026-01-01T00:00:00Z"}),
-        section: None,
-        stress: None,
-        animation: None,
         command: "impactcheck compare seal-seat-improved".into(),
-        attachments: report::Attachments::default(),
+        attachments: report::Attachments {
+            cost: vec![Cost { setup_seconds: 1.0, dofs: 5929 }],
+            ..report::Attachments::default()
+        },
     };
-    let angle = seat.comparison.reference.quantities.sphere_angle.to_degrees();
-    let report = Report { scenes: Vec::new(), seats: vec![seat], rules: GateRules::default() };
+    let angle = reference.summary.value("sphere_angle").expect("determined").to_degrees();
+    let report = Report { scenes: vec![seat], rules: GateRules::default() };
     let document: Value = serde_json::from_str(&report::json(&report).expect("JSON")).expect("JSON");
     assert_eq!(document["verdict"], "pass");
     assert_eq!(document["scenes"][0]["scene"], "seal-seat-improved");

@@ -23,7 +23,7 @@ impl Curve {
 
     /// Of an elastic body, without samples.
     pub const fn elastic(name: &'static str, unit: &'static str) -> Self {
-        Curve { is_elastic: true, ..Curve::new(name, unit) }
+        Curve { name, unit, is_elastic: true, values: Vec::new() }
     }
 }
 

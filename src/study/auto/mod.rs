@@ -11,11 +11,11 @@ pub use figure::figure;
 use super::{Cell, Claim, Note, SCHEMA_VERSION, Settings, Study};
 use crate::body::cache::Cache;
 use crate::error::{Error, Result};
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::choice::{COVERED, error_scale, integration_tolerance, largest_error};
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::project::project_root;
 use crate::reference::{Lookup, Resolution, Store};
-use crate::kinds::plate_impact::PlateQuantities;
 use crate::result::Summary;
 use crate::sampling::latin_hypercube;
 use crate::scene::{self, Model, Scene, Setup};
@@ -170,9 +170,9 @@ fn references(store: &Store) -> Result<Vec<Case>> {
 /// Whether a reference of an impact at `speed` m/s can tell an error from its own: the 95 % bands of what is compared are at
 /// most [`SHARP`].
 fn is_sharp(reference: &Summary, exact: &PlateQuantities, speed: f64) -> bool {
-    COVERED.iter().all(|name| {
-        reference.band(name).is_some_and(|band| band <= SHARP * error_scale(name, exact, speed))
-    })
+    COVERED
+        .iter()
+        .all(|name| reference.band(name).is_some_and(|band| band <= SHARP * error_scale(name, exact, speed)))
 }
 
 /// `count` random scenes with a converged solution, and how many draws before the last of them had none.

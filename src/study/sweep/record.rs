@@ -4,8 +4,8 @@
 //! points run again; nothing that is in the log is ever changed. Numbers are written so that they come back bit
 //! by bit.
 
-use crate::kinds::plate_impact::reduced::Point;
 use crate::kinds::plate_impact::PlateQuantities;
+use crate::kinds::plate_impact::reduced::Point;
 use std::fmt::Write;
 
 /// What became of one point.

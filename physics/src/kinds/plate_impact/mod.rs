@@ -8,6 +8,7 @@ mod validity;
 pub mod variants;
 
 use crate::result::{Curve, Quantity};
+use crate::scene::Model;
 
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
 
@@ -15,6 +16,14 @@ pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
 pub struct Kind;
 
 impl super::Kind for Kind {
+    fn name(&self) -> &'static str {
+        "plate-impact"
+    }
+
+    fn models(&self) -> &'static [Model] {
+        &[Model::A, Model::B, Model::C]
+    }
+
     fn quantities(&self) -> &'static [Quantity] {
         PlateQuantities::ALL
     }

@@ -264,10 +264,7 @@ impl Reduced {
             bender: system.drive.map(|drive| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
                 let efficiency = transmitted / drive.strain_energy;
-                BenderSummary {
-                    strain_energy_efficiency: (!result.is_cut()).then_some(efficiency),
-                    drive,
-                }
+                BenderSummary { strain_energy_efficiency: (!result.is_cut()).then_some(efficiency), drive }
             }),
             contact_pressure: (!result.is_cut()).then(|| ContactPressure::new(&system.laws, peaks)),
             losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
@@ -283,7 +280,11 @@ impl Reduced {
 /// # Errors
 /// [`Error::Solver`] if the run was cut during a contact.
 pub(super) fn quantities(system: &System, result: &Integration) -> Result<PlateQuantities> {
-    if result.is_cut() { Err(Error::Solver(format!("reduced model: {CUT}"))) } else { Ok(values(system, result)) }
+    if result.is_cut() {
+        Err(Error::Solver(format!("reduced model: {CUT}")))
+    } else {
+        Ok(values(system, result))
+    }
 }
 
 /// The values at the end of an integration of `system`, wherever that is.

@@ -20,6 +20,7 @@ pub mod system;
 mod watch;
 
 use crate::result::{Curve, Quantity};
+use crate::scene::Model;
 
 pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
@@ -31,6 +32,14 @@ pub use survey::Survey;
 pub struct Kind;
 
 impl super::Kind for Kind {
+    fn name(&self) -> &'static str {
+        "seal-seat"
+    }
+
+    fn models(&self) -> &'static [Model] {
+        &[Model::C]
+    }
+
     fn quantities(&self) -> &'static [Quantity] {
         SeatQuantities::ALL
     }
