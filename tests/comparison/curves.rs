@@ -4,9 +4,8 @@ use crate::synthetic_impact;
 use crate::synthetic_impact::{REDUCED, REFERENCE, SAMPLE_INTERVAL, history, reduced, reference, scene};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use impactcheck::comparison::{Comparison, compare_scene};
-use impactcheck::kinds::plate_impact::CURVES;
-use impactcheck::kinds::plate_impact::PlateQuantities;
-use impactcheck::result::Source;
+use impactcheck::kinds::plate_impact::{CURVES, PlateQuantities};
+use impactcheck::result::{Quantity, Source};
 use std::f64::consts::PI;
 
 /// The same solution, sampled differently, differs by the interpolation error only.

@@ -62,7 +62,8 @@ fn contact_ends_of_model_c_are_where_its_forces_end() {
         for (force, end) in
             [("outer_force", "outer_contact_end"), ("inner_force", "inner_contact_end")]
         {
-            let last = force.iter().rposition(|f| *f > 0.0).unwrap();
+            let end = summary.value(end).unwrap();
+            let last = history[force].iter().rposition(|f| *f > 0.0).unwrap();
             assert!(history.time[last] <= end && end <= history.time[last + 1], "{name}: {end:e}");
         }
     }

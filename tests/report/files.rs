@@ -1,5 +1,6 @@
 //! Writing the report: complete or not at all, the same for the same results.
 
+use crate::synthetic_impact::{self, reduced, reference, scene};
 use impactcheck::comparison::{GateRules, compare_scene};
 use impactcheck::report::{Attachments, Report, SceneReport, check_writable, write};
 use impactcheck::result::Outcome;

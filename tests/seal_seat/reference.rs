@@ -4,8 +4,7 @@
 
 use impactcheck::kinds::seal_seat::SeatQuantities;
 use impactcheck::reference::{Lookup, Resolution, Store, Stored, seat_meshes};
-use impactcheck::result::SEAT_QUANTITIES;
-use impactcheck::result::Source;
+use impactcheck::result::{Source, Summary};
 use impactcheck::scene::{Scene, Template, resolve};
 use std::path::{Path, PathBuf};
 

@@ -3,13 +3,8 @@
 //! to rounding, so that whatever a check finds in them has been put there.
 #![allow(dead_code)] // Each test file uses its own part.
 
-use impactcheck::kinds::plate_impact::PlateQuantities;
-use impactcheck::result::History;
-use impactcheck::result::Motion;
-use impactcheck::result::Outcome;
-use impactcheck::result::SCHEMA_VERSION;
-use impactcheck::result::Source;
-use impactcheck::result::Summary;
+use impactcheck::kinds::plate_impact::{CURVES, PlateQuantities};
+use impactcheck::result::{History, Outcome, SCHEMA_VERSION, Source, Summary};
 use impactcheck::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings,
     Run, Scene, Setup, Shape, Tolerance,
