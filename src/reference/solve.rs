@@ -91,7 +91,7 @@ pub fn solve_with(
     if !output.is_dir() {
         return Err(unusable("it wrote no result".to_owned()));
     }
-    let stored = entry::load(kinds::of(scene), &output).map_err(|d| {
+    let stored = entry::load(kinds::of(scene), &output, entry::MeshFiles::Required).map_err(|d| {
         let file = d.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         unusable(format!("its {file} {}", d.reason))
     })?;

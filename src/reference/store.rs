@@ -259,7 +259,7 @@ fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
         }
         Ok(_) => {}
     }
-    let stored = match entry::load(kinds::of(scene), folder) {
+    let stored = match entry::load(kinds::of(scene), folder, entry::MeshFiles::Optional) {
         Ok(stored) => stored,
         Err(damage) => return damage.into(),
     };

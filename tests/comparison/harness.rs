@@ -5,9 +5,9 @@ use crate::synthetic_impact;
 use crate::synthetic_impact::{alter, gated_scene, reduced, reference, scene};
 use impactcheck::comparison::{Verdict, compare_scene};
 use impactcheck::kinds::plate_impact::CURVES;
+use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::result::History;
 use impactcheck::result::Outcome;
-use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::scene::Scene;
 
 fn verdict(scene: &Scene, reference: &Outcome, reduced: &Outcome) -> Verdict {

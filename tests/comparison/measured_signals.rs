@@ -1,6 +1,7 @@
 //! Measured signals (section 3.4): synthetic records of known noise, shift, offset and drift, made from a model's history
 //! and laid over the finite-element reference.
 
+use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::measured::{
     AlignedRecord, BANDWIDTH, Channel, Filtered, Record, Series, Speed, align, compare,
@@ -8,6 +9,10 @@ use impactcheck::measured::{
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::result::Outcome;
 use impactcheck::scene::{Model, PlateImpact, Scene, Setup, resolve};
+
+fn determined(outcome: &Outcome) -> PlateQuantities {
+    PlateQuantities::of_table(&outcome.summary.quantities).unwrap()
+}
 
 fn scene(name: &str) -> (Scene, PlateImpact) {
     let scene = Scene::read(resolve(name).unwrap()).unwrap();
@@ -75,7 +80,7 @@ fn record(truth: &Outcome, signals: &[&'static str], with: Disturbance) -> Recor
 
 fn aligned(record: &Record, partner: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
     let filtered = Filtered::new(&partner.history, BANDWIDTH).unwrap();
-    align(record, &filtered, &partner.summary.quantities, setup, (BANDWIDTH, speed)).unwrap()
+    align(record, &filtered, &determined(partner), setup, (BANDWIDTH, speed)).unwrap()
 }
 
 #[test]
@@ -159,8 +164,7 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
     };
     let late = part(&|t| t > 0.0);
     let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
-    let error =
-        align(&late, &filtered, &truth.summary.quantities, &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
+    let error = align(&late, &filtered, &determined(&truth), &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
     assert_eq!(error.exit_status() as u8, 3);
     assert!(error.to_string().contains("before the impact"), "{error}");
     let cut = aligned(&part(&|t| t < 90e-6), &truth, &setup, Speed::Scene);

@@ -127,10 +127,7 @@ fn a_recorded_history_agrees_with_the_account() {
             let of = |what: &str| &history[&*format!("{body}_{what}")];
             let (velocity, displacement) = (of("velocity"), of("displacement"));
             let way: f64 = (1..history.len())
-                .map(|i| {
-                    0.5 * (velocity[i] + velocity[i - 1])
-                        * (history.time[i] - history.time[i - 1])
-                })
+                .map(|i| 0.5 * (velocity[i] + velocity[i - 1]) * (history.time[i] - history.time[i - 1]))
                 .sum();
             let last = displacement.last().unwrap();
             assert_relative_eq!(way, last, epsilon = 1e-9, max_relative = 1e-4);

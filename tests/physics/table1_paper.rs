@@ -2,6 +2,7 @@
 //! and against the efficiencies the paper reports from Abaqus (69 % and 39 %).
 
 use approx::assert_abs_diff_eq;
+use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::result::Summary;
 use impactcheck::scene::{Model, Scene, resolve};
@@ -33,7 +34,7 @@ fn forces_and_contact_ends_of_model_b() {
         ("scaled-plate-r6.35", [140.0, 82.5], [61.5e-6, 53.9e-6]),
     ];
     for (scene, peaks, ends) in cases {
-        let q = run(scene, Model::B, 1e-7).quantities;
+        let q = PlateQuantities::of_table(&run(scene, Model::B, 1e-7).quantities).unwrap();
         for (ours, theirs) in [q.outer_force_peak, q.inner_force_peak].into_iter().zip(peaks) {
             assert_abs_diff_eq!(ours, theirs, epsilon = 0.001 * theirs);
         }
@@ -59,9 +60,7 @@ fn contact_ends_of_model_c_are_where_its_forces_end() {
         let scene = Scene::read(resolve(name).unwrap()).unwrap();
         let outcome = Reduced::new(&scene, Model::C, None).unwrap().run_with_history(1e-7).unwrap();
         let (summary, history) = (&outcome.summary, &outcome.history);
-        for (force, end) in
-            [("outer_force", "outer_contact_end"), ("inner_force", "inner_contact_end")]
-        {
+        for (force, end) in [("outer_force", "outer_contact_end"), ("inner_force", "inner_contact_end")] {
             let end = summary.value(end).unwrap();
             let last = history[force].iter().rposition(|f| *f > 0.0).unwrap();
             assert!(history.time[last] <= end && end <= history.time[last + 1], "{name}: {end:e}");

@@ -5,10 +5,10 @@ use crate::synthetic_impact;
 use crate::synthetic_impact::reduced_of;
 use impactcheck::comparison::Verdict;
 use impactcheck::kinds::plate_impact::CURVES;
+use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::report::{
     Report, Theme, curves_csv, figure, index_page, json, junit, markdown, scene_page, terminal,
 };
-use impactcheck::kinds::plate_impact::PlateQuantities;
 use resvg::usvg::roxmltree::Document;
 use serde_json::Value;
 

@@ -111,7 +111,6 @@ fn the_summary_has_what_the_contract_names() {
 
 #[test]
 fn a_solution_is_used_for_its_own_scene_only() {
-    let (scene, _) = stored(DESIGNS[1]);
     let template = Template::read(scene_file(DESIGNS[1])).expect("valid scene");
     let fields = ["seat.tilt", "seat.notch_width"].map(|name| template.field(name).expect(name));
     let other = template.with(&[(&fields[0], 0.25), (&fields[1], 0.0015)]).expect("valid");
