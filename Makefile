@@ -30,11 +30,11 @@ setup:
 	    $(TOOL) -m pip install --quiet --no-deps axe-playwright-python; }
 
 rust:
-	cargo fmt --check
-	cargo clippy --release --all-targets -- -D warnings
-	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --no-fail-fast; else cargo test --release; fi
-	cargo test --release --doc
-	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --quiet
+	cargo fmt --all --check
+	cargo clippy --release --workspace --all-targets -- -D warnings
+	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --workspace --no-fail-fast; else cargo test --release --workspace; fi
+	cargo test --release --workspace --doc
+	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --quiet
 
 python: setup
 	$(VENV)/bin/ruff check fem_reference examples

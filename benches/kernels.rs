@@ -3,8 +3,8 @@
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use impactcheck::body::kirchhoff::{UnitPlate, UnitPlates};
 use impactcheck::contact::{Hertz, Residual};
-use impactcheck::impact::duhamel::Oscillator;
-use impactcheck::impact::reduced::Reduced;
+use impactcheck::dynamics::duhamel::Oscillator;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Edge, Model, Scene};
 use std::hint::black_box;
 use std::time::Duration;

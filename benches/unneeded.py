@@ -19,7 +19,7 @@ import tempfile
 from pathlib import Path
 
 SCENE = Path(__file__).resolve().parent.parent / "scenes" / "scaled-plate-r10.toml"
-TIME_LOOP = "impactcheck::impact::integrator::integrate"
+TIME_LOOP = "impactcheck_physics::dynamics::integrator::integrate"
 FLUID_OFF = """
 [fluid]
 viscosity = "1 mPa*s"

@@ -1,10 +1,12 @@
 //! impactcheck: how far can a fast reduced model of an impact be trusted?
 //!
-//! Data flows one way: [`scene`] -> [`body`] -> [`impact`] -> [`comparison`] -> [`report`].
+//! The physics (scenes, bodies, contacts, their motion and its results) is a crate of its own, `impactcheck-physics`,
+//! shown here as [`scene`], [`body`], [`contact`], [`fluid`], [`dynamics`], [`result`] and [`kinds`]; the program
+//! compares what comes out with a [`reference`](mod@reference) and reports it: [`comparison`] -> [`report`].
 //!
 //! ```
 //! use impactcheck::comparison::compare_scene;
-//! use impactcheck::impact::reduced::Reduced;
+//! use impactcheck::kinds::plate_impact::reduced::Reduced;
 //! use impactcheck::reference::{Lookup, Resolution, Store};
 //! use impactcheck::scene::{Model, Scene, resolve};
 //!
@@ -21,16 +23,10 @@
 //! ```
 #![warn(missing_docs)]
 
-pub mod analytical;
 pub mod bench;
-pub mod body;
 pub mod ci;
 pub mod cli;
 pub mod comparison;
-pub mod contact;
-pub mod error;
-pub mod fluid;
-pub mod impact;
 pub mod measured;
 pub mod optimise;
 pub mod project;
@@ -41,4 +37,5 @@ pub mod scene;
 pub mod stress;
 pub mod study;
 
-pub use error::{Error, ExitStatus, Result};
+pub use impactcheck_physics::{Error, ExitStatus, Result};
+pub use impactcheck_physics::{analytical, body, contact, dynamics, error, file, fluid, kinds, result};

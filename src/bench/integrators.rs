@@ -2,13 +2,13 @@
 
 use super::{Bench, OURS, Settings, WorkPrecision, timed};
 use crate::analytical::hertz::HertzImpact;
-use crate::error::Result;
-use crate::impact::explicit_runge_kutta::{
+use crate::dynamics::explicit_runge_kutta::{
     self as runge_kutta, DORMAND_PRINCE_5, DORMAND_PRINCE_8, Equations, Tolerances,
 };
-use crate::impact::integrator::{Options, integrate};
-use crate::impact::reduced::Reduced;
-use crate::impact::system::{INNER, System};
+use crate::dynamics::integrator::{Options, integrate};
+use crate::dynamics::system::{INNER, System};
+use crate::error::Result;
+use crate::kinds::plate_impact::reduced::Reduced;
 use crate::reference::python;
 use crate::scene::{self, Model, Scene};
 use serde::Deserialize;

@@ -10,8 +10,8 @@ mod models;
 pub use figure::figure;
 
 use crate::error::Result;
-use crate::impact::SCHEMA_VERSION;
 use crate::reference::Store;
+use crate::result::SCHEMA_VERSION;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;

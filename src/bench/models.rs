@@ -2,7 +2,7 @@
 
 use super::{Bench, Ratio, WorkPrecision, timed};
 use crate::error::{Error, Result};
-use crate::impact::reduced::Reduced;
+use crate::kinds::plate_impact::reduced::Reduced;
 use crate::reference::{Lookup, Resolution, Store};
 use crate::scene::{self, Model, Scene, Setup};
 use std::path::Path;

@@ -2,11 +2,12 @@
 
 use super::tolerance_edit::line_of;
 use crate::comparison::{
-    AMONG, ChangedTolerance, Check, Discrepancy, GateRules, ModelComparison, SceneComparison, Undecided, Verdict,
+    AMONG, ChangedTolerance, Check, Discrepancy, GateRules, ModelComparison, SceneComparison, Undecided,
+    Verdict,
 };
-use crate::impact::Quantities;
 use crate::report::Report;
 use crate::report::format::{model_name, percent, significant, words};
+use crate::result::Quantities;
 use std::path::Path;
 
 /// GitHub shows this many errors of a step, and as many warnings.
@@ -83,7 +84,11 @@ fn annotations_of<Q: Quantities>(
         Some(Annotation {
             level,
             size: size.unwrap_or(f64::INFINITY),
-            command: format!("::{level} file={}{line},title={title}::{}", property(&file), data(&finding.message)),
+            command: format!(
+                "::{level} file={}{line},title={title}::{}",
+                property(&file),
+                data(&finding.message)
+            ),
         })
     };
     findings(comparison, rules).into_iter().filter_map(annotation).collect()
@@ -113,7 +118,13 @@ fn findings<Q: Quantities>(comparison: &SceneComparison<Q>, rules: GateRules) ->
     let mut found = broken("reference", &comparison.integrity);
     if comparison.verdict == Verdict::NotGated && rules.refuse(comparison.verdict) {
         let message = "nothing is gated, and tolerances are required".to_owned();
-        found.push(Finding { verdict: comparison.verdict, of: "gate".to_owned(), message, model: None, row: None });
+        found.push(Finding {
+            verdict: comparison.verdict,
+            of: "gate".to_owned(),
+            message,
+            model: None,
+            row: None,
+        });
     }
     for model in &comparison.models {
         let name = format!("model {}", model.model);
@@ -146,7 +157,8 @@ pub fn job_summary(report: &Report) -> String {
     }
     text += &format!("\n{AMONG}\n");
     for (heading, undecided) in [("What failed", false), ("What is undecided", true)] {
-        let own: String = listed.iter().filter(|l| (l.0 == Verdict::Undecided) == undecided).map(|l| &*l.1).collect();
+        let own: String =
+            listed.iter().filter(|l| (l.0 == Verdict::Undecided) == undecided).map(|l| &*l.1).collect();
         if !own.is_empty() {
             text += &format!("\n### {heading}\n\n{own}");
         }

@@ -1,7 +1,7 @@
 //! Files with one JSON document per line.
 
 use crate::error::{Error, Result};
-use crate::report::write_file;
+use crate::file::write_file;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io::ErrorKind;

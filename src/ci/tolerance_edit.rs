@@ -3,7 +3,7 @@
 use super::acceptance::ToleranceChange;
 use crate::comparison::{Discrepancy, SceneComparison};
 use crate::error::{Error, Result};
-use crate::impact::Quantities;
+use crate::result::Quantities;
 use toml_edit::{DocumentMut, Formatted, InlineTable, Item, TableLike, Value};
 
 /// Share of the bound that rounding of a bias may take.

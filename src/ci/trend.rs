@@ -4,7 +4,7 @@ use super::commit::{Commit, DIRTY};
 use super::json_lines;
 use crate::comparison::{Comparison, SceneComparison, Verdict};
 use crate::error::Result;
-use crate::impact::Quantities;
+use crate::result::Quantities;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

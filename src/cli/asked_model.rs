@@ -1,8 +1,9 @@
 //! Reduced models as the command line names them: A, B, C, or `auto`.
 
 use crate::error::Result;
-use crate::impact::reduced::Reduced;
-use crate::impact::{Choice, choice};
+use crate::kinds::plate_impact::choice;
+use crate::kinds::plate_impact::reduced::Reduced;
+use crate::result::Choice;
 use crate::scene::{Model, Scene};
 use std::str::FromStr;
 use std::time::Instant;

@@ -3,6 +3,7 @@
 use super::{Context, JsonArgument};
 use crate::bench::{self, Bench, Settings};
 use crate::error::{ExitStatus, Result};
+use crate::file::write_file;
 use crate::report;
 use clap::Args;
 use std::path::PathBuf;
@@ -39,7 +40,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         for (name, bytes) in
             [("bench.json", text.as_bytes()), ("bench.svg", svg.as_bytes()), ("bench.png", &png[..])]
         {
-            report::write_file(&folder.join(name), bytes)?;
+            write_file(&folder.join(name), bytes)?;
             context.note(format_args!("wrote {}", folder.join(name).display()));
         }
     }

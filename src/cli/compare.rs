@@ -9,10 +9,11 @@ use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
 use crate::comparison::{CommonAxis, Comparison, GateRules, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
-use crate::impact::Outcome;
+use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
 use crate::reference::{Resolution, Stored};
 use crate::report::{self, Attachments, FigureFormat, Report, SceneReport};
+use crate::result::Outcome;
 use crate::scene::{Model, Scene, Setup};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -270,10 +271,10 @@ impl<'a> Job<'a> {
         }
         report::write(&report, &self.arguments.out)?;
         for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
-            report::write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
+            write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
         }
         if let Some(file) = &outputs.junit {
-            report::write_file(file, report::junit(&report)?.as_bytes())?;
+            write_file(file, report::junit(&report)?.as_bytes())?;
         }
         if self.arguments.json.json {
             super::print_json(&comparison)?;

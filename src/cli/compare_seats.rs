@@ -8,11 +8,12 @@ use crate::body::cache::Cache;
 use crate::ci::acceptance;
 use crate::comparison::compare_scene;
 use crate::error::{Error, Result};
-use crate::impact::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
-use crate::impact::{Outcome, SeatQuantities};
+use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
 use crate::project::project_root;
 use crate::reference::{Resolution, Stored};
 use crate::report::{Attachments, Cost, SeatReport};
+use crate::result::Outcome;
+use crate::result::SeatQuantities;
 use crate::scene::{Model, Scene};
 use std::path::Path;
 

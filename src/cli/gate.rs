@@ -6,9 +6,10 @@ use crate::ci::acceptance::{self, Acceptance, AcceptedReference, ToleranceChange
 use crate::ci::{commit, github, tolerance_edit, tolerance_watch};
 use crate::comparison::{GateRules, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, ExitStatus, Result};
-use crate::impact::Quantities;
+use crate::file::write_file;
 use crate::reference::Resolution;
 use crate::report::{self, Attachments, Report};
+use crate::result::Quantities;
 use crate::scene::Scene;
 use clap::Args;
 use std::io::Write;
@@ -95,7 +96,8 @@ fn tell_verdicts(job: &Job, report: &Report) {
         let word = if rules.refuse(verdict) { "error" } else { "warning" };
         match verdict {
             Verdict::NotGated => {
-                let file = job.scenes.iter().find(|(_, s)| s.name == scene).map_or(Path::new(""), |(file, _)| file);
+                let file =
+                    job.scenes.iter().find(|(_, s)| s.name == scene).map_or(Path::new(""), |(file, _)| file);
                 eprintln!(
                     "{word}: nothing of scene `{scene}` is gated: {} has no tolerances of the models compared; add for example tolerances.C = {{ efficiency = {{ relative = 0.01 }} }}",
                     file.display()
@@ -213,7 +215,7 @@ impl Change {
             return Ok(());
         };
         if let Some(text) = &self.text {
-            report::write_file(&self.file, text.as_bytes())?;
+            write_file(&self.file, text.as_bytes())?;
         }
         acceptance::add(&self.file, entry.clone())?;
         let changed = entry.tolerances.len();

@@ -2,7 +2,7 @@
 
 use super::Context;
 use crate::error::{Error, ExitStatus, Result};
-use crate::report;
+use crate::file::write_file;
 use crate::scene::Scene;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -50,7 +50,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let text = arguments.kind.starter().replacen("NAME", &arguments.name, 1);
     // a name that can't be one is refused as it would be in a file
     Scene::parse(&file.display().to_string(), &text)?;
-    report::write_file(&file, text.as_bytes())?;
+    write_file(&file, text.as_bytes())?;
     context.note(format_args!(
         "{0}: change what you like, then `impactcheck reduced {0}` and, with FEniCSx, `impactcheck compare {0} --compute --out my-report`",
         file.display()

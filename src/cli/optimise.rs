@@ -3,10 +3,11 @@
 use super::{Context, JsonArgument, reference};
 use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
-use crate::impact::Summary;
+use crate::file::write_file;
 use crate::optimise::{Confirmation, Optimum, Problem, Variable, confirm};
 use crate::reference::{Lookup, Resolution, Stored, Wish};
 use crate::report;
+use crate::result::Summary;
 use crate::scene::{self, Model, Scene, Template};
 use clap::Args;
 use serde::Serialize;
@@ -149,7 +150,7 @@ fn write(context: &Context, folder: &Path, problem: &Problem, document: &Documen
         ("optimum.svg", svg.into_bytes()),
     ];
     for (name, bytes) in files {
-        report::write_file(&folder.join(name), &bytes)?;
+        write_file(&folder.join(name), &bytes)?;
     }
     context.note(format_args!("wrote {}", folder.join("optimum.svg").display()));
     Ok(())

@@ -5,12 +5,18 @@ use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::body::cache::Cache;
 use crate::error::{Error, ExitStatus, Result};
-use crate::impact::choice;
-use crate::impact::reduced::Reduced;
-use crate::impact::seal_seat::{self, SeatMesh, SeatModel};
-use crate::impact::{ContactPressure, Curves, History, Quantities, SeatHistory, SeatSummary, Summary};
+use crate::kinds::plate_impact::choice;
+use crate::kinds::plate_impact::reduced::Reduced;
+use crate::kinds::seal_seat::{self, SeatMesh, SeatModel};
 use crate::reference::{self, Resolution};
 use crate::report::format::{prefixed, with_unit};
+use crate::result::ContactPressure;
+use crate::result::Curves;
+use crate::result::History;
+use crate::result::Quantities;
+use crate::result::SeatHistory;
+use crate::result::SeatSummary;
+use crate::result::Summary;
 use crate::scene::{self, Model, Scene, Setup};
 use clap::Args;
 use std::path::PathBuf;
@@ -155,7 +161,7 @@ fn finish<Q: Quantities>(
     history: Option<Q::History>,
 ) -> Result<ExitStatus> {
     if let (Some(path), Some(history)) = (&arguments.history, &history) {
-        crate::report::write_file(path, &csv(history)?)?;
+        crate::file::write_file(path, &csv(history)?)?;
         context.note(format_args!("history of {} samples in {}", history.time().len(), path.display()));
     }
     for warning in &summary.warnings {

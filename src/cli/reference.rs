@@ -3,8 +3,10 @@
 use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
-use crate::impact::{PlateQuantities, Quantities, SeatQuantities};
 use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
+use crate::result::PlateQuantities;
+use crate::result::Quantities;
+use crate::result::SeatQuantities;
 use crate::scene::{self, Geometry, Scene, Setup};
 use clap::Args;
 

@@ -2,6 +2,7 @@
 
 use super::Cli;
 use crate::error::{Error, ExitStatus, Result};
+use crate::file::write_file;
 use crate::report;
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
@@ -42,7 +43,7 @@ pub fn man(arguments: &ManArguments) -> Result<ExitStatus> {
     clap_mangen::generate_to(Cli::command(), made.path()).map_err(failed)?;
     for page in std::fs::read_dir(made.path()).map_err(failed)? {
         let page = page.map_err(failed)?;
-        report::write_file(&folder.join(page.file_name()), &std::fs::read(page.path()).map_err(failed)?)?;
+        write_file(&folder.join(page.file_name()), &std::fs::read(page.path()).map_err(failed)?)?;
     }
     Ok(ExitStatus::Pass)
 }

@@ -2,8 +2,8 @@
 
 use super::{Context, reference};
 use crate::error::{Error, Result};
-use crate::impact::Quantities;
 use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
+use crate::result::Quantities;
 use crate::scene::Scene;
 
 /// The references of `scenes`, from the store or computed; `problems` gets a sentence for every one that can't be used.

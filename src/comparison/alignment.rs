@@ -1,7 +1,9 @@
 //! Two histories with different time axes, brought onto a common one.
 
 use super::interpolation::MonotoneCubic;
-use crate::impact::{Curves, Outcome, Quantities};
+use crate::result::Curves;
+use crate::result::Outcome;
+use crate::result::Quantities;
 use serde::Serialize;
 
 /// Samples of the common axis: about as many as a crash signal at 10 kHz has, for which

@@ -3,7 +3,9 @@
 
 use super::alignment::peak;
 use super::integrity::Check;
-use crate::impact::{History, Motion, Summary};
+use crate::result::History;
+use crate::result::Motion;
+use crate::result::Summary;
 use crate::scene::PlateImpact;
 
 /// Share of the total impulse, and of the peak displacement, that a balance may miss beyond

@@ -11,7 +11,7 @@
 //! | rigid spheres | | the spheres' residual flexibility: model C |
 //! | mode truncation of C | C's modes | many modes: the best model C |
 //!
-//! [`crate::impact::variants`] has the formulas. A part is the value with the simplification less the value without
+//! [`crate::kinds::plate_impact::variants`] has the formulas. A part is the value with the simplification less the value without
 //! it; the remainder is the best model C less the reference. Parts and remainder add up to model B less the reference
 //! by construction. The claim that can fail is that the remainder is within the uncertainties of the two.
 //!
@@ -31,8 +31,10 @@
 use super::verdict::Verdict;
 use crate::body::continuum::MeshOptions;
 use crate::error::{Error, Result};
-use crate::impact::variants::{ContinuumSetup, Simplification, Variants};
-use crate::impact::{PLATE_QUANTITIES, PlateQuantities, Summary};
+use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
+use crate::result::PLATE_QUANTITIES;
+use crate::result::PlateQuantities;
+use crate::result::Summary;
 use crate::scene::Scene;
 use serde::Serialize;
 

@@ -7,7 +7,13 @@ use super::alignment::{can_be_sampled, peak};
 use super::balance;
 use super::discrepancy::Discrepancy;
 use super::verdict::Verdict;
-use crate::impact::{Curves, History, Outcome, PlateQuantities, Quantities, Source, Summary};
+use crate::result::Curves;
+use crate::result::History;
+use crate::result::Outcome;
+use crate::result::PlateQuantities;
+use crate::result::Quantities;
+use crate::result::Source;
+use crate::result::Summary;
 use crate::scene::{PlateImpact, Scene, Setup, Tolerances};
 use serde::Serialize;
 

@@ -35,8 +35,14 @@ pub use sprague_geers::{SpragueGeers, sprague_geers};
 pub use verdict::{GateRules, Undecided, Verdict};
 
 use crate::error::Result;
-use crate::impact::{Curves, Outcome, PlateQuantities, Quantities, SCHEMA_VERSION, SeatQuantities, Summary};
 use crate::measured::Measured;
+use crate::result::Curves;
+use crate::result::Outcome;
+use crate::result::PlateQuantities;
+use crate::result::Quantities;
+use crate::result::SCHEMA_VERSION;
+use crate::result::SeatQuantities;
+use crate::result::Summary;
 use crate::scene::{Model, Scene, Tolerances};
 use budget::QuantityBudget;
 use discrepancy::Scales;

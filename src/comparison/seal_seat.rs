@@ -4,7 +4,9 @@
 use super::alignment::peak;
 use super::balance::{displacement_balance, momentum_balance};
 use super::integrity::{Check, Compared, EFFICIENCY_SLACK, VELOCITY_SLACK, contact};
-use crate::impact::{Outcome, SeatHistory, SeatQuantities};
+use crate::result::Outcome;
+use crate::result::SeatHistory;
+use crate::result::SeatQuantities;
 use crate::scene::{Scene, SealSeat, Setup};
 
 impl Compared for SeatQuantities {

@@ -2,7 +2,7 @@
 
 use super::discrepancy::Discrepancy;
 use super::verdict::Verdict;
-use crate::impact::{Quantities, Summary};
+use crate::result::{Quantities, Summary};
 
 /// Smallest relative band that a reference can be asked for.
 const SMALLEST_TARGET: f64 = 1e-4;
@@ -66,12 +66,18 @@ mod tests {
     fn the_band_asked_for_decides() {
         for (reduced, needed, verdict) in [(100.4, 0.6, Verdict::Pass), (101.4, 0.4, Verdict::Fail)] {
             let told = sentence(&row(reduced, 2.0), Some(0.05)).expect("undecided");
-            assert!(told.starts_with(&format!("a band of at most {needed:.1e} N instead of 2.0e0 N")), "{told}");
+            assert!(
+                told.starts_with(&format!("a band of at most {needed:.1e} N instead of 2.0e0 N")),
+                "{told}"
+            );
             assert_eq!(row(reduced, 2.0).verdict, Verdict::Undecided);
             assert_eq!(row(reduced, 0.99 * needed).verdict, verdict);
             // all bands shrink alike
             let target = rounded_down(100.0 * 0.05 * needed / 2.0);
-            assert!(told.contains(&format!("--target-error {target}% (the gate's --resolution {target}%)")), "{told}");
+            assert!(
+                told.contains(&format!("--target-error {target}% (the gate's --resolution {target}%)")),
+                "{told}"
+            );
         }
         assert_eq!([0.129, 1.0, 0.0999].map(rounded_down), [0.12, 1.0, 0.099]);
     }

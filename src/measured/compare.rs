@@ -7,7 +7,8 @@ use super::filter::{Filtered, SIGNALS};
 use super::record::Record;
 use crate::comparison::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
-use crate::impact::{CURVES, Outcome};
+use crate::result::CURVES;
+use crate::result::Outcome;
 use crate::scene::Scene;
 use serde::Serialize;
 

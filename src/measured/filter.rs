@@ -2,7 +2,7 @@
 
 use crate::comparison::MonotoneCubic;
 use crate::error::{Error, Result};
-use crate::impact::History;
+use crate::result::History;
 use biquad::{Biquad, Coefficients, DirectForm2Transposed, Q_BUTTERWORTH_F64, ToHertz, Type};
 
 /// Samples per period of the bandwidth.

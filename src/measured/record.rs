@@ -1,7 +1,7 @@
 //! A record from a CSV file: times and signals with their units in the header.
 
 use crate::error::{Error, Result};
-use crate::impact::CURVES;
+use crate::result::CURVES;
 use crate::scene::quantity_in;
 use std::path::{Path, PathBuf};
 

@@ -9,9 +9,11 @@ pub use neighbourhood::{Neighbourhood, PROFILE_POINTS};
 
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
-use crate::impact::reduced::Reduced;
-use crate::impact::{Outcome, SCHEMA_VERSION, Summary};
+use crate::kinds::plate_impact::reduced::Reduced;
 use crate::report::{ChartPanel, Series, chart};
+use crate::result::Outcome;
+use crate::result::SCHEMA_VERSION;
+use crate::result::Summary;
 use crate::scene::{Field, Model, Scene, Template};
 use rayon::prelude::*;
 use search::{Search, maximise};

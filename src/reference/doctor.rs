@@ -1,7 +1,9 @@
 //! What the reference needs and what of it is there.
 
 use super::{Lookup, Resolution, Store, python};
-use crate::impact::{PlateQuantities, Quantities, SeatQuantities};
+use crate::result::PlateQuantities;
+use crate::result::Quantities;
+use crate::result::SeatQuantities;
 use crate::scene::{Scene, Setup, shipped};
 use serde::Serialize;
 use std::process::{Command, Stdio};

@@ -1,7 +1,12 @@
 //! One stored solution: a folder whose files are verified before they are believed.
 
 use super::{CurveBands, history_file};
-use crate::impact::{Outcome, PlateQuantities, Quantities, SCHEMA_VERSION, Source, Summary};
+use crate::result::Outcome;
+use crate::result::PlateQuantities;
+use crate::result::Quantities;
+use crate::result::SCHEMA_VERSION;
+use crate::result::Source;
+use crate::result::Summary;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;

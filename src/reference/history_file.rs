@@ -1,7 +1,7 @@
 //! `history.csv` of a stored solution, read strictly.
 
 use super::CurveBands;
-use crate::impact::Curves;
+use crate::result::Curves;
 use std::path::Path;
 
 /// What the name of a band's column adds to that of its curve. Bands follow the curves, one per curve.

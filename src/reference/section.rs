@@ -2,7 +2,7 @@
 
 use super::Stored;
 use super::fields::{Arrays, series_nearest};
-use crate::impact::SeatQuantities;
+use crate::result::SeatQuantities;
 use std::path::Path;
 
 /// Corners of the faces of a tetrahedron.

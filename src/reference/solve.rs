@@ -4,7 +4,7 @@ use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::store::Installed;
 use super::{Resolution, Store, identity, python};
-use crate::impact::Quantities;
+use crate::result::Quantities;
 use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use std::ffi::OsStr;

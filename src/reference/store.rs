@@ -7,8 +7,10 @@
 
 use super::entry::{self, Damage, Stored};
 use super::{Resolution, identity};
-use crate::impact::{PlateQuantities, Quantities, SeatQuantities};
 use crate::project::project_root;
+use crate::result::PlateQuantities;
+use crate::result::Quantities;
+use crate::result::SeatQuantities;
 use crate::scene::{Scene, Setup};
 use crate::{Error, Result};
 use std::fs::{self, File, TryLockError};

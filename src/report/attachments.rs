@@ -2,8 +2,8 @@
 
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
-use crate::impact::Outcome;
 use crate::reference::{CurveBands, FieldMesh, Stored};
+use crate::result::Outcome;
 
 /// Nothing of this changes a verdict; all of it may be missing.
 #[derive(Debug, Clone, Default)]

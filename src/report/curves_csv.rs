@@ -3,7 +3,7 @@
 use super::SceneReport;
 use crate::comparison::sample;
 use crate::error::{Error, Result};
-use crate::impact::CURVES;
+use crate::result::CURVES;
 
 /// CSV, eight significant digits, with the columns `time`, then `<source>_<curve>` for the reference and every model. A cell
 /// is empty where the result doesn't cover the axis; without a common axis there is only the header.

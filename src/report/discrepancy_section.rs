@@ -3,7 +3,9 @@
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::html::{badge, model_badge, named, number, scrolled};
 use crate::comparison::{BandVerdict, Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
-use crate::impact::{ContactPatch, ContactPressure, Quantities};
+use crate::result::ContactPatch;
+use crate::result::ContactPressure;
+use crate::result::Quantities;
 use maud::{Markup, html};
 
 /// Section of one model.

@@ -9,8 +9,8 @@ use super::figure_panel::panel;
 use super::format::{model_name, significant};
 use super::ticks::{tick_label, ticks};
 use crate::comparison::{CommonAxis, SampledCurve, sample};
-use crate::impact::CURVES;
 use crate::measured::Measured;
+use crate::result::CURVES;
 use maud::{Markup, PreEscaped, html};
 
 /// Font size in px of the drawing.

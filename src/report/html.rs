@@ -4,7 +4,7 @@
 use super::format::{Prefixed, model_name, percent, prefixed, significant, with_unit, words};
 use super::{Attachments, Report};
 use crate::comparison::{AMONG, Discrepancy, ModelComparison, SceneComparison, Verdict};
-use crate::impact::Quantities;
+use crate::result::Quantities;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("assets/style.css");

@@ -3,7 +3,7 @@
 use super::html::drawn;
 use super::page_data::{PanelOf, Shown, curves, embedded};
 use crate::comparison::SceneComparison;
-use crate::impact::Quantities;
+use crate::result::Quantities;
 use maud::{Markup, PreEscaped, html};
 
 /// uPlot by Leon Sorokin, MIT.

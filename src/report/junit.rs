@@ -5,7 +5,7 @@ use super::Report;
 use super::format::{percent, short};
 use crate::comparison::{Check, Discrepancy, GateRules, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, Result};
-use crate::impact::Quantities;
+use crate::result::Quantities;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
 /// JUnit XML. It holds no times, so that equal results give equal files.
@@ -35,7 +35,8 @@ fn suite<Q: Quantities>(comparison: &SceneComparison<Q>, rules: GateRules) -> Te
         suite.add_test_case(named(&comparison.scene, "gate", "tolerances", Some(message)));
     }
     for model in &comparison.models {
-        let rows = model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d, rules.undecided));
+        let rows =
+            model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d, rules.undecided));
         suite.add_test_cases(rows);
         let checks = model.integrity.iter();
         suite.add_test_cases(checks.map(|c| integrity_case(&comparison.scene, &model.model, c)));
@@ -69,7 +70,9 @@ fn case(scene: &str, model: &str, row: &Discrepancy, undecided: Undecided) -> Te
     let mut case = match (row.verdict, undecided) {
         (Verdict::NotGated, _) => skipped("not gated: the scene has no tolerance for it".to_owned()),
         (Verdict::Undecided, Undecided::Warn) => skipped(told(row)),
-        (Verdict::Pass, _) | (Verdict::Undecided, Undecided::Pass) => named(scene, model, &row.quantity, None),
+        (Verdict::Pass, _) | (Verdict::Undecided, Undecided::Pass) => {
+            named(scene, model, &row.quantity, None)
+        }
         (Verdict::Fail, _) | (Verdict::Undecided, Undecided::Fail) => {
             named(scene, model, &row.quantity, Some(told(row)))
         }

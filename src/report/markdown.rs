@@ -3,7 +3,7 @@
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::{Report, SceneReport, SeatReport};
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison, SceneComparison};
-use crate::impact::Quantities;
+use crate::result::Quantities;
 
 /// Markdown of the whole report.
 pub fn markdown(report: &Report) -> String {

@@ -4,8 +4,8 @@ use super::figure::phone_measured_figure;
 use super::format::{prefixed, significant, with_unit, words};
 use super::html::{drawn, scrolled};
 use super::{ChartPanel, SceneReport, Series, Theme, chart, measured_figure};
-use crate::impact::CURVES;
 use crate::measured::{AlignedRecord, Measured, Partner};
+use crate::result::CURVES;
 use maud::{Markup, html};
 
 /// Rows of a table, the heading first.

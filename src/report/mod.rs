@@ -58,10 +58,10 @@ pub use scene_page::scene_page;
 pub use seal_seat::{Cost, SeatReport, seat_curves, seat_curves_csv, seat_page, seat_section};
 pub use seal_seat_picture::{Arrow, seat_picture};
 pub use terminal::terminal;
-pub use write::{check_writable, write, write_file};
+pub use write::{check_writable, write};
 
 use crate::comparison::{ChangedTolerance, Comparison, GateRules, SceneComparison};
-use crate::impact::Outcome;
+use crate::result::Outcome;
 use crate::scene::Scene;
 
 /// Everything the exporters need.

@@ -3,8 +3,9 @@
 use super::figure::{QUANTITIES, Quantity, dash};
 use super::format::model_name;
 use crate::comparison::{CommonAxis, SampledCurve, sample};
-use crate::impact::{Outcome, Quantities};
 use crate::reference::CurveBands;
+use crate::result::Outcome;
+use crate::result::Quantities;
 use serde_json::{Value, json};
 
 /// Significant digits of a curve's peak that are kept.
@@ -16,7 +17,7 @@ pub(super) struct PanelOf {
     pub(super) label: &'static str,
     /// From SI to that unit.
     pub(super) factor: f64,
-    /// What the panel calls each curve, and its name in [`crate::impact::Curves::NAMES`].
+    /// What the panel calls each curve, and its name in [`crate::result::Curves::NAMES`].
     pub(super) curves: Vec<(&'static str, String)>,
 }
 

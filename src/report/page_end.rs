@@ -5,7 +5,7 @@ use super::discrepancy_section::{checks, contradictions};
 use super::facts::facts;
 use super::html::{badge, model_line};
 use crate::comparison::{AMONG, SceneComparison};
-use crate::impact::Quantities;
+use crate::result::Quantities;
 use crate::scene::Scene;
 use maud::{Markup, html};
 

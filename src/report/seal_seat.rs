@@ -13,8 +13,11 @@ use super::terminal::{findings, headline, of_model};
 use super::{interactive, page_end};
 use crate::comparison::{SceneComparison, align};
 use crate::error::{Error, Result};
-use crate::impact::{Curves, Outcome, SEAT_CURVES, SeatQuantities};
 use crate::reference::MeshSection;
+use crate::result::Curves;
+use crate::result::Outcome;
+use crate::result::SEAT_CURVES;
+use crate::result::SeatQuantities;
 use crate::scene::{Scene, Setup};
 use maud::{Markup, PreEscaped, html};
 

@@ -3,7 +3,7 @@
 use super::Report;
 use super::format::{percent, prefixed, with_unit};
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
-use crate::impact::{PlateQuantities, Quantities};
+use crate::result::{PlateQuantities, Quantities};
 use anstyle::{AnsiColor, Style};
 
 /// Styles; whoever prints takes them away where they can't be seen.

@@ -3,10 +3,10 @@
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::kirchhoff::UnitPlate;
+use crate::dynamics::system::System;
+use crate::dynamics::wet::FluidForces;
 use crate::error::Result;
-use crate::fluid::FluidForces;
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::impact::system::System;
 use crate::scene::{Edge, Fluid, Inner, Material, Outer, Plate, PlateImpact, Shape, ShearThinning};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};

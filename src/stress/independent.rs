@@ -1,9 +1,9 @@
 //! An independent solution of a random impact: a Runge-Kutta method of order 8 that knows neither modes nor contacts.
 
 use crate::analytical::hertz::HertzImpact;
-use crate::fluid::{FluidForces, FluidLoad};
-use crate::impact::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};
-use crate::impact::system::{INNER, System};
+use crate::dynamics::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};
+use crate::dynamics::system::{INNER, System};
+use crate::dynamics::wet::{FluidForces, FluidLoad};
 
 /// Evaluations times state entries that the solution of a case may cost; dearer cases (high modes, long runs) go without
 /// one and are counted. In a fluid an evaluation costs as much as [`FILM_ENTRIES`] entries more.

@@ -7,13 +7,13 @@ mod independent;
 
 pub use draw::{Case, UnitPlates, Wet};
 
+use crate::dynamics::assured::assured;
+use crate::dynamics::integrator::{Integration, Options, integrate};
+use crate::dynamics::system::System;
+use crate::dynamics::wet;
+use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
-use crate::fluid::FluidForces;
-use crate::impact::SCHEMA_VERSION;
-use crate::impact::assured::assured;
-use crate::impact::integrator::{Integration, Options, integrate};
-use crate::impact::system::System;
-use crate::impact::wet;
+use crate::result::SCHEMA_VERSION;
 use independent::Comparison;
 use rayon::prelude::*;
 use serde::Serialize;

@@ -46,7 +46,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
     let setups = tips.iter().map(|tip| with_tips(*tip)).collect();
     let results = Runner::new(model).run_all(setups, note)?;
     let column =
-        |value: fn(&crate::impact::PlateQuantities) -> f64| results.iter().map(value).collect::<Vec<_>>();
+        |value: fn(&crate::result::PlateQuantities) -> f64| results.iter().map(value).collect::<Vec<_>>();
     let rows = tips
         .iter()
         .zip(&results)

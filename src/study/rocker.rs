@@ -12,8 +12,8 @@ use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Study, parameter};
 use crate::analytical::cantilever;
 use crate::body::beam::Release;
 use crate::error::{Error, Result};
-use crate::impact::Summary;
-use crate::impact::reduced::Reduced;
+use crate::kinds::plate_impact::reduced::Reduced;
+use crate::result::Summary;
 use crate::scene::{Bender, Edge, Inner, Material, Model, Outer, Plate, PlateImpact, Shape};
 
 /// Radius and thickness of the membrane in m.

@@ -6,10 +6,10 @@
 use super::{Axis, Cell, Claim, Note, Only, Panel, SCHEMA_VERSION, Study};
 use crate::body::cache::Cache;
 use crate::error::Result;
-use crate::impact::SeatQuantities;
-use crate::impact::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
+use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
 use crate::project::project_root;
 use crate::reference::{self, Lookup, Resolution, Store};
+use crate::result::SeatQuantities;
 use crate::scene::{self, Model, Notch, Scene, SealSeat, Setup};
 
 /// How far the improved design's direction may lie from the intended one, rad.

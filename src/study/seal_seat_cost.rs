@@ -3,9 +3,9 @@
 use super::{Cell, Claim, Note, SCHEMA_VERSION, Study};
 use crate::body::cache::Cache;
 use crate::error::{Error, Result};
-use crate::impact::SeatQuantities;
-use crate::impact::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
+use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
 use crate::reference::{self, Resolution, Store, Stored, Wish};
+use crate::result::SeatQuantities;
 use crate::scene::Model;
 
 /// Ratio of the run times that is wanted at least.

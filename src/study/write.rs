@@ -2,8 +2,9 @@
 
 use super::{Cell, Claim, Study, Verdict};
 use crate::error::{Error, Result};
+use crate::file::write_file;
 use crate::report::format::significant;
-use crate::report::{png, write_file};
+use crate::report::png;
 use std::path::{Path, PathBuf};
 
 /// Rows of a study that the terminal shows.

@@ -5,4 +5,3 @@ mod guide;
 mod scene_files;
 mod snapshots;
 mod studies;
-

@@ -1,12 +1,13 @@
 //! Curves of differently sampled histories on one axis, and the JSON document of a comparison.
 
-
 use crate::synthetic_impact;
+use crate::synthetic_impact::{REDUCED, REFERENCE, SAMPLE_INTERVAL, history, reduced, reference, scene};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use impactcheck::comparison::{Comparison, compare_scene};
-use impactcheck::impact::{CURVES, PLATE_QUANTITIES, Source};
+use impactcheck::result::CURVES;
+use impactcheck::result::PLATE_QUANTITIES;
+use impactcheck::result::Source;
 use std::f64::consts::PI;
-use crate::synthetic_impact::{REDUCED, REFERENCE, SAMPLE_INTERVAL, history, reduced, reference, scene};
 
 /// The same solution, sampled differently, differs by the interpolation error only.
 #[test]

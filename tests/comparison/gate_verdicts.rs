@@ -51,10 +51,16 @@ fn a_scene_without_tolerances_has_not_passed() {
         assert_eq!(document["scenes"][0]["models"][0]["verdict"], "not_gated");
         assert_eq!(document["scenes"][0]["models"][0]["discrepancies"][0]["verdict"], "not_gated");
         let (status, said) = status_and_said(&output);
-        assert!(status == 0 && said.contains("warning: nothing of scene `scaled-plate-r6.35` is gated"), "{said}");
+        assert!(
+            status == 0 && said.contains("warning: nothing of scene `scaled-plate-r6.35` is gated"),
+            "{said}"
+        );
         assert!(!junit(&file).contains("<failure"));
         let (status, said) = status_and_said(&gate(&file, &["--require-tolerances"]));
-        assert!(status == 10 && said.contains("error: nothing of scene `scaled-plate-r6.35` is gated"), "{said}");
+        assert!(
+            status == 10 && said.contains("error: nothing of scene `scaled-plate-r6.35` is gated"),
+            "{said}"
+        );
         assert!(junit(&file).contains("they are required"));
     }
     let (_folder, file) = scene("[tolerances.B]\nefficiency = { relative = 0.1 }\n");
@@ -79,7 +85,10 @@ fn what_the_reference_cannot_tell_is_undecided_and_the_user_says_how_it_counts()
     let (_folder, file) = scene("[tolerances.B]\nefficiency = { absolute = 0.0246 }\n");
     let warned = gate(&file, &[]);
     let found = document(&warned);
-    assert_eq!((&found["verdict"], &found["scenes"][0]["verdict"]), (&"undecided".into(), &"undecided".into()));
+    assert_eq!(
+        (&found["verdict"], &found["scenes"][0]["verdict"]),
+        (&"undecided".into(), &"undecided".into())
+    );
     let row = &found["scenes"][0]["models"][0]["discrepancies"][0];
     let number = |key: &str| row[key].as_f64().unwrap();
     assert!((number("difference").abs() - number("tolerance")).abs() < number("uncertainty"));

@@ -1,12 +1,14 @@
 //! Test of the harness itself: errors put into a history must make the verdict fail, with the
 //! summary left untouched; the untouched results pass.
 
-
 use crate::synthetic_impact;
-use impactcheck::comparison::{Verdict, compare_scene};
-use impactcheck::impact::{CURVES, History, Outcome, PLATE_QUANTITIES};
-use impactcheck::scene::Scene;
 use crate::synthetic_impact::{gated_scene, reduced, reference, scene};
+use impactcheck::comparison::{Verdict, compare_scene};
+use impactcheck::result::CURVES;
+use impactcheck::result::History;
+use impactcheck::result::Outcome;
+use impactcheck::result::PLATE_QUANTITIES;
+use impactcheck::scene::Scene;
 
 /// The curve called `name`, to be changed.
 fn curve_mut<'a>(history: &'a mut History, name: &str) -> &'a mut Vec<f64> {

@@ -1,12 +1,12 @@
 //! Measured signals (section 3.4): synthetic records of known noise, shift, offset and drift, made from a model's history
 //! and laid over the finite-element reference.
 
-use impactcheck::impact::Outcome;
-use impactcheck::impact::reduced::Reduced;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::measured::{
     AlignedRecord, BANDWIDTH, Channel, Filtered, Record, Series, Speed, align, compare,
 };
 use impactcheck::reference::{Lookup, Resolution, Store};
+use impactcheck::result::Outcome;
 use impactcheck::scene::{Model, PlateImpact, Scene, Setup, resolve};
 
 fn scene(name: &str) -> (Scene, PlateImpact) {

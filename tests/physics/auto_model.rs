@@ -6,7 +6,7 @@ use assert_cmd::Command;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, sphere_residual};
 use impactcheck::body::layer::Waves;
 use impactcheck::body::{free_sphere, kirchhoff};
-use impactcheck::impact::reduced::Reduced;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::reference::Store;
 use impactcheck::scene::{Edge, Material, Model, Plate, Scene, resolve};
 use impactcheck::study::auto;

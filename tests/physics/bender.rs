@@ -1,15 +1,14 @@
 //! The piezo bender (section 4.3 of the paper): beam elements against closed forms, release and strike, impact.
 
-
-use approx::assert_relative_eq;
 use crate::common::scaled_plate;
+use approx::assert_relative_eq;
 use impactcheck::analytical::cantilever;
 use impactcheck::body::beam::{Beam, Release};
 use impactcheck::body::kirchhoff;
-use impactcheck::impact::OuterBody;
-use impactcheck::impact::integrator::{Integration, Options, integrate};
-use impactcheck::impact::reduced::Reduced;
-use impactcheck::impact::system::System;
+use impactcheck::dynamics::OuterBody;
+use impactcheck::dynamics::integrator::{Integration, Options, integrate};
+use impactcheck::dynamics::system::System;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Bender, Model, PlateImpact, Scene, Shape};
 use std::f64::consts::TAU;
 

@@ -3,9 +3,9 @@
 
 use assert_cmd::Command;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, sphere_residual};
-use impactcheck::impact::integrator::{Options, integrate};
-use impactcheck::impact::reduced::Reduced;
-use impactcheck::impact::system::System;
+use impactcheck::dynamics::integrator::{Options, integrate};
+use impactcheck::dynamics::system::System;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Model, Scene, Shape, resolve};
 use std::path::Path;
 

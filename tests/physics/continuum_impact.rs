@@ -6,7 +6,7 @@
 //! patch radius, the number of modes and the mesh.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use impactcheck::impact::reduced::Reduced;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Model, Scene, resolve};
 use impactcheck::study::{Verdict, insensitivity};
 

@@ -3,9 +3,8 @@
 //! Checks: Kirchhoff's closed forms for thin plates (Timoshenko & Woinowsky-Krieger, Theory of Plates and
 //! Shells, section 19; free plate: point load balanced by its uniform inertia), Hertz's half-space, the sum over modes.
 
-
-use approx::assert_relative_eq;
 use crate::continuum_support::{material, plate_of, steel};
+use approx::assert_relative_eq;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, half_space_flexibility, plate};
 use impactcheck::scene::Edge;
 use std::f64::consts::PI;

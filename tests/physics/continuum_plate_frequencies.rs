@@ -5,9 +5,8 @@
 //! closed form for thin plates (Leissa, Vibration of Plates, NASA SP-160, tables 2.1, 2.3, 2.4), the mass,
 //! the order of convergence.
 
-
-use approx::assert_relative_eq;
 use crate::continuum_support::{plate_of, steel, titanium};
+use approx::assert_relative_eq;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, eigenfrequencies};
 use impactcheck::scene::Edge;
 use std::f64::consts::TAU;

@@ -4,9 +4,8 @@
 //! Check: exact solution by solid harmonics (Love, Mathematical Theory of Elasticity, sections 172-173;
 //! degree 1 with the inertia forces of the rigid acceleration), summed to degree 2500.
 
-
-use approx::assert_relative_eq;
 use crate::continuum_support::material;
+use approx::assert_relative_eq;
 use impactcheck::body::continuum::{MeshOptions, half_space_flexibility, sphere_residual};
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,13 +1,12 @@
 //! A sphere on a rigidly held half-space against Hertz's closed form (Goldsmith, Impact, 1960, chapter 4).
 
-
 use crate::common;
 use approx::assert_relative_eq;
 use impactcheck::analytical::hertz::HertzImpact;
 use impactcheck::body::ModalBody;
-use impactcheck::impact::integrator::{Options, integrate};
-use impactcheck::impact::reduced::Reduced;
-use impactcheck::impact::system::System;
+use impactcheck::dynamics::integrator::{Options, integrate};
+use impactcheck::dynamics::system::System;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Model, Scene, resolve};
 use std::f64::consts::PI;
 

@@ -1,13 +1,12 @@
 //! The collocation integrator against classical Runge-Kutta with tiny steps, against conservation of momentum and
 //! energy, and against itself at other tolerances.
 
-
+use crate::common::scaled_plate;
 use crate::runge_kutta;
 use approx::assert_relative_eq;
-use crate::common::scaled_plate;
 use impactcheck::body::kirchhoff;
-use impactcheck::impact::integrator::{Integration, Options, integrate};
-use impactcheck::impact::system::System;
+use impactcheck::dynamics::integrator::{Integration, Options, integrate};
+use impactcheck::dynamics::system::System;
 use impactcheck::scene::{Edge, PlateImpact, Shape};
 
 fn system(setup: &PlateImpact, modes: usize) -> System {

@@ -2,8 +2,8 @@
 //! and against the efficiencies the paper reports from Abaqus (69 % and 39 %).
 
 use approx::assert_abs_diff_eq;
-use impactcheck::impact::Summary;
-use impactcheck::impact::reduced::Reduced;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
+use impactcheck::result::Summary;
 use impactcheck::scene::{Model, Scene, resolve};
 
 fn run(name: &str, model: Model, tolerance: f64) -> Summary {

@@ -1,16 +1,16 @@
 //! Impacts in a fluid (section 3.5 of the paper): the implicit integrator against explicit Runge-Kutta, against the
 //! dry integrator, conservation and closed forms.
 
-
-use approx::assert_relative_eq;
 use crate::common::scaled_plate;
+use approx::assert_relative_eq;
 use impactcheck::body::continuum::{self, MeshOptions};
 use impactcheck::body::kirchhoff;
+use impactcheck::dynamics::OuterBody;
+use impactcheck::dynamics::integrator::{self, Integration, Options};
+use impactcheck::dynamics::system::{INNER, System};
+use impactcheck::dynamics::wet;
+use impactcheck::dynamics::wet::{FluidForces, FluidLoad};
 use impactcheck::fluid::added_mass::immersed;
-use impactcheck::fluid::{FluidForces, FluidLoad};
-use impactcheck::impact::integrator::{self, Integration, Options};
-use impactcheck::impact::system::{INNER, System};
-use impactcheck::impact::{OuterBody, wet};
 use impactcheck::scene::{Bender, Edge, Fluid, PlateImpact, Shape, ShearThinning};
 
 fn water() -> Fluid {

@@ -1,13 +1,12 @@
 //! A sphere on a plate so large that no wave returns during the contact, against Zener's equation
 //! (Phys. Rev. 59, 1941, 669) for the infinite plate.
 
-
 use crate::common;
 use approx::assert_relative_eq;
 use impactcheck::analytical::{circular_plate::rigidity, zener};
 use impactcheck::body::kirchhoff;
-use impactcheck::impact::integrator::{Options, integrate};
-use impactcheck::impact::system::System;
+use impactcheck::dynamics::integrator::{Options, integrate};
+use impactcheck::dynamics::system::System;
 
 /// Restitution and force peak of the reduced model and of Zener's equation, and Zener's lambda.
 fn both(thickness: f64, radius: f64, modes: usize) -> ([f64; 2], [f64; 2], f64) {

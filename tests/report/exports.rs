@@ -1,16 +1,16 @@
 //! The exporters: all formats tell the same numbers, and each is well-formed.
 
-
+use crate::report_data::{Data, between};
 use crate::synthetic_impact;
+use crate::synthetic_impact::reduced_of;
 use impactcheck::comparison::Verdict;
-use impactcheck::impact::{CURVES, PLATE_QUANTITIES};
 use impactcheck::report::{
     Report, Theme, curves_csv, figure, index_page, json, junit, markdown, scene_page, terminal,
 };
-use crate::report_data::{Data, between};
+use impactcheck::result::CURVES;
+use impactcheck::result::PLATE_QUANTITIES;
 use resvg::usvg::roxmltree::Document;
 use serde_json::Value;
-use crate::synthetic_impact::reduced_of;
 
 /// Model B is off by more than its tolerance.
 fn failing() -> Data {

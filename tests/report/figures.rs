@@ -1,10 +1,10 @@
 //! The drawings: figures of the report and for papers, mesh and stress.
 
-
-use impactcheck::impact::{CURVES, Outcome};
+use crate::report_data::{Data, between};
 use impactcheck::reference::{CurveBands, FieldMesh};
 use impactcheck::report::{FigureFormat, Theme, figure, figure_file, png, printed_figure, scene_page};
-use crate::report_data::{Data, between};
+use impactcheck::result::CURVES;
+use impactcheck::result::Outcome;
 use resvg::usvg::roxmltree::Document;
 
 #[test]

@@ -1,15 +1,14 @@
 //! Writing the report: complete or not at all, the same for the same results.
 
-
+use crate::synthetic_impact::{reduced, reference, scene};
 use impactcheck::comparison::{GateRules, compare_scene};
-use impactcheck::impact::Outcome;
 use impactcheck::report::{Attachments, Report, SceneReport, check_writable, write};
+use impactcheck::result::Outcome;
 use impactcheck::scene::Scene;
 use impactcheck::{Error, ExitStatus};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use crate::synthetic_impact::{reduced, reference, scene};
 
 fn report<'a>(scene: &'a Scene, reference: &'a Outcome, reduced: &'a [Outcome]) -> Report<'a> {
     let comparison = compare_scene(scene, reference, reduced);

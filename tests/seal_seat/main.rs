@@ -3,4 +3,3 @@
 mod reduced;
 mod reference;
 mod scene;
-

@@ -5,9 +5,11 @@
 use assert_cmd::Command;
 use impactcheck::body::cache::Cache;
 use impactcheck::comparison::{GateRules, Verdict, compare_scene};
-use impactcheck::impact::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
-use impactcheck::impact::{Outcome, SeatQuantities, Source};
+use impactcheck::kinds::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
 use impactcheck::report::{self, Cost, Report, SeatReport};
+use impactcheck::result::Outcome;
+use impactcheck::result::SeatQuantities;
+use impactcheck::result::Source;
 use impactcheck::scene::{Model, Scene};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -122,11 +124,11 @@ fn wider_zones_of_candidates_change_nothing() {
     let wide = Zones { ring: 4.0 * expected.ring, tip: 1.6 * expected.tip };
     let body = mesh().body(setup, &wide, 16, &Cache::off()).expect("body");
     assert!(body.candidates.len() > sixteen().system().candidates.len() + 20);
-    let system = impactcheck::impact::seal_seat::system::System::new(setup, &body.body, &body.candidates, 16)
+    let system = impactcheck::kinds::seal_seat::system::System::new(setup, &body.body, &body.candidates, 16)
         .expect("system");
     let options =
-        impactcheck::impact::seal_seat::integrate::Options { step: 1e-6, end_time: None, history: false };
-    let wide = impactcheck::impact::seal_seat::integrate::integrate(&system, &options).expect("run");
+        impactcheck::kinds::seal_seat::integrate::Options { step: 1e-6, end_time: None, history: false };
+    let wide = impactcheck::kinds::seal_seat::integrate::integrate(&system, &options).expect("run");
     let narrow = sixteen().integrate(1e-6, false).expect("run");
     for (a, b) in wide.state.sphere_velocity.iter().zip(narrow.state.sphere_velocity) {
         assert!((a - b).abs() < 1e-7, "{a} {b}");

@@ -2,8 +2,12 @@
 //! what section 4.4 of the paper found: the initial design throws the sphere to the wrong side, the improved one
 //! where it is meant to go.
 
-use impactcheck::impact::{Curves, Quantities, SEAT_QUANTITIES, SeatQuantities, Source};
 use impactcheck::reference::{Lookup, Resolution, Store, Stored, seat_meshes};
+use impactcheck::result::Curves;
+use impactcheck::result::Quantities;
+use impactcheck::result::SEAT_QUANTITIES;
+use impactcheck::result::SeatQuantities;
+use impactcheck::result::Source;
 use impactcheck::scene::{Scene, Template, resolve};
 use std::path::{Path, PathBuf};
 

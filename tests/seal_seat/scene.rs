@@ -183,7 +183,8 @@ fn numbers_of_a_seal_seat_can_be_varied() {
 #[test]
 fn what_knows_plates_only_refuses_a_seal_seat() {
     let scene = parse(VALID);
-    let error = impactcheck::impact::reduced::Reduced::new(&scene, impactcheck::scene::Model::B, None);
+    let error =
+        impactcheck::kinds::plate_impact::reduced::Reduced::new(&scene, impactcheck::scene::Model::B, None);
     let Err(error) = error else { panic!("accepted") };
     assert_eq!(error.exit_status(), ExitStatus::InvalidScene);
     let said = error.to_string();

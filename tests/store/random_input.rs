@@ -2,12 +2,11 @@
 //!
 //! `PROPTEST_CASES=200000 cargo test --release --test random_input` fuzzes for longer.
 
-
+use crate::store_fixture::{scene, seal, write_entry};
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::scene::Scene;
 use proptest::prelude::*;
 use std::fs;
-use crate::store_fixture::{scene, seal, write_entry};
 
 const SHIPPED: [&str; 4] = [
     include_str!("../../scenes/scaled-plate-r6.35.toml"),

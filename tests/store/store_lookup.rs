@@ -1,12 +1,11 @@
 //! The store gives out a reference only if it is intact and of exactly this scene; otherwise it
 //! says which file is damaged or what has changed since.
 
-
+use crate::store_fixture::*;
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::scene::Scene;
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use crate::store_fixture::*;
 
 const PAPER: Resolution = Resolution::Paper;
 
@@ -232,7 +231,7 @@ fn what_is_not_physics_leaves_the_entry_valid() {
 fn the_projects_own_store_is_read_where_ones_own_has_nothing() {
     let root = tempfile::tempdir().expect("folder");
     let (store, shipped) = (Store::open(Some(root.path())), Store::shipped());
-    let find = || store.find_here_or_shipped::<impactcheck::impact::PlateQuantities>(&scene(), PAPER);
+    let find = || store.find_here_or_shipped::<impactcheck::result::PlateQuantities>(&scene(), PAPER);
     let folder_of = |lookup| match lookup {
         Lookup::Found(stored) => stored.folder,
         other => panic!("not found: {other:?}"),
@@ -249,6 +248,6 @@ fn the_projects_own_store_is_read_where_ones_own_has_nothing() {
     assert!(matches!(find(), Lookup::Damaged { .. }));
     // What is nowhere is as it is here.
     let other = scene_with("550 mm/s", "610 mm/s");
-    let other = store.find_here_or_shipped::<impactcheck::impact::PlateQuantities>(&other, PAPER);
+    let other = store.find_here_or_shipped::<impactcheck::result::PlateQuantities>(&other, PAPER);
     assert!(matches!(other, Lookup::Damaged { .. }));
 }

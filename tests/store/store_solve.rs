@@ -2,7 +2,7 @@
 //! leaves in the store, and what is said about it. The solver is a shell script here.
 #![cfg(unix)]
 
-
+use crate::store_fixture::*;
 use impactcheck::reference::{Lookup, Progress, Resolution, Store, Wish, solve_with};
 use impactcheck::scene::Scene;
 use impactcheck::{Error, ExitStatus, Result};
@@ -11,7 +11,6 @@ use std::fs::{self, File};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
-use crate::store_fixture::*;
 
 const PAPER: Resolution = Resolution::Paper;
 

@@ -2,8 +2,8 @@
 
 use crate::synthetic_impact::{self, gated_scene, reduced, reduced_of, reference};
 use impactcheck::comparison::{GateRules, compare_scene};
-use impactcheck::impact::Outcome;
 use impactcheck::report::{Attachments, Report, SceneReport};
+use impactcheck::result::Outcome;
 use impactcheck::scene::Scene;
 
 /// Owns what a report refers to.

@@ -1,6 +1,6 @@
 //! An independent, slow integration of the reduced model: classical Runge-Kutta with a fixed small step.
 
-use impactcheck::impact::system::System;
+use impactcheck::dynamics::system::System;
 
 /// Velocities of outer and inner body in m/s after `steps` steps of `h` s.
 pub fn final_velocities(system: &System, h: f64, steps: usize) -> [f64; 2] {

@@ -3,7 +3,13 @@
 //! to rounding, so that whatever a check finds in them has been put there.
 #![allow(dead_code)] // Each test file uses its own part.
 
-use impactcheck::impact::{History, Motion, Outcome, PlateQuantities, SCHEMA_VERSION, Source, Summary};
+use impactcheck::result::History;
+use impactcheck::result::Motion;
+use impactcheck::result::Outcome;
+use impactcheck::result::PlateQuantities;
+use impactcheck::result::SCHEMA_VERSION;
+use impactcheck::result::Source;
+use impactcheck::result::Summary;
 use impactcheck::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings,
     Run, Scene, Setup, Shape, Tolerance,

@@ -3,8 +3,8 @@
 use super::truth::Setting;
 use crate::body::cache::Cache;
 use crate::error::Result;
-use crate::impact::choice::integration_tolerance;
-use crate::impact::reduced::Reduced;
+use crate::kinds::plate_impact::choice::integration_tolerance;
+use crate::kinds::plate_impact::reduced::Reduced;
 use crate::scene::Scene;
 use std::time::Instant;
 

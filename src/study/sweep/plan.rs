@@ -3,7 +3,7 @@
 use super::record::{Outcome, Record};
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
-use crate::impact::reduced::Reduced;
+use crate::kinds::plate_impact::reduced::Reduced;
 use crate::sampling::latin_hypercube;
 use crate::scene::hash::{canonical, drop_material_names, sha256_hex};
 use crate::scene::{self, Field, Model, Template};

@@ -4,8 +4,9 @@
 //! points run again; nothing that is in the log is ever changed. Numbers are written so that they come back bit
 //! by bit.
 
-use crate::impact::reduced::Point;
-use crate::impact::{PLATE_QUANTITIES, PlateQuantities};
+use crate::kinds::plate_impact::reduced::Point;
+use crate::result::PLATE_QUANTITIES;
+use crate::result::PlateQuantities;
 use std::fmt::Write;
 
 /// What became of one point.

@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::record::{NUMBERS, Outcome, Record};
 use super::run::{Shard, read_all};
 use crate::error::{Error, Result};
-use crate::report::write_file;
+use crate::file::write_file;
 use crate::study::SCHEMA_VERSION;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};

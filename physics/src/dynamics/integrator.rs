@@ -1,0 +1,406 @@
+//! The time integration of a plate impact: steps of adapted length while bodies touch, exact flight between.
+
+use super::LEAN;
+use super::bank::in_blocks;
+use super::clearance::touch_between;
+use super::collocation::{Collocation, POINTS, Points, STAGES, crossing};
+use super::contact_forces::{Course, ForceError, StepSolver};
+use super::contact_ledger::{ContactLedger, StepCourse};
+use super::free_flight::{self, Flight};
+use super::ladder::Ladder;
+use super::recorder::Recorder;
+use super::step_bounds::{Bounds, EnergyAccount, momentum_scale};
+use super::system::{INNER, PLATE, System, dot};
+use crate::analytical::hertz::HertzImpact;
+use crate::error::{Error, Result};
+use crate::result::{History, Losses};
+use std::sync::LazyLock;
+use wide::f64x4;
+
+/// What the user may choose about the integration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Bound aimed at for the relative error of the efficiency from the time integration.
+    pub tolerance: f64,
+    /// End of the run in s; `None` = when no further contact is possible.
+    pub end_time: Option<f64>,
+    /// Largest distance of samples in s; `None` = no history is kept.
+    pub sample_interval: Option<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { tolerance: 1e-7, end_time: None, sample_interval: None }
+    }
+}
+
+/// Result of the integration.
+#[derive(Debug, Clone)]
+pub struct Integration {
+    /// Velocities of outer and inner body at the end in m/s, signed along z.
+    pub velocity: [f64; 2],
+    /// Accounts of both contacts.
+    pub contacts: [ContactLedger; 2],
+    /// Energy that no strain energy, motion or damping accounts for, over the initial energy.
+    pub energy_residual: f64,
+    /// The same with its sign: positive where energy came out of nothing.
+    pub energy_gained: f64,
+    /// Largest momentum no impulse accounts for, over the initial momentum.
+    pub momentum_residual: f64,
+    /// Energy that went into damping and into the fluid.
+    pub losses: Losses,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Estimated error of the velocities from the time integration, over the impact speed, if it was looked for
+    /// ([`crate::dynamics::assured`]).
+    pub error_estimate: Option<f64>,
+    /// Course over time, if asked for.
+    pub history: Option<History>,
+}
+
+/// Steps after which a run counts as endless.
+const MAX_STEPS: u64 = 5_000_000;
+/// Step lengths are the base length times 2^-level, level in this range.
+const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
+/// Impulse of a contact, over the initial momentum, below which it is not counted.
+pub(super) const NEGLIGIBLE: f64 = 1e-8;
+/// Level of the first step after a touch.
+const START_LEVEL: i32 = 4;
+
+/// Places of a step (0..1) at which it is cut for an event; nearer to its ends shorter steps find it.
+const EVENTS: std::ops::Range<f64> = 0.002..0.99;
+
+/// Integrates the impact.
+///
+/// # Errors
+/// [`Error::Solver`] if the contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does not end.
+pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
+    static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
+    let recorder = options
+        .sample_interval
+        .filter(|_| !LEAN)
+        .map(|interval| Recorder::new(system, &COLLOCATION, interval));
+    Run::new(system, &COLLOCATION, options, recorder).go()
+}
+
+/// State of a run.
+struct Run<'a> {
+    solver: StepSolver<'a>,
+    recorder: Option<Recorder<'a>>,
+    end_time: f64,
+    bounds: Bounds,
+    base_step: f64,
+    tables: Ladder,
+    level: i32,
+    time: f64,
+    q: Vec<f64x4>,
+    v: Vec<f64x4>,
+    next_q: Vec<f64x4>,
+    next_v: Vec<f64x4>,
+    /// The latest step.
+    course: Course,
+    energy: EnergyAccount,
+    contacts: [ContactLedger; 2],
+    steps: u64,
+    damped: bool,
+}
+
+/// `blocks` as single coordinates; the last of them may be filled up with ones at rest.
+fn flat(blocks: &[f64x4]) -> &[f64] {
+    bytemuck::cast_slice(blocks)
+}
+
+impl<'a> Run<'a> {
+    fn new(
+        system: &'a System,
+        collocation: &'a Collocation,
+        options: &Options,
+        recorder: Option<Recorder<'a>>,
+    ) -> Self {
+        let (q, v) = system.initial_state();
+        let (q, v) = (in_blocks(&q), in_blocks(&v));
+        let hit =
+            HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
+        Self {
+            recorder,
+            end_time: options.end_time.unwrap_or(f64::INFINITY),
+            base_step: 0.25 * hit.duration(),
+            energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
+            bounds: Bounds::new(options.tolerance),
+            tables: Ladder::new(q.len()),
+            level: START_LEVEL,
+            time: 0.0,
+            next_q: q.clone(),
+            next_v: v.clone(),
+            course: at_rest(
+                system.modal_approach(flat(&q)),
+                system.energy(&system.start[0], &system.start[1]),
+            ),
+            solver: StepSolver::new(system, collocation),
+            q,
+            v,
+            contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+            steps: 0,
+            damped: !LEAN && system.is_damped(),
+        }
+    }
+
+    fn go(mut self) -> Result<Integration> {
+        let mut touching = true;
+        while self.time < self.end_time {
+            let [approach, ..] = self.course.end();
+            if !touching && approach[0] <= 0.0 && approach[1] <= 0.0 && !self.fly()? {
+                break;
+            }
+            self.step()?;
+            touching = false;
+            if self.steps > MAX_STEPS {
+                return Err(Error::Solver(format!(
+                    "reduced model: no end after {MAX_STEPS} steps, at t = {:.6e} s; set `run.end_time`",
+                    self.time
+                )));
+            }
+        }
+        Ok(self.finish())
+    }
+
+    /// Flies to the next touch; `false` if there is none before the end.
+    fn fly(&mut self) -> Result<bool> {
+        let system = self.solver.system;
+        let (q, v) = (flat(&self.q), flat(&self.v));
+        let (flight, more) = match free_flight::next_touch(system, q, v, self.end_time - self.time)? {
+            Flight::Touch(duration) if self.time + duration < self.end_time => (duration, true),
+            Flight::Over if self.end_time.is_infinite() => return Ok(false),
+            _ => (self.end_time - self.time, false),
+        };
+        if let Some(recorder) = &mut self.recorder {
+            let n = system.size();
+            recorder.step(self.time, flight, &q[..n], &v[..n], &[[0.0; STAGES]; 2])?;
+        }
+        free_flight::advance(
+            system,
+            flight,
+            bytemuck::cast_slice_mut(&mut self.q),
+            bytemuck::cast_slice_mut(&mut self.v),
+        );
+        self.time += flight;
+        // exact flight keeps the energy of undamped bodies; of others it is not asked for
+        self.course = at_rest(system.modal_approach(flat(&self.q)), self.course.motion);
+        self.level = self.level.max(START_LEVEL);
+        Ok(more)
+    }
+
+    /// Takes one step, as long as the tolerance permits.
+    fn step(&mut self) -> Result<()> {
+        // the end of a step that an event asked for
+        let mut wanted = None;
+        let mut solved = true;
+        loop {
+            let (start, end) = (*LEVELS.start(), *LEVELS.end());
+            if self.level > end {
+                return Err(self.stuck(solved));
+            }
+            self.level = self.level.max(start);
+            let h = self.base_step * 0.5_f64.powi(self.level);
+            let rest = self.end_time - self.time;
+            let shorter = wanted.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
+            let (bank, collocation, system) =
+                (&self.solver.bank, self.solver.collocation, self.solver.system);
+            let scale = momentum_scale(system, &self.contacts);
+            let table = match shorter {
+                Some(h) => self.tables.other(bank, collocation, h),
+                None => self.tables.get(bank, collocation, self.level, h),
+            };
+            let h = table.h;
+            let trial = self.solver.solve(
+                table,
+                &self.course,
+                (&self.q, &self.v),
+                (&mut self.next_q, &mut self.next_v),
+                ForceError { absolute: self.bounds.impulse * scale[1] / h, relative: self.bounds.force },
+            );
+            solved = trial.is_some();
+            let Some(trial) = trial else {
+                wanted = None;
+                self.level += 1;
+                continue;
+            };
+            let made = self.made_by(&trial);
+            let energy_excess = self.energy.excess(made, h);
+            let mut excess: f64 = energy_excess;
+            let mut event: Option<f64> = None;
+            for i in 0..2 {
+                let defect = self.defect(&trial, i) / scale[i];
+                let change = if is_kinked(&trial, i) { change_inside(collocation, &trial, i) } else { None };
+                let bound = match change {
+                    Some(_) => self.bounds.kinked,
+                    None if is_kinked(&trial, i) => self.bounds.edge,
+                    None => self.bounds.smooth,
+                };
+                excess = excess.max(defect / bound);
+                if let Some(u) = change
+                    && (defect > bound || energy_excess > 1.0)
+                {
+                    event = Some(event.map_or(u, |e| e.min(u)));
+                }
+                if is_open(&trial, i)
+                    && let Some(touch) = touch_between(collocation, &trial.local_approach[i])
+                {
+                    let impulse = system.laws[i].force(touch.depth) * h;
+                    let missed = impulse / (scale[i] * self.bounds.kinked);
+                    excess = excess.max(missed);
+                    if missed > 1.0 && EVENTS.contains(&touch.place) {
+                        event = Some(event.map_or(touch.place, |e| e.min(touch.place)));
+                    }
+                }
+            }
+            if excess > 1.0 {
+                match event {
+                    Some(u) if wanted.is_none() => wanted = Some(u * h),
+                    _ => {
+                        wanted = None;
+                        self.level += (excess.log2() / (STAGES + 1) as f64).ceil().clamp(1.0, 8.0) as i32;
+                    }
+                }
+                continue;
+            }
+            self.energy.book(made);
+            self.accept(trial)?;
+            // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
+            if excess < 0.5_f64.powi(STAGES as i32 + 2) && shorter.is_none() {
+                self.level -= 1;
+            }
+            return Ok(());
+        }
+    }
+
+    /// Why no step is short enough; whether the last one could be `solved`.
+    fn stuck(&self, solved: bool) -> Error {
+        let [_, _, [outer, inner]] = self.course.end();
+        Error::Solver(if solved || self.solver.system.residual.is_none() {
+            format!(
+                "reduced model: the time step fell below {:.1e} s at t = {:.6e} s without meeting the tolerance",
+                self.base_step * 0.5_f64.powi(*LEVELS.end()),
+                self.time
+            )
+        } else {
+            format!(
+                "reduced model: at t = {:.6e} s, with contact forces of {outer:.4} N and {inner:.4} N, the contacts find no equilibrium: the residual flexibility of the modes that are left out does not hold for contact patches as wide as these; take fewer modes, or model B",
+                self.time
+            )
+        })
+    }
+
+    /// Energy in J that the step makes from nothing. Damped bodies lose some: then what the contacts store beyond the work
+    /// done on them, which misses vibrations quicker than the step.
+    fn made_by(&self, trial: &Course) -> f64 {
+        let stored = trial.stored - self.course.stored;
+        if !LEAN && self.damped {
+            stored - trial.work[0] - trial.work[1]
+        } else {
+            stored + trial.motion - self.course.motion
+        }
+    }
+
+    /// Distance between the force at the end of the step and the polynomial of the step, as an impulse in N s.
+    fn defect(&self, trial: &Course, contact: usize) -> f64 {
+        let extrapolated = dot(&self.solver.collocation.ends[1], &trial.stages()[contact]);
+        (trial.force[contact][POINTS - 1] - extrapolated).abs() * trial.h
+    }
+
+    fn accept(&mut self, trial: Course) -> Result<()> {
+        if let (false, Some(recorder)) = (LEAN, &mut self.recorder) {
+            let n = self.solver.system.size();
+            recorder.step(self.time, trial.h, &flat(&self.q)[..n], &flat(&self.v)[..n], &trial.stages())?;
+        }
+        for (i, contact) in self.contacts.iter_mut().enumerate() {
+            let course = StepCourse {
+                time: self.time,
+                h: trial.h,
+                local_approach: trial.local_approach[i],
+                force: trial.force[i],
+                work: trial.work[i],
+            };
+            contact.book(self.solver.collocation, &course);
+        }
+        std::mem::swap(&mut self.q, &mut self.next_q);
+        std::mem::swap(&mut self.v, &mut self.next_v);
+        self.time += trial.h;
+        self.steps += 1;
+        self.course = trial;
+        Ok(())
+    }
+
+    fn finish(self) -> Integration {
+        let system = self.solver.system;
+        let n = system.size();
+        let (q, v) = (&flat(&self.q)[..n], &flat(&self.v)[..n]);
+        let velocity = [dot(&system.outer, v), v[INNER] / system.masses[1].sqrt()];
+        let [start_q, start_v] = &system.start;
+        let initial = system.energy(start_q, start_v);
+        let stored = self.course.stored;
+        let damped = self.damped;
+        let end = system.energy(q, v);
+        let contact_work = self.contacts[0].work + self.contacts[1].work;
+        // damping takes energy out of the bodies; between them and the contacts none may be lost all the same
+        let unaccounted = if damped { stored - contact_work } else { end + stored - initial };
+        let impulses = [self.contacts[0].impulse, self.contacts[1].impulse];
+        let mut unexplained = vec![system.masses[1] * velocity[1] + impulses[1]];
+        if !system.outer_returns() {
+            unexplained.push(system.masses[0] * (velocity[0] + system.speed) - impulses[0]);
+        }
+        if system.oscillators.get(PLATE).is_some_and(|o| o.omega == 0.0) {
+            // rigid motion of a free plate: rate / participation = momentum
+            unexplained.push(v[PLATE] / system.centre[PLATE] + impulses[0] - impulses[1]);
+        }
+        let momentum = system.masses[0] * system.speed;
+        Integration {
+            velocity,
+            contacts: self.contacts,
+            energy_residual: unaccounted.abs() / initial,
+            energy_gained: unaccounted / initial,
+            momentum_residual: unexplained.into_iter().fold(0.0, |worst: f64, p| worst.max(p.abs()))
+                / momentum,
+            losses: Losses {
+                plate_damping: if damped { initial - end - contact_work } else { 0.0 },
+                ..Losses::default()
+            },
+            steps: self.steps,
+            error_estimate: None,
+            history: self.recorder.map(Recorder::finish),
+        }
+    }
+}
+
+/// Both contacts open at the modal approaches `y` in m, the bodies with the energy `motion` in J.
+fn at_rest(y: [f64; 2], motion: f64) -> Course {
+    let mut course = Course { motion, ..Course::default() };
+    for i in 0..2 {
+        course.approach[i][POINTS - 1] = y[i];
+        course.local_approach[i][POINTS - 1] = y[i];
+    }
+    course
+}
+
+/// Whether `contact` touches or opens at the start, in or at the end of the step.
+fn is_kinked(trial: &Course, contact: usize) -> bool {
+    let forces = &trial.force[contact];
+    forces.contains(&0.0) && forces.iter().any(|f| *f > 0.0)
+}
+
+/// Whether `contact` is open at all points of the step, but perhaps for a rounding error at its start.
+fn is_open(trial: &Course, contact: usize) -> bool {
+    trial.force[contact][1..] == [0.0; POINTS - 1]
+}
+
+/// Where inside the step (0..1) `contact` first touches or opens, if it does so well away from the ends.
+fn change_inside(collocation: &Collocation, trial: &Course, contact: usize) -> Option<f64> {
+    let local = &trial.local_approach[contact];
+    let closed = |value: f64| value > 0.0;
+    let point =
+        (1..POINTS).find(|p| closed(local[*p]) != closed(local[p - 1]) && (*p > 1 || local[0] != 0.0))?;
+    let polynomial = collocation.through(local);
+    let around = |values: &Points| [values[point - 1], values[point]];
+    let u = crossing(&polynomial, around(&collocation.points), around(local));
+    EVENTS.contains(&u).then_some(u)
+}

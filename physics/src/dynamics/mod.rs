@@ -1,0 +1,27 @@
+//! The motion: bodies as oscillators, coupled by contacts and fluid, from the first touch to the last release.
+
+pub mod assured;
+mod bank;
+mod centre;
+mod clearance;
+pub mod collocation;
+mod contact_forces;
+mod contact_ledger;
+pub mod duhamel;
+pub mod explicit_runge_kutta;
+mod free_flight;
+pub mod integrator;
+mod ladder;
+mod outer_body;
+mod point_laws;
+mod recorder;
+mod step_bounds;
+pub mod system;
+pub mod wet;
+
+pub use contact_ledger::ContactLedger;
+pub use outer_body::OuterBody;
+
+/// Whether this build leaves out fluid, damping, residual flexibility and histories (feature `lean`), to measure what they
+/// cost where they are not used.
+pub(crate) const LEAN: bool = cfg!(feature = "lean");

@@ -1,0 +1,70 @@
+//! The outer body as oscillators, in the state in which it strikes.
+
+use super::duhamel::Oscillator;
+use crate::analytical::cantilever;
+use crate::body::beam::Release;
+use crate::error::Result;
+use crate::result::Drive;
+use crate::scene::{Outer, Shape};
+
+/// Outer body: mass-normalised coordinates that move its contact point, and their state at t = 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OuterBody {
+    /// The oscillators. Shape (n).
+    pub oscillators: Vec<Oscillator>,
+    /// Displacement of the contact point along +z per unit of each coordinate, kg^(-1/2). Shape (n).
+    pub tip: Vec<f64>,
+    /// Coordinates at t = 0. Shape (n).
+    pub displacement: Vec<f64>,
+    /// Their rates at t = 0. Shape (n).
+    pub velocity: Vec<f64>,
+    /// Mass in kg that has the body's kinetic energy at the speed of its contact point.
+    pub mass: f64,
+    /// How it was driven, if it is a bender.
+    pub drive: Option<Drive>,
+}
+
+impl OuterBody {
+    /// The outer body of a scene: rigid, or a bender with the modes of its beam.
+    ///
+    /// # Errors
+    /// As [`Release::new`].
+    pub fn new(outer: &Outer) -> Result<Self> {
+        let Shape::Bender(bender) = &outer.shape else {
+            return Ok(Self::rigid(outer));
+        };
+        let release = Release::new(bender)?;
+        let torque = outer.speed / release.speed_per_moment;
+        let scaled = |values: &[f64]| values.iter().map(|value| value * torque).collect::<Vec<f64>>();
+        let velocity = scaled(&release.velocity);
+        let kinetic_energy = 0.5 * velocity.iter().map(|v| v * v).sum::<f64>();
+        let (length, stiffness) = (bender.length, bender.bending_stiffness);
+        Ok(Self {
+            oscillators: release.beam.omega.iter().map(|&omega| Oscillator { omega, alpha: 0.0 }).collect(),
+            tip: release.beam.tip.clone(),
+            displacement: scaled(&release.displacement),
+            velocity,
+            mass: 2.0 * kinetic_energy / outer.speed.powi(2),
+            drive: Some(Drive {
+                torque,
+                tip_deflection: torque / cantilever::moment_for_deflection(length, stiffness, 1.0),
+                strain_energy: cantilever::moment_energy(length, stiffness, torque),
+                kinetic_energy,
+                strike_delay: release.time,
+            }),
+        })
+    }
+
+    /// A rigid body with the mass of the scene's.
+    pub(super) fn rigid(outer: &Outer) -> Self {
+        let mass = outer.shape.mass(&outer.material);
+        Self {
+            oscillators: vec![Oscillator { omega: 0.0, alpha: 0.0 }],
+            tip: vec![1.0 / mass.sqrt()],
+            displacement: vec![0.0],
+            velocity: vec![-outer.speed * mass.sqrt()],
+            mass,
+            drive: None,
+        }
+    }
+}

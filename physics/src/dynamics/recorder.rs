@@ -1,0 +1,95 @@
+//! Sampling of the course over time; a run that is not asked for its history has no recorder.
+
+use super::collocation::{Collocation, POINTS, Stages};
+use super::system::{INNER, System, dot};
+use crate::error::Result;
+use crate::result::History;
+
+/// Collects a [`History`] with samples at most `interval` s apart and at the end of every step.
+pub struct Recorder<'a, const P: usize = POINTS> {
+    system: &'a System,
+    collocation: &'a Collocation<P>,
+    interval: f64,
+    history: History,
+}
+
+impl<'a, const P: usize> Recorder<'a, P> {
+    /// Starts with the sample at t = 0.
+    pub fn new(system: &'a System, collocation: &'a Collocation<P>, interval: f64) -> Self {
+        let mut recorder = Self { system, collocation, interval, history: History::default() };
+        let (q, v) = system.initial_state();
+        recorder.push(0.0, &q, &v);
+        recorder
+    }
+
+    /// Samples the step of length `h` that starts at `time` in the state (`q`, `v`) under `forces` at the nodes.
+    ///
+    /// # Errors
+    /// As the contact's system of equations.
+    pub fn step(&mut self, time: f64, h: f64, q: &[f64], v: &[f64], forces: &[Stages; 2]) -> Result<()> {
+        let [b0, b1] = &self.system.approach;
+        self.step_under(time, h, q, v, |k| {
+            std::array::from_fn(|l| -(b0[k] * forces[0][l] + b1[k] * forces[1][l]))
+        })
+    }
+
+    /// As [`Recorder::step`], under the generalised forces `forces` of each oscillator at the nodes.
+    ///
+    /// # Errors
+    /// As the contact's system of equations.
+    pub fn step_under(
+        &mut self,
+        time: f64,
+        h: f64,
+        q: &[f64],
+        v: &[f64],
+        forces: impl Fn(usize) -> Stages,
+    ) -> Result<()> {
+        let count = (h / self.interval).ceil().max(1.0) as usize;
+        let (mut q_at, mut v_at) = (vec![0.0; q.len()], vec![0.0; q.len()]);
+        for sample in 1..=count {
+            let t = h * sample as f64 / count as f64;
+            for (k, oscillator) in self.system.oscillators.iter().enumerate() {
+                let at = self.collocation.response(oscillator, t, h);
+                let force = forces(k);
+                q_at[k] = at.displacement_per_displacement * q[k]
+                    + at.displacement_per_velocity * v[k]
+                    + dot(&at.displacement_per_force, &force);
+                v_at[k] = at.velocity_per_displacement * q[k]
+                    + at.velocity_per_velocity * v[k]
+                    + dot(&at.velocity_per_force, &force);
+            }
+            self.push(time + t, &q_at, &v_at);
+        }
+        Ok(())
+    }
+
+    /// The history so far.
+    pub fn finish(self) -> History {
+        self.history
+    }
+
+    fn push(&mut self, time: f64, q: &[f64], v: &[f64]) {
+        let system = self.system;
+        let history = &mut self.history;
+        // a step too short to move the clock adds nothing
+        if history.time.last().is_some_and(|last| *last >= time) {
+            return;
+        }
+        let approach = system.modal_approach(q);
+        let (_, forces) = system.contact(approach, approach).unwrap_or(([f64::NAN; 2], [f64::NAN; 2]));
+        let rate = [0, 1].map(|i| dot(&system.approach[i], v));
+        let local =
+            system.local_centre.map_or([0.0; 2], |centre| centre.motion(system, approach, rate, forces));
+        let inner = system.masses[1].sqrt();
+        history.time.push(time);
+        history.outer.displacement.push(dot(&system.outer, q));
+        history.outer.velocity.push(dot(&system.outer, v));
+        history.inner.displacement.push(q[INNER] / inner);
+        history.inner.velocity.push(v[INNER] / inner);
+        history.plate.displacement.push(dot(&system.centre, q) + local[0]);
+        history.plate.velocity.push(dot(&system.centre, v) + local[1]);
+        history.outer_force.push(forces[0]);
+        history.inner_force.push(forces[1]);
+    }
+}

@@ -1,0 +1,223 @@
+//! The bodies of a plate impact as one set of oscillators coupled by two contacts.
+//!
+//! Every body is a set of mass-normalised coordinates q_k: the rigid spheres (omega = 0), the modes
+//! of the plate, those of a bender. The approach of contact i is delta_i = sum_k b_ik q_k - gap_i, less what the
+//! residual flexibility yields, and
+//! its force acts back as q_k'' + 2 alpha_k q_k' + omega_k^2 q_k = -sum_i b_ik F_i.
+//! Contact 0 joins outer body and plate, contact 1 plate and inner body.
+
+use super::LEAN;
+use super::centre::LocalCentre;
+use super::duhamel::Oscillator;
+use super::outer_body::OuterBody;
+use crate::body::ModalBody;
+use crate::contact::{Hertz, Residual};
+use crate::result::Drive;
+use crate::scene::{PlateImpact, Shape};
+
+/// Index of the outer body's first coordinate among the oscillators: the rigid motion, or a bender's first mode. A
+/// bender's further modes stand behind those of the plate.
+pub const OUTER: usize = 0;
+/// Index of the inner body's rigid motion.
+pub const INNER: usize = 1;
+/// Index of the first coordinate of the plate.
+pub const PLATE: usize = 2;
+
+/// Oscillators and contacts of a plate impact.
+#[derive(Debug, Clone)]
+pub struct System {
+    /// The oscillators: outer body, inner body, plate, further modes of the outer body. Shape (n).
+    pub oscillators: Vec<Oscillator>,
+    /// Displacement along z of the outer body (of a bender: of its tip) per unit of each coordinate. Shape (n).
+    pub outer: Vec<f64>,
+    /// Coordinates and their rates at t = 0. Each of shape (n).
+    pub start: [Vec<f64>; 2],
+    /// Approach of each contact per unit of each coordinate, kg^(-1/2). Shape (2, n).
+    pub approach: [Vec<f64>; 2],
+    /// Displacement along z of the plate's centre (mean of both faces) per unit of each coordinate. Shape (n).
+    pub centre: Vec<f64>,
+    /// What the local deformation adds to it; `None` for a plate theory, which knows none.
+    pub local_centre: Option<LocalCentre>,
+    /// Initial gap of each contact in m.
+    pub gap: [f64; 2],
+    /// Contact laws.
+    pub laws: [Hertz; 2],
+    /// Residual flexibility in terms of the approaches; `None` if it is zero.
+    pub residual: Option<Residual>,
+    /// Masses of outer and inner body in kg; of a bender the mass that has its kinetic energy at the tip's speed.
+    pub masses: [f64; 2],
+    /// How the outer body was driven, if it is a bender.
+    pub drive: Option<Drive>,
+    /// Speed of the outer body towards the plate in m/s.
+    pub speed: f64,
+    /// First eigenfrequency of the plate that is not a rigid motion, Hz.
+    pub first_frequency: f64,
+    /// Number of elastic modes of the plate.
+    pub modes: usize,
+}
+
+impl System {
+    /// Joins the plate, reduced to `plate`, with rigid outer and inner bodies; `tip_residual` is the residual
+    /// flexibility in m/N of the outer and the inner body at their contact points (zero for models A and B).
+    ///
+    /// A bender is no rigid body: [`System::with_outer`].
+    pub fn new(setup: &PlateImpact, plate: &ModalBody, tip_residual: [f64; 2]) -> Self {
+        debug_assert!(!matches!(setup.outer.shape, Shape::Bender(_)), "a bender is no rigid body");
+        Self::with_outer(setup, OuterBody::rigid(&setup.outer), plate, tip_residual)
+    }
+
+    /// As [`System::new`], with any outer body.
+    pub fn with_outer(
+        setup: &PlateImpact,
+        outer_body: OuterBody,
+        plate: &ModalBody,
+        tip_residual: [f64; 2],
+    ) -> Self {
+        let (outer, inner) = (&setup.outer, &setup.inner);
+        let masses = [outer_body.mass, inner.shape.mass(&inner.material)];
+        let rigid = Oscillator { omega: 0.0, alpha: 0.0 };
+        let mut oscillators = vec![outer_body.oscillators[0], rigid];
+        let mut approach = [vec![-outer_body.tip[0], 0.0], vec![0.0, 1.0 / masses[1].sqrt()]];
+        let mut centre = vec![0.0, 0.0];
+        for ((&omega, &damping), &[top, bottom]) in
+            plate.omega.iter().zip(&plate.damping_ratio).zip(&plate.participation)
+        {
+            oscillators.push(Oscillator { omega, alpha: damping * omega });
+            approach[0].push(top);
+            approach[1].push(-bottom);
+            centre.push(0.5 * (top + bottom));
+        }
+        let mut motion = vec![0.0; oscillators.len()];
+        let mut start = [motion.clone(), motion.clone()];
+        motion[OUTER] = outer_body.tip[0];
+        start[0][OUTER] = outer_body.displacement[0];
+        start[1][OUTER] = outer_body.velocity[0];
+        for k in 1..outer_body.oscillators.len() {
+            oscillators.push(outer_body.oscillators[k]);
+            approach[0].push(-outer_body.tip[k]);
+            approach[1].push(0.0);
+            centre.push(0.0);
+            motion.push(outer_body.tip[k]);
+            start[0].push(outer_body.displacement[k]);
+            start[1].push(outer_body.velocity[k]);
+        }
+        // the inner contact closes when the plate moves down
+        let sign = |i: usize, j: usize| if i == j { 1.0 } else { -1.0 };
+        let tip_radius = [outer.shape.tip_radius(), inner.shape.tip_radius()];
+        let mut residual = Residual { flexibility: [[0.0; 2]; 2], growth: [[0.0; 2]; 2] };
+        for i in 0..2 {
+            for j in 0..2 {
+                residual.flexibility[i][j] = sign(i, j) * plate.residual[i][j];
+                residual.growth[i][j] = sign(i, j) * plate.patch_growth[i][j] * tip_radius[i];
+            }
+            residual.flexibility[i][i] += tip_residual[i];
+        }
+        let law = |shape: &Shape, material| Hertz::new(shape.tip_radius(), material, &setup.plate.material);
+        let laws = [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)];
+        let elastic = plate.omega.iter().copied().filter(|w| *w > 0.0);
+        Self {
+            approach,
+            outer: motion,
+            start,
+            centre,
+            gap: [0.0, inner.gap],
+            laws,
+            local_centre: (!residual.is_zero())
+                .then(|| LocalCentre::new(plate, &laws, setup.plate.material.plane_strain_modulus())),
+            residual: (!residual.is_zero()).then_some(residual),
+            masses,
+            drive: outer_body.drive,
+            speed: outer.speed,
+            first_frequency: elastic.clone().fold(f64::INFINITY, f64::min) / (2.0 * std::f64::consts::PI),
+            modes: elastic.count(),
+            oscillators,
+        }
+    }
+
+    #[inline(always)]
+    fn residual(&self) -> Option<&Residual> {
+        self.residual.as_ref().filter(|_| !LEAN)
+    }
+
+    /// Whether any oscillator is damped.
+    pub fn is_damped(&self) -> bool {
+        self.oscillators.iter().any(|o| o.alpha > 0.0)
+    }
+
+    /// Change of both contact forces in N per modal approach of both in m, with the patches `local` as
+    /// [`Self::local_approach`] gives them.
+    pub fn tangent(&self, local: [f64; 2]) -> [[f64; 2]; 2] {
+        match self.residual() {
+            None => [[self.laws[0].tangent(local[0]), 0.0], [0.0, self.laws[1].tangent(local[1])]],
+            Some(residual) => {
+                let per = |rate| residual.rates(&self.laws, local, rate).1;
+                let (first, second) = (per([1.0, 0.0]), per([0.0, 1.0]));
+                [[first[0], second[0]], [first[1], second[1]]]
+            }
+        }
+    }
+
+    /// Number of oscillators.
+    pub fn size(&self) -> usize {
+        self.oscillators.len()
+    }
+
+    /// Coordinates and their rates at t = 0, when the outer body touches. Shapes (n).
+    pub fn initial_state(&self) -> (Vec<f64>, Vec<f64>) {
+        let [q, v] = &self.start;
+        (q.clone(), v.clone())
+    }
+
+    /// Kinetic energy of the outer body before the impact in J, to which eq. (1) relates the efficiency.
+    pub fn initial_energy(&self) -> f64 {
+        0.5 * self.masses[0] * self.speed.powi(2)
+    }
+
+    /// Whether the outer body is held by a spring of its own (a bender) and comes back whatever happens.
+    pub fn outer_returns(&self) -> bool {
+        self.oscillators[OUTER].omega > 0.0
+    }
+
+    /// Kinetic and strain energy of all bodies in J, without that of the contacts.
+    pub fn energy(&self, q: &[f64], v: &[f64]) -> f64 {
+        self.oscillators.iter().zip(q).zip(v).map(|((o, q), v)| 0.5 * (v * v + (o.omega * q).powi(2))).sum()
+    }
+
+    /// Strain energy of contacts and residual flexibility in J under the forces `f` in N with the patches `p` in m that go
+    /// with them, negative where a contact is open.
+    #[inline(always)]
+    pub fn stored_energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
+        let p = p.map(|p| p.max(0.0));
+        match self.residual() {
+            None => 0.4 * (f[0] * p[0] + f[1] * p[1]),
+            Some(residual) => residual.energy(f, p),
+        }
+    }
+
+    /// Approach of both contacts in m, without the part of the residual flexibility.
+    pub fn modal_approach(&self, q: &[f64]) -> [f64; 2] {
+        [0, 1].map(|i| dot(&self.approach[i], q) - self.gap[i])
+    }
+
+    /// Patches of both contacts, squared radius over tip radius in m, at the modal approach `y` in m and the forces `f` in
+    /// N that go with it; where a contact is open, the distance, negative.
+    pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
+        self.residual().map_or(y, |residual| residual.local_approach(&self.laws, y, f))
+    }
+
+    /// Patches (as [`Self::local_approach`]) and forces in N of both contacts at the modal approach `y` in m, `guess` being
+    /// the patches of a nearby state; `None` if there is no equilibrium.
+    #[inline]
+    pub fn contact(&self, y: [f64; 2], guess: [f64; 2]) -> Option<([f64; 2], [f64; 2])> {
+        match self.residual() {
+            None => Some((y, [self.laws[0].force(y[0]), self.laws[1].force(y[1])])),
+            Some(residual) => residual.solve(&self.laws, y, guess),
+        }
+    }
+}
+
+/// Scalar product.
+#[inline(always)]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

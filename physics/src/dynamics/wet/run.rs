@@ -1,0 +1,418 @@
+//! Steps of adapted length through a wet impact, and what is booked on the way.
+
+use super::guess::StepForces;
+use super::solve::{END, Trial, Wet};
+use super::table::Table;
+use crate::analytical::hertz::HertzImpact;
+use crate::dynamics::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
+use crate::dynamics::contact_ledger::{ContactLedger, StepCourse, work};
+use crate::dynamics::free_flight;
+use crate::dynamics::integrator::{Integration, NEGLIGIBLE, Options};
+use crate::dynamics::recorder::Recorder;
+use crate::dynamics::step_bounds::{EnergyAccount, momentum_scale};
+use crate::dynamics::system::{INNER, PLATE, System, dot};
+use crate::dynamics::wet::{FluidForces, FluidLoad};
+use crate::error::{Error, Result};
+use crate::result::Losses;
+use std::collections::BTreeMap;
+
+/// Steps after which a run counts as endless.
+const MAX_STEPS: u64 = 300_000;
+/// Step lengths are the base length times 2^-level, level from 0 to this.
+const LAST_LEVEL: i32 = 44;
+/// Longest step without a touch in sight, as a power of 2 of the base length.
+const LONGEST: i32 = -8;
+/// Share of a step's admissible defect at which its iteration may end, if rounding errors permit.
+const SETTLED: f64 = 1e-3;
+
+/// Integrates the impact of `system` in a `fluid`.
+///
+/// # Errors
+/// [`Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does
+/// not end.
+pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Result<Integration> {
+    let collocation = Collocation::radau();
+    let recorder = options.sample_interval.map(|interval| Recorder::new(system, &collocation, interval));
+    let hit =
+        HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
+    let (q, v) = system.initial_state();
+    let mut start = FluidLoad::default();
+    fluid.evaluate(&q, &v, &mut start);
+    let trial = Trial {
+        fluid: vec![[0.0; STAGES]; fluid.size()],
+        loads: vec![FluidLoad::default(); STAGES],
+        ..Trial::default()
+    };
+    let mut run = Run {
+        wet: Wet { system, fluid },
+        collocation: &collocation,
+        recorder,
+        end_time: options.end_time.unwrap_or(f64::INFINITY),
+        defect_bound: defect_bound(options.tolerance),
+        base_step: 0.25 * hit.duration(),
+        tables: BTreeMap::new(),
+        level: 8,
+        time: 0.0,
+        approach: system.modal_approach(&q),
+        local: system.modal_approach(&q),
+        force: [0.0; 2],
+        load: start,
+        q,
+        v,
+        trial,
+        before: StepForces::default(),
+        contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+        booked: Booked::default(),
+        energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
+        steps: 0,
+    };
+    run.go()?;
+    Ok(run.finish())
+}
+
+/// What the fluid did so far.
+#[derive(Debug, Clone, Copy, Default)]
+struct Booked {
+    /// Impulse of film and drag on the inner body in N s.
+    film_impulse: f64,
+    drag_impulse: f64,
+    /// Energy dissipated in film and by drag, J.
+    dissipated: [f64; 2],
+    /// Work of the fluid's force polynomials on the bodies, J.
+    work: f64,
+}
+
+impl Booked {
+    fn add(&mut self, step: &Self) {
+        self.film_impulse += step.film_impulse;
+        self.drag_impulse += step.drag_impulse;
+        self.dissipated[0] += step.dissipated[0];
+        self.dissipated[1] += step.dissipated[1];
+        self.work += step.work;
+    }
+}
+
+/// What is booked of a step.
+struct StepAccount {
+    fluid: Booked,
+    /// Work of both contacts' force polynomials, J.
+    contact_work: [f64; 2],
+    /// Energy made from nothing, J.
+    made: f64,
+}
+
+struct Run<'a> {
+    wet: Wet<'a>,
+    collocation: &'a Collocation<RADAU_POINTS>,
+    recorder: Option<Recorder<'a, RADAU_POINTS>>,
+    end_time: f64,
+    defect_bound: f64,
+    base_step: f64,
+    tables: BTreeMap<i32, Table>,
+    level: i32,
+    time: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    approach: [f64; 2],
+    local: [f64; 2],
+    force: [f64; 2],
+    /// What the fluid does at the present time.
+    load: FluidLoad,
+    /// The latest step; its vectors are used again.
+    trial: Trial,
+    before: StepForces,
+    contacts: [ContactLedger; 2],
+    booked: Booked,
+    energy: EnergyAccount,
+    steps: u64,
+}
+
+impl Run<'_> {
+    fn go(&mut self) -> Result<()> {
+        let system = self.wet.system;
+        let mut touching = true;
+        while self.time < self.end_time {
+            let open = !touching && is_open(self.approach);
+            let longest = if open {
+                // a step that passes no touch
+                free_flight::safe_step(system, &self.q, &self.v).max(0.5 * self.base_step)
+            } else {
+                self.base_step
+            };
+            if self.step(longest, open && self.end_time.is_infinite())? {
+                break;
+            }
+            touching = false;
+            if self.steps > MAX_STEPS {
+                return Err(Error::Solver(format!(
+                    "reduced model: no end after {MAX_STEPS} steps, at t = {:.6e} s; set `run.end_time`",
+                    self.time
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    fn length(&self, level: i32) -> f64 {
+        self.base_step * 0.5_f64.powi(level)
+    }
+
+    /// Takes one step, as long as the tolerance and `longest` permit. If it `may_end` the run and no contact is possible
+    /// after it, it ends at the instant from which that is so, and the answer is `true`.
+    fn step(&mut self, longest: f64, may_end: bool) -> Result<bool> {
+        self.level = self.level.max(LONGEST);
+        while self.length(self.level) > longest {
+            self.level += 1;
+        }
+        loop {
+            if self.level > LAST_LEVEL {
+                // the film's law jumps where an overlap begins
+                self.check_overlap(0.0)?;
+                return Err(Error::Solver(format!(
+                    "reduced model: the time step fell below {:.1e} s at t = {:.6e} s without meeting the tolerance",
+                    self.length(LAST_LEVEL),
+                    self.time
+                )));
+            }
+            let (h, rest) = (self.length(self.level), self.end_time - self.time);
+            let start = (self.force, &self.load.force[..]);
+            self.before.guess(self.collocation, h.min(rest), start, &mut self.trial);
+            let system = self.wet.system;
+            let last;
+            let table = if rest < h {
+                last = Table::new(system, self.collocation, rest);
+                &last
+            } else {
+                self.tables.entry(self.level).or_insert_with(|| Table::new(system, self.collocation, h))
+            };
+            let h = table.h;
+            let scale = momentum_scale(system, &self.contacts);
+            let settled = SETTLED * self.defect_bound * scale[1];
+            if !self.wet.solve(table, &self.q, &self.v, settled / h, &mut self.trial) {
+                self.level += 1;
+                continue;
+            }
+            let account = self.account(h);
+            let excess = (self.defect(h, scale) / self.defect_bound).max(self.energy.excess(account.made, h));
+            if excess > 1.0 {
+                self.level += ((excess.log2() / (STAGES + 1) as f64).ceil() as i32).clamp(1, 8);
+                continue;
+            }
+            if may_end && let Some(end) = self.end_in_step(h) {
+                let table = Table::new(system, self.collocation, end);
+                if !self.wet.solve(&table, &self.q, &self.v, settled / end, &mut self.trial) {
+                    self.level += 1;
+                    continue;
+                }
+                self.accept(end, &self.account(end))?;
+                return Ok(true);
+            }
+            self.accept(h, &account)?;
+            // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
+            if excess < 0.5_f64.powi(STAGES as i32 + 2) {
+                self.level -= 1;
+            }
+            return Ok(false);
+        }
+    }
+
+    /// When in the step of `h` s just solved, in s from its start, contact ceases to be possible; `None` if it is possible
+    /// after it. A run ends there and not with the step: the fluid slows the inner body for ever, and the end has to be
+    /// the same whatever the steps.
+    fn end_in_step(&self, h: f64) -> Option<f64> {
+        let system = self.wet.system;
+        let forces = self.wet.generalised(&self.trial);
+        let at = |t: f64| -> (Vec<f64>, Vec<f64>) {
+            let answer = |k: usize| {
+                let r = self.collocation.response(&system.oscillators[k], t, h);
+                let (q, v) = (self.q[k], self.v[k]);
+                (
+                    r.displacement_per_displacement * q
+                        + r.displacement_per_velocity * v
+                        + dot(&r.displacement_per_force, &forces[k]),
+                    r.velocity_per_displacement * q
+                        + r.velocity_per_velocity * v
+                        + dot(&r.velocity_per_force, &forces[k]),
+                )
+            };
+            (0..system.size()).map(answer).unzip()
+        };
+        let over = |t: f64| {
+            let (q, v) = at(t);
+            is_open(system.modal_approach(&q)) && free_flight::is_over(system, &q, &v)
+        };
+        if !over(h) {
+            return None;
+        }
+        let (mut early, mut late) = (0.0, h);
+        for _ in 0..40 {
+            let middle = 0.5 * (early + late);
+            if over(middle) { late = middle } else { early = middle }
+        }
+        Some(late)
+    }
+
+    /// Distance between the forces at the start of the step and the polynomials of the step, as an impulse in relation
+    /// to the momenta.
+    fn defect(&self, h: f64, scale: [f64; 2]) -> f64 {
+        let extrapolation = self.collocation.ends[0];
+        let film = std::array::from_fn(|j| self.trial.loads[j].film_force);
+        let [outer, inner] = self.trial.forces;
+        let starts = [self.force[0], self.force[1], self.load.film_force];
+        [outer, inner, film]
+            .iter()
+            .zip(starts)
+            .zip([scale[0], scale[1], scale[1]])
+            .map(|((stages, start), scale)| (start - dot(&extrapolation, stages)).abs() * h / scale)
+            .fold(0.0, f64::max)
+    }
+
+    /// What the fluid does in the step of `h` s just solved.
+    fn fluid_in_step(&self, h: f64) -> Booked {
+        let trial = &self.trial;
+        let sum = |value: fn(&FluidLoad) -> f64| -> f64 {
+            let weights = &self.collocation.weights;
+            h * weights.iter().zip(&trial.loads).map(|(w, load)| w * value(load)).sum::<f64>()
+        };
+        let work = trial.fluid.iter().enumerate().map(|(k, stages)| {
+            let course = std::array::from_fn(|p| match p {
+                0 => self.q[INNER + k],
+                _ => trial.motion.q[p - 1][INNER + k],
+            });
+            work(self.collocation, stages, &course)
+        });
+        Booked {
+            film_impulse: -sum(|load| load.film_force),
+            drag_impulse: sum(|load| load.drag_force),
+            dissipated: [sum(|load| load.dissipation[0]), sum(|load| load.dissipation[1])],
+            work: work.sum(),
+        }
+    }
+
+    /// The account of the step of `h` s just solved.
+    fn account(&self, h: f64) -> StepAccount {
+        let (system, trial) = (self.wet.system, &self.trial);
+        let fluid = self.fluid_in_step(h);
+        let contact_work = [0, 1].map(|i| {
+            let approach = joined(self.approach[i], &trial.approach[i]);
+            work(self.collocation, &trial.forces[i], &approach)
+        });
+        let stored = system.stored_energy(trial.end_force, trial.local.map(|p| p[END]))
+            - system.stored_energy(self.force, self.local);
+        let dissipated = fluid.dissipated[0] + fluid.dissipated[1];
+        let made = stored - (contact_work[0] + contact_work[1]) + dissipated + fluid.work;
+        StepAccount { fluid, contact_work, made }
+    }
+
+    /// Looks whether the plate overlaps the inner body beside the axis in the step of `h` s just tried.
+    ///
+    /// # Errors
+    /// [`Error::BeyondModel`] if it does.
+    fn check_overlap(&self, h: f64) -> Result<()> {
+        let Some(overlap) = self.trial.loads.iter().find_map(FluidLoad::overlap) else { return Ok(()) };
+        Err(Error::BeyondModel(format!(
+            "reduced model: at t = {:.6e} s the plate bends around the inner body: at r = {:.2e} m they overlap by {:.2e} m beside the contact on the axis, more than the film's minimal gap; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`",
+            self.time + h,
+            overlap.radius,
+            overlap.depth
+        )))
+    }
+
+    /// Books the step of `h` s just solved.
+    ///
+    /// # Errors
+    /// [`Error::BeyondModel`] as [`Run::check_overlap`].
+    fn accept(&mut self, h: f64, account: &StepAccount) -> Result<()> {
+        self.check_overlap(h)?;
+        if let Some(recorder) = &mut self.recorder {
+            let forces = self.wet.generalised(&self.trial);
+            recorder.step_under(self.time, h, &self.q, &self.v, |k| forces[k])?;
+        }
+        for i in 0..2 {
+            let trial = &self.trial;
+            let course = StepCourse {
+                time: self.time,
+                h,
+                work: account.contact_work[i],
+                local_approach: joined(self.local[i], &trial.local[i]),
+                force: joined(self.force[i], &trial.forces[i]),
+            };
+            self.contacts[i].book(self.collocation, &course);
+        }
+        self.booked.add(&account.fluid);
+        self.energy.book(account.made);
+        let trial = &mut self.trial;
+        self.before.keep(h, trial);
+        std::mem::swap(&mut self.q, &mut trial.motion.q[END]);
+        std::mem::swap(&mut self.v, &mut trial.motion.v[END]);
+        std::mem::swap(&mut self.load, &mut trial.loads[END]);
+        self.force = trial.end_force;
+        for i in 0..2 {
+            (self.approach[i], self.local[i]) = (trial.approach[i][END], trial.local[i][END]);
+        }
+        self.time += h;
+        self.steps += 1;
+        Ok(())
+    }
+
+    fn finish(self) -> Integration {
+        let system = self.wet.system;
+        let (contacts, booked) = (self.contacts, self.booked);
+        let velocity = [dot(&system.outer, &self.v), self.v[INNER] / system.masses[1].sqrt()];
+        let [start_q, start_v] = &system.start;
+        let initial = system.energy(start_q, start_v);
+        let stored = system.stored_energy(self.force, self.local);
+        let end = system.energy(&self.q, &self.v);
+        let dissipated = booked.dissipated[0] + booked.dissipated[1];
+        let contact_work = contacts[0].work + contacts[1].work;
+        let damped = system.is_damped();
+        let unaccounted = if damped {
+            stored - contact_work + dissipated + booked.work
+        } else {
+            end + stored - initial + dissipated
+        };
+        let fluid_impulse = booked.film_impulse + booked.drag_impulse;
+        let impulses = [contacts[0].impulse, contacts[1].impulse];
+        let mut unexplained = vec![system.masses[1] * velocity[1] + impulses[1] - fluid_impulse];
+        if !system.outer_returns() {
+            unexplained.push(system.masses[0] * (velocity[0] + system.speed) - impulses[0]);
+        }
+        if system.oscillators.get(PLATE).is_some_and(|o| o.omega == 0.0) {
+            let plate = self.v[PLATE] / system.centre[PLATE];
+            unexplained.push(plate + impulses[0] - impulses[1] + booked.film_impulse);
+        }
+        Integration {
+            velocity,
+            contacts,
+            energy_residual: unaccounted.abs() / initial,
+            energy_gained: unaccounted / initial,
+            momentum_residual: unexplained.into_iter().fold(0.0, |worst: f64, p| worst.max(p.abs()))
+                / (system.masses[0] * system.speed),
+            losses: Losses {
+                plate_damping: if damped { initial - end - contact_work + booked.work } else { 0.0 },
+                squeeze_film: booked.dissipated[0],
+                drag: booked.dissipated[1],
+            },
+            steps: self.steps,
+            error_estimate: None,
+            history: self.recorder.map(Recorder::finish),
+        }
+    }
+}
+
+/// Values at the start and Radau's points of a step.
+fn joined(start: f64, stages: &Stages) -> [f64; RADAU_POINTS] {
+    std::array::from_fn(|p| if p == 0 { start } else { stages[p - 1] })
+}
+
+/// Whether both contacts are open at these approaches.
+fn is_open(approach: [f64; 2]) -> bool {
+    approach[0] <= 0.0 && approach[1] <= 0.0
+}
+
+/// Defect that a step may have for a relative error `tolerance` of the efficiency. The error of a step is of about
+/// twice the order of its defect, so that the bound may fall more slowly than the tolerance; factor and exponent
+/// are measured over scenes and numbers of modes.
+fn defect_bound(tolerance: f64) -> f64 {
+    0.1 * tolerance.powf(0.87)
+}

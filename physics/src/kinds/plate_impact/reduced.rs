@@ -1,0 +1,421 @@
+//! A reduced model of a scene: bodies reduced to modes, joined and integrated.
+
+use super::choice::{self, Cut};
+use super::rough::Rough;
+use super::validity;
+use crate::analytical::hertz::HertzImpact;
+use crate::body::ModalBody;
+use crate::body::cache::Cache;
+use crate::body::continuum::{MeshOptions, cached};
+use crate::body::kirchhoff::UnitPlates;
+use crate::dynamics::LEAN;
+use crate::dynamics::OuterBody;
+use crate::dynamics::assured::{self, assured};
+use crate::dynamics::integrator::{Integration, Options, integrate};
+use crate::dynamics::system::System;
+use crate::dynamics::wet;
+use crate::dynamics::wet::FluidForces;
+use crate::error::{Error, Result};
+use crate::fluid::added_mass::{immersed, mass_factor};
+use crate::result::BenderSummary;
+use crate::result::Choice;
+use crate::result::ContactPressure;
+use crate::result::Outcome;
+use crate::result::PlateQuantities;
+use crate::result::Summary;
+use crate::scene::{self, Edge, Material, Model, PlateImpact, Scene, Shape};
+use std::time::Instant;
+
+/// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
+pub const DEFAULT_MODES: usize = 16;
+/// Relative error of the forces at which model C, left to choose, stops adding modes.
+const TRUNCATION: f64 = 5e-4;
+/// Most modes that model C chooses by itself.
+const MAX_CHOSEN_MODES: usize = 64;
+/// Samples of a history per duration of a Hertz contact.
+const SAMPLES_PER_CONTACT: f64 = 400.0;
+
+/// A reduced model, ready to run.
+#[derive(Debug, Clone)]
+pub struct Reduced {
+    model: Model,
+    system: System,
+    /// Forces of the fluid; a dry impact has none and takes the dry integrator.
+    fluid: Option<FluidForces>,
+    warnings: Vec<String>,
+    /// Why it is this model, if it was left to the program.
+    choice: Option<Choice>,
+    scene: Scene,
+}
+
+/// What one impact of a series gives: the results without what only identifies them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// The physical results.
+    pub quantities: PlateQuantities,
+    /// As in [`Summary`].
+    pub energy_residual: f64,
+    /// As in [`Summary`].
+    pub momentum_residual: f64,
+    /// Time steps taken.
+    pub steps: u64,
+}
+
+impl Reduced {
+    /// Builds `model` of `scene`; `modes` overrides the scene's number of modes (model A always has one); if
+    /// neither names one, model B takes [`DEFAULT_MODES`] and model C as many as its error estimate asks for.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a number of modes that makes no sense, [`Error::Solver`] for what no reduced model covers.
+    pub fn new(scene: &Scene, model: Model, modes: Option<usize>) -> Result<Self> {
+        Self::in_series(scene.clone(), model, modes, &UnitPlates::default())
+    }
+
+    /// As [`Reduced::new`], one of a series of impacts that share the eigenproblems in `plates`.
+    ///
+    /// # Errors
+    /// As [`Reduced::new`].
+    pub fn in_series(scene: Scene, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Self> {
+        Self::build(scene, model, modes, plates, &Cache::from_environment())
+    }
+
+    /// As [`Reduced::new`] with the bodies of model C from `cache`.
+    ///
+    /// # Errors
+    /// As [`Reduced::new`].
+    pub fn new_in(scene: &Scene, model: Model, modes: Option<usize>, cache: &Cache) -> Result<Self> {
+        Self::build(scene.clone(), model, modes, &UnitPlates::default(), cache)
+    }
+
+    fn build(
+        scene: Scene,
+        model: Model,
+        modes: Option<usize>,
+        plates: &UnitPlates,
+        cache: &Cache,
+    ) -> Result<Self> {
+        let setup = scene.plate_impact()?;
+        let modes = match (model, modes) {
+            (Model::A, None | Some(1)) => Some(1),
+            (Model::A, Some(n)) => {
+                return Err(Error::Usage(format!("--modes {n}: model A has exactly one mode; use model B")));
+            }
+            (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
+            (_, modes) => modes.or(scene.reduced.modes),
+        };
+        let built = match model {
+            Model::A | Model::B => kirchhoff(setup, modes.unwrap_or(DEFAULT_MODES), plates)?,
+            Model::C => {
+                let rough = Rough::of(&kirchhoff_system(setup, DEFAULT_MODES, plates)?)?;
+                continuum(setup, modes.map_or(Wanted::Estimate, Wanted::Modes), &rough, cache)?
+            }
+        };
+        Self::of(built, model, scene, None)
+    }
+
+    /// The cheapest model and number of modes whose estimated error meets `tolerance`, or what comes nearest; see
+    /// [`Choice`]. The tolerance covers [`choice::COVERED`].
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if the scene is no plate impact, [`Error::Solver`] for what no reduced model covers.
+    pub fn auto(scene: &Scene, tolerance: f64) -> Result<Self> {
+        Self::auto_in(scene, tolerance, &Cache::from_environment())
+    }
+
+    /// As [`Reduced::auto`] with the bodies of model C from `cache`.
+    ///
+    /// # Errors
+    /// As [`Reduced::auto`].
+    pub fn auto_in(scene: &Scene, tolerance: f64, cache: &Cache) -> Result<Self> {
+        let setup = scene.plate_impact()?;
+        let mut plan = choice::plan(scene, tolerance)?;
+        if let Some(cut) = plan.cut {
+            match continuum(setup, Wanted::Below(cut), &plan.rough, cache) {
+                Ok(built) => return Self::of(built, Model::C, scene.clone(), Some(plan.choice)),
+                Err(error) => plan = plan.without_continuum(&error).ok_or(error)?,
+            }
+        }
+        let shapes = |radii: &[f64]| Ok(plan.waves.shapes(plan.modes, radii));
+        let built = kirchhoff_plate(setup, plan.waves.kirchhoff(plan.modes), shapes)?;
+        Self::of(built, plan.model, scene.clone(), Some(plan.choice))
+    }
+
+    fn of(built: Built, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
+        let Built { system, fluid, mut warnings } = built;
+        if LEAN && (fluid.is_some() || system.is_damped() || system.residual.is_some()) {
+            return Err(Error::Usage(
+                "this program was built without fluid, damping and residual flexibility (feature `lean`)"
+                    .into(),
+            ));
+        }
+        warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
+        Ok(Self { model, system, fluid, warnings, choice, scene })
+    }
+
+    /// The model.
+    pub fn model(&self) -> Model {
+        self.model
+    }
+
+    /// Why it is this model, if it was left to the program.
+    pub fn choice(&self) -> Option<&Choice> {
+        self.choice.as_ref()
+    }
+
+    /// The oscillators and contacts the model consists of.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    fn integrate(&self, options: &Options) -> Result<Integration> {
+        let system = &self.system;
+        assured(options, system.speed, |options| match self.fluid.as_ref().filter(|_| !LEAN) {
+            None => integrate(system, options),
+            Some(fluid) => wet::integrate(system, fluid, options),
+        })
+    }
+
+    /// Runs the impact without keeping its history; `tolerance` bounds the efficiency's relative error from the
+    /// time integration.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub fn run(&self, tolerance: f64) -> Result<Summary> {
+        let start = Instant::now();
+        let result = self.integrate(&self.options(tolerance))?;
+        Ok(self.summary(&result, tolerance, start.elapsed().as_secs_f64()))
+    }
+
+    /// Runs the impact for its results alone, as a series of many needs them.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub fn point(&self, tolerance: f64) -> Result<Point> {
+        let result = self.integrate(&self.options(tolerance))?;
+        Ok(Point {
+            quantities: quantities(&self.system, &result),
+            energy_residual: result.energy_residual,
+            momentum_residual: result.momentum_residual,
+            steps: result.steps,
+        })
+    }
+
+    /// Runs the impact and keeps its history. The summary's time is that of a run without history.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
+        self.run_with_history_until(tolerance, 0.0)
+    }
+
+    /// As [`Reduced::run_with_history`]; a history that would end earlier, because no further contact is possible, goes on
+    /// until `end` (s) unless the scene names its end.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub fn run_with_history_until(&self, tolerance: f64, end: f64) -> Result<Outcome> {
+        let mut summary = self.run(tolerance)?;
+        let system = &self.system;
+        let hit =
+            HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
+        let sample_interval = Some(hit.duration() / SAMPLES_PER_CONTACT);
+        let options = Options { sample_interval, ..self.options(tolerance) };
+        let record = |options: &Options| -> Result<_> {
+            let result = self.integrate(options)?;
+            result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))
+        };
+        let mut history = record(&options)?;
+        if options.end_time.is_none() && history.time.last().is_some_and(|last| *last < end) {
+            // so much later that rounding can't leave the last instant out
+            history = record(&Options { end_time: Some(end * (1.0 + 1e-9)), ..options })?;
+        }
+        summary.samples = Some(history.len());
+        Ok(Outcome { summary, history })
+    }
+
+    fn options(&self, tolerance: f64) -> Options {
+        Options { tolerance, end_time: self.scene.run.end_time, sample_interval: None }
+    }
+
+    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Summary {
+        let system = &self.system;
+        let unsure = result.error_estimate.filter(|error| *error > assured::ENOUGH * tolerance);
+        let mut warnings = scene::doubts(&self.scene);
+        warnings.extend(self.warnings.iter().cloned());
+        warnings.extend(unsure.map(|error| {
+            format!(
+                "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
+            )
+        }));
+        for (body, contact) in ["outer", "inner"].iter().zip(&result.contacts) {
+            if contact.contacts == 0 {
+                warnings.push(format!("the {body} body and the plate never touch"));
+            }
+        }
+        Summary {
+            energy_residual: result.energy_residual,
+            momentum_residual: result.momentum_residual,
+            steps: result.steps,
+            solve_seconds,
+            integration_error: result.error_estimate,
+            bender: system.drive.map(|drive| {
+                let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
+                BenderSummary { strain_energy_efficiency: transmitted / drive.strain_energy, drive }
+            }),
+            contact_pressure: Some(ContactPressure::new(
+                &system.laws,
+                [result.contacts[0].force_peak, result.contacts[1].force_peak],
+            )),
+            losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
+            warnings,
+            choice: self.choice.clone(),
+            ..Summary::of_reduced(&self.scene, self.model, system.modes, quantities(system, result))
+        }
+    }
+}
+
+/// The physical results of an integration of `system`.
+pub(super) fn quantities(system: &System, result: &Integration) -> PlateQuantities {
+    let energy = |i: usize| 0.5 * system.masses[i] * result.velocity[i].powi(2);
+    PlateQuantities {
+        efficiency: energy(1) / system.initial_energy(),
+        outer_velocity_final: result.velocity[0],
+        inner_velocity_final: result.velocity[1],
+        outer_force_peak: result.contacts[0].force_peak,
+        inner_force_peak: result.contacts[1].force_peak,
+        outer_contact_end: result.contacts[0].end,
+        inner_contact_end: result.contacts[1].end,
+        outer_contacts: result.contacts[0].contacts,
+        inner_contacts: result.contacts[1].contacts,
+        first_frequency: system.first_frequency,
+    }
+}
+
+/// A model of a scene.
+struct Built {
+    /// Oscillators and contacts.
+    system: System,
+    /// Forces of the fluid.
+    fluid: Option<FluidForces>,
+    /// What the user has to be warned of.
+    warnings: Vec<String>,
+}
+
+/// Which modes of the continuum plate are wanted.
+enum Wanted {
+    /// So many.
+    Modes(usize),
+    /// As many as the error estimate asks for.
+    Estimate,
+    /// All below a frequency.
+    Below(Cut),
+}
+
+/// `plate`, immersed if there is a fluid, between the bodies of the scene.
+fn join(setup: &PlateImpact, plate: ModalBody, tips: [f64; 2]) -> Result<System> {
+    let plate = match &setup.fluid {
+        Some(fluid) => immersed(plate, fluid),
+        None => plate,
+    };
+    Ok(System::with_outer(setup, OuterBody::new(&setup.outer)?, &plate, tips))
+}
+
+fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<System> {
+    join(setup, plates.modes(&setup.plate, modes)?, [0.0; 2])
+}
+
+/// Models A and B with `modes` elastic modes.
+fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<Built> {
+    let shapes = |radii: &[f64]| plates.shapes(&setup.plate, modes, radii);
+    kirchhoff_plate(setup, plates.modes(&setup.plate, modes)?, shapes)
+}
+
+/// Models A and B of a `plate` that is reduced to modes; `shapes` as [`FluidForces::new`] takes them.
+fn kirchhoff_plate(
+    setup: &PlateImpact,
+    plate: ModalBody,
+    shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
+) -> Result<Built> {
+    Ok(Built {
+        system: join(setup, plate, [0.0; 2])?,
+        fluid: fluid_forces(setup, shapes)?,
+        warnings: Vec::new(),
+    })
+}
+
+/// Model C.
+fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<Built> {
+    let rigid = usize::from(setup.plate.edge == Edge::Free);
+    let plate = validity::tempered(continuum_plate(setup, wanted, rough, cache)?, setup, rough);
+    let elastic = plate.omega.len() - rigid;
+    let mesh = MeshOptions::default();
+    let shapes = |radii: &[f64]| {
+        let mut shapes = cached::face_shapes(&setup.plate, rough.patch_radius, elastic, &mesh, radii)?;
+        for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
+            let sign = (shape[0] * phi[1]).signum();
+            shape.iter_mut().for_each(|value| *value *= sign);
+        }
+        Ok(shapes)
+    };
+    let fluid = fluid_forces(setup, shapes)?;
+    let tips = tip_residuals(setup, rough.patch_radius, &mesh, cache)?;
+    Ok(Built { system: join(setup, plate, tips)?, fluid, warnings: validity::warnings(setup, rough) })
+}
+
+/// Film and drag of the scene, if there are any. `shapes` gives the mass-normalised shapes of the dry plate's inner
+/// face at radii in m.
+pub(super) fn fluid_forces(
+    setup: &PlateImpact,
+    shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
+) -> Result<Option<FluidForces>> {
+    let Some(fluid) = &setup.fluid else { return Ok(None) };
+    let per_mass = mass_factor(fluid.added_mass_frequency_ratio).sqrt().recip();
+    FluidForces::new(fluid, &setup.plate, &setup.inner, |radii| {
+        let scaled = |shape: &Vec<f64>| shape.iter().map(|value| value * per_mass).collect();
+        Ok(shapes(radii)?.iter().map(scaled).collect())
+    })
+}
+
+/// Plate of model C: continuum with residual flexibility.
+fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<ModalBody> {
+    let mesh = MeshOptions::default();
+    let build = |modes| cached::plate_in(cache, &setup.plate, rough.patch_radius, modes, &mesh);
+    match wanted {
+        Wanted::Modes(modes) => Ok(build(modes)?.modal_body(modes)),
+        Wanted::Below(cut) => {
+            let plate = build(cut.modes)?;
+            let below = plate.omega.iter().filter(|omega| **omega < cut.omega).count();
+            Ok(plate.modal_body(below.clamp(1, cut.modes)))
+        }
+        Wanted::Estimate => {
+            let mut most = DEFAULT_MODES;
+            loop {
+                let plate = build(most)?;
+                let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
+                if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
+                    return Ok(plate.modal_body(modes));
+                }
+                most *= 2;
+            }
+        }
+    }
+}
+
+/// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
+/// radii `patch` in m.
+pub(super) fn tip_residuals(
+    setup: &PlateImpact,
+    patch: [f64; 2],
+    mesh: &MeshOptions,
+    cache: &Cache,
+) -> Result<[f64; 2]> {
+    let tip = |shape: &Shape, material: &Material, patch| match *shape {
+        Shape::Sphere { radius } => cached::sphere_residual_in(cache, radius, material, patch, mesh),
+        // a compact body and the tip of a bender are rigid but for their Hertz contact
+        Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
+    };
+    Ok([
+        tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
+        tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
+    ])
+}

@@ -1,0 +1,44 @@
+//! A first look at an impact: contact patches, force peaks and how quick the contacts are.
+
+use crate::dynamics::integrator::{Options, integrate};
+use crate::dynamics::system::System;
+use crate::error::Result;
+
+/// What model C has to know of the impact before it is solved, from a model without residual.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rough {
+    /// Radii in m of the patches over which loads are weighted: Hertz's at the force peaks. The result hardly
+    /// depends on them: they are rounded, so that an impact that is a little different finds its bodies in the cache.
+    pub(super) patch_radius: [f64; 2],
+    /// Force peaks in N of the outer and the inner contact.
+    pub(super) force_peak: [f64; 2],
+    /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
+    contact_frequency: f64,
+}
+
+impl Rough {
+    pub(super) fn of(system: &System) -> Result<Self> {
+        let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
+        let radius = |i: usize| rounded(system.laws[i].contact_radius(run.contacts[i].force_peak));
+        let frequency = |i: usize| 2.0 * run.contacts[i].force_peak / run.contacts[i].impulse;
+        let peak = |i: usize| run.contacts[i].force_peak;
+        let outer = (radius(0), frequency(0), peak(0));
+        // an inner body that is never reached takes the outer one's patch
+        let inner = if run.contacts[1].contacts > 0 { (radius(1), frequency(1), peak(1)) } else { outer };
+        Ok(Self {
+            patch_radius: [outer.0, inner.0],
+            force_peak: [outer.2, inner.2],
+            contact_frequency: outer.1.max(inner.1),
+        })
+    }
+
+    /// Relative error of a force when the modes from `omega_next` rad/s on follow statically.
+    pub(super) fn truncation_error(&self, omega_next: f64) -> f64 {
+        (self.contact_frequency / omega_next).powi(2)
+    }
+}
+
+/// `value` with three significant digits: off by at most 0.5 %.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,247 @@
+//! A reduced seal seat of a scene, ready to run.
+
+use super::body::{SeatBody, SeatMesh, Watch};
+use super::candidates::Zones;
+use super::integrate::{Options, integrate};
+use super::integration::{Integration, Sample};
+use super::system::System;
+use crate::analytical::hertz::HertzImpact;
+use crate::body::cache::Cache;
+use crate::error::{Error, Result};
+use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
+use crate::result::SeatHistory;
+use crate::result::SeatQuantities;
+use crate::result::SeatSummary;
+use crate::scene::{Model, Scene, SealSeat, SphereBody};
+use std::time::Instant;
+
+/// Relative error of the sphere's velocity from the time integration when the caller names none.
+pub const DEFAULT_TOLERANCE: f64 = 1e-3;
+/// Steps tried first: per period of the highest mode, and over the actuator's contact if the seat were a heavy half-space.
+const FIRST_STEPS: (f64, f64) = (3.0, 30.0);
+/// Halvings of the step before the tolerance is given up.
+const HALVINGS: u32 = 12;
+/// Widenings of the zones of contact candidates before the mesh is given up.
+const WIDENINGS: u32 = 8;
+
+/// Modes, flexibility and rigid bodies of a scene.
+#[derive(Debug, Clone)]
+pub struct SeatModel {
+    scene: Scene,
+    system: System,
+    end_time: Option<f64>,
+    first_step: f64,
+    /// Velocity of the sphere in m/s at the end of a run with the first step; that run found the contact zones.
+    rough: [f64; 2],
+    warnings: Vec<String>,
+    /// Wall time in s that building took, the cache's help included.
+    pub setup_seconds: f64,
+    /// Degrees of freedom of the mesh without those that supports hold.
+    pub dofs: usize,
+}
+
+impl SeatModel {
+    /// Builds the reduced model of a seal-seat scene on `mesh`; `modes` overrides the scene's number of modes.
+    ///
+    /// The zones of contact candidates are widened until contact stays inside them.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for another kind of scene, [`Error::Usage`] for a model or number of modes that does not
+    /// exist for it, [`Error::Solver`] if the mesh is unusable.
+    pub fn new(
+        scene: &Scene,
+        model: Model,
+        modes: Option<usize>,
+        mesh: &SeatMesh,
+        cache: &Cache,
+    ) -> Result<Self> {
+        Self::new_with(scene, model, modes, mesh, cache, &mut |_, _| {})
+    }
+
+    /// As [`SeatModel::new`], telling how far it is.
+    ///
+    /// # Errors
+    /// As [`SeatModel::new`].
+    pub fn new_with(
+        scene: &Scene,
+        model: Model,
+        modes: Option<usize>,
+        mesh: &SeatMesh,
+        cache: &Cache,
+        watch: &mut Watch,
+    ) -> Result<Self> {
+        let started = Instant::now();
+        let setup = scene.seal_seat()?;
+        if model != Model::C {
+            return Err(Error::Usage(format!(
+                "model {model} is one of a plate; a seal seat has model C only (modes of the solid seat with the residual flexibility of its contact nodes)"
+            )));
+        }
+        let modes = modes.or(scene.reduced.modes).unwrap_or(DEFAULT_MODES);
+        if modes == 0 {
+            return Err(Error::Usage("--modes 0: at least one mode is needed".into()));
+        }
+        let mut zones = Zones::expected(setup);
+        for _ in 0..WIDENINGS {
+            let seat = mesh.body_with(setup, &zones, modes, cache, watch)?;
+            let built = Self::with(scene, setup, &seat, modes)?;
+            watch("impact", 0.95);
+            let rough = built.integrate(built.first_step, false)?;
+            match zones.widened(rough.tally.reach) {
+                Some(wider) => zones = wider,
+                None => {
+                    let (rough, setup_seconds) =
+                        (rough.state.sphere_velocity, started.elapsed().as_secs_f64());
+                    return Ok(Self { rough, setup_seconds, ..built });
+                }
+            }
+        }
+        Err(Error::Solver(format!(
+            "contact of the seal seat `{}` spreads beyond {:e} m from the ring or {:e} m from a tip",
+            scene.name, zones.ring, zones.tip
+        )))
+    }
+
+    fn with(scene: &Scene, setup: &SealSeat, seat: &SeatBody, modes: usize) -> Result<Self> {
+        let system = System::new(setup, &seat.body, &seat.candidates, modes)?;
+        let highest = system.omega.iter().fold(0.0f64, |a, b| a.max(*b));
+        let period = 2.0 * std::f64::consts::PI / (highest * FIRST_STEPS.0);
+        let mut warnings = Vec::new();
+        if setup.sphere.body == SphereBody::Elastic {
+            warnings
+                .push("the reduced model takes the sphere as rigid, the scene has an elastic one".to_owned());
+        }
+        Ok(Self {
+            scene: scene.clone(),
+            first_step: period.min(contact_duration(setup) / FIRST_STEPS.1),
+            end_time: scene.run.end_time,
+            // until the run that finds the contact zones has been made
+            rough: [f64::NAN; 2],
+            system,
+            warnings,
+            setup_seconds: 0.0,
+            dofs: seat.dofs,
+        })
+    }
+
+    /// Modes, contact nodes and rigid bodies.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// Time step in s from which [`SeatModel::run`] starts to halve.
+    pub fn first_step(&self) -> f64 {
+        self.first_step
+    }
+
+    /// Runs the impact with a fixed time step in s.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub fn integrate(&self, step: f64, history: bool) -> Result<Integration> {
+        let step = match self.end_time {
+            // whole steps to the end
+            Some(end) => end / (end / step).ceil(),
+            None => step,
+        };
+        integrate(&self.system, &Options { step, end_time: self.end_time, history })
+    }
+
+    /// Runs the impact; the step is halved until the sphere's velocity changes by less than three times `tolerance`
+    /// of its magnitude, of which the finer run has a third as its error (second order).
+    ///
+    /// # Errors
+    /// As [`integrate`]; [`Error::Solver`] if the tolerance can't be reached.
+    pub fn run(&self, tolerance: f64) -> Result<SeatSummary> {
+        let started = Instant::now();
+        let (result, _) = self.converged(tolerance)?;
+        Ok(self.summary(&result, started.elapsed().as_secs_f64()))
+    }
+
+    /// As [`SeatModel::run`], with the course over time. The summary's time is that of a run without.
+    ///
+    /// # Errors
+    /// As [`SeatModel::run`].
+    pub fn run_with_history(&self, tolerance: f64) -> Result<(SeatSummary, SeatHistory)> {
+        let started = Instant::now();
+        let (result, step) = self.converged(tolerance)?;
+        let mut summary = self.summary(&result, started.elapsed().as_secs_f64());
+        let history = history(&self.integrate(step, true)?);
+        summary.samples = Some(history.time.len());
+        Ok((summary, history))
+    }
+
+    /// The first result that meets the tolerance, and its step.
+    fn converged(&self, tolerance: f64) -> Result<(Integration, f64)> {
+        let (mut step, mut coarse) = (self.first_step, self.rough);
+        for _ in 0..HALVINGS {
+            step *= 0.5;
+            let result = self.integrate(step, false)?;
+            let fine = result.state.sphere_velocity;
+            let change = (coarse[0] - fine[0]).hypot(coarse[1] - fine[1]);
+            if change <= 3.0 * tolerance * fine[0].hypot(fine[1]) {
+                return Ok((result, step));
+            }
+            coarse = fine;
+        }
+        Err(Error::Solver(format!(
+            "the sphere's velocity does not reach a relative error of {tolerance} with steps down to {step:e} s"
+        )))
+    }
+
+    fn summary(&self, result: &Integration, solve_seconds: f64) -> SeatSummary {
+        let (system, modes) = (&self.system, self.system.omega.len());
+        SeatSummary {
+            energy_residual: result.energy_residual,
+            momentum_residual: result.momentum_residual,
+            steps: result.tally.steps,
+            solve_seconds,
+            warnings: self.warnings.clone(),
+            ..SeatSummary::of_reduced(&self.scene, Model::C, modes, quantities(system, result))
+        }
+    }
+}
+
+/// Duration in s of the actuator's impact if the seat were a heavy half-space (Hertz).
+fn contact_duration(scene: &SealSeat) -> f64 {
+    let actuator = &scene.actuator;
+    let modulus = scene.seat.material.plane_strain_modulus();
+    let stiffness = 4.0 / 3.0 * modulus * actuator.tip_radius.sqrt();
+    HertzImpact { mass: actuator.mass, speed: actuator.speed, stiffness }.duration()
+}
+
+/// The physical results of a run of `system`.
+pub fn quantities(system: &System, result: &Integration) -> SeatQuantities {
+    let [x, z] = result.state.sphere_velocity;
+    let tally = &result.tally;
+    SeatQuantities {
+        efficiency: system.sphere_mass * (x * x + z * z) / (system.actuator_mass * system.speed.powi(2)),
+        sphere_velocity_x: x,
+        sphere_velocity_z: z,
+        sphere_speed: x.hypot(z),
+        sphere_angle: x.atan2(z),
+        sphere_force_peak: tally.force_peak[0],
+        actuator_force_peak: tally.force_peak[1],
+        actuator_velocity_final: result.state.actuator_velocity,
+        sphere_contact_end: tally.contact_end[0],
+        actuator_contact_end: tally.contact_end[1],
+        left_flank_impulse: tally.flank_impulse[0],
+        right_flank_impulse: tally.flank_impulse[1],
+        first_frequency: system.omega.first().map_or(0.0, |omega| omega / (2.0 * std::f64::consts::PI)),
+    }
+}
+
+/// The samples of a run as curves.
+fn history(result: &Integration) -> SeatHistory {
+    let curve = |value: &dyn Fn(&Sample) -> f64| result.samples.iter().map(value).collect();
+    SeatHistory {
+        time: curve(&|s| s.time),
+        sphere_displacement: [0, 1].map(|c| curve(&|s| s.sphere[c])),
+        sphere_velocity: [0, 1].map(|c| curve(&|s| s.sphere_velocity[c])),
+        sphere_force: curve(&|s| s.sphere_force[0].hypot(s.sphere_force[1])),
+        sphere_force_components: [0, 1].map(|c| curve(&|s| s.sphere_force[c])),
+        actuator_displacement: curve(&|s| s.actuator),
+        actuator_velocity: curve(&|s| s.actuator_velocity),
+        actuator_force: curve(&|s| s.actuator_force),
+    }
+}

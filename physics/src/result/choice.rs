@@ -1,0 +1,37 @@
+//! Why a reduced model was chosen, as told with its result.
+
+use serde::{Deserialize, Serialize};
+
+/// A model that was considered.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// A, B or C.
+    pub model: String,
+    /// Elastic modes; of model C bending modes alone.
+    pub modes: usize,
+    /// Largest estimated relative error of the quantities covered; `None` if there is no estimate.
+    pub estimated_error: Option<f64>,
+    /// The quantity with that error.
+    pub quantity: Option<String>,
+    /// Whether it was chosen.
+    pub chosen: bool,
+}
+
+/// What was chosen for a scene, from what, and why.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Choice {
+    /// Relative error asked for.
+    pub tolerance: f64,
+    /// The quantities it covers; the efficiency relative to at least 0.05, the velocity to the impact speed.
+    pub covers: Vec<String>,
+    /// The estimate of the model chosen; `None` if there is none.
+    pub estimated_error: Option<f64>,
+    /// Part of it that stems from what model C was found to be off by; `None` beyond what was measured.
+    pub floor: Option<f64>,
+    /// Whether the estimate meets the tolerance.
+    pub met: bool,
+    /// The models considered, in the order of their cost.
+    pub tried: Vec<Candidate>,
+    /// Why, in a sentence.
+    pub reason: String,
+}

@@ -1,0 +1,69 @@
+//! Identity of a scene: a hash over its physical content.
+
+use super::Scene;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+impl Scene {
+    /// SHA-256 (hexadecimal) of what is physical in the scene: bodies, motion, fluid, length of the run.
+    ///
+    /// Name, description, names of materials, tolerances and the settings of models and
+    /// reference are left out: two scenes with the same hash have the same exact solution.
+    pub fn hash(&self) -> String {
+        let mut physical = json!({ "setup": self.setup, "run": self.run });
+        drop_material_names(&mut physical);
+        sha256_hex(canonical(&physical).as_bytes())
+    }
+}
+
+/// Takes the names out of all materials below `value`: they change nothing.
+pub fn drop_material_names(value: &mut Value) {
+    let Value::Object(map) = value else { return };
+    for (key, child) in map.iter_mut() {
+        if let (true, Value::Object(material)) = (key == "material", &mut *child) {
+            material.remove("name");
+        }
+        drop_material_names(child);
+    }
+}
+
+/// JSON without spaces, keys sorted: the same for equal values whatever the order of their keys.
+pub fn canonical(value: &Value) -> String {
+    match value {
+        Value::Object(map) => {
+            let mut entries: Vec<(&String, &Value)> = map.iter().collect();
+            entries.sort_by_key(|(key, _)| *key);
+            let entries: Vec<String> =
+                entries.iter().map(|(key, v)| format!("{}:{}", json!(key), canonical(v))).collect();
+            format!("{{{}}}", entries.join(","))
+        }
+        Value::Array(items) => {
+            let items: Vec<String> = items.iter().map(canonical).collect();
+            format!("[{}]", items.join(","))
+        }
+        other => other.to_string(),
+    }
+}
+
+/// SHA-256 of `bytes` in hexadecimal.
+pub fn sha256_hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sha256_of_the_standard() {
+        // FIPS 180-2, appendix B.1.
+        assert_eq!(sha256_hex(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+
+    #[test]
+    fn canonical_form_sorts_keys_at_every_level() {
+        let value: Value =
+            serde_json::from_str(r#"{"b": [1, {"z": null, "a": "\""}], "a": 0.033}"#).expect("JSON");
+        assert_eq!(canonical(&value), r#"{"a":0.033,"b":[1,{"a":"\"","z":null}]}"#);
+    }
+}

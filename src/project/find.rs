@@ -1,0 +1,68 @@
+//! Finds scene files: a path, or the name of a scene the project ships.
+
+use super::project_root;
+use crate::scene::suggestion;
+use crate::{Error, Result};
+use std::path::{Path, PathBuf};
+
+/// The scene file a command line names: a path, or the name of a shipped scene with or
+/// without `.toml`. A path wins over a name.
+///
+/// # Errors
+/// [`Error::Usage`] if there is neither; it lists the shipped scenes.
+pub fn resolve(argument: &str) -> Result<PathBuf> {
+    resolve_in(&project_root().join("scenes"), argument)
+}
+
+/// The scene files the project ships, sorted by name.
+///
+/// # Errors
+/// [`Error::Io`] if the folder `scenes/` can't be read.
+pub fn shipped() -> Result<Vec<PathBuf>> {
+    scenes_in(&project_root().join("scenes"))
+}
+
+fn resolve_in(folder: &Path, argument: &str) -> Result<PathBuf> {
+    let path = PathBuf::from(argument);
+    if path.is_file() {
+        return Ok(path);
+    }
+    let is_name = !argument.is_empty() && !argument.contains(['/', '\\']);
+    for candidate in [format!("{argument}.toml"), argument.to_owned()] {
+        let shipped = folder.join(candidate);
+        if is_name && shipped.is_file() {
+            return Ok(shipped);
+        }
+    }
+    if path.exists() {
+        // A folder, a pipe: what it is worth shows when it is read.
+        return Ok(path);
+    }
+    let beside = PathBuf::from(format!("{argument}.toml"));
+    if beside.is_file() {
+        return Ok(beside);
+    }
+    let shipped = scenes_in(folder).unwrap_or_default();
+    let names: Vec<String> =
+        shipped.iter().filter_map(|p| Some(p.file_stem()?.to_string_lossy().into_owned())).collect();
+    let hint = suggestion(argument.trim_end_matches(".toml"), names.iter().map(String::as_str));
+    let hint = hint.map(|s| format!("; did you mean `{s}`?")).unwrap_or_default();
+    Err(Error::Usage(format!(
+        "there is no scene `{argument}`: neither a file nor a name in {}{hint} (there: {})",
+        folder.display(),
+        if names.is_empty() { "nothing".to_owned() } else { names.join(", ") },
+    )))
+}
+
+fn scenes_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder).map_err(|e| Error::io("reading", folder, e))?;
+    let mut scenes = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(|e| Error::io("reading", folder, e))?.path();
+        if path.extension().is_some_and(|e| e == "toml") && path.is_file() {
+            scenes.push(path);
+        }
+    }
+    scenes.sort();
+    Ok(scenes)
+}
