@@ -27,7 +27,8 @@ fn targeted_band(reference: &Summary) -> Option<f64> {
 fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
     let (tolerance, band) = (row.tolerance?, row.uncertainty?);
     let needed = (tolerance - row.checked()).abs();
-    let wish = format!("a band of at most {needed:.1e} {0} instead of {band:.1e} {0}", row.unit);
+    let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
+    let wish = format!("a band of at most {needed:.1e}{unit} instead of {band:.1e}{unit}");
     let target = reached.map(|reached| reached * needed / band);
     Some(match target {
         Some(target) if target >= SMALLEST_TARGET => {

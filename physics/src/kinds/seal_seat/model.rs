@@ -8,6 +8,7 @@ use super::results::{CURVES, SeatQuantities};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::cache::Cache;
+use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
 use crate::result::{CUT, History, Outcome, Summary};
@@ -150,11 +151,11 @@ impl SeatModel {
     /// of its magnitude, of which the finer run has a third as its error (second order).
     ///
     /// # Errors
-    /// As [`integrate`]; [`Error::Solver`] if the tolerance can't be reached.
+    /// As [`integrate`] and [`ledger_check`]; [`Error::Solver`] if the tolerance can't be reached.
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let started = Instant::now();
         let (result, _) = self.converged(tolerance)?;
-        Ok(self.summary(&result, started.elapsed().as_secs_f64()))
+        self.summary(&result, tolerance, started.elapsed().as_secs_f64())
     }
 
     /// As [`SeatModel::run`], with the course over time. The summary's time is that of a run without.
@@ -164,7 +165,7 @@ impl SeatModel {
     pub fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
         let started = Instant::now();
         let (result, step) = self.converged(tolerance)?;
-        let mut summary = self.summary(&result, started.elapsed().as_secs_f64());
+        let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
         let history = history(&self.integrate(step, true)?);
         summary.samples = Some(history.len());
         Ok(Outcome { summary, history })
@@ -188,21 +189,22 @@ impl SeatModel {
         )))
     }
 
-    fn summary(&self, result: &Integration, solve_seconds: f64) -> Summary {
+    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
         let mut table = quantities(&self.system, result).table();
         let mut warnings = self.warnings.clone();
+        warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if result.is_cut() {
             table = table.cut();
             warnings.push(CUT.into());
         }
-        Summary {
+        Ok(Summary {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.tally.steps,
             solve_seconds,
             warnings,
             ..Summary::of_reduced(&self.scene, Model::C, self.system.omega.len(), table)
-        }
+        })
     }
 }
 
