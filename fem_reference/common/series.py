@@ -138,7 +138,9 @@ def solve_series(
     progress = progress if progress is not None else Progress()
     require_instants(options.stress_times, problem.end_time)
     require_share(options.target_error)
-    folder = options.checkpoint or target.absolute().parent / f".checkpoint-{target.name}"
+    # Where the finest mesh leads it is solved first, and again: nothing to go on from.
+    name = f".checkpoint-{target.name}" if problem.leads is None else f".partial-{target.name}-kept"
+    folder = options.checkpoint or target.absolute().parent / name
 
     def waiting() -> None:
         progress.report("waiting", 0.0, "another run of this solution is under way")

@@ -130,8 +130,8 @@ typedef struct {
 enum { MAX_SWEEPS = 1000 };
 
 /* Row i of K_l x for node n, complete once the rows before it have been done: the node's own and later
- * neighbours' part, and what earlier rows left in y; passes on to later rows what they need (K_l is
- * symmetric, only its upper half is stored and read). */
+ * neighbours' part, and what earlier rows left in y, which is taken out of it; passes on to later rows
+ * what they need (K_l is symmetric, only its upper half is stored and read). */
 #if COMPONENTS == 2
 typedef double pair __attribute__((vector_size(16)));
 typedef int64_t pair_mask __attribute__((vector_size(16)));
@@ -156,13 +156,13 @@ static inline pair off_diagonal(const double *block, int64_t j, const double *x,
     return sum + first * x[2 * j] + second * x[2 * j + 1];
 }
 
-static inline void row_product(const Level *l, const double *x, double *y, int64_t i, int64_t n,
-                               double *result) {
+static inline pair row_product(const Level *l, const double *x, double *y, int64_t i, int64_t n) {
     const double *block = l->block + 4 * l->row[i];
     const int32_t *column = l->column + l->row[i];
     const int64_t count = l->row[i + 1] - l->row[i];
-    const pair xi = load(x + 2 * n);
+    const pair xi = load(x + 2 * n), zero = {0.0, 0.0};
     pair sum = load(y + 2 * n) + load(block) * xi[0] + load(block + 2) * xi[1];
+    store(y + 2 * n, zero);
     if (count == 5) { /* inside a structured mesh: worth a loop without tests */
 #pragma GCC unroll 4
         for (int p = 1; p < 5; ++p) sum = off_diagonal(block + 4 * p, column[p], x, xi, y, sum);
@@ -170,11 +170,38 @@ static inline void row_product(const Level *l, const double *x, double *y, int64
         for (int64_t p = 1; p < count; ++p)
             sum = off_diagonal(block + 4 * p, column[p], x, xi, y, sum);
     }
-    store(result, sum);
+    return sum;
 }
+
+typedef pair Vector;
+
+static inline double component(Vector a, int d) { return a[d]; }
+
+/* x += scale * factor * a, component by component */
+static inline void add(double *x, double scale, const double *factor, Vector a) {
+    store(x, load(x) + scale * load(factor) * a);
+}
+
+static inline void shift(double *u, double h, const double *v) { store(u, load(u) + h * load(v)); }
 #else
-static inline void row_product(const Level *l, const double *restrict x, double *restrict y, int64_t row,
-                               int64_t i, double *restrict result) {
+typedef struct {
+    double x[C];
+} Vector;
+
+static inline double component(Vector a, int d) { return a.x[d]; }
+
+static inline void store(double *x, Vector a) { memcpy(x, a.x, sizeof a.x); }
+
+static inline void add(double *x, double scale, const double *factor, Vector a) {
+    for (int d = 0; d < C; ++d) x[d] += scale * factor[d] * a.x[d];
+}
+
+static inline void shift(double *u, double h, const double *v) {
+    for (int d = 0; d < C; ++d) u[d] += h * v[d];
+}
+
+static inline Vector row_product(const Level *l, const double *restrict x, double *restrict y,
+                                 int64_t row, int64_t i) {
     const double *restrict b = l->block + 9 * l->row[row];
     const int32_t *restrict column = l->column + l->row[row];
     const int64_t count = l->row[row + 1] - l->row[row];
@@ -193,9 +220,8 @@ static inline void row_product(const Level *l, const double *restrict x, double 
         y[j + 1] += b[1] * x0 + b[4] * x1 + b[7] * x2;
         y[j + 2] += b[2] * x0 + b[5] * x1 + b[8] * x2;
     }
-    result[0] = s0;
-    result[1] = s1;
-    result[2] = s2;
+    for (int d = 0; d < C; ++d) y[3 * i + d] = 0.0;
+    return (Vector){{s0, s1, s2}};
 }
 #endif
 
@@ -205,9 +231,7 @@ void stiffness_product(const State *s, int64_t first, int64_t end, const double 
     for (int64_t k = first; k < end; ++k)
         for (int64_t i = 0; i < s->level[k].rows; ++i) {
             const int64_t n = s->level[k].node[i];
-            double force[C];
-            row_product(&s->level[k], x, y, i, n, force);
-            memcpy(y + C * n, force, sizeof force);
+            store(y + C * n, row_product(&s->level[k], x, y, i, n));
         }
 }
 
@@ -458,15 +482,12 @@ static inline __attribute__((always_inline)) void group(const State *s, const Le
     const double *inverse = s->inverse;
     for (int64_t i = from; i < to; ++i) {
         const int64_t n = l->node[i];
-        double force[C];
-        row_product(l, u, f, i, n, force);
-        for (int d = 0; d < C; ++d) {
-            v[C * n + d] -= h * inverse[C * n + d] * force[d];
-            if (held && inverse[C * n + d] == 0.0) reaction[d] += h * force[d];
-            f[C * n + d] = 0.0;
-        }
+        const Vector force = row_product(l, u, f, i, n);
+        add(v + C * n, -h, inverse + C * n, force);
+        for (int d = 0; held && d < C; ++d)
+            if (inverse[C * n + d] == 0.0) reaction[d] += h * component(force, d);
         /* No later row reads u of this node any more. */
-        for (int d = 0; moves && d < C; ++d) u[C * n + d] += h * v[C * n + d];
+        if (moves) shift(u + C * n, h, v + C * n);
     }
 }
 
