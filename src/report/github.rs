@@ -1,9 +1,9 @@
 //! Messages for GitHub Actions: annotations at the tolerance that is exceeded, and the summary of the job.
 
-use super::tolerance_edit::line_of;
+use super::Report;
+use super::format::{model_name, percent, significant, words};
+use crate::ci::tolerance_edit::line_of;
 use crate::comparison::{ChangedTolerance, Check, Discrepancy, ModelComparison, SceneComparison};
-use crate::report::Report;
-use crate::report::format::{model_name, percent, significant, words};
 use crate::result::Quantities;
 use std::path::Path;
 
@@ -87,7 +87,7 @@ fn failures<Q: Quantities>(comparison: &SceneComparison<Q>) -> Vec<Failure<'_>> 
     let broken = |of: &str, checks: &'_ [Check]| -> Vec<Failure<'_>> {
         let failed = checks.iter().filter(|c| !c.verdict.passed());
         let failure = |check| {
-            let message = crate::report::check_failure(check);
+            let message = super::check_failure(check);
             Failure { of: of.to_owned(), message, model: None, row: None }
         };
         failed.map(failure).collect()
@@ -99,7 +99,7 @@ fn failures<Q: Quantities>(comparison: &SceneComparison<Q>) -> Vec<Failure<'_>> 
         for row in model.discrepancies.iter().filter(|d| !d.verdict.passed()) {
             found.push(Failure {
                 of: format!("{name}, {}", words(&row.quantity)),
-                message: crate::report::row_failure(row),
+                message: super::row_failure(row),
                 model: Some(&model.model),
                 row: Some(row),
             });
