@@ -226,7 +226,8 @@ def _compiled(components: int) -> ctypes.CDLL:
     program = compiler()
     flags = (*FLAGS, f"-DCOMPONENTS={components}")
     parts = (" ".join(flags), compiler_version(), _processor())
-    content = b"\0".join([_SOURCE.read_bytes(), *(part.encode() for part in parts)])
+    sources = [path.read_bytes() for path in sorted(_SOURCE.parent.glob("*.c"))]
+    content = b"\0".join([*sources, *(part.encode() for part in parts)])
     folder = _cache_folder()
     library = folder / f"kernel-{components}-{hashlib.sha256(content).hexdigest()[:24]}.so"
     if library.exists():
