@@ -34,11 +34,14 @@ def run(document: Any, arguments: argparse.Namespace) -> None:
 
 
 def _modes(scene: SeatScene, arguments: argparse.Namespace) -> None:
+    from .mesh_file import check_geometry
     from .meshing import seat_mesh
     from .modal import read_mesh, seat_modes
 
     if arguments.count < 1:
         raise SolverError(f"--count is {arguments.count}; it must be at least 1")
+    if arguments.mesh:
+        check_geometry(arguments.mesh, scene)
     mesh = read_mesh(arguments.mesh) if arguments.mesh else seat_mesh(scene)
     found = [{"frequency": float(f)} for f in seat_modes(scene, mesh, arguments.count)]
     print(json.dumps({"schema_version": 1, "scene": scene.name, "modes": found}, indent=2))

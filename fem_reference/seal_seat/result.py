@@ -15,7 +15,7 @@ from ..solid.fields import write_frames, write_mesh
 from ..solid.series import MeshResult, Options, Problem, solve_series
 from ..uncertainty import curve_band
 from ..versions import versions
-from .mesh_file import mesh_report
+from .mesh_file import mesh_report, record_geometry
 from .run import contact_duration
 from .scene import SeatScene
 from .solve import HISTORY_COLUMNS, Solution, compute, history, method, quantities, sampling
@@ -91,6 +91,7 @@ def _write(
     found = versions()
     samples, interval = _write_history(folder / "history.csv", scene, meshes)
     write_mesh(folder / "mesh.vtu", model)
+    record_geometry(folder / "mesh.vtu", scene)
     summary = document.summary(
         scene,
         resolution,
