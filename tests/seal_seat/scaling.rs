@@ -82,8 +82,7 @@ fn run(scale: f64) -> Integration {
     let zones = Zones::expected(&setup);
     let candidates = candidates(&setup, &mesh, &zones);
     let interface: Vec<usize> = candidates.iter().map(|c| c.node).collect();
-    let solid =
-        Solid::new(&mesh, &setup.seat.material, &supports(&setup, &mesh), &interface).expect("solid");
+    let solid = Solid::new(&mesh, &setup.seat.material, &supports(&setup, &mesh), &interface).expect("solid");
     let body = solid.at_interface(8).expect("modes");
     let system = System::new(&setup, &body, &candidates, 8).expect("system");
     integrate(&system, &Options { step: scale * 1e-6, end_time: None, history: false }).expect("run")

@@ -81,12 +81,7 @@ impl Factor {
         let m = self.interface;
         let mut flexibility = Mat::zeros(m, m);
         let mut memory = MemBuffer::new(inverse_scratch::<f64>(m, Par::Seq));
-        inverse(
-            flexibility.as_mut(),
-            self.last_block().as_ref(),
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
+        inverse(flexibility.as_mut(), self.last_block().as_ref(), Par::Seq, MemStack::new(&mut memory));
         flexibility
     }
 

@@ -163,7 +163,11 @@ pub struct Workspace<'a> {
 impl<'a> Workspace<'a> {
     /// Room for `system`.
     pub fn new(system: &'a System) -> Self {
-        Self { contact: Contact::new(&system.nodes, system.indentation), accelerations: Vec::new(), balls: system.balls.clone() }
+        Self {
+            contact: Contact::new(&system.nodes, system.indentation),
+            accelerations: Vec::new(),
+            balls: system.balls.clone(),
+        }
     }
 
     /// Evaluates the contact forces at `state`, corrected for kicks over steps of `step` in s: F - step^2/12 H M^-1 F with the
