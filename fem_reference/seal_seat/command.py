@@ -39,7 +39,7 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
     scene = parse_seat_scene(document)
 
     def work(comm: Any) -> None:
-        from ..common.series import Options
+        from ..common.settings import Options
         from .result import solve
 
         solve(scene, arguments.out, arguments.resolution, comm, Options.of(arguments))

@@ -24,7 +24,7 @@ pub fn edited<Q: Quantities>(
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| invalid(e.to_string()))?;
     let mut changes = Vec::new();
     for model in &comparison.models {
-        for row in model.discrepancies.iter().filter(|row| !row.verdict.passed()) {
+        for row in model.discrepancies.iter().filter(|row| row.verdict.failed()) {
             let place = format!("tolerances.{}.{}", model.model, row.quantity);
             if row.tolerance.is_none() || !row.difference.is_finite() {
                 return Err(Error::Usage(format!("`{place}`: what is not a number can't be accepted")));

@@ -2,7 +2,7 @@
 
 use super::commit::{Commit, DIRTY};
 use super::json_lines;
-use crate::comparison::{Comparison, SceneComparison};
+use crate::comparison::{Comparison, SceneComparison, Verdict};
 use crate::error::Result;
 use crate::result::Quantities;
 use serde::{Deserialize, Serialize};
@@ -96,8 +96,12 @@ pub struct Trend {
     pub unit: String,
     /// Commit and value, oldest first.
     pub points: Vec<(String, f64)>,
-    /// Values that pass the gate now; for the reference, which is not gated, its 95 % band, if known.
+    /// What the gate makes of it now; the reference is not gated.
+    pub verdict: Verdict,
+    /// Values that do not fail the gate now; for the reference its 95 % band, if known.
     pub admissible: Option<(f64, f64)>,
+    /// Those among them that pass; the others are undecided. None if the reference's band is wider than the tolerance.
+    pub passing: Option<(f64, f64)>,
     /// Place in `points` of the commit from which on the number is farther than a tenth of its tolerance from where it was
     /// at first.
     pub drifts_since: Option<usize>,
@@ -124,21 +128,33 @@ pub fn trends<Q: Quantities>(entries: &[Entry], scene: &SceneComparison<Q>) -> V
     for model in &scene.models {
         for row in &model.discrepancies {
             let Some(tolerance) = row.tolerance else { continue };
-            let middle = row.reference + row.bias.unwrap_or(0.0);
-            let admissible =
-                if row.is_residual() { (0.0, tolerance) } else { (middle - tolerance, middle + tolerance) };
-            let mut add = |model: &str, admissible| {
+            let (middle, band) = (row.reference + row.bias.unwrap_or(0.0), row.uncertainty.unwrap_or(0.0));
+            let about = |width: f64| match row.is_residual() {
+                true => Some((0.0, width)),
+                false => (width >= 0.0).then_some((middle - width, middle + width)),
+            };
+            let mut add = |model: &str, verdict, admissible, passing| {
                 let known = trends.iter().any(|t| t.model == model && t.quantity == row.quantity);
                 let points = points(model, &row.quantity);
                 if !points.is_empty() && !known {
                     let drifts_since = began(&points, tolerance);
                     let (model, quantity) = (model.to_owned(), row.quantity.clone());
                     let unit = row.unit.clone();
-                    trends.push(Trend { model, quantity, unit, points, admissible, drifts_since });
+                    trends.push(Trend {
+                        model,
+                        quantity,
+                        unit,
+                        points,
+                        verdict,
+                        admissible,
+                        passing,
+                        drifts_since,
+                    });
                 }
             };
-            add(&model.model, Some(admissible));
-            add(REFERENCE, row.uncertainty.map(|u| (row.reference - u, row.reference + u)));
+            add(&model.model, row.verdict, about(tolerance + band), about(tolerance - band));
+            let own = row.uncertainty.map(|u| (row.reference - u, row.reference + u));
+            add(REFERENCE, Verdict::NotGated, own, None);
         }
     }
     trends.sort_by_key(|t| t.model == REFERENCE);

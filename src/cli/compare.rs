@@ -7,7 +7,7 @@ use super::stored_references::{all_found, look_up, tell_reused};
 use super::{Context, JsonArgument};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
-use crate::comparison::{CommonAxis, Comparison, SceneComparison, compare_scene};
+use crate::comparison::{CommonAxis, Comparison, GateRules, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
@@ -229,7 +229,7 @@ impl<'a> Job<'a> {
         let seats = seats.map(|((file, scene), run)| {
             compare_seats::report(file, scene, run, self.resolution(), self.command(scene))
         });
-        Ok(Report { scenes: reports, seats: seats.collect::<Result<_>>()? })
+        Ok(Report { scenes: reports, seats: seats.collect::<Result<_>>()?, rules: GateRules::default() })
     }
 
     /// The command line that compares `scene` in the same way.

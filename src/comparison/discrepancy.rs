@@ -31,8 +31,12 @@ pub struct Discrepancy {
     pub tolerance: Option<f64>,
     /// Known discrepancy of the model, absolute; `None` = none stated.
     pub bias: Option<f64>,
-    /// Whether the checked value is within the bound.
+    /// Whether the checked value is within the bound, wherever the truth lies in the reference's band. A band that is not
+    /// known counts as none.
     pub verdict: Verdict,
+    /// If it is undecided: what would decide it, in one sentence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub would_decide: Option<String>,
 }
 
 /// Comparison error |E| against the uncertainty u of the comparison (ASME V&V 20-2009, section 1-6). Here u is
@@ -108,8 +112,12 @@ impl Discrepancy {
         let bound = tolerance.and_then(|t| Bound::of(t, scales));
         let bias = bound.as_ref().and_then(|b| b.bias);
         let checked = (difference - bias.unwrap_or(0.0)).abs();
-        // Written so that NaN fails, gated or not.
-        let within = bound.as_ref().is_none_or(|b| checked <= b.width);
+        // what is not a number fails, gated or not
+        let verdict = match &bound {
+            Some(bound) => Verdict::within(checked, uncertainty.unwrap_or(0.0), bound.width),
+            None if difference.is_finite() => Verdict::NotGated,
+            None => Verdict::Fail,
+        };
         Discrepancy {
             quantity: quantity.to_owned(),
             unit: unit.to_owned(),
@@ -121,7 +129,8 @@ impl Discrepancy {
             band_verdict: uncertainty.and_then(|u| BandVerdict::of(difference, u)),
             tolerance: bound.map(|b| b.width),
             bias,
-            verdict: Verdict::of(difference.is_finite() && within),
+            verdict,
+            would_decide: None,
         }
     }
 
@@ -136,8 +145,10 @@ impl Discrepancy {
         // A residual is relative already: whatever the bound is called, it is the bound of the number.
         let bound = tolerance.and_then(|t| Bound::of(t, Scales { value: 1.0, peak: 1.0 }));
         let width = bound.map(|b| b.width);
-        let within = |x: f64| x.is_finite() && width.is_none_or(|w| x.abs() <= w);
-        Discrepancy { tolerance: width, verdict: Verdict::of(within(reduced) && within(reference)), ..row }
+        let verdict = width.map_or(row.verdict, |width| {
+            Verdict::worst([reduced, reference].map(|residual| Verdict::within(residual.abs(), 0.0, width)))
+        });
+        Discrepancy { tolerance: width, verdict, ..row }
     }
 
     /// Magnitude that is held against the tolerance: of the difference without the known bias.
@@ -148,6 +159,11 @@ impl Discrepancy {
     /// Whether the row is about a conservation residual, each of whose sides is gated by itself.
     pub fn is_residual(&self) -> bool {
         self.quantity.ends_with("_residual")
+    }
+
+    /// Whether people have to be told of the row: it fails or is undecided.
+    pub fn is_told(&self) -> bool {
+        matches!(self.verdict, Verdict::Fail | Verdict::Undecided)
     }
 
     /// How much of the tolerance is used, 1 = all of it; `None` if the row is not gated.
@@ -212,6 +228,26 @@ mod tests {
         let tolerance = Tolerance { relative_to_peak: Some(0.01), ..Tolerance::default() };
         assert_eq!(row(1.9, 0.0, tolerance).verdict, Verdict::Pass);
         assert_eq!(row(2.1, 0.0, tolerance).verdict, Verdict::Fail);
+    }
+
+    #[test]
+    fn what_the_band_leaves_open_is_undecided() {
+        let scales = Scales { value: 100.0, peak: 100.0 };
+        let verdict = |reduced, bias, band| {
+            let tolerance = Tolerance { relative: Some(0.01), bias, ..Tolerance::default() };
+            Discrepancy::new(("x", "N"), (reduced, 100.0), scales, Some(&tolerance), band).verdict
+        };
+        // 5.66 +- 3.9 N against a tolerance of 0.17 N proves nothing, whatever the difference
+        assert_eq!(verdict(100.0, None, Some(70.0)), Verdict::Undecided);
+        assert_eq!(verdict(100.4, None, Some(0.5)), Verdict::Pass);
+        assert_eq!(verdict(101.4, None, Some(0.5)), Verdict::Undecided);
+        assert_eq!(verdict(101.6, None, Some(0.5)), Verdict::Fail);
+        // the band lies about the known discrepancy as well
+        assert_eq!(verdict(110.4, Some(0.1), Some(0.5)), Verdict::Pass);
+        assert_eq!(verdict(110.6, Some(0.1), Some(0.5)), Verdict::Undecided);
+        assert_eq!(verdict(100.0, Some(0.1), Some(0.5)), Verdict::Fail);
+        let ungated = Discrepancy::new(("x", "N"), (1.0, 2.0), scales, None, Some(0.5));
+        assert_eq!(ungated.verdict, Verdict::NotGated);
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! Comparison: reduced models against the reference, quantity by quantity and curve by curve,
 //! and the verdict.
 //!
-//! The verdict of a model is fail if a discrepancy exceeds its tolerance, if a value is not a
-//! number, or if one of the two results contradicts itself ([`Check`]): a history that does not
+//! The verdict of a model is the worst of its rows': fail if a discrepancy exceeds its tolerance beyond
+//! the reference's band or a value is not a number, undecided if the band leaves that open, not gated only if nothing is.
+//! It is fail, too, if one of the two results contradicts itself ([`Check`]): a history that does not
 //! belong to its summary proves nothing, whatever the summary says.
 
 mod alignment;
@@ -19,6 +20,7 @@ mod iso18571;
 mod russell;
 mod seal_seat;
 mod sprague_geers;
+mod undecided;
 mod verdict;
 
 pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
@@ -30,7 +32,7 @@ pub(crate) use interpolation::MonotoneCubic;
 pub use iso18571::{Grade, Iso18571, iso18571};
 pub use russell::{Russell, russell};
 pub use sprague_geers::{SpragueGeers, sprague_geers};
-pub use verdict::{Shown, Verdict};
+pub use verdict::{GateRules, Undecided, Verdict};
 
 use crate::error::Result;
 use crate::measured::Measured;
@@ -52,7 +54,7 @@ use serde::ser::{SerializeStruct, Serializer};
 pub struct Comparison {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
-    /// Fail if any scene fails.
+    /// The worst of the scenes'.
     pub verdict: Verdict,
     /// One entry per plate impact.
     pub scenes: Vec<SceneComparison>,
@@ -63,14 +65,20 @@ pub struct Comparison {
 impl Comparison {
     /// The document of these plate impacts.
     pub fn new(scenes: Vec<SceneComparison>) -> Self {
-        let verdict = Verdict::all(scenes.iter().map(|s| s.verdict));
+        let verdict = Verdict::worst(scenes.iter().map(|s| s.verdict));
         Comparison { schema_version: SCHEMA_VERSION, verdict, scenes, seats: Vec::new() }
     }
 
     /// The same with these seal seats.
     pub fn with_seats(self, seats: Vec<SceneComparison<SeatQuantities>>) -> Self {
-        let verdict = Verdict::all(seats.iter().map(|s| s.verdict).chain([self.verdict]));
+        let verdict = Verdict::worst(seats.iter().map(|s| s.verdict).chain([self.verdict]));
         Comparison { verdict, seats, ..self }
+    }
+
+    /// Name and verdict of every scene.
+    pub fn verdicts(&self) -> impl Iterator<Item = (&str, Verdict)> {
+        let plates = self.scenes.iter().map(|s| (&*s.scene, s.verdict));
+        plates.chain(self.seats.iter().map(|s| (&*s.scene, s.verdict)))
     }
 }
 
@@ -98,7 +106,7 @@ impl Serialize for Comparison {
 pub struct SceneComparison<Q: Quantities = PlateQuantities> {
     /// Name of the scene.
     pub scene: String,
-    /// Fail if any model fails or the reference contradicts itself.
+    /// The worst of the models'; fail if the reference contradicts itself.
     pub verdict: Verdict,
     /// Summary of the reference.
     pub reference: Summary<Q>,
@@ -122,25 +130,18 @@ pub struct SceneComparison<Q: Quantities = PlateQuantities> {
 impl<Q: Quantities> SceneComparison<Q> {
     /// Adds checks of the reference; one that fails makes the scene and all its models fail.
     pub fn add_reference_checks(&mut self, checks: Vec<Check>) {
-        if checks.iter().any(|check| !check.verdict.passed()) {
-            self.verdict = Verdict::Fail;
-            self.models.iter_mut().for_each(|model| model.verdict = Verdict::Fail);
-        }
+        let sound = Verdict::of_soundness(checks.iter().map(|check| check.verdict));
+        self.verdict = self.verdict.max(sound);
+        self.models.iter_mut().for_each(|model| model.verdict = model.verdict.max(sound));
         self.integrity.extend(checks);
     }
 }
 
 impl<Q: Quantities> SceneComparison<Q> {
-    /// The verdict as people are told it.
-    pub fn shown(&self) -> Shown {
-        // that a model is known to be off is said of the model
-        Shown::of(self.verdict, self.models.iter().map(ModelComparison::gated).sum(), 0)
-    }
-
-    /// Gated rows of all models, and how many of them failed.
-    pub fn gated_and_failed(&self) -> (usize, usize) {
-        let gated = || self.models.iter().flat_map(|m| &m.discrepancies).filter(|d| d.tolerance.is_some());
-        (gated().count(), gated().filter(|d| !d.verdict.passed()).count())
+    /// Verdicts of the rows of all models that have a tolerance.
+    pub fn gated_verdicts(&self) -> impl Iterator<Item = Verdict> {
+        let rows = self.models.iter().flat_map(|model| &model.discrepancies);
+        rows.filter(|row| row.tolerance.is_some()).map(|row| row.verdict)
     }
 }
 
@@ -169,7 +170,7 @@ pub struct ModelComparison<Q: Quantities = PlateQuantities> {
     pub model: String,
     /// Summary of the reduced model.
     pub summary: Summary<Q>,
-    /// Fail if any row or check fails, those of the reference included.
+    /// The worst of the rows'; fail if any check fails, those of the reference included.
     pub verdict: Verdict,
     /// Quantities, curves and residuals.
     pub discrepancies: Vec<Discrepancy>,
@@ -182,14 +183,18 @@ pub struct ModelComparison<Q: Quantities = PlateQuantities> {
     pub aligned: Vec<AlignedCurve>,
 }
 
+/// What [`ModelComparison::largest`] is the largest of, for people.
+pub const AMONG: &str = "Largest discrepancy: the largest relative one among the single numbers of the summary (efficiency, velocities, \
+    directions, force peaks, impulses, ends of contact, first frequency). Not among them are the numbers of contacts, of which \
+    one is 100 %, the distances of curves, and the conservation residuals.";
+
 impl<Q: Quantities> ModelComparison<Q> {
     /// The row called `quantity`.
     pub fn discrepancy(&self, quantity: &str) -> Option<&Discrepancy> {
         self.discrepancies.iter().find(|d| d.quantity == quantity)
     }
 
-    /// The quantity of the summary that lies furthest from the reference, relatively; numbers of
-    /// contacts aside, of which one is 100 %.
+    /// The quantity of the summary that lies furthest from the reference, relatively; see [`AMONG`].
     pub fn largest(&self) -> Option<&Discrepancy> {
         self.discrepancies
             .iter()
@@ -218,9 +223,13 @@ impl<Q: Quantities> ModelComparison<Q> {
         self.discrepancies.iter().filter(|d| d.bias.is_some_and(|bias| bias != 0.0)).count()
     }
 
-    /// The verdict as people are told it.
-    pub fn shown(&self) -> Shown {
-        Shown::of(self.verdict, self.gated(), self.biased())
+    /// The verdict in words: a pass of a model that is known to be off is told as such.
+    pub fn verdict_in_words(&self) -> &'static str {
+        if self.verdict.passed() && self.biased() > 0 {
+            "pass about a known discrepancy"
+        } else {
+            self.verdict.words()
+        }
     }
 }
 
@@ -234,11 +243,11 @@ pub fn compare_scene<Q: Compared>(
     reduced: &[Outcome<Q>],
 ) -> SceneComparison<Q> {
     let integrity = integrity::check(scene, reference);
-    let sound = Verdict::all(integrity.iter().map(|c| c.verdict));
+    let sound = Verdict::of_soundness(integrity.iter().map(|c| c.verdict));
     let window = CommonAxis::of_reference(reference);
     let models: Vec<_> =
         reduced.iter().map(|outcome| compare_model(scene, reference, outcome, window, sound)).collect();
-    let verdict = Verdict::all(models.iter().map(|m| m.verdict).chain([sound]));
+    let verdict = Verdict::worst(models.iter().map(|m| m.verdict).chain([sound]));
     SceneComparison {
         scene: scene.name.clone(),
         verdict,
@@ -267,12 +276,13 @@ fn compare_model<Q: Compared>(
     let mut discrepancies = quantities(reference, reduced, tolerances);
     discrepancies.extend(curve_distances(reference, &aligned, tolerances));
     discrepancies.extend(residuals(&reference.summary, &reduced.summary, tolerances));
+    undecided::tell(&mut discrepancies, &reference.summary);
     let mut integrity = integrity::check(scene, reduced);
     integrity.push(integrity::same_impact(&reference.summary, &reduced.summary));
     integrity.push(integrity::tolerances_are_used(tolerances, &discrepancies));
 
-    let rows = discrepancies.iter().map(|d| d.verdict);
-    let verdict = Verdict::all(rows.chain(integrity.iter().map(|c| c.verdict)).chain([reference_sound]));
+    let sound = Verdict::of_soundness(integrity.iter().map(|c| c.verdict));
+    let verdict = Verdict::worst(discrepancies.iter().map(|d| d.verdict).chain([sound, reference_sound]));
     ModelComparison {
         model: name,
         summary: reduced.summary.clone(),

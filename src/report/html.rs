@@ -3,7 +3,7 @@
 
 use super::format::{Prefixed, model_name, percent, prefixed, significant, with_unit, words};
 use super::{Attachments, Report};
-use crate::comparison::{Discrepancy, ModelComparison, SceneComparison, Shown, Verdict};
+use crate::comparison::{AMONG, Discrepancy, ModelComparison, SceneComparison, Verdict};
 use crate::result::Quantities;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -27,23 +27,41 @@ pub(super) fn page(title: &str, styles: &[&str], body: &Markup, scripts: &Markup
     .into_string()
 }
 
-/// A verdict as people are told it.
-pub(super) fn shown(shown: Shown) -> Markup {
-    let class = match shown {
-        Shown::Pass | Shown::PassAboutBias => "verdict pass",
-        Shown::Fail => "verdict fail",
-        Shown::NotGated => "verdict open",
-    };
-    html! { span class=(class) { (shown.words()) } }
+pub(super) fn badge(verdict: Verdict) -> Markup {
+    worded(verdict, verdict.words())
 }
 
-pub(super) fn badge(verdict: Verdict) -> Markup {
-    html! { span class=(format!("verdict {verdict}")) { (verdict) } }
+/// The verdict of a model, of which it may be known that it is off.
+pub(super) fn model_badge<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
+    worded(model.verdict, model.verdict_in_words())
+}
+
+fn worded(verdict: Verdict, words: &str) -> Markup {
+    let class = match verdict {
+        Verdict::NotGated => "verdict open",
+        Verdict::Pass => "verdict pass",
+        Verdict::Undecided => "verdict undecided",
+        Verdict::Fail => "verdict fail",
+    };
+    html! { span class=(class) { (words) } }
 }
 
 /// Something wider than a phone, which scrolls by itself, also by keyboard.
 pub(super) fn scrolled(name: &str, content: &Markup) -> Markup {
     html! { div.scroll role="region" tabindex="0" aria-label=(name) { (content) } }
+}
+
+/// What the efficiency is; eq. (1) of the paper.
+const EFFICIENCY: &str = "Efficiency, eq. (1): kinetic energy of the body that is struck through the plate or seat (inner body, sphere) after \
+    the last contact over that of the striking body (outer body, actuator) before the first, both of the rigid-body \
+    (mass-averaged) velocity.";
+
+/// The name of a quantity in words; what it does not tell by itself is told on hover.
+pub(super) fn named(quantity: &str) -> Markup {
+    match quantity {
+        "efficiency" => html! { abbr title=(EFFICIENCY) { (words(quantity)) } },
+        _ => html! { (words(quantity)) },
+    }
 }
 
 /// A drawing as wide as a page, and the same as wide as a phone; the screen decides which is seen.
@@ -68,9 +86,8 @@ pub(super) fn number(field: &str, value: Option<f64>, to: Prefixed, digits: usiz
 
 /// The page with the verdict of every scene and model.
 pub fn index_page(report: &Report) -> String {
-    let verdict = report.comparison().verdict;
     let body = html! {
-        h1 { "impactcheck " (shown(Shown::of(verdict, gated(report), 0))) }
+        h1 { "impactcheck " (badge(report.comparison().verdict)) }
         p.soft { "Reduced models of an impact against explicit finite elements. " (counts(report)) }
         div.cards {
             @for scene in &report.scenes { (card(&scene.scene.description, &scene.comparison, &scene.attachments)) }
@@ -80,8 +97,8 @@ pub fn index_page(report: &Report) -> String {
         (scrolled("Verdicts", &html! { table.verdicts {
             thead { tr {
                 th scope="col" { "scene" } th.left scope="col" { "model" } th.left scope="col" { "verdict" }
-                th scope="col" { "efficiency" } th scope="col" { "reference" }
-                th.left scope="col" { "largest discrepancy" } th scope="col" { "95 % band" }
+                th scope="col" { (named("efficiency")) } th scope="col" { "reference" }
+                th.left scope="col" { "largest discrepancy of the summary" } th scope="col" { "95 % band" }
                 th.left scope="col" { "nearest to its bound" } th scope="col" { "tolerance used" }
             } }
             tbody {
@@ -89,39 +106,35 @@ pub fn index_page(report: &Report) -> String {
                 @for seat in &report.seats { (index_rows(&seat.comparison)) }
             }
         } }))
+        p.soft { (EFFICIENCY) } p.soft { (AMONG) }
         p.soft { "The band is the 95 % band of the reference's own numerical error. Tolerance used: how much of its tolerance "
-            "the gated quantity nearest to its bound takes; beyond 100 % the model fails." }
+            "the gated quantity nearest to its bound takes. Where the band reaches across the bound the verdict is undecided; "
+            "the scene's page says what would decide it." }
         p { "As data: " a href="comparison.json" { "JSON" } " · " a href="comparison.md" { "Markdown" } " · "
             a href="junit.xml" { "JUnit" } }
     };
     page("impactcheck", &[], &body, &html! {})
 }
 
-/// Rows of all scenes that have a tolerance.
-fn gated(report: &Report) -> usize {
-    let scenes = report.scenes.iter().map(|scene| scene.comparison.gated_and_failed().0);
-    let seats = report.seats.iter().map(|seat| seat.comparison.gated_and_failed().0);
-    scenes.chain(seats).sum()
-}
-
-/// How much was gated and failed, in a sentence.
+/// How much was gated and what came of it, in a sentence.
 fn counts(report: &Report) -> String {
-    fn rows<Q: Quantities>(scene: &SceneComparison<Q>) -> impl Iterator<Item = &Discrepancy> {
-        scene.models.iter().flat_map(|model| &model.discrepancies)
-    }
-    let rows = || {
-        let scenes = report.scenes.iter().flat_map(|scene| rows(&scene.comparison));
-        scenes.chain(report.seats.iter().flat_map(|seat| rows(&seat.comparison)))
-    };
-    let gated = gated(report);
-    if gated == 0 {
+    let plates = report.scenes.iter().flat_map(|scene| scene.comparison.gated_verdicts());
+    let seats = report.seats.iter().flat_map(|seat| seat.comparison.gated_verdicts());
+    let verdicts: Vec<Verdict> = plates.chain(seats).collect();
+    if verdicts.is_empty() {
         return "Nothing is gated: no scene has tolerances.".into();
     }
-    let failed = rows().filter(|row| !row.verdict.passed()).count();
+    let count = |verdict| verdicts.iter().filter(|v| **v == verdict).count();
     let scenes = report.scenes.len() + report.seats.len();
     let plural = |n: usize| if n == 1 { "" } else { "s" };
-    let outcome = if failed == 0 { "all within".into() } else { format!("{failed} not within") };
-    format!("{scenes} scene{}, {gated} gated quantities, {outcome} their tolerances.", plural(scenes))
+    format!(
+        "{scenes} scene{}, {} gated quantities: {} within their tolerances, {} undecided, {} not within.",
+        plural(scenes),
+        verdicts.len(),
+        count(Verdict::Pass),
+        count(Verdict::Undecided),
+        count(Verdict::Fail)
+    )
 }
 
 /// A scene in short.
@@ -132,7 +145,7 @@ fn card<Q: Quantities>(
 ) -> Markup {
     html! {
         section.card {
-            h2 { (scene_link(comparison)) " " (shown(comparison.shown())) }
+            h2 { (scene_link(comparison)) " " (badge(comparison.verdict)) }
             p.soft { (description) }
             ul.models { @for model in &comparison.models { li { (model_line(model)) } } }
             @let drifting = attachments.trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
@@ -144,9 +157,9 @@ fn card<Q: Quantities>(
 /// Verdict of a model with its largest discrepancy, the band it is to be seen against, and what the gate makes of it.
 pub(super) fn model_line<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
     html! {
-        (shown(model.shown())) " model " (model_name(&model.model, model.summary.modes))
+        (model_badge(model)) " model " (model_name(&model.model, model.summary.modes))
         @if let Some(d) = model.largest() {
-            ": largest discrepancy " strong { (percent(d.relative)) } " (" (words(&d.quantity)) (relative_band(d)) ")"
+            ": largest discrepancy of the summary " strong { (percent(d.relative)) } " (" (words(&d.quantity)) (relative_band(d)) ")"
         }
         "; "
         @if let Some((d, used)) = model.tightest().and_then(|d| Some((d, d.used()?))) {
@@ -186,7 +199,7 @@ fn index_row<Q: Quantities>(comparison: &SceneComparison<Q>, model: &ModelCompar
         tr data-scene=(comparison.scene) data-model=(model.model) {
             th scope="row" { (scene_link(comparison)) }
             td.left { (model_name(&model.model, model.summary.modes)) }
-            td.left { (shown(model.shown())) }
+            td.left { (model_badge(model)) }
             (number("reduced", efficiency(&model.summary.quantities), plain, 4))
             (number("reference", efficiency(&comparison.reference.quantities), plain, 4))
             td.left { @if let Some(d) = largest { (words(&d.quantity)) " " (percent(d.relative)) } @else { "–" } }

@@ -2,14 +2,14 @@
 
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::{Report, SceneReport, SeatReport};
-use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison, SceneComparison};
+use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison, SceneComparison};
 use crate::result::Quantities;
 
 /// Markdown of the whole report.
 pub fn markdown(report: &Report) -> String {
     let verdict = report.comparison().verdict;
     let mut text = format!(
-        "# impactcheck: {verdict}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy |\n|---|---|---|--:|--:|---|\n"
+        "# impactcheck: {verdict}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy of the summary |\n|---|---|---|--:|--:|---|\n"
     );
     for scene in &report.scenes {
         for model in &scene.comparison.models {
@@ -21,6 +21,7 @@ pub fn markdown(report: &Report) -> String {
             text += &row(&seat.comparison, model);
         }
     }
+    text += &format!("\n{AMONG}\n");
     for scene in &report.scenes {
         text += &section(scene);
     }
@@ -39,7 +40,7 @@ fn row<Q: Quantities>(comparison: &SceneComparison<Q>, model: &ModelComparison<Q
         "| {} | {} | {} | {} | {} | {largest} |\n",
         escape(&comparison.scene),
         escape(&model_name(&model.model, model.summary.modes)),
-        model.shown().words(),
+        model.verdict_in_words(),
         efficiency(&model.summary.quantities),
         efficiency(&comparison.reference.quantities),
     )
@@ -51,7 +52,7 @@ fn seat_section(seat: &SeatReport) -> String {
     let mut text = format!(
         "\n## {0}: {1}\n\n{2}\n\n![Section with the directions of flight]({0}-section.svg)\n\n![Forces and velocities]({0}.svg)\n",
         escape(&comparison.scene),
-        comparison.shown().words(),
+        comparison.verdict,
         escape(&seat.scene.description),
     );
     text += &failures("the reference", &comparison.integrity);
@@ -66,7 +67,7 @@ fn section(scene: &SceneReport) -> String {
     let mut text = format!(
         "\n## {}: {}\n\n{}\n\n![Displacement, velocity and contact force]({}.svg)\n",
         escape(&comparison.scene),
-        comparison.shown().words(),
+        comparison.verdict,
         escape(&scene.scene.description),
         comparison.scene,
     );
@@ -84,10 +85,13 @@ fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> String {
     let name = escape(&model_name(&model.model, model.summary.modes));
     let mut text = format!(
         "\n### Model {name}: {}\n\n| quantity | reduced | reference | difference | relative | 95 % band | \\|E\\| against u | tolerance | bias | verdict |\n|---|--:|--:|--:|--:|--:|---|--:|--:|---|\n",
-        model.shown().words()
+        model.verdict_in_words()
     );
     for row in &model.discrepancies {
         text += &format!("{}\n", discrepancy(row));
+    }
+    for (row, how) in model.discrepancies.iter().filter_map(|row| Some((row, row.would_decide.as_ref()?))) {
+        text += &format!("\nUndecided, {}: {}\n", words(&row.quantity), escape(how));
     }
     for warning in &model.summary.warnings {
         text += &format!("\nWarning: {}\n", escape(warning));
@@ -129,13 +133,13 @@ fn discrepancy(row: &Discrepancy) -> String {
         row.band_verdict.map_or("–", BandVerdict::words),
         optional(row.tolerance),
         optional(row.bias),
-        if row.tolerance.is_none() && row.verdict.passed() { "not gated" } else { row.verdict.words() },
+        row.verdict,
     )
 }
 
 /// What a result contradicts itself in; nothing if it doesn't.
 fn failures(of: &str, checks: &[Check]) -> String {
-    let failed: Vec<_> = checks.iter().filter(|c| !c.verdict.passed()).collect();
+    let failed: Vec<_> = checks.iter().filter(|c| c.verdict.failed()).collect();
     if failed.is_empty() {
         return String::new();
     }

@@ -51,7 +51,7 @@ pub use figure_file::{FigureFormat, figure_file};
 pub use html::index_page;
 pub use json::json;
 pub use junit::junit;
-pub(crate) use junit::{failure as row_failure, integrity_failure as check_failure};
+pub(crate) use junit::{integrity_failure as check_failure, told as row_told};
 pub use markdown::markdown;
 pub use measured_section::efficiency_figure;
 pub use png::png;
@@ -61,7 +61,7 @@ pub use seal_seat_picture::{Arrow, seat_picture};
 pub use terminal::terminal;
 pub use write::{check_writable, write};
 
-use crate::comparison::{ChangedTolerance, Comparison, SceneComparison};
+use crate::comparison::{ChangedTolerance, Comparison, GateRules, SceneComparison};
 use crate::result::Outcome;
 use crate::scene::Scene;
 
@@ -72,6 +72,8 @@ pub struct Report<'a> {
     pub scenes: Vec<SceneReport<'a>>,
     /// One entry per seal seat.
     pub seats: Vec<SeatReport>,
+    /// What stops at the gate, for those who read the report by machine.
+    pub rules: GateRules,
 }
 
 /// One scene of the report.

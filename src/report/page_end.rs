@@ -4,7 +4,7 @@ use super::Attachments;
 use super::discrepancy_section::{checks, contradictions};
 use super::facts::facts;
 use super::html::{badge, model_line};
-use crate::comparison::SceneComparison;
+use crate::comparison::{AMONG, SceneComparison};
 use crate::result::Quantities;
 use crate::scene::Scene;
 use maud::{Markup, html};
@@ -16,6 +16,7 @@ pub(super) fn head<Q: Quantities>(scene: &Scene, comparison: &SceneComparison<Q>
         h1 { (comparison.scene) " " (badge(comparison.verdict)) }
         p.soft { (scene.description) }
         ul.models { @for model in &comparison.models { li { (model_line(model)) } } }
+        p.soft { (AMONG) }
         (contradictions("reference", &comparison.integrity))
     }
 }

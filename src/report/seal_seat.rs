@@ -5,12 +5,11 @@ use super::chart::{CHART_WIDTH, ChartPanel, Series, chart_of_width};
 use super::discrepancy_section::model_section;
 use super::figure::PHONE_WIDTH;
 use super::format::{model_name, percent, prefixed, significant, with_unit};
-use super::html::{detailed, page};
-use super::junit::{failure, integrity_failure};
+use super::html::{detailed, named, page};
 use super::page_data::{PanelOf, Shown};
 use super::run_times::marked;
 use super::seal_seat_picture::{Arrow, seat_picture};
-use super::terminal::coloured;
+use super::terminal::{findings, headline, of_model};
 use super::{interactive, page_end};
 use crate::comparison::{SceneComparison, align};
 use crate::error::{Error, Result};
@@ -211,7 +210,7 @@ fn directions(report: &SeatReport) -> Markup {
         div.scroll role="region" tabindex="0" aria-label="Flight of the sphere" { table {
             thead { tr {
                 @for heading in ["", "speed", "direction", "from the intended", "efficiency", "left flank, µN·s", "right flank, µN·s"] {
-                    th scope="col" { (heading) }
+                    th scope="col" { (named(heading)) }
                 }
             } }
             tbody {
@@ -244,7 +243,7 @@ fn cost(report: &SeatReport) -> Markup {
 pub(super) fn terminal(report: &SeatReport) -> String {
     let comparison = &report.comparison;
     let reference = &comparison.reference.quantities;
-    let mut text = format!("{}: {}\n", comparison.scene, coloured(comparison.verdict));
+    let mut text = headline(comparison);
     text += &format!(
         "  {:<10}{:>20}{:>22}{:>22}{:>22}  verdict\n",
         "", "direction", "speed, m/s", "sphere peak, N", "actuator peak, N"
@@ -273,23 +272,9 @@ pub(super) fn terminal(report: &SeatReport) -> String {
     };
     text += &line("reference", reference, "");
     for model in &comparison.models {
-        text += &line(&model.model, &model.summary.quantities, &coloured(model.verdict));
+        text += &line(&model.model, &model.summary.quantities, &of_model(model));
     }
-    for check in comparison.integrity.iter().filter(|c| !c.verdict.passed()) {
-        text += &format!("  reference: {}\n", integrity_failure(check));
-    }
-    for model in &comparison.models {
-        for warning in &model.summary.warnings {
-            text += &format!("  warning: {warning}\n");
-        }
-        for row in model.discrepancies.iter().filter(|d| !d.verdict.passed()) {
-            text += &format!("  {}: {}\n", model.model, failure(row));
-        }
-        for check in model.integrity.iter().filter(|c| !c.verdict.passed()) {
-            text += &format!("  {}: {}\n", model.model, integrity_failure(check));
-        }
-    }
-    text + "\n"
+    text + &findings(comparison) + "\n"
 }
 
 /// Both histories on the reference's time axis as CSV.

@@ -2,8 +2,8 @@
 
 use super::Report;
 use super::format::{percent, prefixed, with_unit};
-use crate::comparison::{Shown, Verdict};
-use crate::result::PlateQuantities;
+use crate::comparison::{ModelComparison, SceneComparison, Verdict};
+use crate::result::{PlateQuantities, Quantities};
 use anstyle::{AnsiColor, Style};
 
 /// Styles; whoever prints takes them away where they can't be seen.
@@ -11,20 +11,53 @@ const YELLOW: Style = AnsiColor::Yellow.on_default();
 const GREEN: Style = AnsiColor::Green.on_default().bold();
 const RED: Style = AnsiColor::Red.on_default().bold();
 
-/// A verdict in its colour.
-pub(super) fn coloured(verdict: Verdict) -> String {
-    let style = if verdict.passed() { GREEN } else { RED };
-    format!("{style}{verdict}{style:#}")
+/// A verdict in its colour, in these words.
+pub(super) fn coloured(verdict: Verdict, words: &str) -> String {
+    let style = match verdict {
+        Verdict::Pass => GREEN,
+        Verdict::Fail => RED,
+        Verdict::NotGated | Verdict::Undecided => YELLOW,
+    };
+    format!("{style}{words}{style:#}")
 }
 
-/// A verdict as people are told it, in its colour.
-pub(super) fn told(shown: Shown) -> String {
-    let style = match shown {
-        Shown::Pass | Shown::PassAboutBias => GREEN,
-        Shown::Fail => RED,
-        Shown::NotGated => YELLOW,
-    };
-    format!("{style}{}{style:#}", shown.words())
+/// A scene's line.
+pub(super) fn headline<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
+    let verdict = comparison.verdict;
+    format!("{}: {}\n", comparison.scene, coloured(verdict, verdict.words()))
+}
+
+/// A model's verdict.
+pub(super) fn of_model<Q: Quantities>(model: &ModelComparison<Q>) -> String {
+    coloured(model.verdict, model.verdict_in_words())
+}
+
+/// One per line: warnings, what failed and what is undecided; then how many did.
+pub(super) fn findings<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
+    let mut text = String::new();
+    let mut line = |of: &str, what: String| text += &format!("  {of}: {what}\n");
+    for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
+        line("reference", super::junit::integrity_failure(check));
+    }
+    for model in &comparison.models {
+        for warning in &model.summary.warnings {
+            line(&format!("{YELLOW}warning{YELLOW:#}"), warning.clone());
+        }
+        for row in model.discrepancies.iter().filter(|d| d.is_told()) {
+            line(&model.model, super::junit::told(row));
+        }
+        for check in model.integrity.iter().filter(|c| c.verdict.failed()) {
+            line(&model.model, super::junit::integrity_failure(check));
+        }
+    }
+    let gated = comparison.gated_verdicts().count();
+    for (verdict, did) in [(Verdict::Fail, "failed"), (Verdict::Undecided, "are undecided")] {
+        let count = comparison.gated_verdicts().filter(|v| *v == verdict).count();
+        if count > 0 {
+            text += &format!("  {count} of {gated} gated quantities {did}\n");
+        }
+    }
+    text
 }
 
 /// The columns: heading, quantity, unit.
@@ -43,43 +76,24 @@ pub fn terminal(report: &Report) -> String {
     for scene in &report.scenes {
         let comparison = &scene.comparison;
         let reference = &comparison.reference.quantities;
-        text += &format!("{}: {}\n", comparison.scene, told(comparison.shown()));
+        text += &headline(comparison);
         let headings: String = COLUMNS.iter().map(|(heading, ..)| format!("{heading:>22}")).collect();
         text += &format!("  {:<10}{headings}  verdict\n", "");
         text += &format!("  {:<10}{}\n", "reference", cells(reference, None));
         for model in &comparison.models {
             let row = cells(&model.summary.quantities, Some(reference));
-            text += &format!("  {:<10}{row}  {}\n", model.model, told(model.shown()));
+            text += &format!("  {:<10}{row}  {}\n", model.model, of_model(model));
         }
         if let Some(measured) = &comparison.measured {
             text += &format!("  {}\n", super::measured_section::sentence(measured));
         }
-        for check in comparison.integrity.iter().filter(|c| !c.verdict.passed()) {
-            text += &format!("  reference: {}\n", super::junit::integrity_failure(check));
-        }
-        for model in &comparison.models {
-            for warning in &model.summary.warnings {
-                text += &format!("  {YELLOW}warning:{YELLOW:#} {warning}\n");
-            }
-            for row in model.discrepancies.iter().filter(|d| !d.verdict.passed()) {
-                text += &format!("  {}: {}\n", model.model, super::junit::failure(row));
-            }
-            for check in model.integrity.iter().filter(|c| !c.verdict.passed()) {
-                text += &format!("  {}: {}\n", model.model, super::junit::integrity_failure(check));
-            }
-        }
-        text += &failed(comparison.gated_and_failed());
+        text += &findings(comparison);
         text.push('\n');
     }
     for seat in &report.seats {
         text += &super::seal_seat::terminal(seat);
     }
     text
-}
-
-/// How many gated quantities failed, if any did.
-pub(super) fn failed((gated, failed): (usize, usize)) -> String {
-    if failed == 0 { String::new() } else { format!("  {failed} of {gated} gated quantities failed\n") }
 }
 
 fn cells(quantities: &PlateQuantities, reference: Option<&PlateQuantities>) -> String {

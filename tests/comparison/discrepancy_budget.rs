@@ -6,7 +6,7 @@ use impactcheck::analytical::circular_plate::rigidity;
 use impactcheck::body::ModalBody;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions};
 use impactcheck::comparison::budget::{BUDGET_QUANTITIES, CAUSES, QuantityBudget, budget};
-use impactcheck::comparison::compare_scene;
+use impactcheck::comparison::{GateRules, compare_scene};
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::kinds::plate_impact::variants::mean_of_faces;
 use impactcheck::reference::{Lookup, Resolution, Store};
@@ -257,7 +257,7 @@ fn page_markdown_and_json_show_the_budget_and_bars_have_its_lengths() {
         attachments: impactcheck::report::Attachments::default(),
     };
     let page = scene_page(&scene_report);
-    let report = Report { scenes: vec![scene_report], seats: Vec::new() };
+    let report = Report { scenes: vec![scene_report], seats: Vec::new(), rules: GateRules::default() };
     let document: serde_json::Value = serde_json::from_str(&json(&report).unwrap()).unwrap();
     let text = markdown(&report);
     for (k, row) in rows.iter().enumerate() {

@@ -61,15 +61,15 @@ fn delayed(time: &[f64], values: &[f64], delay: f64) -> Vec<f64> {
 
 #[test]
 fn untouched_passes() {
-    for scene in [scene(), gated_scene()] {
+    for (scene, expected) in [(scene(), Verdict::NotGated), (gated_scene(), Verdict::Pass)] {
         let comparison = compare_scene(&scene, &reference(), &[reduced()]);
         for check in comparison.integrity.iter().chain(&comparison.models[0].integrity) {
             assert!(check.verdict.passed(), "{check:?}");
         }
         for row in &comparison.models[0].discrepancies {
-            assert!(row.verdict.passed(), "{row:?}");
+            assert_eq!(row.verdict, expected, "{row:?}");
         }
-        assert_eq!(comparison.verdict, Verdict::Pass);
+        assert_eq!((comparison.verdict, comparison.models[0].verdict), (expected, expected));
     }
 }
 
@@ -222,7 +222,7 @@ fn consistent_drift_fails_by_its_tolerance() {
     let mut drifted = synthetic_impact::REDUCED;
     drifted.outer.peak *= 1.03;
     let drifted = synthetic_impact::reduced_of(&drifted, "B");
-    assert_eq!(verdict(&scene(), &reference(), &drifted), Verdict::Pass);
+    assert_eq!(verdict(&scene(), &reference(), &drifted), Verdict::NotGated);
     let comparison = compare_scene(&gated_scene(), &reference(), &[drifted]);
     assert_eq!(comparison.verdict, Verdict::Fail);
     let model = &comparison.models[0];
@@ -249,7 +249,7 @@ fn each_quantity_is_gated_by_itself() {
         let failed: Vec<_> = comparison.models[0]
             .discrepancies
             .iter()
-            .filter(|d| !d.verdict.passed())
+            .filter(|d| d.verdict.failed())
             .map(|d| d.quantity.as_str())
             .collect();
         assert_eq!(failed, [quantity]);

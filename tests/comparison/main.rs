@@ -6,6 +6,7 @@ mod curves;
 mod discrepancy_budget;
 mod gate_mutations;
 mod gate_updates;
+mod gate_verdicts;
 mod harness;
 mod measured_signals;
 

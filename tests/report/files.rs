@@ -1,7 +1,7 @@
 //! Writing the report: complete or not at all, the same for the same results.
 
 use crate::synthetic_impact::{reduced, reference, scene};
-use impactcheck::comparison::compare_scene;
+use impactcheck::comparison::{GateRules, compare_scene};
 use impactcheck::report::{Attachments, Report, SceneReport, check_writable, write};
 use impactcheck::result::Outcome;
 use impactcheck::scene::Scene;
@@ -18,6 +18,7 @@ fn report<'a>(scene: &'a Scene, reference: &'a Outcome, reduced: &'a [Outcome]) 
     Report {
         scenes: vec![SceneReport { scene, comparison, reference, reduced, provenance, command, attachments }],
         seats: Vec::new(),
+        rules: GateRules::default(),
     }
 }
 

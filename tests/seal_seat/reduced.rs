@@ -4,7 +4,7 @@
 
 use assert_cmd::Command;
 use impactcheck::body::cache::Cache;
-use impactcheck::comparison::compare_scene;
+use impactcheck::comparison::{GateRules, Verdict, compare_scene};
 use impactcheck::kinds::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
 use impactcheck::report::{self, Cost, Report, SeatReport};
 use impactcheck::result::Outcome;
@@ -310,7 +310,7 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
     let good = Outcome { summary, history };
     let compared = compare_scene(&scene, &reference, std::slice::from_ref(&good));
     let failed: Vec<_> = compared.models[0].integrity.iter().filter(|c| !c.verdict.passed()).collect();
-    assert!(compared.verdict.passed(), "{failed:?} {:?}", compared.integrity);
+    assert_eq!(compared.verdict, Verdict::Pass, "{failed:?} {:?}", compared.integrity);
     assert_eq!(compared.models[0].gated(), 4);
     assert_eq!(compared.models[0].curves.len(), 10);
     type Change = fn(&mut Outcome<SeatQuantities>);
@@ -335,7 +335,7 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
     for (what, change) in changes {
         let mut bad = good.clone();
         change(&mut bad);
-        assert!(!compare_scene(&scene, &reference, &[bad]).verdict.passed(), "{what}");
+        assert_eq!(compare_scene(&scene, &reference, &[bad]).verdict, Verdict::Fail, "{what}");
     }
 }
 
@@ -359,7 +359,7 @@ fn report_shows_the_seat_among_the_scenes() {
         attachments: report::Attachments::default(),
     };
     let angle = seat.comparison.reference.quantities.sphere_angle.to_degrees();
-    let report = Report { scenes: Vec::new(), seats: vec![seat] };
+    let report = Report { scenes: Vec::new(), seats: vec![seat], rules: GateRules::default() };
     let document: Value = serde_json::from_str(&report::json(&report).expect("JSON")).expect("JSON");
     assert_eq!(document["verdict"], "pass");
     assert_eq!(document["scenes"][0]["scene"], "seal-seat-improved");
