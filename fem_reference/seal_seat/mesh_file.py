@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from pathlib import Path
 
 import meshio
@@ -16,6 +17,27 @@ from ..common.versions import versions
 from ..solid.mesh import mesh_report
 from .meshing import seat_mesh
 from .scene import SeatScene
+
+GEOMETRY = re.compile(rb"<!--geometry_hash ([^ ]+)-->")
+
+
+def record_geometry(path: Path, scene: SeatScene) -> None:
+    """Note in a .vtu file, as an XML comment, which geometry its mesh is one of."""
+    if scene.geometry_hash is not None:
+        head, newline, rest = path.read_bytes().partition(b"\n")
+        comment = f"<!--geometry_hash {scene.geometry_hash}-->".encode()
+        path.write_bytes(head + newline + comment + newline + rest)
+
+
+def check_geometry(path: Path, scene: SeatScene) -> None:
+    """Refuse the mesh of another geometry.
+
+    Raises:
+        SolverError: the file says that it is one.
+    """
+    noted = GEOMETRY.search(path.read_bytes())
+    if noted and scene.geometry_hash and noted[1].decode() != scene.geometry_hash:
+        raise SolverError(f"mesh {path} is not one of this seat: it was made for another geometry")
 
 
 def write_seat_mesh(path: Path, scene: SeatScene, resolution: str, size_factor: float) -> None:
@@ -34,6 +56,7 @@ def write_seat_mesh(path: Path, scene: SeatScene, resolution: str, size_factor: 
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         meshio.vtu.write(temporary, grid, binary=True, compression=None)
+        record_geometry(temporary, scene)
         document = {
             "schema_version": 1,
             "scene": scene.name,

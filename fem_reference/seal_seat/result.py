@@ -17,6 +17,7 @@ from ..common.versions import versions
 from ..solid.elasticity import write_fields
 from ..solid.memory import machine
 from ..solid.mesh import mesh_report
+from .mesh_file import record_geometry
 from .run import contact_duration
 from .scene import SeatScene
 from .solve import HISTORY_COLUMNS, Solution, compute, history, method, quantities, sampling
@@ -101,6 +102,7 @@ def _write(
         sample_interval=interval,
         stress_times=write_fields(folder, model, solution.recorder),
     )
+    record_geometry(folder / "mesh.vtu", scene)
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(
         scene,

@@ -332,6 +332,12 @@ def test_the_mesh_file_is_what_others_read(tmp_path: Path) -> None:
         middle = 0.5 * (grid.points[cells[:, a]] + grid.points[cells[:, b]])
         assert np.allclose(grid.points[cells[:, node]], middle, atol=1e-12)
     assert not list(tmp_path.glob("*partial*"))
+    # it says which geometry it is one of, and whoever has another one is told
+    own = run_program("modes", "--scene", path, "--count", "1", "--mesh", out)
+    assert own.returncode == 0, own.stderr
+    path.write_text(json.dumps(seat_document(True) | {"geometry_hash": "other"}), encoding="utf-8")
+    other = run_program("modes", "--scene", path, "--count", "1", "--mesh", out)
+    assert other.returncode == 12 and "made for another geometry" in other.stderr
     refused = run_program("mesh", "--scene", path, "--out", out, "--size-factor", "0.01")
     assert refused.returncode == 3 and "--size-factor is 0.01" in refused.stderr
 
