@@ -1,17 +1,14 @@
-"""What the summary and the provenance of all solid solutions have in common."""
+"""What the summary and the provenance of all solutions have in common."""
 
 from __future__ import annotations
 
 from datetime import UTC, datetime
 from typing import Any, Protocol
 
-import numpy as np
+from .series import MeshResult, Run, estimates, relative_error
+from .settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION, RESOLUTIONS
 
-from ..explicit.contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
-from ..plate_impact.axisymmetric_result import SCHEMA_VERSION, convergence_part
-from ..solid.loop import Loop
-from .series import MeshResult, Run, estimates
-from .settings import RESOLUTIONS
+SCHEMA_VERSION = 1
 
 
 class Described(Protocol):
@@ -32,22 +29,6 @@ class Described(Protocol):
     @property
     def raw(self) -> dict[str, Any]:
         """The scene as it was read."""
-
-
-class Remembering(Protocol):
-    """Loop and memory (bytes) of a solution."""
-
-    @property
-    def loop(self) -> Loop:
-        """At the end."""
-
-    @property
-    def memory_used(self) -> float:
-        """At most so far."""
-
-    @property
-    def memory_stated(self) -> float:
-        """Before the run."""
 
 
 class Verified(Run, Protocol):
@@ -77,13 +58,24 @@ class Verified(Run, Protocol):
     def critical_time_step(self) -> float:
         """S."""
 
-    @property
-    def sweeps_per_step(self) -> float:
-        """Of the contact solver."""
 
-    @property
-    def unconverged(self) -> int:
-        """Steps whose contact solver did not converge."""
+def _convergence(meshes: list[MeshResult], targeted: tuple[str, ...]) -> dict[str, Any]:
+    """What the meshes (finest first) say together, per quantity."""
+    return {
+        "rule": "least squares after Eca & Hoekstra 2014",
+        "meshes": [mesh.numbers for mesh in meshes],
+        "quantities": {
+            name: {
+                "values": [mesh.values[name] for mesh in meshes],
+                "order": estimate.order,
+                "extrapolated": estimate.extrapolated,
+                "scatter": estimate.scatter,
+                "band": estimate.band,
+            }
+            for name, estimate in estimates(meshes).items()
+        },
+        "relative_error": relative_error(meshes, targeted),
+    }
 
 
 def _residuals(run: Verified) -> dict[str, float]:
@@ -95,37 +87,27 @@ def _residuals(run: Verified) -> dict[str, float]:
     }
 
 
-def machine(versions: dict[str, str | None], comm: Any, solution: Remembering) -> dict[str, Any]:
-    """What a run needed of the machine: versions, processes, memory in bytes; its levels."""
-    return {
-        "nodes_per_level": list(solution.loop.levels),
-        "versions": versions,
-        "processes": comm.size,
-        "peak_memory": solution.memory_used,
-        "memory_stated": solution.memory_stated,
-    }
-
-
 def summary(
     scene: Described,
     resolution: str,
     run: Verified,
     meshes: list[MeshResult],
+    targeted: tuple[str, ...],
     solver: dict[str, Any],
     **special: Any,
 ) -> dict[str, Any]:
-    """The summary of a solid solution.
+    """The summary of a solution.
 
     Args:
         scene: what was solved.
         resolution: a key of `RESOLUTIONS`.
         run: of the finest mesh.
         meshes: finest first.
-        solver: versions, processes, memory.
+        targeted: quantities whose relative band counts.
+        solver: versions; levels, processes, memory.
         special: what only this kind of scene has.
     """
     found = estimates(meshes)
-    values = {name: np.array([mesh.values[name] for mesh in meshes]) for name in found}
     return {
         "schema_version": SCHEMA_VERSION,
         "scene": scene.name,
@@ -143,13 +125,11 @@ def summary(
         "in_contact_at_end": run.in_contact_at_end,
         "end_time": float(run.times[-1]),
         "uncertainty": {name: estimate.band for name, estimate in found.items()},
-        "convergence": convergence_part([mesh.numbers for mesh in meshes], values, found),
+        "convergence": _convergence(meshes, targeted),
         "solver": {
             "time_step": run.time_step,
             "critical_time_step": run.critical_time_step,
             "courant": run.time_step / run.critical_time_step,
-            "contact_sweeps_per_step": run.sweeps_per_step,
-            "contact_unconverged_steps": run.unconverged,
             **solver,
         },
         "residuals": _residuals(run),
@@ -166,7 +146,7 @@ def provenance(
     settings: dict[str, Any],
     **special: Any,
 ) -> dict[str, Any]:
-    """The provenance of a solid solution.
+    """The provenance of a solution.
 
     Args:
         scene: what was solved.

@@ -14,15 +14,15 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-fn fixture(name: &str) -> PathBuf {
+pub fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name)
 }
 
-fn scene() -> Scene {
+pub fn scene() -> Scene {
     Scene::read(fixture("seal-seat.toml")).expect("scene")
 }
 
-fn mesh() -> SeatMesh {
+pub fn mesh() -> SeatMesh {
     SeatMesh::open(&fixture("seal-seat-improved-coarse.vtu")).expect("mesh")
 }
 
@@ -143,6 +143,19 @@ fn zones_too_narrow_are_widened() {
 }
 
 #[test]
+fn a_node_that_stands_alone_in_its_zone_has_candidates_around_it() {
+    let scene = scene();
+    let setup = scene.seal_seat().expect("seal seat");
+    let narrow = Zones { ring: 1e-9, tip: 1e-9 };
+    let body = mesh().body(setup, &narrow, 1, &Cache::off()).expect("body");
+    for partner in [Partner::Sphere, Partner::Tip(0), Partner::Tip(1)] {
+        let offsets = body.candidates.iter().filter(|c| c.partner == partner).map(|c| c.offset);
+        let (inside, around): (Vec<f64>, Vec<f64>) = offsets.partition(|offset| *offset <= 1e-9);
+        assert!(!inside.is_empty() && around.len() >= 4, "{partner:?}: {inside:?} {around:?}");
+    }
+}
+
+#[test]
 fn candidates_lie_on_the_exact_surfaces() {
     let scene = scene();
     let setup = scene.seal_seat().expect("seal seat");
@@ -242,6 +255,31 @@ fn what_a_seal_seat_has_not_is_refused_in_one_sentence() {
         impactcheck(&["reduced", other.to_str().expect("path"), "--mesh", mesh], folder.path());
     assert_eq!(status, 12, "{error}");
     assert!(error.contains("not one of this seat"), "{error}");
+}
+
+#[test]
+fn the_mesh_of_another_design_is_refused_and_one_that_does_not_tell_is_warned_of() {
+    let folder = tempfile::tempdir().expect("folder");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // as another program would pass it on: without the description beside it
+    let mesh = folder.path().join("mesh.vtu");
+    std::fs::copy(root.join("meshes/seal-seat-improved.vtu"), &mesh).expect("copied");
+    let other = root.join("scenes/seal-seat-initial.toml");
+    let arguments = ["reduced", other.to_str().expect("path"), "--mesh", mesh.to_str().expect("path")];
+    let (status, output, error) = impactcheck(&arguments, folder.path());
+    assert_eq!((status, output.as_str()), (12, ""), "{error}");
+    assert!(error.contains("not one of this seat: it was made for another geometry"), "{error}");
+    let told = |mesh: &SeatMesh| {
+        let model = SeatModel::new(&scene(), Model::C, Some(4), mesh, &Cache::off()).expect("model");
+        model.run(1e-2).expect("run").warnings.join(" ")
+    };
+    assert!(told(&super::reduced::mesh()).contains("does not say which geometry"));
+    let text = std::fs::read_to_string(super::reduced::mesh().path()).expect("mesh");
+    let hash = scene().seal_seat().expect("seat").geometry_hash();
+    let own = folder.path().join("own.vtu");
+    let noted = text.replacen('\n', &format!("\n<!--geometry_hash {hash}-->\n"), 1);
+    std::fs::write(&own, noted).expect("written");
+    assert!(!told(&SeatMesh::open(&own).expect("mesh")).contains("geometry"));
 }
 
 /// A stand-in for a stored reference: model C with more modes, said to be finite elements.
