@@ -7,8 +7,11 @@ from typing import Any, Protocol
 
 from .series import MeshResult, Run, estimates, relative_error
 from .settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION, RESOLUTIONS
+from .uncertainty import Estimate
 
 SCHEMA_VERSION = 1
+OF_A_BODY = "first_frequency"
+"""The quantity that is a body's own, whatever an impact on it comes to."""
 
 
 class Described(Protocol):
@@ -47,10 +50,6 @@ class Verified(Run, Protocol):
         """Along z, N s."""
 
     @property
-    def in_contact_at_end(self) -> bool:
-        """Whether the run ended during a contact."""
-
-    @property
     def time_step(self) -> float:
         """S."""
 
@@ -59,8 +58,11 @@ class Verified(Run, Protocol):
         """S."""
 
 
-def _convergence(meshes: list[MeshResult], targeted: tuple[str, ...]) -> dict[str, Any]:
-    """What the meshes (finest first) say together, per quantity."""
+def _convergence(
+    meshes: list[MeshResult], found: dict[str, Estimate], targeted: tuple[str, ...]
+) -> dict[str, Any]:
+    """What the meshes (finest first) say together, per quantity that is determined."""
+    determined = set(targeted) <= set(found)
     return {
         "rule": "least squares after Eca & Hoekstra 2014",
         "meshes": [mesh.numbers for mesh in meshes],
@@ -72,9 +74,9 @@ def _convergence(meshes: list[MeshResult], targeted: tuple[str, ...]) -> dict[st
                 "scatter": estimate.scatter,
                 "band": estimate.band,
             }
-            for name, estimate in estimates(meshes).items()
+            for name, estimate in found.items()
         },
-        "relative_error": relative_error(meshes, targeted),
+        "relative_error": relative_error(meshes, targeted) if determined else None,
     }
 
 
@@ -98,6 +100,9 @@ def summary(
 ) -> dict[str, Any]:
     """The summary of a solution.
 
+    A run that ended during a contact has not determined what the impact comes to: those quantities
+    are null, and ``at_end`` says what they had come to.
+
     Args:
         scene: what was solved.
         resolution: a key of `RESOLUTIONS`.
@@ -107,7 +112,13 @@ def summary(
         solver: versions; levels, processes, memory.
         special: what only this kind of scene has.
     """
-    found = estimates(meshes)
+    values, found = meshes[0].values, estimates(meshes)
+    special = dict(special)
+    if run.in_contact_at_end:
+        special["at_end"] = {
+            name: {"value": value, "band": found[name].band} for name, value in values.items()
+        }
+        found = {OF_A_BODY: found[OF_A_BODY]}
     return {
         "schema_version": SCHEMA_VERSION,
         "scene": scene.name,
@@ -117,7 +128,7 @@ def summary(
         "model": None,
         "modes": None,
         "resolution": resolution,
-        **meshes[0].values,
+        **{name: value if name in found else None for name, value in values.items()},
         "energy_residual": run.energy_residual,
         "momentum_residual": run.momentum_residual,
         "steps": run.steps,
@@ -125,7 +136,7 @@ def summary(
         "in_contact_at_end": run.in_contact_at_end,
         "end_time": float(run.times[-1]),
         "uncertainty": {name: estimate.band for name, estimate in found.items()},
-        "convergence": _convergence(meshes, targeted),
+        "convergence": _convergence(meshes, found, targeted),
         "solver": {
             "time_step": run.time_step,
             "critical_time_step": run.critical_time_step,

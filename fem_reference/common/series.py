@@ -13,7 +13,7 @@ from typing import Any, Generic, Protocol, TypeVar, cast
 import numpy as np
 
 from .arrays import Floats
-from .errors import SolverError
+from .errors import SceneError, SolverError
 from .output import exclusive, result_folder, write_json
 from .progress import MeshOfSeries, Progress
 from .settings import Options, Settings, require_instants, require_share
@@ -49,6 +49,10 @@ class Run(Protocol):
     @property
     def energy_residual(self) -> float:
         """Of the energy ledger, relative."""
+
+    @property
+    def in_contact_at_end(self) -> bool:
+        """Whether the run ended during a contact, which leaves open what the impact comes to."""
 
 
 class Solved(Protocol):
@@ -132,7 +136,7 @@ def solve_series(
     `Options.target_error` needs. A series that was killed goes on from its files.
 
     Raises:
-        SceneError: an option is out of bounds.
+        SceneError: an option is out of bounds, or a band is asked for of what the run leaves open.
         RunError: a mesh could not be solved, or the result not be written.
     """
     progress = progress if progress is not None else Progress()
@@ -191,6 +195,11 @@ class Series(Generic[S]):
             aim = self.options.target_error
             if aim is None:
                 return solution, meshes
+            if solution.run.in_contact_at_end:
+                raise SceneError(
+                    "the run ends at run.end_time during a contact, which leaves open what the "
+                    f"band of {aim:g} is asked for; set a later end, or none"
+                )
             reached = relative_error(meshes, self.problem.targeted)
             if reached <= aim:
                 return solution, meshes

@@ -54,7 +54,12 @@ class Convergent:
             report("stepping", done, "half")
         row = np.full((3, 1), EXACT + 0.1 * factor**-self.order)
         run = SimpleNamespace(
-            times=np.arange(3.0), rows=row, steps=2, loop_seconds=0.0, energy_residual=0.0
+            times=np.arange(3.0),
+            rows=row,
+            steps=2,
+            loop_seconds=0.0,
+            energy_residual=0.0,
+            in_contact_at_end=self.cut,
         )
         self.led_by.append(lead.factor if lead is not None else None)
         return SimpleNamespace(run=run, dofs=21, factor=factor)

@@ -6,14 +6,14 @@ use impactcheck::body::solid::{Solid, TetMesh};
 use impactcheck::kinds::seal_seat::integrate::{Options, integrate};
 use impactcheck::kinds::seal_seat::integration::Integration;
 use impactcheck::kinds::seal_seat::system::System;
-use impactcheck::kinds::seal_seat::{SeatModel, Zones, candidates, supports};
-use impactcheck::result::SeatSummary;
+use impactcheck::kinds::seal_seat::{SeatModel, SeatQuantities, Zones, candidates, supports};
+use impactcheck::result::Summary;
 use impactcheck::scene::{Model, Scene, SealSeat};
 
 /// Of the energy at the start, at the default tolerance of 1e-3.
 const RESIDUAL: f64 = 1e-4;
 
-fn at(speed: f64) -> SeatSummary {
+fn at(speed: f64) -> Summary {
     let text = std::fs::read_to_string(fixture("seal-seat.toml")).expect("scene");
     let scene = Scene::parse("seat.toml", &text.replace("\"1 m/s\"", &speed.to_string())).expect("scene");
     assert_eq!(scene.seal_seat().expect("seat").actuator.speed, speed);
@@ -34,7 +34,7 @@ fn no_speed_makes_or_loses_energy() {
 /// the speed.
 #[test]
 fn slow_impacts_are_proportional_to_their_speed() {
-    let [slow, fast] = [1e-6, 1e-4].map(|speed| at(speed).quantities);
+    let [slow, fast] = [1e-6, 1e-4].map(|speed| SeatQuantities::of_table(&at(speed).quantities).expect("determined"));
     for (name, a, b) in [
         ("efficiency", slow.efficiency, fast.efficiency),
         ("angle", slow.sphere_angle, fast.sphere_angle),
