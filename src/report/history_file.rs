@@ -1,7 +1,7 @@
 //! A history as a file: CSV or Parquet, with the columns of a reference's history.
 
 use crate::error::{Error, Result};
-use crate::result::Curves;
+use crate::result::History;
 use parquet::basic::{Repetition, Type as Physical};
 use parquet::data_type::DoubleType;
 use parquet::errors::Result as Written;
@@ -53,7 +53,7 @@ impl std::str::FromStr for TableFormat {
 ///
 /// # Errors
 /// [`Error::Internal`] if it can't be written.
-pub fn history_file(history: &impl Curves, format: TableFormat) -> Result<Vec<u8>> {
+pub fn history_file(history: &History, format: TableFormat) -> Result<Vec<u8>> {
     match format {
         TableFormat::Csv => csv(history).map_err(|e| Error::Internal(format!("writing CSV: {e}"))),
         TableFormat::Parquet => {
@@ -63,22 +63,22 @@ pub fn history_file(history: &impl Curves, format: TableFormat) -> Result<Vec<u8
 }
 
 /// Name, unit and values of every column.
-fn columns<H: Curves>(history: &H) -> Vec<(&'static str, &'static str, &[f64])> {
-    let curves = H::NAMES.iter().filter_map(|(name, unit)| Some((*name, *unit, history.values(name)?)));
-    std::iter::once(("time", "s", history.time())).chain(curves).collect()
+fn columns(history: &History) -> Vec<(&'static str, &'static str, &[f64])> {
+    let curves = history.curves.iter().map(|curve| (curve.name, curve.unit, &curve.values[..]));
+    std::iter::once(("time", "s", &history.time[..])).chain(curves).collect()
 }
 
-fn csv(history: &impl Curves) -> std::result::Result<Vec<u8>, csv::Error> {
+fn csv(history: &History) -> std::result::Result<Vec<u8>, csv::Error> {
     let columns = columns(history);
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(columns.iter().map(|(name, ..)| name))?;
-    for i in 0..history.time().len() {
+    for i in 0..history.len() {
         writer.serialize(columns.iter().map(|(.., values)| values[i]).collect::<Vec<f64>>())?;
     }
     writer.into_inner().map_err(|e| e.into_error().into())
 }
 
-fn parquet(history: &impl Curves) -> Written<Vec<u8>> {
+fn parquet(history: &History) -> Written<Vec<u8>> {
     let columns = columns(history);
     let field = |name| {
         let field = Type::primitive_type_builder(name, Physical::DOUBLE);

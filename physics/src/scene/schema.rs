@@ -5,6 +5,7 @@ use super::check::MAX_NAME;
 use super::quantity::{Dimension, prefixes, symbols};
 use super::specification::{Alternative, Bound, Field, Kind, SCENE, TOLERANCES};
 use super::tolerances::{TERMS, gated_names, models};
+use crate::kinds::{self, KINDS};
 use serde_json::{Map, Value, json};
 
 /// The JSON schema (draft 2020-12) of scene files.
@@ -17,11 +18,11 @@ pub fn schema() -> Value {
     schema["title"] = json!("impactcheck scene");
     // What can have a tolerance depends on the scene's kind.
     schema["properties"][TOLERANCES.key] = described(json!({}), TOLERANCES.doc);
-    for (kind, seal_seat) in [("plate-impact", false), ("seal-seat", true)] {
-        let then = json!({ "properties": { TOLERANCES.key: tolerances(seal_seat) } });
+    for kind in KINDS {
+        let then = json!({ "properties": { TOLERANCES.key: tolerances(kind) } });
         if let Some(rules) = schema["allOf"].as_array_mut() {
             rules.push(json!({
-                "if": { "properties": { "kind": { "const": kind } }, "required": ["kind"] },
+                "if": { "properties": { "kind": { "const": kind.name() } }, "required": ["kind"] },
                 "then": then,
             }));
         }
@@ -148,18 +149,16 @@ fn quantity(dimension: Dimension, bound: Bound) -> Value {
 /// A pattern of the units that a quantity may have: single symbols of its dimension, and products of whatever symbols,
 /// which only arithmetic tells apart.
 fn units(dimension: Dimension) -> String {
-    let mut ways: Vec<String> = symbols(dimension)
-        .map(
-            |(symbol, prefixed)| {
-                if prefixed { format!("({})?{symbol}", prefixes().join("|")) } else { symbol.to_owned() }
-            },
-        )
-        .collect();
+    let prefix = prefixes().join("|");
+    let symbol = |(symbol, prefixed): (&str, bool)| {
+        if prefixed { format!("({prefix})?{symbol}") } else { symbol.to_owned() }
+    };
+    let mut ways: Vec<String> = symbols(dimension).map(symbol).collect();
     ways.push(r"[^0-9*/^\s]+\s*([*/^·⋅²³]|\s[^\s]).*".to_owned());
     ways.join("|")
 }
 
-fn tolerances(seal_seat: bool) -> Value {
+fn tolerances(kind: &dyn kinds::Kind) -> Value {
     let text_or_number = |low: Option<f64>| {
         let mut number = json!({ "type": "number" });
         if let Some(low) = low {
@@ -181,9 +180,9 @@ fn tolerances(seal_seat: bool) -> Value {
         { "type": "string" },
         { "type": "object", "properties": terms, "additionalProperties": false, "anyOf": bounds },
     ] });
-    let quantities: Map<String, Value> = gated_names(seal_seat).map(|n| (n, tolerance.clone())).collect();
+    let quantities: Map<String, Value> = gated_names(kind).map(|n| (n, tolerance.clone())).collect();
     let model = json!({ "type": "object", "properties": quantities, "additionalProperties": false });
     let models: Map<String, Value> =
-        models(seal_seat).iter().map(|m| (m.name.to_owned(), model.clone())).collect();
+        models(kind).iter().map(|m| (m.name.to_owned(), model.clone())).collect();
     json!({ "type": "object", "properties": models, "additionalProperties": false })
 }
