@@ -190,6 +190,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         losses: None,
         solver: None,
         integration_error: None,
+        truncation_error: None,
         choice: None,
         warnings: Vec::new(),
         samples: None,

@@ -157,6 +157,13 @@ impl System {
         }
     }
 
+    /// Number of elastic modes of the plate that move both faces the same way.
+    pub fn bending_modes(&self) -> usize {
+        let [outer, inner] = &self.approach;
+        let bends = |k: &usize| self.oscillators[*k].omega > 0.0 && outer[*k] * inner[*k] < 0.0;
+        (PLATE..self.size()).filter(bends).count()
+    }
+
     /// Number of oscillators.
     pub fn size(&self) -> usize {
         self.oscillators.len()

@@ -149,6 +149,10 @@ pub struct Summary<Q: Quantities = PlateQuantities> {
     /// contacts only, which amplify it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integration_error: Option<f64>,
+    /// Reduced models: estimated error for want of modes, the largest of efficiency, outer velocity and force peaks; the
+    /// efficiency's relative to at least 0.05, the velocity's to the impact speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub truncation_error: Option<f64>,
     /// Of a bender only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bender: Option<BenderSummary>,
@@ -203,6 +207,7 @@ impl<Q: Quantities> Summary<Q> {
             contact_pressure: None,
             losses: None,
             integration_error: None,
+            truncation_error: None,
             choice: None,
             uncertainty: BTreeMap::new(),
             convergence: None,

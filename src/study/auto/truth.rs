@@ -1,7 +1,7 @@
 //! What the models of a scene are really off by.
 
 use crate::error::Result;
-use crate::kinds::plate_impact::choice::largest_error;
+use crate::kinds::plate_impact::errors::largest_error;
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
 use crate::result::PlateQuantities;
 use crate::scene::{Model, Scene};

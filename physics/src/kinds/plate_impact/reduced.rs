@@ -1,7 +1,9 @@
 //! A reduced model of a scene: bodies reduced to modes, joined and integrated.
 
-use super::choice::{self, Cut};
+use super::choice;
 use super::rough::Rough;
+use super::trials::Cut;
+use super::truncation;
 use super::validity;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
@@ -114,7 +116,7 @@ impl Reduced {
     }
 
     /// The cheapest model and number of modes whose estimated error meets `tolerance`, or what comes nearest; see
-    /// [`Choice`]. The tolerance covers [`choice::COVERED`].
+    /// [`Choice`]. The tolerance covers [`super::errors::COVERED`].
     ///
     /// # Errors
     /// [`Error::Scene`] if the scene is no plate impact, [`Error::Solver`] for what no reduced model covers.
@@ -183,7 +185,7 @@ impl Reduced {
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let start = Instant::now();
         let result = self.integrate(&self.options(tolerance))?;
-        Ok(self.summary(&result, tolerance, start.elapsed().as_secs_f64()))
+        self.summary(&result, tolerance, start.elapsed().as_secs_f64())
     }
 
     /// Runs the impact for its results alone, as a series of many needs them.
@@ -237,11 +239,14 @@ impl Reduced {
         Options { tolerance, end_time: self.scene.run.end_time, sample_interval: None }
     }
 
-    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Summary {
+    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
         let system = &self.system;
+        let setup = self.scene.plate_impact()?;
+        let truncation = truncation::estimate(setup, self.model, system, self.scene.run.end_time)?;
         let unsure = result.error_estimate.filter(|error| *error > assured::ENOUGH * tolerance);
         let mut warnings = scene::doubts(&self.scene);
         warnings.extend(self.warnings.iter().cloned());
+        warnings.extend(truncation.warning);
         warnings.extend(unsure.map(|error| {
             format!(
                 "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
@@ -252,12 +257,13 @@ impl Reduced {
                 warnings.push(format!("the {body} body and the plate never touch"));
             }
         }
-        Summary {
+        Ok(Summary {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
             solve_seconds,
             integration_error: result.error_estimate,
+            truncation_error: Some(truncation.error),
             bender: system.drive.map(|drive| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
                 BenderSummary { strain_energy_efficiency: transmitted / drive.strain_energy, drive }
@@ -270,7 +276,7 @@ impl Reduced {
             warnings,
             choice: self.choice.clone(),
             ..Summary::of_reduced(&self.scene, self.model, system.modes, quantities(system, result))
-        }
+        })
     }
 }
 
