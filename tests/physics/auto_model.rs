@@ -128,7 +128,9 @@ fn a_looser_tolerance_never_takes_a_dearer_model_and_promises_are_kept_on_table_
 fn auto_has_the_first_mode_of_a_plate_that_bends_to_a_paraboloid_for_nothing() {
     let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
     for (edge, poisson_ratio) in [("simply-supported", -0.97), ("free", -0.995)] {
-        let auxetic = format!("[materials.auxetic]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = {poisson_ratio}\ndensity = \"7780 kg/m^3\"\n\n[plate]");
+        let auxetic = format!(
+            "[materials.auxetic]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = {poisson_ratio}\ndensity = \"7780 kg/m^3\"\n\n[plate]"
+        );
         let plate = "edge      = \"clamped\"\nmaterial  = \"steel\"";
         assert!(text.contains(plate));
         let text = text

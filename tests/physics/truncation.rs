@@ -33,8 +33,7 @@ fn kirchhoff_models_tell_their_distance_from_all_modes_of_their_plate() {
         ("1 m", Model::B, 16),
         ("1 m", Model::B, 64),
     ] {
-        let (estimated, warned, exact) =
-            estimated_and_true(&scene(radius), model, modes, (Model::B, 240));
+        let (estimated, warned, exact) = estimated_and_true(&scene(radius), model, modes, (Model::B, 240));
         assert_relative_eq!(estimated, exact, max_relative = 0.05, epsilon = 2e-3);
         assert_eq!(warned, estimated > 0.01, "{radius}, model {model} with {modes} modes");
     }
@@ -46,7 +45,10 @@ fn model_c_tells_what_its_modes_lack() {
     for (radius, modes) in [("33 mm", 2), ("33 mm", 4), ("33 mm", 16), ("0.65 m", 48), ("0.65 m", 64)] {
         let (estimated, warned, exact) =
             estimated_and_true(&scene(radius), Model::C, modes, (Model::C, 2 * modes + 8));
-        assert!(exact <= estimated && estimated <= 6.0 * exact + 1e-3, "{radius}, {modes}: {estimated} for {exact}");
+        assert!(
+            exact <= estimated && estimated <= 6.0 * exact + 1e-3,
+            "{radius}, {modes}: {estimated} for {exact}"
+        );
         assert_eq!(warned, estimated > 0.01);
     }
     let default = Reduced::new(&scene("0.65 m"), Model::C, None).unwrap().run(1e-6).unwrap();

@@ -113,11 +113,7 @@ impl Search {
     }
 
     /// The smallest number of bending modes of model C that is enough, at most `most`, by bisection, and its estimate.
-    fn continuum(
-        &mut self,
-        trials: &Trials,
-        reference: Option<&PlateQuantities>,
-    ) -> (usize, Option<f64>) {
+    fn continuum(&mut self, trials: &Trials, reference: Option<&PlateQuantities>) -> (usize, Option<f64>) {
         let most = trials.waves.modes();
         let floor = self.floor.unwrap_or(self.tolerance);
         // what the floor leaves; where it leaves nothing, so much that the modes hardly matter beside it

@@ -68,16 +68,12 @@ pub(super) fn estimate(
     Ok(Truncation { error, warning })
 }
 
-fn warning(
-    model: Model,
-    modes: usize,
-    error: f64,
-    quantity: Option<&str>,
-    enough: Option<usize>,
-) -> String {
+fn warning(model: Model, modes: usize, error: f64, quantity: Option<&str>, enough: Option<usize>) -> String {
     let most = quantity.map_or(String::new(), |name| format!(", most of all {name}"));
     let remedy = match (model, enough) {
-        (Model::A, Some(enough)) => format!("model B with {enough} modes is within 1 % of all modes of its plate"),
+        (Model::A, Some(enough)) => {
+            format!("model B with {enough} modes is within 1 % of all modes of its plate")
+        }
         (Model::B, Some(enough)) => format!("{enough} modes are enough for 1 % (--modes {enough})"),
         (Model::C, Some(enough)) => format!("about {enough} modes are enough for 1 % (--modes {enough})"),
         (_, None) => "more than 192 modes are needed for 1 %".to_owned(),
