@@ -300,6 +300,8 @@ impl State {
 
 #[cfg(test)]
 mod tests {
+    use super::super::PatchTable;
+    use super::super::RADII;
     use super::*;
     use approx::assert_relative_eq;
 
@@ -307,8 +309,23 @@ mod tests {
         [Hertz { stiffness: 1.5e10, tip_radius: 0.01 }, Hertz { stiffness: 0.9e10, tip_radius: 0.005 }];
 
     fn constant(flexibility: [[f64; 2]; 2]) -> Residual {
-        Residual { flexibility, growth: [[0.0; 2]; 2] }
+        Residual::new(&PatchFlexibility::constant(flexibility), &LAWS)
     }
+
+    /// A residual that changes with the patches and whose table reaches to approaches of `depth` m.
+    fn varying(depth: f64) -> Residual {
+        let own = |i: usize, x: f64| [2e-9, 1e-9][i] / (1.0 + [0.3, 0.5][i] * x) - 0.4e-9;
+        let mutual = |x: f64, y: f64| 6e-10 / (1.0 + 0.2 * x + 0.4 * y);
+        let square = RADII.map(|r| r * r);
+        let table = PatchTable {
+            own: [0, 1].map(|i| square.map(|x| own(i, x))),
+            mutual: square.map(|x| square.map(|y| mutual(x, y))),
+        };
+        let patch = LAWS.map(|law| (law.tip_radius * depth).sqrt());
+        Residual::new(&PatchFlexibility::through(&table, patch), &LAWS)
+    }
+
+    const APPROACHES: [[f64; 2]; 5] = [[8e-6, 5e-6], [8e-6, -1e-6], [-2e-6, 3e-6], [4e-5, 6e-5], [1e-9, 1e-12]];
 
     #[test]
     fn solution_satisfies_the_system_for_every_sign_of_the_residual() {
@@ -331,34 +348,24 @@ mod tests {
         }
     }
 
-    /// Work along any path of forces is the energy's change: the approaches derive from a potential.
+    /// The forces are the derivatives of the strain energy by the approaches, within the table and as punches beyond it.
     #[test]
-    fn approaches_are_the_energys_derivatives_by_the_forces_whatever_grows_with_the_patch() {
-        let residual = Residual {
-            flexibility: [[2e-9, -6e-10], [-6e-10, 1e-9]],
-            growth: [[-3e-5, 4e-5], [-2e-5, 6e-5]],
-        };
-        let energy = |f: [f64; 2]| residual.complementary_energy(f, residual.patches(&LAWS, f).0);
-        for y in [[8e-6, 5e-6], [8e-6, -1e-6], [-1e-6, 3e-6]] {
-            let (p, f) = residual.solve(&LAWS, y, y).unwrap();
-            let local = residual.local_approach(&LAWS, y, f);
-            let work = f[0] * y[0].max(0.0) + f[1] * y[1].max(0.0);
-            assert_relative_eq!(
-                residual.energy(f, residual.patches(&LAWS, f).0) + energy(f),
-                work,
-                max_relative = 1e-9
-            );
-            for i in 0..2 {
-                assert_eq!(f[i] > 0.0, local[i] > 0.0);
-                if f[i] > 0.0 {
-                    let step = 1e-5 * f[i];
-                    let by = |s: f64| {
-                        let mut g = f;
-                        g[i] += s;
-                        energy(g)
+    fn work_of_the_forces_is_the_change_of_the_energy() {
+        for depth in [1e-5, 1e-6] {
+            let residual = varying(depth);
+            for y in APPROACHES {
+                let (p, f) = residual.solve(&LAWS, y, y).unwrap();
+                let beyond = (0..2).any(|i| p[i] > residual.largest[i]);
+                assert_eq!(beyond, depth == 1e-6 && y[0].max(y[1]) > 1e-5, "{y:?} {p:?}");
+                for i in (0..2).filter(|i| f[*i] > 0.0) {
+                    let at = |step: f64| {
+                        let mut y = y;
+                        y[i] += step;
+                        residual.energy(&LAWS, residual.solve(&LAWS, y, y).unwrap().0)
                     };
-                    assert_relative_eq!((by(step) - by(-step)) / (2.0 * step), y[i], max_relative = 1e-8);
-                    assert_relative_eq!(local[i], p[i], max_relative = 1e-12);
+                    let step = 1e-4 * y[i];
+                    let per_approach = (at(step) - at(-step)) / (2.0 * step);
+                    assert_relative_eq!(per_approach, f[i], epsilon = 1e-9 * (f[0] + f[1]), max_relative = 1e-6);
                 }
             }
         }
@@ -366,23 +373,22 @@ mod tests {
 
     #[test]
     fn rates_are_the_differences_of_neighbouring_states() {
-        let residual = Residual {
-            flexibility: [[2e-9, -6e-10], [-6e-10, 1e-9]],
-            growth: [[-3e-5, 4e-5], [-2e-5, 6e-5]],
-        };
-        for y in [[8e-6, 5e-6], [8e-6, -1e-6]] {
-            let rate = [0.3, -0.2];
-            let at = |t: f64| {
-                let y = [y[0] + t * rate[0], y[1] + t * rate[1]];
-                residual.solve(&LAWS, y, y).unwrap()
-            };
-            let (p_rate, f_rate) = residual.rates(&LAWS, at(0.0).0, rate);
-            let t = 1e-10;
-            let ((p_after, f_after), (p_before, f_before)) = (at(t), at(-t));
-            for i in 0..2 {
-                assert_relative_eq!((p_after[i] - p_before[i]) / (2.0 * t), p_rate[i], max_relative = 1e-5);
-                let by_difference = (f_after[i] - f_before[i]) / (2.0 * t);
-                assert_relative_eq!(by_difference, f_rate[i], epsilon = 1.0, max_relative = 1e-5);
+        for depth in [1e-5, 1e-6] {
+            let residual = varying(depth);
+            for y in [[8e-6, 5e-6], [8e-6, -1e-6], [6e-5, 5e-5]] {
+                let rate = [0.3, -0.2];
+                let at = |t: f64| {
+                    let y = [y[0] + t * rate[0], y[1] + t * rate[1]];
+                    residual.solve(&LAWS, y, y).unwrap()
+                };
+                let (p_rate, f_rate) = residual.rates(&LAWS, at(0.0).0, rate);
+                let t = 1e-10;
+                let ((p_after, f_after), (p_before, f_before)) = (at(t), at(-t));
+                for i in 0..2 {
+                    assert_relative_eq!((p_after[i] - p_before[i]) / (2.0 * t), p_rate[i], max_relative = 1e-5);
+                    let by_difference = (f_after[i] - f_before[i]) / (2.0 * t);
+                    assert_relative_eq!(by_difference, f_rate[i], epsilon = 1.0, max_relative = 1e-5);
+                }
             }
         }
     }
@@ -400,5 +406,24 @@ mod tests {
         // delta - |R| k delta^(3/2) has a maximum far below y
         let residual = constant([[-1e-6, 0.0], [0.0, 0.0]]);
         assert_eq!(residual.solve(&LAWS, [1e-4, -1.0], [1e-6, -1.0]), None);
+    }
+
+    /// With a table there is an equilibrium, and one only, whatever the table says.
+    #[test]
+    fn forces_grow_with_the_approaches_without_end_whatever_the_table() {
+        for shrinking in [0.0, 1.0, 10.0, 100.0] {
+            let square = RADII.map(|r| r * r);
+            let own = square.map(|x| -shrinking * 1e-10 * (1.0 + x));
+            let table = PatchTable { own: [own; 2], mutual: square.map(|_| square.map(|x| 1e-10 * x)) };
+            let patch = LAWS.map(|law| (law.tip_radius * 1e-5).sqrt());
+            let residual = Residual::new(&PatchFlexibility::through(&table, patch), &LAWS);
+            let mut before = [0.0; 2];
+            for n in 1..400 {
+                let y = 1e-6 * f64::from(n);
+                let (_, f) = residual.solve(&LAWS, [y; 2], [y; 2]).unwrap();
+                assert!(f[0] > before[0] && f[1] > before[1], "{shrinking} {y} {f:?}");
+                before = f;
+            }
+        }
     }
 }

@@ -60,7 +60,7 @@ impl ContinuumPlate {
     pub fn new(plate: &Plate, patch_radius: [f64; 2], modes: usize, options: &MeshOptions) -> Result<Self> {
         options.check()?;
         for a in patch_radius {
-            check_patch(a, plate.radius, "the plate's radius")?;
+            check_patch(a, 0.5 * plate.radius, "half the plate's radius")?;
         }
         let mesh = plate_mesh(plate, Some(patch_radius[0].min(patch_radius[1])), modes, options);
         let halves = Halves::new(plate, &mesh)?;

@@ -181,7 +181,7 @@ impl Trials<'_> {
 
     /// Model C with a layer in the place of the continuum.
     fn continuum(&self, modes: usize) -> Result<PlateQuantities> {
-        let plate = validity::tempered(self.layer.modal_body(modes), self.setup, &self.rough);
+        let plate = self.layer.modal_body(modes, self.rough.slow());
         self.run(plate, modes, self.tips)
     }
 

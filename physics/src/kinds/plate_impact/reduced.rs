@@ -23,7 +23,7 @@ use crate::result::ContactPressure;
 use crate::result::Outcome;
 use crate::result::PlateQuantities;
 use crate::result::Summary;
-use crate::scene::{self, Edge, Material, Model, PlateImpact, Scene, Shape};
+use crate::scene::{self, Edge, MAX_MODES, Material, Model, PlateImpact, Scene, Shape};
 use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
@@ -101,6 +101,9 @@ impl Reduced {
                 return Err(Error::Usage(format!("--modes {n}: model A has exactly one mode; use model B")));
             }
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
+            (_, Some(n)) if n > MAX_MODES => {
+                return Err(Error::Usage(format!("--modes {n}: at most {MAX_MODES} modes are possible")));
+            }
             (_, modes) => modes.or(scene.reduced.modes),
         };
         let built = match model {
@@ -346,7 +349,7 @@ fn kirchhoff_plate(
 /// Model C.
 fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<Built> {
     let rigid = usize::from(setup.plate.edge == Edge::Free);
-    let plate = validity::tempered(continuum_plate(setup, wanted, rough, cache)?, setup, rough);
+    let plate = continuum_plate(setup, wanted, rough, cache)?;
     let elastic = plate.omega.len() - rigid;
     let mesh = MeshOptions::default();
     let shapes = |radii: &[f64]| {
@@ -381,11 +384,11 @@ fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &C
     let mesh = MeshOptions::default();
     let build = |modes| cached::plate_in(cache, &setup.plate, rough.patch_radius, modes, &mesh);
     match wanted {
-        Wanted::Modes(modes) => Ok(build(modes)?.modal_body(modes)),
+        Wanted::Modes(modes) => Ok(build(modes)?.modal_body(modes, rough.slow())),
         Wanted::Below(cut) => {
             let plate = build(cut.modes)?;
             let below = plate.omega.iter().filter(|omega| **omega < cut.omega).count();
-            Ok(plate.modal_body(below.clamp(1, cut.modes)))
+            Ok(plate.modal_body(below.clamp(1, cut.modes), rough.slow()))
         }
         Wanted::Estimate => {
             let mut most = DEFAULT_MODES;
@@ -393,7 +396,7 @@ fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &C
                 let plate = build(most)?;
                 let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
                 if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
-                    return Ok(plate.modal_body(modes));
+                    return Ok(plate.modal_body(modes, rough.slow()));
                 }
                 most *= 2;
             }

@@ -13,15 +13,12 @@
 //! as wide as the plate is thick it is not.
 
 use super::rough::Rough;
-use crate::body::ModalBody;
 use crate::scene::{Model, PlateImpact};
 
 /// Patch radius over the plate's thickness, and the error of the force peaks found up to it.
 const MEASURED: [(f64, f64); 4] = [(0.46, 0.0022), (0.52, 0.005), (0.70, 0.006), (1.04, 0.15)];
 /// Largest patch radius over the plate's thickness at which the force peaks are within 0.5 % of the reference.
 const LARGEST_PATCH: f64 = 0.55;
-/// Largest change of the relative curvature of a contact by its own force: beyond it the contacts may have no equilibrium.
-const LARGEST_CURVATURE: f64 = 1.0;
 
 /// Relative error of the force peaks that model C was found to have with contact patches of the radii `patch` in m on a plate of
 /// `thickness` m, linear between what was measured; `None` beyond.
@@ -34,28 +31,6 @@ pub(super) fn measured_error(patch: [f64; 2], thickness: f64) -> Option<f64> {
         let [(from, low), (to, high)] = [pair[0], pair[1]];
         low + (high - low) * (ratio - from) / (to - from)
     })
-}
-
-/// `plate` with its growth with the patches reduced, where it is too strong to be true, to what the contact stands;
-/// at the patches of the impact the residual flexibility stays.
-pub(super) fn tempered(mut plate: ModalBody, setup: &PlateImpact, rough: &Rough) -> ModalBody {
-    let tip = [setup.outer.shape.tip_radius(), setup.inner.shape.tip_radius()];
-    let curvature =
-        |i: usize| (5.0 * plate.patch_growth[i][i] * tip[i] * rough.force_peak[i]).abs() / LARGEST_CURVATURE;
-    let excess = curvature(0).max(curvature(1));
-    if excess <= 1.0 {
-        return plate;
-    }
-    let growth = plate.patch_growth;
-    let square = rough.patch_radius.map(|a| a * a);
-    for i in 0..2 {
-        for j in 0..2 {
-            let cut = 1.0 - 1.0 / excess;
-            plate.patch_growth[i][j] -= cut * growth[i][j];
-            plate.residual[i][j] += cut * (growth[i][j] * square[i] + growth[j][i] * square[j]);
-        }
-    }
-    plate
 }
 
 /// What a user has to know before relying on model C of `setup`: one sentence per reason, none if there is no reason.
