@@ -8,8 +8,10 @@ import logging
 import sys
 from pathlib import Path
 
-from .errors import RunError, SceneError, SolverError
-from .progress import Progress
+from .common.errors import RunError, SceneError, SolverError
+from .common.progress import Progress
+from .common.reader import read_document
+from .kinds import commands_of
 
 RESOLUTION_NAMES = ("coarse", "paper", "fine")
 
@@ -83,77 +85,32 @@ def _parser() -> argparse.ArgumentParser:
 def _run(arguments: argparse.Namespace) -> None:
     # Only `versions` must work without the finite-element modules: import late.
     if arguments.command == "versions":
-        from .versions import versions
+        from .common.versions import versions
 
         print(json.dumps(versions(), indent=2))
         return
-    from .scene import parse_scene, read_document
-
     try:
         if arguments.command == "bands":
-            from .truth import report
+            from .studies.bands import report
 
             if not report(arguments.scene, arguments.out, Progress()):
                 raise SolverError("in some quantity fewer than nine of ten scenes keep their band")
             return
+        if arguments.command == "cost":
+            from .studies.cost import report_cost
+
+            report_cost(arguments.scene, arguments.out)
+            return
         document = read_document(arguments.scene)
-        if arguments.command == "solve" and isinstance(document, dict):
-            from .output import require_replaceable
+        commands = commands_of(document)
+        if arguments.command not in commands:
+            name = document["kind"]
+            raise SceneError(f"{arguments.command} is not for scenes of kind {name!r}")
+        if arguments.command == "solve":
+            from .common.output import require_replaceable
 
             require_replaceable(arguments.out, document, arguments.replace)
-        if isinstance(document, dict) and document.get("kind") == "seal-seat":
-            from .seal_seat.command import run
-
-            run(document, arguments)
-            return
-        if arguments.command == "mesh":
-            raise SceneError("mesh is for scenes of kind 'seal-seat'")
-        scene = parse_scene(document)
-        if arguments.command == "cost":
-            from .cost import cost
-
-            print(json.dumps(cost(scene, arguments.out, Progress(sys.stderr))["limits"], indent=2))
-        elif arguments.command == "modes":
-            from .meshing import modal_plate_mesh
-            from .modal import plate_modes
-
-            if arguments.count < 1:
-                raise SolverError(f"--count is {arguments.count}; it must be at least 1")
-            mesh = modal_plate_mesh(scene.plate)
-            found = plate_modes(scene.plate, mesh, arguments.count)
-            print(
-                json.dumps(
-                    {
-                        "schema_version": 1,
-                        "scene": scene.name,
-                        "modes": [
-                            {"frequency": mode.frequency, "longitudinal": mode.longitudinal}
-                            for mode in found
-                        ],
-                    },
-                    indent=2,
-                )
-            )
-        elif scene.geometry == "solid":
-            from .solid.command import solve_solid
-
-            solve_solid(scene, arguments)
-        else:
-            if arguments.np > 1:
-                raise SolverError(
-                    f"--np is {arguments.np}; an axisymmetric reference runs as one process"
-                )
-            from .estimate import field_times
-            from .result import solve
-
-            solve(
-                scene,
-                arguments.out,
-                arguments.resolution,
-                courant=arguments.courant,
-                stress_times=(*arguments.stress_at, *field_times(scene, arguments.fields)),
-                target_error=arguments.target_error,
-            )
+        commands[arguments.command](document, arguments)
     except ImportError as error:
         raise SolverError(
             f"a Python module is missing: {error}; install dolfinx, gmsh, scipy and meshio"

@@ -6,37 +6,23 @@ import argparse
 import json
 from typing import Any
 
-from ..errors import SceneError, SolverError
-from .scene import SeatScene, parse_seat_scene
+from ..common.errors import SolverError
+from .scene import parse_seat_scene
 
 
-def run(document: Any, arguments: argparse.Namespace) -> None:
-    """Run a command for a decoded ``scene.json``.
+def _mesh(document: Any, arguments: argparse.Namespace) -> None:
+    from .mesh_file import write_seat_mesh
 
-    Raises:
-        SceneError: the scene is not valid, or the command is not for this kind.
-        RunError: the command failed.
-    """
     scene = parse_seat_scene(document)
-    if arguments.command == "mesh":
-        from .mesh_file import write_seat_mesh
-
-        write_seat_mesh(arguments.out, scene, arguments.resolution, arguments.size_factor)
-        print(json.dumps({"mesh": str(arguments.out)}))
-        return
-    if arguments.command == "solve":
-        _solve(scene, arguments)
-        return
-    if arguments.command == "modes":
-        _modes(scene, arguments)
-        return
-    raise SceneError(f"{arguments.command} is not for scenes of kind 'seal-seat'")
+    write_seat_mesh(arguments.out, scene, arguments.resolution, arguments.size_factor)
+    print(json.dumps({"mesh": str(arguments.out)}))
 
 
-def _modes(scene: SeatScene, arguments: argparse.Namespace) -> None:
+def _modes(document: Any, arguments: argparse.Namespace) -> None:
     from .meshing import seat_mesh
     from .modal import read_mesh, seat_modes
 
+    scene = parse_seat_scene(document)
     if arguments.count < 1:
         raise SolverError(f"--count is {arguments.count}; it must be at least 1")
     mesh = read_mesh(arguments.mesh) if arguments.mesh else seat_mesh(scene)
@@ -44,13 +30,18 @@ def _modes(scene: SeatScene, arguments: argparse.Namespace) -> None:
     print(json.dumps({"schema_version": 1, "scene": scene.name, "modes": found}, indent=2))
 
 
-def _solve(scene: SeatScene, arguments: argparse.Namespace) -> None:
-    from ..solid.command import in_processes
+def _solve(document: Any, arguments: argparse.Namespace) -> None:
+    from ..common.processes import in_processes
+
+    scene = parse_seat_scene(document)
 
     def work(comm: Any) -> None:
-        from ..solid.series import Options
+        from ..common.series import Options
         from .result import solve
 
         solve(scene, arguments.out, arguments.resolution, comm, Options.of(arguments))
 
     in_processes(arguments, work)
+
+
+COMMANDS = {"solve": _solve, "modes": _modes, "mesh": _mesh}

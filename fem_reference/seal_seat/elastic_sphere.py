@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh import Floats, Ints
+from ..common.arrays import Floats, Ints
 from ..solid.mesh import TetMesh, surface
 from ..solid.model import project
 from .scene import SeatScene

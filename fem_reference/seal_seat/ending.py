@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from ..mesh import Floats
-from ..solid.ending import no_further_contact
+from ..common.arrays import Floats
+from ..explicit.ending import no_further_contact
+from ..explicit.spectrum import conjugate_gradients, free_components
 from ..solid.loop import Energies, Loop
 from ..solid.model import nodal_areas
-from ..solid.spectrum import conjugate_gradients, free_components
 from .model import ELASTIC_SPHERE, LEFT, RIGHT, SEAT, Patch, SeatModel
 from .motion import sphere_motion
 from .scene import SeatScene

@@ -10,11 +10,11 @@ from typing import Any
 import meshio
 import numpy as np
 
-from ..errors import SceneError, SolverError
-from ..output import write_json
-from ..settings import RESOLUTIONS
+from ..common.errors import SceneError, SolverError
+from ..common.output import write_json
+from ..common.settings import RESOLUTIONS
+from ..common.versions import versions
 from ..solid.mesh import TetMesh, edge_lengths, qualities
-from ..versions import versions
 from .meshing import seat_mesh
 from .scene import SeatScene
 

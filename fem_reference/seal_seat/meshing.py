@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import gmsh
 import numpy as np
 
-from ..errors import SolverError
-from ..mesh import Floats, Ints
+from ..common.arrays import Floats, Ints
+from ..common.errors import SolverError
 from ..solid.collapse import collapse_short_edges
 from ..solid.mesh import TetMesh, check_elements, tetrahedra
 from ..solid.meshing import generate

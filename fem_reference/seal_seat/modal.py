@@ -9,8 +9,8 @@ import meshio
 import numpy as np
 import scipy.sparse
 
-from ..errors import SceneError, SolverError
-from ..mesh import Floats
+from ..common.arrays import Floats
+from ..common.errors import SceneError, SolverError
 from ..solid.elasticity import Assembly, lumped_mass
 from ..solid.mesh import TetMesh, check_elements
 from .model import seat_model
@@ -48,7 +48,7 @@ def seat_modes(scene: SeatScene, mesh: TetMesh, count: int) -> Floats:
     """
     from slepc4py import SLEPc
 
-    from ..fenicsx import alone, petsc_matrix, petsc_rows
+    from ..common.fenicsx import alone, petsc_matrix, petsc_rows
 
     body = seat_model(scene, mesh).model.elastic[0]
     assembly = Assembly([mesh], [body.material], alone())

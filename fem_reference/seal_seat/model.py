@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import SolverError
-from ..mesh import Floats, Ints
+from ..common.arrays import Floats, Ints
+from ..common.errors import SolverError
 from ..solid.mesh import TetMesh, surface
 from ..solid.model import (
     Contact,

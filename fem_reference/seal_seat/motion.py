@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..mesh import Floats
+from ..common.arrays import Floats
 from ..solid.loop import Loop
 from .elastic_sphere import sphere_pairs
 from .model import ELASTIC_SPHERE, LEFT, RIGHT, SeatModel

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from ..output import write_json
-from ..progress import Progress
-from ..settings import RESOLUTIONS
-from ..solid import document
+from ..common import document
+from ..common.output import write_json
+from ..common.progress import Progress
+from ..common.series import MeshResult, Options, Problem, solve_series
+from ..common.settings import RESOLUTIONS
+from ..common.uncertainty import curve_band
+from ..common.versions import versions
 from ..solid.fields import write_frames, write_mesh
-from ..solid.series import MeshResult, Options, Problem, solve_series
-from ..uncertainty import curve_band
-from ..versions import versions
 from .mesh_file import mesh_report
 from .run import contact_duration
 from .scene import SeatScene
@@ -85,7 +85,7 @@ def _write(
     meshes: list[MeshResult],
     comm: Any,
 ) -> None:
-    from ..fenicsx import alone
+    from ..common.fenicsx import alone
 
     run, model = solution.run, solution.seat.model
     found = versions()

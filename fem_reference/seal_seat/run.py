@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import SolverError
-from ..estimate import hertz_stiffness
-from ..levels import MOST_LEVELS
-from ..mesh import Floats
-from ..solid.checkpoint import Checkpoint
+from ..common.arrays import Floats
+from ..common.errors import SolverError
+from ..explicit.checkpoint import Checkpoint
+from ..explicit.levels import MOST_LEVELS
+from ..explicit.supervision import Course, Plan, supervise
+from ..plate_impact.estimate import hertz_stiffness
 from ..solid.fields import Frames
 from ..solid.loop import Energies, Loop
-from ..solid.supervision import Course, Plan, supervise
 from .ending import Ending
 from .model import FRACTION, LEFT, RIGHT, SEAT, SeatModel
 from .motion import pair_again, sphere_motion

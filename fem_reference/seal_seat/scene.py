@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import SceneError
-from ..mesh import Floats
-from ..scene import Material, Reader, read_material
+from ..common.arrays import Floats
+from ..common.bodies import Material, read_material
+from ..common.errors import SceneError
+from ..common.reader import Reader
 
 KIND = "seal-seat"
 

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from ..mesh import Floats
-from ..output import SAMPLES
-from ..resonance import stable_run
+from ..common.arrays import Floats
+from ..common.output import SAMPLES
+from ..common.series import Recorder, Report, Settings
+from ..explicit.resonance import stable_run
+from ..explicit.spectrum import first_frequency
 from ..solid.loop import Loop, make_loop
 from ..solid.memory import memory_needed, peak_memory, require_memory
-from ..solid.series import Recorder, Report, Settings
-from ..solid.spectrum import first_frequency
 from .meshing import seat_mesh, sphere_mesh
 from .model import SeatModel, seat_model
 from .run import SeatRun, integrate

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..mesh import Floats, Ints
+from ..common.arrays import Floats, Ints
 from .mesh import MINIMUM_QUALITY, edge_lengths, qualities
 
 LARGEST_CHANGE = 1e-6

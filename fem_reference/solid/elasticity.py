@@ -11,10 +11,10 @@ import scipy.sparse
 import ufl
 from scipy.spatial import cKDTree
 
-from ..errors import SolverError
-from ..fenicsx import TetDomain, petsc_rows
-from ..mesh import Floats, Ints
-from ..scene import Material
+from ..common.arrays import Floats, Ints
+from ..common.bodies import Material
+from ..common.errors import SolverError
+from ..common.fenicsx import TetDomain, petsc_rows
 from .mesh import TetMesh, scatter_sum, volumes
 
 STRESS_COMPONENTS = (

@@ -9,8 +9,8 @@ from typing import Any
 import meshio
 import numpy as np
 
-from ..mesh import Floats
-from ..output import write_series
+from ..common.arrays import Floats
+from ..common.output import write_series
 from .elasticity import STRESS_COMPONENTS, cell_stress, von_mises
 from .loop import Loop
 from .model import Model

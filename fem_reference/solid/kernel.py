@@ -6,8 +6,8 @@ import ctypes
 from pathlib import Path
 from typing import Any
 
-from ..errors import SolverError
-from ..kernel import compiled
+from ..common.errors import SolverError
+from ..explicit.kernel import compiled
 
 MAX_INTERVALS = 256
 FACET_NODES = 6

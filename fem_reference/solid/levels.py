@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..levels import fastest_levels, graded_levels
-from ..mesh import Floats, Ints
-from ..scene import Material
+from ..common.arrays import Floats, Ints
+from ..common.bodies import Material
+from ..explicit.levels import fastest_levels, graded_levels
 from .elasticity import LUMPED_SHARES
 from .mesh import EDGES, TetMesh, volumes
 from .model import Model

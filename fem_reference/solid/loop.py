@@ -19,14 +19,14 @@ import numpy.typing as npt
 import scipy.sparse
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from ..fenicsx import block_matrix, block_rows, petsc_rows, petsc_vectors
-from ..mesh import Floats, Ints
+from ..common.arrays import Floats, Ints
+from ..common.fenicsx import block_matrix, block_rows, petsc_rows, petsc_vectors
+from ..explicit.problem import Arrays, ContactProblem
 from . import kernel
 from .elasticity import Assembly, lumped_mass
 from .levels import model_levels
 from .mesh import scatter_sum
 from .model import Model
-from .problem import Arrays, ContactProblem
 
 Mask = npt.NDArray[np.bool_]
 

@@ -7,7 +7,7 @@ import resource
 from pathlib import Path
 from typing import Any
 
-from ..errors import SolverError
+from ..common.errors import SolverError
 
 BASE = 0.25e9
 """Interpreter, modules and the compiler of the forms, bytes per process.

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import SolverError
-from ..mesh import Floats, Ints
+from ..common.arrays import Floats, Ints
+from ..common.errors import SolverError
 
 EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 """Corners of a tetrahedron's edges, in VTK's order of a quadratic tetrahedron's midside nodes."""

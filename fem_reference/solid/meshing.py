@@ -14,9 +14,9 @@ from typing import Protocol
 import gmsh
 import numpy as np
 
-from ..errors import SolverError
-from ..mesh import Floats, Ints
-from ..scene import Plate, Sphere
+from ..common.arrays import Floats, Ints
+from ..common.bodies import Plate, Sphere
+from ..common.errors import SolverError
 from .mesh import TetMesh, check_elements, tetrahedra
 
 DELAUNAY = 1

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..errors import SolverError
-from ..mesh import Floats, Ints
-from ..scene import Material
+from ..common.arrays import Floats, Ints
+from ..common.bodies import Material
+from ..common.errors import SolverError
 from .mesh import FACE_EDGES, TetMesh, scatter_sum, shape_functions
 
 FREE = np.eye(3)

@@ -7,12 +7,11 @@ from typing import Any
 
 import pytest
 
-from fem_reference.estimate import estimate_contact
-from fem_reference.explicit import Run, integrate
-from fem_reference.meshing import mesh_impact
-from fem_reference.scene import Scene, parse_scene
-from fem_reference.settings import mesh_settings
-from fem_reference.system import System, build_system
+from fem_reference.axisymmetric.system import System
+from fem_reference.plate_impact.axisymmetric_run import Run, integrate
+from fem_reference.plate_impact.estimate import estimate_contact
+from fem_reference.plate_impact.meshing import build_system, mesh_impact, mesh_settings
+from fem_reference.plate_impact.scene import Scene, parse_scene
 
 STEEL = {"name": "steel", "youngs_modulus": 210e9, "poisson_ratio": 0.3, "density": 7780.0}
 

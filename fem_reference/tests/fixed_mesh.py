@@ -13,24 +13,23 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from fem_reference.convergence import quantities
-from fem_reference.estimate import estimate_contact
-from fem_reference.explicit import integrate
-from fem_reference.fenicsx import alone
-from fem_reference.meshing import mesh_impact
-from fem_reference.scene import Scene, parse_scene, read_document
+from fem_reference.common.fenicsx import alone
+from fem_reference.common.reader import read_document
+from fem_reference.common.settings import RESOLUTIONS
+from fem_reference.plate_impact.axisymmetric_run import integrate
+from fem_reference.plate_impact.convergence import quantities
+from fem_reference.plate_impact.estimate import estimate_contact, shortest_wavelengths
+from fem_reference.plate_impact.meshing import build_system, mesh_impact, mesh_settings
+from fem_reference.plate_impact.scene import Scene, parse_scene
+from fem_reference.plate_impact.solid import quantities as solid_quantities
+from fem_reference.plate_impact.solid_model import plate_model
+from fem_reference.plate_impact.solid_run import integrate as integrate_solid
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import seat_model
 from fem_reference.seal_seat.run import integrate as integrate_seat
 from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
 from fem_reference.seal_seat.solve import quantities as seat_quantities
-from fem_reference.settings import RESOLUTIONS, mesh_settings
 from fem_reference.solid.loop import make_loop
-from fem_reference.solid.plate import plate_model
-from fem_reference.solid.run import integrate as integrate_solid
-from fem_reference.solid.solve import quantities as solid_quantities
-from fem_reference.solve import shortest_wavelengths
-from fem_reference.system import build_system
 
 
 def make(scene: Scene | SeatScene) -> Any:

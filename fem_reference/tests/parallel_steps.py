@@ -10,14 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
-from fem_reference.estimate import estimate_contact
-from fem_reference.fenicsx import world
-from fem_reference.levels import MOST_LEVELS
-from fem_reference.scene import read_scene
+from fem_reference.common.fenicsx import world
+from fem_reference.explicit.levels import MOST_LEVELS
+from fem_reference.explicit.spectrum import critical_time_step
+from fem_reference.plate_impact.estimate import estimate_contact, shortest_wavelengths
+from fem_reference.plate_impact.scene import read_scene
+from fem_reference.plate_impact.solid_model import plate_model
 from fem_reference.solid.loop import make_loop
-from fem_reference.solid.plate import plate_model
-from fem_reference.solid.spectrum import critical_time_step
-from fem_reference.solve import shortest_wavelengths
 
 
 def main(scene_path: Path, steps: int, out: Path) -> None:

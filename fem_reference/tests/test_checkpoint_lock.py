@@ -7,7 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from ..solid.checkpoint import exclusive
+from ..explicit.checkpoint import exclusive
 
 ALONE: Any = SimpleNamespace(rank=0, barrier=lambda: None)
 

@@ -16,13 +16,9 @@ import meshio
 import numpy as np
 import pytest
 
-from fem_reference.errors import SolverError
-from fem_reference.output import (
-    HISTORY_COLUMNS,
-    PARTIAL_PREFIX,
-    require_replaceable,
-    result_folder,
-)
+from fem_reference.common.errors import SolverError
+from fem_reference.common.output import PARTIAL_PREFIX, require_replaceable, result_folder
+from fem_reference.plate_impact.history import HISTORY_COLUMNS
 
 from .conftest import document
 

@@ -6,10 +6,10 @@ from typing import Any, cast
 
 import pytest
 
-from fem_reference import convergence
-from fem_reference.convergence import RATIO, refine
-from fem_reference.errors import SolverError
-from fem_reference.scene import Scene
+from fem_reference.common.errors import SolverError
+from fem_reference.plate_impact import convergence
+from fem_reference.plate_impact.convergence import RATIO, refine
+from fem_reference.plate_impact.scene import Scene
 
 
 class Converging:

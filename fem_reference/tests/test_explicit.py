@@ -5,15 +5,22 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem_reference import system as system_module
-from fem_reference.elasticity import BodyMatrices
-from fem_reference.errors import SolverError
-from fem_reference.explicit import Run, integrate
-from fem_reference.levels import LEVEL_MARGIN, MOST_LEVELS, element_levels, level_matrices
-from fem_reference.loop import Loop
-from fem_reference.mesh import Ints
-from fem_reference.scene import Scene, parse_scene
-from fem_reference.system import INNER, OUTER, System, critical_time_step, patch_flexibility
+from fem_reference.axisymmetric import system as system_module
+from fem_reference.axisymmetric.elasticity import BodyMatrices
+from fem_reference.axisymmetric.system import (
+    INNER,
+    OUTER,
+    System,
+    critical_time_step,
+    patch_flexibility,
+)
+from fem_reference.common.arrays import Ints
+from fem_reference.common.errors import SolverError
+from fem_reference.explicit.levels import LEVEL_MARGIN, MOST_LEVELS, element_levels, level_matrices
+from fem_reference.explicit.loop import Loop
+from fem_reference.plate_impact import meshing as meshing_module
+from fem_reference.plate_impact.axisymmetric_run import Run, integrate
+from fem_reference.plate_impact.scene import Scene, parse_scene
 
 from .conftest import document, make_system
 
@@ -145,7 +152,7 @@ def test_numbering_of_the_nodes_does_not_matter(
     def shuffled(matrices: BodyMatrices) -> Ints:
         return np.random.default_rng(7).permutation(matrices.mass.size)
 
-    monkeypatch.setattr(system_module, "_renumbering", shuffled)
+    monkeypatch.setattr(meshing_module, "renumbering", shuffled)
     other = integrate(make_system(scene)[0], scene.speed, duration)
     assert other.steps == run.steps
     assert other.balance.inner_velocity == pytest.approx(run.balance.inner_velocity, rel=1e-7)

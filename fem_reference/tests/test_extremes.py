@@ -11,10 +11,10 @@ from typing import Any
 
 import pytest
 
-from fem_reference.estimate import effective_modulus, hertz_stiffness, hertz_time_scale
-from fem_reference.explicit import Run, integrate
-from fem_reference.modal import first_frequency
-from fem_reference.scene import Scene, parse_scene
+from fem_reference.axisymmetric.modal import first_frequency
+from fem_reference.plate_impact.axisymmetric_run import Run, integrate
+from fem_reference.plate_impact.estimate import effective_modulus, hertz_stiffness, hertz_time_scale
+from fem_reference.plate_impact.scene import Scene, parse_scene
 
 from .conftest import document, make_system
 

@@ -7,17 +7,17 @@ import math
 import numpy as np
 import pytest
 
-from fem_reference.contact import peak_force
-from fem_reference.errors import SceneError
-from fem_reference.estimate import (
+from fem_reference.common.errors import SceneError
+from fem_reference.explicit.contact import peak_force
+from fem_reference.plate_impact.axisymmetric import compute
+from fem_reference.plate_impact.axisymmetric_run import integrate
+from fem_reference.plate_impact.estimate import (
     effective_modulus,
     estimate_contact,
     hertz_stiffness,
     hertz_time_scale,
 )
-from fem_reference.explicit import integrate
-from fem_reference.scene import parse_scene
-from fem_reference.solve import compute
+from fem_reference.plate_impact.scene import parse_scene
 
 from .conftest import document, make_system
 
@@ -106,9 +106,9 @@ def test_estimate_is_confirmed_by_the_run() -> None:
 def test_mesh_is_made_again_when_the_contact_is_smaller_than_estimated(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    from fem_reference import solve
-    from fem_reference.estimate import ContactEstimate
-    from fem_reference.scene import Scene
+    from fem_reference.plate_impact import axisymmetric as solve
+    from fem_reference.plate_impact.estimate import ContactEstimate
+    from fem_reference.plate_impact.scene import Scene
 
     def too_large(scene: Scene) -> ContactEstimate:
         found = estimate_contact(scene)

@@ -11,24 +11,24 @@ import numpy as np
 import pytest
 import scipy.sparse
 
-from fem_reference import levels as levels_module
-from fem_reference.fenicsx import alone
-from fem_reference.levels import (
+from fem_reference.axisymmetric.system import System, critical_time_step
+from fem_reference.common.arrays import Floats, Ints
+from fem_reference.common.fenicsx import alone
+from fem_reference.explicit import levels as levels_module
+from fem_reference.explicit.levels import (
     LEVEL_MARGIN,
     MOST_LEVELS,
     element_levels,
     fastest_levels,
     level_matrices,
 )
-from fem_reference.loop import Loop
-from fem_reference.mesh import Floats, Ints
-from fem_reference.scene import parse_scene
+from fem_reference.explicit.loop import Loop
+from fem_reference.explicit.spectrum import critical_time_step as solid_critical_time_step
+from fem_reference.plate_impact.scene import parse_scene
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import seat_model
 from fem_reference.seal_seat.scene import parse_seat_scene
 from fem_reference.solid.loop import SerialLoop
-from fem_reference.solid.spectrum import critical_time_step as solid_critical_time_step
-from fem_reference.system import System, critical_time_step
 from fem_reference.tests.conftest import document, make_system
 from fem_reference.tests.seal_seat_scenes import seat_document
 

@@ -7,14 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from fem_reference.elasticity import assemble
-from fem_reference.errors import SceneError, SolverError
-from fem_reference.estimate import estimate_contact
-from fem_reference.grading import graded
-from fem_reference.mesh import BodyMesh, check_elements, edge_lengths, element_volumes
-from fem_reference.meshing import ImpactMesh, mesh_impact
-from fem_reference.scene import Scene, parse_scene
-from fem_reference.settings import mesh_settings
+from fem_reference.axisymmetric.elasticity import assemble
+from fem_reference.axisymmetric.grading import graded
+from fem_reference.axisymmetric.mesh import BodyMesh, check_elements, edge_lengths, element_volumes
+from fem_reference.common.errors import SceneError, SolverError
+from fem_reference.plate_impact.estimate import estimate_contact
+from fem_reference.plate_impact.meshing import ImpactMesh, mesh_impact, mesh_settings
+from fem_reference.plate_impact.scene import Scene, parse_scene
 
 from .conftest import document
 
@@ -134,7 +133,7 @@ def test_long_elements_bend_without_parasitic_shear(scene: Scene) -> None:
 
     Bilinear elements of this length without incompatible modes are 4 % too stiff.
     """
-    from fem_reference.modal import first_frequency
+    from fem_reference.axisymmetric.modal import first_frequency
 
     from .conftest import make_system
 

@@ -10,9 +10,10 @@ import math
 
 import pytest
 
-from fem_reference.meshing import modal_plate_mesh
-from fem_reference.modal import first_frequency, plate_modes
-from fem_reference.scene import Plate, Scene, parse_scene
+from fem_reference.axisymmetric.meshing import modal_plate_mesh
+from fem_reference.axisymmetric.modal import first_frequency, plate_modes
+from fem_reference.common.bodies import Plate
+from fem_reference.plate_impact.scene import Scene, parse_scene
 
 from .conftest import STEEL, document, make_system
 

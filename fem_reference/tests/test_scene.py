@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from fem_reference.errors import SceneError
-from fem_reference.scene import parse_scene, read_scene
+from fem_reference.common.errors import SceneError
+from fem_reference.plate_impact.scene import parse_scene, read_scene
 
 from .conftest import document
 

@@ -13,31 +13,25 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from fem_reference.errors import SceneError, SolverError
-from fem_reference.fenicsx import alone
-from fem_reference.mesh import Floats
+from fem_reference.common.arrays import Floats
+from fem_reference.common.errors import SceneError, SolverError
+from fem_reference.common.fenicsx import alone
+from fem_reference.explicit.checkpoint import Checkpoint
+from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.seal_seat import meshing
 from fem_reference.seal_seat.elastic_sphere import sphere_pairs
-from fem_reference.seal_seat.meshing import (
-    build,
-    cad_volume,
-    seat_mesh,
-    seat_size,
-    sphere_mesh,
-)
+from fem_reference.seal_seat.meshing import build, cad_volume, seat_mesh, seat_size, sphere_mesh
 from fem_reference.seal_seat.modal import seat_modes
 from fem_reference.seal_seat.model import ELASTIC_SPHERE, LEFT, RIGHT, SeatModel, seat_model
 from fem_reference.seal_seat.motion import sphere_motion
 from fem_reference.seal_seat.run import SeatRun, integrate
 from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
 from fem_reference.seal_seat.solve import HISTORY_COLUMNS, QUANTITIES, history, seat_frequency
-from fem_reference.solid.checkpoint import Checkpoint
 from fem_reference.solid.collapse import collapse_short_edges
 from fem_reference.solid.loop import Loop, make_loop
 from fem_reference.solid.mesh import TetMesh, qualities, surface
 from fem_reference.solid.meshing import generate
 from fem_reference.solid.model import SphereContact
-from fem_reference.solid.spectrum import critical_time_step
 from fem_reference.tests.cut_off import CutOffError, cut_off
 from fem_reference.tests.program import run_program
 from fem_reference.tests.seal_seat_scenes import DEGREE, seat_document

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fem_reference.errors import SceneError, SolverError
-from fem_reference.progress import MeshOfSeries, Progress
-from fem_reference.solid import series
-from fem_reference.solid.series import MeshResult, Options, Problem, Settings, solve_series
+from fem_reference.common import series
+from fem_reference.common.errors import SceneError, SolverError
+from fem_reference.common.progress import MeshOfSeries, Progress
+from fem_reference.common.series import MeshResult, Options, Problem, Settings, solve_series
 
 EXACT = 3.0
 

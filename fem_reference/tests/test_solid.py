@@ -9,12 +9,17 @@ import pytest
 import scipy.sparse
 from scipy.optimize import brentq
 
-from fem_reference.contact import sphere_profile
-from fem_reference.errors import SolverError
-from fem_reference.estimate import effective_modulus, hertz_contact_radius, hertz_stiffness
-from fem_reference.fenicsx import alone, petsc_rows
-from fem_reference.mesh import Floats, Ints
-from fem_reference.scene import Material, Sphere
+from fem_reference.common.arrays import Floats, Ints
+from fem_reference.common.bodies import Material, Sphere, sphere_profile
+from fem_reference.common.errors import SolverError
+from fem_reference.common.fenicsx import alone, petsc_rows
+from fem_reference.explicit.spectrum import critical_time_step
+from fem_reference.plate_impact.estimate import (
+    effective_modulus,
+    hertz_contact_radius,
+    hertz_stiffness,
+)
+from fem_reference.plate_impact.solid import RADIUS_STEP, rounded
 from fem_reference.solid.elasticity import Assembly, cell_stress, lumped_mass, mass_form, von_mises
 from fem_reference.solid.loop import SerialLoop
 from fem_reference.solid.memory import memory_needed, require_memory
@@ -31,8 +36,6 @@ from fem_reference.solid.model import (
     project,
     symmetry_plane,
 )
-from fem_reference.solid.solve import RADIUS_STEP, rounded
-from fem_reference.solid.spectrum import critical_time_step
 
 STEEL = Material("steel", 210e9, 0.3, 7780.0)
 RADIUS = 0.01

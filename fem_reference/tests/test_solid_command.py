@@ -16,7 +16,7 @@ import meshio
 import numpy as np
 import pytest
 
-from fem_reference.solid.command import INHERITED
+from fem_reference.common.processes import INHERITED
 from fem_reference.tests.conftest import document
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -156,7 +156,7 @@ def test_a_killed_run_goes_on_to_the_same_result(folder: Path, whole: Path) -> N
 
 
 def test_a_checkpoint_of_another_scene_is_not_used(folder: Path) -> None:
-    from fem_reference.solid.checkpoint import Checkpoint
+    from fem_reference.explicit.checkpoint import Checkpoint
 
     path = folder / "state.npz"
     path.write_bytes(b"not a state")

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 import scipy.sparse
 
-from fem_reference.errors import DivergedError
-from fem_reference.fenicsx import alone
-from fem_reference.levels import BUFFER, LEVEL_MARGIN, MOST_LEVELS
-from fem_reference.mesh import Ints
-from fem_reference.resonance import LARGEST_ENERGY_RESIDUAL, stable_run
+from fem_reference.common.arrays import Ints
+from fem_reference.common.errors import DivergedError
+from fem_reference.common.fenicsx import alone
+from fem_reference.explicit.checkpoint import Checkpoint
+from fem_reference.explicit.levels import BUFFER, LEVEL_MARGIN, MOST_LEVELS
+from fem_reference.explicit.resonance import LARGEST_ENERGY_RESIDUAL, stable_run
+from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import SeatModel, seat_model
 from fem_reference.seal_seat.run import SeatRun, integrate
 from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
-from fem_reference.solid.checkpoint import Checkpoint
 from fem_reference.solid.levels import element_stiffness, element_time_steps, model_levels
 from fem_reference.solid.loop import SerialLoop
-from fem_reference.solid.spectrum import critical_time_step
 from fem_reference.tests.cut_off import CutOffError, cut_off
 from fem_reference.tests.seal_seat_scenes import seat_document
 

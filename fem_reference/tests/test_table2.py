@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import pytest
 
-from fem_reference.meshing import mesh_plate, modal_plate_mesh
-from fem_reference.modal import plate_modes
-from fem_reference.scene import Plate, parse_scene
-from fem_reference.settings import MeshSettings
+from fem_reference.axisymmetric.meshing import mesh_plate, modal_plate_mesh
+from fem_reference.axisymmetric.modal import plate_modes
+from fem_reference.axisymmetric.sizes import MeshSettings
+from fem_reference.common.bodies import Plate
+from fem_reference.plate_impact.scene import parse_scene
 
 from .conftest import document
 

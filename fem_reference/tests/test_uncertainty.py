@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem_reference.uncertainty import curve_band, grid_convergence_index, least_squares
+from fem_reference.common.uncertainty import curve_band, grid_convergence_index, least_squares
 
 SIZES = np.array([0.84**-k for k in range(5)])
 

@@ -3,11 +3,12 @@
 use super::Context;
 use super::compare::{self, Job, Outputs, Results};
 use crate::ci::acceptance::{self, Acceptance, AcceptedReference, ToleranceChange};
-use crate::ci::{commit, github, tolerance_edit, tolerance_watch};
+use crate::ci::{commit, tolerance_edit, tolerance_watch};
 use crate::comparison::{SceneComparison, Verdict};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::reference::Resolution;
+use crate::report::github;
 use crate::report::{self, Attachments, Report};
 use crate::result::Quantities;
 use crate::scene::Scene;

@@ -45,9 +45,17 @@ const HISTORY: &str = "history.csv";
 const PROVENANCE: &str = "provenance.json";
 const REQUIRED: [&str; 4] = [SUMMARY, HISTORY, "mesh.vtu", PROVENANCE];
 
+/// Whether the files with values on the mesh (`.vtu`) must be there. They are large, show pictures only, and are made again by
+/// a computation: a repository may leave them out. What is there must be intact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MeshFiles {
+    Required,
+    Optional,
+}
+
 /// Verifies the folder's checksums and reads it.
-pub(super) fn load<Q: Quantities>(folder: &Path) -> Result<Stored<Q>, Damage> {
-    verify(folder)?;
+pub(super) fn load<Q: Quantities>(folder: &Path, mesh_files: MeshFiles) -> Result<Stored<Q>, Damage> {
+    verify(folder, mesh_files)?;
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
     let summary: Summary<Q> = read_json(folder, SUMMARY)?;
     let provenance: Value = read_json(folder, PROVENANCE)?;
@@ -97,7 +105,7 @@ fn read_json<T: serde::de::DeserializeOwned>(folder: &Path, name: &str) -> Resul
     serde_json::from_str(&text).map_err(|e| fail(format!("is not what is expected: {e}")))
 }
 
-fn verify(folder: &Path) -> Result<(), Damage> {
+fn verify(folder: &Path, mesh_files: MeshFiles) -> Result<(), Damage> {
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
     let text = std::fs::read_to_string(folder.join(CHECKSUMS))
         .map_err(|e| damage(CHECKSUMS, format!("can't be read: {e}")))?;
@@ -105,7 +113,10 @@ fn verify(folder: &Path) -> Result<(), Damage> {
     if let Some(name) = REQUIRED.iter().find(|name| !listed.contains_key(**name)) {
         return Err(damage(CHECKSUMS, format!("does not list {name}")));
     }
-    for (name, expected) in listed {
+    let left_out = |name: &str| {
+        mesh_files == MeshFiles::Optional && name.ends_with(".vtu") && !folder.join(name).exists()
+    };
+    for (name, expected) in listed.into_iter().filter(|(name, _)| !left_out(name)) {
         let found =
             sha256_file(&folder.join(name)).map_err(|e| damage(name, format!("can't be read: {e}")))?;
         if !found.eq_ignore_ascii_case(expected) {

@@ -42,7 +42,8 @@ impl Stored {
     }
 }
 
-/// Instant in s and file of the field in the series of `folder` that is nearest to `time` (s); `None` without series.
+/// Instant in s and file of the field in the series of `folder` that is nearest to `time` (s); `None` if
+/// none is there.
 pub(super) fn series_nearest(folder: &Path, time: f64) -> Result<Option<(f64, PathBuf)>, String> {
     let series = folder.join("stress.pvd");
     if !series.is_file() {
@@ -54,7 +55,7 @@ pub(super) fn series_nearest(folder: &Path, time: f64) -> Result<Option<(f64, Pa
         let instant: f64 = node.attribute("timestep")?.parse().ok()?;
         // a name that leads elsewhere would show another solution's field
         let name = node.attribute("file").filter(|name| !name.contains(['/', '\\']))?;
-        Some((instant, folder.join(name)))
+        Some((instant, folder.join(name))).filter(|(_, field)| field.is_file())
     });
     Ok(entries.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs())))
 }

@@ -106,7 +106,7 @@ pub fn solve_as<Q: Quantities>(
     if !output.is_dir() {
         return Err(unusable("it wrote no result".to_owned()));
     }
-    let stored = entry::load(&output).map_err(|d| {
+    let stored = entry::load(&output, entry::MeshFiles::Required).map_err(|d| {
         let file = d.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         unusable(format!("its {file} {}", d.reason))
     })?;

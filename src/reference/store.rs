@@ -271,7 +271,7 @@ fn examine<Q: Quantities>(folder: &Path, scene: &Scene, resolution: Resolution) 
         }
         Ok(_) => {}
     }
-    let stored = match entry::load(folder) {
+    let stored = match entry::load(folder, entry::MeshFiles::Optional) {
         Ok(stored) => stored,
         Err(damage) => return damage.into(),
     };

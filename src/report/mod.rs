@@ -17,6 +17,7 @@ mod figure;
 mod figure_file;
 mod figure_panel;
 pub(crate) mod format;
+pub mod github;
 mod html;
 mod interactive;
 mod json;

@@ -1,0 +1,1 @@
+"""Axisymmetric bodies: meshes of quadrilaterals, elements with incompatible modes, eigenmodes."""

@@ -1,0 +1,171 @@
+"""The discrete system: three bodies assembled, constrained, lumped and renumbered."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse
+import scipy.sparse.linalg
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from ..common.arrays import Floats, Ints
+from ..common.bodies import Plate, Sphere, sphere_profile
+from .elasticity import BodyMatrices
+from .mesh import BodyMesh
+
+BODIES = ("outer", "plate", "inner")
+OUTER, PLATE, INNER = range(3)
+
+
+@dataclass(frozen=True)
+class ContactPairs:
+    """Node pairs of one contact in the numbering of the whole system."""
+
+    name: str
+    normal: float
+    """+1 if the sphere lies above the plate, else -1."""
+    sphere_nodes: Ints
+    plate_nodes: Ints
+    radii: Floats
+    gap: Floats
+    """(n,) initial gap of each pair along z, m."""
+
+
+def pair_nodes(
+    name: str,
+    normal: float,
+    sphere_nodes: Ints,
+    plate_nodes: Ints,
+    radii: Floats,
+    sphere: Sphere,
+    gap: float,
+) -> ContactPairs:
+    """Node pairs with the exact gap of a sphere that stands ``gap`` (m) off the plate."""
+    return ContactPairs(
+        name, normal, sphere_nodes, plate_nodes, radii, gap + sphere_profile(sphere.radius, radii)
+    )
+
+
+@dataclass(frozen=True)
+class System:
+    """Everything the time loop needs; nodes are ordered outer, plate, inner."""
+
+    stiffness: scipy.sparse.csr_matrix
+    """(2n, 2n), N/m, fixed rows included (they give the support reaction)."""
+    mass: Floats
+    """(n,) kg"""
+    inverse_mass: Floats
+    """(2n,) 1/kg, zero where the displacement is fixed."""
+    first: Ints
+    """(4,) first node of each body, then the number of nodes."""
+    numbers: tuple[Ints, Ints, Ints]
+    """For each body the system's number of each of its nodes."""
+    supports: Ints
+    """Nodes whose axial displacement is fixed."""
+    centre: tuple[int, int]
+    """The plate's centre nodes on its two faces."""
+    contacts: tuple[ContactPairs, ContactPairs]
+    element_nodes: Ints
+    """(m, 4) nodes of all elements."""
+    element_stiffness: Floats
+    """(m, 8, 8) their matrices, whose sum is ``stiffness``, N/m."""
+    element_time_steps: Floats
+    """(m,) critical time step of each element alone, s."""
+
+    def body(self, index: int) -> slice:
+        """Rows of a body's displacements."""
+        return slice(2 * int(self.first[index]), 2 * int(self.first[index + 1]))
+
+    def body_mass(self, index: int) -> float:
+        """Mass of a body, kg."""
+        return float(self.mass[self.first[index] : self.first[index + 1]].sum())
+
+
+def plate_constraints(plate: Plate, mesh: BodyMesh) -> Ints:
+    """Fixed components (2 * node + component) of the plate.
+
+    On the axis u_r = 0. Clamped: both displacements on the whole rim. Simply supported: u_z on
+    the whole rim, which may still rotate since u_r is free there.
+    """
+    axis = np.flatnonzero(mesh.points[:, 0] == 0.0)
+    rim = np.flatnonzero(mesh.points[:, 0] > plate.radius * (1.0 - 1e-9))
+    fixed = [2 * axis]
+    if plate.edge in ("clamped", "simply-supported"):
+        fixed.append(2 * rim + 1)
+    if plate.edge == "clamped":
+        fixed.append(2 * rim)
+    return np.asarray(np.unique(np.concatenate(fixed)))
+
+
+def axis_constraints(mesh: BodyMesh) -> Ints:
+    """Fixed components of a body that is held by nothing but its axis: u_r = 0 there."""
+    return np.asarray(2 * np.flatnonzero(mesh.points[:, 0] == 0.0))
+
+
+def renumbering(matrices: BodyMatrices) -> Ints:
+    """New number of each node of a body (reverse Cuthill-McKee: neighbours close in memory)."""
+    graph = matrices.stiffness.tobsr((2, 2))
+    pattern = scipy.sparse.csr_matrix(
+        (np.ones(graph.indices.size), graph.indices, graph.indptr),
+        shape=(matrices.mass.size, matrices.mass.size),
+    )
+    order = reverse_cuthill_mckee(pattern, symmetric_mode=True)
+    number = np.empty(order.size, dtype=np.int64)
+    number[order] = np.arange(order.size)
+    return number
+
+
+def critical_time_step(system: System) -> float:
+    """2 / omega_max of the lumped system, s, from a safe upper estimate of omega_max.
+
+    Lanczos on M^-1/2 K M^-1/2 gives the largest Ritz value; adding the norm of its residual
+    makes it an upper bound of the eigenvalue it belongs to.
+    """
+    root = np.sqrt(system.inverse_mass)
+    scaling = scipy.sparse.diags(root)
+    operator = (scaling @ system.stiffness @ scaling).tocsr()
+    start = np.random.default_rng(1).standard_normal(root.size)
+    values, vectors = scipy.sparse.linalg.eigsh(operator, k=1, which="LA", tol=1e-6, v0=start)
+    vector = vectors[:, 0]
+    residual = float(np.linalg.norm(operator @ vector - values[0] * vector))
+    return 2.0 / math.sqrt(float(values[0]) + residual)
+
+
+def hertz_weights(radii: Floats) -> Floats:
+    """Nodal shares (n,) of a unit Hertz pressure over the zone of the nodes at ``radii`` (m).
+
+    Each node gets the pressure sqrt(1 - (r/a)^2) integrated over its ring, whose edges lie midway
+    to its neighbours.
+    """
+    edges = np.concatenate([[0.0], 0.5 * (radii[1:] + radii[:-1]), radii[-1:]])
+    return np.asarray(-np.diff((1.0 - (edges / radii[-1]) ** 2) ** 1.5))
+
+
+def patch_flexibility(system: System, body: int, nodes: Ints, weights: Floats) -> float:
+    """Axial flexibility of a body over a patch, p^T K^-1 p, m/N.
+
+    The mean displacement, weighted with ``weights``, under a unit axial force spread with the
+    same weights over ``nodes``: static if the body is supported, otherwise that of the free
+    body under the force and its own inertia, rigid motion apart (inertia relief).
+    """
+    rows = system.body(body)
+    stiffness = system.stiffness[rows, rows].tocsc()
+    free = np.flatnonzero(system.inverse_mass[rows] > 0.0)
+    mass = system.mass[system.first[body] : system.first[body + 1]]
+    load = np.zeros(2 * mass.size)
+    load[2 * (nodes - system.first[body]) + 1] = weights
+    patch = load.copy()
+    supported = bool(
+        np.any((system.supports >= system.first[body]) & (system.supports < system.first[body + 1]))
+    )
+    if not supported:
+        load[1::2] -= mass / mass.sum()
+        # One axial component pinned: the load is in equilibrium, so the pin carries nothing.
+        free = free[free != 2 * mass.size - 1]
+    solution = np.zeros_like(load)
+    solution[free] = scipy.sparse.linalg.splu(stiffness[free][:, free]).solve(load[free])
+    if not supported:
+        solution[1::2] -= mass @ solution[1::2] / mass.sum()
+    return float(patch @ solution)

@@ -1,0 +1,1 @@
+"""What all kinds of scenes and all geometries use: reader, series, documents, bands."""

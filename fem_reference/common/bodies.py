@@ -1,0 +1,99 @@
+"""Materials, plates and spheres: what scenes are made of."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .arrays import Floats
+from .reader import Reader
+
+EDGES = ("clamped", "simply-supported", "free")
+
+
+@dataclass(frozen=True)
+class Material:
+    """Linear isotropic elastic material."""
+
+    name: str
+    youngs_modulus: float
+    """Pa"""
+    poisson_ratio: float
+    density: float
+    """kg/m^3"""
+
+    @property
+    def plane_strain_modulus(self) -> float:
+        """E / (1 - nu^2), Pa: what a half-space or a plate in bending feels."""
+        return self.youngs_modulus / (1.0 - self.poisson_ratio**2)
+
+    @property
+    def shear_modulus(self) -> float:
+        """E / (2 (1 + nu)), Pa."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+    @property
+    def lame_lambda(self) -> float:
+        """First Lame parameter, Pa."""
+        nu = self.poisson_ratio
+        return self.youngs_modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+
+
+@dataclass(frozen=True)
+class Plate:
+    """Circular plate of constant thickness."""
+
+    radius: float
+    thickness: float
+    edge: str
+    """One of `EDGES`."""
+    material: Material
+
+    @property
+    def bending_stiffness(self) -> float:
+        """Kirchhoff bending stiffness D = E h^3 / (12 (1 - nu^2)), N m."""
+        return self.material.plane_strain_modulus * self.thickness**3 / 12.0
+
+    @property
+    def surface_density(self) -> float:
+        """Mass per area rho h, kg/m^2."""
+        return self.material.density * self.thickness
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """Solid sphere."""
+
+    radius: float
+    material: Material
+
+    @property
+    def volume(self) -> float:
+        """4/3 pi r^3, m^3."""
+        return 4.0 / 3.0 * math.pi * self.radius**3
+
+    @property
+    def mass(self) -> float:
+        """Mass, kg."""
+        return self.material.density * self.volume
+
+
+def sphere_profile(radius: float, r: Floats) -> Floats:
+    """Height of the undeformed sphere above its tangent plane: R - sqrt(R^2 - r^2), m.
+
+    Written without the difference of two nearly equal numbers.
+    """
+    return np.asarray(r**2 / (radius + np.sqrt(radius**2 - r**2)))
+
+
+def read_material(reader: Reader) -> Material:
+    """The material an object describes."""
+    reader.allow("name", "youngs_modulus", "poisson_ratio", "density")
+    return Material(
+        name=reader.text("name"),
+        youngs_modulus=reader.number("youngs_modulus", "Pa"),
+        poisson_ratio=reader.number("poisson_ratio", "(no unit)", above=-1.0, below=0.5),
+        density=reader.number("density", "kg/m^3"),
+    )

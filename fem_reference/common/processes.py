@@ -1,0 +1,75 @@
+"""``solve`` of a solid scene: one process, or several started by mpirun or a batch system."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+from .errors import RunError, SolverError
+from .progress import Progress
+
+SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS")
+"""Number of processes, set by MPI's launchers in the processes they start."""
+INHERITED = ("PMIX_", "PMI_", "OMPI_COMM_", "OMPI_UNIVERSE", "OMPI_MCA_ess", "OMPI_MCA_orte")
+"""What a process that has used MPI leaves in the environment of those it starts."""
+
+
+def _launched() -> bool:
+    sizes = (os.environ.get(name, "") for name in SIZES)
+    return any(size.isdecimal() and int(size) > 1 for size in sizes)
+
+
+def _launch(processes: int) -> None:
+    """Become mpirun with this command in ``processes`` processes.
+
+    Raises:
+        SolverError: there is no mpirun.
+    """
+    program = shutil.which("mpirun") or shutil.which("mpiexec")
+    if program is None:
+        raise SolverError("mpirun is missing; --np needs it: install openmpi-bin")
+    kept = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
+    # One thread per process; no refusal for root: who may start the solver may start it so.
+    settings = {
+        "OMP_NUM_THREADS": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    }
+    if processes >= (os.cpu_count() or 1):
+        # Somebody else needs a processor too: waiting must not keep it busy.
+        settings["OMPI_MCA_mpi_yield_when_idle"] = "1"
+    sys.stdout.flush()
+    command = [program, "-n", str(processes), sys.executable, "-m", "fem_reference", *sys.argv[1:]]
+    os.execve(program, command, {**settings, **kept})
+
+
+def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> None:
+    """Call ``work`` with the communicator, in as many processes as ``arguments.np`` says.
+
+    Raises:
+        RunError: in a run of one process; several are ended together with its exit status.
+    """
+    if arguments.np > 1 and not _launched():
+        _launch(arguments.np)
+    from .fenicsx import world
+
+    comm = world()
+    try:
+        work(comm)
+    except RunError as error:
+        if comm.size == 1:
+            raise
+        # The others may be waiting for this process: end them all.
+        Progress().error(str(error))
+        print(f"error: {error}", file=sys.stderr, flush=True)
+        comm.Abort(error.exit_status)
+    except Exception:
+        if comm.size == 1:
+            raise
+        traceback.print_exc()
+        comm.Abort(1)

@@ -1,0 +1,1 @@
+"""Explicit time integration: kernel, loop, levels, contact, supervision, checkpoints, ending."""

@@ -1,0 +1,176 @@
+"""Largest and smallest eigenvalue and static flexibility, from products with K only."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import eigh_tridiagonal
+
+from ..common.arrays import Floats, Ints
+from ..common.errors import SolverError
+from ..solid.loop import Loop
+
+LANCZOS_STEPS = 400
+LANCZOS_TOLERANCE = 1e-5
+CG_STEPS = 20000
+CG_TOLERANCE = 1e-7
+
+
+def critical_time_step(loop: Loop) -> float:
+    """2 / omega_max of the lumped system, s, from a safe upper estimate of omega_max.
+
+    Lanczos on M^-1/2 K M^-1/2; adding the residual of the largest Ritz value makes it an upper
+    bound of the eigenvalue it belongs to.
+    """
+    root = np.sqrt(loop.inverse)
+    # The same start vector whatever the number of processes.
+    start = np.random.default_rng(1).standard_normal((loop.all_masses.size, 3))
+    vector = loop.own(start) * (root > 0.0)
+    vector /= math.sqrt(loop.dot(vector, vector))
+    before = np.zeros_like(vector)
+    diagonal: list[float] = []
+    beside: list[float] = []
+    beta = 0.0
+    for step in range(LANCZOS_STEPS):
+        image = root * loop.product(root * vector) - beta * before
+        alpha = loop.dot(image, vector)
+        image -= alpha * vector
+        beta = math.sqrt(loop.dot(image, image))
+        diagonal.append(alpha)
+        if beta == 0.0 or step % 10 == 9 or step == LANCZOS_STEPS - 1:
+            values, vectors = eigh_tridiagonal(
+                diagonal, beside, select="i", select_range=(len(diagonal) - 1,) * 2
+            )
+            residual = beta * abs(float(vectors[-1, 0]))
+            if residual <= LANCZOS_TOLERANCE * float(values[0]):
+                return 2.0 / math.sqrt(float(values[0]) + residual)
+        beside.append(beta)
+        before, vector = vector, image / beta
+    raise SolverError("the largest eigenvalue of the system was not found; the mesh may be poor")
+
+
+def conjugate_gradients(
+    loop: Loop,
+    load: Floats,
+    free: Floats,
+    project: Callable[[Floats], Floats] = lambda x: x,
+    start: Floats | None = None,
+    tolerance: float = CG_TOLERANCE,
+) -> Floats:
+    """K^-1 load on the components where ``free`` is 1, preconditioned by the diagonal.
+
+    ``project`` takes the motions out of a residual that cost no energy.
+
+    Raises:
+        SolverError: no convergence.
+    """
+    weight = free / loop.diagonal
+    x = np.zeros_like(load) if start is None else start * free
+    residual = project(load * free - free * loop.product(x))
+    limit = tolerance * math.sqrt(loop.dot(load * free, weight * load))
+    direction = np.zeros_like(load)
+    rho = 1.0
+    for _ in range(CG_STEPS):
+        scaled = weight * residual
+        following = loop.dot(residual, scaled)
+        if math.sqrt(following) <= limit:
+            return x
+        direction = scaled + (following / rho) * direction
+        rho = following
+        image = free * loop.product(direction)
+        step = rho / loop.dot(direction, image)
+        x += step * direction
+        residual = residual - step * image
+    raise SolverError(f"the static solution did not converge in {CG_STEPS} steps")
+
+
+def free_components(loop: Loop, body: int) -> Floats:
+    """1 for the components of a body that can move, else 0."""
+    inside = np.repeat(loop.body == body, 3)
+    return np.asarray(inside & (loop.inverse > 0.0), dtype=np.float64)
+
+
+def body_translation(loop: Loop, body: int, axis: int) -> Floats:
+    """The rigid motion of a body along an axis, 1 in every node that can move so."""
+    motion = np.zeros((loop.owned.size, 3))
+    motion[:, axis] = loop.body == body
+    return np.asarray(motion.ravel() * (loop.inverse > 0.0))
+
+
+def first_frequency(
+    loop: Loop, body: int, axis: int = 2, tolerance: float = 1e-6, start: Floats | None = None
+) -> float:
+    """Lowest eigenfrequency of a body, Hz, by inverse iteration from the motion along ``axis``.
+
+    A body that is free along ``axis`` keeps that motion out of the iteration. ``start`` (3 n,) is
+    another motion to begin with, where the lowest mode may not contain that along ``axis``.
+    """
+    free = free_components(loop, body)
+    mass = np.repeat(loop.mass, 3)
+    rigid = body_translation(loop, body, axis)
+    weight = loop.dot(rigid, mass * rigid)
+    floating = weight >= (1.0 - 1e-9) * float(loop.body_masses()[body])
+
+    def orthogonal(x: Floats) -> Floats:
+        return x - rigid * (loop.dot(rigid, mass * x) / weight) if floating else x
+
+    def balanced(force: Floats) -> Floats:
+        return force - mass * rigid * (loop.dot(rigid, force) / weight) if floating else force
+
+    x = rigid.copy()
+    if floating:
+        place = np.concatenate([b.mesh.points for b in loop.model.elastic])[loop.owned]
+        x = orthogonal(rigid * np.repeat((place[:, :2] ** 2).sum(axis=1), 3))
+    if start is not None:
+        x = orthogonal(start * free)
+    value = 0.0
+    for _ in range(60):
+        x /= math.sqrt(loop.dot(x, mass * x))
+        load = mass * x * free
+        x = orthogonal(
+            conjugate_gradients(
+                loop,
+                load,
+                free,
+                balanced,
+                start=x / value if value else None,
+                tolerance=1e-4,
+            )
+        )
+        squared = loop.dot(x, loop.product(x) * free) / loop.dot(x, mass * x * free)
+        if abs(squared - value) <= tolerance * squared:
+            return math.sqrt(squared) / (2.0 * math.pi)
+        value = squared
+    raise SolverError("the first eigenfrequency was not found")
+
+
+def patch_flexibility(loop: Loop, body: int, nodes: Ints, weights: Floats) -> float:
+    """Flexibility of a body along z over a patch, p^T K^-1 p, m/N (of the part modelled).
+
+    Static if the body is supported along z, otherwise that of the free body under the force
+    and its own inertia, rigid motion apart (inertia relief).
+
+    Args:
+        loop: the assembled system.
+        body: number of the elastic body.
+        nodes: (n,) the patch, numbers in the body.
+        weights: (n,) shares of a unit force, their sum is 1.
+    """
+    patch = np.zeros((loop.all_masses.size, 3))
+    patch[nodes + loop.model.first[body], 2] = weights
+    load = loop.own(patch)
+    free = free_components(loop, body)
+    rigid = body_translation(loop, body, 2)
+    mass = np.repeat(loop.mass, 3)
+    weight = loop.dot(rigid, mass * rigid)
+    if weight < (1.0 - 1e-9) * float(loop.body_masses()[body]):
+        return loop.dot(load, conjugate_gradients(loop, load, free, tolerance=1e-4))
+
+    def balanced(force: Floats) -> Floats:
+        return force - mass * rigid * (loop.dot(rigid, force) / weight)
+
+    relieved = balanced(load)
+    x = conjugate_gradients(loop, relieved, free, balanced, tolerance=1e-4)
+    return loop.dot(relieved, x)

@@ -1,0 +1,152 @@
+"""Contact radii, forces and duration estimated before any mesh exists.
+
+Hertz's contact law for both contacts and Zener's equation for the plate: a point-loaded
+infinite Kirchhoff plate answers a force F with the velocity F / (8 sqrt(rho h D)) of the
+loaded point (Boussinesq; Zener 1941, Phys. Rev. 59, 669, eq. 10). The estimate sizes the
+mesh and is verified after the run.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from ..common.bodies import Material, Sphere
+from .scene import Scene
+
+ACCEPTED_SHARE = 0.9
+"""Least share of the requested elements per contact radius that is accepted."""
+MOST_MESHES = 3
+WAVE_FREQUENCY = 3.0
+"""Highest frequency resolved, times the shorter Hertz contact duration.
+
+The spectrum of Hertz's pulse (about a half sine to the power 3/2) is below 1 % of its value at
+zero from there on.
+"""
+
+MINOR_FORCE = 0.05
+"""A contact whose force stays below this share of the other one's does not refine the mesh."""
+
+
+@dataclass(frozen=True)
+class ContactEstimate:
+    """What the mesh and the time loop need to know in advance."""
+
+    outer_radius: float
+    """Largest contact radius between outer sphere and plate, m."""
+    inner_radius: float
+    """The same for the inner sphere, m."""
+    duration: float
+    """Shorter of the two Hertz contact durations, s."""
+
+
+def effective_modulus(a: Material, b: Material) -> float:
+    """Hertz's E*, 1/E* = sum (1 - nu^2)/E, Pa."""
+    return 1.0 / (1.0 / a.plane_strain_modulus + 1.0 / b.plane_strain_modulus)
+
+
+def hertz_stiffness(effective: float, radius: float) -> float:
+    """K in F = k delta^(3/2): 4/3 E* sqrt(R), N/m^(3/2)."""
+    return 4.0 / 3.0 * effective * math.sqrt(radius)
+
+
+def hertz_contact_radius(force: float, effective: float, radius: float) -> float:
+    """Contact radius (3 F R / (4 E*))^(1/3), m."""
+    return math.pow(3.0 * force * radius / (4.0 * effective), 1.0 / 3.0)
+
+
+def hertz_time_scale(mass: float, stiffness: float, speed: float) -> float:
+    """T = (m / (k sqrt v))^(2/5), s; a contact lasts 3.218 T, the force peaks at 1.1433 m v/T."""
+    return float((mass / (stiffness * math.sqrt(speed))) ** 0.4)
+
+
+def estimate_contact(scene: Scene) -> ContactEstimate:
+    """Integrate the two-sided Zener equation over the first contact."""
+    plate = scene.plate
+    bodies: tuple[Sphere, Sphere] = (scene.outer, scene.inner)
+    effective = [effective_modulus(body.material, plate.material) for body in bodies]
+    stiffness = [hertz_stiffness(e, body.radius) for e, body in zip(effective, bodies, strict=True)]
+    mobility = 1.0 / (8.0 * math.sqrt(plate.surface_density * plate.bending_stiffness))
+    scale = hertz_time_scale(scene.outer.mass, stiffness[0], scene.speed)
+    length = scene.speed * scale
+
+    def forces(y: NDArray[np.float64]) -> NDArray[np.float64]:
+        # y = outer, its velocity, plate, inner, its velocity, in units of length and scale
+        approach = length * np.array([y[2] - y[0], y[3] - y[2] - scene.gap / length])
+        return np.asarray(np.array(stiffness) * np.maximum(approach, 0.0) ** 1.5)
+
+    def rate(_: float, y: NDArray[np.float64]) -> list[float]:
+        outer, inner = forces(y)
+        unit = scale / scene.speed
+        return [
+            y[1],
+            unit * outer / scene.outer.mass,
+            mobility * (inner - outer) / scene.speed,
+            y[4],
+            -unit * inner / scene.inner.mass,
+        ]
+
+    # Until the plate's point has moved as far as the spheres can: four Hertz durations are ample.
+    path = solve_ivp(
+        rate,
+        (0.0, 13.0),
+        [0.0, -1.0, 0.0, -scene.gap / length, 0.0],
+        rtol=1e-6,
+        atol=1e-9,
+        max_step=0.05,
+    )
+    history = np.array([forces(y) for y in path.y.T])
+    peak = history.max(axis=0)
+    if peak[1] > 0.0:
+        peak = np.maximum(peak, MINOR_FORCE * peak.max())
+    radii = [
+        hertz_contact_radius(force, e, body.radius)
+        for force, e, body in zip(peak, effective, bodies, strict=True)
+    ]
+    if peak[1] == 0.0:
+        # Not reached in the first contact: the mesh is made for the other one, and verified.
+        radii[1] = min(radii[0], 0.15 * scene.inner.radius)
+    durations = [
+        3.218 * hertz_time_scale(body.mass, k, scene.speed)
+        for k, body in zip(stiffness, bodies, strict=True)
+    ]
+    return ContactEstimate(radii[0], radii[1], min(durations))
+
+
+def shortest_wavelengths(scene: Scene, duration: float) -> tuple[float, float, float]:
+    """Shortest wavelength that matters in outer sphere, plate and inner sphere, m.
+
+    At the frequency f = `WAVE_FREQUENCY` / duration: shear sqrt(G/rho)/f, in the plate also
+    bending sqrt(2 pi/f) (D/(rho h))^(1/4) (Kirchhoff).
+    """
+    frequency = WAVE_FREQUENCY / duration
+    plate = scene.plate
+    bending = (
+        math.sqrt(2.0 * math.pi / frequency)
+        * (plate.bending_stiffness / plate.surface_density) ** 0.25
+    )
+
+    def shear(material: Material) -> float:
+        return math.sqrt(material.shear_modulus / material.density) / frequency
+
+    return (
+        shear(scene.outer.material),
+        min(bending, shear(plate.material)),
+        shear(scene.inner.material),
+    )
+
+
+FIELD_DURATIONS = 2.5
+"""A run without end time is covered by fields over this many Hertz contact durations."""
+
+
+def field_times(scene: Scene, count: int) -> tuple[float, ...]:
+    """``count`` even instants over the run, s; those after its end are never reached."""
+    if count == 0:
+        return ()
+    end = scene.end_time or FIELD_DURATIONS * estimate_contact(scene).duration
+    return tuple(float(t) for t in np.linspace(0.0, end, count))

@@ -1,0 +1,204 @@
+"""Axisymmetric meshes of a scene, and the discrete system on them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse
+
+from ..axisymmetric.elasticity import assemble
+from ..axisymmetric.mesh import BodyMesh, check_elements
+from ..axisymmetric.meshing import mesh_plate, mesh_sphere
+from ..axisymmetric.sizes import MeshSettings
+from ..axisymmetric.system import (
+    System,
+    axis_constraints,
+    pair_nodes,
+    plate_constraints,
+    renumbering,
+)
+from ..common.arrays import Floats, Ints
+from ..common.errors import SceneError, SolverError
+from .scene import Scene
+
+CONTACT_ZONE = 1.3
+"""Radius with matching nodes over the largest contact radius expected."""
+
+
+def mesh_settings(
+    scene: Scene, outer_radius: float, inner_radius: float, factor: float
+) -> MeshSettings:
+    """Settings for the contact radii (m) expected, with ``factor`` from `RESOLUTIONS`.
+
+    Raises:
+        SceneError: the contact is too large for plate or spheres, or the mesh too large.
+    """
+    plate = scene.plate
+    per_radius = scene.elements_per_contact_radius * factor
+    # Along the plate four elements per thickness carry the waves: the incompatible modes bend. The
+    # stress at a clamped rim's corners is singular and would make the plate too stiff by the
+    # length of the elements there: fine elements at the rim hold the first frequency to 0.01 %.
+    along = min(plate.thickness / 4.0, plate.radius / 48.0) / factor
+    through = min(plate.thickness / 8.0, plate.radius / 48.0) / factor
+    rim = (
+        None if plate.edge == "free" else min(plate.thickness / 32.0, plate.radius / 96.0) / factor
+    )
+    per_contact = min(outer_radius, inner_radius) / per_radius
+    size = min(per_contact, along / 2.0, through)
+    zone = CONTACT_ZONE * max(outer_radius, inner_radius)
+    for name, radius in (
+        ("outer.radius", scene.outer.radius),
+        ("inner.radius", scene.inner.radius),
+        ("plate.radius", plate.radius),
+    ):
+        if 4.0 * zone > radius:
+            raise SceneError(
+                f"{name} is {radius:g} m, but a contact radius of {zone / CONTACT_ZONE:.3g} m "
+                f"is expected; {4.0 * CONTACT_ZONE:g} times as much is the least"
+            )
+    # An even count at factor 1: then the zone is the same at 2/3 and 3/2 of it, up to rounding.
+    count = max(4, round(2.0 * math.ceil(zone / (2.0 * size * factor) - 1e-9) * factor))
+    if count > 400:
+        raise SceneError(
+            f"the scene needs {count} elements across the contact zone, more than 400: its two "
+            "contacts or contact and plate differ too much in size"
+        )
+    growth, through_growth = (ratio ** (1.0 / factor) for ratio in (1.2, 1.35))
+    edge = (min(outer_radius, inner_radius), max(outer_radius, inner_radius))
+    return MeshSettings(size, count, along, through, growth, through_growth, edge, rim)
+
+
+@dataclass(frozen=True)
+class ContactSurface:
+    """Matching surface nodes of a sphere and the plate, by increasing radius."""
+
+    radii: Floats
+    sphere_nodes: Ints
+    plate_nodes: Ints
+
+
+@dataclass(frozen=True)
+class ImpactMesh:
+    """The three bodies and the two contact surfaces."""
+
+    outer: BodyMesh
+    plate: BodyMesh
+    inner: BodyMesh
+    outer_contact: ContactSurface
+    inner_contact: ContactSurface
+    settings: MeshSettings
+    min_quality: float
+    """Least scaled Jacobian of all elements."""
+
+
+def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
+    """Mesh spheres and plate, each where it stands at t = 0.
+
+    Raises:
+        SolverError: gmsh failed or an element is degenerate.
+    """
+    plate = mesh_plate(scene.plate, settings)
+    radii = settings.zone_radii()
+    half = scene.plate.thickness / 2.0
+    upper, upper_nodes = mesh_sphere(scene.outer, settings, "outer", radii)
+    lower, lower_nodes = mesh_sphere(scene.inner, settings, "inner", radii)
+    outer = BodyMesh("outer", upper.points + np.array([0.0, half]), upper.quads)
+    # Mirrored, hence the elements' sense of rotation reversed.
+    inner = BodyMesh(
+        "inner",
+        lower.points * np.array([1.0, -1.0]) - np.array([0.0, half + scene.gap]),
+        lower.quads[:, ::-1].copy(),
+    )
+    quality = min(check_elements(body) for body in (outer, plate, inner))
+
+    def face(z: float) -> Ints:
+        nodes = np.flatnonzero(np.abs(plate.points[:, 1] - z) < 1e-9 * half)
+        nodes = nodes[np.argsort(plate.points[nodes, 0])][: radii.size]
+        if not np.allclose(plate.points[nodes, 0], radii, rtol=0.0, atol=1e-9 * radii[-1]):
+            raise SolverError("the plate's surface nodes do not match the spheres' contact nodes")
+        return nodes
+
+    return ImpactMesh(
+        outer,
+        plate,
+        inner,
+        ContactSurface(radii, upper_nodes, face(half)),
+        ContactSurface(radii, lower_nodes, face(-half)),
+        settings,
+        quality,
+    )
+
+
+def build_system(scene: Scene, mesh: ImpactMesh) -> System:
+    """Assemble with dolfinx, constrain and renumber.
+
+    Raises:
+        SolverError: a lumped mass is not positive.
+    """
+    bodies = (mesh.outer, mesh.plate, mesh.inner)
+    materials = (scene.outer.material, scene.plate.material, scene.inner.material)
+    fixed_of = (
+        axis_constraints(mesh.outer),
+        plate_constraints(scene.plate, mesh.plate),
+        axis_constraints(mesh.inner),
+    )
+    stiffness, mass, inverse, numbers = [], [], [], []
+    element_nodes, element_stiffness, element_steps = [], [], []
+    first = np.zeros(4, dtype=np.int64)
+    for index, (body, material, fixed) in enumerate(zip(bodies, materials, fixed_of, strict=True)):
+        matrices = assemble(body, material)
+        if not matrices.mass.min() > 0.0:
+            node = int(np.argmin(matrices.mass))
+            r, z = body.points[node]
+            raise SolverError(
+                f"node {node} of body '{body.name}' at r = {r:.6g} m, z = {z:.6g} m has the mass "
+                f"{matrices.mass[node]:.3g} kg; it must be positive"
+            )
+        number = renumbering(matrices)
+        order = np.argsort(number)
+        rows = (2 * order[:, None] + np.arange(2)).ravel()
+        stiffness.append(matrices.stiffness[rows][:, rows])
+        mass.append(matrices.mass[order])
+        body_inverse = np.repeat(1.0 / matrices.mass, 2)
+        body_inverse[fixed] = 0.0
+        inverse.append(body_inverse[rows])
+        numbers.append(number + first[index])
+        elements = matrices.elements
+        element_nodes.append(numbers[index][elements.nodes])
+        element_stiffness.append(elements.stiffness)
+        element_steps.append(elements.critical_time_steps())
+        first[index + 1] = first[index] + order.size
+    plate_fixed = fixed_of[1]
+    supports = numbers[1][plate_fixed[plate_fixed % 2 == 1] // 2]
+    contacts = []
+    for name, surface, index, gap, normal in (
+        ("outer", mesh.outer_contact, 0, 0.0, 1.0),
+        ("inner", mesh.inner_contact, 2, scene.gap, -1.0),
+    ):
+        sphere = scene.outer if index == 0 else scene.inner
+        contacts.append(
+            pair_nodes(
+                name,
+                normal,
+                numbers[index][surface.sphere_nodes],
+                numbers[1][surface.plate_nodes],
+                surface.radii,
+                sphere,
+                gap,
+            )
+        )
+    return System(
+        stiffness=scipy.sparse.block_diag(stiffness, format="csr"),
+        mass=np.concatenate(mass),
+        inverse_mass=np.concatenate(inverse),
+        first=first,
+        numbers=(numbers[0], numbers[1], numbers[2]),
+        supports=np.sort(supports),
+        centre=(int(contacts[0].plate_nodes[0]), int(contacts[1].plate_nodes[0])),
+        contacts=(contacts[0], contacts[1]),
+        element_nodes=np.concatenate(element_nodes),
+        element_stiffness=np.concatenate(element_stiffness),
+        element_time_steps=np.concatenate(element_steps),
+    )

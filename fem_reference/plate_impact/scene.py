@@ -1,0 +1,149 @@
+"""The scene: what is read from ``scene.json``, checked once and then immutable (SI units)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..common.bodies import EDGES, Plate, Sphere, read_material
+from ..common.errors import SceneError
+from ..common.reader import Reader, read_document
+
+GEOMETRIES = ("axisymmetric", "solid")
+RIGID: dict[str, tuple[str, ...]] = {
+    "none": (),
+    "outer": ("outer",),
+    "inner": ("inner",),
+    "both": ("outer", "inner"),
+}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A sphere (outer) strikes a plate that a second sphere (inner) touches from below."""
+
+    name: str
+    scene_hash: str
+    settings_hash: str
+    plate: Plate
+    outer: Sphere
+    inner: Sphere
+    speed: float
+    """Speed of the outer sphere towards the plate, m/s, positive."""
+    gap: float
+    """Initial distance of the inner sphere from the plate, m."""
+    end_time: float | None
+    """s; None: until no further contact is possible."""
+    elements_per_contact_radius: float
+    geometry: str
+    """One of `GEOMETRIES`."""
+    element_order: int
+    """1 linear, 2 quadratic; of solid geometry only."""
+    rigid: tuple[str, ...]
+    """Bodies ("outer", "inner") that are rigid; of solid geometry only."""
+    raw: dict[str, Any]
+    """The document as given, for the provenance."""
+
+
+def _plate(reader: Reader) -> Plate:
+    reader.allow("radius", "thickness", "edge", "material", "damping_ratio")
+    if reader.node.get("damping_ratio") is not None:
+        damping = reader.number("damping_ratio", "(no unit)", inclusive=True)
+        if damping > 0.0:
+            raise SceneError(
+                f"plate.damping_ratio is {damping:g}; this solver has no damping, it must be 0"
+            )
+    return Plate(
+        radius=reader.number("radius", "m"),
+        thickness=reader.number("thickness", "m"),
+        edge=reader.choice("edge", EDGES),
+        material=read_material(reader.child("material")),
+    )
+
+
+def _sphere(reader: Reader, extra: str) -> Sphere:
+    reader.choice("kind", ("sphere",))
+    reader.allow("kind", "radius", "material", extra)
+    return Sphere(
+        radius=reader.number("radius", "m"), material=read_material(reader.child("material"))
+    )
+
+
+def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:
+    """Geometry, element order and rigid bodies of the table ``reference``."""
+    reference.allow("geometry", "elements_per_contact_radius", "element_order", "rigid")
+    geometry = reference.choice("geometry", GEOMETRIES)
+    order, rigid = 2, "none"
+    for key in ("element_order", "rigid"):
+        if reference.node.get(key) is not None and geometry != "solid":
+            raise SceneError(f"reference.{key} belongs to reference.geometry 'solid' only")
+    if reference.node.get("element_order") is not None:
+        number = reference.number("element_order", "(no unit)")
+        if number not in (1.0, 2.0):
+            raise SceneError(f"reference.element_order is {number:g}; it must be 1 or 2")
+        order = int(number)
+    if reference.node.get("rigid") is not None:
+        rigid = reference.choice("rigid", tuple(RIGID))
+    return geometry, order, RIGID[rigid]
+
+
+def parse_scene(document: Any) -> Scene:
+    """Check a decoded ``scene.json``.
+
+    Raises:
+        SceneError: naming the field, its value and what would be valid.
+    """
+    root = Reader(document, "")
+    root.choice("kind", ("plate-impact",))
+    root.allow(
+        "name",
+        "description",
+        "kind",
+        "scene_hash",
+        "settings_hash",
+        "plate",
+        "outer",
+        "inner",
+        "fluid",
+        "run",
+        "reference",
+    )
+    if root.node.get("fluid") is not None:
+        raise SceneError("fluid is given; this solver is for dry impacts, it must be null")
+    reference = root.child("reference")
+    geometry, element_order, rigid = _geometry(reference)
+    end_time = None
+    if root.node.get("run") is not None:
+        run = root.child("run")
+        run.allow("end_time")
+        if run.node.get("end_time") is not None:
+            end_time = run.number("end_time", "s")
+    outer, inner = root.child("outer"), root.child("inner")
+    return Scene(
+        name=root.text("name"),
+        scene_hash=root.text("scene_hash"),
+        settings_hash=root.text("settings_hash"),
+        plate=_plate(root.child("plate")),
+        outer=_sphere(outer, "speed"),
+        inner=_sphere(inner, "gap"),
+        speed=outer.number("speed", "m/s"),
+        gap=inner.number("gap", "m", inclusive=True),
+        end_time=end_time,
+        elements_per_contact_radius=reference.number(
+            "elements_per_contact_radius", "(no unit)", above=2.0, below=65.0, inclusive=True
+        ),
+        geometry=geometry,
+        element_order=element_order,
+        rigid=rigid,
+        raw=document,
+    )
+
+
+def read_scene(path: Path) -> Scene:
+    """Read and check a scene file of kind plate-impact.
+
+    Raises:
+        SceneError: the file cannot be read, is not JSON, or its content is not valid.
+    """
+    return parse_scene(read_document(path))

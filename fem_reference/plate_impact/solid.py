@@ -1,0 +1,230 @@
+"""From a scene to a verified three-dimensional solution: mesh, assemble, step, check, repeat."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import sys
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..common.errors import SolverError
+from ..common.series import Recorder, Report, Settings
+from ..explicit.resonance import stable_run
+from ..explicit.spectrum import first_frequency
+from ..solid.loop import Loop, make_loop
+from ..solid.memory import memory_needed, peak_memory, require_memory
+from ..solid.mesh import edge_lengths, qualities
+from .estimate import (
+    ACCEPTED_SHARE,
+    MINOR_FORCE,
+    MOST_MESHES,
+    ContactEstimate,
+    effective_modulus,
+    estimate_contact,
+    hertz_contact_radius,
+    shortest_wavelengths,
+)
+from .scene import Scene
+from .solid_model import PLATE, PlateModel, plate_model
+from .solid_run import SolidRun, integrate
+
+REVISION = 4
+"""Counts changes of the method that make older checkpoints useless."""
+
+RADIUS_STEP = 1.04
+"""Ratio of neighbouring contact radii for which a mesh is made again."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A verified run."""
+
+    run: SolidRun
+    plate: PlateModel
+    loop: Loop
+    estimate: ContactEstimate
+    meshes_tried: int
+    elements_per_radius: tuple[float, float]
+    """Found at the peak forces, outer and inner; infinite for a contact of hardly any force."""
+    wavelength: float
+    """Shortest that matters, m."""
+    elements_per_wavelength: float
+    recorder: Recorder
+    memory_stated: float
+    """Before the run, bytes."""
+    memory_used: float
+    """At most so far, bytes."""
+
+
+def _per_wavelength(
+    plate: PlateModel, wavelengths: tuple[float, float, float]
+) -> tuple[float, float]:
+    """Least number of elements per wavelength in any elastic body, and that wavelength, m."""
+    found = []
+    for name, wavelength in zip(("outer", PLATE, "inner"), wavelengths, strict=True):
+        if name in plate.elastic:
+            mesh = plate.model.elastic[plate.elastic[name]].mesh
+            longest = float(edge_lengths(mesh.points, mesh.corners).max())
+            found.append((wavelength / longest, wavelength))
+    return min(found)
+
+
+def _elements_per_radius(scene: Scene, plate: PlateModel, run: SolidRun) -> tuple[float, float]:
+    peaks = [contact.force_peak for contact in run.contacts]
+    found = []
+    for peak, sphere, name in zip(
+        peaks, (scene.outer, scene.inner), ("outer", "inner"), strict=True
+    ):
+        effective = effective_modulus(sphere.material, scene.plate.material)
+        if name in scene.rigid:
+            effective = scene.plate.material.plane_strain_modulus
+        radius = hertz_contact_radius(peak, effective, sphere.radius)
+        found.append(radius / plate.size if peak >= MINOR_FORCE * max(peaks) else math.inf)
+    return found[0], found[1]
+
+
+def method(scene: Scene) -> list[Any]:
+    """What kept states and results depend on, meshes and step apart."""
+    return [REVISION, scene.raw]
+
+
+def rounded(radius: float) -> float:
+    """The nearest of a series of radii, `RADIUS_STEP` apart.
+
+    An unstructured mesh changes altogether with the last digit of a size, and the radius found
+    differs in its last digits with the number of processes, in its first with the mesh.
+    """
+    step = math.log(RADIUS_STEP)
+    return math.exp(step * round(math.log(radius) / step))
+
+
+def _stepped(
+    scene: Scene,
+    plate: PlateModel,
+    duration: float,
+    settings: Settings,
+    suffix: str,
+    comm: Any,
+    report: Report,
+) -> tuple[Loop, SolidRun, Recorder]:
+    def attempt(most_levels: int) -> tuple[Loop, SolidRun, Recorder]:
+        loop = make_loop(plate.model, comm)
+        recorder = settings.recorder(f"{suffix}-{most_levels}")
+        run = integrate(
+            loop,
+            plate,
+            scene,
+            duration,
+            courant=settings.courant,
+            most_levels=most_levels,
+            fields=recorder,
+            checkpoint=settings.checkpoint([*method(scene), most_levels], plate.model, suffix),
+            on_progress=lambda done, message: report("stepping", done, message),
+        )
+        return loop, run, recorder
+
+    return stable_run(attempt, lambda made: (len(made[0].levels), made[1].energy_residual))
+
+
+def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: Report) -> Solution:
+    """Solve a scene with ``factor`` times the elements asked for, in every direction.
+
+    The mesh is made for estimated contact radii, and again if those found in the run leave less
+    than `ACCEPTED_SHARE` of the elements, or contact left the zone of candidates.
+
+    Raises:
+        SceneError: the scene is outside the method.
+        SolverError: meshing or the run failed, too little memory, or the mesh stayed too coarse.
+    """
+    estimate = estimate_contact(scene)
+    wavelengths = shortest_wavelengths(scene, estimate.duration)
+    asked = scene.elements_per_contact_radius * factor
+    radii = (estimate.outer_radius, estimate.inner_radius)
+    for attempt in range(1, MOST_MESHES + 1):
+        report("mesh", 0.0, "meshing")
+        expected = dataclasses.replace(estimate, outer_radius=radii[0], inner_radius=radii[1])
+        # gmsh runs in one process; the others wait.
+        made = plate_model(scene, expected, wavelengths, factor) if comm.rank == 0 else None
+        plate: PlateModel = comm.bcast(made)
+        nodes = int(plate.model.first[-1])
+        report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
+        loop, run, recorder = _stepped(
+            scene, plate, estimate.duration, settings, f"-{attempt}", comm, report
+        )
+        found = _elements_per_radius(scene, plate, run)
+        reach = max(contact.outermost_radius for contact in run.contacts)
+        inside = reach < 0.95 * plate.zone
+        if min(found) >= ACCEPTED_SHARE * asked and inside:
+            per_wave, wavelength = _per_wavelength(plate, wavelengths)
+            return Solution(
+                run,
+                plate,
+                loop,
+                estimate,
+                attempt,
+                found,
+                wavelength,
+                per_wave,
+                recorder,
+                memory_needed(nodes, scene.element_order, comm.size),
+                peak_memory(comm),
+            )
+        grow = 1.0 if inside else 1.3
+        radii = (
+            rounded(grow * plate.size * found[0]) if math.isfinite(found[0]) else radii[0],
+            rounded(grow * plate.size * found[1]) if math.isfinite(found[1]) else radii[1],
+        )
+        if comm.rank == 0:
+            print(
+                f"mesh {attempt}: {min(found):.3g} elements per contact radius, {asked:.3g} "
+                "asked; meshing again with the radii found",
+                file=sys.stderr,
+            )
+    raise SolverError(
+        f"after {MOST_MESHES} meshes there are still only {min(found):.3g} elements per contact "
+        f"radius, {asked:.3g} are asked for"
+    )
+
+
+def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
+    """The summary's physical quantities, SI; a contact that never closed ends at 0."""
+    run = solution.run
+    transmitted = scene.inner.mass * run.inner_velocity**2
+    return {
+        "efficiency": transmitted / (scene.outer.mass * scene.speed**2),
+        "outer_velocity_final": run.outer_velocity,
+        "inner_velocity_final": run.inner_velocity,
+        "outer_force_peak": run.contacts[0].force_peak,
+        "inner_force_peak": run.contacts[1].force_peak,
+        "outer_contact_end": run.contacts[0].end or 0.0,
+        "inner_contact_end": run.contacts[1].end or 0.0,
+        "first_frequency": first_frequency(solution.loop, solution.plate.elastic[PLATE]),
+    }
+
+
+def mesh_report(solution: Solution) -> dict[str, Any]:
+    """What the summary says about the mesh."""
+    meshes = [body.mesh for body in solution.plate.model.elastic]
+    edges = np.concatenate([edge_lengths(m.points, m.corners).ravel() for m in meshes])
+    quality = np.concatenate([qualities(m.points, m.corners) for m in meshes])
+    nodes = sum(m.points.shape[0] for m in meshes)
+    outer, inner = solution.elements_per_radius
+    return {
+        "nodes": nodes,
+        "dofs": 3 * nodes,
+        "elements": quality.size,
+        "element_order": meshes[0].order,
+        "elements_per_contact_radius": {
+            "outer": outer if math.isfinite(outer) else None,
+            "inner": inner if math.isfinite(inner) else None,
+        },
+        "elements_per_wavelength": solution.elements_per_wavelength,
+        "wavelength": solution.wavelength,
+        "smallest_element": float(edges.min()),
+        "largest_element": float(edges.max()),
+        "min_quality": float(quality.min()),
+        "mean_quality": float(quality.mean()),
+    }

@@ -1,0 +1,227 @@
+"""The plate scene as a three-dimensional model: a quarter of each body, elastic or rigid."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..common.arrays import Floats, Ints
+from ..common.bodies import Plate, Sphere, sphere_profile
+from ..common.errors import SceneError
+from ..solid.mesh import TetMesh, surface
+from ..solid.meshing import SizeField, quarter_plate, quarter_sphere
+from ..solid.model import (
+    Contact,
+    ElasticBody,
+    Model,
+    RigidBody,
+    SphereContact,
+    SurfaceContact,
+    guided,
+    nodal_areas,
+    project,
+    symmetry_plane,
+)
+from .estimate import ContactEstimate
+from .scene import Scene
+
+FRACTION = 0.25
+"""Share of the bodies that is modelled."""
+FINE_ZONE = 1.3
+"""Radius of the zone of smallest elements over the largest contact radius expected."""
+CANDIDATE_ZONE = 1.8
+"""Radius of the zone of nodes that may touch over the largest contact radius expected."""
+SLOPE = 0.3
+"""Growth of the element size per distance from the contact, at factor 1."""
+OUTER, PLATE, INNER = "outer", "plate", "inner"
+
+
+@dataclass(frozen=True)
+class PlateModel:
+    """The model and where its parts are."""
+
+    model: Model
+    size: float
+    """Element size at the contacts, m."""
+    zone: float
+    """Radius of the candidates' zone, m."""
+    elastic: dict[str, int]
+    """Number of each elastic body by name."""
+    rigid: dict[str, int]
+    centre: tuple[int, int]
+    """The plate's nodes at its centre, upper and lower face, in the numbering of its mesh."""
+    patches: dict[tuple[str, str], tuple[Ints, Floats]]
+    """Nodes and areas (m^2) of a body in the zone of a contact, by body and contact."""
+
+
+def _plate_supports(plate: Plate, mesh: TetMesh, facets: Ints) -> Ints:
+    """Clamped: all displacements on the whole rim; simply supported: the axial one."""
+    if plate.edge == "free":
+        return np.zeros(0, dtype=np.int64)
+    place = mesh.points[facets]
+    half = 0.5 * plate.thickness
+    flat = np.zeros(facets.shape[0], dtype=bool)
+    for axis, value in ((2, -half), (2, half), (0, 0.0), (1, 0.0)):
+        flat |= np.all(place[:, :, axis] == value, axis=1)
+    rim = np.unique(facets[~flat])
+    fixed = 3 * rim + 2
+    if plate.edge == "clamped":
+        fixed = np.concatenate([fixed, 3 * rim, 3 * rim + 1])
+    return np.asarray(np.unique(fixed))
+
+
+def _symmetry(mesh: TetMesh) -> Ints:
+    return np.concatenate([symmetry_plane(mesh, 0), symmetry_plane(mesh, 1)])
+
+
+def size_fields(
+    scene: Scene, radii: tuple[float, float], wavelengths: tuple[float, float, float], factor: float
+) -> tuple[SizeField, SizeField, SizeField]:
+    """Element sizes of outer sphere, plate and inner sphere.
+
+    Args:
+        scene: the scene.
+        radii: outer and inner contact radius expected, m.
+        wavelengths: shortest in the three bodies, m.
+        factor: on the number of elements in every direction.
+
+    Raises:
+        SceneError: the contact is too large for a body.
+    """
+    order = scene.element_order
+    zone = max(radii)
+    plate = scene.plate
+    least = min(min(radii) / scene.elements_per_contact_radius, plate.thickness / 4.0) / factor
+    for name, radius in (
+        ("outer.radius", scene.outer.radius),
+        ("inner.radius", scene.inner.radius),
+        ("plate.radius", plate.radius),
+    ):
+        if 3.0 * CANDIDATE_ZONE * zone > radius:
+            raise SceneError(
+                f"{name} is {radius:g} m, but a contact radius of {zone:.3g} m is expected; "
+                f"{3.0 * CANDIDATE_ZONE:g} times as much is the least"
+            )
+    # Elements per wavelength; linear tetrahedra are far too stiff in bending with fewer.
+    per_wave = {1: 24.0, 2: 8.0}[order]
+    through = {1: 0.25, 2: 1.0}[order]
+
+    def field(centres: tuple[tuple[float, float, float], ...], largest: float) -> SizeField:
+        return SizeField(
+            centres, FINE_ZONE * zone, least, SLOPE / factor, max(least, largest / factor)
+        )
+
+    half = 0.5 * plate.thickness
+    # Above and below, a sphere is meshed with its pole at the origin.
+    pole = ((0.0, 0.0, 0.0),)
+    return (
+        field(pole, min(0.25 * scene.outer.radius, wavelengths[0] / per_wave)),
+        field(
+            ((0.0, 0.0, half), (0.0, 0.0, -half)),
+            min(through * plate.thickness, plate.radius / 8.0, wavelengths[1] / per_wave),
+        ),
+        field(pole, min(0.25 * scene.inner.radius, wavelengths[2] / per_wave)),
+    )
+
+
+def _face(mesh: TetMesh, facets: Ints, height: float) -> Ints:
+    return np.asarray(facets[np.all(mesh.points[facets][:, :, 2] == height, axis=1)])
+
+
+def _outer_surface(mesh: TetMesh, facets: Ints) -> Ints:
+    """The facets of a quarter body that are on none of its planes of symmetry."""
+    place = mesh.points[facets]
+    inside = np.all(place[:, :, 0] == 0.0, axis=1) | np.all(place[:, :, 1] == 0.0, axis=1)
+    return np.asarray(facets[~inside])
+
+
+def plate_model(
+    scene: Scene,
+    estimate: ContactEstimate,
+    wavelengths: tuple[float, float, float],
+    factor: float,
+) -> PlateModel:
+    """Mesh the scene and define its contacts.
+
+    Raises:
+        SceneError, SolverError: see `size_fields` and `meshing`.
+    """
+    radii = (estimate.outer_radius, estimate.inner_radius)
+    outer_size, plate_size, inner_size = size_fields(scene, radii, wavelengths, factor)
+    zone = CANDIDATE_ZONE * max(radii)
+    order = scene.element_order
+    plate = quarter_plate(scene.plate, plate_size, order)
+    plate_facets = surface(plate)
+    fixed = np.union1d(_symmetry(plate), _plate_supports(scene.plate, plate, plate_facets))
+    elastic = [ElasticBody(plate, scene.plate.material, fixed)]
+    numbers, rigid_numbers = {PLATE: 0}, {}
+    rigid: list[RigidBody] = []
+    contacts: list[Contact] = []
+    patches: dict[tuple[str, str], tuple[Ints, Floats]] = {}
+    centre: list[int] = []
+    for name, sphere, size, side, gap, speed in (
+        (OUTER, scene.outer, outer_size, 1.0, 0.0, -scene.speed),
+        (INNER, scene.inner, inner_size, -1.0, scene.gap, 0.0),
+    ):
+        height = side * 0.5 * scene.plate.thickness
+        face = _face(plate, plate_facets, height)
+        areas = nodal_areas(plate, face)
+        distance = np.hypot(plate.points[:, 0], plate.points[:, 1])
+        near = np.flatnonzero((areas > 0.0) & (distance <= zone))
+        # By increasing radius: the record of the outermost contact goes by it.
+        near = near[np.argsort(distance[near], kind="stable")]
+        patches[PLATE, name] = (near, areas[near])
+        centre.append(int(near[0]))
+        if name in scene.rigid:
+            rigid_numbers[name] = len(rigid)
+            along = guided((0.0, 0.0, 1.0))
+            rigid.append(RigidBody(name, FRACTION * sphere.mass, along, (0.0, 0.0, speed)))
+            place = (0.0, 0.0, height + side * (sphere.radius + gap))
+            contacts.append(SphereContact(name, 0, near, rigid_numbers[name], place, sphere.radius))
+            continue
+        mesh = quarter_sphere(name, sphere, size, order, side)
+        numbers[name] = len(elastic)
+        elastic.append(ElasticBody(mesh, sphere.material, _symmetry(mesh), (0.0, 0.0, speed)))
+        contact, area = _sphere_on_plate(
+            name, mesh, numbers[name], plate, face, sphere, side, gap, zone
+        )
+        contacts.append(contact)
+        patches[name, name] = (contact.nodes, area)
+    return PlateModel(
+        model=Model(tuple(elastic), tuple(rigid), tuple(contacts)),
+        size=outer_size.least,
+        zone=zone,
+        elastic=numbers,
+        rigid=rigid_numbers,
+        centre=(centre[0], centre[1]),
+        patches=patches,
+    )
+
+
+def _sphere_on_plate(
+    name: str,
+    mesh: TetMesh,
+    number: int,
+    plate: TetMesh,
+    face: Ints,
+    sphere: Sphere,
+    side: float,
+    gap: float,
+    zone: float,
+) -> tuple[SurfaceContact, Floats]:
+    """The sphere's surface nodes against the plate's face, with the gap of the exact sphere."""
+    areas = nodal_areas(mesh, _outer_surface(mesh, surface(mesh)))
+    distance = np.hypot(mesh.points[:, 0], mesh.points[:, 1])
+    below = side * mesh.points[:, 2] < 0.5 * sphere.radius
+    nodes = np.flatnonzero((areas > 0.0) & (distance <= zone) & below)
+    nodes = nodes[np.argsort(distance[nodes], kind="stable")]
+    places = mesh.points[nodes].copy()
+    places[:, 2] = side * math.fabs(plate.points[face[0, 0], 2])
+    facets, weights, _ = project(places, plate, face)
+    normals = np.zeros((nodes.size, 3))
+    normals[:, 2] = side
+    gaps = gap + sphere_profile(sphere.radius, distance[nodes])
+    contact = SurfaceContact(name, number, nodes, 0, facets, weights, normals, gaps)
+    return contact, areas[nodes]

@@ -1,0 +1,1 @@
+"""What the reference says about itself: cost against error, bands against the truth."""

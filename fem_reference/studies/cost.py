@@ -1,0 +1,228 @@
+"""Cost against error over meshes, with and without sub-cycling, and the limit of the machine."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import math
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..axisymmetric.system import System, critical_time_step
+from ..common.output import write_json
+from ..common.progress import Progress
+from ..explicit import kernel
+from ..explicit.loop import Loop
+from ..plate_impact.axisymmetric import compute
+from ..plate_impact.axisymmetric_run import integrate
+from ..plate_impact.convergence import RATIO, TARGETED, quantities
+from ..plate_impact.estimate import estimate_contact
+from ..plate_impact.meshing import build_system, mesh_impact, mesh_settings
+from ..plate_impact.scene import Scene, read_scene
+
+EXACT = 3.0
+"""Elements, in every direction, of the mesh that counts as exact over those of `paper`."""
+FINEST = 1.05
+"""The same of the finest mesh that is measured."""
+MESHES = 7
+MOST_LEVELS = {"on": 5, "off": 1}
+CACHE_NUMBERS = 20_000
+MEMORY_NUMBERS = 8_000_000
+"""Numbers in each of the triad's three arrays: half a megabyte, and far more than any cache."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """One mesh with or without sub-cycling."""
+
+    factor: float
+    sub_cycling: str
+    dofs: int
+    steps: int
+    seconds: float
+    """Processor time of the loop."""
+    nanoseconds_per_dof_and_step: float
+    row_updates_per_node_and_step: float
+    """Share of the nodes whose forces are computed at a step, on average."""
+    relative_errors: dict[str, float]
+    """Of efficiency and force peaks, against the exact mesh; with sign."""
+    relative_error: float
+    """Largest magnitude of them."""
+
+
+def triad_bandwidth(numbers: int) -> float:
+    """Bytes per second of a = b + s c, three arrays of ``numbers``; the best of five trials."""
+    library = kernel.load()
+    arrays = [np.ones(numbers) for _ in range(3)]
+    pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in arrays]
+    repetitions = max(1, 20_000_000 // numbers)
+    library.triad(*pointers, numbers, 1)
+    best = math.inf
+    for _ in range(5):
+        started = time.process_time()
+        library.triad(*pointers, numbers, repetitions)
+        best = min(best, time.process_time() - started)
+    return 24.0 * numbers * repetitions / best
+
+
+def product_rates(system: System) -> dict[str, float]:
+    """Bytes and operations per second of the loop's own product on a system, and its size."""
+    loop = Loop(system, critical_time_step(system), 0.0, 1)
+    x = np.random.default_rng(1).standard_normal(loop.u.size)
+    blocks = sum(matrix.blocks.shape[0] for matrix in loop.levels)
+    nodes = system.mass.size
+    # A block: 4 numbers and a column; a node: its displacement, and its force read and written.
+    size = blocks * 36 + nodes * (3 * 16 + 8)
+    # 4 products and 4 sums a block, and the same for its mirror image.
+    operations = 16 * blocks - 8 * nodes
+    repetitions = max(10, 200_000_000 // size)
+    best = math.inf
+    for _ in range(3):
+        started = time.process_time()
+        for _ in range(repetitions):
+            loop.product(x)
+        best = min(best, (time.process_time() - started) / repetitions)
+    return {
+        "bytes": float(size),
+        "bytes_per_second": size / best,
+        "operations_per_second": operations / best,
+    }
+
+
+def limits(system: System) -> dict[str, Any]:
+    """What the loop's product reaches of what the machine's cache and memory deliver."""
+    cache, memory = triad_bandwidth(CACHE_NUMBERS), triad_bandwidth(MEMORY_NUMBERS)
+    product = product_rates(system)
+    return {
+        "triad_cache_bytes_per_second": cache,
+        "triad_memory_bytes_per_second": memory,
+        "product": product,
+        "share_of_cache_bandwidth": product["bytes_per_second"] / cache,
+        "share_of_memory_bandwidth": product["bytes_per_second"] / memory,
+    }
+
+
+def _point(scene: Scene, factor: float, sub_cycling: str, exact: dict[str, float]) -> Point:
+    estimate = estimate_contact(scene)
+    settings = mesh_settings(scene, estimate.outer_radius, estimate.inner_radius, factor)
+    system = build_system(scene, mesh_impact(scene, settings))
+    run = integrate(
+        system,
+        scene.speed,
+        estimate.duration,
+        end_time=scene.end_time,
+        most_levels=MOST_LEVELS[sub_cycling],
+    )
+    nodes = system.mass.size
+    updates = sum(count / 2**level for level, count in enumerate(run.levels))
+    found = quantities(scene, run, system)
+    errors = {name: found[name] / exact[name] - 1.0 for name in TARGETED if exact[name] != 0.0}
+    seconds = run.processor_seconds
+    per_step = seconds / run.steps / (2 * nodes) * 1e9
+    return Point(
+        factor,
+        sub_cycling,
+        2 * nodes,
+        run.steps,
+        seconds,
+        per_step,
+        updates / nodes,
+        errors,
+        max(abs(error) for error in errors.values()),
+    )
+
+
+def cost(scene: Scene, out: Path, progress: Progress) -> dict[str, Any]:
+    """Solve on `MESHES` meshes, measure, write ``out`` (JSON) and a figure .svg beside it."""
+    solution = compute(scene, EXACT, progress=progress, label="exact mesh: ")
+    exact = quantities(scene, solution.run, solution.system)
+    points = []
+    for number in range(MESHES):
+        factor = FINEST * RATIO**number
+        for sub_cycling in MOST_LEVELS:
+            points.append(_point(scene, factor, sub_cycling, exact))
+            message = f"{points[-1].dofs} dofs, sub-cycling {sub_cycling}"
+            progress.report("stepping", len(points) / (2 * MESHES), message)
+    estimate = estimate_contact(scene)
+    settings = mesh_settings(scene, estimate.outer_radius, estimate.inner_radius, FINEST * RATIO**2)
+    document = {
+        "schema_version": 1,
+        "scene": scene.name,
+        "exact": {"factor": EXACT, "seconds": solution.run.processor_seconds, **exact},
+        "points": [asdict(point) for point in points],
+        "limits": limits(build_system(scene, mesh_impact(scene, settings))),
+    }
+    out.parent.mkdir(parents=True, exist_ok=True)
+    write_json(out, document)
+    out.with_suffix(".svg").write_text(_figure(scene.name, points), encoding="utf-8")
+    return document
+
+
+def report_cost(path: Path, out: Path) -> None:
+    """`cost` of a scene file; what the machine delivers goes to standard output as JSON."""
+    document = cost(read_scene(path), out, Progress(sys.stderr))
+    print(json.dumps(document["limits"], indent=2))
+
+
+def _figure(name: str, points: Sequence[Point]) -> str:
+    """Relative error over processor time, both logarithmic."""
+    width, height, left, bottom, top = 560.0, 380.0, 80.0, 50.0, 40.0
+    x = [math.log10(point.seconds) for point in points]
+    y = [math.log10(max(point.relative_error, 1e-6)) for point in points]
+    x0, x1, y0, y1 = min(x) - 0.1, max(x) + 0.1, min(y) - 0.15, max(y) + 0.15
+
+    def place(u: float, v: float) -> tuple[float, float]:
+        across = left + (width - left - 20.0) * (u - x0) / (x1 - x0)
+        return across, top + (height - top - bottom) * (y1 - v) / (y1 - y0)
+
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" '
+        'font-family="DejaVu Sans, sans-serif" font-size="13">',
+        f"<title>{name}: cost against error</title>",
+        f'<rect width="{width:g}" height="{height:g}" fill="#fff"/>',
+    ]
+    marks = [m * 10.0**k for k in range(-6, 5) for m in (1, 2, 5)]
+    for mark in marks:
+        at = math.log10(mark)
+        if x0 < at < x1:
+            u, _ = place(at, y0)
+            parts.append(f'<path d="M{u:.1f} {top}V{height - bottom}" stroke="#e3e3e3"/>')
+            parts.append(
+                f'<text x="{u:.1f}" y="{height - bottom + 18}" text-anchor="middle">{mark:g}</text>'
+            )
+        if y0 < at < y1:
+            _, v = place(x0, at)
+            parts.append(f'<path d="M{left} {v:.1f}H{width - 20}" stroke="#e3e3e3"/>')
+            parts.append(
+                f'<text x="{left - 8}" y="{v + 4:.1f}" text-anchor="end">{100 * mark:g} %</text>'
+            )
+    for k, (kind, colour) in enumerate((("on", "#0072b2"), ("off", "#d55e00"))):
+        line = [place(u, v) for u, v, p in zip(x, y, points, strict=True) if p.sub_cycling == kind]
+        data = "L".join(f"{u:.1f} {v:.1f}" for u, v in line)
+        parts.append(f'<path d="M{data}" fill="none" stroke="{colour}" stroke-width="1.7"/>')
+        parts += [f'<circle cx="{u:.1f}" cy="{v:.1f}" r="3.5" fill="{colour}"/>' for u, v in line]
+        if kind == "on":
+            dofs = [point.dofs for point in points if point.sub_cycling == kind]
+            parts += [
+                f'<text x="{u:.1f}" y="{v + 17:.1f}" font-size="10" fill="#555" '
+                f'text-anchor="middle">{number}</text>'
+                for (u, v), number in zip(line, dofs, strict=True)
+            ]
+        parts.append(f'<text x="{left + 190 * k}" y="24" fill="{colour}">sub-cycling {kind}</text>')
+    parts.append(
+        f'<text x="{width / 2}" y="{height - 10}" text-anchor="middle">'
+        "processor time of the loop, s (at the points: degrees of freedom)</text>"
+    )
+    middle = top + (height - top - bottom) / 2.0
+    parts.append(
+        f'<text transform="translate(16 {middle:g}) rotate(-90)" text-anchor="middle">'
+        "largest error of efficiency, peaks</text>"
+    )
+    parts.append("</svg>\n")
+    return "\n".join(parts)
