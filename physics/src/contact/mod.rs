@@ -5,5 +5,5 @@ mod patch_flexibility;
 mod residual;
 
 pub use hertz::Hertz;
-pub use patch_flexibility::{PatchFlexibility, PatchTable, RADII, TABULATED, Tabulated};
+pub use patch_flexibility::{PatchFlexibility, PatchTable, RADII, TABULATED, Tabulated, WHOLE};
 pub use residual::{Residual, State};

@@ -10,7 +10,9 @@ use wide::f64x4;
 /// Radii of the table.
 pub const TABULATED: usize = 4;
 /// Their values in patch radii: from the early contact to more than a first look at the impact expects.
-pub const RADII: [f64; TABULATED] = [0.4, 0.8, 1.2, 1.5];
+pub const RADII: [f64; TABULATED] = [0.5, 1.0, 1.3, 1.6];
+/// Index of the patch radius itself.
+pub const WHOLE: usize = 1;
 
 /// Values of one quantity at the tabulated radii.
 pub type Tabulated = [f64; TABULATED];
@@ -25,6 +27,16 @@ pub struct PatchTable {
 }
 
 impl PatchTable {
+    /// Adds to all values what makes those at the patch radii `flexibility` (0,0), (0,1), (1,1) in m/N.
+    pub fn shift_to(&mut self, [own0, mutual, own1]: [f64; 3]) {
+        for (row, value) in self.own.iter_mut().zip([own0, own1]) {
+            let shift = value - row[WHOLE];
+            row.iter_mut().for_each(|value| *value += shift);
+        }
+        let shift = mutual - self.mutual[WHOLE][WHOLE];
+        self.mutual.iter_mut().flatten().for_each(|value| *value += shift);
+    }
+
     /// Adds the products of the displacements `at` of both contacts, times `own` for a contact with itself, times `mutual`
     /// between the two.
     pub fn add(&mut self, own: f64, mutual: f64, at: [Tabulated; 2]) {

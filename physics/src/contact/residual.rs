@@ -118,6 +118,11 @@ impl Residual {
         (1..=TESTED).map(|n| n as f64 * step).take_while(|x| holds(*x)).last().unwrap_or(0.5 * step)
     }
 
+    /// Radii in m of the widest patches before the contacts `laws` become punches; infinite without a table.
+    pub fn reach(&self, laws: &[Hertz; 2]) -> [f64; 2] {
+        [0, 1].map(|i| (laws[i].tip_radius * self.largest[i]).sqrt())
+    }
+
     /// Whether there is none.
     pub fn is_zero(&self) -> bool {
         self.own.iter().flatten().all(|r| *r == 0.0) && self.mutual.iter().all(|r| *r == f64x4::ZERO)

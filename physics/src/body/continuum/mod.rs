@@ -43,7 +43,7 @@ impl Default for MeshOptions {
     fn default() -> Self {
         Self {
             order: 3,
-            patch_elements: 4.0,
+            patch_elements: 3.0,
             growth: 1.6,
             nodes_per_wavelength: 10.0,
             thickness_elements: 1.0,

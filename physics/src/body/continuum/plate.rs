@@ -15,7 +15,8 @@ use super::mirror::{HalfBody, Parity, dot};
 use super::patch::{half_space_flexibility, nodal_forces, point};
 use super::{MeshOptions, check_patch};
 use crate::body::ModalBody;
-use crate::contact::{PatchFlexibility, PatchTable, RADII, TABULATED};
+use crate::body::layer::Waves;
+use crate::contact::{PatchFlexibility, PatchTable, RADII, TABULATED, WHOLE};
 use crate::error::{Error, Result};
 use crate::scene::{Edge, Plate};
 use std::f64::consts::{PI, SQRT_2, TAU};
@@ -66,10 +67,13 @@ impl ContinuumPlate {
         let halves = Halves::new(plate, &mesh)?;
         let spectrum = halves.spectrum(modes + 1)?;
         let forces = patch_radius.map(|a| WEIGHTED.map(|r| nodal_forces(&mesh, r * a)));
+        // of contact 0, between the contacts, of contact 1
+        let mut flexibility = [0.0; 3];
         let mut result = Self {
             omega: Vec::new(),
             participation: Vec::new(),
-            flexibility: PatchTable::default(),
+            // how it changes with the patches
+            flexibility: Waves::new(plate, WAVES).layer(patch_radius).flexibility,
             patch_radius,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
             damping_ratio: plate.damping_ratio,
@@ -77,17 +81,12 @@ impl ContinuumPlate {
         };
         for (parity, half) in halves.each() {
             let load = forces.each_ref().map(|forces| forces.each_ref().map(|f| half.axial_load(f)));
-            let opposite = sign(parity, 1);
-            for n in 0..TABULATED {
-                for i in 0..2 {
-                    let mut displacement = load[i][n].clone();
-                    half.solve(&mut displacement);
-                    result.flexibility.own[i][n] += 0.5 * dot(&load[i][n], &displacement);
-                    if i == 1 {
-                        for m in 0..TABULATED {
-                            result.flexibility.mutual[m][n] += 0.5 * opposite * dot(&load[0][m], &displacement);
-                        }
-                    }
+            for j in 0..2 {
+                let mut displacement = load[j][WHOLE].clone();
+                half.solve(&mut displacement);
+                for i in 0..=j {
+                    let half_sign = 0.5 * sign(parity, i) * sign(parity, j);
+                    flexibility[i + j] += half_sign * dot(&load[i][WHOLE], &displacement);
                 }
             }
             for entry in spectrum.iter().filter(|entry| entry.parity == parity) {
@@ -102,20 +101,20 @@ impl ContinuumPlate {
         order.sort_by(|&i, &j| result.omega[i].total_cmp(&result.omega[j]));
         result.omega = order.iter().map(|&i| result.omega[i]).collect();
         result.participation = order.iter().map(|&i| result.participation[i]).collect();
-        for (own, a) in result.flexibility.own.iter_mut().zip(patch_radius) {
-            for (own, r) in own.iter_mut().zip(RADII) {
-                *own -= half_space_flexibility(&plate.material, r * a);
-            }
+        for (i, a) in patch_radius.into_iter().enumerate() {
+            flexibility[2 * i] -= half_space_flexibility(&plate.material, a);
         }
+        result.flexibility.shift_to(flexibility);
         Ok(result)
     }
 
     /// The body with its `modes` lowest elastic modes (at most as many as were asked for) and what they lack
     /// as residual. The rigid motion of a free plate comes before them as a mode of its own.
     ///
-    /// A mode below `slow` rad/s moves by itself while the patches grow and shrink: it has one weight, that of a
-    /// mean patch, and the residual has none of its curvature. A quicker one follows the forces and with them the patches: its curvature
-    /// is the residual's, its weight that of a patch so wide that the residual stays positive definite.
+    /// A mode below `slow` rad/s moves by itself while the patches grow and shrink: it is weighted over the patches as they
+    /// are at most, and its curvature is none of the residual's. A quicker one follows the forces and with them the
+    /// patches: its curvature is the residual's, its weight that of a patch so wide that the residual stays positive
+    /// definite.
     pub fn modal_body(&self, modes: usize, slow: f64) -> ModalBody {
         let modes = modes.min(self.omega.len() - 1);
         let mut flexibility = self.flexibility;
@@ -133,7 +132,7 @@ impl ContinuumPlate {
         for (&omega, phi) in self.omega.iter().zip(&self.participation).take(modes) {
             body.omega.push(omega);
             body.damping_ratio.push(self.damping_ratio);
-            let moving = if omega < slow { MEAN } else { WIDE };
+            let moving = if omega < slow { WHOLE } else { WIDE };
             body.participation.push(phi.map(|phi| phi[moving]));
             let taken = phi.map(|phi| std::array::from_fn(|m| phi[if omega < slow { m } else { WIDE }]));
             let share = -omega.powi(-2);
@@ -210,10 +209,10 @@ const ROUNDING_LIMIT: f64 = 0.05;
 /// Radii in patch radii over which shapes are weighted: the tabulated ones and a wide one. A punch as wide as the widest
 /// patch of the table moves a wave as little as a Hertz pressure 1.3 times as wide does (sin(x)/x against 1 - x^2/10).
 pub const WEIGHTED: [f64; TABULATED + 1] = [RADII[0], RADII[1], RADII[2], RADII[3], 2.0];
-/// Index of a mean patch in [`WEIGHTED`]: over a contact the mean of the squared radius under the force is 0.7.
-const MEAN: usize = 1;
 /// Index of the wide patch.
 const WIDE: usize = TABULATED;
+/// Waves of the layer that tells how the flexibility changes with the patches.
+const WAVES: usize = 32;
 
 /// +1, or -1 for the inner face in longitudinal motion.
 fn sign(parity: Parity, point: usize) -> f64 {

@@ -362,7 +362,9 @@ fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) 
     };
     let fluid = fluid_forces(setup, shapes)?;
     let tips = tip_residuals(setup, rough.patch_radius, &mesh, cache)?;
-    Ok(Built { system: join(setup, plate, tips)?, fluid, warnings: validity::warnings(setup, rough) })
+    let system = join(setup, plate, tips)?;
+    let warnings = validity::warnings(setup, rough, &system);
+    Ok(Built { system, fluid, warnings })
 }
 
 /// Film and drag of the scene, if there are any. `shapes` gives the mass-normalised shapes of the dry plate's inner
@@ -398,7 +400,9 @@ fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &C
                 if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
                     return Ok(plate.modal_body(modes, rough.slow()));
                 }
-                most *= 2;
+                // with twice as many modes the highest frequency is four times as high at most
+                let far = rough.truncation_error(plate.omega_next(most)) > 16.0 * TRUNCATION;
+                most = if far { MAX_CHOSEN_MODES } else { 2 * most };
             }
         }
     }

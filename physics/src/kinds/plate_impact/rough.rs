@@ -34,7 +34,7 @@ impl Rough {
 
     /// Angular frequency in rad/s below which a mode does not follow the contacts' forces.
     pub(super) fn slow(&self) -> f64 {
-        self.contact_frequency * std::env::var("MC_SLOW").map_or(1.0, |v| v.parse::<f64>().unwrap_or(1.0))
+        self.contact_frequency
     }
 
     /// Relative error of a force when the modes from `omega_next` rad/s on follow statically.
