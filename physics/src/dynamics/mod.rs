@@ -12,6 +12,7 @@ pub mod explicit_runge_kutta;
 mod free_flight;
 pub mod integrator;
 mod ladder;
+mod ledger_check;
 mod outer_body;
 mod point_laws;
 mod recorder;
@@ -20,6 +21,7 @@ pub mod system;
 pub mod wet;
 
 pub use contact_ledger::ContactLedger;
+pub use ledger_check::ledger_check;
 pub use outer_body::OuterBody;
 
 /// Whether this build leaves out fluid, damping, residual flexibility and histories (feature `lean`), to measure what they

@@ -12,6 +12,7 @@ use crate::dynamics::LEAN;
 use crate::dynamics::OuterBody;
 use crate::dynamics::assured::{self, assured};
 use crate::dynamics::integrator::{Integration, Options, integrate};
+use crate::dynamics::ledger_check;
 use crate::dynamics::system::System;
 use crate::dynamics::wet;
 use crate::dynamics::wet::FluidForces;
@@ -182,19 +183,20 @@ impl Reduced {
     /// time integration.
     ///
     /// # Errors
-    /// As [`integrate`].
+    /// As [`integrate`] and [`ledger_check`].
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let start = Instant::now();
         let result = self.integrate(&self.options(tolerance))?;
-        Ok(self.summary(&result, tolerance, start.elapsed().as_secs_f64()))
+        self.summary(&result, tolerance, start.elapsed().as_secs_f64())
     }
 
     /// Runs the impact for its results alone, as a series of many needs them.
     ///
     /// # Errors
-    /// As [`integrate`].
+    /// As [`Reduced::run`].
     pub fn point(&self, tolerance: f64) -> Result<Point> {
         let result = self.integrate(&self.options(tolerance))?;
+        ledger_check(result.energy_residual, result.momentum_residual, tolerance)?;
         Ok(Point {
             quantities: quantities(&self.system, &result),
             energy_residual: result.energy_residual,
@@ -206,7 +208,7 @@ impl Reduced {
     /// Runs the impact and keeps its history. The summary's time is that of a run without history.
     ///
     /// # Errors
-    /// As [`integrate`].
+    /// As [`Reduced::run`].
     pub fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
         self.run_with_history_until(tolerance, 0.0)
     }
@@ -215,7 +217,7 @@ impl Reduced {
     /// until `end` (s) unless the scene names its end.
     ///
     /// # Errors
-    /// As [`integrate`].
+    /// As [`Reduced::run`].
     pub fn run_with_history_until(&self, tolerance: f64, end: f64) -> Result<Outcome> {
         let mut summary = self.run(tolerance)?;
         let system = &self.system;
@@ -240,7 +242,7 @@ impl Reduced {
         Options { tolerance, end_time: self.scene.run.end_time, sample_interval: None }
     }
 
-    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Summary {
+    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
         let system = &self.system;
         let unsure = result.error_estimate.filter(|error| *error > assured::ENOUGH * tolerance);
         let mut warnings = scene::doubts(&self.scene);
@@ -255,7 +257,8 @@ impl Reduced {
                 warnings.push(format!("the {body} body and the plate never touch"));
             }
         }
-        Summary {
+        warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
+        Ok(Summary {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
@@ -273,7 +276,7 @@ impl Reduced {
             warnings,
             choice: self.choice.clone(),
             ..Summary::of_reduced(&self.scene, self.model, system.modes, quantities(system, result))
-        }
+        })
     }
 }
 
@@ -425,4 +428,25 @@ pub(super) fn tip_residuals(
         tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
         tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
     ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A result whose ledger is off says so, and is none if it is far off.
+    #[test]
+    fn the_ledger_of_a_run_is_judged() {
+        let text = include_str!("../../../../tests/fixtures/plate-impact.toml");
+        let scene = Scene::parse("plate-impact.toml", text).unwrap();
+        let reduced = Reduced::new(&scene, Model::B, None).unwrap();
+        let sound = reduced.integrate(&reduced.options(1e-7)).unwrap();
+        let summary = |energy_residual: f64| {
+            reduced.summary(&Integration { energy_residual, ..sound.clone() }, 1e-7, 0.0)
+        };
+        assert_eq!(summary(sound.energy_residual).unwrap().warnings, Vec::<String>::new());
+        let off = summary(1e-5).unwrap();
+        assert!(off.warnings.iter().any(|w| w.contains("ledger of energy")), "{:?}", off.warnings);
+        assert!(matches!(summary(0.02), Err(Error::Solver(_))));
+    }
 }

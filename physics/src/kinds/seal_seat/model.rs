@@ -7,6 +7,7 @@ use super::integration::{Integration, Sample};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::cache::Cache;
+use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
 use crate::result::SeatHistory;
@@ -151,11 +152,11 @@ impl SeatModel {
     /// of its magnitude, of which the finer run has a third as its error (second order).
     ///
     /// # Errors
-    /// As [`integrate`]; [`Error::Solver`] if the tolerance can't be reached.
+    /// As [`integrate`] and [`ledger_check`]; [`Error::Solver`] if the tolerance can't be reached.
     pub fn run(&self, tolerance: f64) -> Result<SeatSummary> {
         let started = Instant::now();
         let (result, _) = self.converged(tolerance)?;
-        Ok(self.summary(&result, started.elapsed().as_secs_f64()))
+        self.summary(&result, tolerance, started.elapsed().as_secs_f64())
     }
 
     /// As [`SeatModel::run`], with the course over time. The summary's time is that of a run without.
@@ -165,7 +166,7 @@ impl SeatModel {
     pub fn run_with_history(&self, tolerance: f64) -> Result<(SeatSummary, SeatHistory)> {
         let started = Instant::now();
         let (result, step) = self.converged(tolerance)?;
-        let mut summary = self.summary(&result, started.elapsed().as_secs_f64());
+        let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
         let history = history(&self.integrate(step, true)?);
         summary.samples = Some(history.time.len());
         Ok((summary, history))
@@ -189,16 +190,18 @@ impl SeatModel {
         )))
     }
 
-    fn summary(&self, result: &Integration, solve_seconds: f64) -> SeatSummary {
+    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<SeatSummary> {
         let (system, modes) = (&self.system, self.system.omega.len());
-        SeatSummary {
+        let mut warnings = self.warnings.clone();
+        warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
+        Ok(SeatSummary {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.tally.steps,
             solve_seconds,
-            warnings: self.warnings.clone(),
+            warnings,
             ..SeatSummary::of_reduced(&self.scene, Model::C, modes, quantities(system, result))
-        }
+        })
     }
 }
 
