@@ -7,7 +7,6 @@
 use super::errors::largest_error;
 use super::reduced::{DEFAULT_MODES, fluid_forces, quantities};
 use super::rough::Rough;
-use super::validity;
 use crate::analytical::circular_plate::rigidity;
 use crate::body::continuum::ContinuumPlate;
 use crate::body::layer::Waves;
@@ -40,6 +39,28 @@ pub(super) struct Cut {
     pub(super) modes: usize,
 }
 
+/// What a model lacks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Lack {
+    /// Estimated relative error.
+    pub(super) error: f64,
+    /// The quantity that has it, if it is known.
+    pub(super) quantity: Option<&'static str>,
+}
+
+impl Lack {
+    /// The largest error of `candidate` against `exact` of the quantities covered; `speed` in m/s is that of the impact.
+    pub(super) fn between(candidate: &PlateQuantities, exact: &PlateQuantities, speed: f64) -> Self {
+        let (error, name) = largest_error(candidate, exact, speed);
+        Self { error, quantity: Some(name) }
+    }
+
+    /// The larger of two; what is not a number is the largest of all.
+    pub(super) fn or(self, other: Self) -> Self {
+        if self.error >= other.error || self.error.is_nan() { self } else { other }
+    }
+}
+
 /// The bodies of a scene in closed form.
 pub(super) struct Trials<'a> {
     pub(super) setup: &'a PlateImpact,
@@ -48,7 +69,7 @@ pub(super) struct Trials<'a> {
     pub(super) waves: Waves,
     layer: ContinuumPlate,
     pub(super) rough: Rough,
-    options: Options,
+    pub(super) options: Options,
     tips: [f64; 2],
 }
 
@@ -81,24 +102,27 @@ impl<'a> Trials<'a> {
         let plate = &self.setup.plate;
         let bending = rigidity(plate.material.youngs_modulus, plate.material.poisson_ratio, plate.thickness);
         let rest = plate.radius.powi(2) / (4.0 * PI * self.waves.cut().powi(2) * bending);
-        let body = ModalBody { residual: [[rest; 2]; 2], ..self.waves.kirchhoff(modes) };
-        self.run(body, modes, [0.0; 2])
+        let system = system(self.setup, &self.outer, self.waves.kirchhoff(modes), [0.0; 2]);
+        // the inner contact closes when the plate moves down
+        self.integrate(&system.softer([rest, -rest, rest]), modes)
     }
 
     /// Model C with a layer in the place of the continuum.
     pub(super) fn continuum(&self, modes: usize) -> Result<PlateQuantities> {
-        let plate = validity::tempered(self.layer.modal_body(modes), self.setup, &self.rough);
-        self.run(plate, modes, self.tips)
+        self.run(self.layer.modal_body(modes, self.rough.slow()), modes, self.tips)
     }
 
     fn run(&self, plate: ModalBody, modes: usize, tips: [f64; 2]) -> Result<PlateQuantities> {
-        let system = system(self.setup, &self.outer, plate, tips);
+        self.integrate(&system(self.setup, &self.outer, plate, tips), modes)
+    }
+
+    fn integrate(&self, system: &System, modes: usize) -> Result<PlateQuantities> {
         let shapes = |radii: &[f64]| Ok(self.waves.shapes(modes, radii));
         let result = match fluid_forces(self.setup, shapes)? {
-            None => integrate(&system, &self.options)?,
-            Some(fluid) => wet::integrate(&system, &fluid, &self.options)?,
+            None => integrate(system, &self.options)?,
+            Some(fluid) => wet::integrate(system, &fluid, &self.options)?,
         };
-        Ok(quantities(&system, &result))
+        Ok(quantities(system, &result))
     }
 
     /// Relative error of a force in model C when the bending modes beyond `modes` follow statically.
@@ -112,14 +136,14 @@ impl<'a> Trials<'a> {
         &self,
         modes: usize,
         converged: Option<&PlateQuantities>,
-    ) -> (f64, Option<&'static str>) {
+    ) -> Lack {
         let alone = self.truncation(modes);
         match (converged, self.continuum(modes)) {
             (Some(exact), Ok(ours)) => {
-                let (error, name) = largest_error(&ours, exact, self.setup.outer.speed);
-                (SAFETY * error + TRUNCATION_SHARE * alone, Some(name))
+                let lack = Lack::between(&ours, exact, self.setup.outer.speed);
+                Lack { error: SAFETY * lack.error + TRUNCATION_SHARE * alone, ..lack }
             }
-            _ => (alone, None),
+            _ => Lack { error: alone, quantity: None },
         }
     }
 

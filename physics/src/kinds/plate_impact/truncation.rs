@@ -1,11 +1,12 @@
 //! What the modes that a reduced model leaves out would change.
 //!
-//! Models A and B are held against Kirchhoff's plate with all its modes, model C with the plate as an elastic layer
-//! against that layer with more modes: [`Trials`]. A fluid's film and drag are left out of both.
+//! Models A and B are held against Kirchhoff's plate with all its modes. Model C is held against the plate as an elastic layer
+//! with more modes ([`Trials`]), which knows bending far from the rim, and against itself with fewer modes, which knows the
+//! rest. A fluid's film and drag are left out of both.
 
-use super::errors::largest_error;
-use super::trials::{RUNGS, Trials};
-use crate::dynamics::integrator::Options;
+use super::reduced::quantities;
+use super::trials::{Lack, RUNGS, Trials};
+use crate::dynamics::integrator::{Options, integrate};
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::scene::{Model, PlateImpact};
@@ -16,6 +17,8 @@ const LARGEST: f64 = 0.01;
 const RESOLUTION: [f64; 2] = [5e-4, 5e-6];
 /// Relative error of the time integration.
 const INTEGRATION: f64 = 1e-5;
+/// Largest ratio of two models' errors that is trusted.
+const NEAR: f64 = 0.9;
 
 /// The error that a model has for want of modes.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +29,8 @@ pub(super) struct Truncation {
     pub(super) warning: Option<String>,
 }
 
-/// Estimates what the modes left out of `system`, which is `model` of `setup`, change within `end_time` s.
+/// Estimates what the modes left out of `system`, which is `model` of `setup`, change within `end_time` s; the plate of model C
+/// has its next frequency at `omega_next` rad/s.
 ///
 /// # Errors
 /// As [`Trials::new`].
@@ -34,6 +38,7 @@ pub(super) fn estimate(
     setup: &PlateImpact,
     model: Model,
     system: &System,
+    omega_next: f64,
     end_time: Option<f64>,
 ) -> Result<Truncation> {
     let mut dry = setup.clone();
@@ -49,38 +54,55 @@ pub(super) fn estimate(
     }
     .ok();
     let of = |modes: usize| match (model, &converged) {
-        (Model::C, converged) => trials.truncated(modes, converged.as_ref()),
-        (_, Some(exact)) => match trials.kirchhoff(modes) {
-            Ok(ours) => {
-                let (error, name) = largest_error(&ours, exact, setup.outer.speed);
-                (error, Some(name))
-            }
-            Err(_) => (trials.truncation(modes), None),
+        (Model::C, layer) => trials.truncated(modes, layer.as_ref()),
+        (_, Some(all)) => match trials.kirchhoff(modes) {
+            Ok(ours) => Lack::between(&ours, all, setup.outer.speed),
+            Err(_) => Lack { error: trials.truncation(modes), quantity: None },
         },
-        (_, None) => (trials.truncation(modes), None),
+        (_, None) => Lack { error: trials.truncation(modes), quantity: None },
     };
     let modes = system.bending_modes();
-    let (error, quantity) = of(modes);
-    let warning = (error > LARGEST).then(|| {
-        let enough = RUNGS.into_iter().find(|n| *n > modes && of(*n).0 <= LARGEST);
-        warning(model, system.modes, error, quantity, enough)
+    let mut lack = of(modes);
+    if model == Model::C {
+        lack = lack.or(of_continuum(system, omega_next, &options));
+    }
+    let warning = (lack.error > LARGEST).then(|| {
+        let enough = RUNGS.into_iter().find(|n| *n > modes && of(*n).error <= LARGEST);
+        warning(model, system.modes, lack, enough)
     });
-    Ok(Truncation { error, warning })
+    Ok(Truncation { error: lack.error, warning })
 }
 
-fn warning(model: Model, modes: usize, error: f64, quantity: Option<&str>, enough: Option<usize>) -> String {
-    let most = quantity.map_or(String::new(), |name| format!(", most of all {name}"));
+/// What the modes that `system`, a model C, leaves out change, from what its own upper ones do: the error goes with the square of
+/// (contact frequency / lowest frequency left out), that of the system being `omega_next` rad/s.
+pub(super) fn of_continuum(system: &System, omega_next: f64, options: &Options) -> Lack {
+    let run = |system: &System| Ok::<_, crate::Error>(quantities(system, &integrate(system, options)?));
+    let unknown = Lack { error: f64::INFINITY, quantity: None };
+    let Ok(whole) = run(system) else { return unknown };
+    let part = |modes: usize| {
+        let Ok(part) = run(&system.lowest(modes)) else { return unknown };
+        let left_out = system.oscillators[system.elastic().start + modes].omega;
+        let ratio = (left_out / omega_next).powi(2).min(NEAR);
+        let lack = Lack::between(&part, &whole, system.speed);
+        Lack { error: lack.error * ratio / (1.0 - ratio), ..lack }
+    };
+    part(system.modes / 2).or(part(3 * system.modes / 4))
+}
+
+fn warning(model: Model, modes: usize, lack: Lack, enough: Option<usize>) -> String {
+    let most = lack.quantity.map_or(String::new(), |name| format!(", most of all {name}"));
     let remedy = match (model, enough) {
         (Model::A, Some(enough)) => {
             format!("model B with {enough} modes is within 1 % of all modes of its plate")
         }
         (Model::B, Some(enough)) => format!("{enough} modes are enough for 1 % (--modes {enough})"),
-        (Model::C, Some(enough)) => format!("about {enough} modes are enough for 1 % (--modes {enough})"),
+        (Model::C, Some(enough)) => format!("try about {enough} modes (--modes {enough})"),
+        (Model::C, None) => format!("try {} modes (--modes {})", 2 * modes, 2 * modes),
         (_, None) => "more than 192 modes are needed for 1 %".to_owned(),
     };
     let plural = if modes == 1 { "" } else { "s" };
     format!(
         "model {model} with {modes} mode{plural}: the modes left out would change the result by an estimated {:.2} %{most}; {remedy}",
-        100.0 * error
+        100.0 * lack.error
     )
 }
