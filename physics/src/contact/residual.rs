@@ -293,8 +293,10 @@ impl State {
             for i in 0..2 {
                 let curvature = 5.0 * (bent[i][m] * grows + g[i][0] * force[0] + g[i][1] * force[1]);
                 slopes.force[i][m] = force[i];
-                slopes.approach[i][m] =
-                    0.8 * self.p[i] * curvature + r[i][0] * force[0] + r[i][1] * force[1] + yielded[i][m] * grows;
+                slopes.approach[i][m] = 0.8 * self.p[i] * curvature
+                    + r[i][0] * force[0]
+                    + r[i][1] * force[1]
+                    + yielded[i][m] * grows;
             }
             let open = if grows + self.punch[m] > 0.0 { 0.0 } else { 1.0 };
             slopes.approach[m][m] += grows * (0.8 * self.c[m] + 0.2) + 0.8 * self.punch[m] + open;
@@ -330,7 +332,8 @@ mod tests {
         Residual::new(&PatchFlexibility::through(&table, patch), &LAWS)
     }
 
-    const APPROACHES: [[f64; 2]; 5] = [[8e-6, 5e-6], [8e-6, -1e-6], [-2e-6, 3e-6], [4e-5, 6e-5], [1e-9, 1e-12]];
+    const APPROACHES: [[f64; 2]; 5] =
+        [[8e-6, 5e-6], [8e-6, -1e-6], [-2e-6, 3e-6], [4e-5, 6e-5], [1e-9, 1e-12]];
 
     #[test]
     fn solution_satisfies_the_system_for_every_sign_of_the_residual() {
@@ -370,7 +373,12 @@ mod tests {
                     };
                     let step = 1e-4 * y[i];
                     let per_approach = (at(step) - at(-step)) / (2.0 * step);
-                    assert_relative_eq!(per_approach, f[i], epsilon = 1e-9 * (f[0] + f[1]), max_relative = 1e-6);
+                    assert_relative_eq!(
+                        per_approach,
+                        f[i],
+                        epsilon = 1e-9 * (f[0] + f[1]),
+                        max_relative = 1e-6
+                    );
                 }
             }
         }
@@ -390,7 +398,11 @@ mod tests {
                 let t = 1e-10;
                 let ((p_after, f_after), (p_before, f_before)) = (at(t), at(-t));
                 for i in 0..2 {
-                    assert_relative_eq!((p_after[i] - p_before[i]) / (2.0 * t), p_rate[i], max_relative = 1e-5);
+                    assert_relative_eq!(
+                        (p_after[i] - p_before[i]) / (2.0 * t),
+                        p_rate[i],
+                        max_relative = 1e-5
+                    );
                     let by_difference = (f_after[i] - f_before[i]) / (2.0 * t);
                     assert_relative_eq!(by_difference, f_rate[i], epsilon = 1.0, max_relative = 1e-5);
                 }

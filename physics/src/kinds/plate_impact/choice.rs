@@ -111,8 +111,9 @@ impl<'a> Plan<'a> {
         let corrected = Lack::between(&self.trials.converged().ok()?, &layer, speed).error;
         let plate = &self.trials.setup.plate;
         let share = LAYER_SHARE[0] + LAYER_SHARE[1] * plate.thickness / plate.radius;
+        let most = self.trials.waves.modes();
         let mut best: Option<Rated> = None;
-        for modes in KIRCHHOFF_RUNGS.into_iter().take_while(|n| *n <= self.trials.waves.modes()) {
+        for modes in KIRCHHOFF_RUNGS.into_iter().take_while(|n| *n <= most) {
             let model = if modes == 1 { Model::A } else { Model::B };
             let lack = Lack::between(&self.trials.kirchhoff(modes).ok()?, &layer, speed);
             let error = self.total(SAFETY * lack.error + share * corrected);
@@ -168,7 +169,8 @@ impl<'a> Plan<'a> {
         self.error = self.total(lack.error);
         self.note(Model::C, self.modes, self.error, lack.quantity);
         let more = 2 * built.modes;
-        let helps = !self.met() && more <= MOST_BUILT && self.floor.is_some_and(|floor| floor < self.tolerance);
+        let helps =
+            !self.met() && more <= MOST_BUILT && self.floor.is_some_and(|floor| floor < self.tolerance);
         self.cut = helps.then_some(Cut { omega: f64::INFINITY, modes: more });
     }
 
@@ -236,7 +238,9 @@ impl<'a> Plan<'a> {
                 100.0 * error,
                 100.0 * floor
             ),
-            (.., Some(_)) => format!("model {model} is taken without an estimate: with fewer modes its contacts have no solution"),
+            (.., Some(_)) => format!(
+                "model {model} is taken without an estimate: with fewer modes its contacts have no solution"
+            ),
             _ => format!(
                 "model {model} is taken without an estimate: the contact patches are wider, over the plate's thickness, than any that were compared with the reference"
             ),

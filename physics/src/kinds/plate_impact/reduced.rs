@@ -415,9 +415,8 @@ fn continuum_plate(
 ) -> Result<(ModalBody, f64)> {
     let mesh = MeshOptions::default();
     let build = |modes| cached::plate_in(cache, &setup.plate, rough.patch_radius, modes, &mesh);
-    let lowest = |plate: &ContinuumPlate, modes| {
-        Ok((plate.modal_body(modes, rough.slow()), plate.omega_next(modes)))
-    };
+    let lowest =
+        |plate: &ContinuumPlate, modes| Ok((plate.modal_body(modes, rough.slow()), plate.omega_next(modes)));
     match wanted {
         Wanted::Modes(modes) => lowest(&build(modes)?, modes),
         Wanted::Below(cut) => {

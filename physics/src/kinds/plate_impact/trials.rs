@@ -132,11 +132,7 @@ impl<'a> Trials<'a> {
 
     /// Largest estimated error of the quantities covered that model C has with `modes` bending modes for want of more, and the
     /// quantity; `converged` is the layer with all its modes.
-    pub(super) fn truncated(
-        &self,
-        modes: usize,
-        converged: Option<&PlateQuantities>,
-    ) -> Lack {
+    pub(super) fn truncated(&self, modes: usize, converged: Option<&PlateQuantities>) -> Lack {
         let alone = self.truncation(modes);
         match (converged, self.continuum(modes)) {
             (Some(exact), Ok(ours)) => {
