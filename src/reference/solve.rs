@@ -60,7 +60,7 @@ pub fn solve_with(
     let document = identity::solver_document(scene, resolution)?;
     std::fs::write(&input, format!("{document:#}\n")).map_err(|e| Error::io("writing", &input, e))?;
 
-    let mut command = python::fem_reference(python);
+    let mut command = python::fem_reference(python)?;
     command.args([OsStr::new("solve"), OsStr::new("--scene"), input.as_os_str()]);
     command.args([OsStr::new("--out"), output.as_os_str()]);
     command.args(["--resolution", resolution.first()]);
