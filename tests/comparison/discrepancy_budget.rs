@@ -200,7 +200,8 @@ fn mean_of_both_faces_of_a_thin_plate_gives_way_as_kirchhoffs_by_timoshenko() {
     let thickness = 0.33e-3;
     let plate = Plate { thickness, ..setup.plate.clone() };
     let steel = &plate.material;
-    let body = ContinuumPlate::new(&plate, [0.1e-3; 2], 16, &MeshOptions::default()).unwrap().modal_body(16, 0.0);
+    let body =
+        ContinuumPlate::new(&plate, [0.1e-3; 2], 16, &MeshOptions::default()).unwrap().modal_body(16, 0.0);
     let expected =
         plate.radius.powi(2) / (16.0 * PI * rigidity(steel.youngs_modulus, steel.poisson_ratio, thickness));
     let mean = static_flexibility(&mean_of_faces(&body));

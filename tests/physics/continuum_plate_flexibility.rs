@@ -66,12 +66,16 @@ fn flexibilities_over_the_patches_are_those_of_plates_made_for_other_patches() {
     };
     for large in [0.2e-3, 1.0e-3] {
         let table = of(large, 0.8 * large);
-        for [outer, inner] in [[0.2, 0.2], [0.5, 0.8], [1.0, 0.3], [1.45, 1.1]].map(|a| a.map(|a| a * large)) {
+        for [outer, inner] in [[0.2, 0.2], [0.5, 0.8], [1.0, 0.3], [1.45, 1.1]].map(|a| a.map(|a| a * large))
+        {
             let other = of(outer, inner).at([outer * outer, inner * inner]);
             let found = table.at([outer * outer, inner * inner]);
             for (i, (found, expected)) in found.into_iter().zip(other).enumerate() {
                 let scale = half_space_flexibility(&steel(), large);
-                assert!((found - expected).abs() < 2e-3 * scale, "{large} {outer} {i} {found:e} {expected:e}");
+                assert!(
+                    (found - expected).abs() < 2e-3 * scale,
+                    "{large} {outer} {i} {found:e} {expected:e}"
+                );
             }
         }
     }

@@ -50,10 +50,14 @@ pub struct State {
     p: [f64; 2],
     /// 1 where the patch may grow, else 0.
     grows: [f64; 2],
-    /// Rate of 0.8 c_i p_i by the coordinate of the patch where the contact is a punch, else 0.
+    /// 1 where the contact is a punch, else 0.
     punch: [f64; 2],
     /// Tangents of Hertz's laws at p, N/m.
     tangent: [f64; 2],
+    /// 5 k p^(3/2), N.
+    bending: [f64; 2],
+    /// The half-spaces' 0.8/(k p^(1/2)), m/N; 0 without a patch.
+    half_space: [f64; 2],
     /// Forces, N.
     pub f: [f64; 2],
     /// Relative curvatures.
@@ -141,7 +145,7 @@ impl Residual {
     #[inline(always)]
     pub fn state(&self, laws: &[Hertz; 2], coordinate: [f64; 2]) -> State {
         let mut s = State::default();
-        let (mut alone, mut pressed) = ([0.0; 2], [0.0; 2]);
+        let mut pressed = [0.0; 2];
         for i in 0..2 {
             let p = coordinate[i].max(0.0).min(self.largest[i]);
             let beyond = (coordinate[i] - self.largest[i]).max(0.0);
@@ -150,22 +154,23 @@ impl Residual {
             let Line { value, first, second } = Line::at(&self.own[i], scale * p);
             s.p[i] = p;
             s.tangent[i] = 1.5 * per_patch;
+            s.half_space[i] = if per_patch > 0.0 { 0.8 / per_patch } else { 0.0 };
             s.grows[i] = f64::from(u8::from(coordinate[i] > 0.0 && beyond == 0.0));
-            s.punch[i] = if beyond > 0.0 { 1.5 } else { 0.0 };
+            s.punch[i] = f64::from(u8::from(beyond > 0.0));
             s.lifted[i] = 1.5 * beyond;
             s.r[i][i] = value;
             s.g[i][i] = 0.5 * scale * first;
             s.g_own[i] = 0.5 * scale * scale * second;
-            alone[i] = per_patch * p;
-            pressed[i] = alone[i] + s.tangent[i] * beyond;
+            pressed[i] = per_patch * p + s.tangent[i] * beyond;
+            s.bending[i] = 5.0 * per_patch * p;
         }
         let [w0, w1] = self.per_patch;
         let surface = Surface::at(&self.mutual, [w0 * s.p[0], w1 * s.p[1]]);
         (s.r[0][1], s.r[1][0]) = (surface.value, surface.value);
         (s.g[0][1], s.g[1][0]) = (w0 * surface.first[0], w1 * surface.first[1]);
         s.g_mutual = [w0 * w0 * surface.second[0], w0 * w1 * surface.second[1], w1 * w1 * surface.second[2]];
-        let off = [5.0 * alone[0] * s.g[0][1], 5.0 * alone[1] * s.g[1][0]];
-        let own = [1.0 - 5.0 * alone[0] * s.g[0][0], 1.0 - 5.0 * alone[1] * s.g[1][1]];
+        let off = [s.bending[0] * s.g[0][1], s.bending[1] * s.g[1][0]];
+        let own = [1.0 - s.bending[0] * s.g[0][0], 1.0 - s.bending[1] * s.g[1][1]];
         let scale = 1.0 / (own[0] * own[1] - off[0] * off[1]);
         s.inverse = [[scale * own[1], scale * off[0]], [scale * off[1], scale * own[0]]];
         s.f = [0, 1].map(|i| s.inverse[i][0] * pressed[0] + s.inverse[i][1] * pressed[1]);
@@ -269,35 +274,33 @@ impl State {
         Some([scale * (e * error[0] - b * error[1]), scale * (a * error[1] - c * error[0])])
     }
 
-    /// Derivatives by the patches; an open contact has y_i = p_i + what it yields.
+    /// Derivatives by the patches; an open contact has y_i = p_i + what it yields. With U stationary in the patches,
+    /// dy_i = sum_j (d^2 U/dF_i dF_j dF_j + d^2 U/dF_i dp_j dp_j).
     #[inline(always)]
     fn slopes(&self, further: [f64; 3]) -> Slopes {
-        let (r, g, f) = (self.flexibility(further), &self.g, &self.f);
-        let [twice0, both, twice1] = self.g_mutual;
-        // sum of dg_ij/dp_m F_j and of dR_ij/dp_m F_j
-        let bent = [
-            [self.g_own[0] * f[0] + twice0 * f[1], both * f[1]],
-            [both * f[0], self.g_own[1] * f[1] + twice1 * f[0]],
-        ];
-        let yielded = [
-            [2.0 * g[0][0] * f[0] + g[0][1] * f[1], g[1][0] * f[1]],
-            [g[0][1] * f[0], 2.0 * g[1][1] * f[1] + g[1][0] * f[0]],
+        let ([[r00, r01], [r10, r11]], [[g00, g01], [g10, g11]]) = (self.flexibility(further), self.g);
+        let ([f0, f1], [twice0, both, twice1]) = (self.f, self.g_mutual);
+        let flexibility = [[r00 + self.half_space[0], r01], [r10, r11 + self.half_space[1]]];
+        // sum_j dg_ij/dp_m F_j and d^2 U/dF_i dp_m
+        let bent =
+            [[self.g_own[0] * f0 + twice0 * f1, both * f1], [both * f0, self.g_own[1] * f1 + twice1 * f0]];
+        let [c0, c1] = self.c;
+        let moved = [
+            [2.0 * g00 * f0 + g01 * f1 - 0.4 * c0 + 0.2, g10 * f1],
+            [g01 * f0, 2.0 * g11 * f1 + g10 * f0 - 0.4 * c1 + 0.2],
         ];
         let mut slopes = Slopes { force: [[0.0; 2]; 2], approach: [[0.0; 2]; 2] };
         for m in 0..2 {
             let grows = self.grows[m];
-            // 5 k p^(3/2) = 10/3 p times the tangent
-            let mut pressed = [0, 1].map(|i| 10.0 / 3.0 * self.p[i] * self.tangent[i] * bent[i][m] * grows);
-            pressed[m] += self.tangent[m] * if self.punch[m] > 0.0 { 1.0 } else { grows * self.c[m] };
+            let mut pressed = [0, 1].map(|i| self.bending[i] * bent[i][m] * grows);
+            pressed[m] += self.tangent[m] * (grows * self.c[m] + self.punch[m]);
             let force = [0, 1].map(|i| self.inverse[i][0] * pressed[0] + self.inverse[i][1] * pressed[1]);
             for i in 0..2 {
-                let curvature = 5.0 * (bent[i][m] * grows + g[i][0] * force[0] + g[i][1] * force[1]);
                 slopes.force[i][m] = force[i];
                 slopes.approach[i][m] =
-                    0.8 * self.p[i] * curvature + r[i][0] * force[0] + r[i][1] * force[1] + yielded[i][m] * grows;
+                    flexibility[i][0] * force[0] + flexibility[i][1] * force[1] + moved[i][m] * grows;
             }
-            let open = if grows + self.punch[m] > 0.0 { 0.0 } else { 1.0 };
-            slopes.approach[m][m] += grows * (0.8 * self.c[m] + 0.2) + 0.8 * self.punch[m] + open;
+            slopes.approach[m][m] += 1.0 - grows - self.punch[m];
         }
         slopes
     }
@@ -330,7 +333,8 @@ mod tests {
         Residual::new(&PatchFlexibility::through(&table, patch), &LAWS)
     }
 
-    const APPROACHES: [[f64; 2]; 5] = [[8e-6, 5e-6], [8e-6, -1e-6], [-2e-6, 3e-6], [4e-5, 6e-5], [1e-9, 1e-12]];
+    const APPROACHES: [[f64; 2]; 5] =
+        [[8e-6, 5e-6], [8e-6, -1e-6], [-2e-6, 3e-6], [4e-5, 6e-5], [1e-9, 1e-12]];
 
     #[test]
     fn solution_satisfies_the_system_for_every_sign_of_the_residual() {
@@ -370,7 +374,12 @@ mod tests {
                     };
                     let step = 1e-4 * y[i];
                     let per_approach = (at(step) - at(-step)) / (2.0 * step);
-                    assert_relative_eq!(per_approach, f[i], epsilon = 1e-9 * (f[0] + f[1]), max_relative = 1e-6);
+                    assert_relative_eq!(
+                        per_approach,
+                        f[i],
+                        epsilon = 1e-9 * (f[0] + f[1]),
+                        max_relative = 1e-6
+                    );
                 }
             }
         }
@@ -390,7 +399,11 @@ mod tests {
                 let t = 1e-10;
                 let ((p_after, f_after), (p_before, f_before)) = (at(t), at(-t));
                 for i in 0..2 {
-                    assert_relative_eq!((p_after[i] - p_before[i]) / (2.0 * t), p_rate[i], max_relative = 1e-5);
+                    assert_relative_eq!(
+                        (p_after[i] - p_before[i]) / (2.0 * t),
+                        p_rate[i],
+                        max_relative = 1e-5
+                    );
                     let by_difference = (f_after[i] - f_before[i]) / (2.0 * t);
                     assert_relative_eq!(by_difference, f_rate[i], epsilon = 1.0, max_relative = 1e-5);
                 }
