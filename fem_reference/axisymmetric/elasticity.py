@@ -8,6 +8,7 @@ e_zz = du_z/dz, g_rz = du_r/dz + du_z/dr; every integral carries the weight 2 pi
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +19,7 @@ import ufl
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Material
 from ..common.fenicsx import Domain
+from ..common.fields import Fields
 from .elements import ElementMatrices, element_matrices
 from .mesh import BodyMesh
 
@@ -94,7 +96,7 @@ def assemble_consistent(
 
     Rows 2 * node + component in dolfinx's numbering; for eigenmodes.
     """
-    domain = Domain(body, degree)
+    domain = Domain(body.points, body.quads, degree)
     stiffness = domain.matrix(_stiffness_form(domain, material, degree))
     return stiffness, domain.matrix(_mass_form(domain, material, degree)), domain.points_of_nodes()
 
@@ -107,7 +109,7 @@ def cell_stress(body: BodyMesh, material: Material, displacement: Floats) -> Flo
         material: its material.
         displacement: (n, 2), m.
     """
-    domain = Domain(body)
+    domain = Domain(body.points, body.quads)
     u = domain.function(displacement[domain.body_nodes()])
     r = ufl.SpatialCoordinate(domain.mesh)[0]
     stress = _stress(
@@ -124,4 +126,15 @@ def von_mises(stress: Floats) -> Floats:
     rr, tt, zz, rz = stress.T
     return np.asarray(
         np.sqrt(0.5 * ((rr - tt) ** 2 + (tt - zz) ** 2 + (zz - rr) ** 2) + 3.0 * rz**2)
+    )
+
+
+def fields(bodies: Sequence[BodyMesh], materials: Sequence[Material]) -> Fields:
+    """Of bodies in the (r, z) half-plane."""
+    return Fields(
+        "quad",
+        [(body.points, body.quads) for body in bodies],
+        STRESS_COMPONENTS,
+        lambda number, local: cell_stress(bodies[number], materials[number], local),
+        von_mises,
     )

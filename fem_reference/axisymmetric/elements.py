@@ -112,7 +112,7 @@ def element_matrices(
     Raises:
         SolverError: dolfinx numbers the nodes of an element in an unexpected way.
     """
-    domain = Domain(body, 2, discontinuous=True)
+    domain = Domain(body.points, body.quads, 2, discontinuous=True)
     count = body.quads.shape[0]
     dofs = domain.cell_dofs()
     corners = domain.cell_corners()

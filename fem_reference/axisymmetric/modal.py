@@ -13,10 +13,10 @@ from ..common.arrays import Floats
 from ..common.bodies import Plate
 from ..common.errors import SolverError
 from .mesh import BodyMesh
-from .system import System, plate_constraints
+from .system import AxisymmetricSystem, plate_constraints
 
 
-def first_frequency(system: System) -> float:
+def first_frequency(system: AxisymmetricSystem) -> float:
     """Lowest elastic eigenfrequency of the plate of the time loop (lumped mass), Hz."""
     rows = system.body(1)
     inverse = system.inverse_mass[rows]
@@ -32,7 +32,7 @@ def first_frequency(system: System) -> float:
     return math.sqrt(float(values.max())) / (2.0 * math.pi)
 
 
-def elastic_modes(system: System, count: int) -> tuple[Floats, Floats]:
+def elastic_modes(system: AxisymmetricSystem, count: int) -> tuple[Floats, Floats]:
     """Lowest elastic modes of the plate of the time loop, rigid motion left out.
 
     Returns:

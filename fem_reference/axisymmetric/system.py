@@ -10,9 +10,10 @@ import scipy.sparse
 import scipy.sparse.linalg
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from ..common.arrays import Floats, Ints
-from ..common.bodies import Plate, Sphere, sphere_profile
-from .elasticity import BodyMatrices
+from ..common.arrays import Floats, Ints, Mask
+from ..common.bodies import Plate
+from ..explicit.contact import Contact, MatchedContact, RigidBody
+from .elasticity import BodyMatrices, scatter
 from .mesh import BodyMesh
 
 BODIES = ("outer", "plate", "inner")
@@ -20,44 +21,19 @@ OUTER, PLATE, INNER = range(3)
 
 
 @dataclass(frozen=True)
-class ContactPairs:
-    """Node pairs of one contact in the numbering of the whole system."""
-
-    name: str
-    normal: float
-    """+1 if the sphere lies above the plate, else -1."""
-    sphere_nodes: Ints
-    plate_nodes: Ints
-    radii: Floats
-    gap: Floats
-    """(n,) initial gap of each pair along z, m."""
-
-
-def pair_nodes(
-    name: str,
-    normal: float,
-    sphere_nodes: Ints,
-    plate_nodes: Ints,
-    radii: Floats,
-    sphere: Sphere,
-    gap: float,
-) -> ContactPairs:
-    """Node pairs with the exact gap of a sphere that stands ``gap`` (m) off the plate."""
-    return ContactPairs(
-        name, normal, sphere_nodes, plate_nodes, radii, gap + sphere_profile(sphere.radius, radii)
-    )
-
-
-@dataclass(frozen=True)
-class System:
-    """Everything the time loop needs; nodes are ordered outer, plate, inner."""
+class AxisymmetricSystem:
+    """See `explicit.system.System`; nodes are ordered outer, plate, inner, components r, z."""
 
     stiffness: scipy.sparse.csr_matrix
     """(2n, 2n), N/m, fixed rows included (they give the support reaction)."""
+    points: Floats
+    """(n, 2) m"""
     mass: Floats
     """(n,) kg"""
     inverse_mass: Floats
     """(2n,) 1/kg, zero where the displacement is fixed."""
+    velocity: Floats
+    """(n, 2) at the start, m/s"""
     first: Ints
     """(4,) first node of each body, then the number of nodes."""
     numbers: tuple[Ints, Ints, Ints]
@@ -66,13 +42,39 @@ class System:
     """Nodes whose axial displacement is fixed."""
     centre: tuple[int, int]
     """The plate's centre nodes on its two faces."""
-    contacts: tuple[ContactPairs, ContactPairs]
+    matched: tuple[MatchedContact, MatchedContact]
+    """Outer and inner sphere, whose nodes are the candidates, with the plate."""
     element_nodes: Ints
     """(m, 4) nodes of all elements."""
     element_stiffness: Floats
     """(m, 8, 8) their matrices, whose sum is ``stiffness``, N/m."""
-    element_time_steps: Floats
+    element_steps: Floats
     """(m,) critical time step of each element alone, s."""
+    rigid: tuple[RigidBody, ...] = ()
+    contacts: tuple[Contact, ...] = ()
+    free_axes: tuple[int, ...] = (1,)
+
+    @property
+    def owned(self) -> Ints:
+        """(n,) all nodes."""
+        return np.arange(self.mass.size)
+
+    @property
+    def held(self) -> Mask:
+        """(n,) nodes of the support."""
+        held = np.zeros(self.mass.size, dtype=bool)
+        held[self.supports] = True
+        return held
+
+    def element_time_steps(self) -> Floats:
+        """(m,) critical time step of each element alone, s."""
+        return self.element_steps
+
+    def part(self, chosen: Mask | None) -> scipy.sparse.csr_matrix:
+        """(2n, 2n) stiffness of some elements (m,), or of all, N/m."""
+        which = slice(None) if chosen is None else chosen
+        nodes, stiffness = self.element_nodes[which], self.element_stiffness[which]
+        return scatter(nodes, stiffness, self.mass.size)
 
     def body(self, index: int) -> slice:
         """Rows of a body's displacements."""
@@ -117,7 +119,7 @@ def renumbering(matrices: BodyMatrices) -> Ints:
     return number
 
 
-def critical_time_step(system: System) -> float:
+def critical_time_step(system: AxisymmetricSystem) -> float:
     """2 / omega_max of the lumped system, s, from a safe upper estimate of omega_max.
 
     Lanczos on M^-1/2 K M^-1/2 gives the largest Ritz value; adding the norm of its residual
@@ -143,7 +145,7 @@ def hertz_weights(radii: Floats) -> Floats:
     return np.asarray(-np.diff((1.0 - (edges / radii[-1]) ** 2) ** 1.5))
 
 
-def patch_flexibility(system: System, body: int, nodes: Ints, weights: Floats) -> float:
+def patch_flexibility(system: AxisymmetricSystem, body: int, nodes: Ints, weights: Floats) -> float:
     """Axial flexibility of a body over a patch, p^T K^-1 p, m/N.
 
     The mean displacement, weighted with ``weights``, under a unit axial force spread with the

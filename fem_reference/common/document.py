@@ -1,17 +1,17 @@
-"""What the summary and the provenance of all solid solutions have in common."""
+"""What the summary and the provenance of all solutions have in common."""
 
 from __future__ import annotations
 
 from datetime import UTC, datetime
 from typing import Any, Protocol
 
-import numpy as np
+from .series import MeshResult, Run, estimates, relative_error
+from .settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION, RESOLUTIONS
+from .uncertainty import Estimate
 
-from ..explicit.contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
-from ..plate_impact.axisymmetric_result import SCHEMA_VERSION, convergence_part
-from ..solid.loop import Loop
-from .series import MeshResult, Run, estimates
-from .settings import RESOLUTIONS
+SCHEMA_VERSION = 1
+OF_A_BODY = "first_frequency"
+"""The quantity that is a body's own, whatever an impact on it comes to."""
 
 
 class Described(Protocol):
@@ -34,22 +34,6 @@ class Described(Protocol):
         """The scene as it was read."""
 
 
-class Remembering(Protocol):
-    """Loop and memory (bytes) of a solution."""
-
-    @property
-    def loop(self) -> Loop:
-        """At the end."""
-
-    @property
-    def memory_used(self) -> float:
-        """At most so far."""
-
-    @property
-    def memory_stated(self) -> float:
-        """Before the run."""
-
-
 class Verified(Run, Protocol):
     """What a document says about a run."""
 
@@ -66,10 +50,6 @@ class Verified(Run, Protocol):
         """Along z, N s."""
 
     @property
-    def in_contact_at_end(self) -> bool:
-        """Whether the run ended during a contact."""
-
-    @property
     def time_step(self) -> float:
         """S."""
 
@@ -77,13 +57,27 @@ class Verified(Run, Protocol):
     def critical_time_step(self) -> float:
         """S."""
 
-    @property
-    def sweeps_per_step(self) -> float:
-        """Of the contact solver."""
 
-    @property
-    def unconverged(self) -> int:
-        """Steps whose contact solver did not converge."""
+def _convergence(
+    meshes: list[MeshResult], found: dict[str, Estimate], targeted: tuple[str, ...]
+) -> dict[str, Any]:
+    """What the meshes (finest first) say together, per quantity that is determined."""
+    determined = set(targeted) <= set(found)
+    return {
+        "rule": "least squares after Eca & Hoekstra 2014",
+        "meshes": [mesh.numbers for mesh in meshes],
+        "quantities": {
+            name: {
+                "values": [mesh.values[name] for mesh in meshes],
+                "order": estimate.order,
+                "extrapolated": estimate.extrapolated,
+                "scatter": estimate.scatter,
+                "band": estimate.band,
+            }
+            for name, estimate in found.items()
+        },
+        "relative_error": relative_error(meshes, targeted) if determined else None,
+    }
 
 
 def _residuals(run: Verified) -> dict[str, float]:
@@ -95,37 +89,36 @@ def _residuals(run: Verified) -> dict[str, float]:
     }
 
 
-def machine(versions: dict[str, str | None], comm: Any, solution: Remembering) -> dict[str, Any]:
-    """What a run needed of the machine: versions, processes, memory in bytes; its levels."""
-    return {
-        "nodes_per_level": list(solution.loop.levels),
-        "versions": versions,
-        "processes": comm.size,
-        "peak_memory": solution.memory_used,
-        "memory_stated": solution.memory_stated,
-    }
-
-
 def summary(
     scene: Described,
     resolution: str,
     run: Verified,
     meshes: list[MeshResult],
+    targeted: tuple[str, ...],
     solver: dict[str, Any],
     **special: Any,
 ) -> dict[str, Any]:
-    """The summary of a solid solution.
+    """The summary of a solution.
+
+    A run that ended during a contact has not determined what the impact comes to: those quantities
+    are null, and ``at_end`` says what they had come to.
 
     Args:
         scene: what was solved.
         resolution: a key of `RESOLUTIONS`.
         run: of the finest mesh.
         meshes: finest first.
-        solver: versions, processes, memory.
+        targeted: quantities whose relative band counts.
+        solver: versions; levels, processes, memory.
         special: what only this kind of scene has.
     """
-    found = estimates(meshes)
-    values = {name: np.array([mesh.values[name] for mesh in meshes]) for name in found}
+    values, found = meshes[0].values, estimates(meshes)
+    special = dict(special)
+    if run.in_contact_at_end:
+        special["at_end"] = {
+            name: {"value": value, "band": found[name].band} for name, value in values.items()
+        }
+        found = {OF_A_BODY: found[OF_A_BODY]}
     return {
         "schema_version": SCHEMA_VERSION,
         "scene": scene.name,
@@ -135,7 +128,7 @@ def summary(
         "model": None,
         "modes": None,
         "resolution": resolution,
-        **meshes[0].values,
+        **{name: value if name in found else None for name, value in values.items()},
         "energy_residual": run.energy_residual,
         "momentum_residual": run.momentum_residual,
         "steps": run.steps,
@@ -143,13 +136,11 @@ def summary(
         "in_contact_at_end": run.in_contact_at_end,
         "end_time": float(run.times[-1]),
         "uncertainty": {name: estimate.band for name, estimate in found.items()},
-        "convergence": convergence_part([mesh.numbers for mesh in meshes], values, found),
+        "convergence": _convergence(meshes, found, targeted),
         "solver": {
             "time_step": run.time_step,
             "critical_time_step": run.critical_time_step,
             "courant": run.time_step / run.critical_time_step,
-            "contact_sweeps_per_step": run.sweeps_per_step,
-            "contact_unconverged_steps": run.unconverged,
             **solver,
         },
         "residuals": _residuals(run),
@@ -166,7 +157,7 @@ def provenance(
     settings: dict[str, Any],
     **special: Any,
 ) -> dict[str, Any]:
-    """The provenance of a solid solution.
+    """The provenance of a solution.
 
     Args:
         scene: what was solved.

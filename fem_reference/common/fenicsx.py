@@ -22,7 +22,6 @@ try:  # up to 0.5 the functions hang off fem.petsc only after an explicit import
 except ImportError as error:  # pragma: no cover - a dolfinx without PETSc
     raise ImportError("dolfinx was built without PETSc") from error
 
-from ..axisymmetric.mesh import BodyMesh
 from .arrays import Floats, Ints
 
 # FFCx logs through the root logger, at INFO and WARNING.
@@ -63,9 +62,11 @@ def _interpolation_points(space: Any) -> Any:
 class Domain:
     """A body's mesh as dolfinx sees it, with its vector space of the given degree."""
 
-    def __init__(self, body: BodyMesh, degree: int = 1, *, discontinuous: bool = False) -> None:
+    def __init__(
+        self, points: Floats, quads: Ints, degree: int = 1, *, discontinuous: bool = False
+    ) -> None:
         # dolfinx numbers the corners of a quadrilateral row by row.
-        self.mesh = _mesh(MPI.COMM_SELF, body.points, body.quads[:, [0, 1, 3, 2]], "quadrilateral")
+        self.mesh = _mesh(MPI.COMM_SELF, points, quads[:, [0, 1, 3, 2]], "quadrilateral")
         family = "DQ" if discontinuous else "Lagrange"
         self.space = _function_space(self.mesh, family, degree, (2,))
         self.degree = degree

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from .arrays import Floats
 from .errors import SolverError
 
 CHECKSUMS = "checksums.sha256"
@@ -57,6 +61,46 @@ def require_replaceable(target: Path, document: Any, replace: bool) -> None:
 
 
 @contextmanager
+def exclusive(folder: Path, comm: Any, waiting: Callable[[], None]) -> Iterator[None]:
+    """Hold ``folder`` for this run, made if need be; another run that asks for it waits.
+
+    The lock goes with the process, however that ends. An empty folder is removed with it.
+
+    Raises:
+        SolverError: the folder cannot be made or locked.
+    """
+    lock = _locked(folder, waiting) if comm.rank == 0 else None
+    comm.barrier()
+    try:
+        yield
+    finally:
+        if lock is not None:
+            with suppress(OSError):
+                folder.rmdir()
+            os.close(lock)
+
+
+def _locked(folder: Path, waiting: Callable[[], None]) -> int:
+    """Descriptor of the folder, locked."""
+    while True:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            lock = os.open(folder, os.O_RDONLY)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                waiting()
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            if os.path.samestat(os.fstat(lock), folder.stat()):
+                return lock
+            os.close(lock)
+        except FileNotFoundError:
+            continue  # whoever held it has removed it
+        except OSError as error:
+            raise SolverError(f"{folder} cannot be locked: {error}") from error
+
+
+@contextmanager
 def result_folder(target: Path) -> Iterator[Path]:
     """A temporary sibling of ``target`` that takes its place when the block succeeds.
 
@@ -80,6 +124,9 @@ def result_folder(target: Path) -> Iterator[Path]:
         partial.replace(target)
         if old is not None:
             shutil.rmtree(old, ignore_errors=True)
+    except TimeoutError as error:
+        # Of a form's compiler, not of a file.
+        raise SolverError(f"FEniCSx could not compile a form: {error}") from error
     except OSError as error:
         raise SolverError(f"the output folder {target} cannot be written: {error}") from error
     finally:
@@ -102,14 +149,11 @@ def write_json(path: Path, document: dict[str, Any]) -> None:
     path.write_text(json.dumps(document, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def write_series(path: Path, times: list[float], names: list[str]) -> None:
-    """A .pvd file: the .vtu files ``names`` beside it at ``times`` (s), for ParaView."""
-    entries = "".join(
-        f'    <DataSet timestep="{instant:.10g}" part="0" file="{name}"/>\n'
-        for instant, name in zip(times, names, strict=True)
-    )
-    path.write_text(
-        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" '
-        f'byte_order="LittleEndian">\n  <Collection>\n{entries}  </Collection>\n</VTKFile>\n',
-        encoding="ascii",
-    )
+def write_history(
+    path: Path, columns: Sequence[str], table: Floats, bands: Floats, digits: int
+) -> None:
+    """Comma-separated: ``columns``, then the half width of the band of all but the first."""
+    names = [*columns, *(f"{name}_band" for name in columns[1:])]
+    formats = [f"%.{digits}g"] * len(columns) + ["%.3g"] * bands.shape[1]
+    rows = np.column_stack([table, bands])
+    np.savetxt(path, rows, fmt=formats, delimiter=",", header=",".join(names), comments="")

@@ -1,9 +1,7 @@
-"""A scene on a series of meshes: coarser ones first, all kept until the result is written."""
+"""A scene on a series of meshes, all kept until the result is written."""
 
 from __future__ import annotations
 
-import argparse
-import hashlib
 import json
 import shutil
 from collections.abc import Callable
@@ -14,107 +12,19 @@ from typing import Any, Generic, Protocol, TypeVar, cast
 
 import numpy as np
 
-from ..explicit.checkpoint import Checkpoint, exclusive
-from ..solid.fields import Frames
-from ..solid.loop import Loop
-from ..solid.model import Model
 from .arrays import Floats
-from .errors import SolverError
-from .output import result_folder, write_json
+from .errors import SceneError, SolverError
+from .output import exclusive, result_folder, write_json
 from .progress import MeshOfSeries, Progress
-from .settings import require_instants, require_share
+from .settings import Options, Settings, require_instants, require_share
 from .uncertainty import Estimate, least_squares
 
 MESHES = 5
-COST_ORDER = 4
-"""A run costs the elements in a direction to this power: three for their number, one for steps."""
-MOST_REFINED = 4.0
-"""Refining towards a target ends beyond this factor on the number of elements."""
+MOST_REFINED = {2: 8.0, 3: 4.0}
+"""Refining towards a target ends beyond this factor on the number of elements, by dimension."""
 
 Report = Callable[[str, float, str], None]
 """Gets phase, share done, message."""
-
-
-@dataclass(frozen=True)
-class Options:
-    """What a user asks of a solution, mesh apart."""
-
-    courant: float = 0.9
-    """Time step over the critical one."""
-    stress_times: tuple[float, ...] = ()
-    """Instants at which fields are written, s."""
-    frames: int = 0
-    """Fields are written at least so many times, evenly over the run; 0: not."""
-    checkpoint: Path | None = None
-    """Folder; by default ``.checkpoint-<name>`` beside the result."""
-    checkpoint_interval: float = 60.0
-    """Wall-clock time between checkpoints, s."""
-    target_error: float | None = None
-    """Refine until the relative bands are that small."""
-
-    @staticmethod
-    def of(arguments: argparse.Namespace) -> Options:
-        """From the command line."""
-        return Options(
-            arguments.courant,
-            arguments.stress_at,
-            arguments.fields,
-            arguments.checkpoint,
-            arguments.checkpoint_interval,
-            arguments.target_error,
-        )
-
-
-class Recorder:
-    """Makes the recorder of a run's fields once its sampling interval is known.
-
-    Args:
-        folder: for the fields until they are written.
-        count: see `Frames`; 0 with no ``times``: nothing is kept.
-        times: instants, s.
-    """
-
-    def __init__(self, folder: Path, count: int, times: tuple[float, ...]) -> None:
-        self.folder, self.count, self.times = folder, count, times
-        self.made: Frames | None = None
-
-    def __call__(self, interval: float) -> Frames:
-        """Recorder for a run sampled at ``interval`` s."""
-        self.made = Frames(self.folder, self.count, self.times, interval)
-        return self.made
-
-    def frames(self) -> list[tuple[float, Floats]]:
-        """Instant (s) and displacement (N, 3) of all fields kept."""
-        return self.made.frames() if self.made else []
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How one mesh of a series is solved."""
-
-    courant: float
-    folder: Path
-    """For states and kept results."""
-    checkpoint_interval: float
-    label: str
-    """Of this mesh, for the names of its files."""
-    frames: int = 0
-    frame_times: tuple[float, ...] = ()
-
-    def checkpoint(self, method: list[Any], model: Model, suffix: str = "") -> Checkpoint:
-        """Of a run on ``model``'s meshes; ``method`` is what else its state depends on."""
-        digest = hashlib.sha256()
-        digest.update(json.dumps([*method, self.courant], sort_keys=True).encode())
-        for body in model.elastic:
-            digest.update(np.round(body.mesh.points, 15).tobytes())
-            digest.update(body.mesh.cells.tobytes())
-        path = self.folder / f"{self.label}{suffix}.npz"
-        return Checkpoint(path, digest.hexdigest(), self.checkpoint_interval)
-
-    def recorder(self, suffix: str = "") -> Recorder:
-        """Of the run's fields."""
-        folder = self.folder / f"{self.label}{suffix}-frames"
-        return Recorder(folder, self.frames, self.frame_times)
 
 
 class Run(Protocol):
@@ -140,6 +50,10 @@ class Run(Protocol):
     def energy_residual(self) -> float:
         """Of the energy ledger, relative."""
 
+    @property
+    def in_contact_at_end(self) -> bool:
+        """Whether the run ended during a contact, which leaves open what the impact comes to."""
+
 
 class Solved(Protocol):
     """What a series needs of a solution."""
@@ -149,8 +63,8 @@ class Solved(Protocol):
         """The run."""
 
     @property
-    def loop(self) -> Loop:
-        """State at the end."""
+    def dofs(self) -> int:
+        """Degrees of freedom, fixed ones included."""
 
 
 S = TypeVar("S", bound=Solved)
@@ -167,11 +81,16 @@ class Problem(Generic[S]):
     """Elements of a mesh in every direction over those of the next finer one."""
     targeted: tuple[str, ...]
     """Quantities whose relative band counts for `Options.target_error`."""
-    compute: Callable[[float, Settings, Report], S]
-    """Solves with a factor on the number of elements in every direction."""
+    compute: Callable[[float, Settings, Report, S | None], S]
+    """Solves with a factor on the number of elements in every direction; where the finest mesh
+    leads, coarser ones get its solution."""
     quantities: Callable[[S], dict[str, float]]
     write: Callable[[Path, S, list[MeshResult]], None]
     """Writes the result; meshes finest first. Called in the first process only."""
+    dimension: int = 3
+    """A run costs the elements in a direction to this power, and once more for the steps."""
+    leads: Callable[[S], list[Any]] | None = None
+    """If the finest mesh is solved first: what the others' results depend on of its solution."""
 
 
 @dataclass(frozen=True)
@@ -217,13 +136,15 @@ def solve_series(
     `Options.target_error` needs. A series that was killed goes on from its files.
 
     Raises:
-        SceneError: an option is out of bounds.
+        SceneError: an option is out of bounds, or a band is asked for of what the run leaves open.
         RunError: a mesh could not be solved, or the result not be written.
     """
     progress = progress if progress is not None else Progress()
     require_instants(options.stress_times, problem.end_time)
     require_share(options.target_error)
-    folder = options.checkpoint or target.absolute().parent / f".checkpoint-{target.name}"
+    # Where the finest mesh leads it is solved first, and again: nothing to go on from.
+    name = f".checkpoint-{target.name}" if problem.leads is None else f".partial-{target.name}-kept"
+    folder = options.checkpoint or target.absolute().parent / name
 
     def waiting() -> None:
         progress.report("waiting", 0.0, "another run of this solution is under way")
@@ -232,8 +153,7 @@ def solve_series(
         exclusive(folder, comm, waiting),
         result_folder(target) if comm.rank == 0 else nullcontext(target) as partial,
     ):
-        series = _Series(problem, factor, comm, options, folder, progress)
-        solution, meshes = series.solve()
+        solution, meshes = Series(problem, factor, comm, options, folder, progress).solve()
         if comm.rank == 0:
             progress.report("writing", 0.0, "writing the results", series=1.0)
             problem.write(partial, solution, meshes)
@@ -242,8 +162,17 @@ def solve_series(
         comm.barrier()
 
 
-class _Series(Generic[S]):
-    """Meshes numbered from the one asked for (0); finer ones have negative numbers."""
+class Series(Generic[S]):
+    """Meshes numbered from the one asked for (0); finer ones have negative numbers.
+
+    Args:
+        problem: see there.
+        factor: of mesh 0 on the number of elements in every direction.
+        comm: of the processes.
+        options: what the user asks for.
+        folder: for states and kept results.
+        progress: where to report.
+    """
 
     def __init__(
         self,
@@ -256,27 +185,45 @@ class _Series(Generic[S]):
     ) -> None:
         self.problem, self.factor, self.comm = problem, factor, comm
         self.options, self.folder, self.progress = options, folder, progress
+        self.lead: S | None = None
 
     def solve(self) -> tuple[S, list[MeshResult]]:
         """The finest mesh's solution, and all meshes of its series, finest first."""
         finest = 0
         while True:
-            coarser = [self._kept(finest + step, step) for step in range(MESHES - 1, 0, -1)]
-            solution = self._compute(finest, 0, with_fields=True)
-            meshes = [self._result(finest, solution), *reversed(coarser)]
+            solution, meshes = self._meshes(finest)
             aim = self.options.target_error
             if aim is None:
                 return solution, meshes
+            if solution.run.in_contact_at_end:
+                raise SceneError(
+                    "the run ends at run.end_time during a contact, which leaves open what the "
+                    f"band of {aim:g} is asked for; set a later end, or none"
+                )
             reached = relative_error(meshes, self.problem.targeted)
             if reached <= aim:
                 return solution, meshes
-            if self._factor(finest - 1) > MOST_REFINED * self.factor:
+            self._keep(finest, meshes[0])
+            # Second order at best: never further than that would need, and at least one step.
+            steps = int(np.log(reached / aim) / -np.log(self.problem.ratio) / 2.0)
+            finest -= max(1, min(3, steps))
+            if self._factor(finest) > MOST_REFINED[self.problem.dimension] * self.factor:
                 raise SolverError(
                     f"the largest relative band is {reached:.3g} at {meshes[0].factor:.3g} times "
                     f"the elements asked for; {aim:g} is asked for"
                 )
-            self._keep(finest, meshes[0])
-            finest -= 1
+
+    def _meshes(self, finest: int) -> tuple[S, list[MeshResult]]:
+        coarser = range(finest + 1, finest + MESHES)
+        self.lead = None
+        if self.problem.leads is None:
+            kept = [self._kept(number, finest) for number in reversed(coarser)][::-1]
+            solution = self._compute(finest, finest)
+        else:
+            solution = self.lead = self._compute(finest, finest)
+            kept = []
+        found = self._result(finest, solution)
+        return solution, [found, *(kept or [self._kept(number, finest) for number in coarser])]
 
     def _factor(self, number: int) -> float:
         return float(self.factor * self.problem.ratio**number)
@@ -284,10 +231,13 @@ class _Series(Generic[S]):
     def _label(self, number: int) -> str:
         return f"mesh{number:+d}"
 
-    def _compute(self, number: int, step: int, *, with_fields: bool) -> S:
-        """Solve mesh ``number``, ``step`` meshes coarser than the finest, which comes last."""
-        costs = [self.problem.ratio ** (COST_ORDER * k) for k in range(MESHES - 1, -1, -1)]
-        progress = MeshOfSeries(self.progress, MESHES - step, costs)
+    def _compute(self, number: int, finest: int) -> S:
+        """Solve mesh ``number`` of the series of ``finest``; only that keeps fields."""
+        costs = [self.problem.ratio ** (k * (self.problem.dimension + 1)) for k in range(MESHES)]
+        place = number - finest
+        if self.problem.leads is None:
+            costs, place = costs[::-1], MESHES - 1 - place
+        progress = MeshOfSeries(self.progress, place + 1, costs)
 
         def report(phase: str, done: float, message: str) -> None:
             if self.comm.rank == 0:
@@ -297,15 +247,15 @@ class _Series(Generic[S]):
         settings = Settings(
             options.courant, self.folder, options.checkpoint_interval, self._label(number)
         )
-        if with_fields:
+        if number == finest:
             settings = replace(settings, frames=options.frames, frame_times=options.stress_times)
-        return self.problem.compute(self._factor(number), settings, report)
+        return self.problem.compute(self._factor(number), settings, report, self.lead)
 
     def _result(self, number: int, solution: S) -> MeshResult:
         run, factor = solution.run, self._factor(number)
         numbers = {
             "factor": factor,
-            "dofs": 3 * int(solution.loop.all_masses.size),
+            "dofs": solution.dofs,
             "steps": run.steps,
             "seconds": run.loop_seconds,
             "energy_residual": run.energy_residual,
@@ -313,18 +263,21 @@ class _Series(Generic[S]):
         values = self.problem.quantities(solution)
         return MeshResult(factor, values, run.times, run.rows, numbers)
 
-    def _kept(self, number: int, step: int) -> MeshResult:
+    def _kept(self, number: int, finest: int) -> MeshResult:
         """A coarser mesh's, from its files if an earlier start has come that far."""
         found = self._load(number) if self.comm.rank == 0 else None
         found = cast("MeshResult | None", self.comm.bcast(found))
         if found is None:
-            found = self._result(number, self._compute(number, step, with_fields=False))
+            found = self._result(number, self._compute(number, finest))
             self._keep(number, found)
         return found
 
     def _identity(self, number: int) -> dict[str, Any]:
+        method = self.problem.method
+        if self.problem.leads is not None and self.lead is not None:
+            method = [*method, self.problem.leads(self.lead)]
         # Through JSON, as the identity read is.
-        method = json.loads(json.dumps(self.problem.method))
+        method = json.loads(json.dumps(method))
         return {
             "method": method,
             "courant": self.options.courant,

@@ -34,7 +34,7 @@ def _petsc() -> str | None:
 
 
 def _compiler() -> str | None:
-    from ..explicit.kernel import compiler_version
+    from .compiler import compiler_version
     from .errors import SolverError
 
     try:

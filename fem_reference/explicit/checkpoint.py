@@ -6,52 +6,24 @@ States are kept in the model's numbering: a run may go on with another number of
 
 from __future__ import annotations
 
-import fcntl
+import hashlib
 import json
 import os
 import time
 import zipfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..common.arrays import Floats, Ints
 from ..common.errors import SolverError
-from ..solid.loop import Loop
+from ..common.settings import Settings
+from .loop import Loop
 
 INTERVAL = 60.0
 """Wall-clock time between checkpoints, s."""
-
-
-@contextmanager
-def exclusive(folder: Path, comm: Any, waiting: Callable[[], None]) -> Iterator[None]:
-    """Hold the checkpoints in ``folder`` for this run; another run beside it waits.
-
-    The lock is on the folder that holds ``folder``; it goes with the process, however that ends.
-
-    Raises:
-        SolverError: that folder cannot be locked.
-    """
-    lock = None
-    if comm.rank == 0:
-        try:
-            folder.parent.mkdir(parents=True, exist_ok=True)
-            lock = os.open(folder.parent, os.O_RDONLY)
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                waiting()
-                fcntl.flock(lock, fcntl.LOCK_EX)
-        except OSError as error:
-            raise SolverError(f"{folder.parent} cannot be locked: {error}") from error
-    comm.barrier()
-    try:
-        yield
-    finally:
-        if lock is not None:
-            os.close(lock)
 
 
 class Checkpoint:
@@ -108,3 +80,16 @@ class Checkpoint:
     def remove(self) -> None:
         """The run is complete."""
         self.path.unlink(missing_ok=True)
+
+
+def checkpoint_of(
+    settings: Settings, method: list[Any], meshes: Iterable[tuple[Floats, Ints]], suffix: str = ""
+) -> Checkpoint:
+    """Of a run on ``meshes`` (points and cells); ``method`` is what else its state depends on."""
+    digest = hashlib.sha256()
+    digest.update(json.dumps([*method, settings.courant], sort_keys=True).encode())
+    for points, cells in meshes:
+        digest.update(np.round(points, 15).tobytes())
+        digest.update(cells.tobytes())
+    path = settings.folder / f"{settings.label}{suffix}.npz"
+    return Checkpoint(path, digest.hexdigest(), settings.checkpoint_interval)

@@ -1,49 +1,90 @@
-"""Contact between a sphere and the plate: node pairs, intervals, and a bound on re-contact."""
+"""Rigid bodies, and what can touch what."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
-from ..common.arrays import Floats
+import numpy as np
+
+from ..common.arrays import Floats, Ints
+
+FREE = np.eye(3)
 
 
 @dataclass(frozen=True)
-class ContactRecord:
-    """What the time loop found out about one contact."""
+class RigidBody:
+    """A body that moves without turning or deforming."""
 
-    count: int
-    """Separate contacts. Separations shorter than the chatter limit do not count."""
-    end: float | None
-    """End of the last one, s; None if they never touched."""
-    intervals: tuple[tuple[float, float], ...]
-    """First and last instant of each contact, s."""
-    force_peak: float
-    """N, averaged over the peak window."""
-    impulse: float
-    """N s"""
-    work: float
-    """Change of the discrete energy by the contact constraint, J: loss if negative."""
-    outermost_radius: float
-    """Largest radius of a pair that carried force, m."""
+    name: str
+    mass: float
+    """kg, of the part that is modelled (a half or a quarter with planes of symmetry)."""
+    directions: Floats = field(default_factory=lambda: FREE.copy())
+    """(3, 3) projector on the directions in which it may move: `guided`, or all."""
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """At the start, m/s."""
 
 
-CHATTER_FRACTION = 0.005
-"""Separations shorter than this share of the Hertz duration are chatter of single nodes."""
-
-PEAK_WINDOW_FRACTION = 1.0 / 600.0
-"""Window of the peak force over the Hertz contact duration (0.13 us for 78 us).
-
-Node pairs close and open one by one; the force of a single step jumps by a percent. The
-mean over a window much shorter than the contact removes that, and lowers the peak of a smooth
-pulse by only (pi * fraction)^2 / 24 of itself, about 1e-6.
-"""
+def guided(*axes: Sequence[float]) -> Floats:
+    """Projector on the space spanned by ``axes``: one for a guide, two for a plane of symmetry."""
+    basis, _ = np.linalg.qr(np.array(axes, dtype=np.float64).T)
+    return np.asarray(basis @ basis.T)
 
 
-def peak_force(cumulative_impulse: Floats, window: int, sample_interval: float) -> float:
-    """Largest mean force (N) over any ``window`` consecutive sampling intervals."""
-    if cumulative_impulse.size <= window:
-        return float(cumulative_impulse[-1] / (sample_interval * max(1, window)))
-    means = (cumulative_impulse[window:] - cumulative_impulse[:-window]) / (
-        window * sample_interval
-    )
-    return float(means.max())
+@dataclass(frozen=True)
+class SphereContact:
+    """Nodes of an elastic body against a sphere that is part of a rigid body."""
+
+    name: str
+    body: int
+    nodes: Ints
+    """Candidates: nodes of the body that can touch."""
+    rigid: int
+    centre: tuple[float, float, float]
+    """At the start, m."""
+    radius: float
+    places: Floats | None = None
+    """(n, 3) where the exact body has its candidates, if not where its mesh has them, m."""
+
+
+@dataclass(frozen=True)
+class SurfaceContact:
+    """Nodes of an elastic body against the surface of another one, meshes not matching.
+
+    The pairs stay as they are made (displacements small against the elements), unless whoever
+    runs the model makes new ones (`ContactProblem.pair`).
+    """
+
+    name: str
+    body: int
+    nodes: Ints
+    """(n,) candidates."""
+    target: int
+    facets: Ints
+    """(n, 3) or (n, 6) nodes of the facet opposite each candidate."""
+    weights: Floats
+    """Shape functions of the facet where the candidate meets it."""
+    normals: Floats
+    """(n, 3) unit normal, from the target to the candidate."""
+    gaps: Floats
+    """(n,) initial gap, m, of the exact bodies rather than their meshes."""
+    reachable: Ints | None = None
+    """Nodes of the target that later pairs may have, if there are to be any."""
+
+
+@dataclass(frozen=True)
+class MatchedContact:
+    """Surface nodes of two bodies that match, in the numbering of all nodes."""
+
+    name: str
+    normal: float
+    """+1 if the candidates lie above the nodes opposite along the last axis, else -1."""
+    candidates: Ints
+    opposite: Ints
+    radii: Floats
+    """(n,) distances from the axis, ascending, m."""
+    gaps: Floats
+    """(n,) initial gap of each pair, m."""
+
+
+Contact = SphereContact | SurfaceContact

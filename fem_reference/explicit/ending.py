@@ -1,36 +1,73 @@
-"""When a solid run may end: the proof that no further contact is possible."""
+"""When a run may end: the proof that two bodies never touch again.
+
+A body of elastic energy E (kinetic and strain, rigid motion apart) displaces its contact patch by
+at most sqrt(2 E C), C = p^T K^-1 p the flexibility of the patch with the weights p (Cauchy's
+inequality in the norm of K: |p^T u| = |p^T K^-1 K u| <= sqrt(p^T K^-1 p) sqrt(u^T K u)). The
+weights are Hertz's pressure: a single node's flexibility grows without bound on finer meshes. Two
+bodies whose rigid motions part, and are further apart than both bounds, stay apart. Where the
+lowest modes of a body are known, they move as known oscillations, and E and C are those of the
+others.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..common.arrays import Floats
+
+MOST_INSTANTS = 20000
+NONE = np.zeros(0)
+
+
+def least_clearance(
+    clearance: float, opening_speed: float, amplitudes: Floats, frequencies: Floats
+) -> float:
+    """Lower bound of clearance + opening_speed t - Re sum A_k exp(i omega_k t) over t >= 0, m.
+
+    Args:
+        clearance: m.
+        opening_speed: m/s.
+        amplitudes: (k,) complex A_k, m.
+        frequencies: (k,) omega_k, rad/s.
+    """
+    reach = float(np.abs(amplitudes).sum())
+    if clearance > reach and opening_speed >= 0.0:
+        return float(clearance - reach)
+    if not opening_speed > 0.0 or amplitudes.size == 0:
+        return -math.inf
+    # From here on the oscillations cannot follow any more.
+    last = (reach - clearance) / opening_speed
+    step = 2.0 * math.pi / float(frequencies.max()) / 40.0
+    count = math.ceil(last / step) + 1
+    if count > MOST_INSTANTS:
+        return -math.inf
+    t = np.linspace(0.0, last, count + 1)
+    plate = (amplitudes[:, None] * np.exp(1j * frequencies[:, None] * t)).real.sum(axis=0)
+    # Between two instants a curve lies below its chord by at most its curvature times step^2/8.
+    curvature = float((np.abs(amplitudes) * frequencies**2).sum())
+    sag = curvature * (t[1] - t[0]) ** 2 / 8.0
+    return float((clearance + opening_speed * t - plate).min() - sag)
 
 
 def no_further_contact(
     clearance: float,
     opening_speed: float,
-    plate_energy: float,
-    plate_flexibility: float,
-    sphere_energy: float,
-    sphere_flexibility: float,
+    vibrating: Iterable[tuple[float, float]],
+    amplitudes: Floats = NONE,
+    frequencies: Floats = NONE,
 ) -> bool:
-    """Whether a sphere and the plate can be proven never to touch again.
-
-    A body of elastic energy E (kinetic and strain, rigid motion apart) displaces its contact
-    patch by at most sqrt(2 E C), C = p^T K^-1 p the flexibility of the patch with the weights p
-    (Cauchy's inequality in the norm of K: |p^T u| = |p^T K^-1 K u| <= sqrt(p^T K^-1 p)
-    sqrt(u^T K u)). The weights are Hertz's pressure: a single node's flexibility grows without
-    bound on finer meshes. Two bodies whose rigid motions part, and are further apart than both
-    bounds, stay apart.
+    """Whether two bodies can be proven never to touch again.
 
     Args:
         clearance: distance of the undeformed bodies in their rigid motion, m.
         opening_speed: rate of the clearance, m/s.
-        plate_energy: J.
-        plate_flexibility: larger static flexibility of the plate's two contact patches, m/N.
-        sphere_energy: elastic energy of the sphere, J.
-        sphere_flexibility: its inertia-relief flexibility, m/N.
+        vibrating: elastic energy (J) and flexibility of the patch (m/N), known modes apart, of each
+            body.
+        amplitudes: see `least_clearance`; of the known modes.
+        frequencies: see `least_clearance`.
     """
-    reach = math.sqrt(2.0 * max(plate_energy, 0.0) * plate_flexibility) + math.sqrt(
-        2.0 * max(sphere_energy, 0.0) * sphere_flexibility
-    )
-    return opening_speed >= 0.0 and clearance > reach
+    reach = sum(math.sqrt(2.0 * max(e, 0.0) * flexibility) for e, flexibility in vibrating)
+    return least_clearance(clearance - reach, opening_speed, amplitudes, frequencies) > 0.0

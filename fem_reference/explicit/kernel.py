@@ -11,32 +11,35 @@ import ctypes
 import hashlib
 import os
 import platform
-import shutil
 import subprocess
 import tempfile
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
+from ..common.arrays import Floats
+from ..common.compiler import compiler, compiler_version
 from ..common.errors import SolverError
 
 FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=fast", "-fPIC", "-shared")
 MAX_INTERVALS = 256
-MAX_LEVELS = 16
+FACET_NODES = 6
+SAMPLED = 8
+"""Numbers in a row of ``run``."""
+AGAINST_SURFACE, AGAINST_SPHERE = 0, 1
 _SOURCE = Path(__file__).with_name("kernel.c")
 _INT32 = ctypes.POINTER(ctypes.c_int32)
+_INT64 = ctypes.POINTER(ctypes.c_int64)
 _DOUBLE = ctypes.POINTER(ctypes.c_double)
+_VECTOR = ctypes.c_double * 3
 
 
-class Contact(ctypes.Structure):
-    """Mirror of ``Contact`` in kernel.c."""
+class Record(ctypes.Structure):
+    """Mirror of ``Record`` in kernel.c."""
 
     _fields_ = (
-        ("pairs", ctypes.c_int32),
-        ("reserved", ctypes.c_int32),
-        ("sphere", _INT32),
-        ("plate", _INT32),
-        ("gap", _DOUBLE),
-        ("compliance", _DOUBLE),
-        ("normal", ctypes.c_double),
         ("impulse", ctypes.c_double),
         ("work", ctypes.c_double),
         ("force", ctypes.c_double),
@@ -45,8 +48,85 @@ class Contact(ctypes.Structure):
         ("intervals", ctypes.c_int64),
         ("first_step", ctypes.c_int64 * MAX_INTERVALS),
         ("last_step", ctypes.c_int64 * MAX_INTERVALS),
-        ("outermost", ctypes.c_int32),
-        ("reserved2", ctypes.c_int32),
+        ("outermost", ctypes.c_int64),
+    )
+
+
+class Pairs(ctypes.Structure):
+    """Mirror of ``Pairs`` in kernel.c."""
+
+    _fields_ = (
+        ("count", ctypes.c_int64),
+        ("candidate", _INT32),
+        ("opposite", _INT32),
+        ("gap", _DOUBLE),
+        ("compliance", _DOUBLE),
+        ("before", _DOUBLE),
+        ("normal", ctypes.c_double),
+        ("record", Record),
+    )
+
+
+class Rigid(ctypes.Structure):
+    """Mirror of ``Rigid`` in kernel.c."""
+
+    _fields_ = (
+        ("mobility", ctypes.c_double * 9),
+        ("mass", ctypes.c_double),
+        ("u", _VECTOR),
+        ("v", _VECTOR),
+        ("before", _VECTOR),
+        ("force", _VECTOR),
+    )
+
+
+class Contact(ctypes.Structure):
+    """Mirror of ``Contact`` in kernel.c."""
+
+    _fields_ = (
+        ("kind", ctypes.c_int32),
+        ("count", ctypes.c_int32),
+        ("node", _INT32),
+        ("facet", _INT32),
+        ("weight", _DOUBLE),
+        ("normal", _DOUBLE),
+        ("gap", _DOUBLE),
+        ("place", _DOUBLE),
+        ("radius", ctypes.c_double),
+        ("rigid", ctypes.c_int32),
+        ("reserved", ctypes.c_int32),
+        ("multipliers", _DOUBLE),
+        ("compliance", _DOUBLE),
+        ("active", _INT32),
+        ("impulse", _VECTOR),
+        ("force", _VECTOR),
+        ("record", Record),
+    )
+
+
+class Problem(ctypes.Structure):
+    """Mirror of ``Problem`` in kernel.c."""
+
+    _fields_ = (
+        ("nodes", ctypes.c_int64),
+        ("map", _INT32),
+        ("inverse", _DOUBLE),
+        ("u", _DOUBLE),
+        ("predicted", _DOUBLE),
+        ("before", _DOUBLE),
+        ("force", _DOUBLE),
+        ("contacts", ctypes.c_int32),
+        ("rigids", ctypes.c_int32),
+        ("matched", ctypes.c_int64),
+        ("contact", ctypes.POINTER(Contact)),
+        ("rigid", ctypes.POINTER(Rigid)),
+        ("pairs", ctypes.POINTER(Pairs)),
+        ("dt", ctypes.c_double),
+        ("tolerance", ctypes.c_double),
+        ("step", ctypes.c_int64),
+        ("sweeps", ctypes.c_int64),
+        ("unconverged", ctypes.c_int64),
+        ("reaction", _VECTOR),
     )
 
 
@@ -54,12 +134,12 @@ class Level(ctypes.Structure):
     """Mirror of ``Level`` in kernel.c."""
 
     _fields_ = (
-        ("shared", ctypes.c_int32),
-        ("shared_fixed", ctypes.c_int32),
-        ("inner", ctypes.c_int32),
-        ("rows", ctypes.c_int32),
+        ("shared_free", ctypes.c_int64),
+        ("shared", ctypes.c_int64),
+        ("free", ctypes.c_int64),
+        ("rows", ctypes.c_int64),
         ("node", _INT32),
-        ("row", _INT32),
+        ("row", _INT64),
         ("column", _INT32),
         ("block", _DOUBLE),
     )
@@ -70,46 +150,49 @@ class State(ctypes.Structure):
 
     _fields_ = (
         ("nodes", ctypes.c_int64),
+        ("levels", ctypes.c_int64),
+        ("level", ctypes.POINTER(Level)),
         ("inverse", _DOUBLE),
         ("u", _DOUBLE),
         ("v", _DOUBLE),
         ("f", _DOUBLE),
-        ("dt", ctypes.c_double),
-        ("step", ctypes.c_int64),
-        ("levels", ctypes.c_int32),
-        ("contacts", ctypes.c_int32),
-        ("support_impulse", ctypes.c_double),
-        ("velocity_before", _DOUBLE),
-        ("body_mass", ctypes.c_double * 2),
-        ("rigid_start", ctypes.c_double * 2),
-        ("rigid", ctypes.c_double * 2),
-        ("centre", ctypes.c_int32 * 2),
-        ("contact", Contact * 2),
-        ("level", Level * MAX_LEVELS),
+        ("problem", ctypes.POINTER(Problem)),
     )
 
 
-def compiler() -> str:
-    """Path of the C compiler: $CC, else cc, gcc or clang.
+class Carried(ctypes.Structure):
+    """Mirror of ``Carried`` in kernel.c."""
 
-    Raises:
-        SolverError: there is none.
-    """
-    asked = os.environ.get("CC")
-    for name in (asked,) if asked else ("cc", "gcc", "clang"):
-        path = shutil.which(name)
-        if path:
-            return path
-    raise SolverError(
-        f"no C compiler found ({asked or 'cc, gcc, clang'}); the time loop needs one: "
-        "install gcc or set CC"
+    _fields_ = (
+        ("mass", ctypes.c_double),
+        ("start", ctypes.c_double),
+        ("displacement", ctypes.c_double),
     )
 
 
-def compiler_version() -> str:
-    """First line of the compiler's --version."""
-    output = subprocess.run([compiler(), "--version"], capture_output=True, text=True, check=False)
-    return output.stdout.splitlines()[0] if output.stdout else "unknown"
+_C_TYPES: dict[type[np.generic], Any] = {
+    np.int32: ctypes.c_int32,
+    np.int64: ctypes.c_int64,
+    np.float64: ctypes.c_double,
+}
+
+
+class Arrays:
+    """Keeps the arrays that C structures point to."""
+
+    def __init__(self) -> None:
+        self._kept: list[object] = []
+
+    def pointer(self, array: npt.ArrayLike, dtype: type[np.generic]) -> Any:
+        """Pointer to the array itself where type and layout fit, else to a copy."""
+        contiguous = np.ascontiguousarray(np.asarray(array, dtype=dtype))
+        self._kept.append(contiguous)
+        return contiguous.ctypes.data_as(ctypes.POINTER(_C_TYPES[dtype]))
+
+
+def doubles(array: Floats) -> Any:
+    """Pointer to a contiguous array, for the duration of a call."""
+    return array.ctypes.data_as(_DOUBLE)
 
 
 def _processor() -> str:
@@ -138,28 +221,22 @@ def _cache_folder() -> Path:
     return fallback
 
 
-def compiled(source: Path, name: str) -> ctypes.CDLL:
-    """The library built from ``source``, once per source, flags, compiler and processor.
-
-    Args:
-        source: C source, one file.
-        name: how the library's name in the cache begins.
-
-    Raises:
-        SolverError: no compiler, or it failed.
-    """
+def _compiled(components: int) -> ctypes.CDLL:
+    """The library for 2 or 3 components, built once per source, flags, compiler and processor."""
     program = compiler()
-    parts = (" ".join(FLAGS), compiler_version(), _processor())
-    content = b"\0".join([source.read_bytes(), *(part.encode() for part in parts)])
+    flags = (*FLAGS, f"-DCOMPONENTS={components}")
+    parts = (" ".join(flags), compiler_version(), _processor())
+    sources = [path.read_bytes() for path in sorted(_SOURCE.parent.glob("*.c"))]
+    content = b"\0".join([*sources, *(part.encode() for part in parts)])
     folder = _cache_folder()
-    library = folder / f"{name}-{hashlib.sha256(content).hexdigest()[:24]}.so"
+    library = folder / f"kernel-{components}-{hashlib.sha256(content).hexdigest()[:24]}.so"
     if library.exists():
         return ctypes.CDLL(str(library))
     handle, temporary = tempfile.mkstemp(suffix=".so", prefix=".build-", dir=folder)
     os.close(handle)
     try:
         result = subprocess.run(
-            [program, *FLAGS, "-o", temporary, str(source), "-lm"],
+            [program, *flags, "-o", temporary, str(_SOURCE), "-lm"],
             capture_output=True,
             text=True,
             check=False,
@@ -173,20 +250,30 @@ def compiled(source: Path, name: str) -> ctypes.CDLL:
     return ctypes.CDLL(str(library))
 
 
-def load() -> ctypes.CDLL:
-    """The compiled kernel.
+def load(components: int) -> ctypes.CDLL:
+    """The compiled kernel for 2 or 3 components of displacement per node.
 
     Raises:
         SolverError: no compiler, or it failed.
     """
-    kernel = compiled(_SOURCE, "kernel")
-    kernel.state_size.restype = ctypes.c_int64
-    kernel.run.argtypes = [ctypes.POINTER(State), ctypes.c_int64, ctypes.c_int64, _DOUBLE]
-    kernel.run.restype = None
-    kernel.stiffness_product.argtypes = [ctypes.POINTER(State), _DOUBLE, _DOUBLE]
-    kernel.stiffness_product.restype = None
-    kernel.triad.argtypes = [_DOUBLE, _DOUBLE, _DOUBLE, ctypes.c_int64, ctypes.c_int64]
-    kernel.triad.restype = None
-    if kernel.state_size() != ctypes.sizeof(State):
-        raise SolverError("the compiled time loop and its Python side disagree on their layout")
+    kernel = _compiled(components)
+    state, count = ctypes.POINTER(State), ctypes.c_int64
+    for name, arguments in {
+        "advance": (state, count),
+        "drift": (state, count),
+        "contact_step": (ctypes.POINTER(Problem),),
+        "run": (state, ctypes.POINTER(Carried), _INT32, count, count, _DOUBLE),
+        "stiffness_product": (state, count, count, _DOUBLE, _DOUBLE),
+        "triad": (_DOUBLE, _DOUBLE, _DOUBLE, count, count),
+    }.items():
+        function = getattr(kernel, name)
+        function.argtypes, function.restype = arguments, None
+    kernel.layout.restype = ctypes.c_int64
+    for number, mirror in enumerate(
+        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried)
+    ):
+        if kernel.layout(number) != ctypes.sizeof(mirror):
+            raise SolverError(
+                f"the compiled time loop and its Python side disagree on {mirror.__name__}"
+            )
     return kernel

@@ -1,159 +1,314 @@
-"""State of the compiled time loop: what it points to, and its discrete energies."""
+"""The state of a run and how it advances in one process; several have `parallel`.
+
+Sub-cycling: K is the sum of the levels' K_l, and K_l acts at every 2^l-th step (see `levels`).
+"""
 
 from __future__ import annotations
 
 import ctypes
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
+import scipy.sparse
 
-from ..axisymmetric.system import INNER, OUTER, System
-from ..common.arrays import Floats
+from ..common.arrays import Floats, Ints, Mask
 from . import kernel
-from .levels import element_levels, level_matrices
+from .levels import fastest_levels, graded_levels
+from .problem import ContactProblem
+from .system import System
 
 
 @dataclass(frozen=True)
 class Energies:
-    """Discrete energy of each body, J.
+    """Discrete energy of the part that is modelled, J.
 
     1/2 w M w + 1/2 u_n K' u_{n+1}, w = (u_{n+1} - u_n)/D, with the step D at whose ends all levels
     meet and u_{n+1} - 2 u_n + u_{n-1} = -D^2 M^-1 K' u_n (e.g. Hairer, Lubich & Wanner, Geometric
     Numerical Integration). With one level K' = K, and the loop without contact conserves it. With
     several, K' is close to K and nearly symmetric for what is slower than D: 1e-6 is missed in a
-    run, 0.6 % with white noise. K' u is found by one step from rest, which leads to
+    run, 1 % with white noise. K' u is found by one step from rest, which leads to
     (u_{n+1} + u_{n-1})/2.
     """
 
-    total: tuple[float, float, float]
-    rigid: tuple[float, float, float]
-    """Share of the axial rigid motion."""
+    elastic: tuple[float, ...]
+    rigid_motion: tuple[float, ...]
+    """Share of each elastic body's mean translation."""
+    rigid: tuple[float, ...]
+
+    @property
+    def total(self) -> float:
+        """Of all bodies, J."""
+        return sum(self.elastic) + sum(self.rigid)
 
 
-_C_TYPES: dict[type[np.generic], Any] = {
-    np.int32: ctypes.c_int32,
-    np.float64: ctypes.c_double,
-}
+class Loop(ABC):
+    """What serial and parallel runs have in common.
 
+    Vectors have the components of own nodes, in the order of `System.owned`; what concerns the
+    whole system is summed over the processes. Every process solves the contact problem with all
+    surface nodes, redundantly.
 
-class Loop:
-    """The compiled loop's state together with the arrays it points to."""
+    Attributes:
+        components: of displacement per node.
+        mass: (n,) kg. inverse: (C n,) 1/kg, zero where fixed. body: (n,) number of each node's.
+        u, v: (C n,) displacement, and velocity half a step later.
+        diagonal: (C n,) of K, N/m.
+        levels: nodes that move with each level.
+    """
 
-    def __init__(
-        self, system: System, time_step: float, speed: float, split: int, most_levels: int = 1
-    ) -> None:
-        self.system = system
-        self.levels = level_matrices(system, element_levels(system, time_step, most_levels))
-        nodes = system.mass.size
-        self._keep: list[object] = []
-        self.u = np.zeros(2 * nodes)
-        self.v = np.zeros(2 * nodes)
-        self.v[1 : 2 * int(system.first[1]) : 2] = -speed
-        state = kernel.State()
-        state.nodes = nodes
-        state.inverse = self._pointer(system.inverse_mass, np.float64)
-        state.u = self._pointer(self.u, np.float64)
-        state.v = self._pointer(self.v, np.float64)
-        state.f = self._pointer(np.zeros(2 * nodes), np.float64)
-        state.dt = time_step
-        state.levels = len(self.levels)
-        for level, matrix in zip(state.level, self.levels, strict=False):
-            level.shared, level.shared_fixed = matrix.shared, matrix.shared_fixed
-            level.inner, level.rows = matrix.inner, matrix.nodes.size
-            level.node = self._pointer(matrix.nodes, np.int32)
-            level.row = self._pointer(matrix.indptr, np.int32)
-            level.column = self._pointer(matrix.columns, np.int32)
-            level.block = self._pointer(matrix.blocks.transpose(0, 2, 1), np.float64)
-        state.body_mass[:] = [system.body_mass(OUTER), system.body_mass(INNER)]
-        state.rigid_start[:] = [-speed, 0.0]
-        state.centre[:] = list(system.centre)
-        state.velocity_before = self._pointer(
-            np.zeros(sum(pairs.radii.size for pairs in system.contacts)), np.float64
-        )
-        state.contacts = len(system.contacts)
-        for contact, pairs in zip(state.contact, system.contacts, strict=True):
-            inverse = (
-                system.inverse_mass[2 * pairs.sphere_nodes + 1]
-                + system.inverse_mass[2 * pairs.plate_nodes + 1]
-            )
-            contact.pairs = pairs.radii.size
-            contact.sphere = self._pointer(pairs.sphere_nodes, np.int32)
-            contact.plate = self._pointer(pairs.plate_nodes, np.int32)
-            contact.gap = self._pointer(pairs.gap, np.float64)
-            contact.compliance = self._pointer(1.0 / inverse, np.float64)
-            contact.normal = pairs.normal
-            contact.last = -1
-            contact.outermost = -1
-            contact.split = split
-        self.state = state
-        self._kernel = kernel.load()
+    diagonal: Floats
 
-    def _pointer(self, array: npt.ArrayLike, dtype: type[np.generic]) -> Any:
-        # np.asarray keeps u and v themselves where type and layout already fit.
-        contiguous = np.ascontiguousarray(np.asarray(array, dtype=dtype))
-        self._keep.append(contiguous)
-        return contiguous.ctypes.data_as(ctypes.POINTER(_C_TYPES[dtype]))
+    def __init__(self, system: System, comm: Any) -> None:
+        self.system, self.comm = system, comm
+        self.components = system.points.shape[1]
+        self.rows = (self.components * system.owned[:, None] + np.arange(self.components)).ravel()
+        self.mass = system.mass[system.owned]
+        self.inverse = system.inverse_mass[self.rows]
+        self.body = np.searchsorted(system.first, system.owned, side="right") - 1
+        self.u = np.zeros(self.rows.size)
+        self.v = self.own(system.velocity)
+        self.v[self.inverse == 0.0] = 0.0
+        self.problem = ContactProblem(system)
+        self._kernel = kernel.load(self.components)
+        self.levels: tuple[int, ...] = (system.mass.size,)
 
-    def run(self, samples: int, stride: int) -> Floats:
-        """Advance by samples * stride steps; (samples, 8) rows of the strides' first steps."""
-        rows = np.empty((samples, 8))
-        self._kernel.run(
-            ctypes.byref(self.state),
-            samples,
-            stride,
-            rows.ctypes.data_as(ctypes.POINTER(ctypes.c_double)),
-        )
-        return rows
+    def element_levels(self, time_step: float, most: int) -> Ints:
+        """(m,) level of each element for a time step (s); those that can touch have level 0."""
+        system = self.system
+        if most <= 1:
+            return np.zeros(system.element_nodes.shape[0], dtype=np.int64)
+        touching = np.zeros(system.mass.size, dtype=bool)
+        touching[self.problem.nodes] = True
+        for contact in system.matched:
+            touching[contact.candidates] = touching[contact.opposite] = True
+        steps = system.element_time_steps() / time_step
+        return graded_levels(steps, system.element_nodes, touching, most)
 
+    def set_step(self, time_step: float, split: int, most_levels: int = 1) -> None:
+        """Set what a run is stepped with.
+
+        Args:
+            time_step: s.
+            split: how many steps of separation divide two contacts.
+            most_levels: of sub-cycling; 1: every element at every step.
+        """
+        self.problem.set_step(time_step, split)
+        element = self.element_levels(time_step, most_levels)
+        count = int(element.max()) + 1
+        if count == 1 == len(self.levels):
+            return
+        node = fastest_levels(element, self.system.element_nodes, self.system.mass.size)
+        self._take_levels(element, node[self.system.owned], count)
+        self.levels = tuple(np.bincount(node, minlength=count).tolist())
+
+    @abstractmethod
+    def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
+        """Split K by the level of each element; ``node`` (n,) has the levels of own nodes."""
+
+    @property
+    def meeting(self) -> int:
+        """Steps after which all levels meet."""
+        return 1 << (len(self.levels) - 1)
+
+    @property
+    def dt(self) -> float:
+        """Time step, s."""
+        return float(self.problem.state.dt)
+
+    @property
+    def touching(self) -> bool:
+        """Whether any contact carried a force in the last step."""
+        return any(record.force > 0.0 for record in self.problem.records())
+
+    @abstractmethod
+    def advance(self, steps: int) -> None:
+        """Take a number of steps."""
+
+    @abstractmethod
+    def drift(self, steps: int) -> None:
+        """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
+
+    @abstractmethod
+    def level_product(self, level: int, x: Floats) -> Floats:
+        """K_l x."""
+
+    @abstractmethod
     def product(self, x: Floats) -> Floats:
-        """K x with the compiled kernel, (2n,)."""
-        y = np.zeros_like(x)
-        pointer = ctypes.POINTER(ctypes.c_double)
-        self._kernel.stiffness_product(
-            ctypes.byref(self.state), x.ctypes.data_as(pointer), y.ctypes.data_as(pointer)
-        )
-        return y
+        """K x."""
+
+    def total(self, values: Floats) -> Floats:
+        """Sum over the processes."""
+        return values if self.comm.size == 1 else np.asarray(self.comm.allreduce(values))
+
+    def dot(self, x: Floats, y: Floats) -> float:
+        """Inner product."""
+        return float(self.total(np.array([x @ y]))[0])
+
+    def gather(self, x: Floats) -> Floats:
+        """(N, C) all nodes' values in the system's numbering, in every process."""
+        result = np.zeros((self.system.mass.size, self.components))
+        result[self.system.owned] = x.reshape(-1, self.components)
+        return self.total(result)
+
+    def own(self, x: Floats) -> Floats:
+        """This process' part (C n,) of (N, C)."""
+        return np.ascontiguousarray(x[self.system.owned].ravel())
+
+    def body_sums(self, values: Floats) -> Floats:
+        """(bodies, ...) sums over each elastic body of values (n, ...) per own node."""
+        count = self.system.first.size - 1
+        columns = values.reshape(values.shape[0], -1).T
+        sums = [np.bincount(self.body, column, count) for column in columns]
+        stacked = np.stack(sums, axis=-1).reshape(count, *values.shape[1:])
+        return self.total(np.asarray(stacked, dtype=np.float64))
+
+    def momenta(self) -> Floats:
+        """(bodies, C) momentum of each elastic body half a step after u, kg m/s."""
+        return self.body_sums(self.mass[:, None] * self.v.reshape(-1, self.components))
+
+    def body_masses(self) -> Floats:
+        """(bodies,) kg."""
+        return np.add.reduceat(self.system.mass, self.system.first[:-1])
 
     def energies(self) -> Energies:
         """Discrete energies at an instant at which all levels meet."""
-        system = self.system
-        mass = np.repeat(system.mass, 2)
-        meeting = 2 ** (len(self.levels) - 1)
-        long_step = meeting * self.state.dt
-        now = self.u.copy()
-        following = self._moved(now, self.v, meeting)
+        if self.meeting == 1:
+            other, velocity, force = self.u - self.dt * self.v, self.v, self.product(self.u)
+        else:
+            other, velocity, force = self._long_step()
+        mass = np.repeat(self.mass, self.components)
+        density = 0.5 * mass * velocity**2 + 0.5 * other * force
+        elastic = self.body_sums(density.reshape(-1, self.components).sum(axis=1))
+        free = self.momenta()[:, self.system.free_axes]
+        mean = (free**2).sum(axis=1) / (2.0 * self.body_masses())
+        rigids = self.problem.rigids[: self.problem.state.rigids]
+        rigid = [0.5 * r.mass * sum(x * x for x in r.v) for r in rigids]
+        return Energies(tuple(elastic.tolist()), tuple(mean.tolist()), tuple(rigid))
+
+    def _long_step(self) -> tuple[Floats, Floats, Floats]:
+        """u_{n+1}, w and K' u_n of `Energies`, without contact; the state stays as it is."""
+        now, velocity = self.u.copy(), self.v.copy()
+        long_step = self.meeting * self.dt
+        self.drift(self.meeting)
+        following = self.u.copy()
         # From rest: half the impulses, which the step itself gives in full.
-        half = np.zeros_like(now)
-        for number, matrix in enumerate(self.levels):
-            half += 0.5 * 2**number * self.state.dt * (matrix.stiffness @ now)
-        mean = self._moved(now, half * system.inverse_mass, meeting)
-        velocity = (following - now) / long_step
-        force = 2.0 * mass * (now - mean) / long_step**2
-        density = 0.5 * mass * velocity**2 + 0.5 * following * force
-        axial = mass * velocity
-        total, rigid = [], []
-        for body in range(3):
-            rows = system.body(body)
-            total.append(float(density[rows].sum()))
-            rigid.append(float(axial[rows][1::2].sum()) ** 2 / (2.0 * system.body_mass(body)))
-        return Energies((total[0], total[1], total[2]), (rigid[0], rigid[1], rigid[2]))
+        self.u[:], self.v[:] = now, 0.0
+        for level in range(len(self.levels)):
+            impulse = 0.5 * 2**level * self.dt * self.level_product(level, now)
+            self.v += self.inverse * impulse
+        self.drift(self.meeting)
+        force = 2.0 * np.repeat(self.mass, self.components) * (now - self.u) / long_step**2
+        self.u[:], self.v[:] = now, velocity
+        return following, (following - now) / long_step, force
 
-    def _moved(self, displacement: Floats, velocity: Floats, steps: int) -> Floats:
-        """Displacement after ``steps`` of the loop without contact; the state stays as it is."""
-        state = self.state
-        kept = (self.u.copy(), self.v.copy(), state.contacts, state.step, state.support_impulse)
-        self.u[:], self.v[:] = displacement, velocity
-        state.contacts = 0
-        self.run(1, steps)
-        moved = self.u.copy()
-        self.u[:], self.v[:] = kept[0], kept[1]
-        state.contacts, state.step, state.support_impulse = kept[2:]
-        return moved
 
-    def mean_axial(self, values: Floats, body: int) -> float:
-        """Mass average of the axial component over a body."""
-        rows = self.system.body(body)
-        mass = self.system.mass[self.system.first[body] : self.system.first[body + 1]]
-        return float(mass @ values[rows][1::2] / mass.sum())
+class SerialLoop(Loop):
+    """One process: half of K in blocks, product and update in one sweep of compiled code."""
+
+    def __init__(self, system: System, comm: Any) -> None:
+        super().__init__(system, comm)
+        whole, arrays = system.part(None), kernel.Arrays()
+        self.diagonal = whole.diagonal()
+        state = kernel.State()
+        state.nodes = system.owned.size
+        for name in ("inverse", "u", "v"):
+            setattr(state, name, arrays.pointer(getattr(self, name), np.float64))
+        state.f = arrays.pointer(np.zeros_like(self.u), np.float64)
+        local = np.empty(system.owned.size, dtype=np.int64)
+        local[system.owned] = np.arange(system.owned.size)
+        self.problem.state.map = arrays.pointer(local[self.problem.nodes], np.int32)
+        state.problem = ctypes.pointer(self.problem.state)
+        self._state, self._arrays = state, arrays
+        self._point_at([(whole, np.ones(system.owned.size, dtype=bool))])
+
+    def _point_at(self, parts: Iterable[tuple[scipy.sparse.csr_matrix, Mask]]) -> None:
+        """Make these the levels: stiffness, and the nodes that move with it."""
+        arrays, held = kernel.Arrays(), self.system.held[self.system.owned]
+        made = [self._level(matrix, moves, held, arrays) for matrix, moves in parts]
+        structures = (kernel.Level * len(made))(*made)
+        self._state.levels = len(made)
+        self._state.level = ctypes.cast(structures, ctypes.POINTER(kernel.Level))
+        self._level_arrays = (structures, arrays)
+
+    def _level(
+        self, matrix: scipy.sparse.csr_matrix, moves: Mask, held: Mask, arrays: kernel.Arrays
+    ) -> kernel.Level:
+        """A level from its stiffness, all nodes; masks of nodes that move with it, and are held."""
+        size = self.components
+        touched = np.flatnonzero(np.diff(matrix.indptr)[::size])
+        groups = [
+            touched[(moves[touched] == moving) & (held[touched] == hold)]
+            for moving in (False, True)
+            for hold in (False, True)
+        ]
+        nodes = np.concatenate(groups)
+        rows = (size * nodes[:, None] + np.arange(size)).ravel()
+        indptr, columns, blocks = _upper_blocks(matrix[rows][:, rows], size)
+        level = kernel.Level()
+        ends = np.cumsum([group.size for group in groups]).tolist()
+        level.shared_free, level.shared, level.free, level.rows = ends
+        level.node = arrays.pointer(nodes, np.int32)
+        level.row = arrays.pointer(indptr, np.int64)
+        level.column = arrays.pointer(nodes[columns], np.int32)
+        # Vectors of two components take the columns of a block.
+        data = blocks.transpose(0, 2, 1) if size == 2 else blocks
+        level.block = arrays.pointer(data, np.float64)
+        return level
+
+    def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
+        self._state.levels = 0
+        del self._level_arrays
+        self._point_at((self.system.part(element == k), node == k) for k in range(count))
+
+    @property
+    def acting(self) -> tuple[int, ...]:
+        """Nodes whose elements of each level act."""
+        return tuple(int(level.rows) for level in self._level_arrays[0])
+
+    @property
+    def blocks(self) -> int:
+        """Blocks of K that are stored, of all levels."""
+        return sum(int(level.row[level.rows]) for level in self._level_arrays[0])
+
+    def drift(self, steps: int) -> None:
+        """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
+        self._kernel.drift(ctypes.byref(self._state), steps)
+
+    def advance(self, steps: int) -> None:
+        """Take a number of steps."""
+        self._kernel.advance(ctypes.byref(self._state), steps)
+
+    def run(self, bodies: Any, watched: Any, samples: int, stride: int) -> Floats:
+        """Advance by samples * stride steps; (samples, 8) rows as ``run`` in kernel.c has them."""
+        rows = np.empty((samples, kernel.SAMPLED))
+        state = ctypes.byref(self._state)
+        self._kernel.run(state, bodies, watched, samples, stride, kernel.doubles(rows))
+        return rows
+
+    def level_product(self, level: int, x: Floats) -> Floats:
+        """K_l x."""
+        return self._product(x, level, level + 1)
+
+    def product(self, x: Floats) -> Floats:
+        """K x."""
+        return self._product(x, 0, len(self.levels))
+
+    def _product(self, x: Floats, first: int, end: int) -> Floats:
+        x = np.ascontiguousarray(x)
+        y = np.empty_like(x)
+        state = ctypes.byref(self._state)
+        self._kernel.stiffness_product(state, first, end, kernel.doubles(x), kernel.doubles(y))
+        return y
+
+
+def _upper_blocks(matrix: scipy.sparse.csr_matrix, size: int) -> tuple[Ints, Ints, Floats]:
+    """Rows, columns and blocks (k, size, size) from the diagonal on, the diagonal one first."""
+    blocks = matrix.tobsr((size, size))
+    blocks.sort_indices()
+    rows = np.repeat(np.arange(blocks.indptr.size - 1), np.diff(blocks.indptr))
+    upper = blocks.indices >= rows
+    counts = np.bincount(rows[upper], minlength=blocks.indptr.size - 1)
+    return np.concatenate([[0], np.cumsum(counts)]), blocks.indices[upper], blocks.data[upper]

@@ -1,4 +1,4 @@
-"""The compiled contact problem of a model, in the numbering of its contact surfaces."""
+"""The compiled contact problem of a system, in the numbering of its contact surfaces."""
 
 from __future__ import annotations
 
@@ -6,94 +6,103 @@ import ctypes
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from ..common.arrays import Floats, Ints
-from ..solid import kernel
-from ..solid.model import Model, SphereContact
+from . import kernel
+from .contact import MatchedContact, SphereContact
+from .system import System
 
 TOLERANCE = 1e-12
 """Change of a multiplier in the last Gauss-Seidel sweep, over the largest multiplier."""
-
-_C_TYPES: dict[type[np.generic], Any] = {
-    np.int32: ctypes.c_int32,
-    np.int64: ctypes.c_int64,
-    np.float64: ctypes.c_double,
-}
-
-
-class Arrays:
-    """Keeps the arrays that C structures point to."""
-
-    def __init__(self) -> None:
-        self._kept: list[object] = []
-
-    def pointer(self, array: npt.ArrayLike, dtype: type[np.generic]) -> Any:
-        """Pointer to the array itself where type and layout fit, else to a copy."""
-        contiguous = np.ascontiguousarray(np.asarray(array, dtype=dtype))
-        self._kept.append(contiguous)
-        return contiguous.ctypes.data_as(ctypes.POINTER(_C_TYPES[dtype]))
 
 
 class ContactProblem:
     """`kernel.Problem` with its arrays.
 
     Attributes:
-        nodes: (s,) surface nodes that can touch, the model's numbering.
-        u, predicted, before, force: (3 s) work arrays of the kernel.
+        nodes: (s,) surface nodes that can touch, the system's numbering, matching ones aside.
+        u, predicted, before, force: (C s) work arrays of the kernel.
+        contacts, matched, rigids: the kernel's structures.
     """
 
-    def __init__(self, model: Model, inverse_mass: Floats, time_step: float, split: int) -> None:
-        first = model.first
+    def __init__(self, system: System) -> None:
+        first = system.first
         parts: list[Ints] = []
-        for contact in model.contacts:
+        for contact in system.contacts:
             parts.append(contact.nodes + first[contact.body])
             if not isinstance(contact, SphereContact):
                 parts.append(contact.facets.ravel() + first[contact.target])
                 if contact.reachable is not None:
                     parts.append(contact.reachable + first[contact.target])
         self.nodes: Ints = np.unique(np.concatenate(parts)) if parts else np.zeros(0, np.int64)
-        size = 3 * self.nodes.size
+        components = system.points.shape[1]
+        size = components * self.nodes.size
         self.u, self.predicted, self.before, self.force = (np.zeros(size) for _ in range(4))
-        self._arrays = Arrays()
-        self.contacts = (kernel.Contact * max(1, len(model.contacts)))()
-        self.rigids = (kernel.Rigid * max(1, len(model.rigid)))()
-        for rigid, body in zip(self.rigids, model.rigid, strict=False):
+        self._arrays = kernel.Arrays()
+        self.contacts = (kernel.Contact * max(1, len(system.contacts)))()
+        self.rigids = (kernel.Rigid * max(1, len(system.rigid)))()
+        self.matched = (kernel.Pairs * max(1, len(system.matched)))()
+        for rigid, body in zip(self.rigids, system.rigid, strict=False):
             rigid.mobility[:] = (body.directions / body.mass).ravel().tolist()
             rigid.mass = body.mass
             rigid.v[:] = list(body.velocity)
-        for structure, contact in zip(self.contacts, model.contacts, strict=False):
-            self._fill(structure, contact, model)
-            structure.split = split
+        for structure, contact in zip(self.contacts, system.contacts, strict=False):
+            self._fill(structure, contact, system)
+        for pairs, matched in zip(self.matched, system.matched, strict=False):
+            self._match(pairs, matched, system)
         state = kernel.Problem()
         state.nodes = self.nodes.size
-        rows = (3 * self.nodes[:, None] + np.arange(3)).ravel()
-        state.inverse = self._arrays.pointer(inverse_mass[rows], np.float64)
+        rows = (components * self.nodes[:, None] + np.arange(components)).ravel()
+        state.inverse = self._arrays.pointer(system.inverse_mass[rows], np.float64)
         for name in ("u", "predicted", "before", "force"):
             setattr(state, name, self._arrays.pointer(getattr(self, name), np.float64))
-        state.contacts, state.rigids = len(model.contacts), len(model.rigid)
+        state.contacts, state.rigids = len(system.contacts), len(system.rigid)
+        state.matched = len(system.matched)
         state.contact = ctypes.cast(self.contacts, ctypes.POINTER(kernel.Contact))
         state.rigid = ctypes.cast(self.rigids, ctypes.POINTER(kernel.Rigid))
-        state.dt = time_step
+        state.pairs = ctypes.cast(self.matched, ctypes.POINTER(kernel.Pairs))
         state.tolerance = TOLERANCE
         self.state = state
 
-    def _fill(self, structure: kernel.Contact, contact: Any, model: Model) -> None:
+    def set_step(self, time_step: float, split: int) -> None:
+        """Set the time step (s) and how many steps of separation divide two contacts."""
+        self.state.dt = time_step
+        for record in self.records():
+            record.split = split
+
+    def records(self) -> list[kernel.Record]:
+        """What each contact has done so far, matching ones first."""
+        of_pairs = [pairs.record for pairs in self.matched[: self.state.matched]]
+        return of_pairs + [contact.record for contact in self.contacts[: self.state.contacts]]
+
+    def _match(self, structure: kernel.Pairs, contact: MatchedContact, system: System) -> None:
         pointer = self._arrays.pointer
-        count = contact.nodes.size
+        axial = system.points.shape[1] - 1
+        inverse = system.inverse_mass[axial :: axial + 1]
+        structure.count = contact.radii.size
+        structure.candidate = pointer(contact.candidates, np.int32)
+        structure.opposite = pointer(contact.opposite, np.int32)
+        structure.gap = pointer(contact.gaps, np.float64)
+        both = inverse[contact.candidates] + inverse[contact.opposite]
+        structure.compliance = pointer(1.0 / both, np.float64)
+        structure.before = pointer(np.zeros(contact.radii.size), np.float64)
+        structure.normal = contact.normal
+        structure.record.last = structure.record.outermost = -1
+
+    def _fill(self, structure: kernel.Contact, contact: Any, system: System) -> None:
+        pointer, first = self._arrays.pointer, system.first
+        count, components = contact.nodes.size, system.points.shape[1]
         structure.count = count
-        structure.last = structure.outermost = -1
-        nodes = np.searchsorted(self.nodes, contact.nodes + model.first[contact.body])
-        structure.node = pointer(nodes, np.int32)
+        structure.record.last = structure.record.outermost = -1
+        nodes = contact.nodes + first[contact.body]
+        structure.node = pointer(np.searchsorted(self.nodes, nodes), np.int32)
         structure.multipliers = pointer(np.zeros(count), np.float64)
         structure.compliance = pointer(np.zeros(count), np.float64)
         structure.active = pointer(np.zeros(count), np.int32)
         if isinstance(contact, SphereContact):
-            points = contact.places
-            if points is None:
-                points = model.elastic[contact.body].mesh.points[contact.nodes]
+            points = contact.places if contact.places is not None else system.points[nodes]
             structure.kind = kernel.AGAINST_SPHERE
-            structure.normal = pointer(np.zeros((count, 3)), np.float64)
+            structure.normal = pointer(np.zeros((count, components)), np.float64)
             structure.gap = pointer(np.zeros(count), np.float64)
             structure.place = pointer(points - contact.centre, np.float64)
             structure.radius, structure.rigid = contact.radius, contact.rigid
@@ -101,9 +110,7 @@ class ContactProblem:
         facets = np.zeros((count, kernel.FACET_NODES), dtype=np.int64)
         weights = np.zeros((count, kernel.FACET_NODES))
         width = contact.facets.shape[1]
-        facets[:, :width] = np.searchsorted(
-            self.nodes, contact.facets + model.first[contact.target]
-        )
+        facets[:, :width] = np.searchsorted(self.nodes, contact.facets + first[contact.target])
         weights[:, :width] = contact.weights
         structure.kind = kernel.AGAINST_SURFACE
         structure.facet = pointer(facets, np.int32)
@@ -141,8 +148,10 @@ class ContactProblem:
             return np.zeros(0)
         return np.ctypeslib.as_array(contact.multipliers, (contact.count,)).copy()
 
-    _SCALARS = ("normal_impulse", "work", "last", "intervals", "outermost")
-    _LISTS = ("impulse", "force", "first_step", "last_step")
+    _RECORD = (
+        *("force", "impulse", "work", "last", "intervals", "outermost"),
+        *("first_step", "last_step"),
+    )
 
     def checkpoint(self) -> dict[str, Any]:
         """Everything that a step depends on or adds to, as JSON values."""
@@ -151,15 +160,11 @@ class ContactProblem:
             "sweeps": self.state.sweeps,
             "unconverged": self.state.unconverged,
             "reaction": list(self.state.reaction),
-            "rigid": [
-                {name: list(getattr(r, name)) for name in ("u", "v")}
-                for r in self.rigids[: self.state.rigids]
-            ],
+            "rigid": [_read(r, ("u", "v")) for r in self.rigids[: self.state.rigids]],
             "contacts": [
-                {name: getattr(c, name) for name in self._SCALARS}
-                | {name: list(getattr(c, name)) for name in self._LISTS}
-                for c in self.contacts[: self.state.contacts]
+                _read(c, ("impulse", "force")) for c in self.contacts[: self.state.contacts]
             ],
+            "records": [_read(r, self._RECORD) for r in self.records()],
         }
 
     def restore(self, saved: dict[str, Any]) -> None:
@@ -167,11 +172,23 @@ class ContactProblem:
         for name in ("step", "sweeps", "unconverged"):
             setattr(self.state, name, saved[name])
         self.state.reaction[:] = saved["reaction"]
-        for rigid, values in zip(self.rigids, saved["rigid"], strict=False):
-            for name, value in values.items():
-                getattr(rigid, name)[:] = value
-        for contact, values in zip(self.contacts, saved["contacts"], strict=False):
-            for name in self._SCALARS:
-                setattr(contact, name, values[name])
-            for name in self._LISTS:
-                getattr(contact, name)[:] = values[name]
+        for structures, key in (
+            (self.rigids, "rigid"),
+            (self.contacts, "contacts"),
+            (self.records(), "records"),
+        ):
+            for structure, values in zip(structures, saved[key], strict=False):
+                _write(structure, values)
+
+
+def _read(structure: ctypes.Structure, names: tuple[str, ...]) -> dict[str, Any]:
+    values = {name: getattr(structure, name) for name in names}
+    return {n: list(v) if isinstance(v, ctypes.Array) else v for n, v in values.items()}
+
+
+def _write(structure: ctypes.Structure, values: dict[str, Any]) -> None:
+    for name, value in values.items():
+        if isinstance(value, list):
+            getattr(structure, name)[:] = value
+        else:
+            setattr(structure, name, value)

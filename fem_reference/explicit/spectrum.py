@@ -10,7 +10,7 @@ from scipy.linalg import eigh_tridiagonal
 
 from ..common.arrays import Floats, Ints
 from ..common.errors import SolverError
-from ..solid.loop import Loop
+from .loop import Loop
 
 LANCZOS_STEPS = 400
 LANCZOS_TOLERANCE = 1e-5
@@ -26,7 +26,7 @@ def critical_time_step(loop: Loop) -> float:
     """
     root = np.sqrt(loop.inverse)
     # The same start vector whatever the number of processes.
-    start = np.random.default_rng(1).standard_normal((loop.all_masses.size, 3))
+    start = np.random.default_rng(1).standard_normal((loop.system.mass.size, 3))
     vector = loop.own(start) * (root > 0.0)
     vector /= math.sqrt(loop.dot(vector, vector))
     before = np.zeros_like(vector)
@@ -94,7 +94,7 @@ def free_components(loop: Loop, body: int) -> Floats:
 
 def body_translation(loop: Loop, body: int, axis: int) -> Floats:
     """The rigid motion of a body along an axis, 1 in every node that can move so."""
-    motion = np.zeros((loop.owned.size, 3))
+    motion = np.zeros((loop.system.owned.size, 3))
     motion[:, axis] = loop.body == body
     return np.asarray(motion.ravel() * (loop.inverse > 0.0))
 
@@ -121,7 +121,7 @@ def first_frequency(
 
     x = rigid.copy()
     if floating:
-        place = np.concatenate([b.mesh.points for b in loop.model.elastic])[loop.owned]
+        place = loop.system.points[loop.system.owned]
         x = orthogonal(rigid * np.repeat((place[:, :2] ** 2).sum(axis=1), 3))
     if start is not None:
         x = orthogonal(start * free)
@@ -158,8 +158,8 @@ def patch_flexibility(loop: Loop, body: int, nodes: Ints, weights: Floats) -> fl
         nodes: (n,) the patch, numbers in the body.
         weights: (n,) shares of a unit force, their sum is 1.
     """
-    patch = np.zeros((loop.all_masses.size, 3))
-    patch[nodes + loop.model.first[body], 2] = weights
+    patch = np.zeros((loop.system.mass.size, 3))
+    patch[nodes + loop.system.first[body], 2] = weights
     load = loop.own(patch)
     free = free_components(loop, body)
     rigid = body_translation(loop, body, 2)

@@ -1,30 +1,35 @@
-"""Supervision of a run: step, sampling, divergence, end, checkpoints; the same for every scene."""
+"""Supervision of a run: step, levels, sampling, divergence, end, checkpoints; for every scene."""
 
 from __future__ import annotations
 
 import math
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ..common.arrays import Floats
 from ..common.errors import DivergedError, SolverError
-from ..solid.fields import Frames
-from ..solid.loop import Energies, Loop
+from ..common.settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from .checkpoint import Checkpoint
-from .contact import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
-from .spectrum import critical_time_step
+from .frames import Frames
+from .levels import MOST_LEVELS
+from .loop import Energies, Loop
 
 CHUNK_SAMPLES, CHUNK_STEPS = 16, 200
 """At least so many samples and steps between two looks at energy, end and clock."""
 
-Sample = Callable[[int], Floats]
-"""Advances by so many steps; the row of the first of them."""
-Ended = Callable[[Energies], bool]
-"""Whether no further contact is possible."""
+LARGEST_ENERGY_RESIDUAL = 1e-5
+"""Of a run with sub-cycling; beyond it levels have resonated, and the run is made without them."""
+
+Sample = Callable[[int, int], Floats]
+"""Advances by samples (first) of a stride of steps (second); a row of the first step of each."""
+Ended = Callable[[Energies, float], bool]
+"""Whether no further contact is possible at an instant, s."""
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -36,11 +41,17 @@ class Plan:
     longest: float
     """Longest run over ``duration``, where no end is given."""
     window_samples: int
-    """Samples in the window of the force peaks."""
+    """Samples, about, in the window of the force peaks."""
     end_time: float | None
     """s; None: as soon as no further contact is possible."""
     initial_energy: float
     """Of the part modelled, J."""
+    most_levels: int = MOST_LEVELS
+    """Of sub-cycling; 1: every element at every step."""
+    levels_within_samples: bool = True
+    """Whether levels that would make the samples longer than asked for are left out."""
+    chunk: int | None = None
+    """Samples between two looks at energy, end and clock."""
 
 
 @dataclass(frozen=True)
@@ -48,16 +59,18 @@ class Course:
     """What a run leaves, apart from the state of its bodies."""
 
     rows: Floats
-    """(m, columns) samples, the last at the end."""
+    """(m, columns) samples up to the end, at which one more can be taken."""
     interval: float
     """Between samples, s."""
     critical_time_step: float
     loop_seconds: float
+    processor_seconds: float
+    """As `loop_seconds`, without the time other programs had the processor."""
 
     @property
     def times(self) -> Floats:
-        """(m,) instants of the samples, s."""
-        return self.interval * np.arange(self.rows.shape[0])
+        """(m + 1,) instants of the samples and of the end, s."""
+        return self.interval * np.arange(self.rows.shape[0] + 1)
 
 
 def supervise(
@@ -65,12 +78,12 @@ def supervise(
     plan: Plan,
     sample: Sample,
     make_ended: Callable[[], Ended],
+    critical_time_step: Callable[[], float],
     *,
-    courant: float,
-    most_levels: int,
-    fields: Callable[[float], Frames] | None,
-    checkpoint: Checkpoint | None,
-    on_progress: Callable[[float, str], None],
+    courant: float = 0.9,
+    fields: Callable[[float], Frames] | None = None,
+    checkpoint: Checkpoint | None = None,
+    on_progress: Callable[[float, str], None] = lambda done, message: None,
 ) -> Course:
     """Step from the first touch to the plan's end, or until no further contact is possible.
 
@@ -79,9 +92,8 @@ def supervise(
         plan: see there.
         sample: see `Sample`.
         make_ended: called once the step is set, if the plan has no end.
+        critical_time_step: of the system, s.
         courant: time step over the critical one.
-        most_levels: of sub-cycling; 1: every element at every step. A run with a given end, which
-            may cut a contact, has one level: only then can its energy be read.
         fields: makes the recorder of fields from the sampling interval.
         checkpoint: a run whose checkpoint holds a state goes on from there.
         on_progress: gets the share done and a message.
@@ -90,33 +102,35 @@ def supervise(
         SolverError: time step above the critical one, divergence, or no end found.
     """
     saved: dict[str, Any] = (checkpoint.load() if checkpoint else None) or {}
-    critical = float(saved["critical"]) if saved else critical_time_step(loop)
-    time_step, stride, wanted = _steps(plan, courant * critical, critical)
-    levels = 1 if plan.end_time is not None else min(most_levels, stride.bit_length())
-    loop.set_step(time_step, max(1, round(CHATTER_FRACTION * plan.duration / time_step)), levels)
-    # Samples fall on steps at which all levels meet.
-    stride = loop.meeting * max(1, round(stride / loop.meeting))
+    critical = float(saved["critical"]) if saved else critical_time_step()
+    time_step, stride, wanted, most = _steps(loop, plan, courant * critical, critical)
+    split = max(1, round(CHATTER_FRACTION * plan.duration / time_step))
+    loop.set_step(time_step, split, most)
     interval = stride * time_step
     frames = fields(interval) if fields is not None else None
     ended = make_ended() if plan.end_time is None else None
     rows: list[Floats] = []
-    seconds = 0.0
+    samples = 0
+    seconds = processor = 0.0
     if saved:
         loop.u[:] = loop.own(saved["u"])
         loop.v[:] = loop.own(saved["v"])
         loop.problem.restore(saved["problem"])
-        rows = list(saved["rows"])
+        rows, samples = [saved["rows"]], len(saved["rows"])
         seconds = float(saved["seconds"])
-    chunk = max(CHUNK_SAMPLES, math.ceil(CHUNK_STEPS / stride))
+    chunk = plan.chunk or max(CHUNK_SAMPLES, math.ceil(CHUNK_STEPS / stride))
     started = time.perf_counter()
-    while len(rows) < wanted:
-        chunk_started = time.perf_counter()
-        for _ in range(min(chunk, wanted - len(rows))):
-            if frames is not None:
-                frames(len(rows), loop)
-            rows.append(sample(stride))
-        seconds += time.perf_counter() - chunk_started
-        now = len(rows) * interval
+    while samples < wanted:
+        count = min(chunk, wanted - samples)
+        if frames is not None:
+            frames(samples, loop)
+            count = min(count, frames.following(samples) - samples)
+        chunk_started = time.perf_counter(), time.process_time()
+        rows.append(sample(count, stride))
+        seconds += time.perf_counter() - chunk_started[0]
+        processor += time.process_time() - chunk_started[1]
+        samples += count
+        now = samples * interval
         energies = loop.energies()
         if not energies.total <= 10.0 * plan.initial_energy:
             raise DivergedError(
@@ -125,22 +139,25 @@ def supervise(
             )
         done = now / plan.end_time if plan.end_time else 1.0 - math.exp(-now / plan.duration)
         on_progress(done, f"{now * 1e6:.1f} us, {time.perf_counter() - started:.1f} s")
-        if ended is not None and ended(energies):
+        if ended is not None and ended(energies, now):
             break
         if checkpoint is not None and checkpoint.due(loop.comm):
-            checkpoint.save(loop, critical=critical, rows=np.array(rows), seconds=seconds)
+            checkpoint.save(loop, critical=critical, rows=np.vstack(rows), seconds=seconds)
     else:
         if ended is not None:
             raise SolverError(
-                f"a further contact is still possible at {len(rows) * interval:.4g} s; "
+                f"a further contact is still possible at {samples * interval:.4g} s; "
                 "set run.end_time"
             )
-    rows.append(sample(loop.meeting))
-    return Course(np.array(rows), interval, critical, seconds)
+    if frames is not None:
+        frames(samples, loop)
+    return Course(np.vstack(rows), interval, critical, seconds, processor)
 
 
-def _steps(plan: Plan, time_step: float, critical: float) -> tuple[float, int, int]:
-    """Time step in s, steps per sample, most samples."""
+def _steps(
+    loop: Loop, plan: Plan, time_step: float, critical: float
+) -> tuple[float, int, int, int]:
+    """Time step in s, steps per sample, most samples, most levels."""
     if not 0.0 < time_step <= critical:
         raise SolverError(
             f"the time step {time_step:.6g} s is not between 0 and the critical time step "
@@ -148,9 +165,38 @@ def _steps(plan: Plan, time_step: float, critical: float) -> tuple[float, int, i
             f"{time_step / critical:g}"
         )
     window = PEAK_WINDOW_FRACTION * plan.duration
-    stride = max(1, round(window / plan.window_samples / time_step))
+    wish, most = max(1, round(window / plan.window_samples / time_step)), plan.most_levels
+    if plan.levels_within_samples:
+        most = min(most, wish.bit_length())
+    # Samples fall on steps at which all levels meet.
+    meeting = 2 ** int(loop.element_levels(time_step, most).max())
+    stride = meeting * max(1, round(wish / meeting))
     if plan.end_time is None:
-        return time_step, stride, math.ceil(plan.longest * plan.duration / (stride * time_step))
-    # The last sample falls exactly on the end.
+        longest = math.ceil(plan.longest * plan.duration / (stride * time_step))
+        return time_step, stride, longest, most
+    # The last sample falls exactly on the end: the step shrinks by less than one part in 1000.
     wanted = max(1, math.ceil(plan.end_time / (stride * time_step) - 1e-9))
-    return plan.end_time / (wanted * stride), stride, wanted
+    return plan.end_time / (wanted * stride), stride, wanted, most
+
+
+def stable_run(attempt: Callable[[int], T], account: Callable[[T], tuple[int, float]]) -> T:
+    """A run with sub-cycling, or without where that diverges or its ledger cannot be read.
+
+    Args:
+        attempt: makes a run with at most so many levels.
+        account: number of levels of a run, and the energy its ledger misses over the initial one.
+    """
+    try:
+        run = attempt(MOST_LEVELS)
+    except DivergedError as error:
+        failed = str(error)
+    else:
+        levels, residual = account(run)
+        if levels == 1 or residual <= LARGEST_ENERGY_RESIDUAL:
+            return run
+        failed = (
+            f"energy residual {residual:.2g} with sub-cycling, "
+            f"{LARGEST_ENERGY_RESIDUAL:g} is allowed"
+        )
+    print(f"{failed}; stepping again without sub-cycling", file=sys.stderr)
+    return attempt(1)

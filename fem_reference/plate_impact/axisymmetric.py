@@ -1,32 +1,41 @@
-"""From a scene to a verified solution: mesh, assemble, step, check, and repeat if need be."""
+"""Axisymmetric solutions: mesh, assemble, step, check, and repeat if need be."""
 
 from __future__ import annotations
 
 import math
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..axisymmetric.elasticity import fields
 from ..axisymmetric.mesh import edge_lengths
-from ..axisymmetric.system import System
+from ..axisymmetric.modal import first_frequency
+from ..axisymmetric.system import AxisymmetricSystem
 from ..common.errors import SolverError
-from ..common.progress import Progress
-from ..explicit.resonance import stable_run
-from .axisymmetric_run import Run, integrate
+from ..common.hertz import effective_modulus, hertz_contact_radius
+from ..common.series import Report
+from ..common.settings import Settings
+from ..explicit.frames import Recorder
+from ..explicit.supervision import stable_run
+from .axisymmetric_motion import AxisymmetricMotion, integrate_axisymmetric
 from .estimate import (
     ACCEPTED_SHARE,
     MINOR_FORCE,
     MOST_MESHES,
+    WAVE_FREQUENCY,
     ContactEstimate,
-    effective_modulus,
     estimate_contact,
-    hertz_contact_radius,
     shortest_wavelengths,
 )
 from .meshing import ImpactMesh, build_system, mesh_impact, mesh_settings
+from .run import Run
 from .scene import Scene
+
+REVISION = 1
+"""Counts changes of the method that make kept results useless."""
 
 LEAST_ELEMENTS_PER_WAVELENGTH = 12.0
 """Elements with incompatible modes then miss the wave's frequency by 0.6 %, at a frequency that
@@ -58,7 +67,9 @@ class Solution:
 
     run: Run
     mesh: ImpactMesh
-    system: System
+    system: AxisymmetricSystem
+    levels: tuple[int, ...]
+    """Nodes whose elements of each level of sub-cycling act."""
     resolution: Resolution
     estimate: ContactEstimate
     meshes_tried: int
@@ -66,14 +77,79 @@ class Solution:
     """On the number of elements asked for."""
     radii: tuple[float, float]
     """Contact radii the mesh is made for, outer and inner, m."""
+    recorder: Recorder
+
+    @property
+    def dofs(self) -> int:
+        """Degrees of freedom, fixed ones included."""
+        return 2 * int(self.system.mass.size)
+
+    def first_frequency(self) -> float:
+        """Lowest elastic eigenfrequency of the plate, Hz."""
+        return first_frequency(self.system)
+
+    def machine(self) -> dict[str, Any]:
+        """For the summary's ``solver``."""
+        return {"nodes_per_level": list(self.levels)}
+
+    def mesh_report(self) -> dict[str, Any]:
+        """For the summary's ``mesh``."""
+        resolution = self.resolution
+        return {
+            "nodes": int(self.system.mass.size),
+            "dofs": self.dofs,
+            "elements": sum(body.quads.shape[0] for body in self.mesh.bodies),
+            "elements_per_contact_radius": {
+                "outer": resolution.outer if math.isfinite(resolution.outer) else None,
+                "inner": resolution.inner if math.isfinite(resolution.inner) else None,
+            },
+            "elements_per_wavelength": resolution.per_wavelength,
+            "wavelength": resolution.wavelength,
+            "smallest_element": resolution.smallest,
+            "largest_element": resolution.largest,
+            "min_quality": self.mesh.min_quality,
+        }
+
+    def settings(self) -> dict[str, Any]:
+        """For the provenance."""
+        settings = self.mesh.settings
+        return {
+            "resolution_factor": self.factor,
+            "courant": self.recorder.settings.courant,
+            "contact_element": settings.contact_element,
+            "contact_elements": settings.contact_elements,
+            "contact_zone": settings.contact_zone,
+            "plate_element": settings.plate_element,
+            "through_element": settings.through_element,
+            "growth": settings.growth,
+            "through_growth": settings.through_growth,
+            "meshes_tried": self.meshes_tried,
+            "estimated_contact_radius": {
+                "outer": self.estimate.outer_radius,
+                "inner": self.estimate.inner_radius,
+            },
+            "wave_frequency": WAVE_FREQUENCY / self.estimate.duration,
+        }
+
+    def write_fields(self, folder: Path, scene: Scene) -> list[float]:
+        """``mesh.vtu`` and the fields kept; their instants, s."""
+        writer = fields(self.mesh.bodies, scene.materials)
+        writer.write_mesh(folder / "mesh.vtu")
+        numbers = self.system.numbers
+        frames = self.recorder.frames()
+        return writer.write_frames(folder, [(t, [u[part] for part in numbers]) for t, u in frames])
+
+
+def method(scene: Scene) -> list[Any]:
+    """What kept results depend on, meshes and step apart."""
+    return [REVISION, scene.raw]
 
 
 def elements_per_wavelength(scene: Scene, mesh: ImpactMesh, duration: float) -> tuple[float, float]:
     """Least number of elements per wavelength in any body, and that wavelength, m."""
-    bodies = (mesh.outer, mesh.plate, mesh.inner)
     return min(
         (wavelength / float(edge_lengths(body.points, body.quads).max()), wavelength)
-        for wavelength, body in zip(shortest_wavelengths(scene, duration), bodies, strict=True)
+        for wavelength, body in zip(shortest_wavelengths(scene, duration), mesh.bodies, strict=True)
     )
 
 
@@ -86,8 +162,7 @@ def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Re
         )
         for contact, sphere in zip(run.contacts, (scene.outer, scene.inner), strict=True)
     ]
-    bodies = (mesh.outer, mesh.plate, mesh.inner)
-    edges = np.concatenate([edge_lengths(body.points, body.quads) for body in bodies])
+    edges = np.concatenate([edge_lengths(body.points, body.quads) for body in mesh.bodies])
     per_wavelength, wavelength = elements_per_wavelength(scene, mesh, duration)
     size = mesh.settings.contact_element
     peaks = [contact.force_peak for contact in run.contacts]
@@ -105,28 +180,37 @@ def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Re
     )
 
 
-def _stepped(scene: Scene, system: System, duration: float, **options: Any) -> Run:
+def _stepped(
+    scene: Scene, system: AxisymmetricSystem, duration: float, settings: Settings, **options: Any
+) -> tuple[Run, AxisymmetricMotion, Recorder]:
     """Step with sub-cycling where that can be; a run that the scene cuts short has one level.
 
     It may end in the middle of a contact, where the energy of a run with levels cannot be read.
     """
 
-    def attempt(most_levels: int) -> Run:
-        return integrate(system, scene.speed, duration, most_levels=most_levels, **options)
+    def attempt(most_levels: int) -> tuple[Run, AxisymmetricMotion, Recorder]:
+        recorder = Recorder(settings, f"-{most_levels}")
+        run, motion = integrate_axisymmetric(
+            system,
+            scene,
+            duration,
+            most_levels=most_levels,
+            courant=settings.courant,
+            fields=recorder,
+            **options,
+        )
+        return run, motion, recorder
 
     if scene.end_time is not None:
         return attempt(1)
-    return stable_run(attempt, lambda run: (len(run.levels), run.balance.energy_residual))
+    return stable_run(attempt, lambda made: (len(made[1].loop.levels), made[0].energy_residual))
 
 
 def compute(
     scene: Scene,
     factor: float,
-    *,
-    courant: float = 0.9,
-    snapshot_times: tuple[float, ...] = (),
-    progress: Progress | None = None,
-    label: str = "",
+    settings: Settings,
+    report: Report,
     like: Solution | None = None,
 ) -> Solution:
     """Solve a scene with ``factor`` (see `settings.RESOLUTIONS`) times the asked elements.
@@ -138,10 +222,8 @@ def compute(
     Args:
         scene: what to solve.
         factor: on the number of elements.
-        courant: time step over the critical one.
-        snapshot_times: instants at which to keep all displacements, s.
-        progress: where to report.
-        label: put before the messages.
+        settings: time step and fields.
+        report: where to report.
         like: a solution with more elements, for which this one's mesh is the same but for
             ``factor``, and its run as long; it serves to estimate the error and is not verified.
 
@@ -149,19 +231,14 @@ def compute(
         SceneError: the scene is outside the method.
         SolverError: meshing or the run failed, or the mesh stayed too coarse.
     """
-
-    def report(phase: str, done: float, message: str) -> None:
-        if progress is not None:
-            progress.report(phase, done, f"{label}{message}")
-
     estimate = estimate_contact(scene)
     radii = (estimate.outer_radius, estimate.inner_radius) if like is None else like.radii
     end_time = scene.end_time if like is None else float(like.run.times[-1])
     asked = scene.elements_per_contact_radius * factor
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
-        settings = mesh_settings(scene, *radii, factor)
-        mesh = mesh_impact(scene, settings)
+        sizes = mesh_settings(scene, *radii, factor)
+        mesh = mesh_impact(scene, sizes)
         per_wavelength, wavelength = elements_per_wavelength(scene, mesh, estimate.duration)
         if like is None and per_wavelength < LEAST_ELEMENTS_PER_WAVELENGTH:
             raise SolverError(
@@ -169,26 +246,29 @@ def compute(
                 f"at least {LEAST_ELEMENTS_PER_WAVELENGTH:g} are required; raise "
                 "reference.elements_per_contact_radius"
             )
-        nodes = sum(body.points.shape[0] for body in (mesh.outer, mesh.plate, mesh.inner))
+        nodes = sum(body.points.shape[0] for body in mesh.bodies)
         report("assembly", 0.0, f"{nodes} nodes")
         system = build_system(scene, mesh)
-        run = _stepped(
+        run, motion, recorder = _stepped(
             scene,
             system,
             estimate.duration,
+            settings,
             end_time=end_time,
-            courant=courant,
-            snapshot_times=snapshot_times,
             on_progress=lambda done, message: report("stepping", done, message),
         )
         resolution = _resolution(scene, mesh, run, estimate.duration)
         zone_left = all(
-            contact.outermost_radius < 0.999 * settings.contact_zone for contact in run.contacts
+            contact.outermost_radius < 0.999 * sizes.contact_zone for contact in run.contacts
         )
         enough = min(resolution.outer, resolution.inner) >= ACCEPTED_SHARE * asked
         if like is not None or (enough and zone_left):
-            return Solution(run, mesh, system, resolution, estimate, attempt, factor, radii)
-        size = settings.contact_element
+            levels = motion.loop.acting
+            return Solution(
+                *(run, mesh, system, levels, resolution, estimate, attempt, factor, radii),
+                recorder=recorder,
+            )
+        size = sizes.contact_element
         grow = 1.0 if zone_left else 1.3
         radii = (
             grow * size * resolution.outer if math.isfinite(resolution.outer) else radii[0],

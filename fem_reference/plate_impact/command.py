@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from typing import Any
 
 from ..common.errors import SolverError
-from .scene import Scene, parse_scene
+from ..common.processes import in_processes
+from ..common.settings import Options
+from .scene import parse_scene
 
 
 def _modes(document: Any, arguments: argparse.Namespace) -> None:
@@ -24,32 +27,21 @@ def _modes(document: Any, arguments: argparse.Namespace) -> None:
 
 def _solve(document: Any, arguments: argparse.Namespace) -> None:
     scene = parse_scene(document)
-    if scene.geometry == "solid":
-        _solve_solid(scene, arguments)
-        return
-    if arguments.np > 1:
-        raise SolverError(f"--np is {arguments.np}; an axisymmetric reference runs as one process")
-    from .axisymmetric_result import solve
-    from .estimate import field_times
+    options = Options.of(arguments)
+    if scene.geometry != "solid":
+        if arguments.np > 1:
+            raise SolverError(
+                f"--np is {arguments.np}; an axisymmetric reference runs as one process"
+            )
+        from .estimate import field_times
 
-    solve(
-        scene,
-        arguments.out,
-        arguments.resolution,
-        courant=arguments.courant,
-        stress_times=(*arguments.stress_at, *field_times(scene, arguments.fields)),
-        target_error=arguments.target_error,
-    )
-
-
-def _solve_solid(scene: Scene, arguments: argparse.Namespace) -> None:
-    from ..common.processes import in_processes
+        instants = (*options.stress_times, *field_times(scene, options.frames))
+        options = replace(options, stress_times=instants, frames=0)
 
     def work(comm: Any) -> None:
-        from ..common.series import Options
-        from .solid_result import solve
+        from .result import solve
 
-        solve(scene, arguments.out, arguments.resolution, comm, Options.of(arguments))
+        solve(scene, arguments.out, arguments.resolution, comm, options)
 
     in_processes(arguments, work)
 

@@ -16,6 +16,12 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from ..common.bodies import Material, Sphere
+from ..common.hertz import (
+    effective_modulus,
+    hertz_contact_radius,
+    hertz_stiffness,
+    hertz_time_scale,
+)
 from .scene import Scene
 
 ACCEPTED_SHARE = 0.9
@@ -42,26 +48,6 @@ class ContactEstimate:
     """The same for the inner sphere, m."""
     duration: float
     """Shorter of the two Hertz contact durations, s."""
-
-
-def effective_modulus(a: Material, b: Material) -> float:
-    """Hertz's E*, 1/E* = sum (1 - nu^2)/E, Pa."""
-    return 1.0 / (1.0 / a.plane_strain_modulus + 1.0 / b.plane_strain_modulus)
-
-
-def hertz_stiffness(effective: float, radius: float) -> float:
-    """K in F = k delta^(3/2): 4/3 E* sqrt(R), N/m^(3/2)."""
-    return 4.0 / 3.0 * effective * math.sqrt(radius)
-
-
-def hertz_contact_radius(force: float, effective: float, radius: float) -> float:
-    """Contact radius (3 F R / (4 E*))^(1/3), m."""
-    return math.pow(3.0 * force * radius / (4.0 * effective), 1.0 / 3.0)
-
-
-def hertz_time_scale(mass: float, stiffness: float, speed: float) -> float:
-    """T = (m / (k sqrt v))^(2/5), s; a contact lasts 3.218 T, the force peaks at 1.1433 m v/T."""
-    return float((mass / (stiffness * math.sqrt(speed))) ** 0.4)
 
 
 def estimate_contact(scene: Scene) -> ContactEstimate:

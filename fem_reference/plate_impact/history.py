@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Iterable
 from typing import Protocol
 
 import numpy as np
 
 from ..common.arrays import Floats
 from ..common.output import SAMPLES
+from ..common.uncertainty import curve_band
+
+CURVE_REACH = 0.02
+"""Half width of the window of the curves' band over the Hertz contact duration."""
 
 HISTORY_COLUMNS = (
     "time",
@@ -24,7 +28,7 @@ HISTORY_COLUMNS = (
 
 
 class Sampled(Protocol):
-    """What a history is made of: `explicit.Run`, or a solid run."""
+    """What a history is made of."""
 
     @property
     def times(self) -> Floats:
@@ -32,7 +36,7 @@ class Sampled(Protocol):
 
     @property
     def rows(self) -> Floats:
-        """(m, 8) as `explicit.Run.rows`."""
+        """(m, 8) as `Motion.sample`."""
 
 
 def history(run: Sampled) -> tuple[Floats, float]:
@@ -73,11 +77,18 @@ def resampled(run: Sampled, times: Floats) -> Floats:
     return table
 
 
-def write_history(path: Path, table: Floats, bands: Floats | None = None) -> None:
-    """Comma-separated: `HISTORY_COLUMNS`, then the half width of each band if known."""
-    names, formats, rows = [*HISTORY_COLUMNS], ["%.10g"] * table.shape[1], table
-    if bands is not None:
-        names += [f"{name}_band" for name in HISTORY_COLUMNS[1:]]
-        formats += ["%.3g"] * bands.shape[1]
-        rows = np.column_stack([table, bands])
-    np.savetxt(path, rows, fmt=formats, delimiter=",", header=",".join(names), comments="")
+def curve_bands(runs: Iterable[Sampled], factors: list[float], duration: float) -> Floats:
+    """(samples, 8) half widths of the 95 % bands of the finest run's history.
+
+    Args:
+        runs: finest first.
+        factors: of each mesh, on the number of elements.
+        duration: Hertz contact duration, s.
+    """
+    finest, *coarser = runs
+    table, interval = history(finest)
+    tables = np.stack([table, *(resampled(run, table[:, 0]) for run in coarser)])
+    reach = max(1, round(CURVE_REACH * duration / interval))
+    columns = range(1, len(HISTORY_COLUMNS))
+    sizes = 1.0 / np.array(factors)
+    return np.stack([curve_band(tables[:, :, k], sizes, reach) for k in columns], axis=1)

@@ -13,14 +13,15 @@ from ..axisymmetric.mesh import BodyMesh, check_elements
 from ..axisymmetric.meshing import mesh_plate, mesh_sphere
 from ..axisymmetric.sizes import MeshSettings
 from ..axisymmetric.system import (
-    System,
+    AxisymmetricSystem,
     axis_constraints,
-    pair_nodes,
     plate_constraints,
     renumbering,
 )
 from ..common.arrays import Floats, Ints
+from ..common.bodies import sphere_profile
 from ..common.errors import SceneError, SolverError
+from ..explicit.contact import MatchedContact
 from .scene import Scene
 
 CONTACT_ZONE = 1.3
@@ -92,6 +93,11 @@ class ImpactMesh:
     min_quality: float
     """Least scaled Jacobian of all elements."""
 
+    @property
+    def bodies(self) -> tuple[BodyMesh, BodyMesh, BodyMesh]:
+        """Outer sphere, plate, inner sphere."""
+        return self.outer, self.plate, self.inner
+
 
 def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     """Mesh spheres and plate, each where it stands at t = 0.
@@ -131,23 +137,23 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     )
 
 
-def build_system(scene: Scene, mesh: ImpactMesh) -> System:
+def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
     """Assemble with dolfinx, constrain and renumber.
 
     Raises:
         SolverError: a lumped mass is not positive.
     """
-    bodies = (mesh.outer, mesh.plate, mesh.inner)
-    materials = (scene.outer.material, scene.plate.material, scene.inner.material)
     fixed_of = (
         axis_constraints(mesh.outer),
         plate_constraints(scene.plate, mesh.plate),
         axis_constraints(mesh.inner),
     )
-    stiffness, mass, inverse, numbers = [], [], [], []
+    stiffness, mass, inverse, numbers, points = [], [], [], [], []
     element_nodes, element_stiffness, element_steps = [], [], []
     first = np.zeros(4, dtype=np.int64)
-    for index, (body, material, fixed) in enumerate(zip(bodies, materials, fixed_of, strict=True)):
+    for index, (body, material, fixed) in enumerate(
+        zip(mesh.bodies, scene.materials, fixed_of, strict=True)
+    ):
         matrices = assemble(body, material)
         if not matrices.mass.min() > 0.0:
             node = int(np.argmin(matrices.mass))
@@ -164,6 +170,7 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
         body_inverse = np.repeat(1.0 / matrices.mass, 2)
         body_inverse[fixed] = 0.0
         inverse.append(body_inverse[rows])
+        points.append(body.points[order])
         numbers.append(number + first[index])
         elements = matrices.elements
         element_nodes.append(numbers[index][elements.nodes])
@@ -179,26 +186,29 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> System:
     ):
         sphere = scene.outer if index == 0 else scene.inner
         contacts.append(
-            pair_nodes(
+            MatchedContact(
                 name,
                 normal,
                 numbers[index][surface.sphere_nodes],
                 numbers[1][surface.plate_nodes],
                 surface.radii,
-                sphere,
-                gap,
+                gap + sphere_profile(sphere.radius, surface.radii),
             )
         )
-    return System(
+    velocity = np.zeros((int(first[-1]), 2))
+    velocity[: first[1], 1] = -scene.speed
+    return AxisymmetricSystem(
         stiffness=scipy.sparse.block_diag(stiffness, format="csr"),
+        points=np.concatenate(points),
         mass=np.concatenate(mass),
         inverse_mass=np.concatenate(inverse),
+        velocity=velocity,
         first=first,
         numbers=(numbers[0], numbers[1], numbers[2]),
         supports=np.sort(supports),
-        centre=(int(contacts[0].plate_nodes[0]), int(contacts[1].plate_nodes[0])),
-        contacts=(contacts[0], contacts[1]),
+        centre=(int(contacts[0].opposite[0]), int(contacts[1].opposite[0])),
+        matched=(contacts[0], contacts[1]),
         element_nodes=np.concatenate(element_nodes),
         element_stiffness=np.concatenate(element_stiffness),
-        element_time_steps=np.concatenate(element_steps),
+        element_steps=np.concatenate(element_steps),
     )

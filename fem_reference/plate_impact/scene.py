@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..common.bodies import EDGES, Plate, Sphere, read_material
+from ..common.bodies import EDGES, Material, Plate, Sphere, read_material
 from ..common.errors import SceneError
 from ..common.reader import Reader, read_document
 
@@ -44,6 +44,11 @@ class Scene:
     """Bodies ("outer", "inner") that are rigid; of solid geometry only."""
     raw: dict[str, Any]
     """The document as given, for the provenance."""
+
+    @property
+    def materials(self) -> tuple[Material, Material, Material]:
+        """Of outer sphere, plate and inner sphere."""
+        return self.outer.material, self.plate.material, self.inner.material
 
 
 def _plate(reader: Reader) -> Plate:

@@ -1,4 +1,4 @@
-"""From a scene to a verified three-dimensional solution: mesh, assemble, step, check, repeat."""
+"""Three-dimensional solutions: mesh, assemble, step, check, and repeat if need be."""
 
 from __future__ import annotations
 
@@ -6,32 +6,37 @@ import dataclasses
 import math
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..common.errors import SolverError
-from ..common.series import Recorder, Report, Settings
-from ..explicit.resonance import stable_run
+from ..common.hertz import effective_modulus, hertz_contact_radius
+from ..common.series import Report
+from ..common.settings import Settings
+from ..explicit.checkpoint import checkpoint_of
+from ..explicit.frames import Recorder
+from ..explicit.loop import Loop
 from ..explicit.spectrum import first_frequency
-from ..solid.loop import Loop, make_loop
-from ..solid.memory import memory_needed, peak_memory, require_memory
-from ..solid.mesh import edge_lengths, qualities
+from ..explicit.supervision import stable_run
+from ..solid.elasticity import write_fields
+from ..solid.memory import machine, memory_needed, peak_memory, require_memory
+from ..solid.mesh import edge_lengths, mesh_report
+from ..solid.system import make_loop
 from .estimate import (
     ACCEPTED_SHARE,
     MINOR_FORCE,
     MOST_MESHES,
     ContactEstimate,
-    effective_modulus,
     estimate_contact,
-    hertz_contact_radius,
     shortest_wavelengths,
 )
+from .motion import PLATE
+from .run import Run
 from .scene import Scene
-from .solid_model import PLATE, PlateModel, plate_model
-from .solid_run import SolidRun, integrate
+from .solid_model import PlateModel, plate_model
+from .solid_motion import integrate_solid
 
-REVISION = 4
+REVISION = 5
 """Counts changes of the method that make older checkpoints useless."""
 
 RADIUS_STEP = 1.04
@@ -42,7 +47,7 @@ RADIUS_STEP = 1.04
 class Solution:
     """A verified run."""
 
-    run: SolidRun
+    run: Run
     plate: PlateModel
     loop: Loop
     estimate: ContactEstimate
@@ -58,6 +63,47 @@ class Solution:
     memory_used: float
     """At most so far, bytes."""
 
+    @property
+    def dofs(self) -> int:
+        """Degrees of freedom, fixed ones included."""
+        return 3 * int(self.loop.system.mass.size)
+
+    def first_frequency(self) -> float:
+        """Lowest elastic eigenfrequency of the plate, Hz."""
+        return first_frequency(self.loop, self.plate.elastic[PLATE])
+
+    def machine(self) -> dict[str, Any]:
+        """For the summary's ``solver``."""
+        return machine(self.loop, self.memory_stated, self.memory_used)
+
+    def mesh_report(self) -> dict[str, Any]:
+        """For the summary's ``mesh``."""
+        outer, inner = self.elements_per_radius
+        return {
+            **mesh_report([body.mesh for body in self.plate.model.elastic]),
+            "elements_per_contact_radius": {
+                "outer": outer if math.isfinite(outer) else None,
+                "inner": inner if math.isfinite(inner) else None,
+            },
+            "elements_per_wavelength": self.elements_per_wavelength,
+            "wavelength": self.wavelength,
+        }
+
+    def settings(self) -> dict[str, Any]:
+        """For the provenance."""
+        return {
+            "element_order": self.plate.model.elastic[0].mesh.order,
+            "rigid": list(self.plate.rigid),
+            "contact_element": self.plate.size,
+            "contact_zone": self.plate.zone,
+            "meshes_tried": self.meshes_tried,
+            "estimate": dataclasses.asdict(self.estimate),
+        }
+
+    def write_fields(self, folder: Path, scene: Scene) -> list[float]:
+        """``mesh.vtu`` and the fields kept; their instants, s."""
+        return write_fields(folder, self.plate.model, self.recorder)
+
 
 def _per_wavelength(
     plate: PlateModel, wavelengths: tuple[float, float, float]
@@ -72,7 +118,7 @@ def _per_wavelength(
     return min(found)
 
 
-def _elements_per_radius(scene: Scene, plate: PlateModel, run: SolidRun) -> tuple[float, float]:
+def _elements_per_radius(scene: Scene, plate: PlateModel, run: Run) -> tuple[float, float]:
     peaks = [contact.force_peak for contact in run.contacts]
     found = []
     for peak, sphere, name in zip(
@@ -109,11 +155,11 @@ def _stepped(
     suffix: str,
     comm: Any,
     report: Report,
-) -> tuple[Loop, SolidRun, Recorder]:
-    def attempt(most_levels: int) -> tuple[Loop, SolidRun, Recorder]:
+) -> tuple[Loop, Run, Recorder]:
+    def attempt(most_levels: int) -> tuple[Loop, Run, Recorder]:
         loop = make_loop(plate.model, comm)
-        recorder = settings.recorder(f"{suffix}-{most_levels}")
-        run = integrate(
+        recorder = Recorder(settings, f"{suffix}-{most_levels}")
+        run = integrate_solid(
             loop,
             plate,
             scene,
@@ -121,7 +167,9 @@ def _stepped(
             courant=settings.courant,
             most_levels=most_levels,
             fields=recorder,
-            checkpoint=settings.checkpoint([*method(scene), most_levels], plate.model, suffix),
+            checkpoint=checkpoint_of(
+                settings, [*method(scene), most_levels], plate.model.meshes, suffix
+            ),
             on_progress=lambda done, message: report("stepping", done, message),
         )
         return loop, run, recorder
@@ -187,44 +235,3 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         f"after {MOST_MESHES} meshes there are still only {min(found):.3g} elements per contact "
         f"radius, {asked:.3g} are asked for"
     )
-
-
-def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
-    """The summary's physical quantities, SI; a contact that never closed ends at 0."""
-    run = solution.run
-    transmitted = scene.inner.mass * run.inner_velocity**2
-    return {
-        "efficiency": transmitted / (scene.outer.mass * scene.speed**2),
-        "outer_velocity_final": run.outer_velocity,
-        "inner_velocity_final": run.inner_velocity,
-        "outer_force_peak": run.contacts[0].force_peak,
-        "inner_force_peak": run.contacts[1].force_peak,
-        "outer_contact_end": run.contacts[0].end or 0.0,
-        "inner_contact_end": run.contacts[1].end or 0.0,
-        "first_frequency": first_frequency(solution.loop, solution.plate.elastic[PLATE]),
-    }
-
-
-def mesh_report(solution: Solution) -> dict[str, Any]:
-    """What the summary says about the mesh."""
-    meshes = [body.mesh for body in solution.plate.model.elastic]
-    edges = np.concatenate([edge_lengths(m.points, m.corners).ravel() for m in meshes])
-    quality = np.concatenate([qualities(m.points, m.corners) for m in meshes])
-    nodes = sum(m.points.shape[0] for m in meshes)
-    outer, inner = solution.elements_per_radius
-    return {
-        "nodes": nodes,
-        "dofs": 3 * nodes,
-        "elements": quality.size,
-        "element_order": meshes[0].order,
-        "elements_per_contact_radius": {
-            "outer": outer if math.isfinite(outer) else None,
-            "inner": inner if math.isfinite(inner) else None,
-        },
-        "elements_per_wavelength": solution.elements_per_wavelength,
-        "wavelength": solution.wavelength,
-        "smallest_element": float(edges.min()),
-        "largest_element": float(edges.max()),
-        "min_quality": float(quality.min()),
-        "mean_quality": float(quality.mean()),
-    }

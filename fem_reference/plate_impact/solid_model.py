@@ -10,21 +10,12 @@ import numpy as np
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Plate, Sphere, sphere_profile
 from ..common.errors import SceneError
+from ..explicit.contact import Contact, RigidBody, SphereContact, SurfaceContact, guided
 from ..solid.mesh import TetMesh, surface
 from ..solid.meshing import SizeField, quarter_plate, quarter_sphere
-from ..solid.model import (
-    Contact,
-    ElasticBody,
-    Model,
-    RigidBody,
-    SphereContact,
-    SurfaceContact,
-    guided,
-    nodal_areas,
-    project,
-    symmetry_plane,
-)
+from ..solid.model import ElasticBody, Model, nodal_areas, project, symmetry_plane
 from .estimate import ContactEstimate
+from .motion import INNER, OUTER, PLATE
 from .scene import Scene
 
 FRACTION = 0.25
@@ -35,7 +26,6 @@ CANDIDATE_ZONE = 1.8
 """Radius of the zone of nodes that may touch over the largest contact radius expected."""
 SLOPE = 0.3
 """Growth of the element size per distance from the contact, at factor 1."""
-OUTER, PLATE, INNER = "outer", "plate", "inner"
 
 
 @dataclass(frozen=True)

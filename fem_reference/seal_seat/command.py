@@ -19,12 +19,15 @@ def _mesh(document: Any, arguments: argparse.Namespace) -> None:
 
 
 def _modes(document: Any, arguments: argparse.Namespace) -> None:
+    from .mesh_file import check_geometry
     from .meshing import seat_mesh
     from .modal import read_mesh, seat_modes
 
     scene = parse_seat_scene(document)
     if arguments.count < 1:
         raise SolverError(f"--count is {arguments.count}; it must be at least 1")
+    if arguments.mesh:
+        check_geometry(arguments.mesh, scene)
     mesh = read_mesh(arguments.mesh) if arguments.mesh else seat_mesh(scene)
     found = [{"frequency": float(f)} for f in seat_modes(scene, mesh, arguments.count)]
     print(json.dumps({"schema_version": 1, "scene": scene.name, "modes": found}, indent=2))
@@ -36,7 +39,7 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
     scene = parse_seat_scene(document)
 
     def work(comm: Any) -> None:
-        from ..common.series import Options
+        from ..common.settings import Options
         from .result import solve
 
         solve(scene, arguments.out, arguments.resolution, comm, Options.of(arguments))

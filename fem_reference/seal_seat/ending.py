@@ -8,8 +8,8 @@ import numpy as np
 
 from ..common.arrays import Floats
 from ..explicit.ending import no_further_contact
+from ..explicit.loop import Energies, Loop
 from ..explicit.spectrum import conjugate_gradients, free_components
-from ..solid.loop import Energies, Loop
 from ..solid.model import nodal_areas
 from .model import ELASTIC_SPHERE, LEFT, RIGHT, SEAT, Patch, SeatModel
 from .motion import sphere_motion
@@ -23,22 +23,21 @@ def flexibility(loop: Loop, patch: Patch) -> float:
     from under the tip, and their sum is 1.
     """
     weights = patch.areas * np.maximum(0.0, 1.0 - (patch.distances / patch.reach) ** 2)
-    load = np.zeros((loop.all_masses.size, 3))
+    load = np.zeros((loop.system.mass.size, 3))
     load[patch.nodes] = (weights / weights.sum())[:, None] * patch.normals
     force = loop.own(load)
     return loop.dot(force, conjugate_gradients(loop, force, free_components(loop, SEAT)))
 
 
-def relieved_flexibility(loop: Loop, load: Floats) -> float:
-    """Flexibility of the free half sphere under a load (N, 3), rigid motion apart, m/N.
+def relieved_flexibility(loop: Loop, centre: Floats, load: Floats) -> float:
+    """Flexibility of the free half sphere about ``centre`` under a load (N, 3), m/N.
 
     Inertia relief: the rigid motions in the plane of symmetry (along x and z, about y) are taken
     out of load and displacement.
     """
     free = free_components(loop, ELASTIC_SPHERE)
     mass = np.repeat(loop.mass, 3)
-    points = np.concatenate([body.mesh.points for body in loop.model.elastic])
-    points = points - loop.model.elastic[ELASTIC_SPHERE].mesh.points.mean(axis=0)
+    points = loop.system.points - centre
     x, z = points[:, 0], points[:, 2]
     zero, one = np.zeros_like(x), np.ones_like(x)
     rigid: list[Floats] = []
@@ -72,14 +71,14 @@ class Ending:
 
         self.sphere_flexibility = 0.0
         if seat.sphere_facets is not None:
-            mesh = loop.model.elastic[ELASTIC_SPHERE].mesh
+            mesh = seat.model.elastic[ELASTIC_SPHERE].mesh
             areas = nodal_areas(mesh, seat.sphere_facets)
             nodes = np.flatnonzero(areas > 0.0)
             weights = areas[nodes] / areas[nodes].sum()
-            load = np.zeros((loop.all_masses.size, 3))
-            first = int(loop.model.first[ELASTIC_SPHERE])
+            load = np.zeros((loop.system.mass.size, 3))
+            first = int(loop.system.first[ELASTIC_SPHERE])
             load[first + nodes] = weights[:, None] * np.array(ring.axis)
-            self.sphere_flexibility = relieved_flexibility(loop, load)
+            self.sphere_flexibility = relieved_flexibility(loop, mesh.points.mean(axis=0), load)
 
     def _clear_of_cone(self, motion: Floats) -> float:
         """Least clearance (or its rate) over the cone after a motion (x, z) of the sphere.
@@ -88,10 +87,10 @@ class Ending:
         """
         return float((motion @ self.axis) * self.sin - abs(float(motion @ self.across)) * self.cos)
 
-    def __call__(self, energies: Energies) -> bool:
+    def __call__(self, energies: Energies, now: float) -> bool:
         """The proof at the present instant."""
         problem = self.loop.problem
-        if any(any(contact.force) for contact in problem.contacts):
+        if self.loop.touching:
             return False
         actuator = problem.rigids[self.seat.actuator]
         place, speed = sphere_motion(self.loop, self.seat)
@@ -100,17 +99,7 @@ class Ending:
         if self.seat.sphere_facets is not None:
             of_sphere = energies.elastic[ELASTIC_SPHERE] - energies.rigid_motion[ELASTIC_SPHERE]
         return no_further_contact(
-            clearance=self._clear_of_cone(place[[0, 2]]),
-            opening_speed=self._clear_of_cone(speed[[0, 2]]),
-            plate_energy=energy,
-            plate_flexibility=self.ring_flexibility,
-            sphere_energy=of_sphere,
-            sphere_flexibility=self.sphere_flexibility,
-        ) and no_further_contact(
-            clearance=-actuator.u[2],
-            opening_speed=-actuator.v[2],
-            plate_energy=energy,
-            plate_flexibility=self.tip_flexibility,
-            sphere_energy=0.0,
-            sphere_flexibility=0.0,
-        )
+            self._clear_of_cone(place[[0, 2]]),
+            self._clear_of_cone(speed[[0, 2]]),
+            ((energy, self.ring_flexibility), (of_sphere, self.sphere_flexibility)),
+        ) and no_further_contact(-actuator.u[2], -actuator.v[2], ((energy, self.tip_flexibility),))

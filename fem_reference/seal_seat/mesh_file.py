@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from pathlib import Path
-from typing import Any
 
 import meshio
 import numpy as np
@@ -14,27 +14,30 @@ from ..common.errors import SceneError, SolverError
 from ..common.output import write_json
 from ..common.settings import RESOLUTIONS
 from ..common.versions import versions
-from ..solid.mesh import TetMesh, edge_lengths, qualities
+from ..solid.mesh import mesh_report
 from .meshing import seat_mesh
 from .scene import SeatScene
 
+GEOMETRY = re.compile(rb"<!--geometry_hash ([^ ]+)-->")
 
-def mesh_report(mesh: TetMesh) -> dict[str, Any]:
-    """Numbers that say how large and how good a mesh is."""
-    quality = qualities(mesh.points, mesh.corners)
-    edges = edge_lengths(mesh.points, mesh.corners)
-    nodes = int(mesh.points.shape[0])
-    return {
-        "nodes": nodes,
-        "dofs": 3 * nodes,
-        "elements": int(quality.size),
-        "element_order": mesh.order,
-        "smallest_element": float(edges.min()),
-        "largest_element": float(edges.max()),
-        "min_quality": float(quality.min()),
-        "mean_quality": float(quality.mean()),
-        "volume": mesh.volume(),
-    }
+
+def record_geometry(path: Path, scene: SeatScene) -> None:
+    """Note in a .vtu file, as an XML comment, which geometry its mesh is one of."""
+    if scene.geometry_hash is not None:
+        head, newline, rest = path.read_bytes().partition(b"\n")
+        comment = f"<!--geometry_hash {scene.geometry_hash}-->".encode()
+        path.write_bytes(head + newline + comment + newline + rest)
+
+
+def check_geometry(path: Path, scene: SeatScene) -> None:
+    """Refuse the mesh of another geometry.
+
+    Raises:
+        SolverError: the file says that it is one.
+    """
+    noted = GEOMETRY.search(path.read_bytes())
+    if noted and scene.geometry_hash and noted[1].decode() != scene.geometry_hash:
+        raise SolverError(f"mesh {path} is not one of this seat: it was made for another geometry")
 
 
 def write_seat_mesh(path: Path, scene: SeatScene, resolution: str, size_factor: float) -> None:
@@ -53,6 +56,7 @@ def write_seat_mesh(path: Path, scene: SeatScene, resolution: str, size_factor: 
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         meshio.vtu.write(temporary, grid, binary=True, compression=None)
+        record_geometry(temporary, scene)
         document = {
             "schema_version": 1,
             "scene": scene.name,
@@ -61,7 +65,8 @@ def write_seat_mesh(path: Path, scene: SeatScene, resolution: str, size_factor: 
             "resolution": resolution,
             "size_factor": size_factor,
             "elements_per_ring_radius": scene.elements_per_ring_radius,
-            **mesh_report(mesh),
+            **mesh_report([mesh]),
+            "volume": mesh.volume(),
             "versions": {name: versions()[name] for name in ("gmsh", "meshio")},
         }
         # The description goes first: a mesh without one is taken for one of something else.

@@ -8,18 +8,9 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..common.errors import SolverError
+from ..explicit.contact import Contact, RigidBody, SphereContact, SurfaceContact, guided
 from ..solid.mesh import TetMesh, surface
-from ..solid.model import (
-    Contact,
-    ElasticBody,
-    Model,
-    RigidBody,
-    SphereContact,
-    SurfaceContact,
-    guided,
-    nodal_areas,
-    symmetry_plane,
-)
+from ..solid.model import ElasticBody, Model, nodal_areas, symmetry_plane
 from .elastic_sphere import sphere_pairs, touching_facets
 from .scene import Ring, SeatScene
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..common.arrays import Floats
-from ..solid.loop import Loop
+from ..explicit.loop import Loop
 from .elastic_sphere import sphere_pairs
 from .model import ELASTIC_SPHERE, LEFT, RIGHT, SeatModel
 from .scene import SeatScene
@@ -28,13 +28,13 @@ def pair_again(loop: Loop, seat: SeatModel, scene: SeatScene) -> None:
     if seat.sphere_facets is None:
         return
     displacement = loop.gather(loop.u)
-    first = int(loop.model.first[ELASTIC_SPHERE])
+    first = int(loop.system.first[ELASTIC_SPHERE])
     mean, _ = sphere_motion(loop, seat)
     for number in (LEFT, RIGHT):
         nodes = seat.patches[number].nodes
         pairs = sphere_pairs(
             scene,
-            loop.model.elastic[ELASTIC_SPHERE].mesh,
+            seat.model.elastic[ELASTIC_SPHERE].mesh,
             seat.sphere_facets,
             seat.places[number],
             displacement[first:],

@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 
 from ..common import document
-from ..common.output import write_json
+from ..common.output import write_history, write_json
 from ..common.progress import Progress
-from ..common.series import MeshResult, Options, Problem, solve_series
-from ..common.settings import RESOLUTIONS
+from ..common.series import MeshResult, Problem, solve_series
+from ..common.settings import RESOLUTIONS, Options
 from ..common.uncertainty import curve_band
 from ..common.versions import versions
-from ..solid.fields import write_frames, write_mesh
-from .mesh_file import mesh_report
+from ..solid.elasticity import write_fields
+from ..solid.memory import machine
+from ..solid.mesh import mesh_report
+from .mesh_file import record_geometry
 from .run import contact_duration
 from .scene import SeatScene
 from .solve import HISTORY_COLUMNS, Solution, compute, history, method, quantities, sampling
@@ -48,10 +50,10 @@ def solve(
         end_time=scene.end_time,
         ratio=RATIO,
         targeted=TARGETED,
-        compute=lambda factor, settings, report: compute(scene, factor, settings, comm, report),
+        compute=lambda factor, settings, report, _: compute(scene, factor, settings, comm, report),
         quantities=lambda solution: quantities(scene, solution),
         write=lambda folder, solution, meshes: _write(
-            folder, scene, solution, resolution, meshes, comm
+            folder, scene, solution, resolution, meshes, options
         ),
     )
     solve_series(problem, target, RESOLUTIONS[resolution], comm, options, progress)
@@ -59,21 +61,13 @@ def solve(
 
 def _write_history(path: Path, scene: SeatScene, meshes: list[MeshResult]) -> tuple[int, float]:
     """Curves and their bands; number of samples and their distance, s."""
-    finest = meshes[0]
-    at = sampling(finest.times)
-    tables = [history(mesh.times, mesh.rows, at) for mesh in meshes]
+    at = sampling(meshes[0].times)
+    tables = np.stack([history(mesh.times, mesh.rows, at) for mesh in meshes])
     sizes = np.array([1.0 / mesh.factor for mesh in meshes])
     reach = max(1, round(BAND_REACH * contact_duration(scene) / float(at[1])))
-    bands = np.column_stack(
-        [
-            curve_band(np.stack([table[:, column] for table in tables]), sizes, reach)
-            for column in range(1, len(HISTORY_COLUMNS))
-        ]
-    )
-    names = [*HISTORY_COLUMNS, *(f"{name}_band" for name in HISTORY_COLUMNS[1:])]
-    formats = ["%.9g"] * len(HISTORY_COLUMNS) + ["%.3g"] * bands.shape[1]
-    table = np.column_stack([tables[0], bands])
-    np.savetxt(path, table, fmt=formats, delimiter=",", header=",".join(names), comments="")
+    columns = range(1, len(HISTORY_COLUMNS))
+    bands = np.stack([curve_band(tables[:, :, k], sizes, reach) for k in columns], axis=1)
+    write_history(path, HISTORY_COLUMNS, tables[0], bands, digits=9)
     return int(at.size), float(at[1])
 
 
@@ -83,29 +77,32 @@ def _write(
     solution: Solution,
     resolution: str,
     meshes: list[MeshResult],
-    comm: Any,
+    options: Options,
 ) -> None:
-    from ..common.fenicsx import alone
-
     run, model = solution.run, solution.seat.model
     found = versions()
     samples, interval = _write_history(folder / "history.csv", scene, meshes)
-    write_mesh(folder / "mesh.vtu", model)
     summary = document.summary(
         scene,
         resolution,
         run,
         meshes,
-        document.machine(found, comm, solution),
+        TARGETED,
+        {
+            "versions": found,
+            **machine(solution.loop, solution.memory_stated, solution.memory_used),
+        },
         intended_angle=scene.intended_angle,
         mesh={
-            **mesh_report(solution.seat.mesh),
+            **mesh_report([solution.seat.mesh]),
+            "volume": solution.seat.mesh.volume(),
             "elements_per_ring_radius": scene.elements_per_ring_radius * meshes[0].factor,
         },
         samples=samples,
         sample_interval=interval,
-        stress_times=write_frames(folder, model, solution.recorder.frames(), alone()),
+        stress_times=write_fields(folder, model, solution.recorder),
     )
+    record_geometry(folder / "mesh.vtu", scene)
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(
         scene,
@@ -113,7 +110,11 @@ def _write(
         run,
         contact_duration(scene),
         found,
-        {"element_order": scene.element_order, "uncertainty_companion_ratio": 1.0 / RATIO},
+        {
+            "element_order": scene.element_order,
+            "uncertainty_companion_ratio": 1.0 / RATIO,
+            "target_error": options.target_error,
+        },
         geometry_hash=scene.geometry_hash,
         contacts={
             "sphere": [list(interval) for interval in run.sphere_contacts],

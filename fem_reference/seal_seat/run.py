@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..common.arrays import Floats
 from ..common.errors import SolverError
-from ..explicit.checkpoint import Checkpoint
+from ..common.hertz import hertz_stiffness
 from ..explicit.levels import MOST_LEVELS
+from ..explicit.loop import Energies, Loop
+from ..explicit.records import intervals
+from ..explicit.spectrum import critical_time_step
 from ..explicit.supervision import Course, Plan, supervise
-from ..plate_impact.estimate import hertz_stiffness
-from ..solid.fields import Frames
-from ..solid.loop import Energies, Loop
 from .ending import Ending
 from .model import FRACTION, LEFT, RIGHT, SEAT, SeatModel
 from .motion import pair_again, sphere_motion
@@ -61,8 +61,8 @@ class SeatRun:
     momentum_residual: float
     support_impulse: float
     """Along z, N s."""
-    sweeps_per_step: float
     unconverged: int
+    """Steps whose contact solver did not converge."""
 
 
 def contact_duration(scene: SeatScene) -> float:
@@ -74,47 +74,41 @@ def contact_duration(scene: SeatScene) -> float:
     return float(2.943275184 * approach / actuator.speed)
 
 
-def integrate(
-    loop: Loop,
-    seat: SeatModel,
-    scene: SeatScene,
-    *,
-    courant: float = 0.9,
-    most_levels: int = MOST_LEVELS,
-    fields: Callable[[float], Frames] | None = None,
-    checkpoint: Checkpoint | None = None,
-    on_progress: Callable[[float, str], None] = lambda done, message: None,
-) -> SeatRun:
+def integrate(loop: Loop, seat: SeatModel, scene: SeatScene, **options: Any) -> SeatRun:
     """Step from the first touch to ``scene.end_time``, or until no further contact is possible.
 
-    ``fields`` makes the recorder of fields from the sampling interval. A run whose ``checkpoint``
-    holds a state goes on from there. ``most_levels`` is that of sub-cycling; 1: every element acts
-    at every step.
+    ``most_levels`` is that of sub-cycling; 1: every element acts at every step. A run with a given
+    end, which may cut a contact, has one level: only then can its energy be read. Further options
+    are those of `supervise`.
 
     Raises:
         SolverError: time step above the critical one, divergence, no end found, or a contact that
             left the zone of candidates.
     """
+    most_levels = options.pop("most_levels", MOST_LEVELS)
     plan = Plan(
         duration=contact_duration(scene),
         longest=LONGEST_RUN,
         window_samples=PEAK_WINDOW_SAMPLES,
         end_time=scene.end_time,
         initial_energy=FRACTION * scene.initial_energy,
+        most_levels=1 if scene.end_time is not None else most_levels,
     )
+
+    def sample(samples: int, stride: int) -> Floats:
+        return np.array([_sample(loop, seat, scene, stride) for _ in range(samples)])
+
     course = supervise(
         loop,
         plan,
-        lambda stride: _sample(loop, seat, scene, stride),
+        sample,
         lambda: Ending(loop, seat, scene),
-        courant=courant,
-        most_levels=most_levels,
-        fields=fields,
-        checkpoint=checkpoint,
-        on_progress=on_progress,
+        lambda: critical_time_step(loop),
+        **options,
     )
     _require_inside(loop, seat)
-    return _result(loop, seat, scene, course)
+    rows = np.vstack([course.rows, sample(1, loop.meeting)])
+    return _result(loop, seat, scene, course, rows)
 
 
 def _sample(loop: Loop, seat: SeatModel, scene: SeatScene, stride: int) -> Floats:
@@ -150,11 +144,11 @@ def _sample(loop: Loop, seat: SeatModel, scene: SeatScene, stride: int) -> Float
 
 def _require_inside(loop: Loop, seat: SeatModel) -> None:
     for contact, patch, definition in zip(
-        loop.problem.contacts, seat.patches, loop.model.contacts, strict=False
+        loop.problem.contacts, seat.patches, seat.model.contacts, strict=False
     ):
-        if contact.outermost < 0:
+        if contact.record.outermost < 0:
             continue
-        distance = float(patch.distances[contact.outermost])
+        distance = float(patch.distances[contact.record.outermost])
         if distance > 0.95 * patch.reach:
             raise SolverError(
                 f"contact of the {definition.name} reached {distance:.3g} m, the end of the nodes "
@@ -164,16 +158,10 @@ def _require_inside(loop: Loop, seat: SeatModel) -> None:
 
 def _intervals(loop: Loop, numbers: tuple[int, ...]) -> tuple[tuple[float, float], ...]:
     """Contacts of a body that touches at several places: their union, s."""
-    spans = sorted(
-        (
-            max(0.0, contact.first_step[k] - 0.5) * loop.dt,
-            (contact.last_step[k] + 0.5) * loop.dt,
-        )
-        for contact in (loop.problem.contacts[n] for n in numbers)
-        for k in range(min(contact.intervals, len(contact.first_step)))
-    )
+    records = [loop.problem.contacts[n].record for n in numbers]
+    spans = sorted(span for record in records for span in intervals(record, loop.dt))
     merged: list[tuple[float, float]] = []
-    chatter = loop.dt * loop.problem.contacts[0].split
+    chatter = loop.dt * loop.problem.contacts[0].record.split
     for start, end in spans:
         if merged and start <= merged[-1][1] + chatter:
             merged[-1] = (merged[-1][0], max(end, merged[-1][1]))
@@ -212,34 +200,33 @@ def momentum_misses(loop: Loop, seat: SeatModel, scene: SeatScene) -> list[float
     return misses
 
 
-def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course) -> SeatRun:
+def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows: Floats) -> SeatRun:
     problem = loop.problem
     energies: Energies = loop.energies()
-    work = sum(contact.work for contact in problem.contacts)
+    work = sum(record.work for record in problem.records())
     _, speed = sphere_motion(loop, seat)
     actuator = problem.rigids[seat.actuator]
     initial = FRACTION * scene.initial_energy
     momentum = FRACTION * scene.actuator.mass * scene.actuator.speed
-    flanks = tuple(problem.contacts[k].normal_impulse / FRACTION for k in (LEFT, RIGHT))
+    flanks = tuple(problem.contacts[k].record.impulse / FRACTION for k in (LEFT, RIGHT))
     return SeatRun(
         times=course.times,
-        rows=course.rows,
+        rows=rows,
         time_step=loop.dt,
         critical_time_step=course.critical_time_step,
         steps=problem.state.step,
         loop_seconds=course.loop_seconds,
         sphere_velocity=(float(speed[0]), float(speed[2])),
         actuator_velocity=actuator.v[2],
-        sphere_force_peak=peak(course.rows[:, 4:6], course.interval),
-        actuator_force_peak=peak(course.rows[:, 8:], course.interval),
+        sphere_force_peak=peak(rows[:, 4:6], course.interval),
+        actuator_force_peak=peak(rows[:, 8:], course.interval),
         sphere_contacts=_intervals(loop, (LEFT, RIGHT)),
         actuator_contacts=_intervals(loop, tuple(seat.tips)),
         flank_impulses=(flanks[0], flanks[1]),
-        in_contact_at_end=any(any(contact.force) for contact in problem.contacts),
+        in_contact_at_end=loop.touching,
         energy_residual=abs(energies.total - initial - work) / initial,
         contact_loss=-work / initial,
         momentum_residual=max(abs(m) for m in momentum_misses(loop, seat, scene)) / momentum,
         support_impulse=problem.state.reaction[2] / FRACTION,
-        sweeps_per_step=problem.state.sweeps / max(1, problem.state.step),
         unconverged=problem.state.unconverged,
     )

@@ -10,17 +10,21 @@ import numpy as np
 
 from ..common.arrays import Floats
 from ..common.output import SAMPLES
-from ..common.series import Recorder, Report, Settings
-from ..explicit.resonance import stable_run
+from ..common.series import Report
+from ..common.settings import Settings
+from ..explicit.checkpoint import checkpoint_of
+from ..explicit.frames import Recorder
+from ..explicit.loop import Loop
 from ..explicit.spectrum import first_frequency
-from ..solid.loop import Loop, make_loop
+from ..explicit.supervision import stable_run
 from ..solid.memory import memory_needed, peak_memory, require_memory
+from ..solid.system import make_loop
 from .meshing import seat_mesh, sphere_mesh
 from .model import SeatModel, seat_model
 from .run import SeatRun, integrate
 from .scene import SeatScene
 
-REVISION = 2
+REVISION = 3
 """Counts changes of the method that make older checkpoints useless."""
 
 QUANTITIES = (
@@ -67,6 +71,11 @@ class Solution:
     memory_used: float
     """At most so far, bytes."""
 
+    @property
+    def dofs(self) -> int:
+        """Degrees of freedom, fixed ones included."""
+        return 3 * int(self.loop.system.mass.size)
+
 
 def method(scene: SeatScene) -> list[Any]:
     """What kept states and results depend on, mesh and step apart."""
@@ -94,7 +103,7 @@ def compute(
 
     def attempt(most_levels: int) -> tuple[Loop, SeatRun, Recorder]:
         loop = make_loop(seat.model, comm)
-        recorder = settings.recorder(f"-{most_levels}")
+        recorder = Recorder(settings, f"-{most_levels}")
         run = integrate(
             loop,
             seat,
@@ -102,7 +111,7 @@ def compute(
             courant=settings.courant,
             most_levels=most_levels,
             fields=recorder,
-            checkpoint=settings.checkpoint([*method(scene), most_levels], seat.model),
+            checkpoint=checkpoint_of(settings, [*method(scene), most_levels], seat.model.meshes),
             on_progress=lambda done, message: report("stepping", done, message),
         )
         return loop, run, recorder
@@ -117,7 +126,7 @@ def compute(
 def seat_frequency(loop: Loop, seat: SeatModel) -> float:
     """First eigenfrequency of the seat with clamped rim, symmetric about y = 0, Hz."""
     # Lifting and rocking together: the lowest mode is one of both or a mixture.
-    start = np.zeros((loop.all_masses.size, 3))
+    start = np.zeros((loop.system.mass.size, 3))
     x = seat.mesh.points[:, 0]
     start[: x.size, 2] = 1.0 + x / np.abs(x).max()
     return first_frequency(loop, 0, start=loop.own(start))

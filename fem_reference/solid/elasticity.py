@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,11 @@ from scipy.spatial import cKDTree
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Material
 from ..common.errors import SolverError
-from ..common.fenicsx import TetDomain, petsc_rows
+from ..common.fenicsx import TetDomain, alone, petsc_rows
+from ..common.fields import Fields
+from ..explicit.frames import Recorder
 from .mesh import TetMesh, scatter_sum, volumes
+from .model import Model
 
 STRESS_COMPONENTS = (
     "stress_xx",
@@ -133,3 +137,22 @@ def von_mises(stress: Floats) -> Floats:
     xx, yy, zz, xy, yz, zx = stress.T
     deviator = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
     return np.asarray(np.sqrt(0.5 * deviator + 3.0 * (xy**2 + yz**2 + zx**2)))
+
+
+def write_fields(folder: Path, model: Model, recorder: Recorder) -> list[float]:
+    """``mesh.vtu`` of all elastic bodies and the fields kept of a run; their instants, s."""
+    meshes, comm = [body.mesh for body in model.elastic], alone()
+
+    def stress(number: int, local: Floats) -> Floats:
+        return cell_stress(meshes[number], model.elastic[number].material, local, comm)
+
+    writer = Fields(
+        "tetra" if meshes[0].order == 1 else "tetra10",
+        [(mesh.points, mesh.cells) for mesh in meshes],
+        STRESS_COMPONENTS,
+        stress,
+        von_mises,
+    )
+    writer.write_mesh(folder / "mesh.vtu")
+    inner = model.first[1:-1]
+    return writer.write_frames(folder, [(t, np.split(u, inner)) for t, u in recorder.frames()])

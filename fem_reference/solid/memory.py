@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..common.errors import SolverError
+from ..explicit.loop import Loop
 
 BASE = 0.25e9
 """Interpreter, modules and the compiler of the forms, bytes per process.
@@ -69,3 +70,16 @@ def peak_memory(comm: Any) -> float:
         lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
         own = int(next(line for line in lines if line.startswith("VmHWM")).split()[1])
     return float(comm.allreduce(own * 1024.0))
+
+
+def machine(loop: Loop, stated: float, used: float) -> dict[str, Any]:
+    """What a run needed: levels, contact solver, processes, memory stated and used, bytes."""
+    state = loop.problem.state
+    return {
+        "nodes_per_level": list(loop.levels),
+        "contact_sweeps_per_step": state.sweeps / max(1, state.step),
+        "contact_unconverged_steps": state.unconverged,
+        "processes": loop.comm.size,
+        "peak_memory": used,
+        "memory_stated": stated,
+    }

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -129,3 +131,20 @@ def shape_functions(barycentric: Floats, order: int) -> Floats:
     corner = barycentric * (2.0 * barycentric - 1.0)
     edge = np.stack([4.0 * barycentric[:, a] * barycentric[:, b] for a, b in FACE_EDGES], axis=1)
     return np.hstack([corner, edge])
+
+
+def mesh_report(meshes: Sequence[TetMesh]) -> dict[str, Any]:
+    """Numbers that say how large and how good the meshes of a model are together."""
+    quality = np.concatenate([qualities(m.points, m.corners) for m in meshes])
+    edges = np.concatenate([edge_lengths(m.points, m.corners).ravel() for m in meshes])
+    nodes = sum(int(m.points.shape[0]) for m in meshes)
+    return {
+        "nodes": nodes,
+        "dofs": 3 * nodes,
+        "elements": int(quality.size),
+        "element_order": meshes[0].order,
+        "smallest_element": float(edges.min()),
+        "largest_element": float(edges.max()),
+        "min_quality": float(quality.min()),
+        "mean_quality": float(quality.mean()),
+    }

@@ -1,12 +1,11 @@
 """What a three-dimensional model consists of: elastic bodies, rigid bodies, contacts.
 
-Nothing here knows what the bodies are: plate and spheres are one use (`plate.py`).
+Nothing here knows what the bodies are: plate and spheres are one use.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -14,9 +13,8 @@ from scipy.spatial import cKDTree
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Material
 from ..common.errors import SolverError
+from ..explicit.contact import Contact, RigidBody
 from .mesh import FACE_EDGES, TetMesh, scatter_sum, shape_functions
-
-FREE = np.eye(3)
 
 
 @dataclass(frozen=True)
@@ -31,74 +29,11 @@ class ElasticBody:
     """At the start, m/s."""
 
 
-@dataclass(frozen=True)
-class RigidBody:
-    """A body that moves without turning or deforming."""
-
-    name: str
-    mass: float
-    """kg, of the part that is modelled (a half or a quarter with planes of symmetry)."""
-    directions: Floats = field(default_factory=lambda: FREE.copy())
-    """(3, 3) projector on the directions in which it may move: `guided`, or all."""
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """At the start, m/s."""
-
-
-def guided(*axes: Sequence[float]) -> Floats:
-    """Projector on the space spanned by ``axes``: one for a guide, two for a plane of symmetry."""
-    basis, _ = np.linalg.qr(np.array(axes, dtype=np.float64).T)
-    return np.asarray(basis @ basis.T)
-
-
 def symmetry_plane(mesh: TetMesh, axis: int, value: float = 0.0) -> Ints:
     """Fixed components of the nodes on the plane of symmetry x_axis = value."""
     length = float(np.ptp(mesh.points, axis=0).max())
     on = np.flatnonzero(np.abs(mesh.points[:, axis] - value) < 1e-9 * length)
     return np.asarray(3 * on + axis)
-
-
-@dataclass(frozen=True)
-class SphereContact:
-    """Nodes of an elastic body against a sphere that is part of a rigid body."""
-
-    name: str
-    body: int
-    nodes: Ints
-    """Candidates: nodes of the body that can touch."""
-    rigid: int
-    centre: tuple[float, float, float]
-    """At the start, m."""
-    radius: float
-    places: Floats | None = None
-    """(n, 3) where the exact body has its candidates, if not where its mesh has them, m."""
-
-
-@dataclass(frozen=True)
-class SurfaceContact:
-    """Nodes of an elastic body against the surface of another one, meshes not matching.
-
-    The pairs stay as they are made (displacements small against the elements), unless whoever
-    runs the model makes new ones (`ContactProblem.pair`).
-    """
-
-    name: str
-    body: int
-    nodes: Ints
-    """(n,) candidates."""
-    target: int
-    facets: Ints
-    """(n, 3) or (n, 6) nodes of the facet opposite each candidate."""
-    weights: Floats
-    """Shape functions of the facet where the candidate meets it."""
-    normals: Floats
-    """(n, 3) unit normal, from the target to the candidate."""
-    gaps: Floats
-    """(n,) initial gap, m, of the exact bodies rather than their meshes."""
-    reachable: Ints | None = None
-    """Nodes of the target that later pairs may have, if there are to be any."""
-
-
-Contact = SphereContact | SurfaceContact
 
 
 @dataclass(frozen=True)
@@ -114,6 +49,11 @@ class Model:
         """(bodies + 1) first node of each elastic body, then the number of nodes."""
         counts = [body.mesh.points.shape[0] for body in self.elastic]
         return np.cumsum([0, *counts])
+
+    @property
+    def meshes(self) -> list[tuple[Floats, Ints]]:
+        """Points and cells of the elastic bodies."""
+        return [(body.mesh.points, body.mesh.cells) for body in self.elastic]
 
 
 def _barycentric(points: Floats, triangles: Floats) -> Floats:

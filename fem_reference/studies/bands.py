@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
+from ..common.fenicsx import alone
 from ..common.progress import Progress
-from ..plate_impact.axisymmetric import compute
-from ..plate_impact.convergence import QUANTITIES, RATIO, quantities, solve_sequence
-from ..plate_impact.history import history, resampled
+from ..common.series import Series, estimates
+from ..common.settings import Options, Settings
+from ..plate_impact.history import curve_bands, history, resampled
+from ..plate_impact.result import QUANTITIES, RATIO, problem, quantities
 from ..plate_impact.scene import Scene, read_scene
 
 FINE = 1.5
@@ -39,26 +42,31 @@ class Trial:
 
 def try_bands(scene: Scene, progress: Progress) -> tuple[list[Trial], dict[str, Any]]:
     """Trials of all quantities, and of the curves the share of samples within the band."""
-    sequence = solve_sequence(scene, MIDDLE, progress=progress)
-    finer = compute(scene, FINE, progress=progress, label="finer mesh: ")
-    found = quantities(scene, finer.run, finer.system)
+    with TemporaryDirectory() as name:
+        folder, options = Path(name), Options()
+        posed = problem(scene, "paper", alone(), options)
+        middle, meshes = Series(posed, MIDDLE, alone(), options, folder, progress).solve()
+        settings = Settings(options.courant, folder, options.checkpoint_interval, "finer")
+        finer = posed.compute(FINE, settings, progress.report, None)
+    found, bands = quantities(scene, finer), estimates(meshes)
     trials = [
         Trial(
             scene.name,
             name,
-            float(sequence.values[name][0]),
-            sequence.estimates[name].band,
+            meshes[0].values[name],
+            bands[name].band,
             found[name],
-            tuple(float(v) for v in sequence.values[name]),
+            tuple(mesh.values[name] for mesh in meshes),
         )
         for name in QUANTITIES
     ]
-    table, _ = history(sequence.finest.run)
+    table, _ = history(middle.run)
     shared = table[:, 0] <= finer.run.times[-1]
     other = resampled(finer.run, table[shared, 0])
-    inside = abs(table[shared, 1:] - other[:, 1:]) <= sequence.curve_bands()[shared]
+    band = curve_bands(meshes, [mesh.factor for mesh in meshes], middle.estimate.duration)
+    inside = abs(table[shared, 1:] - other[:, 1:]) <= band[shared]
     seconds = {
-        "middle": sequence.finest.run.loop_seconds,
+        "middle": middle.run.loop_seconds,
         "finer": finer.run.loop_seconds,
         "curves_within": float(inside.mean()),
     }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import json
 import math
 import sys
@@ -10,20 +9,23 @@ import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
-from ..axisymmetric.system import System, critical_time_step
+from ..axisymmetric.system import AxisymmetricSystem
+from ..common.fenicsx import alone
 from ..common.output import write_json
 from ..common.progress import Progress
+from ..common.settings import Settings
 from ..explicit import kernel
-from ..explicit.loop import Loop
+from ..explicit.loop import SerialLoop
 from ..plate_impact.axisymmetric import compute
-from ..plate_impact.axisymmetric_run import integrate
-from ..plate_impact.convergence import RATIO, TARGETED, quantities
+from ..plate_impact.axisymmetric_motion import integrate_axisymmetric
 from ..plate_impact.estimate import estimate_contact
 from ..plate_impact.meshing import build_system, mesh_impact, mesh_settings
+from ..plate_impact.result import RATIO, TARGETED, of_run, quantities
 from ..plate_impact.scene import Scene, read_scene
 
 EXACT = 3.0
@@ -58,9 +60,9 @@ class Point:
 
 def triad_bandwidth(numbers: int) -> float:
     """Bytes per second of a = b + s c, three arrays of ``numbers``; the best of five trials."""
-    library = kernel.load()
+    library = kernel.load(2)
     arrays = [np.ones(numbers) for _ in range(3)]
-    pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for a in arrays]
+    pointers = [kernel.doubles(array) for array in arrays]
     repetitions = max(1, 20_000_000 // numbers)
     library.triad(*pointers, numbers, 1)
     best = math.inf
@@ -71,11 +73,11 @@ def triad_bandwidth(numbers: int) -> float:
     return 24.0 * numbers * repetitions / best
 
 
-def product_rates(system: System) -> dict[str, float]:
+def product_rates(system: AxisymmetricSystem) -> dict[str, float]:
     """Bytes and operations per second of the loop's own product on a system, and its size."""
-    loop = Loop(system, critical_time_step(system), 0.0, 1)
+    loop = SerialLoop(system, alone())
     x = np.random.default_rng(1).standard_normal(loop.u.size)
-    blocks = sum(matrix.blocks.shape[0] for matrix in loop.levels)
+    blocks = loop.blocks
     nodes = system.mass.size
     # A block: 4 numbers and a column; a node: its displacement, and its force read and written.
     size = blocks * 36 + nodes * (3 * 16 + 8)
@@ -95,7 +97,7 @@ def product_rates(system: System) -> dict[str, float]:
     }
 
 
-def limits(system: System) -> dict[str, Any]:
+def limits(system: AxisymmetricSystem) -> dict[str, Any]:
     """What the loop's product reaches of what the machine's cache and memory deliver."""
     cache, memory = triad_bandwidth(CACHE_NUMBERS), triad_bandwidth(MEMORY_NUMBERS)
     product = product_rates(system)
@@ -112,16 +114,16 @@ def _point(scene: Scene, factor: float, sub_cycling: str, exact: dict[str, float
     estimate = estimate_contact(scene)
     settings = mesh_settings(scene, estimate.outer_radius, estimate.inner_radius, factor)
     system = build_system(scene, mesh_impact(scene, settings))
-    run = integrate(
+    run, motion = integrate_axisymmetric(
         system,
-        scene.speed,
+        scene,
         estimate.duration,
         end_time=scene.end_time,
         most_levels=MOST_LEVELS[sub_cycling],
     )
     nodes = system.mass.size
-    updates = sum(count / 2**level for level, count in enumerate(run.levels))
-    found = quantities(scene, run, system)
+    updates = sum(count / 2**level for level, count in enumerate(motion.loop.acting))
+    found = of_run(scene, run)
     errors = {name: found[name] / exact[name] - 1.0 for name in TARGETED if exact[name] != 0.0}
     seconds = run.processor_seconds
     per_step = seconds / run.steps / (2 * nodes) * 1e9
@@ -140,8 +142,14 @@ def _point(scene: Scene, factor: float, sub_cycling: str, exact: dict[str, float
 
 def cost(scene: Scene, out: Path, progress: Progress) -> dict[str, Any]:
     """Solve on `MESHES` meshes, measure, write ``out`` (JSON) and a figure .svg beside it."""
-    solution = compute(scene, EXACT, progress=progress, label="exact mesh: ")
-    exact = quantities(scene, solution.run, solution.system)
+    with TemporaryDirectory() as folder:
+        settings = Settings(0.9, Path(folder), 0.0, "exact")
+
+        def exactly(phase: str, done: float, message: str) -> None:
+            progress.report(phase, done, f"exact mesh: {message}")
+
+        solution = compute(scene, EXACT, settings, exactly)
+    exact = quantities(scene, solution)
     points = []
     for number in range(MESHES):
         factor = FINEST * RATIO**number
@@ -150,13 +158,13 @@ def cost(scene: Scene, out: Path, progress: Progress) -> dict[str, Any]:
             message = f"{points[-1].dofs} dofs, sub-cycling {sub_cycling}"
             progress.report("stepping", len(points) / (2 * MESHES), message)
     estimate = estimate_contact(scene)
-    settings = mesh_settings(scene, estimate.outer_radius, estimate.inner_radius, FINEST * RATIO**2)
+    sizes = mesh_settings(scene, estimate.outer_radius, estimate.inner_radius, FINEST * RATIO**2)
     document = {
         "schema_version": 1,
         "scene": scene.name,
         "exact": {"factor": EXACT, "seconds": solution.run.processor_seconds, **exact},
         "points": [asdict(point) for point in points],
-        "limits": limits(build_system(scene, mesh_impact(scene, settings))),
+        "limits": limits(build_system(scene, mesh_impact(scene, sizes))),
     }
     out.parent.mkdir(parents=True, exist_ok=True)
     write_json(out, document)

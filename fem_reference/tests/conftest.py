@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
 
-from fem_reference.axisymmetric.system import System
-from fem_reference.plate_impact.axisymmetric_run import Run, integrate
+from fem_reference.axisymmetric.system import AxisymmetricSystem
+from fem_reference.common.fenicsx import alone
+from fem_reference.common.settings import Settings
+from fem_reference.explicit.loop import SerialLoop
+from fem_reference.plate_impact.axisymmetric import Solution, compute
+from fem_reference.plate_impact.axisymmetric_motion import integrate_axisymmetric
 from fem_reference.plate_impact.estimate import estimate_contact
 from fem_reference.plate_impact.meshing import build_system, mesh_impact, mesh_settings
+from fem_reference.plate_impact.run import Run
 from fem_reference.plate_impact.scene import Scene, parse_scene
 
 STEEL = {"name": "steel", "youngs_modulus": 210e9, "poisson_ratio": 0.3, "density": 7780.0}
@@ -48,11 +55,30 @@ def document(**changes: Any) -> dict[str, Any]:
     return scene
 
 
-def make_system(scene: Scene, factor: float = 1.0) -> tuple[System, float]:
+def make_system(scene: Scene, factor: float = 1.0) -> tuple[AxisymmetricSystem, float]:
     """The assembled system of a scene and the Hertz contact duration."""
     estimate = estimate_contact(scene)
     settings = mesh_settings(scene, estimate.outer_radius, estimate.inner_radius, factor)
     return build_system(scene, mesh_impact(scene, settings)), estimate.duration
+
+
+def integrate(system: AxisymmetricSystem, scene: Scene, duration: float, **options: Any) -> Run:
+    """A run of the system."""
+    return integrate_axisymmetric(system, scene, duration, **options)[0]
+
+
+def make_loop(system: AxisymmetricSystem, time_step: float, most_levels: int = 1) -> SerialLoop:
+    """The loop of a system, ready to step (s)."""
+    loop = SerialLoop(system, alone())
+    loop.set_step(time_step, 1, most_levels)
+    return loop
+
+
+def solve_once(scene: Scene) -> Solution:
+    """A verified solution with the elements the scene asks for."""
+    with TemporaryDirectory() as folder:
+        settings = Settings(0.9, Path(folder), 0.0, "test")
+        return compute(scene, 1.0, settings, lambda phase, done, message: None)
 
 
 @pytest.fixture(scope="session")
@@ -61,7 +87,7 @@ def scene() -> Scene:
 
 
 @pytest.fixture(scope="session")
-def system(scene: Scene) -> System:
+def system(scene: Scene) -> AxisymmetricSystem:
     return make_system(scene)[0]
 
 
@@ -71,5 +97,5 @@ def duration(scene: Scene) -> float:
 
 
 @pytest.fixture(scope="session")
-def run(system: System, scene: Scene, duration: float) -> Run:
-    return integrate(system, scene.speed, duration)
+def run(system: AxisymmetricSystem, scene: Scene, duration: float) -> Run:
+    return integrate(system, scene, duration)

@@ -13,23 +13,25 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+from fem_reference.axisymmetric.modal import first_frequency as plate_frequency
 from fem_reference.common.fenicsx import alone
 from fem_reference.common.reader import read_document
 from fem_reference.common.settings import RESOLUTIONS
-from fem_reference.plate_impact.axisymmetric_run import integrate
-from fem_reference.plate_impact.convergence import quantities
+from fem_reference.explicit.spectrum import first_frequency
+from fem_reference.plate_impact.axisymmetric_motion import integrate_axisymmetric
 from fem_reference.plate_impact.estimate import estimate_contact, shortest_wavelengths
 from fem_reference.plate_impact.meshing import build_system, mesh_impact, mesh_settings
+from fem_reference.plate_impact.motion import PLATE
+from fem_reference.plate_impact.result import of_run
 from fem_reference.plate_impact.scene import Scene, parse_scene
-from fem_reference.plate_impact.solid import quantities as solid_quantities
 from fem_reference.plate_impact.solid_model import plate_model
-from fem_reference.plate_impact.solid_run import integrate as integrate_solid
+from fem_reference.plate_impact.solid_motion import integrate_solid
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import seat_model
 from fem_reference.seal_seat.run import integrate as integrate_seat
 from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
 from fem_reference.seal_seat.solve import quantities as seat_quantities
-from fem_reference.solid.loop import make_loop
+from fem_reference.solid.system import make_loop
 
 
 def make(scene: Scene | SeatScene) -> Any:
@@ -50,15 +52,16 @@ def run(scene: Scene | SeatScene, mesh: Any, estimate: Any) -> tuple[dict[str, f
     if isinstance(scene, SeatScene):
         loop = make_loop(mesh.model, alone())
         seat: Any = SimpleNamespace(run=integrate_seat(loop, mesh, scene), loop=loop, seat=mesh)
-        return seat_quantities(scene, seat), loop.all_masses.size
+        return seat_quantities(scene, seat), loop.system.mass.size
     if scene.geometry == "solid":
         loop = make_loop(mesh.model, alone())
-        result = integrate_solid(loop, mesh, scene, estimate.duration)
-        solid: Any = SimpleNamespace(run=result, loop=loop, plate=mesh)
-        return solid_quantities(scene, solid), loop.all_masses.size
+        found = of_run(scene, integrate_solid(loop, mesh, scene, estimate.duration))
+        frequency = first_frequency(loop, mesh.elastic[PLATE])
+        return {**found, "first_frequency": frequency}, loop.system.mass.size
     system = build_system(scene, mesh)
-    found = integrate(system, scene.speed, estimate.duration, end_time=scene.end_time)
-    return quantities(scene, found, system), int(system.mass.size)
+    run, _ = integrate_axisymmetric(system, scene, estimate.duration, end_time=scene.end_time)
+    frequency = plate_frequency(system)
+    return {**of_run(scene, run), "first_frequency": frequency}, int(system.mass.size)
 
 
 def main(task: str, scene_path: Path, mesh_path: Path, *folder: str) -> None:

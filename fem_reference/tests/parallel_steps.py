@@ -16,7 +16,7 @@ from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.plate_impact.estimate import estimate_contact, shortest_wavelengths
 from fem_reference.plate_impact.scene import read_scene
 from fem_reference.plate_impact.solid_model import plate_model
-from fem_reference.solid.loop import make_loop
+from fem_reference.solid.system import make_loop
 
 
 def main(scene_path: Path, steps: int, out: Path) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
 import threading
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from ..explicit.checkpoint import exclusive
+from ..common.output import exclusive
 
 ALONE: Any = SimpleNamespace(rank=0, barrier=lambda: None)
 
@@ -32,3 +33,30 @@ def test_the_second_run_waits_until_the_first_has_gone(tmp_path: Path) -> None:
         pass
     thread.join(10.0)
     assert order == ["first", "second"]
+    assert not folder.exists()
+
+
+def test_runs_of_two_solutions_do_not_wait_for_each_other(tmp_path: Path) -> None:
+    told: list[str] = []
+    with (
+        exclusive(tmp_path / ".checkpoint-a", ALONE, lambda: told.append("a")),
+        exclusive(tmp_path / ".checkpoint-b", ALONE, lambda: told.append("b")),
+    ):
+        assert told == []
+
+
+def test_a_folder_that_is_removed_and_made_again_is_locked_again(tmp_path: Path) -> None:
+    folder = tmp_path / ".checkpoint-a"
+    with exclusive(folder, ALONE, lambda: None):
+        (folder / "state").touch()
+        shutil.rmtree(folder)
+        inside = threading.Event()
+
+        def second() -> None:
+            with exclusive(folder, ALONE, lambda: None):
+                inside.set()
+
+        thread = threading.Thread(target=second)
+        thread.start()
+        assert inside.wait(10.0)
+        thread.join(10.0)

@@ -287,6 +287,16 @@ def test_killed_run_leaves_no_result(tmp_path: Path, deadly: signal.Signals) -> 
     assert all(name.startswith(PARTIAL_PREFIX) for name in left)
 
 
+def test_a_compiler_that_does_not_answer_is_not_taken_for_a_full_disk(tmp_path: Path) -> None:
+    late = TimeoutError("JIT compilation timed out")
+    with (
+        pytest.raises(SolverError, match="compile a form: JIT compilation timed out"),
+        result_folder(tmp_path / "out"),
+    ):
+        raise late
+    assert not any(tmp_path.iterdir())
+
+
 def test_failure_while_writing_keeps_the_old_result(tmp_path: Path) -> None:
     target = tmp_path / "out"
     with result_folder(target) as folder:

@@ -11,25 +11,18 @@ import numpy as np
 import pytest
 import scipy.sparse
 
-from fem_reference.axisymmetric.system import System, critical_time_step
+from fem_reference.axisymmetric.system import AxisymmetricSystem, critical_time_step
 from fem_reference.common.arrays import Floats, Ints
 from fem_reference.common.fenicsx import alone
 from fem_reference.explicit import levels as levels_module
-from fem_reference.explicit.levels import (
-    LEVEL_MARGIN,
-    MOST_LEVELS,
-    element_levels,
-    fastest_levels,
-    level_matrices,
-)
-from fem_reference.explicit.loop import Loop
+from fem_reference.explicit.levels import LEVEL_MARGIN, MOST_LEVELS, fastest_levels
 from fem_reference.explicit.spectrum import critical_time_step as solid_critical_time_step
 from fem_reference.plate_impact.scene import parse_scene
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import seat_model
 from fem_reference.seal_seat.scene import parse_seat_scene
-from fem_reference.solid.loop import SerialLoop
-from fem_reference.tests.conftest import document, make_system
+from fem_reference.solid.system import make_loop as make_solid_loop
+from fem_reference.tests.conftest import document, make_loop, make_system
 from fem_reference.tests.seal_seat_scenes import seat_document
 
 OPEN, CLOSED = (0, 0), (3, 2)
@@ -39,7 +32,7 @@ RIGID = 1e-7
 
 
 @pytest.fixture(scope="module")
-def system() -> System:
+def system() -> AxisymmetricSystem:
     """Plate between spheres as in Table 1, smaller and coarse: some 800 components."""
     small = document(
         reference={"geometry": "axisymmetric", "elements_per_contact_radius": 3},
@@ -52,19 +45,19 @@ def system() -> System:
 
 
 def level_parts(
-    system: System, step: float, closed: tuple[int, int]
+    system: AxisymmetricSystem, step: float, closed: tuple[int, int]
 ) -> tuple[list[scipy.sparse.csr_matrix], Floats, Ints, Ints]:
     """Stiffness of the levels, masses, level of each component, and which of the system's it is.
 
     A closed pair moves along the axis as one: the multiplier of every step takes out what else
     the predictor does. Its sphere's component is then the plate's.
     """
-    level = element_levels(system, step)
+    level = make_loop(system, step).element_levels(step, MOST_LEVELS)
     node = fastest_levels(level, system.element_nodes, system.mass.size)
     size = 2 * system.mass.size
     stands_for = np.arange(size)
-    for pairs, count in zip(system.contacts, closed, strict=True):
-        stands_for[2 * pairs.sphere_nodes[:count] + 1] = 2 * pairs.plate_nodes[:count] + 1
+    for pairs, count in zip(system.matched, closed, strict=True):
+        stands_for[2 * pairs.candidates[:count] + 1] = 2 * pairs.opposite[:count] + 1
     kept = np.flatnonzero((stands_for == np.arange(size)) & (system.inverse_mass > 0.0))
     number = np.full(size, -1)
     number[kept] = np.arange(kept.size)
@@ -73,7 +66,7 @@ def level_parts(
         (np.ones(rows.size), (rows, number[stands_for[rows]])), shape=(size, kept.size)
     )
     mass = chosen.T @ np.repeat(system.mass, 2)
-    parts = [chosen.T @ m.stiffness @ chosen for m in level_matrices(system, level)]
+    parts = [chosen.T @ system.part(level == k) @ chosen for k in range(int(level.max()) + 1)]
     return parts, mass, node[kept // 2], kept
 
 
@@ -101,7 +94,9 @@ def growth(matrix: Floats) -> float:
 
 @pytest.mark.parametrize("closed", [OPEN, CLOSED])
 @pytest.mark.parametrize("courant", [0.5, 0.6, 0.9])
-def test_no_vibration_grows(system: System, courant: float, closed: tuple[int, int]) -> None:
+def test_no_vibration_grows(
+    system: AxisymmetricSystem, courant: float, closed: tuple[int, int]
+) -> None:
     step = courant * critical_time_step(system)
     parts, mass, level, _ = level_parts(system, step, closed)
     assert len(parts) > 2
@@ -109,7 +104,7 @@ def test_no_vibration_grows(system: System, courant: float, closed: tuple[int, i
 
 
 def test_levels_up_to_the_critical_step_resonate(
-    system: System, monkeypatch: pytest.MonkeyPatch
+    system: AxisymmetricSystem, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = {}
     for margin in (LEVEL_MARGIN, 0.99):
@@ -123,15 +118,14 @@ def test_levels_up_to_the_critical_step_resonate(
     assert max(found[LEVEL_MARGIN, OPEN], found[LEVEL_MARGIN, CLOSED]) < 1e-12
 
 
-def test_the_long_step_is_that_of_the_compiled_loop(system: System) -> None:
+def test_the_long_step_is_that_of_the_compiled_loop(system: AxisymmetricSystem) -> None:
     step = 0.9 * critical_time_step(system)
     parts, mass, level, kept = level_parts(system, step, OPEN)
-    loop = Loop(system, step, 0.0, 1, MOST_LEVELS)
+    loop = make_loop(system, step, MOST_LEVELS)
     u = np.random.default_rng(1).standard_normal(kept.size)
-    loop.state.contacts = 0
     start = sum(0.5 * 2**k * step * (part @ u) for k, part in enumerate(parts)) / mass
     loop.u[kept], loop.v[kept] = u, start
-    loop.run(1, 2 ** (len(parts) - 1))
+    loop.drift(2 ** (len(parts) - 1))
     expected = long_step(parts, mass, level, step) @ u
     assert np.abs(loop.u[kept] - expected).max() < 1e-11 * np.abs(expected).max()
 
@@ -139,7 +133,7 @@ def test_the_long_step_is_that_of_the_compiled_loop(system: System) -> None:
 def test_no_vibration_of_a_solid_grows() -> None:
     """Tetrahedra, by the compiled loop itself."""
     design = parse_seat_scene(seat_document(reference__element_order=1))
-    loop = SerialLoop(seat_model(design, seat_mesh(design, 0.3)).model, alone())
+    loop = make_solid_loop(seat_model(design, seat_mesh(design, 0.3)).model, alone())
     loop.set_step(0.9 * solid_critical_time_step(loop), 1, MOST_LEVELS)
     assert len(loop.levels) > 1
     free = np.flatnonzero(loop.inverse > 0.0)

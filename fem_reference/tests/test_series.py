@@ -15,9 +15,12 @@ import pytest
 from fem_reference.common import series
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.common.progress import MeshOfSeries, Progress
-from fem_reference.common.series import MeshResult, Options, Problem, Settings, solve_series
+from fem_reference.common.series import MeshResult, Problem, solve_series
+from fem_reference.common.settings import Options, Settings
 
 EXACT = 3.0
+LARGE = 5.0
+"""Factor beyond which the leading mesh of `Convergent` differs in what the others depend on."""
 
 
 class Alone:
@@ -36,12 +39,13 @@ class Alone:
 class Convergent:
     """A method of known order; keeps the factors it was asked for."""
 
-    def __init__(self, order: float) -> None:
-        self.order = order
+    def __init__(self, order: float, leads: bool = False, revision: int = 1) -> None:
+        self.order, self.leads, self.revision = order, leads, revision
+        self.led_by: list[float | None] = []
         self.factors: list[float] = []
         self.meshes: list[MeshResult] = []
 
-    def compute(self, factor: float, settings: Settings, report: series.Report) -> Any:
+    def compute(self, factor: float, settings: Settings, report: series.Report, lead: Any) -> Any:
         """A value whose error falls with the order."""
         assert settings.courant == 0.5
         self.factors.append(factor)
@@ -50,34 +54,44 @@ class Convergent:
             report("stepping", done, "half")
         row = np.full((3, 1), EXACT + 0.1 * factor**-self.order)
         run = SimpleNamespace(
-            times=np.arange(3.0), rows=row, steps=2, loop_seconds=0.0, energy_residual=0.0
+            times=np.arange(3.0),
+            rows=row,
+            steps=2,
+            loop_seconds=0.0,
+            energy_residual=0.0,
+            in_contact_at_end=self.cut,
         )
-        return SimpleNamespace(run=run, loop=SimpleNamespace(all_masses=np.ones(7)))
+        self.led_by.append(lead.factor if lead is not None else None)
+        return SimpleNamespace(run=run, dofs=21, factor=factor)
 
     def write(self, folder: Path, solution: Any, meshes: list[MeshResult]) -> None:
         """The finest value."""
         self.meshes = meshes
         np.savetxt(folder / "value.txt", solution.run.rows)
 
-    def problem(self, revision: int = 1) -> Problem[Any]:
+    def problem(self) -> Problem[Any]:
         """To be solved on meshes."""
         return Problem(
-            method=[revision, {"scene": 1}],
+            method=[self.revision, {"scene": 1}],
             end_time=2.0,
             ratio=0.8,
             targeted=("value",),
             compute=self.compute,
             quantities=lambda solution: {"value": float(solution.run.rows[0, 0])},
             write=self.write,
+            dimension=2 if self.leads else 3,
+            leads=(lambda solution: [solution.factor > LARGE]) if self.leads else None,
         )
 
 
 @pytest.fixture
 def solve(tmp_path: Path) -> Callable[..., Convergent]:
-    def solve(order: float = 2.0, revision: int = 1, **options: Any) -> Convergent:
-        method = Convergent(order)
+    def solve(
+        order: float = 2.0, leads: bool = False, revision: int = 1, **options: Any
+    ) -> Convergent:
+        method = Convergent(order, leads, revision)
         asked = Options(courant=0.5, checkpoint=tmp_path / "kept", **options)
-        solve_series(method.problem(revision), tmp_path / "out", 1.0, Alone(), asked)
+        solve_series(method.problem(), tmp_path / "out", 1.0, Alone(), asked)
         return method
 
     return solve
@@ -109,6 +123,38 @@ def test_refinement_ends_as_soon_as_the_target_is_met(
     assert factors == pytest.approx([factors[0] * 0.8**k for k in range(series.MESHES)])
     written = np.loadtxt(tmp_path / "out" / "value.txt")
     assert written[0] == pytest.approx(EXACT + 0.1 * factors[0] ** -2.0)
+
+
+@pytest.mark.parametrize("target", [0.03, 0.02, 0.01])
+@pytest.mark.parametrize("order", [1.5, 2.0])
+def test_refinement_stops_at_the_first_mesh_that_is_fine_enough(
+    solve: Callable[..., Convergent], order: float, target: float
+) -> None:
+    meshes = solve(order, target_error=target).meshes
+    assert series.relative_error(meshes, ("value",)) <= target
+    coarser = [0.8 * mesh.factor for mesh in meshes]
+    values = {factor: {"value": EXACT + 0.1 * factor**-order} for factor in coarser}
+    before = [MeshResult(f, v, np.zeros(1), np.zeros(1), {}) for f, v in values.items()]
+    assert series.relative_error(before, ("value",)) > target
+
+
+def test_a_mesh_that_is_fine_enough_is_not_refined(solve: Callable[..., Convergent]) -> None:
+    assert max(solve(target_error=0.1).factors) == 1.0
+
+
+def test_where_the_finest_mesh_leads_it_comes_first(
+    solve: Callable[..., Convergent], tmp_path: Path
+) -> None:
+    method = solve(leads=True)
+    assert method.factors == sorted(method.factors, reverse=True)
+    assert [mesh.factor for mesh in method.meshes] == method.factors
+    assert method.led_by == [None, 1.0, 1.0, 1.0, 1.0]
+    # What one leading mesh has found is of use under another one that agrees with it.
+    with pytest.raises(SolverError):
+        solve(leads=True, target_error=1e-5)
+    kept = sorted(path.stem for path in (tmp_path / "kept").glob("mesh*.json"))
+    assert len(kept) > series.MESHES
+    assert solve(leads=True).factors == [1.0]
 
 
 def test_a_target_out_of_reach_is_an_error_and_leaves_no_result(

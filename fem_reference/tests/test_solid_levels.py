@@ -13,15 +13,16 @@ from fem_reference.common.arrays import Ints
 from fem_reference.common.errors import DivergedError
 from fem_reference.common.fenicsx import alone
 from fem_reference.explicit.checkpoint import Checkpoint
-from fem_reference.explicit.levels import BUFFER, LEVEL_MARGIN, MOST_LEVELS
-from fem_reference.explicit.resonance import LARGEST_ENERGY_RESIDUAL, stable_run
+from fem_reference.explicit.levels import BUFFER, LEVEL_MARGIN, MOST_LEVELS, fastest_levels
+from fem_reference.explicit.loop import Loop
 from fem_reference.explicit.spectrum import critical_time_step
+from fem_reference.explicit.supervision import LARGEST_ENERGY_RESIDUAL, stable_run
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import SeatModel, seat_model
 from fem_reference.seal_seat.run import SeatRun, integrate
 from fem_reference.seal_seat.scene import SeatScene, parse_seat_scene
-from fem_reference.solid.levels import element_stiffness, element_time_steps, model_levels
-from fem_reference.solid.loop import SerialLoop
+from fem_reference.solid.elements import element_stiffness, element_time_steps
+from fem_reference.solid.system import make_loop
 from fem_reference.tests.cut_off import CutOffError, cut_off
 from fem_reference.tests.seal_seat_scenes import seat_document
 
@@ -45,13 +46,13 @@ def linear() -> SeatModel:
     return small(1)
 
 
-def stepped(seat: SeatModel, **options: Any) -> tuple[SerialLoop, SeatRun]:
-    loop = SerialLoop(seat.model, alone())
+def stepped(seat: SeatModel, **options: Any) -> tuple[Loop, SeatRun]:
+    loop = make_loop(seat.model, alone())
     return loop, integrate(loop, seat, scene(reference__element_order=1), **options)
 
 
 @pytest.fixture(scope="module")
-def runs(linear: SeatModel) -> dict[int, tuple[SerialLoop, SeatRun]]:
+def runs(linear: SeatModel) -> dict[int, tuple[Loop, SeatRun]]:
     """With the levels there are, and with one."""
     return {most: stepped(linear, most_levels=most) for most in (MOST_LEVELS, 1)}
 
@@ -64,7 +65,7 @@ def test_stiffness_of_the_elements_is_that_of_the_body(seat: SeatModel) -> None:
     rows = np.repeat(dofs, dofs.shape[1], axis=1).ravel()
     columns = np.tile(dofs, (1, dofs.shape[1])).ravel()
     whole = scipy.sparse.coo_matrix((stiffness.ravel(), (rows, columns))).tocsr()
-    loop = SerialLoop(seat.model, alone())
+    loop = make_loop(seat.model, alone())
     u = np.random.default_rng(1).standard_normal((mesh.points.shape[0], 3))
     expected = loop.gather(loop.product(loop.own(u)))
     assert np.abs((whole @ u.ravel()).reshape(-1, 3) - expected).max() < 1e-12 * expected.max()
@@ -73,7 +74,7 @@ def test_stiffness_of_the_elements_is_that_of_the_body(seat: SeatModel) -> None:
 def test_no_body_has_a_smaller_critical_step_than_its_elements(seat: SeatModel) -> None:
     body = seat.model.elastic[0]
     steps = element_time_steps(body.mesh, body.material)
-    critical = critical_time_step(SerialLoop(seat.model, alone()))
+    critical = critical_time_step(make_loop(seat.model, alone()))
     assert steps.min() <= critical < 4.0 * steps.min()
 
 
@@ -87,10 +88,11 @@ def neighbours(near: Any, cells: Ints, layers: int) -> Any:
 def test_levels_keep_their_distance_and_sum_up(seat: SeatModel) -> None:
     body = seat.model.elastic[0]
     cells = body.mesh.cells
-    loop = SerialLoop(seat.model, alone())
+    loop = make_loop(seat.model, alone())
     whole = loop.product
     step = 0.9 * critical_time_step(loop)
-    level, node = model_levels(seat.model, loop.problem.nodes, step, MOST_LEVELS)
+    level = loop.element_levels(step, MOST_LEVELS)
+    node = fastest_levels(level, cells, body.mesh.points.shape[0])
     assert level.max() >= 1
     steps = element_time_steps(body.mesh, body.material)
     assert np.all(2.0**level * step <= np.maximum(LEVEL_MARGIN * steps, step))
@@ -116,7 +118,7 @@ def test_levels_do_not_resonate(linear: SeatModel, courant: float) -> None:
     White noise is the worst case of that energy: it swings by a share that motion slower than the
     longest step hardly has (1e-6 in a run).
     """
-    loop = SerialLoop(linear.model, alone())
+    loop = make_loop(linear.model, alone())
     loop.set_step(courant * critical_time_step(loop), 1, MOST_LEVELS)
     assert loop.meeting > 1
     noise = np.random.default_rng(3).standard_normal(loop.v.size)
@@ -129,7 +131,7 @@ def test_levels_do_not_resonate(linear: SeatModel, courant: float) -> None:
 
 
 def test_sub_cycling_gives_the_answer_of_one_time_step(
-    runs: dict[int, tuple[SerialLoop, SeatRun]],
+    runs: dict[int, tuple[Loop, SeatRun]],
 ) -> None:
     (loop, many), (single_loop, one) = runs[MOST_LEVELS], runs[1]
     assert loop.meeting > 1 and single_loop.meeting == 1
@@ -145,7 +147,7 @@ def test_sub_cycling_gives_the_answer_of_one_time_step(
 
 
 def test_a_run_with_levels_goes_on_from_its_checkpoint(
-    linear: SeatModel, runs: dict[int, tuple[SerialLoop, SeatRun]], tmp_path: Path
+    linear: SeatModel, runs: dict[int, tuple[Loop, SeatRun]], tmp_path: Path
 ) -> None:
     checkpoint = Checkpoint(tmp_path / "run.npz", "x", 0.0)
     with pytest.raises(CutOffError):
@@ -162,21 +164,21 @@ def test_a_run_with_levels_goes_on_from_its_checkpoint(
 
 def test_a_given_end_has_one_level(linear: SeatModel) -> None:
     design = scene(reference__element_order=1, run={"end_time": 2e-6})
-    loop = SerialLoop(linear.model, alone())
+    loop = make_loop(linear.model, alone())
     assert integrate(loop, linear, design).energy_residual < 1e-11
     assert loop.meeting == 1
 
 
 def test_resonance_is_stepped_again_without_levels(
-    runs: dict[int, tuple[SerialLoop, SeatRun]], capsys: pytest.CaptureFixture[str]
+    runs: dict[int, tuple[Loop, SeatRun]], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def account(made: tuple[SerialLoop, SeatRun]) -> tuple[int, float]:
+    def account(made: tuple[Loop, SeatRun]) -> tuple[int, float]:
         return len(made[0].levels), made[1].energy_residual
 
     assert stable_run(lambda most: runs[most], account)[1] is runs[MOST_LEVELS][1]
     assert capsys.readouterr().err == ""
 
-    def diverges(most: int) -> tuple[SerialLoop, SeatRun]:
+    def diverges(most: int) -> tuple[Loop, SeatRun]:
         if most > 1:
             raise DivergedError("the solution diverged at 1 s")
         return runs[1]

@@ -51,7 +51,7 @@ impl Workshop {
             Lookup::Found(stored) => {
                 let history = &stored.outcome.history;
                 assert!(!history.is_empty() && history.time.windows(2).all(|t| t[0] < t[1]));
-                assert!(history.outer_force.iter().all(|f| f.is_finite()));
+                assert!(history["outer_force"].iter().all(|f| f.is_finite()));
                 assert_eq!(stored.outcome.summary.scene_hash, self.scene.hash());
             }
             Lookup::Damaged { reason, .. } | Lookup::Stale { reason } => assert!(!reason.is_empty()),

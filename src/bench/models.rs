@@ -33,7 +33,7 @@ pub(super) fn run(store: &Store, bench: &mut Bench) -> Result<()> {
             bench.notes.push(format!("scene `{}` has no stored fine reference", scene.name));
             continue;
         };
-        let exact = finest.outcome.summary.quantities.efficiency;
+        let Some(exact) = finest.outcome.summary.value("efficiency") else { continue };
         let problem = format!("{}, against the fine reference", scene.name);
         let first = bench.work_precision.len();
         for resolution in [Resolution::Coarse, Resolution::Paper] {

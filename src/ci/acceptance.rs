@@ -8,8 +8,7 @@ use super::tolerance_watch::Standing;
 use crate::comparison::{Check, Verdict};
 use crate::error::Result;
 use crate::reference::Resolution;
-use crate::result::Quantities;
-use crate::result::Summary;
+use crate::result::{Quantity, Summary};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -65,15 +64,14 @@ pub struct AcceptedReference {
 
 impl AcceptedReference {
     /// Of this reference.
-    pub fn of<Q: Quantities>(reference: &Summary<Q>, resolution: Resolution) -> Self {
-        let entry = |(name, _): &(&str, &str)| {
-            let value = reference.quantities.value(name).filter(|v| v.is_finite())?;
-            Some(((*name).to_owned(), (value, reference.uncertainty.get(*name).copied())))
+    pub fn of(reference: &Summary, resolution: Resolution) -> Self {
+        let entry = |&Quantity { name, value, .. }: &Quantity| {
+            Some((name.to_owned(), (value.filter(|v| v.is_finite())?, reference.band(name))))
         };
         AcceptedReference {
             scene_hash: reference.scene_hash.clone(),
             resolution: resolution.to_string(),
-            quantities: Q::NAMES.iter().filter_map(entry).collect(),
+            quantities: reference.quantities.iter().filter_map(entry).collect(),
         }
     }
 }
@@ -108,11 +106,7 @@ pub fn today() -> String {
 
 /// Whether `reference` says what the one accepted last for the same scene and resolution says, quantity by quantity;
 /// no check if none was accepted.
-pub fn checks<Q: Quantities>(
-    record: &[Acceptance],
-    reference: &Summary<Q>,
-    resolution: Resolution,
-) -> Vec<Check> {
+pub fn checks(record: &[Acceptance], reference: &Summary, resolution: Resolution) -> Vec<Check> {
     let now = AcceptedReference::of(reference, resolution);
     let same = |a: &&AcceptedReference| a.scene_hash == now.scene_hash && a.resolution == now.resolution;
     let Some(accepted) = record.iter().rev().map(|a| &a.reference).find(same) else { return Vec::new() };
@@ -122,7 +116,7 @@ pub fn checks<Q: Quantities>(
             (Some(old), Some(new)) => old.hypot(new),
             _ => WITHOUT_BAND * expected.abs(),
         };
-        let unit = Q::NAMES.iter().find(|(n, _)| n == name).map_or("1", |(_, unit)| unit);
+        let unit = reference.quantities.get(name).map_or("1", |quantity| quantity.unit);
         Check {
             check: format!("{CHECK}_{name}"),
             unit: unit.to_owned(),

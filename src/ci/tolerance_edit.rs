@@ -3,7 +3,6 @@
 use super::acceptance::ToleranceChange;
 use crate::comparison::{Discrepancy, SceneComparison};
 use crate::error::{Error, Result};
-use crate::result::Quantities;
 use toml_edit::{DocumentMut, Formatted, InlineTable, Item, TableLike, Value};
 
 /// Share of the bound that rounding of a bias may take.
@@ -16,17 +15,19 @@ const RESIDUAL_MARGIN: f64 = 2.0;
 ///
 /// # Errors
 /// [`Error::Usage`] if a tolerance is not where it should be, or the row holds what is not a number.
-pub fn edited<Q: Quantities>(
-    text: &str,
-    comparison: &SceneComparison<Q>,
-) -> Result<(String, Vec<ToleranceChange>)> {
+pub fn edited(text: &str, comparison: &SceneComparison) -> Result<(String, Vec<ToleranceChange>)> {
     let invalid = |what: String| Error::Usage(format!("the scene file can't be edited: {what}"));
     let mut document: DocumentMut = text.parse().map_err(|e: toml_edit::TomlError| invalid(e.to_string()))?;
     let mut changes = Vec::new();
     for model in &comparison.models {
-        for row in model.discrepancies.iter().filter(|row| !row.verdict.passed()) {
+        for row in model.discrepancies.iter().filter(|row| row.verdict.failed()) {
             let place = format!("tolerances.{}.{}", model.model, row.quantity);
-            if row.tolerance.is_none() || !row.difference.is_finite() {
+            if row.is_undetermined() {
+                return Err(Error::Usage(format!(
+                    "`{place}`: what a run has not determined can't be accepted"
+                )));
+            }
+            if row.tolerance.is_none() || !row.difference.is_some_and(f64::is_finite) {
                 return Err(Error::Usage(format!("`{place}`: what is not a number can't be accepted")));
             }
             let found = document
@@ -65,7 +66,7 @@ pub fn line_of(text: &str, model: &str, quantity: &str) -> Option<usize> {
 
 fn change(item: &mut Item, row: &Discrepancy) -> Option<()> {
     if row.is_residual() {
-        let bound = rounded_up(RESIDUAL_MARGIN * row.reduced.abs().max(row.reference.abs()));
+        let bound = rounded_up(RESIDUAL_MARGIN * row.reduced?.abs().max(row.reference?.abs()));
         return match item.as_table_like_mut() {
             Some(terms) => put(terms, "absolute", bound),
             None => {
@@ -89,11 +90,12 @@ fn change(item: &mut Item, row: &Discrepancy) -> Option<()> {
         ("absolute", _) => unit
             .as_deref()
             .map_or(Some(1.0), |unit| crate::scene::quantity_in(&format!("1 {unit}"), &row.unit).ok())?,
-        ("relative", Some(relative)) if relative != 0.0 => row.difference / relative,
+        ("relative", Some(relative)) if relative != 0.0 => row.difference? / relative,
         _ => row.tolerance? / size,
     };
+    let difference = row.difference?;
     let step = 10_f64.powf((ROUNDING * size).abs().log10().floor());
-    let bias = row.difference / scale;
+    let bias = difference / scale;
     let bias = if step > 0.0 { (bias / step).round() * step } else { bias };
     let decimals = if step > 0.0 { (-step.log10()).round().max(0.0) as usize } else { 12 };
     let text = format!("{bias:.decimals$}");

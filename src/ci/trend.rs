@@ -2,9 +2,8 @@
 
 use super::commit::{Commit, DIRTY};
 use super::json_lines;
-use crate::comparison::{Comparison, SceneComparison};
+use crate::comparison::{Comparison, SceneComparison, Verdict};
 use crate::error::Result;
-use crate::result::Quantities;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -45,12 +44,7 @@ pub fn read(file: &Path) -> Result<Vec<Entry>> {
 /// If the file can't be read or written.
 pub fn record(file: &Path, comparison: &Comparison, commit: &Commit) -> Result<Vec<Entry>> {
     let mut entries = read(file)?;
-    for new in comparison
-        .scenes
-        .iter()
-        .flat_map(|scene| entries_of(scene, commit))
-        .chain(comparison.seats.iter().flat_map(|seat| entries_of(seat, commit)))
-    {
+    for new in comparison.scenes.iter().flat_map(|scene| entries_of(scene, commit)) {
         let belongs = |e: &Entry| e.scene == new.scene && e.model == new.model;
         entries.retain(|e| e.commit == new.commit || !belongs(e) || !e.commit.ends_with(DIRTY));
         match entries.iter_mut().find(|e| belongs(e) && e.commit == new.commit) {
@@ -62,7 +56,7 @@ pub fn record(file: &Path, comparison: &Comparison, commit: &Commit) -> Result<V
     Ok(entries)
 }
 
-fn entries_of<Q: Quantities>(scene: &SceneComparison<Q>, commit: &Commit) -> Vec<Entry> {
+fn entries_of(scene: &SceneComparison, commit: &Commit) -> Vec<Entry> {
     let entry = |model: &str, quantities| Entry {
         commit: commit.hash.clone(),
         date: commit.date.clone(),
@@ -74,10 +68,10 @@ fn entries_of<Q: Quantities>(scene: &SceneComparison<Q>, commit: &Commit) -> Vec
     let mut entries = Vec::new();
     for model in &scene.models {
         let gated = || model.discrepancies.iter().filter(|row| row.tolerance.is_some());
-        let finite = |value: f64| Some(value).filter(|v| v.is_finite());
+        let finite = |value: Option<f64>| value.filter(|v| v.is_finite());
         let own = gated().filter_map(|row| Some((row.quantity.clone(), finite(row.reduced)?))).collect();
         // distances of curves are none of the reference itself
-        let known = gated().filter(|row| scene.reference.quantities.value(&row.quantity).is_some());
+        let known = gated().filter(|row| scene.reference.value(&row.quantity).is_some());
         of_reference.extend(known.filter_map(|row| Some((row.quantity.clone(), finite(row.reference)?))));
         entries.push(entry(&model.model, own));
     }
@@ -96,8 +90,12 @@ pub struct Trend {
     pub unit: String,
     /// Commit and value, oldest first.
     pub points: Vec<(String, f64)>,
-    /// Values that pass the gate now; for the reference, which is not gated, its 95 % band, if known.
+    /// What the gate makes of it now; the reference is not gated.
+    pub verdict: Verdict,
+    /// Values that do not fail the gate now; for the reference its 95 % band, if known.
     pub admissible: Option<(f64, f64)>,
+    /// Those among them that pass; the others are undecided. None if the reference's band is wider than the tolerance.
+    pub passing: Option<(f64, f64)>,
     /// Place in `points` of the commit from which on the number is farther than a tenth of its tolerance from where it was
     /// at first.
     pub drifts_since: Option<usize>,
@@ -114,7 +112,7 @@ impl Trend {
 }
 
 /// The recorded courses of the numbers of `scene` that are gated now, model after model, and of the reference's.
-pub fn trends<Q: Quantities>(entries: &[Entry], scene: &SceneComparison<Q>) -> Vec<Trend> {
+pub fn trends(entries: &[Entry], scene: &SceneComparison) -> Vec<Trend> {
     let own: Vec<&Entry> = entries.iter().filter(|e| e.scene == scene.scene).collect();
     let points = |model: &str, quantity: &str| -> Vec<(String, f64)> {
         let of_model = own.iter().filter(|e| e.model == model);
@@ -123,22 +121,34 @@ pub fn trends<Q: Quantities>(entries: &[Entry], scene: &SceneComparison<Q>) -> V
     let mut trends: Vec<Trend> = Vec::new();
     for model in &scene.models {
         for row in &model.discrepancies {
-            let Some(tolerance) = row.tolerance else { continue };
-            let middle = row.reference + row.bias.unwrap_or(0.0);
-            let admissible =
-                if row.is_residual() { (0.0, tolerance) } else { (middle - tolerance, middle + tolerance) };
-            let mut add = |model: &str, admissible| {
+            let (Some(tolerance), Some(reference)) = (row.tolerance, row.reference) else { continue };
+            let (middle, band) = (reference + row.bias.unwrap_or(0.0), row.uncertainty.unwrap_or(0.0));
+            let about = |width: f64| match row.is_residual() {
+                true => Some((0.0, width)),
+                false => (width >= 0.0).then_some((middle - width, middle + width)),
+            };
+            let mut add = |model: &str, verdict, admissible, passing| {
                 let known = trends.iter().any(|t| t.model == model && t.quantity == row.quantity);
                 let points = points(model, &row.quantity);
                 if !points.is_empty() && !known {
                     let drifts_since = began(&points, tolerance);
                     let (model, quantity) = (model.to_owned(), row.quantity.clone());
                     let unit = row.unit.clone();
-                    trends.push(Trend { model, quantity, unit, points, admissible, drifts_since });
+                    trends.push(Trend {
+                        model,
+                        quantity,
+                        unit,
+                        points,
+                        verdict,
+                        admissible,
+                        passing,
+                        drifts_since,
+                    });
                 }
             };
-            add(&model.model, Some(admissible));
-            add(REFERENCE, row.uncertainty.map(|u| (row.reference - u, row.reference + u)));
+            add(&model.model, row.verdict, about(tolerance + band), about(tolerance - band));
+            let own = row.uncertainty.map(|u| (reference - u, reference + u));
+            add(REFERENCE, Verdict::NotGated, own, None);
         }
     }
     trends.sort_by_key(|t| t.model == REFERENCE);

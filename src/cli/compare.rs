@@ -2,17 +2,17 @@
 
 use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
-use super::compare_seats::{self, SeatRun};
-use super::stored_references::{all_found, look_up, tell_reused};
+use super::compare_seats;
+use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
-use crate::comparison::{CommonAxis, Comparison, SceneComparison, compare_scene};
+use crate::comparison::{CommonAxis, Comparison, GateRules, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
 use crate::reference::{Resolution, Stored};
-use crate::report::{self, Attachments, FigureFormat, Report, SceneReport};
+use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport};
 use crate::result::Outcome;
 use crate::scene::{Model, Scene, Setup};
 use clap::Args;
@@ -85,11 +85,12 @@ pub(super) struct Job<'a> {
     figures: Vec<(PathBuf, FigureFormat)>,
 }
 
-/// Reference and reduced models of every scene.
+/// Reference and reduced models of one scene.
 pub(super) struct Results {
-    references: Vec<Stored>,
-    reduced: Vec<Vec<Outcome>>,
-    seats: Vec<SeatRun>,
+    stored: Stored,
+    reduced: Vec<Outcome>,
+    /// What the models have cost, if they share a mesh with the reference.
+    cost: Vec<Cost>,
 }
 
 /// What is written besides the report.
@@ -132,16 +133,6 @@ impl<'a> Job<'a> {
         parents.filter(|folder| !folder.as_os_str().is_empty()).try_for_each(report::check_writable)
     }
 
-    /// The plate impacts, with their files.
-    pub(super) fn plates(&self) -> impl Iterator<Item = &(PathBuf, Scene)> {
-        self.scenes.iter().filter(|(_, scene)| !is_seat(scene))
-    }
-
-    /// The seal seats, with their files.
-    pub(super) fn seats(&self) -> impl Iterator<Item = &(PathBuf, Scene)> {
-        self.scenes.iter().filter(|(_, scene)| is_seat(scene))
-    }
-
     pub(super) fn resolution(&self) -> Resolution {
         self.arguments.resolution
     }
@@ -150,74 +141,70 @@ impl<'a> Job<'a> {
         &self.arguments.out
     }
 
-    /// References from the store (or computed), and the reduced models' runs.
-    pub(super) fn results(&self, context: &Context) -> Result<Results> {
-        let plates: Vec<&Scene> = self.plates().map(|(_, scene)| scene).collect();
-        let seats: Vec<&Scene> = self.seats().map(|(_, scene)| scene).collect();
-        let Arguments { resolution, compute, .. } = *self.arguments;
-        let mut problems = Vec::new();
-        let references = look_up(context, resolution, compute, &plates, &mut problems)?;
-        let stored = look_up(context, resolution, compute, &seats, &mut problems)?;
-        all_found(problems)?;
+    /// References from the store (or computed), and the reduced models' runs, of every scene.
+    pub(super) fn results(&self, context: &Context) -> Result<Vec<Results>> {
+        let scenes: Vec<&Scene> = self.scenes.iter().map(|(_, scene)| scene).collect();
+        let references = look_up(context, self.arguments.resolution, self.arguments.compute, &scenes)?;
         for stored in &references {
             tell_reused(context, stored);
         }
-        for stored in &stored {
-            tell_reused(context, stored);
-        }
-        let seats = seats.into_iter().zip(stored);
-        let seats =
-            seats.map(|(scene, stored)| compare_seats::run(context, scene, stored)).collect::<Result<_>>()?;
-        let mut reduced = Vec::new();
-        for (scene, stored) in plates.into_iter().zip(&references) {
-            // the models' curves are drawn and compared as far as the reference's
-            let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
-            let models = asked_model::set_up(scene, &self.arguments.models, self.arguments.tolerance)?;
-            let outcomes = models.into_iter().map(|(body, set_up)| {
-                let outcome = body.run_with_history_until(TOLERANCE, end)?;
-                context.detail(format_args!(
-                    "{}: model {} set up in {:.1} ms, run in {:.2} ms",
-                    scene.name,
-                    body.model(),
-                    1e3 * set_up,
-                    1e3 * outcome.summary.solve_seconds
-                ));
-                if let Some(choice) = &outcome.summary.choice {
-                    context.note(format_args!(
-                        "{}: model {}, {}",
-                        scene.name,
-                        body.model(),
-                        asked_model::told(choice)
-                    ));
-                }
-                Ok(outcome)
-            });
-            reduced.push(outcomes.collect::<Result<Vec<Outcome>>>()?);
-        }
-        Ok(Results { references, reduced, seats })
+        let result = |(scene, stored): (&Scene, Stored)| {
+            let (reduced, cost) = match scene.setup {
+                Setup::PlateImpact(_) => (self.plate_models(context, scene, &stored)?, Vec::new()),
+                Setup::SealSeat(_) => compare_seats::run(context, scene, &stored)?,
+            };
+            Ok(Results { stored, reduced, cost })
+        };
+        scenes.into_iter().zip(references).map(result).collect()
+    }
+
+    /// The models of a plate impact.
+    fn plate_models(&self, context: &Context, scene: &Scene, stored: &Stored) -> Result<Vec<Outcome>> {
+        // the models' curves are drawn and compared as far as the reference's
+        let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
+        let models = asked_model::set_up(scene, &self.arguments.models, self.arguments.tolerance)?;
+        let outcomes = models.into_iter().map(|(body, set_up)| {
+            let outcome = body.run_with_history_until(TOLERANCE, end)?;
+            context.detail(format_args!(
+                "{}: model {} set up in {:.1} ms, run in {:.2} ms",
+                scene.name,
+                body.model(),
+                1e3 * set_up,
+                1e3 * outcome.summary.solve_seconds
+            ));
+            if let Some(choice) = &outcome.summary.choice {
+                let told = asked_model::told(choice);
+                context.note(format_args!("{}: model {}, {told}", scene.name, body.model()));
+            }
+            Ok(outcome)
+        });
+        outcomes.collect()
     }
 
     /// The comparison of all scenes, and what is shown with it.
-    pub(super) fn report<'b>(&'b self, context: &Context, results: &'b Results) -> Result<Report<'b>> {
-        let mut reports = Vec::new();
-        for (((file, scene), stored), reduced) in self.plates().zip(&results.references).zip(&results.reduced)
-        {
+    pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
+        let mut scenes = Vec::new();
+        for ((file, scene), Results { stored, reduced, cost }) in self.scenes.iter().zip(results) {
             let acceptances = acceptance::read(file)?;
             let mut comparison = compared(context, scene, &stored.outcome, reduced);
             let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
-            reports.push(SceneReport {
+            scenes.push(SceneReport {
                 scene,
                 comparison,
                 reference: &stored.outcome,
                 reduced,
                 provenance: stored.provenance.clone(),
                 command: self.command(scene),
-                attachments: Attachments { acceptances, ..Attachments::of(stored) },
+                attachments: Attachments {
+                    acceptances,
+                    cost: cost.clone(),
+                    ..Attachments::of(scene, stored)
+                },
             });
         }
-        if let (Some(report), false) = (reports.first_mut(), self.records.is_empty()) {
+        if let (Some(report), false) = (scenes.first_mut(), self.records.is_empty()) {
             let how = (self.arguments.bandwidth, self.arguments.speed);
             let measured =
                 measured::compare(report.scene, &self.records, report.reference, report.reduced, how)?;
@@ -225,11 +212,7 @@ impl<'a> Job<'a> {
             let files = self.arguments.measured.iter().map(|f| format!(" --measured {}", f.display()));
             report.command += &files.collect::<String>();
         }
-        let seats = self.seats().zip(&results.seats);
-        let seats = seats.map(|((file, scene), run)| {
-            compare_seats::report(file, scene, run, self.resolution(), self.command(scene))
-        });
-        Ok(Report { scenes: reports, seats: seats.collect::<Result<_>>()? })
+        Ok(Report { scenes, rules: GateRules::default() })
     }
 
     /// The command line that compares `scene` in the same way.
@@ -265,9 +248,6 @@ impl<'a> Job<'a> {
         };
         for scene in &mut report.scenes {
             scene.attachments.trends = trend::trends(&entries, &scene.comparison);
-        }
-        for seat in &mut report.seats {
-            seat.attachments.trends = trend::trends(&entries, &seat.comparison);
         }
         report::write(&report, &self.arguments.out)?;
         for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {

@@ -4,13 +4,12 @@ use super::Context;
 use super::compare::{self, Job, Outputs, Results};
 use crate::ci::acceptance::{self, Acceptance, AcceptedReference, ToleranceChange};
 use crate::ci::{commit, tolerance_edit, tolerance_watch};
-use crate::comparison::{SceneComparison, Verdict};
+use crate::comparison::{GateRules, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::reference::Resolution;
 use crate::report::github;
-use crate::report::{self, Attachments, Report};
-use crate::result::Quantities;
+use crate::report::{self, Attachments, Report, SceneReport};
 use crate::scene::Scene;
 use clap::Args;
 use std::io::Write;
@@ -26,6 +25,12 @@ pub struct Arguments {
     /// Add the gated numbers, with the commit, to this file of results over commits (JSON lines)
     #[arg(long, value_name = "FILE", conflicts_with = "trends")]
     record: Option<PathBuf>,
+    /// How quantities count whose verdict the reference's 95 % band leaves open: fail, warn (they pass, and are told) or pass
+    #[arg(long, default_value = "warn", value_name = "fail|warn|pass")]
+    undecided: Undecided,
+    /// Let a scene fail of which nothing is gated
+    #[arg(long)]
+    require_tolerances: bool,
     /// Change what fails in the scene files (known bias; bound of a residual) so that it passes, and accept the references as
     /// they are; the reason is kept beside the scene file
     #[arg(long, requires = "reason")]
@@ -44,26 +49,28 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         None => None,
     };
     let results = job.results(context)?;
+    let rules =
+        GateRules { undecided: arguments.undecided, require_tolerances: arguments.require_tolerances };
     let outputs = Outputs { junit: arguments.junit.clone(), record };
     let Some(reason) = arguments.reason.as_ref().filter(|_| arguments.update) else {
-        return conclude(context, &job, &results, &outputs);
+        return conclude(context, &job, &results, &outputs, rules);
     };
     if update(context, &job, &results, reason)? {
         // scenes are immutable: those of the new tolerances are read again, and what was solved stays
-        return conclude(context, &Job::read(context, &arguments.compare)?, &results, &outputs);
+        return conclude(context, &Job::read(context, &arguments.compare)?, &results, &outputs, rules);
     }
-    conclude(context, &job, &results, &outputs)
+    conclude(context, &job, &results, &outputs, rules)
 }
 
-fn conclude(context: &Context, job: &Job, results: &Results, outputs: &Outputs) -> Result<ExitStatus> {
-    let report = job.report(context, results)?;
-    for (file, scene) in job.scenes.iter().filter(|(_, scene)| scene.tolerances.is_empty()) {
-        context.note(format_args!(
-            "warning: {} has no [tolerances]: nothing of scene `{}` is gated; add for example tolerances.C = {{ efficiency = {{ relative = 0.01 }} }}",
-            file.display(),
-            scene.name
-        ));
-    }
+fn conclude(
+    context: &Context,
+    job: &Job,
+    results: &[Results],
+    outputs: &Outputs,
+    rules: GateRules,
+) -> Result<ExitStatus> {
+    let report = Report { rules, ..job.report(context, results)? };
+    tell_verdicts(job, &report);
     for changed in report.changed_tolerances() {
         // not a note: --quiet must not hide that the gate is another one
         eprintln!("warning: {changed}");
@@ -71,15 +78,37 @@ fn conclude(context: &Context, job: &Job, results: &Results, outputs: &Outputs) 
     if github::is_running() {
         tell_github(context, job, &report)?;
     }
-    Ok(match job.finish(context, report, outputs)?.verdict {
-        Verdict::Pass => ExitStatus::Pass,
-        Verdict::Fail => {
-            context.note(
-                "if this is right after all: the same command with --update --reason \"why\" changes the tolerances and keeps the reason",
-            );
-            ExitStatus::ToleranceExceeded
+    let comparison = job.finish(context, report, outputs)?;
+    if comparison.verdict.failed() {
+        context.note(
+            "if this is right after all: the same command with --update --reason \"why\" changes the tolerances and keeps the reason",
+        );
+    }
+    let refused = comparison.verdicts().any(|(_, verdict)| rules.refuse(verdict));
+    Ok(if refused { ExitStatus::ToleranceExceeded } else { ExitStatus::Pass })
+}
+
+/// Says on standard error of which scenes nothing is gated, and where the reference is not good enough to tell. Not notes:
+/// --quiet must not hide that less was shown than a pass says.
+fn tell_verdicts(job: &Job, report: &Report) {
+    let rules = report.rules;
+    for (scene, verdict) in report.comparison().verdicts() {
+        let word = if rules.refuse(verdict) { "error" } else { "warning" };
+        match verdict {
+            Verdict::NotGated => {
+                let file =
+                    job.scenes.iter().find(|(_, s)| s.name == scene).map_or(Path::new(""), |(file, _)| file);
+                eprintln!(
+                    "{word}: nothing of scene `{scene}` is gated: {} has no tolerances of the models compared; add for example tolerances.C = {{ efficiency = {{ relative = 0.01 }} }}",
+                    file.display()
+                );
+            }
+            Verdict::Undecided if rules.undecided != Undecided::Pass => eprintln!(
+                "{word}: scene `{scene}` is undecided: the band of its reference leaves tolerances open; each such quantity says what would decide it"
+            ),
+            _ => {}
         }
-    })
+    }
 }
 
 /// The commit of the first scene's repository; what this run writes does not count as a change.
@@ -113,16 +142,13 @@ fn tell_github(context: &Context, job: &Job, report: &Report) -> Result<()> {
 }
 
 /// Changes what fails in the scene files, and records why. Whether anything was changed.
-fn update(context: &Context, job: &Job, results: &Results, reason: &str) -> Result<bool> {
+fn update(context: &Context, job: &Job, results: &[Results], reason: &str) -> Result<bool> {
     let report = job.report(context, results)?;
-    let (plates, seats) = (job.plates().zip(&report.scenes), job.seats().zip(&report.seats));
-    let mut changes = Vec::new();
-    for ((file, _), scene) in plates {
-        changes.push(Change::of(file, &scene.comparison, &scene.attachments, job.resolution(), reason)?);
-    }
-    for ((file, _), seat) in seats {
-        changes.push(Change::of(file, &seat.comparison, &seat.attachments, job.resolution(), reason)?);
-    }
+    let scenes = job.scenes.iter().zip(&report.scenes);
+    let change = |((file, _), scene): (&(PathBuf, Scene), &SceneReport)| {
+        Change::of(file, &scene.comparison, &scene.attachments, job.resolution(), reason)
+    };
+    let changes = scenes.map(change).collect::<Result<Vec<_>>>()?;
     for change in &changes {
         change.make(context)?;
     }
@@ -141,9 +167,9 @@ struct Change {
 
 impl Change {
     /// The change that makes `comparison` pass, checked, not yet made.
-    fn of<Q: Quantities>(
+    fn of(
         file: &Path,
-        comparison: &SceneComparison<Q>,
+        comparison: &SceneComparison,
         attachments: &Attachments,
         resolution: Resolution,
         reason: &str,
@@ -207,10 +233,10 @@ impl Change {
 }
 
 /// A result that contradicts itself can't be accepted; a reference that is not the accepted one can.
-fn acceptable<Q: Quantities>(comparison: &SceneComparison<Q>) -> Result<()> {
+fn acceptable(comparison: &SceneComparison) -> Result<()> {
     let of_reference = comparison.integrity.iter().filter(|c| !c.check.starts_with(acceptance::CHECK));
     let of_models = comparison.models.iter().flat_map(|model| &model.integrity);
-    match of_reference.chain(of_models).find(|check| !check.verdict.passed()) {
+    match of_reference.chain(of_models).find(|check| check.verdict.failed()) {
         None => Ok(()),
         Some(check) => Err(Error::Usage(format!(
             "--update: scene `{}` has a result that contradicts itself, which no reason makes right: {}; nothing was changed",

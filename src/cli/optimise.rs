@@ -58,7 +58,7 @@ struct Document {
 /// The reference's verdict on the optimum.
 #[derive(Debug, Serialize)]
 struct Verification {
-    /// "pass" or "fail" of the comparison with the scene's tolerances, "missing" without a reference.
+    /// The verdict of the comparison with the scene's tolerances, "missing" without a reference.
     verdict: &'static str,
     /// Why there is no reference.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -124,7 +124,7 @@ fn verify(
     let mut comparison = compare_scene(&scene, &stored.outcome, &[outcome]);
     let model = comparison.models.pop().ok_or_else(|| Error::Internal("one model was compared".into()))?;
     Ok(Verification {
-        verdict: if model.verdict.passed() { "pass" } else { "fail" },
+        verdict: model.verdict.name(),
         missing: None,
         reference: Some(Box::new(stored.outcome.summary)),
         model: Some(Box::new(model)),
@@ -184,8 +184,9 @@ fn table(document: &Document) -> String {
     if let Some(verification) = &document.verification {
         lines.push(match (&verification.reference, &verification.missing) {
             (Some(reference), _) => format!(
-                "  reference: efficiency {:.5}; verdict on the model there: {}",
-                reference.quantities.efficiency, verification.verdict
+                "  reference: efficiency {}; verdict on the model there: {}",
+                reference.value("efficiency").map_or("not determined".into(), |value| format!("{value:.5}")),
+                verification.verdict
             ),
             (_, missing) => format!("  reference: missing; {}", missing.as_deref().unwrap_or_default()),
         });

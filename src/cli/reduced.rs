@@ -10,13 +10,7 @@ use crate::kinds::plate_impact::reduced::Reduced;
 use crate::kinds::seal_seat::{self, SeatMesh, SeatModel};
 use crate::reference::{self, Resolution};
 use crate::report::format::{prefixed, with_unit};
-use crate::result::ContactPressure;
-use crate::result::Curves;
-use crate::result::History;
-use crate::result::Quantities;
-use crate::result::SeatHistory;
-use crate::result::SeatSummary;
-use crate::result::Summary;
+use crate::result::{ContactPressure, History, Quantity, Summary};
 use crate::scene::{self, Model, Scene, Setup};
 use clap::Args;
 use std::path::PathBuf;
@@ -55,16 +49,11 @@ const LARGEST_INTEGRATION: f64 = 1e-2;
 /// Runs the model and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
-    match &scene.setup {
-        Setup::PlateImpact(_) => {
-            let (summary, history) = plate(&scene, arguments)?;
-            finish(context, arguments, &summary, history)
-        }
-        Setup::SealSeat(_) => {
-            let (summary, history) = seat(context, &scene, arguments)?;
-            finish(context, arguments, &summary, history)
-        }
-    }
+    let (summary, history) = match &scene.setup {
+        Setup::PlateImpact(_) => plate(&scene, arguments)?,
+        Setup::SealSeat(_) => seat(context, &scene, arguments)?,
+    };
+    finish(context, arguments, &summary, history)
 }
 
 fn plate(scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<History>)> {
@@ -108,11 +97,7 @@ fn integration_tolerance(arguments: &Arguments) -> Result<f64> {
     Ok(tolerance)
 }
 
-fn seat(
-    context: &Context,
-    scene: &Scene,
-    arguments: &Arguments,
-) -> Result<(SeatSummary, Option<SeatHistory>)> {
+fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<History>)> {
     let model = match arguments.model {
         Some(AskedModel::Named(model)) => model,
         Some(AskedModel::Auto) => {
@@ -149,20 +134,20 @@ fn seat(
     if arguments.history.is_none() {
         return Ok((reduced.run(tolerance)?, None));
     }
-    let (summary, history) = reduced.run_with_history(tolerance)?;
-    Ok((summary, Some(history)))
+    let outcome = reduced.run_with_history(tolerance)?;
+    Ok((outcome.summary, Some(outcome.history)))
 }
 
 /// Writes the history, if there is one, and prints warnings and summary.
-fn finish<Q: Quantities>(
+fn finish(
     context: &Context,
     arguments: &Arguments,
-    summary: &Summary<Q>,
-    history: Option<Q::History>,
+    summary: &Summary,
+    history: Option<History>,
 ) -> Result<ExitStatus> {
     if let (Some(path), Some(history)) = (&arguments.history, &history) {
         crate::file::write_file(path, &csv(history)?)?;
-        context.note(format_args!("history of {} samples in {}", history.time().len(), path.display()));
+        context.note(format_args!("history of {} samples in {}", history.len(), path.display()));
     }
     for warning in &summary.warnings {
         context.note(format_args!("warning: {warning}"));
@@ -176,29 +161,32 @@ fn finish<Q: Quantities>(
 }
 
 /// The summary as lines of name, value and unit.
-pub fn table<Q: Quantities>(summary: &Summary<Q>) -> String {
+pub fn table(summary: &Summary) -> String {
     let who = match (&summary.model, summary.modes) {
         (Some(model), Some(modes)) => format!("model {model}, {modes} modes"),
         _ => "reference".to_owned(),
     };
     let mut lines = vec![format!("{} ({who})", summary.scene)];
-    for (name, unit) in Q::NAMES {
-        let value = summary.quantities.value(name).unwrap_or(f64::NAN);
+    for &Quantity { name, unit, value, .. } in summary.quantities.iter() {
+        let Some(value) = value else {
+            lines.push(format!("  {name:<24} {:>14}", "not determined"));
+            continue;
+        };
         let to = prefixed(unit, value);
-        let band = summary.uncertainty.get(*name);
-        let band = band.map_or_else(String::new, |u| format!(" ± {}", with_unit(*u, to, 2)));
+        let band = summary.band(name).map_or_else(String::new, |u| format!(" ± {}", with_unit(u, to, 2)));
         lines.push(format!("  {name:<24} {:>14}{band}", with_unit(value, to, 6)));
     }
     let bender = summary.bender.iter().flat_map(|bender| {
         let drive = &bender.drive;
-        [
-            ("strain_energy_efficiency", bender.strain_energy_efficiency, "1"),
+        let efficiency = bender.strain_energy_efficiency;
+        let efficiency = efficiency.map(|efficiency| ("strain_energy_efficiency", efficiency, "1"));
+        efficiency.into_iter().chain([
             ("torque", drive.torque, "N*m"),
             ("tip_deflection", drive.tip_deflection, "m"),
             ("strain_energy", drive.strain_energy, "J"),
             ("kinetic_energy", drive.kinetic_energy, "J"),
             ("strike_delay", drive.strike_delay, "s"),
-        ]
+        ])
     });
     let losses = summary.losses.iter().flat_map(|losses| {
         [
@@ -220,16 +208,15 @@ pub fn table<Q: Quantities>(summary: &Summary<Q>) -> String {
 }
 
 /// The history as a CSV file with the columns of a reference's history.
-fn csv(history: &impl Curves) -> Result<Vec<u8>> {
-    fn write<H: Curves>(history: &H) -> std::result::Result<Vec<u8>, csv::Error> {
+fn csv(history: &History) -> Result<Vec<u8>> {
+    let written = || -> std::result::Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let names = H::NAMES.iter().map(|(name, _)| *name);
-        writer.write_record(std::iter::once("time").chain(names.clone()))?;
-        for (i, time) in history.time().iter().enumerate() {
-            let row = names.clone().filter_map(|name| history.values(name)).map(|curve| curve[i]);
+        writer.write_record(std::iter::once("time").chain(history.curves.iter().map(|curve| curve.name)))?;
+        for (i, time) in history.time.iter().enumerate() {
+            let row = history.curves.iter().map(|curve| curve.values[i]);
             writer.serialize(std::iter::once(*time).chain(row).collect::<Vec<f64>>())?;
         }
         writer.into_inner().map_err(|e| e.into_error().into())
-    }
-    write(history).map_err(|e| Error::Internal(format!("writing CSV: {e}")))
+    };
+    written().map_err(|e| Error::Internal(format!("writing CSV: {e}")))
 }

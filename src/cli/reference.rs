@@ -4,10 +4,7 @@ use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
-use crate::result::PlateQuantities;
-use crate::result::Quantities;
-use crate::result::SeatQuantities;
-use crate::scene::{self, Geometry, Scene, Setup};
+use crate::scene::{self, Geometry, Scene};
 use clap::Args;
 
 #[derive(Debug, Args)]
@@ -46,23 +43,10 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         )));
     }
     let store = context.store();
+    let (scene, store) = (&scene, &store);
     let resolution = arguments.target_error.map_or(arguments.resolution, Resolution::Within);
-    match scene.setup {
-        Setup::PlateImpact(_) => show::<PlateQuantities>(context, arguments, &scene, resolution, &store),
-        Setup::SealSeat(_) => show::<SeatQuantities>(context, arguments, &scene, resolution, &store),
-    }
-}
-
-/// The rest of [`run`], for the kind of scene that has the quantities `Q`.
-fn show<Q: Quantities>(
-    context: &Context,
-    arguments: &Arguments,
-    scene: &Scene,
-    resolution: Resolution,
-    store: &Store,
-) -> Result<ExitStatus> {
     let wanted = !arguments.fresh && arguments.stress_at.is_empty() && arguments.fields == 0;
-    let stored = match wanted.then(|| store.find_as::<Q>(scene, resolution)) {
+    let stored = match wanted.then(|| store.find(scene, resolution)) {
         Some(Lookup::Found(stored)) => {
             context.note(format_args!("found {}", stored.folder.display()));
             *stored
@@ -72,7 +56,7 @@ fn show<Q: Quantities>(
                 context.note(format_args!("{}; computing it again", problem(scene, resolution, lookup)));
             }
             if let (Some(Lookup::Missing), Lookup::Found(shipped)) =
-                (&other, Store::shipped().find_as::<Q>(scene, resolution))
+                (&other, Store::shipped().find(scene, resolution))
             {
                 context.note(format_args!(
                     "computing it for {}; comparisons would find {} as well",
@@ -85,12 +69,15 @@ fn show<Q: Quantities>(
                 fields: arguments.fields,
                 processes: arguments.np,
             };
-            compute_as::<Q>(context, scene, resolution, store, &wish)?
+            compute(context, scene, resolution, store, &wish)?
         }
     };
     let convergence = stored.outcome.summary.convergence.as_ref();
     if let Some(reached) = convergence.and_then(|c| c["relative_error"].as_f64()) {
         context.note(format_args!("95 % band of efficiency and force peaks: {:.2} %", 100.0 * reached));
+    }
+    for warning in &stored.outcome.summary.warnings {
+        context.note(format_args!("warning: {warning}"));
     }
     if arguments.json.json {
         super::print_json(&stored.outcome.summary)?;
@@ -101,7 +88,7 @@ fn show<Q: Quantities>(
 }
 
 /// What is wrong with what the store has.
-pub fn problem<Q: Quantities>(scene: &Scene, resolution: Resolution, lookup: &Lookup<Q>) -> String {
+pub fn problem(scene: &Scene, resolution: Resolution, lookup: &Lookup) -> String {
     let which = format!("the {} reference of `{}`", resolution.argument(), scene.name);
     match lookup {
         Lookup::Found(_) => format!("{which} is there"),
@@ -119,20 +106,9 @@ pub fn compute(
     store: &Store,
     wish: &Wish,
 ) -> Result<Stored> {
-    compute_as(context, scene, resolution, store, wish)
-}
-
-/// As [`compute`], for a scene of the kind that has the quantities `Q`.
-pub fn compute_as<Q: Quantities>(
-    context: &Context,
-    scene: &Scene,
-    resolution: Resolution,
-    store: &Store,
-    wish: &Wish,
-) -> Result<Stored<Q>> {
     let python = crate::reference::python()?;
     let bar = Bar::new(context, &format!("{} ({resolution})", scene.name));
-    let stored = crate::reference::solve_as(&python, scene, resolution, store, wish, &mut |p| bar.show(p))?;
+    let stored = crate::reference::solve_with(&python, scene, resolution, store, wish, &mut |p| bar.show(p))?;
     drop(bar);
     context.note(format_args!("computed {}", stored.folder.display()));
     if let Some(earlier) = &stored.earlier {

@@ -3,25 +3,26 @@
 use super::{Context, reference};
 use crate::error::{Error, Result};
 use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
-use crate::result::Quantities;
 use crate::scene::Scene;
 
-/// The references of `scenes`, from the store or computed; `problems` gets a sentence for every one that can't be used.
-pub(super) fn look_up<Q: Quantities>(
+/// The references of `scenes`, from the store or computed.
+///
+/// # Errors
+/// [`Error::Reference`] that names every one that can't be used.
+pub(super) fn look_up(
     context: &Context,
     resolution: Resolution,
     compute: bool,
     scenes: &[&Scene],
-    problems: &mut Vec<String>,
-) -> Result<Vec<Stored<Q>>> {
+) -> Result<Vec<Stored>> {
     let store = context.store();
-    let mut found = Vec::new();
+    let (mut found, mut problems) = (Vec::new(), Vec::new());
     for scene in scenes {
         match store.find_here_or_shipped(scene, resolution) {
             Lookup::Found(stored) => found.push(*stored),
             Lookup::Missing | Lookup::Stale { .. } if compute => {
                 let wish = Wish::default();
-                found.push(reference::compute_as(context, scene, resolution, &store, &wish)?);
+                found.push(reference::compute(context, scene, resolution, &store, &wish)?);
             }
             other => {
                 let mut problem = reference::problem(scene, resolution, &other);
@@ -41,11 +42,12 @@ pub(super) fn look_up<Q: Quantities>(
             }
         }
     }
+    all_found(problems)?;
     Ok(found)
 }
 
 /// Where a reference comes from: that it is not from the caller's own store is always said.
-pub(super) fn tell_reused<Q: Quantities>(context: &Context, stored: &Stored<Q>) {
+pub(super) fn tell_reused(context: &Context, stored: &Stored) {
     let scene = &stored.outcome.summary.scene;
     let made = stored.provenance["created"].as_str().map_or(String::new(), |when| format!(", made {when}"));
     if stored.folder.starts_with(context.store().root()) {
@@ -57,7 +59,7 @@ pub(super) fn tell_reused<Q: Quantities>(context: &Context, stored: &Stored<Q>) 
 }
 
 /// One error that names every reference that can't be used, if there is any.
-pub(super) fn all_found(mut problems: Vec<String>) -> Result<()> {
+fn all_found(mut problems: Vec<String>) -> Result<()> {
     if problems.is_empty() {
         return Ok(());
     }

@@ -1,9 +1,7 @@
 //! Two histories with different time axes, brought onto a common one.
 
 use super::interpolation::MonotoneCubic;
-use crate::result::Curves;
-use crate::result::Outcome;
-use crate::result::Quantities;
+use crate::result::{Curve, History, Outcome};
 use serde::Serialize;
 
 /// Samples of the common axis: about as many as a crash signal at 10 kHz has, for which
@@ -28,12 +26,12 @@ impl CommonAxis {
     /// The window of a comparison, fixed by the reference: from 0 to 1.1 times the end of its
     /// last contact, or to the end of its history if that comes first. `None` if the
     /// reference's history can't be sampled.
-    pub fn of_reference<Q: Quantities>(reference: &Outcome<Q>) -> Option<Self> {
-        if !can_be_sampled(&reference.history) {
+    pub fn of_reference(reference: &Outcome) -> Option<Self> {
+        if !reference.history.can_be_sampled() {
             return None;
         }
-        let last = *reference.history.time().last()?;
-        let contact = reference.summary.quantities.last_contact() * WINDOW_FACTOR;
+        let last = *reference.history.time.last()?;
+        let contact = reference.summary.last_contact().unwrap_or(0.0) * WINDOW_FACTOR;
         let end = if contact > 0.0 { contact.min(last) } else { last };
         (end > 0.0).then_some(CommonAxis { start: 0.0, end, samples: SAMPLES })
     }
@@ -52,7 +50,7 @@ impl CommonAxis {
 /// One curve of two histories on their common axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlignedCurve {
-    /// Name in [`Curves::NAMES`].
+    /// Name of the curve.
     pub quantity: &'static str,
     /// Unit.
     pub unit: &'static str,
@@ -91,29 +89,19 @@ pub(super) fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |p, v| p.max(v.abs()))
 }
 
-/// Whether every curve has a finite value at every instant and time increases strictly.
-pub(super) fn can_be_sampled<H: Curves>(history: &H) -> bool {
-    let n = history.time().len();
-    let whole = |values: &[f64]| values.len() == n && values.iter().all(|v| v.is_finite());
-    n >= 2
-        && whole(history.time())
-        && history.time().windows(2).all(|w| w[0] < w[1])
-        && H::NAMES.iter().all(|(name, _)| history.values(name).is_some_and(whole))
-}
-
 /// Every curve of both histories on the reference's window `axis`; empty if one can't be sampled.
 ///
 /// Between samples the curves are interpolated by monotone cubics. If the reduced history ends
 /// inside the window with both contacts open, the spheres fly on freely: constant velocity, no
 /// force. The plate's curves are then compared up to the end of the reduced history; so are
 /// all curves if it ends during a contact.
-pub fn align<H: Curves>(axis: CommonAxis, reference: &H, reduced: &H) -> Vec<AlignedCurve> {
-    if !can_be_sampled(reference) || !can_be_sampled(reduced) {
+pub fn align(axis: CommonAxis, reference: &History, reduced: &History) -> Vec<AlignedCurve> {
+    if !reference.can_be_sampled() || !reduced.can_be_sampled() {
         return Vec::new();
     }
-    let aligned = |&(quantity, unit): &(&'static str, &'static str)| {
+    let aligned = |&Curve { name: quantity, unit, .. }: &Curve| {
         let axis = axis.cut(covered_until(quantity, reduced));
-        let of = |history: &H| sampled(quantity, history, &axis);
+        let of = |history: &History| sampled(quantity, history, &axis);
         (axis.end > axis.start).then(|| AlignedCurve {
             quantity,
             unit,
@@ -122,13 +110,13 @@ pub fn align<H: Curves>(axis: CommonAxis, reference: &H, reduced: &H) -> Vec<Ali
             reduced: of(reduced),
         })
     };
-    H::NAMES.iter().filter_map(aligned).collect()
+    reference.curves.iter().filter_map(aligned).collect()
 }
 
 /// One curve of a history on a common axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledCurve {
-    /// Name in [`Curves::NAMES`].
+    /// Name of the curve.
     pub quantity: &'static str,
     /// Values; NaN where the history doesn't cover the axis, free flight of the spheres included.
     /// Shape (axis.samples).
@@ -136,32 +124,32 @@ pub struct SampledCurve {
 }
 
 /// Every curve of a history at the instants of `axis`; empty if it can't be sampled.
-pub fn sample<H: Curves>(axis: CommonAxis, history: &H) -> Vec<SampledCurve> {
-    if !can_be_sampled(history) {
+pub fn sample(axis: CommonAxis, history: &History) -> Vec<SampledCurve> {
+    if !history.can_be_sampled() {
         return Vec::new();
     }
-    let curve = |&(quantity, _): &(&'static str, &'static str)| {
+    let curve = |&Curve { name: quantity, .. }: &Curve| {
         let end = covered_until(quantity, history);
         let mut values = sampled(quantity, history, &axis);
         let beyond = (0..axis.samples).filter(|&k| axis.time(k) > end);
         beyond.for_each(|k| values[k] = f64::NAN);
         SampledCurve { quantity, values }
     };
-    H::NAMES.iter().map(curve).collect()
+    history.curves.iter().map(curve).collect()
 }
 
 /// Time in s up to which a curve is known, free flight included.
-fn covered_until<H: Curves>(quantity: &str, history: &H) -> f64 {
-    let end = history.time().last().copied().unwrap_or(f64::NAN);
+fn covered_until(quantity: &str, history: &History) -> f64 {
+    let end = history.time.last().copied().unwrap_or(f64::NAN);
     history.rate_after_end(quantity).map_or(end, |_| f64::INFINITY)
 }
 
 /// A curve of a history that can be sampled, at the instants of `axis`.
-fn sampled<H: Curves>(quantity: &str, history: &H, axis: &CommonAxis) -> Vec<f64> {
-    let (Some(values), Some(&end)) = (history.values(quantity), history.time().last()) else {
+fn sampled(quantity: &str, history: &History, axis: &CommonAxis) -> Vec<f64> {
+    let (Some(values), Some(&end)) = (history.curve(quantity), history.time.last()) else {
         return Vec::new();
     };
-    let curve = MonotoneCubic::new(history.time(), values);
+    let curve = MonotoneCubic::new(&history.time, values);
     let rate = history.rate_after_end(quantity).unwrap_or(0.0);
     (0..axis.samples).map(|k| axis.time(k)).map(|t| curve.at(t) + rate * (t - end).max(0.0)).collect()
 }

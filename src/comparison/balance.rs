@@ -3,8 +3,7 @@
 
 use super::alignment::peak;
 use super::integrity::Check;
-use crate::result::History;
-use crate::result::Motion;
+use crate::kinds::plate_impact::{Motion, PlateCurves};
 use crate::result::Summary;
 use crate::scene::PlateImpact;
 
@@ -15,29 +14,29 @@ const SLACK: f64 = 2e-3;
 const PLATE_SLACK: f64 = 0.05;
 
 /// Checks of a history that can be sampled.
-pub(super) fn check(setup: &PlateImpact, summary: &Summary, history: &History) -> Vec<Check> {
+pub(super) fn check(setup: &PlateImpact, summary: &Summary, history: &PlateCurves) -> Vec<Check> {
     let mut checks = Vec::new();
     // Forces of a reference are averages over the sampling interval, which shifts them by up to one.
     let interval = summary.sample_interval.unwrap_or(0.0);
-    let mut momentum = |name: &str, mass: f64, motion: &Motion, force: &[f64], sign: f64| {
-        checks.push(momentum_balance(name, mass, &history.time, &motion.velocity, force, sign, interval));
+    let mut momentum = |name: &str, mass: f64, motion: Motion, force: &[f64], sign: f64| {
+        checks.push(momentum_balance(name, mass, history.time, motion.velocity, force, sign, interval));
     };
     let (outer, inner) = (&setup.outer, &setup.inner);
     let outer_mass = outer.shape.mass(&outer.material);
-    momentum("outer", outer_mass, &history.outer, &history.outer_force, 1.0);
+    momentum("outer", outer_mass, history.outer, history.outer_force, 1.0);
     // In a fluid more than the contact force acts on the inner body.
     if setup.fluid.is_none() {
         let inner_mass = inner.shape.mass(&inner.material);
-        momentum("inner", inner_mass, &history.inner, &history.inner_force, -1.0);
+        momentum("inner", inner_mass, history.inner, history.inner_force, -1.0);
     }
     let motions = [
-        ("outer", &history.outer, SLACK),
-        ("plate", &history.plate, PLATE_SLACK),
-        ("inner", &history.inner, SLACK),
+        ("outer", history.outer, SLACK),
+        ("plate", history.plate, PLATE_SLACK),
+        ("inner", history.inner, SLACK),
     ];
     for (name, motion, slack) in motions {
-        let motion = (&motion.displacement[..], &motion.velocity[..]);
-        checks.push(path_balance(name, &history.time, motion, interval, slack));
+        let motion = (motion.displacement, motion.velocity);
+        checks.push(path_balance(name, history.time, motion, interval, slack));
     }
     checks
 }

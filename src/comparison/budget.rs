@@ -32,9 +32,7 @@ use super::verdict::Verdict;
 use crate::body::continuum::MeshOptions;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
-use crate::result::PLATE_QUANTITIES;
-use crate::result::PlateQuantities;
-use crate::result::Summary;
+use crate::result::{CUT, Summary};
 use crate::scene::Scene;
 use serde::Serialize;
 
@@ -125,8 +123,9 @@ struct Modes {
 /// The budget of the difference between model `b` and `reference`; `c` is model C's result for the same scene.
 ///
 /// # Errors
-/// [`crate::Error::Solver`] if a model of the chain can't be set up or integrated.
+/// [`crate::Error::Solver`] if a model of the chain can't be set up or integrated, or a run was cut during a contact.
 pub fn budget(scene: &Scene, reference: &Summary, b: &Summary, c: &Summary) -> Result<Vec<QuantityBudget>> {
+    let [start, end] = [values(|name| b.value(name))?, values(|name| reference.value(name))?];
     let own = |summary: &Summary| summary.modes.unwrap_or(1);
     let modes = Modes {
         b: own(b),
@@ -139,7 +138,7 @@ pub fn budget(scene: &Scene, reference: &Summary, b: &Summary, c: &Summary) -> R
     let kirchhoff = |modes, tolerance| tightest(&variants, Simplification::KirchhoffPlate, modes, tolerance);
     let best = |modes| tightest(&variants, Simplification::None, modes, TIGHT);
 
-    let mut chain: Chain = [values(&b.quantities); CAUSES.len() + 1];
+    let mut chain: Chain = [start; CAUSES.len() + 1];
     chain[1] = kirchhoff(modes.b, TIGHT)?;
     chain[2] = kirchhoff(many[0], TIGHT)?;
     for (link, simplification) in chain[FIRST_CONTINUUM..].iter_mut().zip(CONTINUUM) {
@@ -169,7 +168,9 @@ pub fn budget(scene: &Scene, reference: &Summary, b: &Summary, c: &Summary) -> R
         }
         shifted.push(links);
     }
-    Ok((0..BUDGET_QUANTITIES.len()).map(|q| quantity_budget(q, modes, &chain, &shifted, reference)).collect())
+    Ok((0..BUDGET_QUANTITIES.len())
+        .map(|q| quantity_budget(q, modes, &chain, &shifted, (reference, end[q])))
+        .collect())
 }
 
 /// Runs a link at `tolerance` or, where round-off forbids it, at ten times that, up to [`LOOSEST`].
@@ -183,13 +184,23 @@ fn tightest(
         Err(Error::Solver(_)) if tolerance < LOOSEST => {
             tightest(variants, simplification, modes, 10.0 * tolerance)
         }
-        other => other.map(|quantities| values(&quantities)),
+        other => {
+            let quantities = other?;
+            values(|name| quantities.get(name))
+        }
     }
 }
 
-/// The values of [`BUDGET_QUANTITIES`].
-fn values(quantities: &PlateQuantities) -> [f64; BUDGET_QUANTITIES.len()] {
-    BUDGET_QUANTITIES.map(|name| quantities.get(name).unwrap_or(f64::NAN))
+/// The values of [`BUDGET_QUANTITIES`] by their names.
+///
+/// # Errors
+/// [`Error::Solver`] if one of them is not determined.
+fn values(value: impl Fn(&str) -> Option<f64>) -> Result<[f64; BUDGET_QUANTITIES.len()]> {
+    let mut values = [0.0; BUDGET_QUANTITIES.len()];
+    for (slot, name) in values.iter_mut().zip(BUDGET_QUANTITIES) {
+        *slot = value(name).ok_or_else(|| Error::Solver(format!("`{name}` is not determined: {CUT}")))?;
+    }
+    Ok(values)
 }
 
 /// The budget of quantity number `q`, from the links as they are and as other choices would shift them.
@@ -198,11 +209,10 @@ fn quantity_budget(
     modes: Modes,
     chain: &Chain,
     shifted: &[Chain],
-    reference: &Summary,
+    (reference, reference_value): (&Summary, f64),
 ) -> QuantityBudget {
     let quantity = BUDGET_QUANTITIES[q];
     let part = |links: &Chain, i: usize| links[i][q] - links[i + 1][q];
-    let reference_value = values(&reference.quantities)[q];
     let parts = CAUSES.iter().zip(switches(modes)).enumerate().map(|(i, (cause, switch))| Part {
         cause: (*cause).into(),
         switch,
@@ -210,12 +220,12 @@ fn quantity_budget(
         uncertainty: root_of_squares(shifted.iter().map(|links| part(links, i) - part(chain, i))),
     });
     let remainder = chain[BEST][q] - reference_value;
-    let reference_uncertainty = reference.uncertainty.get(quantity).copied();
+    let reference_uncertainty = reference.band(quantity);
     let model_uncertainty = root_of_squares(shifted.iter().map(|links| links[BEST][q] - chain[BEST][q]));
     let bound = reference_uncertainty.unwrap_or(0.0).hypot(model_uncertainty);
     QuantityBudget {
         quantity: quantity.into(),
-        unit: PLATE_QUANTITIES.iter().find(|(name, _)| *name == quantity).map_or("", |(_, unit)| unit).into(),
+        unit: reference.quantities.get(quantity).map_or("", |quantity| quantity.unit).into(),
         reference: reference_value,
         difference: chain[0][q] - reference_value,
         parts: parts.collect(),

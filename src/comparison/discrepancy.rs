@@ -4,7 +4,8 @@ use super::verdict::Verdict;
 use crate::scene::Tolerance;
 use serde::Serialize;
 
-/// One row of the comparison. Values are in `unit`; a value that is not finite becomes `null` in JSON.
+/// One row of the comparison. Values are in `unit`, `None` if a run did not determine them; these and what is not finite are
+/// `null` in JSON.
 ///
 /// A row of a curve (`<curve>_rms`, `<curve>_max`) holds the distance of the curves: `reduced` is
 /// the distance from the reference's curve, `reference` is 0 and `relative` is over the peak of the
@@ -16,11 +17,11 @@ pub struct Discrepancy {
     /// SI unit.
     pub unit: String,
     /// Value of the reduced model.
-    pub reduced: f64,
+    pub reduced: Option<f64>,
     /// Value of the reference.
-    pub reference: f64,
+    pub reference: Option<f64>,
     /// `reduced - reference`.
-    pub difference: f64,
+    pub difference: Option<f64>,
     /// `difference / |reference|`; `None` if the reference is 0.
     pub relative: Option<f64>,
     /// Half width of the reference's 95 % band, absolute, if known.
@@ -31,8 +32,12 @@ pub struct Discrepancy {
     pub tolerance: Option<f64>,
     /// Known discrepancy of the model, absolute; `None` = none stated.
     pub bias: Option<f64>,
-    /// Whether the checked value is within the bound.
+    /// Whether the checked value is within the bound, wherever the truth lies in the reference's band. A band that is not
+    /// known counts as none.
     pub verdict: Verdict,
+    /// If it is undecided: what would decide it, in one sentence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub would_decide: Option<String>,
 }
 
 /// Comparison error |E| against the uncertainty u of the comparison (ASME V&V 20-2009, section 1-6). Here u is
@@ -99,29 +104,34 @@ impl Discrepancy {
     /// Row with `difference = reduced - reference`, gated if there is a bound.
     pub(super) fn new(
         (quantity, unit): (&str, &str),
-        (reduced, reference): (f64, f64),
+        (reduced, reference): (Option<f64>, Option<f64>),
         scales: Scales,
         tolerance: Option<&Tolerance>,
         uncertainty: Option<f64>,
     ) -> Self {
-        let difference = reduced - reference;
+        let difference = reduced.zip(reference).map(|(reduced, reference)| reduced - reference);
         let bound = tolerance.and_then(|t| Bound::of(t, scales));
         let bias = bound.as_ref().and_then(|b| b.bias);
-        let checked = (difference - bias.unwrap_or(0.0)).abs();
-        // Written so that NaN fails, gated or not.
-        let within = bound.as_ref().is_none_or(|b| checked <= b.width);
+        let checked = difference.map_or(f64::NAN, |difference| (difference - bias.unwrap_or(0.0)).abs());
+        // what is no number fails, gated or not; what was not determined only if it is
+        let verdict = match &bound {
+            Some(bound) => Verdict::within(checked, uncertainty.unwrap_or(0.0), bound.width),
+            None if difference.is_none_or(f64::is_finite) => Verdict::NotGated,
+            None => Verdict::Fail,
+        };
         Discrepancy {
             quantity: quantity.to_owned(),
             unit: unit.to_owned(),
             reduced,
             reference,
             difference,
-            relative: Some(difference / scales.value).filter(|r| r.is_finite()),
+            relative: difference.map(|difference| difference / scales.value).filter(|r| r.is_finite()),
             uncertainty,
-            band_verdict: uncertainty.and_then(|u| BandVerdict::of(difference, u)),
+            band_verdict: difference.zip(uncertainty).and_then(|(error, band)| BandVerdict::of(error, band)),
             tolerance: bound.map(|b| b.width),
             bias,
-            verdict: Verdict::of(difference.is_finite() && within),
+            verdict,
+            would_decide: None,
         }
     }
 
@@ -132,17 +142,29 @@ impl Discrepancy {
         tolerance: Option<&Tolerance>,
     ) -> Self {
         let scales = Scales { value: reference.abs(), peak: 1.0 };
-        let row = Discrepancy::new((quantity, "1"), (reduced, reference), scales, None, None);
+        let row = Discrepancy::new((quantity, "1"), (Some(reduced), Some(reference)), scales, None, None);
         // A residual is relative already: whatever the bound is called, it is the bound of the number.
         let bound = tolerance.and_then(|t| Bound::of(t, Scales { value: 1.0, peak: 1.0 }));
         let width = bound.map(|b| b.width);
-        let within = |x: f64| x.is_finite() && width.is_none_or(|w| x.abs() <= w);
-        Discrepancy { tolerance: width, verdict: Verdict::of(within(reduced) && within(reference)), ..row }
+        let verdict = width.map_or(row.verdict, |width| {
+            Verdict::worst([reduced, reference].map(|residual| Verdict::within(residual.abs(), 0.0, width)))
+        });
+        Discrepancy { tolerance: width, verdict, ..row }
     }
 
-    /// Magnitude that is held against the tolerance: of the difference without the known bias.
+    /// Magnitude that is held against the tolerance: of the difference without the known bias; NaN if it is not determined.
     pub fn checked(&self) -> f64 {
-        (self.difference - self.bias.unwrap_or(0.0)).abs()
+        self.difference.map_or(f64::NAN, |difference| (difference - self.bias.unwrap_or(0.0)).abs())
+    }
+
+    /// The larger magnitude of the two sides, as far as they are determined: what a row is shown in the measure of.
+    pub fn size(&self) -> f64 {
+        [self.reference, self.reduced].into_iter().flatten().map(f64::abs).fold(0.0, f64::max)
+    }
+
+    /// Whether a side has not determined its value.
+    pub fn is_undetermined(&self) -> bool {
+        self.difference.is_none()
     }
 
     /// Whether the row is about a conservation residual, each of whose sides is gated by itself.
@@ -150,10 +172,16 @@ impl Discrepancy {
         self.quantity.ends_with("_residual")
     }
 
+    /// Whether people have to be told of the row: it fails or is undecided.
+    pub fn is_told(&self) -> bool {
+        matches!(self.verdict, Verdict::Fail | Verdict::Undecided)
+    }
+
     /// How much of the tolerance is used, 1 = all of it; `None` if the row is not gated.
     pub fn used(&self) -> Option<f64> {
+        let size = |side: Option<f64>| side.map_or(f64::NAN, f64::abs);
         let checked =
-            if self.is_residual() { self.reduced.abs().max(self.reference.abs()) } else { self.checked() };
+            if self.is_residual() { size(self.reduced).max(size(self.reference)) } else { self.checked() };
         self.tolerance.map(|tolerance| if checked == 0.0 { 0.0 } else { checked / tolerance })
     }
 }
@@ -166,7 +194,7 @@ mod tests {
 
     fn row(reduced: f64, reference: f64, tolerance: Tolerance) -> Discrepancy {
         let scales = Scales { value: reference.abs(), peak: 200.0 };
-        Discrepancy::new(("x", "N"), (reduced, reference), scales, Some(&tolerance), None)
+        Discrepancy::new(("x", "N"), (Some(reduced), Some(reference)), scales, Some(&tolerance), None)
     }
 
     #[test]
@@ -199,8 +227,9 @@ mod tests {
     #[test]
     fn a_difference_smaller_than_the_band_of_the_reference_proves_no_error() {
         let scales = Scales { value: 100.0, peak: 100.0 };
-        let verdict =
-            |reduced, band| Discrepancy::new(("x", "N"), (reduced, 100.0), scales, None, band).band_verdict;
+        let verdict = |reduced, band| {
+            Discrepancy::new(("x", "N"), (Some(reduced), Some(100.0)), scales, None, band).band_verdict
+        };
         assert_eq!(verdict(100.4, Some(0.5)), Some(BandVerdict::Within));
         assert_eq!(verdict(99.4, Some(0.5)), Some(BandVerdict::Beyond));
         assert_eq!(verdict(100.4, None), None);
@@ -215,12 +244,32 @@ mod tests {
     }
 
     #[test]
+    fn what_the_band_leaves_open_is_undecided() {
+        let scales = Scales { value: 100.0, peak: 100.0 };
+        let verdict = |reduced, bias, band| {
+            let tolerance = Tolerance { relative: Some(0.01), bias, ..Tolerance::default() };
+            Discrepancy::new(("x", "N"), (Some(reduced), Some(100.0)), scales, Some(&tolerance), band).verdict
+        };
+        // 5.66 +- 3.9 N against a tolerance of 0.17 N proves nothing, whatever the difference
+        assert_eq!(verdict(100.0, None, Some(70.0)), Verdict::Undecided);
+        assert_eq!(verdict(100.4, None, Some(0.5)), Verdict::Pass);
+        assert_eq!(verdict(101.4, None, Some(0.5)), Verdict::Undecided);
+        assert_eq!(verdict(101.6, None, Some(0.5)), Verdict::Fail);
+        // the band lies about the known discrepancy as well
+        assert_eq!(verdict(110.4, Some(0.1), Some(0.5)), Verdict::Pass);
+        assert_eq!(verdict(110.6, Some(0.1), Some(0.5)), Verdict::Undecided);
+        assert_eq!(verdict(100.0, Some(0.1), Some(0.5)), Verdict::Fail);
+        let ungated = Discrepancy::new(("x", "N"), (Some(1.0), Some(2.0)), scales, None, Some(0.5));
+        assert_eq!(ungated.verdict, Verdict::NotGated);
+    }
+
+    #[test]
     fn nan_fails_even_if_nothing_is_gated() {
         let scales = Scales { value: 1.0, peak: 1.0 };
-        let row = Discrepancy::new(("x", "N"), (f64::NAN, 1.0), scales, None, None);
+        let row = Discrepancy::new(("x", "N"), (Some(f64::NAN), Some(1.0)), scales, None, None);
         assert_eq!(row.verdict, Verdict::Fail);
         let wide = Tolerance { absolute: Some(f64::INFINITY), ..Tolerance::default() };
-        let row = Discrepancy::new(("x", "N"), (1.0, f64::NAN), scales, Some(&wide), None);
+        let row = Discrepancy::new(("x", "N"), (Some(1.0), Some(f64::NAN)), scales, Some(&wide), None);
         assert_eq!(row.verdict, Verdict::Fail);
     }
 

@@ -3,17 +3,14 @@
 //! A stored or computed history may be damaged in ways that no tolerance on the summary sees. What
 //! the summary says is therefore found again in the history, as closely as its sampling permits.
 
-use super::alignment::{can_be_sampled, peak};
+use super::alignment::peak;
 use super::balance;
 use super::discrepancy::Discrepancy;
+use super::seal_seat;
 use super::verdict::Verdict;
-use crate::result::Curves;
-use crate::result::History;
-use crate::result::Outcome;
-use crate::result::PlateQuantities;
-use crate::result::Quantities;
-use crate::result::Source;
-use crate::result::Summary;
+use crate::kinds::plate_impact::PlateCurves;
+use crate::kinds::{self, Kind};
+use crate::result::{History, Outcome, Source, Summary};
 use crate::scene::{PlateImpact, Scene, Setup, Tolerances};
 use serde::Serialize;
 
@@ -60,45 +57,38 @@ impl Check {
     }
 }
 
-/// A kind of scene whose results can be compared.
-pub trait Compared: Quantities {
-    /// Whether a result whose curves can be sampled is consistent with itself and with the scene.
-    fn consistency(scene: &Scene, outcome: &Outcome<Self>) -> Vec<Check>;
-}
-
 /// All checks of one result.
-pub(super) fn check<Q: Compared>(scene: &Scene, outcome: &Outcome<Q>) -> Vec<Check> {
+pub(super) fn check(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
     let (summary, history) = (&outcome.summary, &outcome.history);
-    let mut checks = form(summary, history);
-    if can_be_sampled(history) {
+    let mut checks = form(kinds::of(scene), summary, history);
+    if history.can_be_sampled() {
         checks.extend(sampling(summary, history));
-        checks.extend(Q::consistency(scene, outcome));
+        checks.extend(match &scene.setup {
+            Setup::PlateImpact(setup) => plate_impact(setup, outcome),
+            Setup::SealSeat(setup) => seal_seat::check(setup, outcome),
+        });
     }
     checks
 }
 
-impl Compared for PlateQuantities {
-    fn consistency(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
-        // A scene of another kind has no such results.
-        let Setup::PlateImpact(setup) = &scene.setup else { return vec![Check::count("kind_of_scene", 1)] };
-        let (summary, history) = (&outcome.summary, &outcome.history);
-        let mut checks = start(setup, history);
-        let q = &summary.quantities;
-        let (outer, inner) =
-            ((q.outer_force_peak, q.outer_contact_end), (q.inner_force_peak, q.inner_contact_end));
-        // a contact that hardly happens is no longer than a sample or two: its peak is known as well as others matter
-        let unseen = UNSEEN_FORCE * q.outer_force_peak.max(q.inner_force_peak);
-        let of = |name, force, stated| contact(name, summary.source, (&history.time, force), stated, unseen);
-        checks.extend(of("outer", &history.outer_force, outer));
-        checks.extend(of("inner", &history.inner_force, inner));
-        checks.extend(end(setup, summary, history));
-        checks.extend(balance::check(setup, summary, history));
-        checks
-    }
+/// Whether a result of a plate impact whose curves can be sampled is consistent with itself and with the scene.
+fn plate_impact(setup: &PlateImpact, outcome: &Outcome) -> Vec<Check> {
+    let summary = &outcome.summary;
+    let Some(history) = PlateCurves::of(&outcome.history) else { return Vec::new() };
+    let mut checks = start(setup, &history);
+    let [outer, inner] = ["outer", "inner"].map(|body| Stated::of(summary, body));
+    // a contact that hardly happens is no longer than a sample or two: its peak is known as well as others matter
+    let unseen = UNSEEN_FORCE * outer.peak.unwrap_or(0.0).max(inner.peak.unwrap_or(0.0));
+    let of = |name, force, stated| contact(name, summary.source, (history.time, force), stated, unseen);
+    checks.extend(of("outer", history.outer_force, outer));
+    checks.extend(of("inner", history.inner_force, inner));
+    checks.extend(end(setup, summary, &history));
+    checks.extend(balance::check(setup, summary, &history));
+    checks
 }
 
 /// Both results are of the same scene.
-pub(super) fn same_impact<Q: Quantities>(reference: &Summary<Q>, reduced: &Summary<Q>) -> Check {
+pub(super) fn same_impact(reference: &Summary, reduced: &Summary) -> Check {
     let differs = reference.scene != reduced.scene || reference.scene_hash != reduced.scene_hash;
     Check::count("same_scene", usize::from(differs))
 }
@@ -109,22 +99,21 @@ pub(super) fn tolerances_are_used(tolerances: &Tolerances, rows: &[Discrepancy])
     Check::count("unknown_tolerances", unused.count())
 }
 
-/// Values are numbers, curves are complete, time increases.
-fn form<Q: Quantities>(summary: &Summary<Q>, history: &Q::History) -> Vec<Check> {
-    let curves = || <Q::History as Curves>::NAMES.iter().filter_map(|(name, _)| history.values(name));
-    let quantities = Q::NAMES.iter().filter_map(|(name, _)| summary.quantities.value(name));
+/// Values are numbers, curves are complete, time increases. What a run has not determined is no value.
+fn form(kind: &dyn Kind, summary: &Summary, history: &History) -> Vec<Check> {
+    let curves = || kind.curves().iter().map(|curve| history.curve(curve.name).unwrap_or_default());
     let not_finite = curves()
         .flatten()
-        .chain(history.time())
+        .chain(&history.time)
         .copied()
-        .chain(quantities)
+        .chain(summary.quantities.iter().filter_map(|quantity| quantity.value))
         .chain([summary.energy_residual, summary.momentum_residual])
         .chain(summary.uncertainty.values().copied())
         .filter(|x| !x.is_finite())
         .count();
-    let incomplete = curves().filter(|c| c.len() != history.time().len() || c.len() < 2).count();
+    let incomplete = curves().filter(|c| c.len() != history.len() || c.len() < 2).count();
     let disordered =
-        history.time().windows(2).filter(|w| w[0].partial_cmp(&w[1]) != Some(std::cmp::Ordering::Less));
+        history.time.windows(2).filter(|w| w[0].partial_cmp(&w[1]) != Some(std::cmp::Ordering::Less));
     vec![
         Check::count("not_finite", not_finite),
         Check::count("incomplete_curves", incomplete),
@@ -133,8 +122,8 @@ fn form<Q: Quantities>(summary: &Summary<Q>, history: &Q::History) -> Vec<Check>
 }
 
 /// The history has the samples that the summary states, at the distance it states.
-fn sampling<Q: Quantities>(summary: &Summary<Q>, history: &Q::History) -> Vec<Check> {
-    let time = history.time();
+fn sampling(summary: &Summary, history: &History) -> Vec<Check> {
+    let time = &history.time;
     let mut checks = vec![Check::new("first_time", "s", time[0], 0.0, 0.0)];
     // A reference that doesn't say how it was sampled can't be checked for missing samples.
     if summary.samples.is_some() || summary.source == Source::Reference {
@@ -153,35 +142,52 @@ fn sampling<Q: Quantities>(summary: &Summary<Q>, history: &Q::History) -> Vec<Ch
 }
 
 /// The bodies start as the scene says, and the first touch is at t = 0.
-fn start(setup: &PlateImpact, history: &History) -> Vec<Check> {
+fn start(setup: &PlateImpact, history: &PlateCurves) -> Vec<Check> {
     let speed = setup.outer.speed;
     let velocity = |name: &str, motion: &[f64], expected: f64| {
         Check::new(name, "m/s", motion[0], expected, VELOCITY_SLACK * speed)
     };
     let displacement =
         |name: &str, motion: &[f64]| Check::new(name, "m", motion[0], 0.0, 1e-3 * peak(motion));
-    let force = &history.outer_force;
+    let force = history.outer_force;
     let floor = FORCE_FLOOR * peak(force);
     let touch = force.iter().position(|&f| f > floor).map_or(f64::NAN, |k| history.time[k]);
     vec![
-        velocity("outer_velocity_start", &history.outer.velocity, -speed),
-        velocity("inner_velocity_start", &history.inner.velocity, 0.0),
-        displacement("outer_displacement_start", &history.outer.displacement),
-        displacement("plate_displacement_start", &history.plate.displacement),
-        displacement("inner_displacement_start", &history.inner.displacement),
+        velocity("outer_velocity_start", history.outer.velocity, -speed),
+        velocity("inner_velocity_start", history.inner.velocity, 0.0),
+        displacement("outer_displacement_start", history.outer.displacement),
+        displacement("plate_displacement_start", history.plate.displacement),
+        displacement("inner_displacement_start", history.inner.displacement),
         // The force of the first instant may be zero, that of the next sample is not.
-        Check::new("outer_contact_start", "s", touch, 0.0, history.time[2.min(history.len() - 1)]),
+        Check::new("outer_contact_start", "s", touch, 0.0, history.time[2.min(history.time.len() - 1)]),
     ]
 }
 
-/// Sign, peak and end of a contact force over `time`, against the peak in N and the end in s that a summary states.
+/// What a summary states of a contact.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stated {
+    /// Largest force in N, if it is determined.
+    peak: Option<f64>,
+    /// Last release in s, if it is determined.
+    end: Option<f64>,
+}
+
+impl Stated {
+    /// Of the contact of `body`.
+    pub(super) fn of(summary: &Summary, body: &str) -> Self {
+        let value = |what: &str| summary.value(&format!("{body}_{what}"));
+        Stated { peak: value("force_peak"), end: value("contact_end") }
+    }
+}
+
+/// Sign, peak and end of a contact force over `time`, against what a summary states of it.
 pub(super) fn contact(
     name: &str,
     source: Source,
     (time, force): (&[f64], &[f64]),
-    (stated_peak, stated_end): (f64, f64),
+    stated: Stated,
     unseen: f64,
-) -> [Check; 3] {
+) -> Vec<Check> {
     let tension = force.iter().fold(0.0_f64, |least, &f| least.min(f));
     let floor = FORCE_FLOOR * peak(force);
 
@@ -203,35 +209,39 @@ pub(super) fn contact(
         // Room for the rounding of times written as text.
         (time[k], before.max(after) * 1.001)
     });
-    [
-        Check::new(format!("{name}_tension"), "N", tension, 0.0, 1e-6 * peak(force)),
-        Check::new(format!("{name}_force_peak"), "N", found, stated_peak, peak_bound),
-        Check::new(format!("{name}_contact_end"), "s", end, stated_end, end_bound),
-    ]
+    let compared = |what: &str, unit, found, stated: Option<f64>, bound| {
+        stated.map(|stated| Check::new(format!("{name}_{what}"), unit, found, stated, bound))
+    };
+    let tension = Check::new(format!("{name}_tension"), "N", tension, 0.0, 1e-6 * peak(force));
+    let peak = compared("force_peak", "N", found, stated.peak, peak_bound);
+    let end = compared("contact_end", "s", end, stated.end, end_bound);
+    [Some(tension), peak, end].into_iter().flatten().collect()
 }
 
-/// Final velocities and efficiency. The last sample tells if it lies in free flight.
-fn end(setup: &PlateImpact, summary: &Summary, history: &History) -> Vec<Check> {
+/// Final velocities and efficiency, where they are determined. The last sample tells if it lies in free flight.
+fn end(setup: &PlateImpact, summary: &Summary, history: &PlateCurves) -> Vec<Check> {
     let (outer, inner) = (&setup.outer, &setup.inner);
-    let q = &summary.quantities;
-    let last = history.len() - 1;
+    let last = history.time.len() - 1;
     let flies = history.outer_force[last] == 0.0 && history.inner_force[last] == 0.0;
     let bound = VELOCITY_SLACK * outer.speed;
-    let velocity = |name: &str, found: f64, expected: f64| Check::new(name, "m/s", found, expected, bound);
+    let velocity = |name: &str, found: f64| {
+        summary.value(name).map(|stated| Check::new(name, "m/s", found, stated, bound))
+    };
     let mut checks = Vec::new();
     if flies {
-        let found = history.outer.velocity[last];
-        checks.push(velocity("outer_velocity_final", found, q.outer_velocity_final));
+        checks.extend(velocity("outer_velocity_final", history.outer.velocity[last]));
     }
     // In a fluid the inner body slows down after the last contact.
     if flies && setup.fluid.is_none() {
-        let found = history.inner.velocity[last];
-        checks.push(velocity("inner_velocity_final", found, q.inner_velocity_final));
+        checks.extend(velocity("inner_velocity_final", history.inner.velocity[last]));
     }
     let mass_ratio = inner.shape.mass(&inner.material) / outer.shape.mass(&outer.material);
-    // Eq. (1).
-    let efficiency = mass_ratio * (q.inner_velocity_final / outer.speed).powi(2);
-    let bound = EFFICIENCY_SLACK * efficiency;
-    checks.push(Check::new("efficiency", "1", q.efficiency, efficiency, bound));
+    if let (Some(stated), Some(velocity)) =
+        (summary.value("efficiency"), summary.value("inner_velocity_final"))
+    {
+        // Eq. (1).
+        let efficiency = mass_ratio * (velocity / outer.speed).powi(2);
+        checks.push(Check::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency));
+    }
     checks
 }

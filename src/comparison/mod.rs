@@ -1,8 +1,9 @@
 //! Comparison: reduced models against the reference, quantity by quantity and curve by curve,
 //! and the verdict.
 //!
-//! The verdict of a model is fail if a discrepancy exceeds its tolerance, if a value is not a
-//! number, or if one of the two results contradicts itself ([`Check`]): a history that does not
+//! The verdict of a model is the worst of its rows': fail if a discrepancy exceeds its tolerance beyond
+//! the reference's band or a value is not a number, undecided if the band leaves that open, not gated only if nothing is.
+//! It is fail, too, if one of the two results contradicts itself ([`Check`]): a history that does not
 //! belong to its summary proves nothing, whatever the summary says.
 
 mod alignment;
@@ -19,95 +20,68 @@ mod iso18571;
 mod russell;
 mod seal_seat;
 mod sprague_geers;
+mod undecided;
 mod verdict;
 
 pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
 pub use changed_tolerance::ChangedTolerance;
 pub use curve_metrics::CurveMetrics;
 pub use discrepancy::{BandVerdict, Discrepancy};
-pub use integrity::{Check, Compared};
+pub use integrity::Check;
 pub(crate) use interpolation::MonotoneCubic;
 pub use iso18571::{Grade, Iso18571, iso18571};
 pub use russell::{Russell, russell};
 pub use sprague_geers::{SpragueGeers, sprague_geers};
-pub use verdict::{Shown, Verdict};
+pub use verdict::{GateRules, Undecided, Verdict};
 
 use crate::error::Result;
+use crate::kinds;
 use crate::measured::Measured;
-use crate::result::Curves;
-use crate::result::Outcome;
-use crate::result::PlateQuantities;
-use crate::result::Quantities;
-use crate::result::SCHEMA_VERSION;
-use crate::result::SeatQuantities;
-use crate::result::Summary;
+use crate::result::{Curve, Outcome, Quantity, SCHEMA_VERSION, Summary};
 use crate::scene::{Model, Scene, Tolerances};
 use budget::QuantityBudget;
 use discrepancy::Scales;
 use serde::Serialize;
-use serde::ser::{SerializeStruct, Serializer};
 
-/// The document of `compare` and `gate`. In JSON the scenes of both kinds are one list.
-#[derive(Debug, Clone, PartialEq)]
+/// The document of `compare` and `gate`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
-    /// Fail if any scene fails.
+    /// The worst of the scenes'.
     pub verdict: Verdict,
-    /// One entry per plate impact.
+    /// One entry per scene.
     pub scenes: Vec<SceneComparison>,
-    /// One entry per seal seat.
-    pub seats: Vec<SceneComparison<SeatQuantities>>,
 }
 
 impl Comparison {
-    /// The document of these plate impacts.
+    /// The document of these scenes.
     pub fn new(scenes: Vec<SceneComparison>) -> Self {
-        let verdict = Verdict::all(scenes.iter().map(|s| s.verdict));
-        Comparison { schema_version: SCHEMA_VERSION, verdict, scenes, seats: Vec::new() }
+        let verdict = Verdict::worst(scenes.iter().map(|s| s.verdict));
+        Comparison { schema_version: SCHEMA_VERSION, verdict, scenes }
     }
 
-    /// The same with these seal seats.
-    pub fn with_seats(self, seats: Vec<SceneComparison<SeatQuantities>>) -> Self {
-        let verdict = Verdict::all(seats.iter().map(|s| s.verdict).chain([self.verdict]));
-        Comparison { verdict, seats, ..self }
-    }
-}
-
-impl Serialize for Comparison {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        /// A scene of either kind.
-        #[derive(Serialize)]
-        #[serde(untagged)]
-        enum Entry<'a> {
-            Plate(&'a SceneComparison),
-            Seat(&'a SceneComparison<SeatQuantities>),
-        }
-        let entries = self.scenes.iter().map(Entry::Plate).chain(self.seats.iter().map(Entry::Seat));
-        let mut document = serializer.serialize_struct("Comparison", 3)?;
-        document.serialize_field("schema_version", &self.schema_version)?;
-        document.serialize_field("verdict", &self.verdict)?;
-        document.serialize_field("scenes", &entries.collect::<Vec<_>>())?;
-        document.end()
+    /// Name and verdict of every scene.
+    pub fn verdicts(&self) -> impl Iterator<Item = (&str, Verdict)> {
+        self.scenes.iter().map(|s| (&*s.scene, s.verdict))
     }
 }
 
 /// One scene: its reference and the reduced models compared with it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(bound = "")]
-pub struct SceneComparison<Q: Quantities = PlateQuantities> {
+pub struct SceneComparison {
     /// Name of the scene.
     pub scene: String,
-    /// Fail if any model fails or the reference contradicts itself.
+    /// The worst of the models'; fail if the reference contradicts itself.
     pub verdict: Verdict,
     /// Summary of the reference.
-    pub reference: Summary<Q>,
+    pub reference: Summary,
     /// Whether the reference is consistent with itself and with the scene; always gated.
     pub integrity: Vec<Check>,
     /// Time axis of all curves, fixed by the reference; `None` if its history can't be used.
     pub window: Option<CommonAxis>,
     /// One entry per reduced model.
-    pub models: Vec<ModelComparison<Q>>,
+    pub models: Vec<ModelComparison>,
     /// What causes the difference between model B and the reference, one entry per quantity; empty unless
     /// [`SceneComparison::add_budget`] was called and found models B and C.
     pub budget: Vec<QuantityBudget>,
@@ -119,32 +93,21 @@ pub struct SceneComparison<Q: Quantities = PlateQuantities> {
     pub measured: Option<Measured>,
 }
 
-impl<Q: Quantities> SceneComparison<Q> {
+impl SceneComparison {
     /// Adds checks of the reference; one that fails makes the scene and all its models fail.
     pub fn add_reference_checks(&mut self, checks: Vec<Check>) {
-        if checks.iter().any(|check| !check.verdict.passed()) {
-            self.verdict = Verdict::Fail;
-            self.models.iter_mut().for_each(|model| model.verdict = Verdict::Fail);
-        }
+        let sound = Verdict::of_soundness(checks.iter().map(|check| check.verdict));
+        self.verdict = self.verdict.max(sound);
+        self.models.iter_mut().for_each(|model| model.verdict = model.verdict.max(sound));
         self.integrity.extend(checks);
     }
-}
 
-impl<Q: Quantities> SceneComparison<Q> {
-    /// The verdict as people are told it.
-    pub fn shown(&self) -> Shown {
-        // that a model is known to be off is said of the model
-        Shown::of(self.verdict, self.models.iter().map(ModelComparison::gated).sum(), 0)
+    /// Verdicts of the rows of all models that have a tolerance.
+    pub fn gated_verdicts(&self) -> impl Iterator<Item = Verdict> {
+        let rows = self.models.iter().flat_map(|model| &model.discrepancies);
+        rows.filter(|row| row.tolerance.is_some()).map(|row| row.verdict)
     }
 
-    /// Gated rows of all models, and how many of them failed.
-    pub fn gated_and_failed(&self) -> (usize, usize) {
-        let gated = || self.models.iter().flat_map(|m| &m.discrepancies).filter(|d| d.tolerance.is_some());
-        (gated().count(), gated().filter(|d| !d.verdict.passed()).count())
-    }
-}
-
-impl SceneComparison {
     /// Adds the discrepancy budget (see [`mod@budget`]) if models B and C are both compared.
     ///
     /// # Errors
@@ -163,13 +126,12 @@ impl SceneComparison {
 
 /// One reduced model against the reference.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(bound = "")]
-pub struct ModelComparison<Q: Quantities = PlateQuantities> {
+pub struct ModelComparison {
     /// Name of the model.
     pub model: String,
     /// Summary of the reduced model.
-    pub summary: Summary<Q>,
-    /// Fail if any row or check fails, those of the reference included.
+    pub summary: Summary,
+    /// The worst of the rows'; fail if any check fails, those of the reference included.
     pub verdict: Verdict,
     /// Quantities, curves and residuals.
     pub discrepancies: Vec<Discrepancy>,
@@ -182,19 +144,23 @@ pub struct ModelComparison<Q: Quantities = PlateQuantities> {
     pub aligned: Vec<AlignedCurve>,
 }
 
-impl<Q: Quantities> ModelComparison<Q> {
+/// What [`ModelComparison::largest`] is the largest of, for people.
+pub const AMONG: &str = "Largest discrepancy: the largest relative one among the single numbers of the summary (efficiency, velocities, \
+    directions, force peaks, impulses, ends of contact, first frequency). Not among them are the numbers of contacts, of which \
+    one is 100 %, the distances of curves, and the conservation residuals.";
+
+impl ModelComparison {
     /// The row called `quantity`.
     pub fn discrepancy(&self, quantity: &str) -> Option<&Discrepancy> {
         self.discrepancies.iter().find(|d| d.quantity == quantity)
     }
 
-    /// The quantity of the summary that lies furthest from the reference, relatively; numbers of
-    /// contacts aside, of which one is 100 %.
+    /// The quantity of the summary that lies furthest from the reference, relatively; see [`AMONG`].
     pub fn largest(&self) -> Option<&Discrepancy> {
         self.discrepancies
             .iter()
-            .filter(|d| Q::NAMES.iter().any(|(name, _)| *name == d.quantity))
-            .filter(|d| d.relative.is_some() && !d.quantity.ends_with("_contacts"))
+            .filter(|d| self.summary.quantities.get(&d.quantity).is_some_and(|quantity| !quantity.is_count))
+            .filter(|d| d.relative.is_some())
             .max_by(|a, b| {
                 let size = |d: &Discrepancy| d.relative.map_or(0.0, f64::abs);
                 size(a).total_cmp(&size(b))
@@ -218,9 +184,13 @@ impl<Q: Quantities> ModelComparison<Q> {
         self.discrepancies.iter().filter(|d| d.bias.is_some_and(|bias| bias != 0.0)).count()
     }
 
-    /// The verdict as people are told it.
-    pub fn shown(&self) -> Shown {
-        Shown::of(self.verdict, self.gated(), self.biased())
+    /// The verdict in words: a pass of a model that is known to be off is told as such.
+    pub fn verdict_in_words(&self) -> &'static str {
+        if self.verdict.passed() && self.biased() > 0 {
+            "pass about a known discrepancy"
+        } else {
+            self.verdict.words()
+        }
     }
 }
 
@@ -228,17 +198,13 @@ impl<Q: Quantities> ModelComparison<Q> {
 ///
 /// All curves are resampled on the window that the reference fixes (see [`CommonAxis::of_reference`]
 /// and [`align`]), so that differently sampled histories don't differ for that reason.
-pub fn compare_scene<Q: Compared>(
-    scene: &Scene,
-    reference: &Outcome<Q>,
-    reduced: &[Outcome<Q>],
-) -> SceneComparison<Q> {
+pub fn compare_scene(scene: &Scene, reference: &Outcome, reduced: &[Outcome]) -> SceneComparison {
     let integrity = integrity::check(scene, reference);
-    let sound = Verdict::all(integrity.iter().map(|c| c.verdict));
+    let sound = Verdict::of_soundness(integrity.iter().map(|c| c.verdict));
     let window = CommonAxis::of_reference(reference);
     let models: Vec<_> =
         reduced.iter().map(|outcome| compare_model(scene, reference, outcome, window, sound)).collect();
-    let verdict = Verdict::all(models.iter().map(|m| m.verdict).chain([sound]));
+    let verdict = Verdict::worst(models.iter().map(|m| m.verdict).chain([sound]));
     SceneComparison {
         scene: scene.name.clone(),
         verdict,
@@ -252,27 +218,30 @@ pub fn compare_scene<Q: Compared>(
     }
 }
 
-fn compare_model<Q: Compared>(
+fn compare_model(
     scene: &Scene,
-    reference: &Outcome<Q>,
-    reduced: &Outcome<Q>,
+    reference: &Outcome,
+    reduced: &Outcome,
     window: Option<CommonAxis>,
     reference_sound: Verdict,
-) -> ModelComparison<Q> {
+) -> ModelComparison {
     let name = reduced.summary.model.clone().unwrap_or_default();
     let none = Tolerances::new();
     let tolerances = name.parse::<Model>().ok().and_then(|m| scene.tolerances.get(&m)).unwrap_or(&none);
     let aligned = window.map_or_else(Vec::new, |w| align(w, &reference.history, &reduced.history));
 
-    let mut discrepancies = quantities(reference, reduced, tolerances);
-    discrepancies.extend(curve_distances(reference, &aligned, tolerances));
-    discrepancies.extend(residuals(&reference.summary, &reduced.summary, tolerances));
+    let kind = kinds::of(scene);
+    let (m, c) = (&reference.summary, &reduced.summary);
+    let mut discrepancies = quantities(kind, reference, c, tolerances);
+    discrepancies.extend(curve_distances(kind.curves(), m, &aligned, tolerances));
+    discrepancies.extend(residuals(m, c, tolerances));
+    undecided::tell(&mut discrepancies, m);
     let mut integrity = integrity::check(scene, reduced);
-    integrity.push(integrity::same_impact(&reference.summary, &reduced.summary));
+    integrity.push(integrity::same_impact(m, c));
     integrity.push(integrity::tolerances_are_used(tolerances, &discrepancies));
 
-    let rows = discrepancies.iter().map(|d| d.verdict);
-    let verdict = Verdict::all(rows.chain(integrity.iter().map(|c| c.verdict)).chain([reference_sound]));
+    let sound = Verdict::of_soundness(integrity.iter().map(|c| c.verdict));
+    let verdict = Verdict::worst(discrepancies.iter().map(|d| d.verdict).chain([sound, reference_sound]));
     ModelComparison {
         model: name,
         summary: reduced.summary.clone(),
@@ -285,53 +254,53 @@ fn compare_model<Q: Compared>(
 }
 
 /// The rows of the summary's quantities.
-fn quantities<Q: Quantities>(
-    reference: &Outcome<Q>,
-    reduced: &Outcome<Q>,
+fn quantities(
+    kind: &dyn kinds::Kind,
+    reference: &Outcome,
+    reduced: &Summary,
     tolerances: &Tolerances,
 ) -> Vec<Discrepancy> {
-    let (m, c) = (&reference.summary, &reduced.summary);
-    let row = |&(quantity, unit): &(&str, &str)| {
-        let value = |s: &Summary<Q>| s.quantities.value(quantity).unwrap_or(f64::NAN);
+    let row = |&Quantity { name, unit, .. }: &Quantity| {
+        let value = reference.summary.value(name);
+        let size = value.map_or(f64::NAN, f64::abs);
         // `outer_force_peak` belongs to the curve `outer_force`, and so on; a quantity that
         // belongs to none is its own peak.
-        let curve = <Q::History as Curves>::NAMES.iter().find(|(curve, _)| quantity.starts_with(curve));
-        let peak = curve
-            .and_then(|(name, _)| reference.history.values(name))
-            .map_or(value(m).abs(), alignment::peak);
+        let curve = kind.curves().iter().find(|curve| name.starts_with(curve.name));
+        let peak = curve.and_then(|curve| reference.history.curve(curve.name)).map_or(size, alignment::peak);
         Discrepancy::new(
-            (quantity, unit),
-            (value(c), value(m)),
-            Scales { value: value(m).abs(), peak },
-            tolerances.get(quantity),
-            m.uncertainty.get(quantity).copied(),
+            (name, unit),
+            (reduced.value(name), value),
+            Scales { value: size, peak },
+            tolerances.get(name),
+            reference.summary.band(name),
         )
     };
-    Q::NAMES.iter().map(row).collect()
+    kind.quantities().iter().map(row).collect()
 }
 
 /// The rows of root mean square and largest distance of every curve; NaN where it can't be measured.
-fn curve_distances<Q: Quantities>(
-    reference: &Outcome<Q>,
+fn curve_distances(
+    curves: &[Curve],
+    reference: &Summary,
     aligned: &[AlignedCurve],
     tolerances: &Tolerances,
 ) -> Vec<Discrepancy> {
     let mut rows = Vec::new();
-    for &(curve, unit) in <Q::History as Curves>::NAMES {
-        let found = aligned.iter().find(|a| a.quantity == curve);
+    for Curve { name, unit, .. } in curves {
+        let found = aligned.iter().find(|a| a.quantity == *name);
         let peak = found.map_or(f64::NAN, AlignedCurve::peak);
         let distances = [
             ("rms", found.map_or(f64::NAN, AlignedCurve::rms)),
             ("max", found.map_or(f64::NAN, AlignedCurve::largest_difference)),
         ];
         for (kind, distance) in distances {
-            let quantity = format!("{curve}_{kind}");
+            let quantity = format!("{name}_{kind}");
             rows.push(Discrepancy::new(
                 (&quantity, unit),
-                (distance, 0.0),
+                (Some(distance), Some(0.0)),
                 Scales { value: peak, peak },
                 tolerances.get(&quantity),
-                reference.summary.uncertainty.get(&quantity).copied(),
+                reference.band(&quantity),
             ));
         }
     }
@@ -339,7 +308,7 @@ fn curve_distances<Q: Quantities>(
 }
 
 /// The rows of the conservation residuals.
-fn residuals<Q: Quantities>(m: &Summary<Q>, c: &Summary<Q>, tolerances: &Tolerances) -> [Discrepancy; 2] {
+fn residuals(m: &Summary, c: &Summary, tolerances: &Tolerances) -> [Discrepancy; 2] {
     let row = |quantity, reduced, reference| {
         Discrepancy::of_residual(quantity, (reduced, reference), tolerances.get(quantity))
     };

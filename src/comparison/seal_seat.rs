@@ -3,45 +3,44 @@
 
 use super::alignment::peak;
 use super::balance::{displacement_balance, momentum_balance};
-use super::integrity::{Check, Compared, EFFICIENCY_SLACK, VELOCITY_SLACK, contact};
+use super::integrity::{Check, EFFICIENCY_SLACK, Stated, VELOCITY_SLACK, contact};
+use crate::kinds::seal_seat::{SeatCurves, SeatQuantities};
 use crate::result::Outcome;
-use crate::result::SeatHistory;
-use crate::result::SeatQuantities;
-use crate::scene::{Scene, SealSeat, Setup};
+use crate::scene::SealSeat;
 
-impl Compared for SeatQuantities {
-    fn consistency(scene: &Scene, outcome: &Outcome<Self>) -> Vec<Check> {
-        let Setup::SealSeat(setup) = &scene.setup else { return vec![Check::count("kind_of_scene", 1)] };
-        let (summary, history) = (&outcome.summary, &outcome.history);
-        let q = &summary.quantities;
-        let mut checks = start(setup, history);
-        let sphere = (q.sphere_force_peak, q.sphere_contact_end);
-        let actuator = (q.actuator_force_peak, q.actuator_contact_end);
-        let of = |name, force, stated| contact(name, summary.source, (&history.time, force), stated, 0.0);
-        checks.extend(of("sphere", &history.sphere_force, sphere));
-        checks.extend(of("actuator", &history.actuator_force, actuator));
-        checks.extend(velocities(setup, q, history));
-        checks.extend(balances(setup, summary.sample_interval.unwrap_or(0.0), history));
-        checks
+/// Whether a result whose curves can be sampled is consistent with itself and with the scene.
+pub(super) fn check(setup: &SealSeat, outcome: &Outcome) -> Vec<Check> {
+    let summary = &outcome.summary;
+    let Some(history) = SeatCurves::of(&outcome.history) else { return Vec::new() };
+    let mut checks = start(setup, &history);
+    let of =
+        |name, force| contact(name, summary.source, (history.time, force), Stated::of(summary, name), 0.0);
+    checks.extend(of("sphere", history.sphere_force));
+    checks.extend(of("actuator", history.actuator_force));
+    if let Some(q) = SeatQuantities::of_table(&summary.quantities) {
+        checks.extend(velocities(setup, &q, &history));
     }
+    checks.push(components(&history));
+    checks.extend(balances(setup, summary.sample_interval.unwrap_or(0.0), &history));
+    checks
 }
 
-fn start(setup: &SealSeat, history: &SeatHistory) -> Vec<Check> {
+fn start(setup: &SealSeat, history: &SeatCurves) -> Vec<Check> {
     let speed = setup.actuator.speed;
     let velocity = |name: &str, curve: &[f64], expected: f64| {
         Check::new(name, "m/s", curve[0], expected, VELOCITY_SLACK * speed)
     };
-    let [x, z] = &history.sphere_displacement;
+    let [x, z] = history.sphere_displacement;
     vec![
-        velocity("actuator_velocity_start", &history.actuator_velocity, speed),
-        velocity("sphere_velocity_x_start", &history.sphere_velocity[0], 0.0),
-        velocity("sphere_velocity_z_start", &history.sphere_velocity[1], 0.0),
+        velocity("actuator_velocity_start", history.actuator_velocity, speed),
+        velocity("sphere_velocity_x_start", history.sphere_velocity[0], 0.0),
+        velocity("sphere_velocity_z_start", history.sphere_velocity[1], 0.0),
         Check::new("sphere_displacement_start", "m", x[0].hypot(z[0]), 0.0, 1e-3 * peak(z)),
     ]
 }
 
-/// Velocities and what follows from them: speed, direction, efficiency; and the force's components.
-fn velocities(setup: &SealSeat, q: &SeatQuantities, history: &SeatHistory) -> Vec<Check> {
+/// Velocities and what follows from them: speed, direction, efficiency.
+fn velocities(setup: &SealSeat, q: &SeatQuantities, history: &SeatCurves) -> Vec<Check> {
     let last = history.time.len() - 1;
     let bound = VELOCITY_SLACK * setup.actuator.speed;
     let velocity = |name: &str, found: f64, stated: f64| Check::new(name, "m/s", found, stated, bound);
@@ -62,27 +61,31 @@ fn velocities(setup: &SealSeat, q: &SeatQuantities, history: &SeatHistory) -> Ve
         let found = history.actuator_velocity[last];
         checks.push(velocity("actuator_velocity_final", found, q.actuator_velocity_final));
     }
-    let [fx, fz] = &history.sphere_force_components;
-    let missed =
-        history.sphere_force.iter().zip(fx.iter().zip(fz)).map(|(f, (x, z))| (f - x.hypot(*z)).abs());
-    let bound = 1e-6 * peak(&history.sphere_force);
-    checks.push(Check::new("sphere_force_components", "N", missed.fold(0.0, f64::max), 0.0, bound));
     checks
 }
 
+/// The sphere's force is that of its components.
+fn components(history: &SeatCurves) -> Check {
+    let [fx, fz] = history.sphere_force_components;
+    let missed =
+        history.sphere_force.iter().zip(fx.iter().zip(fz)).map(|(f, (x, z))| (f - x.hypot(*z)).abs());
+    let bound = 1e-6 * peak(history.sphere_force);
+    Check::new("sphere_force_components", "N", missed.fold(0.0, f64::max), 0.0, bound)
+}
+
 /// Momentum against impulse and path against velocity, of sphere and actuator.
-fn balances(setup: &SealSeat, interval: f64, history: &SeatHistory) -> Vec<Check> {
-    let time = &history.time;
+fn balances(setup: &SealSeat, interval: f64, history: &SeatCurves) -> Vec<Check> {
+    let time = history.time;
     let mut checks = Vec::new();
     for (axis, c) in [("x", 0), ("z", 1)] {
-        let (path, velocity) = (&history.sphere_displacement[c], &history.sphere_velocity[c]);
-        let force = &history.sphere_force_components[c];
+        let (path, velocity) = (history.sphere_displacement[c], history.sphere_velocity[c]);
+        let force = history.sphere_force_components[c];
         let name = format!("sphere_{axis}");
         checks.push(momentum_balance(&name, setup.sphere.mass, time, velocity, force, 1.0, interval));
         checks.push(displacement_balance(&name, time, path, velocity, interval));
     }
-    let (path, velocity) = (&history.actuator_displacement, &history.actuator_velocity);
-    let force = &history.actuator_force;
+    let (path, velocity) = (history.actuator_displacement, history.actuator_velocity);
+    let force = history.actuator_force;
     checks.push(momentum_balance("actuator", setup.actuator.mass, time, velocity, force, -1.0, interval));
     checks.push(displacement_balance("actuator", time, path, velocity, interval));
     checks

@@ -4,7 +4,7 @@ use super::filter::Filtered;
 use super::least_squares::fit;
 use super::record::{Channel, Record};
 use crate::error::{Error, Result};
-use crate::result::PlateQuantities;
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::scene::PlateImpact;
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::brent::BrentOpt;

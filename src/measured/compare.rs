@@ -7,8 +7,8 @@ use super::filter::{Filtered, SIGNALS};
 use super::record::Record;
 use crate::comparison::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
-use crate::result::CURVES;
-use crate::result::Outcome;
+use crate::kinds::plate_impact::{CURVES, PlateQuantities};
+use crate::result::{CUT, Outcome};
 use crate::scene::Scene;
 use serde::Serialize;
 
@@ -66,8 +66,8 @@ impl Series {
 pub struct Partner {
     /// "reference" or the model's name.
     pub partner: String,
-    /// Its efficiency.
-    pub efficiency: f64,
+    /// Its efficiency; `None` if its run was cut during a contact.
+    pub efficiency: Option<f64>,
     /// Its efficiency less the mean of the measured ones.
     pub efficiency_difference: Option<f64>,
     /// Curve metrics, the measurement as reference, the partner filtered.
@@ -94,9 +94,11 @@ pub fn compare(
         Error::Reference(format!("the history of the reference of `{}` can't be used", scene.name))
     })?;
     let model = Filtered::new(&reference.history, bandwidth)?;
+    let quantities = PlateQuantities::of_table(&reference.summary.quantities)
+        .ok_or_else(|| Error::Reference(format!("the reference of `{}`: {CUT}", scene.name)))?;
     let records = records
         .iter()
-        .map(|record| align(record, &model, &reference.summary.quantities, setup, (bandwidth, speed)))
+        .map(|record| align(record, &model, &quantities, setup, (bandwidth, speed)))
         .collect::<Result<Vec<_>>>()?;
     let first = records.first().ok_or_else(|| Error::Usage("no measured file is given".into()))?;
     let window = CommonAxis { end: window.end.min(first.time.last().copied().unwrap_or(0.0)), ..window };
@@ -121,11 +123,11 @@ pub fn compare(
                     Some(SampledCurve { quantity, values })
                 })
                 .collect();
-            let own = outcome.summary.quantities.efficiency;
+            let own = outcome.summary.value("efficiency");
             Ok(Partner {
                 partner,
                 efficiency: own,
-                efficiency_difference: efficiency.as_ref().map(|series| own - series.mean),
+                efficiency_difference: efficiency.as_ref().and_then(|series| Some(own? - series.mean)),
                 curves: metrics(&curves, &filtered, window),
                 filtered,
             })
@@ -146,11 +148,11 @@ fn sampled(record: &AlignedRecord, window: CommonAxis) -> Vec<SampledCurve> {
 
 fn metrics(measured: &[SampledCurve], filtered: &[SampledCurve], axis: CommonAxis) -> Vec<CurveMetrics> {
     let pair = |curve: &SampledCurve| {
-        let (quantity, unit) = CURVES.into_iter().find(|(name, _)| *name == curve.quantity)?;
+        let known = CURVES.iter().find(|known| known.name == curve.quantity)?;
         let partner = filtered.iter().find(|other| other.quantity == curve.quantity)?;
         let aligned = AlignedCurve {
-            quantity,
-            unit,
+            quantity: known.name,
+            unit: known.unit,
             axis,
             reference: curve.values.clone(),
             reduced: partner.values.clone(),

@@ -67,16 +67,20 @@ impl Filtered {
         let time: Vec<f64> = (0..count).map(|k| start - margin + step * k as f64).collect();
         let mut curves = Vec::with_capacity(SIGNALS.len());
         for name in SIGNALS {
-            let motion = if name.starts_with("outer") { &history.outer } else { &history.inner };
-            let displacement = name.ends_with("displacement");
-            let values = if displacement { &motion.displacement } else { &motion.velocity };
-            let rates = if displacement {
-                [motion.velocity[0], motion.velocity[history.len() - 1]]
-            } else {
-                [0.0; 2]
+            let curve = |name: &str| {
+                let whole = history.curve(name).filter(|values| values.len() == history.len());
+                whole.ok_or_else(|| Error::Usage(format!("a history without `{name}` can't be filtered")))
             };
-            let curve = MonotoneCubic::new(&history.time, values);
-            let at = |t: f64| curve.at(t) + rates[0] * (t - start).min(0.0) + rates[1] * (t - end).max(0.0);
+            let values = curve(name)?;
+            let rates = match name.strip_suffix("displacement") {
+                Some(body) => {
+                    let velocity = curve(&format!("{body}velocity"))?;
+                    [velocity[0], velocity[history.len() - 1]]
+                }
+                None => [0.0; 2],
+            };
+            let course = MonotoneCubic::new(&history.time, values);
+            let at = |t: f64| course.at(t) + rates[0] * (t - start).min(0.0) + rates[1] * (t - end).max(0.0);
             let sampled: Vec<f64> = time.iter().map(|t| at(*t)).collect();
             curves.push((rates[0], rates[1], low_pass(&sampled, step, bandwidth)?));
         }
@@ -122,6 +126,7 @@ impl Filtered {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinds::plate_impact::CURVES;
     use std::f64::consts::PI;
 
     /// Amplitude and shift in s of a sine of `frequency` after the filter.
@@ -158,11 +163,10 @@ mod tests {
     #[test]
     fn free_flight_passes_unchanged() {
         let time: Vec<f64> = (0..=200).map(|k| 1e-6 * f64::from(k)).collect();
-        let mut history = History { time: time.clone(), ..History::default() };
-        history.outer.velocity = vec![-0.55; time.len()];
-        history.outer.displacement = time.iter().map(|t| -0.55 * t).collect();
-        history.inner.velocity = vec![0.0; time.len()];
-        history.inner.displacement = vec![0.0; time.len()];
+        let mut history = History::new(&CURVES);
+        for t in &time {
+            history.push(*t, [-0.55 * t, 0.0, 0.0, -0.55, 0.0, 0.0, 0.0, 0.0]);
+        }
         let filtered = Filtered::new(&history, 100e3).expect("filtered");
         let (x, v) =
             (filtered.curve("outer_displacement").expect("x"), filtered.curve("outer_velocity").expect("v"));

@@ -1,7 +1,7 @@
 //! A record from a CSV file: times and signals with their units in the header.
 
 use crate::error::{Error, Result};
-use crate::result::CURVES;
+use crate::kinds::plate_impact::CURVES;
 use crate::scene::quantity_in;
 use std::path::{Path, PathBuf};
 
@@ -130,7 +130,7 @@ fn column(heading: &str) -> std::result::Result<(&'static str, f64), String> {
             COLUMNS.join(", ")
         ));
     };
-    let si = CURVES.iter().find(|(curve, _)| *curve == known).map_or("s", |(_, unit)| unit);
+    let si = CURVES.iter().find(|curve| curve.name == known).map_or("s", |curve| curve.unit);
     let factor = match unit {
         None => 1.0,
         Some(unit) => {

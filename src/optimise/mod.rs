@@ -11,9 +11,7 @@ use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::report::{ChartPanel, Series, chart};
-use crate::result::Outcome;
-use crate::result::SCHEMA_VERSION;
-use crate::result::Summary;
+use crate::result::{CUT, Outcome, SCHEMA_VERSION, Summary};
 use crate::scene::{Field, Model, Scene, Template};
 use rayon::prelude::*;
 use search::{Search, maximise};
@@ -215,7 +213,7 @@ impl Problem {
         let values: Vec<f64> =
             self.variables.iter().zip(&exact).map(|(v, x)| rounded(*x).clamp(v.low, v.high)).collect();
         let summary = self.reduced(&values)?.run(TOLERANCE)?;
-        let efficiency = summary.quantities.efficiency;
+        let efficiency = summary.value("efficiency").ok_or_else(|| Error::Solver(CUT.into()))?;
         let at = |k: usize, x: f64| {
             let mut there = values.clone();
             there[k] = x;

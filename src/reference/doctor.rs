@@ -1,10 +1,7 @@
 //! What the reference needs and what of it is there.
 
 use super::{Lookup, Resolution, Store, python};
-use crate::result::PlateQuantities;
-use crate::result::Quantities;
-use crate::result::SeatQuantities;
-use crate::scene::{Scene, Setup, shipped};
+use crate::scene::{Scene, shipped};
 use serde::Serialize;
 use std::process::{Command, Stdio};
 
@@ -33,11 +30,7 @@ pub fn doctor(store: &Store) -> Vec<Check> {
     checks.push(store_folder(store));
     for path in shipped().unwrap_or_default() {
         if let Ok(scene) = Scene::read(&path) {
-            let look = match scene.setup {
-                Setup::PlateImpact(_) => entry::<PlateQuantities>,
-                Setup::SealSeat(_) => entry::<SeatQuantities>,
-            };
-            checks.extend(Resolution::ALL.iter().filter_map(|r| look(store, &scene, *r)));
+            checks.extend(Resolution::ALL.iter().filter_map(|r| entry(store, &scene, *r)));
         }
     }
     checks
@@ -88,8 +81,8 @@ fn store_folder(store: &Store) -> Check {
 }
 
 /// The state of one entry. Only the `paper` resolution is expected to be there.
-fn entry<Q: Quantities>(store: &Store, scene: &Scene, resolution: Resolution) -> Option<Check> {
-    let (found, needed_for) = match store.find_here_or_shipped::<Q>(scene, resolution) {
+fn entry(store: &Store, scene: &Scene, resolution: Resolution) -> Option<Check> {
+    let (found, needed_for) = match store.find_here_or_shipped(scene, resolution) {
         Lookup::Missing if resolution != Resolution::Paper => return None,
         Lookup::Missing => (None, "comparing; it is not stored".to_owned()),
         Lookup::Stale { reason } => (None, format!("comparing; what is stored is stale: {reason}")),

@@ -1,12 +1,8 @@
 //! One stored solution: a folder whose files are verified before they are believed.
 
 use super::{CurveBands, history_file};
-use crate::result::Outcome;
-use crate::result::PlateQuantities;
-use crate::result::Quantities;
-use crate::result::SCHEMA_VERSION;
-use crate::result::Source;
-use crate::result::Summary;
+use crate::kinds::Kind;
+use crate::result::{Outcome, SCHEMA_VERSION, Source, Summary};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -18,9 +14,9 @@ use std::path::{Path, PathBuf};
 /// `outcome.summary.samples` may differ from the number of rows of the history: both are kept
 /// as found, and the comparison makes a failed check of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stored<Q: Quantities = PlateQuantities> {
+pub struct Stored {
     /// Summary and history.
-    pub outcome: Outcome<Q>,
+    pub outcome: Outcome,
     /// 95 % bands of the history's curves, if the solution has them.
     pub bands: Option<CurveBands>,
     /// What it was made from and with: `provenance.json`.
@@ -54,13 +50,14 @@ pub(super) enum MeshFiles {
 }
 
 /// Verifies the folder's checksums and reads it.
-pub(super) fn load<Q: Quantities>(folder: &Path, mesh_files: MeshFiles) -> Result<Stored<Q>, Damage> {
+pub(super) fn load(kind: &dyn Kind, folder: &Path, mesh_files: MeshFiles) -> Result<Stored, Damage> {
     verify(folder, mesh_files)?;
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
-    let summary: Summary<Q> = read_json(folder, SUMMARY)?;
+    let summary = Summary::read(kind.quantities(), &text(folder, SUMMARY)?)
+        .map_err(|e| damage(SUMMARY, format!("is not what is expected: {e}")))?;
     let provenance: Value = read_json(folder, PROVENANCE)?;
     let (history, bands) =
-        history_file::read(&folder.join(HISTORY)).map_err(|reason| damage(HISTORY, reason))?;
+        history_file::read(kind.curves(), &folder.join(HISTORY)).map_err(|reason| damage(HISTORY, reason))?;
     if summary.schema_version != SCHEMA_VERSION {
         let reason =
             format!("schema_version is {}; this program reads {SCHEMA_VERSION}", summary.schema_version);
@@ -99,10 +96,13 @@ pub(super) fn hashes(folder: &Path) -> Option<(String, String)> {
 }
 
 fn read_json<T: serde::de::DeserializeOwned>(folder: &Path, name: &str) -> Result<T, Damage> {
+    serde_json::from_str(&text(folder, name)?)
+        .map_err(|e| Damage { file: folder.join(name), reason: format!("is not what is expected: {e}") })
+}
+
+fn text(folder: &Path, name: &str) -> Result<String, Damage> {
     let file = folder.join(name);
-    let fail = |reason: String| Damage { file: file.clone(), reason };
-    let text = std::fs::read_to_string(&file).map_err(|e| fail(format!("can't be read: {e}")))?;
-    serde_json::from_str(&text).map_err(|e| fail(format!("is not what is expected: {e}")))
+    std::fs::read_to_string(&file).map_err(|e| Damage { file, reason: format!("can't be read: {e}") })
 }
 
 fn verify(folder: &Path, mesh_files: MeshFiles) -> Result<(), Damage> {

@@ -1,82 +1,95 @@
 //! `history.csv` of a stored solution, read strictly.
 
 use super::CurveBands;
-use crate::result::Curves;
+use crate::result::{Curve, History};
 use std::path::Path;
 
-/// What the name of a band's column adds to that of its curve. Bands follow the curves, one per curve.
+/// What the name of a band's column adds to that of its curve.
 const BAND: &str = "_band";
 
-/// The number, if it can be the half width of a band.
-fn width(text: &str) -> Option<f64> {
-    text.parse().ok().filter(|width: &f64| width.is_finite() && *width >= 0.0)
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Column {
+    Time,
+    /// The curve of this number.
+    Curve(usize),
+    /// The half width of its band.
+    Band(usize),
 }
 
-/// Whether these are the columns of a history, with or without bands.
-fn are_columns(found: &csv::StringRecord, columns: &[&str]) -> bool {
-    let bands = columns[1..].iter().map(|name| format!("{name}{BAND}"));
-    let all: Vec<String> = columns.iter().map(|name| (*name).to_owned()).chain(bands).collect();
-    found.iter().eq(columns.iter().copied()) || found.iter().eq(all.iter().map(String::as_str))
+/// The columns a header names: the time, then every curve once, and the bands of all curves or of none.
+fn columns(header: &csv::StringRecord, curves: &[Curve]) -> Option<Vec<Column>> {
+    let curve = |name: &str| curves.iter().position(|curve| curve.name == name);
+    let column = |name: &str| match (name, name.strip_suffix(BAND)) {
+        ("time", _) => Some(Column::Time),
+        (_, Some(name)) => curve(name).map(Column::Band),
+        (name, None) => curve(name).map(Column::Curve),
+    };
+    let columns: Vec<Column> = header.iter().map(column).collect::<Option<_>>()?;
+    let all = |of: fn(usize) -> Column| (0..curves.len()).all(|k| columns.contains(&of(k)));
+    // no column twice: there are as many as there are names
+    let complete = columns.first() == Some(&Column::Time)
+        && all(Column::Curve)
+        && match columns.len().checked_sub(1 + curves.len()) {
+            Some(0) => true,
+            Some(bands) => bands == curves.len() && all(Column::Band),
+            None => false,
+        };
+    complete.then_some(columns)
 }
 
-/// Reads a history: its columns, finite numbers, strictly increasing time, one row at least; and the bands of its
-/// curves, if the file has them.
+/// Reads a history: the time and these curves, finite numbers, strictly increasing time, one row at least; and the bands of
+/// the curves, if the file has them.
 ///
 /// # Errors
 /// One sentence with line, column and value.
-pub(super) fn read<H: Curves>(path: &Path) -> Result<(H, Option<CurveBands>), String> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .from_path(path)
-        .map_err(|e| format!("can't be read: {e}"))?;
-    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); H::COLUMNS.len()];
-    let mut bands: Vec<Vec<f64>> = vec![Vec::new(); H::COLUMNS.len() - 1];
-    for (index, record) in reader.records().enumerate() {
-        let line = index + 1;
-        // The reader itself refuses a row with another number of columns than the first.
-        let record = record.map_err(|e| format!("line {line}: {e}"))?;
-        if index == 0 {
-            if !are_columns(&record, H::COLUMNS) {
-                let found: Vec<&str> = record.iter().take(12).collect();
-                return Err(format!(
-                    "line 1: the columns are {}; expected {} and perhaps the bands of the curves",
-                    found.join(","),
-                    H::COLUMNS.join(",")
-                ));
-            }
-            continue;
-        }
-        for ((column, name), text) in columns.iter_mut().zip(H::COLUMNS).zip(record.iter()) {
-            let number: Option<f64> = text.parse().ok().filter(|n: &f64| n.is_finite());
-            let number =
-                number.ok_or_else(|| format!("line {line}: {name} is `{text}`, not a finite number"))?;
-            if let (true, Some(last)) = (*name == "time", column.last())
-                && number <= *last
-            {
-                return Err(format!(
-                    "line {line}: time is {number} s, not after {last} s of the line before"
-                ));
-            }
-            column.push(number);
-        }
-        for (band, text) in bands.iter_mut().zip(record.iter().skip(H::COLUMNS.len())) {
-            let width = width(text);
-            band.push(width.ok_or_else(|| {
-                format!("line {line}: a band is `{text}`, not a finite number of 0 or more")
-            })?);
-        }
-    }
-    if columns[0].is_empty() {
+pub(super) fn read(curves: &[Curve], path: &Path) -> Result<(History, Option<CurveBands>), String> {
+    let mut reader = csv::Reader::from_path(path).map_err(|e| format!("can't be read: {e}"))?;
+    let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
+    if header.is_empty() {
         return Err("has no sample".to_owned());
     }
-    let has_bands = !bands[0].is_empty();
-    let bands = has_bands
-        .then(|| CurveBands::new(columns[0].clone(), H::COLUMNS[1..].iter().copied().zip(bands).collect()));
-    let mut history = H::default();
-    for (values, name) in columns.into_iter().zip(H::COLUMNS) {
-        let column =
-            history.column(name).ok_or_else(|| format!("has a column `{name}` that belongs nowhere"))?;
-        *column = values;
+    let columns = columns(&header, curves).ok_or_else(|| {
+        let found: Vec<&str> = header.iter().take(12).collect();
+        let expected: Vec<&str> = curves.iter().map(|curve| curve.name).collect();
+        format!(
+            "line 1: the columns are {}; expected time, then {}, and perhaps the bands of all curves",
+            found.join(","),
+            expected.join(",")
+        )
+    })?;
+    let mut history = History::new(curves);
+    let mut bands: Vec<Vec<f64>> = vec![Vec::new(); curves.len()];
+    for (index, record) in reader.records().enumerate() {
+        let line = index + 2;
+        // The reader itself refuses a row with another number of columns than the first.
+        let record = record.map_err(|e| format!("line {line}: {e}"))?;
+        for ((column, name), text) in columns.iter().zip(&header).zip(&record) {
+            let number = text.parse().ok().filter(|n: &f64| n.is_finite());
+            let number =
+                number.ok_or_else(|| format!("line {line}: {name} is `{text}`, not a finite number"))?;
+            match *column {
+                Column::Time => {
+                    if let Some(last) = history.time.last().filter(|last| number <= **last) {
+                        return Err(format!(
+                            "line {line}: time is {number} s, not after {last} s of the line before"
+                        ));
+                    }
+                    history.time.push(number);
+                }
+                Column::Curve(k) => history.curves[k].values.push(number),
+                Column::Band(_) if number < 0.0 => {
+                    return Err(format!("line {line}: {name} is `{text}`, not a width of 0 or more"));
+                }
+                Column::Band(k) => bands[k].push(number),
+            }
+        }
     }
+    if history.is_empty() {
+        return Err("has no sample".to_owned());
+    }
+    let names = curves.iter().map(|curve| curve.name);
+    let bands = (columns.len() > 1 + curves.len())
+        .then(|| CurveBands::new(history.time.clone(), names.zip(bands).collect()));
     Ok((history, bands))
 }

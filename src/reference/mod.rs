@@ -27,7 +27,7 @@ pub use modes::{plate_modes, seat_frequencies};
 pub use python::{python, versions};
 pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_mesh_with, seat_meshes};
 pub use section::MeshSection;
-pub use solve::{Wish, solve, solve_as, solve_with};
+pub use solve::{Wish, solve, solve_with};
 pub use store::{Lookup, Store};
 
 /// Fineness of the reference's mesh, relative to `reference.elements_per_contact_radius`.

@@ -2,7 +2,6 @@
 
 use super::Stored;
 use super::fields::{Arrays, series_nearest};
-use crate::result::SeatQuantities;
 use std::path::Path;
 
 /// Corners of the faces of a tetrahedron.
@@ -21,7 +20,7 @@ pub struct MeshSection {
     pub von_mises: Option<Vec<f64>>,
 }
 
-impl Stored<SeatQuantities> {
+impl Stored {
     /// The mesh in the plane of symmetry.
     ///
     /// # Errors

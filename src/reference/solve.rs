@@ -4,7 +4,7 @@ use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::store::Installed;
 use super::{Resolution, Store, identity, python};
-use crate::result::Quantities;
+use crate::kinds;
 use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use std::ffi::OsStr;
@@ -39,7 +39,7 @@ pub fn solve(
     wish: &Wish,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
-    solve_as(&python::python()?, scene, resolution, store, wish, progress)
+    solve_with(&python::python()?, scene, resolution, store, wish, progress)
 }
 
 /// As [`solve`], with the interpreter `python`.
@@ -54,21 +54,6 @@ pub fn solve_with(
     wish: &Wish,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
-    solve_as(python, scene, resolution, store, wish, progress)
-}
-
-/// As [`solve_with`], for a scene of the kind that has the quantities `Q`.
-///
-/// # Errors
-/// As [`solve`].
-pub fn solve_as<Q: Quantities>(
-    python: &Path,
-    scene: &Scene,
-    resolution: Resolution,
-    store: &Store,
-    wish: &Wish,
-    progress: &mut dyn FnMut(&Progress),
-) -> Result<Stored<Q>> {
     let work = store.work_folder(scene)?;
     let input = work.path().join("scene.json");
     let output = work.path().join("result");
@@ -106,7 +91,7 @@ pub fn solve_as<Q: Quantities>(
     if !output.is_dir() {
         return Err(unusable("it wrote no result".to_owned()));
     }
-    let stored = entry::load(&output, entry::MeshFiles::Required).map_err(|d| {
+    let stored = entry::load(kinds::of(scene), &output, entry::MeshFiles::Required).map_err(|d| {
         let file = d.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         unusable(format!("its {file} {}", d.reason))
     })?;

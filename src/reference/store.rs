@@ -7,11 +7,9 @@
 
 use super::entry::{self, Damage, Stored};
 use super::{Resolution, identity};
+use crate::kinds;
 use crate::project::project_root;
-use crate::result::PlateQuantities;
-use crate::result::Quantities;
-use crate::result::SeatQuantities;
-use crate::scene::{Scene, Setup};
+use crate::scene::Scene;
 use crate::{Error, Result};
 use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
@@ -35,9 +33,9 @@ pub struct Store {
 
 /// What the store has for a scene at a resolution.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Lookup<Q: Quantities = PlateQuantities> {
+pub enum Lookup {
     /// A solution of exactly this scene with exactly these settings.
-    Found(Box<Stored<Q>>),
+    Found(Box<Stored>),
     /// There is none.
     Missing,
     /// There is one of another scene or with other settings.
@@ -54,7 +52,7 @@ pub enum Lookup<Q: Quantities = PlateQuantities> {
     },
 }
 
-impl<Q: Quantities> From<Damage> for Lookup<Q> {
+impl From<Damage> for Lookup {
     fn from(damage: Damage) -> Self {
         Lookup::Damaged { file: damage.file, reason: damage.reason }
     }
@@ -94,13 +92,8 @@ impl Store {
         Store { root: project_root().join("fem_reference").join("solutions") }
     }
 
-    /// Looks for the solution of `scene`, a plate impact, at `resolution`. Every file is verified by its checksum.
+    /// Looks for the solution of `scene` at `resolution`. Every file is verified by its checksum.
     pub fn find(&self, scene: &Scene, resolution: Resolution) -> Lookup {
-        self.find_as(scene, resolution)
-    }
-
-    /// As [`Store::find`], for a scene of the kind that has the quantities `Q`.
-    pub fn find_as<Q: Quantities>(&self, scene: &Scene, resolution: Resolution) -> Lookup<Q> {
         let lookup = settled(&self.folder(scene, resolution), scene, resolution);
         if matches!(lookup, Lookup::Found(_)) {
             return lookup;
@@ -111,13 +104,13 @@ impl Store {
         }
     }
 
-    /// As [`Store::find_as`]; what is missing or stale here is looked for in the project's own store too, which is only read.
-    pub fn find_here_or_shipped<Q: Quantities>(&self, scene: &Scene, resolution: Resolution) -> Lookup<Q> {
-        let lookup = self.find_as(scene, resolution);
+    /// As [`Store::find`]; what is missing or stale here is looked for in the project's own store too, which is only read.
+    pub fn find_here_or_shipped(&self, scene: &Scene, resolution: Resolution) -> Lookup {
+        let lookup = self.find(scene, resolution);
         if !matches!(lookup, Lookup::Missing | Lookup::Stale { .. }) {
             return lookup;
         }
-        match Store::shipped().find_as(scene, resolution) {
+        match Store::shipped().find(scene, resolution) {
             Lookup::Found(stored) => Lookup::Found(stored),
             _ => lookup,
         }
@@ -138,12 +131,7 @@ impl Store {
                 let name = folder.file_name().to_string_lossy().into_owned();
                 Resolution::of_folder(name.split('.').next().unwrap_or(&name))
             })
-            .filter(|resolution| match &scene.setup {
-                Setup::PlateImpact(_) => matches!(self.find(scene, *resolution), Lookup::Found(_)),
-                Setup::SealSeat(_) => {
-                    matches!(self.find_as::<SeatQuantities>(scene, *resolution), Lookup::Found(_))
-                }
-            })
+            .filter(|resolution| matches!(self.find(scene, *resolution), Lookup::Found(_)))
             .collect();
         found.sort();
         found.dedup();
@@ -250,7 +238,7 @@ fn earlier_name(resolution: Resolution, scene_hash: &str, settings_hash: &str) -
 }
 
 /// As [`examine`], of one and the same version of the entry.
-fn settled<Q: Quantities>(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup<Q> {
+fn settled(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
     loop {
         let before = entry::fingerprint(folder);
         let lookup = examine(folder, scene, resolution);
@@ -262,7 +250,7 @@ fn settled<Q: Quantities>(folder: &Path, scene: &Scene, resolution: Resolution) 
     }
 }
 
-fn examine<Q: Quantities>(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup<Q> {
+fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
     match fs::metadata(folder) {
         Err(e) if e.kind() == ErrorKind::NotFound => return Lookup::Missing,
         Err(e) => return Damage { file: folder.to_path_buf(), reason: format!("can't be read: {e}") }.into(),
@@ -271,7 +259,7 @@ fn examine<Q: Quantities>(folder: &Path, scene: &Scene, resolution: Resolution) 
         }
         Ok(_) => {}
     }
-    let stored = match entry::load(folder, entry::MeshFiles::Optional) {
+    let stored = match entry::load(kinds::of(scene), folder, entry::MeshFiles::Optional) {
         Ok(stored) => stored,
         Err(damage) => return damage.into(),
     };

@@ -1,41 +1,55 @@
 //! What a report shows besides the comparison, where there is any of it.
 
+use super::presentation;
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
-use crate::reference::{CurveBands, FieldMesh, Stored};
-use crate::result::Outcome;
+use crate::reference::{CurveBands, FieldMesh, MeshSection, Stored};
+use crate::result::History;
+use crate::scene::Scene;
+use std::path::PathBuf;
 
 /// Nothing of this changes a verdict; all of it may be missing.
 #[derive(Debug, Clone, Default)]
 pub struct Attachments {
     /// 95 % bands of the reference's curves.
     pub bands: Option<CurveBands>,
-    /// Mesh of the reference.
+    /// Mesh of an axisymmetric reference.
     pub mesh: Option<FieldMesh>,
-    /// Stress of the reference at the instant (s) nearest to the outer force's peak.
+    /// Its stress at the instant (s) kept that is nearest to the largest force.
     pub stress: Option<(f64, FieldMesh)>,
+    /// Section of a solid reference's mesh in the plane of symmetry.
+    pub section: Option<MeshSection>,
+    /// Its stress at the instant (s) kept that is nearest to the largest force.
+    pub section_stress: Option<(f64, MeshSection)>,
+    /// The series of deformed states that ParaView plays.
+    pub animation: Option<PathBuf>,
+    /// What the reduced models have cost, in their order; of models that share a mesh with the reference.
+    pub cost: Vec<Cost>,
     /// The gated numbers over the commits recorded.
     pub trends: Vec<Trend>,
     /// Changes of tolerances and reference accepted so far, oldest first.
     pub acceptances: Vec<Acceptance>,
 }
 
+/// What a reduced model has cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cost {
+    /// Mesh to modes and flexibility, or from the cache, s.
+    pub setup_seconds: f64,
+    /// Degrees of freedom of the mesh without those that supports hold.
+    pub dofs: usize,
+}
+
 impl Attachments {
-    /// What the store has beside the solution's numbers. Meshes and fields that can't be drawn, those of solids for
-    /// instance, are left out.
-    pub fn of(stored: &Stored) -> Self {
-        Attachments {
-            bands: stored.bands.clone(),
-            mesh: stored.mesh().ok(),
-            stress: stored.stress_near(instant_of_peak(&stored.outcome)).ok().flatten(),
-            ..Attachments::default()
-        }
+    /// What the store has beside the numbers of a solution of `scene`. Meshes and fields that can't be drawn are left out.
+    pub fn of(scene: &Scene, stored: &Stored) -> Self {
+        let drawn = presentation::of(scene).attachments(stored);
+        Attachments { bands: stored.bands.clone(), ..drawn }
     }
 }
 
-/// When the outer contact force is largest, s.
-fn instant_of_peak(outcome: &Outcome) -> f64 {
-    let history = &outcome.history;
-    let forces = history.time.iter().zip(&history.outer_force);
-    forces.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0.0, |(time, _)| *time)
+/// When the curve called `name` is largest, s.
+pub(super) fn instant_of_peak(history: &History, name: &str) -> f64 {
+    let values = history.time.iter().zip(history.curve(name).unwrap_or_default());
+    values.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0.0, |(time, _)| *time)
 }

@@ -3,7 +3,7 @@
 use super::SceneReport;
 use crate::comparison::sample;
 use crate::error::{Error, Result};
-use crate::result::CURVES;
+use crate::kinds;
 
 /// CSV, eight significant digits, with the columns `time`, then `<source>_<curve>` for the reference and every model. A cell
 /// is empty where the result doesn't cover the axis; without a common axis there is only the header.
@@ -17,16 +17,17 @@ pub fn curves_csv(report: &SceneReport) -> Result<String> {
     let sources: Vec<_> = std::iter::once(reference).chain(reduced).collect();
 
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let names = sources.iter().flat_map(|(s, _)| CURVES.iter().map(move |(c, _)| format!("{s}_{c}")));
+    let curves = kinds::of(report.scene).curves();
+    let names =
+        sources.iter().flat_map(|(s, _)| curves.iter().map(move |curve| format!("{s}_{}", curve.name)));
     writer.write_record(["time".to_owned()].into_iter().chain(names)).map_err(|e| internal(e.to_string()))?;
     if let Some(axis) = report.comparison.window {
         let columns: Vec<Vec<f64>> = sources
             .iter()
             .flat_map(|(_, history)| {
-                let mut curves = sample(axis, *history);
-                curves.sort_by_key(|c| CURVES.iter().position(|(name, _)| *name == c.quantity));
-                let missing = if curves.is_empty() { CURVES.len() } else { 0 };
-                curves.into_iter().map(|c| c.values).chain(vec![Vec::new(); missing])
+                let sampled = sample(axis, history);
+                let missing = if sampled.is_empty() { curves.len() } else { 0 };
+                sampled.into_iter().map(|c| c.values).chain(vec![Vec::new(); missing])
             })
             .collect();
         for k in 0..axis.samples {

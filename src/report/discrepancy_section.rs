@@ -1,17 +1,16 @@
 //! Discrepancies, curve metrics and checks of one reduced model as tables of the page.
 
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
-use super::html::{badge, number, scrolled, shown};
+use super::html::{badge, model_badge, named, number, scrolled};
 use crate::comparison::{BandVerdict, Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
 use crate::result::ContactPatch;
 use crate::result::ContactPressure;
-use crate::result::Quantities;
 use maud::{Markup, html};
 
 /// Section of one model.
-pub(super) fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
+pub(super) fn model_section(model: &ModelComparison) -> Markup {
     html! {
-        h2 { "Model " (model_name(&model.model, model.summary.modes)) " " (shown(model.shown())) }
+        h2 { "Model " (model_name(&model.model, model.summary.modes)) " " (model_badge(model)) }
         @for warning in &model.summary.warnings { p { strong { "Warning: " } (warning) } }
         (contradictions(&model.model, &model.integrity))
         h3 { "Discrepancies" }
@@ -24,6 +23,7 @@ pub(super) fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> Markup
             } }
             tbody { @for row in &model.discrepancies { (discrepancy_row(row)) } }
         } }))
+        (undecided(&model.discrepancies))
         p.soft { "Difference is reduced minus reference. A row without tolerance is not gated. Bias is the known "
             "discrepancy about which the tolerance lies. A distance of curves is relative to the reference's peak. "
             "|E| against u (ASME V&V 20): a difference within the reference's 95 % band proves no error of the model." }
@@ -47,6 +47,17 @@ pub(super) fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> Markup
     }
 }
 
+/// What would decide the rows that are undecided.
+fn undecided(rows: &[Discrepancy]) -> Markup {
+    let open = || rows.iter().filter_map(|row| Some((row, row.would_decide.as_ref()?)));
+    html! {
+        @if open().next().is_some() {
+            p { (badge(Verdict::Undecided)) " The reference's band reaches across the bound:" }
+            ul { @for (row, how) in open() { li { (words(&row.quantity)) ": " (how) } } }
+        }
+    }
+}
+
 /// Contact patches at the force peaks, in a sentence.
 fn pressures(pressure: &ContactPressure) -> Markup {
     let patch = |of: &ContactPatch| {
@@ -61,22 +72,21 @@ fn pressures(pressure: &ContactPressure) -> Markup {
 }
 
 fn discrepancy_row(row: &Discrepancy) -> Markup {
-    let to = prefixed(&row.unit, row.reference.abs().max(row.reduced.abs()));
+    let to = prefixed(&row.unit, row.size());
     html! {
         tr data-quantity=(row.quantity) {
-            th scope="row" { (words(&row.quantity)) }
+            th scope="row" { (named(&row.quantity)) }
             td.left {
-                @if row.tolerance.is_none() && row.verdict.passed() { span.soft { "not gated" } }
-                @else { (badge(row.verdict)) }
+                @if row.verdict == Verdict::NotGated { span.soft { (row.verdict) } } @else { (badge(row.verdict)) }
             }
             td data-field="relative" data-si=(row.relative.map_or(String::new(), |r| r.to_string())) {
                 (percent(row.relative))
             }
             (number("tolerance", row.tolerance, to, 3))
             (number("bias", row.bias, to, 3))
-            (number("reduced", Some(row.reduced), to, 5))
-            (number("reference", Some(row.reference), to, 5))
-            (number("difference", Some(row.difference), to, 3))
+            (number("reduced", row.reduced, to, 5))
+            (number("reference", row.reference, to, 5))
+            (number("difference", row.difference, to, 3))
             (number("uncertainty", row.uncertainty, to, 2))
             td.left data-field="band_verdict" { (row.band_verdict.map_or("–", BandVerdict::words)) }
         }
@@ -111,7 +121,7 @@ fn curve_row(curve: &CurveMetrics) -> Markup {
 
 /// What a result contradicts itself in, in plain sight.
 pub(super) fn contradictions(source: &str, checks: &[Check]) -> Markup {
-    let failed: Vec<_> = checks.iter().filter(|c| !c.verdict.passed()).collect();
+    let failed: Vec<_> = checks.iter().filter(|c| c.verdict.failed()).collect();
     html! {
         @if !failed.is_empty() {
             p { (badge(Verdict::Fail)) " The result of " (source) " contradicts itself or its scene:" }

@@ -10,7 +10,7 @@ use super::format::{model_name, significant};
 use super::ticks::{tick_label, ticks};
 use crate::comparison::{CommonAxis, SampledCurve, sample};
 use crate::measured::Measured;
-use crate::result::CURVES;
+use crate::result::Outcome;
 use maud::{Markup, PreEscaped, html};
 
 /// Font size in px of the drawing.
@@ -173,7 +173,7 @@ fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
         class: "fig-reference".into(),
         dash: "none",
         width: 2.1,
-        efficiency: report.reference.summary.quantities.efficiency,
+        efficiency: efficiency(report.reference),
         curves: sample(axis, &report.reference.history),
         bands: bands(report, axis),
     };
@@ -184,7 +184,7 @@ fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
             dash: dash(&model),
             class: format!("fig-{model}"),
             width: 1.7,
-            efficiency: outcome.summary.quantities.efficiency,
+            efficiency: efficiency(outcome),
             curves: sample(axis, &outcome.history),
             bands: Vec::new(),
             short: model,
@@ -196,8 +196,14 @@ fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
 /// Half widths of the 95 % bands of the reference's curves; empty if they are not known.
 fn bands(report: &SceneReport, axis: CommonAxis) -> Vec<SampledCurve> {
     let Some(bands) = &report.attachments.bands else { return Vec::new() };
-    let band = |(quantity, _)| Some(SampledCurve { quantity, values: bands.sampled(quantity, &axis)? });
-    CURVES.into_iter().filter_map(band).collect()
+    let curves = report.reference.history.curves.iter();
+    let band = |quantity| Some(SampledCurve { quantity, values: bands.sampled(quantity, &axis)? });
+    curves.filter_map(|curve| band(curve.name)).collect()
+}
+
+/// NaN, which is shown as a dash, if it is not determined.
+fn efficiency(outcome: &Outcome) -> f64 {
+    outcome.summary.value("efficiency").unwrap_or(f64::NAN)
 }
 
 /// The first measured record and everything it is compared with, as the instrument shows it.
@@ -221,7 +227,7 @@ fn measured_lines(measured: &Measured) -> Vec<Line> {
             class: format!("fig-{}", partner.partner),
             dash: if reference { "none" } else { dash(&partner.partner) },
             width: if reference { 2.1 } else { 1.7 },
-            efficiency: partner.efficiency,
+            efficiency: partner.efficiency.unwrap_or(f64::NAN),
             curves: partner.filtered.clone(),
             bands: Vec::new(),
         }

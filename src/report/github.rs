@@ -1,13 +1,15 @@
 //! Messages for GitHub Actions: annotations at the tolerance that is exceeded, and the summary of the job.
 
-use super::Report;
 use super::format::{model_name, percent, significant, words};
+use super::{Report, SceneReport};
 use crate::ci::tolerance_edit::line_of;
-use crate::comparison::{ChangedTolerance, Check, Discrepancy, ModelComparison, SceneComparison};
-use crate::result::Quantities;
+use crate::comparison::{
+    AMONG, ChangedTolerance, Check, Discrepancy, GateRules, ModelComparison, SceneComparison, Undecided,
+    Verdict,
+};
 use std::path::Path;
 
-/// GitHub shows this many errors of a step.
+/// GitHub shows this many errors of a step, and as many warnings.
 const SHOWN: usize = 10;
 
 /// Whether this process is run by GitHub Actions.
@@ -15,36 +17,29 @@ pub fn is_running() -> bool {
     std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true")
 }
 
-/// A workflow command per failed row and check, the row farthest beyond its bound first. `place` gives the file of the
-/// scene of that name, as seen from the repository, and its text.
+/// A workflow command per row and check that stops at the gate (an error) or is undecided and to be told (a warning), the row
+/// farthest beyond its bound first. `place` gives the file of the scene of that name, as seen from the repository, and its text.
 pub fn annotations(report: &Report, place: impl Fn(&str) -> (String, String)) -> Vec<String> {
-    let mut found: Vec<(f64, String)> = Vec::new();
-    for scene in &report.scenes {
-        found.extend(annotations_of(&scene.comparison, &place));
+    let rules = report.rules;
+    let of_scene = |s: &SceneReport| annotations_of(&s.comparison, rules, &place);
+    let mut found: Vec<Annotation> = report.scenes.iter().flat_map(of_scene).collect();
+    found.sort_by(|a, b| b.size.total_cmp(&a.size));
+    let mut commands = Vec::new();
+    for (level, what) in [("error", "failures"), ("warning", "undecided rows")] {
+        let own: Vec<_> = found.iter().filter(|annotation| annotation.level == level).collect();
+        commands.extend(own.iter().take(SHOWN).map(|annotation| annotation.command.clone()));
+        if let Some(more) = own.len().checked_sub(SHOWN).filter(|more| *more > 0) {
+            commands.push(format!(
+                "::notice title=impactcheck::{more} more {what} are in the job summary and in the report"
+            ));
+        }
     }
-    for seat in &report.seats {
-        found.extend(annotations_of(&seat.comparison, &place));
-    }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let more = found.len().saturating_sub(SHOWN);
-    let plates = report.scenes.iter().flat_map(|s| warnings(&s.comparison, &place));
-    let seats = report.seats.iter().flat_map(|s| warnings(&s.comparison, &place));
-    let changed: Vec<String> = plates.chain(seats).collect();
-    let mut commands: Vec<String> = found.into_iter().take(SHOWN).map(|(_, command)| command).collect();
-    if more > 0 {
-        commands.push(format!(
-            "::notice title=impactcheck::{more} more failures are in the job summary and in the report"
-        ));
-    }
-    commands.extend(changed);
+    commands.extend(report.scenes.iter().flat_map(|s| warnings(&s.comparison, &place)));
     commands
 }
 
 /// A workflow command per tolerance that was changed since it was accepted.
-fn warnings<Q: Quantities>(
-    comparison: &SceneComparison<Q>,
-    place: impl Fn(&str) -> (String, String),
-) -> Vec<String> {
+fn warnings(comparison: &SceneComparison, place: impl Fn(&str) -> (String, String)) -> Vec<String> {
     let command = |changed: &ChangedTolerance| {
         let (file, text) = place(&comparison.scene);
         let line = line_of(&text, &changed.model, &changed.quantity);
@@ -55,25 +50,46 @@ fn warnings<Q: Quantities>(
     comparison.changed_tolerances.iter().map(command).collect()
 }
 
-/// How far beyond its bound, and the command.
-fn annotations_of<Q: Quantities>(
-    comparison: &SceneComparison<Q>,
-    place: impl Fn(&str) -> (String, String),
-) -> Vec<(f64, String)> {
-    let (file, text) = place(&comparison.scene);
-    let command = |failure: Failure| {
-        let line = failure.row.and_then(|row| line_of(&text, failure.model?, &row.quantity));
-        let line = line.map_or(String::new(), |line| format!(",line={line}"));
-        let title = property(&format!("{}, {}", comparison.scene, failure.of));
-        let size =
-            failure.row.and_then(Discrepancy::used).filter(|used| !used.is_nan()).unwrap_or(f64::INFINITY);
-        (size, format!("::error file={}{line},title={title}::{}", property(&file), data(&failure.message)))
-    };
-    failures(comparison).into_iter().map(command).collect()
+/// A workflow command.
+struct Annotation {
+    level: &'static str,
+    /// How far beyond its bound.
+    size: f64,
+    command: String,
 }
 
-/// Something of a scene that fails.
-struct Failure<'a> {
+fn annotations_of(
+    comparison: &SceneComparison,
+    rules: GateRules,
+    place: impl Fn(&str) -> (String, String),
+) -> Vec<Annotation> {
+    let (file, text) = place(&comparison.scene);
+    let annotation = |finding: Finding| {
+        let level = match finding.verdict {
+            verdict if rules.refuse(verdict) => "error",
+            _ if rules.undecided == Undecided::Pass => return None,
+            _ => "warning",
+        };
+        let line = finding.row.and_then(|row| line_of(&text, finding.model?, &row.quantity));
+        let line = line.map_or(String::new(), |line| format!(",line={line}"));
+        let title = property(&format!("{}, {}", comparison.scene, finding.of));
+        let size = finding.row.and_then(Discrepancy::used).filter(|used| !used.is_nan());
+        Some(Annotation {
+            level,
+            size: size.unwrap_or(f64::INFINITY),
+            command: format!(
+                "::{level} file={}{line},title={title}::{}",
+                property(&file),
+                data(&finding.message)
+            ),
+        })
+    };
+    findings(comparison, rules).into_iter().filter_map(annotation).collect()
+}
+
+/// Something of a scene that fails, is undecided, or lacks what is required.
+struct Finding<'a> {
+    verdict: Verdict,
     /// What it belongs to, in words.
     of: String,
     message: String,
@@ -82,24 +98,35 @@ struct Failure<'a> {
     row: Option<&'a Discrepancy>,
 }
 
-/// All that fails in a scene.
-fn failures<Q: Quantities>(comparison: &SceneComparison<Q>) -> Vec<Failure<'_>> {
-    let broken = |of: &str, checks: &'_ [Check]| -> Vec<Failure<'_>> {
-        let failed = checks.iter().filter(|c| !c.verdict.passed());
-        let failure = |check| {
+/// All that is to be told of a scene.
+fn findings(comparison: &SceneComparison, rules: GateRules) -> Vec<Finding<'_>> {
+    let broken = |of: &str, checks: &'_ [Check]| -> Vec<Finding<'_>> {
+        let failed = checks.iter().filter(|c| c.verdict.failed());
+        let finding = |check: &Check| {
             let message = super::check_failure(check);
-            Failure { of: of.to_owned(), message, model: None, row: None }
+            Finding { verdict: check.verdict, of: of.to_owned(), message, model: None, row: None }
         };
-        failed.map(failure).collect()
+        failed.map(finding).collect()
     };
     let mut found = broken("reference", &comparison.integrity);
+    if comparison.verdict == Verdict::NotGated && rules.refuse(comparison.verdict) {
+        let message = "nothing is gated, and tolerances are required".to_owned();
+        found.push(Finding {
+            verdict: comparison.verdict,
+            of: "gate".to_owned(),
+            message,
+            model: None,
+            row: None,
+        });
+    }
     for model in &comparison.models {
         let name = format!("model {}", model.model);
         found.extend(broken(&name, &model.integrity));
-        for row in model.discrepancies.iter().filter(|d| !d.verdict.passed()) {
-            found.push(Failure {
+        for row in model.discrepancies.iter().filter(|d| d.is_told()) {
+            found.push(Finding {
+                verdict: row.verdict,
                 of: format!("{name}, {}", words(&row.quantity)),
-                message: super::row_failure(row),
+                message: super::row_told(row),
                 model: Some(&model.model),
                 row: Some(row),
             });
@@ -108,24 +135,28 @@ fn failures<Q: Quantities>(comparison: &SceneComparison<Q>) -> Vec<Failure<'_>> 
     found
 }
 
-/// Markdown for the summary of the job: verdict per scene and model, and what failed.
+/// Markdown for the summary of the job: verdict per scene and model, what failed and what is undecided.
 pub fn job_summary(report: &Report) -> String {
     let mut text = format!("## impactcheck: {}\n\n", report.comparison().verdict);
-    text += "| scene | model | verdict | largest discrepancy | nearest to its bound | tolerance used |\n|---|---|---|---|---|--:|\n";
-    let mut failed = String::new();
+    text += "| scene | model | verdict | largest discrepancy of the summary | nearest to its bound | tolerance used |\n|---|---|---|---|---|--:|\n";
+    let mut listed = Vec::new();
     for scene in &report.scenes {
         text += &summary_rows(&scene.comparison);
-        failed += &failure_list(&scene.comparison);
+        listed.extend(list(&scene.comparison, report.rules));
     }
-    for seat in &report.seats {
-        text += &summary_rows(&seat.comparison);
-        failed += &failure_list(&seat.comparison);
+    text += &format!("\n{AMONG}\n");
+    for (heading, undecided) in [("What failed", false), ("What is undecided", true)] {
+        let own: String =
+            listed.iter().filter(|l| (l.0 == Verdict::Undecided) == undecided).map(|l| &*l.1).collect();
+        if !own.is_empty() {
+            text += &format!("\n### {heading}\n\n{own}");
+        }
     }
-    if failed.is_empty() { text } else { format!("{text}\n### What failed\n\n{failed}") }
+    text
 }
 
-fn summary_rows<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
-    let row = |model: &ModelComparison<Q>| {
+fn summary_rows(comparison: &SceneComparison) -> String {
+    let row = |model: &ModelComparison| {
         let largest = model
             .largest()
             .map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
@@ -135,7 +166,7 @@ fn summary_rows<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
             "| {} | {} | {} | {largest} | {} | {} |\n",
             escaped(&comparison.scene),
             escaped(&model_name(&model.model, model.summary.modes)),
-            model.verdict,
+            model.verdict_in_words(),
             tightest.map_or("–".into(), |d| words(&d.quantity)),
             used.map_or("–".into(), |used| format!("{} %", significant(100.0 * used, 2))),
         )
@@ -143,13 +174,15 @@ fn summary_rows<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
     comparison.models.iter().map(row).collect()
 }
 
-fn failure_list<Q: Quantities>(comparison: &SceneComparison<Q>) -> String {
-    let line = |failure: Failure| {
+/// Verdict and line of every finding.
+fn list(comparison: &SceneComparison, rules: GateRules) -> Vec<(Verdict, String)> {
+    let line = |finding: Finding| {
         // the row's message begins with its quantity
-        let of = failure.model.map_or(failure.of, |model| format!("model {model}"));
-        format!("- {}, {of}: {}\n", escaped(&comparison.scene), escaped(&failure.message))
+        let of = finding.model.map_or(finding.of, |model| format!("model {model}"));
+        let line = format!("- {}, {of}: {}\n", escaped(&comparison.scene), escaped(&finding.message));
+        (finding.verdict, line)
     };
-    failures(comparison).into_iter().map(line).collect()
+    findings(comparison, rules).into_iter().map(line).collect()
 }
 
 /// Text of a table's cell or a list.

@@ -2,9 +2,9 @@
 //! inside, nothing is loaded. Every number carries its SI value in `data-si`.
 
 use super::format::{Prefixed, model_name, percent, prefixed, significant, with_unit, words};
-use super::{Attachments, Report};
-use crate::comparison::{Discrepancy, ModelComparison, SceneComparison, Shown, Verdict};
-use crate::result::Quantities;
+use super::{Report, SceneReport};
+use crate::comparison::{AMONG, Discrepancy, ModelComparison, SceneComparison, Verdict};
+use crate::result::Summary;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("assets/style.css");
@@ -27,23 +27,41 @@ pub(super) fn page(title: &str, styles: &[&str], body: &Markup, scripts: &Markup
     .into_string()
 }
 
-/// A verdict as people are told it.
-pub(super) fn shown(shown: Shown) -> Markup {
-    let class = match shown {
-        Shown::Pass | Shown::PassAboutBias => "verdict pass",
-        Shown::Fail => "verdict fail",
-        Shown::NotGated => "verdict open",
-    };
-    html! { span class=(class) { (shown.words()) } }
+pub(super) fn badge(verdict: Verdict) -> Markup {
+    worded(verdict, verdict.words())
 }
 
-pub(super) fn badge(verdict: Verdict) -> Markup {
-    html! { span class=(format!("verdict {verdict}")) { (verdict) } }
+/// The verdict of a model, of which it may be known that it is off.
+pub(super) fn model_badge(model: &ModelComparison) -> Markup {
+    worded(model.verdict, model.verdict_in_words())
+}
+
+fn worded(verdict: Verdict, words: &str) -> Markup {
+    let class = match verdict {
+        Verdict::NotGated => "verdict open",
+        Verdict::Pass => "verdict pass",
+        Verdict::Undecided => "verdict undecided",
+        Verdict::Fail => "verdict fail",
+    };
+    html! { span class=(class) { (words) } }
 }
 
 /// Something wider than a phone, which scrolls by itself, also by keyboard.
 pub(super) fn scrolled(name: &str, content: &Markup) -> Markup {
     html! { div.scroll role="region" tabindex="0" aria-label=(name) { (content) } }
+}
+
+/// What the efficiency is; eq. (1) of the paper.
+const EFFICIENCY: &str = "Efficiency, eq. (1): kinetic energy of the body that is struck through the plate or seat (inner body, sphere) after \
+    the last contact over that of the striking body (outer body, actuator) before the first, both of the rigid-body \
+    (mass-averaged) velocity.";
+
+/// The name of a quantity in words; what it does not tell by itself is told on hover.
+pub(super) fn named(quantity: &str) -> Markup {
+    match quantity {
+        "efficiency" => html! { abbr title=(EFFICIENCY) { (words(quantity)) } },
+        _ => html! { (words(quantity)) },
+    }
 }
 
 /// A drawing as wide as a page, and the same as wide as a phone; the screen decides which is seen.
@@ -68,85 +86,74 @@ pub(super) fn number(field: &str, value: Option<f64>, to: Prefixed, digits: usiz
 
 /// The page with the verdict of every scene and model.
 pub fn index_page(report: &Report) -> String {
-    let verdict = report.comparison().verdict;
     let body = html! {
-        h1 { "impactcheck " (shown(Shown::of(verdict, gated(report), 0))) }
+        h1 { "impactcheck " (badge(report.comparison().verdict)) }
         p.soft { "Reduced models of an impact against explicit finite elements. " (counts(report)) }
         div.cards {
-            @for scene in &report.scenes { (card(&scene.scene.description, &scene.comparison, &scene.attachments)) }
-            @for seat in &report.seats { (card(&seat.scene.description, &seat.comparison, &seat.attachments)) }
+            @for scene in &report.scenes { (card(scene)) }
         }
         h2 { "Verdicts" }
         (scrolled("Verdicts", &html! { table.verdicts {
             thead { tr {
                 th scope="col" { "scene" } th.left scope="col" { "model" } th.left scope="col" { "verdict" }
-                th scope="col" { "efficiency" } th scope="col" { "reference" }
-                th.left scope="col" { "largest discrepancy" } th scope="col" { "95 % band" }
+                th scope="col" { (named("efficiency")) } th scope="col" { "reference" }
+                th.left scope="col" { "largest discrepancy of the summary" } th scope="col" { "95 % band" }
                 th.left scope="col" { "nearest to its bound" } th scope="col" { "tolerance used" }
             } }
             tbody {
                 @for scene in &report.scenes { (index_rows(&scene.comparison)) }
-                @for seat in &report.seats { (index_rows(&seat.comparison)) }
             }
         } }))
+        p.soft { (EFFICIENCY) } p.soft { (AMONG) }
         p.soft { "The band is the 95 % band of the reference's own numerical error. Tolerance used: how much of its tolerance "
-            "the gated quantity nearest to its bound takes; beyond 100 % the model fails." }
+            "the gated quantity nearest to its bound takes. Where the band reaches across the bound the verdict is undecided; "
+            "the scene's page says what would decide it." }
         p { "As data: " a href="comparison.json" { "JSON" } " · " a href="comparison.md" { "Markdown" } " · "
             a href="junit.xml" { "JUnit" } }
     };
     page("impactcheck", &[], &body, &html! {})
 }
 
-/// Rows of all scenes that have a tolerance.
-fn gated(report: &Report) -> usize {
-    let scenes = report.scenes.iter().map(|scene| scene.comparison.gated_and_failed().0);
-    let seats = report.seats.iter().map(|seat| seat.comparison.gated_and_failed().0);
-    scenes.chain(seats).sum()
-}
-
-/// How much was gated and failed, in a sentence.
+/// How much was gated and what came of it, in a sentence.
 fn counts(report: &Report) -> String {
-    fn rows<Q: Quantities>(scene: &SceneComparison<Q>) -> impl Iterator<Item = &Discrepancy> {
-        scene.models.iter().flat_map(|model| &model.discrepancies)
-    }
-    let rows = || {
-        let scenes = report.scenes.iter().flat_map(|scene| rows(&scene.comparison));
-        scenes.chain(report.seats.iter().flat_map(|seat| rows(&seat.comparison)))
-    };
-    let gated = gated(report);
-    if gated == 0 {
+    let verdicts = report.scenes.iter().flat_map(|scene| scene.comparison.gated_verdicts());
+    let verdicts: Vec<Verdict> = verdicts.collect();
+    if verdicts.is_empty() {
         return "Nothing is gated: no scene has tolerances.".into();
     }
-    let failed = rows().filter(|row| !row.verdict.passed()).count();
-    let scenes = report.scenes.len() + report.seats.len();
+    let count = |verdict| verdicts.iter().filter(|v| **v == verdict).count();
+    let scenes = report.scenes.len();
     let plural = |n: usize| if n == 1 { "" } else { "s" };
-    let outcome = if failed == 0 { "all within".into() } else { format!("{failed} not within") };
-    format!("{scenes} scene{}, {gated} gated quantities, {outcome} their tolerances.", plural(scenes))
+    format!(
+        "{scenes} scene{}, {} gated quantities: {} within their tolerances, {} undecided, {} not within.",
+        plural(scenes),
+        verdicts.len(),
+        count(Verdict::Pass),
+        count(Verdict::Undecided),
+        count(Verdict::Fail)
+    )
 }
 
 /// A scene in short.
-fn card<Q: Quantities>(
-    description: &str,
-    comparison: &SceneComparison<Q>,
-    attachments: &Attachments,
-) -> Markup {
+fn card(scene: &SceneReport) -> Markup {
+    let (comparison, trends) = (&scene.comparison, &scene.attachments.trends);
     html! {
         section.card {
-            h2 { (scene_link(comparison)) " " (shown(comparison.shown())) }
-            p.soft { (description) }
+            h2 { (scene_link(comparison)) " " (badge(comparison.verdict)) }
+            p.soft { (scene.scene.description) }
             ul.models { @for model in &comparison.models { li { (model_line(model)) } } }
-            @let drifting = attachments.trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
-            @if drifting > 0 { p { strong { "Drift: " } (drifting) " of " (attachments.trends.len()) " numbers recorded over commits." } }
+            @let drifting = trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
+            @if drifting > 0 { p { strong { "Drift: " } (drifting) " of " (trends.len()) " numbers recorded over commits." } }
         }
     }
 }
 
 /// Verdict of a model with its largest discrepancy, the band it is to be seen against, and what the gate makes of it.
-pub(super) fn model_line<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
+pub(super) fn model_line(model: &ModelComparison) -> Markup {
     html! {
-        (shown(model.shown())) " model " (model_name(&model.model, model.summary.modes))
+        (model_badge(model)) " model " (model_name(&model.model, model.summary.modes))
         @if let Some(d) = model.largest() {
-            ": largest discrepancy " strong { (percent(d.relative)) } " (" (words(&d.quantity)) (relative_band(d)) ")"
+            ": largest discrepancy of the summary " strong { (percent(d.relative)) } " (" (words(&d.quantity)) (relative_band(d)) ")"
         }
         "; "
         @if let Some((d, used)) = model.tightest().and_then(|d| Some((d, d.used()?))) {
@@ -157,15 +164,15 @@ pub(super) fn model_line<Q: Quantities>(model: &ModelComparison<Q>) -> Markup {
 }
 
 fn relative_band(row: &Discrepancy) -> String {
-    let band = row.uncertainty.map(|u| 100.0 * u / row.reference.abs()).filter(|u| u.is_finite());
+    let band = row.uncertainty.zip(row.reference).map(|(u, m)| 100.0 * u / m.abs()).filter(|u| u.is_finite());
     band.map_or_else(String::new, |band| format!("; 95 % band of the reference ±{} %", significant(band, 2)))
 }
 
-fn scene_link<Q: Quantities>(comparison: &SceneComparison<Q>) -> Markup {
+fn scene_link(comparison: &SceneComparison) -> Markup {
     html! { a href=(format!("{}.html", comparison.scene)) { (comparison.scene) } }
 }
 
-fn index_rows<Q: Quantities>(comparison: &SceneComparison<Q>) -> Markup {
+fn index_rows(comparison: &SceneComparison) -> Markup {
     html! {
         @for model in &comparison.models { (index_row(comparison, model)) }
         @if comparison.models.is_empty() {
@@ -177,8 +184,8 @@ fn index_rows<Q: Quantities>(comparison: &SceneComparison<Q>) -> Markup {
     }
 }
 
-fn index_row<Q: Quantities>(comparison: &SceneComparison<Q>, model: &ModelComparison<Q>) -> Markup {
-    let efficiency = |quantities: &Q| quantities.value("efficiency");
+fn index_row(comparison: &SceneComparison, model: &ModelComparison) -> Markup {
+    let efficiency = |summary: &Summary| summary.value("efficiency");
     let plain = prefixed("1", 1.0);
     let largest = model.largest();
     let tightest = model.tightest();
@@ -186,12 +193,12 @@ fn index_row<Q: Quantities>(comparison: &SceneComparison<Q>, model: &ModelCompar
         tr data-scene=(comparison.scene) data-model=(model.model) {
             th scope="row" { (scene_link(comparison)) }
             td.left { (model_name(&model.model, model.summary.modes)) }
-            td.left { (shown(model.shown())) }
-            (number("reduced", efficiency(&model.summary.quantities), plain, 4))
-            (number("reference", efficiency(&comparison.reference.quantities), plain, 4))
+            td.left { (model_badge(model)) }
+            (number("reduced", efficiency(&model.summary), plain, 4))
+            (number("reference", efficiency(&comparison.reference), plain, 4))
             td.left { @if let Some(d) = largest { (words(&d.quantity)) " " (percent(d.relative)) } @else { "–" } }
             @match largest.and_then(|d| d.uncertainty.map(|u| (d, u))) {
-                Some((d, u)) => { (number("uncertainty", Some(u), prefixed(&d.unit, d.reference), 2)) }
+                Some((d, u)) => { (number("uncertainty", Some(u), prefixed(&d.unit, d.reference.unwrap_or(u)), 2)) }
                 None => { td { "–" } }
             }
             td.left { @if let Some(d) = tightest { (words(&d.quantity)) } @else { "–" } }

@@ -1,9 +1,8 @@
 //! The interactive panels of a scene's page, their data and scripts; the page stays whole without scripts and on paper.
 
+use super::SceneReport;
 use super::html::drawn;
-use super::page_data::{PanelOf, Shown, curves, embedded};
-use crate::comparison::SceneComparison;
-use crate::result::Quantities;
+use super::page_data::{PanelOf, curves, embedded};
 use maud::{Markup, PreEscaped, html};
 
 /// uPlot by Leon Sorokin, MIT.
@@ -28,15 +27,11 @@ pub(super) fn panels(wide: &str, narrow: &str) -> Markup {
 }
 
 /// The comparison and the curves as the page carries them, and the scripts that show them.
-pub(super) fn scripts<Q: Quantities>(
-    comparison: &SceneComparison<Q>,
-    shown: &Shown<Q>,
-    panels: &[PanelOf],
-) -> Markup {
+pub(super) fn scripts(report: &SceneReport, panels: &[PanelOf]) -> Markup {
     html! {
-        script type="application/json" id="comparison" { (PreEscaped(embedded(comparison))) }
-        @if shown.window.is_some() {
-            script type="application/json" id="curves" { (PreEscaped(embedded(&curves(shown, panels)))) }
+        script type="application/json" id="comparison" { (PreEscaped(embedded(&report.comparison))) }
+        @if report.comparison.window.is_some() {
+            script type="application/json" id="curves" { (PreEscaped(embedded(&curves(report, panels)))) }
             script type="text/javascript" { (PreEscaped(script(PLOTTING, PLOTTING_LICENCE))) }
             script type="text/javascript" { (PreEscaped(PANELS)) }
         }

@@ -1,10 +1,10 @@
-//! JUnit XML for continuous integration: a suite per scene, a case per model and quantity, its figures as properties.
+//! JUnit XML for continuous integration: a suite per scene, a case per model and quantity, its figures as properties. What
+//! stops at the gate is a failure; what is not gated, or undecided and to be told, is skipped.
 
 use super::Report;
 use super::format::{percent, short};
-use crate::comparison::{Check, Discrepancy, SceneComparison};
+use crate::comparison::{Check, Discrepancy, GateRules, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, Result};
-use crate::result::Quantities;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
 /// JUnit XML. It holds no times, so that equal results give equal files.
@@ -13,12 +13,11 @@ use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite}
 /// [`Error::Internal`] if it can't be serialised.
 pub fn junit(report: &Report) -> Result<String> {
     let mut document = quick_junit::Report::new("impactcheck");
-    document.add_test_suites(report.scenes.iter().map(|scene| suite(&scene.comparison)));
-    document.add_test_suites(report.seats.iter().map(|seat| suite(&seat.comparison)));
+    document.add_test_suites(report.scenes.iter().map(|scene| suite(&scene.comparison, report.rules)));
     document.to_string().map_err(|e| Error::Internal(format!("writing JUnit XML: {e}")))
 }
 
-fn suite<Q: Quantities>(comparison: &SceneComparison<Q>) -> TestSuite {
+fn suite(comparison: &SceneComparison, rules: GateRules) -> TestSuite {
     let mut suite = TestSuite::new(comparison.scene.clone());
     suite.add_property(Property::new("scene_hash", comparison.reference.scene_hash.as_str()));
     for changed in &comparison.changed_tolerances {
@@ -29,8 +28,13 @@ fn suite<Q: Quantities>(comparison: &SceneComparison<Q>) -> TestSuite {
     suite.add_test_cases(
         comparison.integrity.iter().map(|c| integrity_case(&comparison.scene, "reference", c)),
     );
+    if comparison.verdict == Verdict::NotGated && rules.refuse(comparison.verdict) {
+        let message = "the scene has no tolerances for these models, and they are required".to_owned();
+        suite.add_test_case(named(&comparison.scene, "gate", "tolerances", Some(message)));
+    }
     for model in &comparison.models {
-        let rows = model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d));
+        let rows =
+            model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d, rules.undecided));
         suite.add_test_cases(rows);
         let checks = model.integrity.iter();
         suite.add_test_cases(checks.map(|c| integrity_case(&comparison.scene, &model.model, c)));
@@ -55,21 +59,28 @@ fn classed(scene: &str, source: &str, mut case: TestCase) -> TestCase {
     case
 }
 
-fn case(scene: &str, model: &str, row: &Discrepancy) -> TestCase {
-    let mut case = match (row.verdict.passed(), row.tolerance) {
-        (true, None) => {
-            let mut status = TestCaseStatus::skipped();
-            status.set_message("not gated: the scene has no tolerance for it");
-            classed(scene, model, TestCase::new(row.quantity.as_str(), status))
-        }
-        (true, Some(_)) => named(scene, model, &row.quantity, None),
-        (false, _) => named(scene, model, &row.quantity, Some(failure(row))),
+fn case(scene: &str, model: &str, row: &Discrepancy, undecided: Undecided) -> TestCase {
+    let skipped = |message: String| {
+        let mut status = TestCaseStatus::skipped();
+        status.set_message(message);
+        classed(scene, model, TestCase::new(row.quantity.as_str(), status))
     };
+    let mut case = match (row.verdict, undecided) {
+        (Verdict::NotGated, _) => skipped("not gated: the scene has no tolerance for it".to_owned()),
+        (Verdict::Undecided, Undecided::Warn) => skipped(told(row)),
+        (Verdict::Pass, _) | (Verdict::Undecided, Undecided::Pass) => {
+            named(scene, model, &row.quantity, None)
+        }
+        (Verdict::Fail, _) | (Verdict::Undecided, Undecided::Fail) => {
+            named(scene, model, &row.quantity, Some(told(row)))
+        }
+    };
+    case.add_property(Property::new("verdict", row.verdict.name()));
     case.add_property(Property::new("unit", row.unit.as_str()));
     let numbers = [
-        ("reduced", Some(row.reduced)),
-        ("reference", Some(row.reference)),
-        ("difference", Some(row.difference)),
+        ("reduced", row.reduced),
+        ("reference", row.reference),
+        ("difference", row.difference),
         ("relative", row.relative),
         ("uncertainty", row.uncertainty),
         ("tolerance", row.tolerance),
@@ -90,7 +101,7 @@ fn add_numbers(case: &mut TestCase, numbers: &[(&str, Option<f64>)]) {
 }
 
 fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
-    let failure = (!check.verdict.passed()).then(|| integrity_failure(check));
+    let failure = check.verdict.failed().then(|| integrity_failure(check));
     let mut case = named(scene, source, &format!("integrity.{}", check.check), failure);
     case.add_property(Property::new("unit", check.unit.as_str()));
     let numbers = [("found", check.found), ("expected", check.expected), ("bound", check.bound)];
@@ -98,28 +109,37 @@ fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
     case
 }
 
-/// What is wrong with a row, in one sentence with numbers, unit and bound.
-pub(crate) fn failure(row: &Discrepancy) -> String {
+/// What is wrong with a row, or open, in one sentence with numbers, unit and bound.
+pub(crate) fn told(row: &Discrepancy) -> String {
     let Discrepancy { quantity, unit, .. } = row;
-    let [reduced, reference] = [row.reduced, row.reference].map(short);
-    let numbers = format!("{quantity}: reduced {reduced} {unit}, reference {reference} {unit}");
+    let side = |value: Option<f64>| value.map_or("not determined".into(), |v| format!("{} {unit}", short(v)));
+    let numbers = format!("{quantity}: reduced {}, reference {}", side(row.reduced), side(row.reference));
+    let Some(difference) = row.difference else {
+        return format!("{numbers}; a tolerance needs both: set a later `run.end_time`, or none");
+    };
     // what 100 % is, so that bounds stand in the same measure as the difference
-    let whole = row.relative.filter(|r| *r != 0.0).map(|relative| row.difference / relative);
+    let whole = row.relative.filter(|r| *r != 0.0).map(|relative| difference / relative);
     let with_share = |value: f64| {
         let share = whole.map_or(String::new(), |whole| format!(" ({})", percent(Some(value / whole))));
         format!("{} {unit}{share}", short(value))
     };
-    let difference = with_share(row.difference);
+    let difference = with_share(difference);
     // a bound has no sign
     let bound = |width| with_share(width).replace("(+", "(\u{b1}");
-    match (row.tolerance, row.bias) {
-        (None, _) => format!("{numbers}: not a number"),
+    let bounded = match (row.tolerance, row.bias) {
+        (None, _) => return format!("{numbers}: not a number"),
         (Some(width), None) => format!("{numbers}, difference {difference}, bound {}", bound(width)),
         (Some(width), Some(bias)) => format!(
             "{numbers}, difference {difference} where {} is known, bound {} about it",
             with_share(bias),
             bound(width)
         ),
+    };
+    match (&row.would_decide, row.uncertainty) {
+        (Some(how), Some(band)) => {
+            format!("{bounded}, 95 % band of the reference {}: undecided; {how}", bound(band))
+        }
+        _ => bounded,
     }
 }
 

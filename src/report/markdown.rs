@@ -1,75 +1,59 @@
 //! The report as Markdown: verdicts, discrepancies and curve metrics as tables.
 
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
-use super::{Report, SceneReport, SeatReport};
-use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison, SceneComparison};
-use crate::result::Quantities;
+use super::{Report, SceneReport, presentation};
+use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison, SceneComparison};
+use crate::result::Summary;
 
 /// Markdown of the whole report.
 pub fn markdown(report: &Report) -> String {
     let verdict = report.comparison().verdict;
     let mut text = format!(
-        "# impactcheck: {verdict}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy |\n|---|---|---|--:|--:|---|\n"
+        "# impactcheck: {verdict}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy of the summary |\n|---|---|---|--:|--:|---|\n"
     );
     for scene in &report.scenes {
         for model in &scene.comparison.models {
             text += &row(&scene.comparison, model);
         }
     }
-    for seat in &report.seats {
-        for model in &seat.comparison.models {
-            text += &row(&seat.comparison, model);
-        }
-    }
+    text += &format!("\n{AMONG}\n");
     for scene in &report.scenes {
         text += &section(scene);
-    }
-    for seat in &report.seats {
-        text += &seat_section(seat);
     }
     text
 }
 
 /// A model's row in the table of verdicts.
-fn row<Q: Quantities>(comparison: &SceneComparison<Q>, model: &ModelComparison<Q>) -> String {
+fn row(comparison: &SceneComparison, model: &ModelComparison) -> String {
     let largest =
         model.largest().map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
-    let efficiency = |q: &Q| significant(q.value("efficiency").unwrap_or(f64::NAN), 4);
+    let efficiency = |summary: &Summary| significant(summary.value("efficiency").unwrap_or(f64::NAN), 4);
     format!(
         "| {} | {} | {} | {} | {} | {largest} |\n",
         escape(&comparison.scene),
         escape(&model_name(&model.model, model.summary.modes)),
-        model.shown().words(),
-        efficiency(&model.summary.quantities),
-        efficiency(&comparison.reference.quantities),
+        model.verdict_in_words(),
+        efficiency(&model.summary),
+        efficiency(&comparison.reference),
     )
-}
-
-/// A seal seat's: picture, curves and tables.
-fn seat_section(seat: &SeatReport) -> String {
-    let comparison = &seat.comparison;
-    let mut text = format!(
-        "\n## {0}: {1}\n\n{2}\n\n![Section with the directions of flight]({0}-section.svg)\n\n![Forces and velocities]({0}.svg)\n",
-        escape(&comparison.scene),
-        comparison.shown().words(),
-        escape(&seat.scene.description),
-    );
-    text += &failures("the reference", &comparison.integrity);
-    for model in &comparison.models {
-        text += &model_section(model);
-    }
-    text + &format!("\nMade by:\n\n    {}\n", seat.command)
 }
 
 fn section(scene: &SceneReport) -> String {
     let comparison = &scene.comparison;
     let mut text = format!(
-        "\n## {}: {}\n\n{}\n\n![Displacement, velocity and contact force]({}.svg)\n",
+        "\n## {}: {}\n\n{}\n",
         escape(&comparison.scene),
-        comparison.shown().words(),
+        comparison.verdict,
         escape(&scene.scene.description),
-        comparison.scene,
     );
+    for drawing in presentation::of(scene.scene).drawings(scene) {
+        if let Some(caption) = drawing.caption {
+            text += &format!("\n![{caption}]({}{}.svg)\n", comparison.scene, drawing.ending);
+        }
+    }
+    for warning in &comparison.reference.warnings {
+        text += &format!("\nWarning, reference: {}\n", escape(warning));
+    }
     text += &failures("the reference", &comparison.integrity);
     text += &super::budget_section::budget_markdown(&comparison.budget);
     text += &super::measured_section::measured_markdown(scene);
@@ -80,14 +64,17 @@ fn section(scene: &SceneReport) -> String {
     text
 }
 
-fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> String {
+fn model_section(model: &ModelComparison) -> String {
     let name = escape(&model_name(&model.model, model.summary.modes));
     let mut text = format!(
         "\n### Model {name}: {}\n\n| quantity | reduced | reference | difference | relative | 95 % band | \\|E\\| against u | tolerance | bias | verdict |\n|---|--:|--:|--:|--:|--:|---|--:|--:|---|\n",
-        model.shown().words()
+        model.verdict_in_words()
     );
     for row in &model.discrepancies {
         text += &format!("{}\n", discrepancy(row));
+    }
+    for (row, how) in model.discrepancies.iter().filter_map(|row| Some((row, row.would_decide.as_ref()?))) {
+        text += &format!("\nUndecided, {}: {}\n", words(&row.quantity), escape(how));
     }
     for warning in &model.summary.warnings {
         text += &format!("\nWarning: {}\n", escape(warning));
@@ -115,9 +102,9 @@ fn model_section<Q: Quantities>(model: &ModelComparison<Q>) -> String {
 }
 
 fn discrepancy(row: &Discrepancy) -> String {
-    let to = prefixed(&row.unit, row.reference.abs().max(row.reduced.abs()));
-    let show = |value: f64, digits| with_unit(value, to, digits);
-    let optional = |value: Option<f64>| value.map_or("–".into(), |v| show(v, 3));
+    let to = prefixed(&row.unit, row.size());
+    let show = |value: Option<f64>, digits| value.map_or("–".into(), |v| with_unit(v, to, digits));
+    let optional = |value: Option<f64>| show(value, 3);
     format!(
         "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
         words(&row.quantity),
@@ -129,13 +116,13 @@ fn discrepancy(row: &Discrepancy) -> String {
         row.band_verdict.map_or("–", BandVerdict::words),
         optional(row.tolerance),
         optional(row.bias),
-        if row.tolerance.is_none() && row.verdict.passed() { "not gated" } else { row.verdict.words() },
+        row.verdict,
     )
 }
 
 /// What a result contradicts itself in; nothing if it doesn't.
 fn failures(of: &str, checks: &[Check]) -> String {
-    let failed: Vec<_> = checks.iter().filter(|c| !c.verdict.passed()).collect();
+    let failed: Vec<_> = checks.iter().filter(|c| c.verdict.failed()).collect();
     if failed.is_empty() {
         return String::new();
     }

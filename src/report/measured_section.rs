@@ -4,8 +4,8 @@ use super::figure::phone_measured_figure;
 use super::format::{prefixed, significant, with_unit, words};
 use super::html::{drawn, scrolled};
 use super::{ChartPanel, SceneReport, Series, Theme, chart, measured_figure};
+use crate::kinds::plate_impact::CURVES;
 use crate::measured::{AlignedRecord, Measured, Partner};
-use crate::result::CURVES;
 use maud::{Markup, html};
 
 /// Rows of a table, the heading first.
@@ -24,7 +24,7 @@ pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
     let last = measured.records.len() as f64;
     let level = |partner: &Partner| Series {
         name: if partner.partner == "reference" { "FE".into() } else { format!("model {}", partner.partner) },
-        points: vec![(1.0, 100.0 * partner.efficiency), (last, 100.0 * partner.efficiency)],
+        points: partner.efficiency.map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
         marks: false,
     };
     let series =
@@ -53,7 +53,7 @@ fn alignment(measured: &Measured) -> Rows {
             .iter()
             .map(|c| {
                 let unit =
-                    CURVES.iter().find(|(curve, _)| *curve == c.quantity).map_or("1", |(_, unit)| unit);
+                    CURVES.iter().find(|curve| curve.name == c.quantity).map_or("1", |curve| curve.unit);
                 format!(
                     "{}: {}, {} {unit}/s",
                     words(c.quantity),
@@ -86,7 +86,7 @@ fn metrics(measured: &Measured) -> Rows {
         for curve in &partner.curves {
             rows.push(vec![
                 partner.partner.clone(),
-                format!("{} %", significant(100.0 * partner.efficiency, 4)),
+                partner.efficiency.map_or("–".into(), |own| format!("{} %", significant(100.0 * own, 4))),
                 partner
                     .efficiency_difference
                     .map_or("–".into(), |d| format!("{} points", significant(100.0 * d, 3))),

@@ -32,6 +32,7 @@ mod pdf;
 mod pdf_text;
 mod png;
 mod polyline;
+mod presentation;
 mod run_times;
 mod scene_page;
 mod seal_seat;
@@ -43,7 +44,7 @@ mod ticks;
 mod trend_section;
 mod write;
 
-pub use attachments::Attachments;
+pub use attachments::{Attachments, Cost};
 pub use chart::{ChartPanel, Series, chart};
 pub use curves_csv::curves_csv;
 pub use figure::{FIGURE_WIDTHS, Theme, figure, measured_figure, printed_figure};
@@ -51,27 +52,26 @@ pub use figure_file::{FigureFormat, figure_file};
 pub use html::index_page;
 pub use json::json;
 pub use junit::junit;
-pub(crate) use junit::{failure as row_failure, integrity_failure as check_failure};
+pub(crate) use junit::{integrity_failure as check_failure, told as row_told};
 pub use markdown::markdown;
 pub use measured_section::efficiency_figure;
 pub use png::png;
-pub use scene_page::scene_page;
-pub use seal_seat::{Cost, SeatReport, seat_curves, seat_curves_csv, seat_page, seat_section};
+pub use presentation::scene_page;
 pub use seal_seat_picture::{Arrow, seat_picture};
 pub use terminal::terminal;
 pub use write::{check_writable, write};
 
-use crate::comparison::{ChangedTolerance, Comparison, SceneComparison};
+use crate::comparison::{ChangedTolerance, Comparison, GateRules, SceneComparison};
 use crate::result::Outcome;
 use crate::scene::Scene;
 
 /// Everything the exporters need.
 #[derive(Debug, Clone)]
 pub struct Report<'a> {
-    /// One entry per plate impact, in the order of the report.
+    /// One entry per scene, in the order of the report.
     pub scenes: Vec<SceneReport<'a>>,
-    /// One entry per seal seat.
-    pub seats: Vec<SeatReport>,
+    /// What stops at the gate, for those who read the report by machine.
+    pub rules: GateRules,
 }
 
 /// One scene of the report.
@@ -97,16 +97,16 @@ impl Report<'_> {
     /// The comparison document of all scenes.
     pub fn comparison(&self) -> Comparison {
         Comparison::new(self.scenes.iter().map(|s| s.comparison.clone()).collect())
-            .with_seats(self.seats.iter().map(|s| s.comparison.clone()).collect())
     }
 
     /// A sentence per tolerance that was changed since it was accepted.
     pub fn changed_tolerances(&self) -> impl Iterator<Item = String> {
-        let plates = self.scenes.iter().map(|s| (&s.comparison.scene, &s.comparison.changed_tolerances));
-        let seats = self.seats.iter().map(|s| (&s.comparison.scene, &s.comparison.changed_tolerances));
-        let sentence = |(scene, changed): (&String, &Vec<ChangedTolerance>)| {
-            changed.iter().map(|c| format!("{scene}: {}", c.sentence())).collect::<Vec<_>>()
+        let sentences = |scene: &SceneReport| {
+            let comparison = &scene.comparison;
+            let sentence =
+                |changed: &ChangedTolerance| format!("{}: {}", comparison.scene, changed.sentence());
+            comparison.changed_tolerances.iter().map(sentence).collect::<Vec<_>>()
         };
-        plates.chain(seats).flat_map(sentence)
+        self.scenes.iter().flat_map(sentences)
     }
 }

@@ -1,11 +1,10 @@
 //! What a scene's page carries for its script: the curves on the common axis, and the comparison document of the scene.
 
+use super::SceneReport;
 use super::figure::{QUANTITIES, Quantity, dash};
 use super::format::model_name;
 use crate::comparison::{CommonAxis, SampledCurve, sample};
 use crate::reference::CurveBands;
-use crate::result::Outcome;
-use crate::result::Quantities;
 use serde_json::{Value, json};
 
 /// Significant digits of a curve's peak that are kept.
@@ -17,7 +16,7 @@ pub(super) struct PanelOf {
     pub(super) label: &'static str,
     /// From SI to that unit.
     pub(super) factor: f64,
-    /// What the panel calls each curve, and its name in [`crate::result::Curves::NAMES`].
+    /// What the panel calls each curve, and its name.
     pub(super) curves: Vec<(&'static str, String)>,
 }
 
@@ -31,30 +30,23 @@ pub(super) fn plate_panels() -> Vec<PanelOf> {
     QUANTITIES.iter().map(panel).collect()
 }
 
-/// What the panels show: results of one scene on the window of their comparison.
-pub(super) struct Shown<'a, Q: Quantities> {
-    pub(super) window: Option<CommonAxis>,
-    pub(super) reference: &'a Outcome<Q>,
-    pub(super) reduced: &'a [Outcome<Q>],
-    /// Of the reference's curves.
-    pub(super) bands: Option<&'a CurveBands>,
-}
-
 /// JSON of the curves, values in the units of the panels; without times if the reference's history can't be used.
-pub(super) fn curves<Q: Quantities>(shown: &Shown<Q>, panels: &[PanelOf]) -> Value {
-    let Some(axis) = shown.window else {
+pub(super) fn curves(report: &SceneReport, panels: &[PanelOf]) -> Value {
+    let Some(axis) = report.comparison.window else {
         return json!({"time": [], "sources": [], "panels": []});
     };
     let reference =
-        ("reference".to_owned(), "FE reference".to_owned(), sample(axis, &shown.reference.history));
-    let reduced = shown.reduced.iter().map(|outcome| {
+        ("reference".to_owned(), "FE reference".to_owned(), sample(axis, &report.reference.history));
+    let reduced = report.reduced.iter().map(|outcome| {
         let model = outcome.summary.model.clone().unwrap_or_default();
         let name = format!("model {}", model_name(&model, outcome.summary.modes));
         (model, name, sample(axis, &outcome.history))
     });
     let sources: Vec<_> = std::iter::once(reference).chain(reduced).collect();
-    let panels: Vec<Value> =
-        panels.iter().map(|panel| of_panel(panel, &sources, axis, shown.bands)).collect();
+    let panels: Vec<Value> = panels
+        .iter()
+        .map(|panel| of_panel(panel, &sources, axis, report.attachments.bands.as_ref()))
+        .collect();
     let of_source = |(id, name, _): &Source| {
         let is_reference = id == "reference";
         let dashes: Vec<f64> = if is_reference {

@@ -1,27 +1,28 @@
 //! What the pages of all scenes share: their head, and checks, trends, provenance and the command that makes them again.
 
-use super::Attachments;
+use super::SceneReport;
 use super::discrepancy_section::{checks, contradictions};
 use super::facts::facts;
 use super::html::{badge, model_line};
-use crate::comparison::SceneComparison;
-use crate::result::Quantities;
-use crate::scene::Scene;
+use crate::comparison::{AMONG, SceneComparison};
 use maud::{Markup, html};
 
 /// Name, verdict and what the reference contradicts itself in.
-pub(super) fn head<Q: Quantities>(scene: &Scene, comparison: &SceneComparison<Q>) -> Markup {
+pub(super) fn head(report: &SceneReport) -> Markup {
+    let comparison = &report.comparison;
     html! {
         nav { a href="index.html" { "all scenes" } }
         h1 { (comparison.scene) " " (badge(comparison.verdict)) }
-        p.soft { (scene.description) }
+        p.soft { (report.scene.description) }
         ul.models { @for model in &comparison.models { li { (model_line(model)) } } }
+        p.soft { (AMONG) }
+        @for warning in &comparison.reference.warnings { p { strong { "Warning, reference: " } (warning) } }
         (contradictions("reference", &comparison.integrity))
     }
 }
 
 /// Mesh and solver of the reference in numbers.
-pub(super) fn numbers<Q: Quantities>(comparison: &SceneComparison<Q>) -> Markup {
+pub(super) fn numbers(comparison: &SceneComparison) -> Markup {
     let reference = &comparison.reference;
     html! {
         details {
@@ -32,12 +33,8 @@ pub(super) fn numbers<Q: Quantities>(comparison: &SceneComparison<Q>) -> Markup 
 }
 
 /// The end of the page.
-pub(super) fn end<Q: Quantities>(
-    comparison: &SceneComparison<Q>,
-    attachments: &Attachments,
-    provenance: &serde_json::Value,
-    command: &str,
-) -> Markup {
+pub(super) fn end(report: &SceneReport) -> Markup {
+    let (comparison, attachments) = (&report.comparison, &report.attachments);
     html! {
         details {
             summary { "Checks of the reference against itself (" (comparison.integrity.len()) ")" }
@@ -49,9 +46,9 @@ pub(super) fn end<Q: Quantities>(
         p { "Scene hash " code { (comparison.reference.scene_hash) } }
         details {
             summary { "How the reference was made" }
-            (facts(&[("", Some(provenance))]))
+            (facts(&[("", Some(&report.provenance))]))
         }
         h2 { "Make it again" }
-        pre tabindex="0" { (command) }
+        pre tabindex="0" { (report.command) }
     }
 }

@@ -1,115 +1,120 @@
-//! The report of a seal-seat scene: page, row of the index, lines for the terminal, Markdown, curves.
+//! How a seal seat is shown: flight of the sphere, curves, what model and reference have cost.
 
-use super::attachments::Attachments;
+use super::attachments::instant_of_peak;
 use super::chart::{CHART_WIDTH, ChartPanel, Series, chart_of_width};
 use super::discrepancy_section::model_section;
 use super::figure::PHONE_WIDTH;
-use super::format::{model_name, percent, prefixed, significant, with_unit};
-use super::html::{detailed, page};
-use super::junit::{failure, integrity_failure};
-use super::page_data::{PanelOf, Shown};
+use super::format::{model_name, prefixed, significant, with_unit};
+use super::html::{detailed, named, page};
+use super::page_data::PanelOf;
+use super::presentation::{Column, Drawing, Presentation};
 use super::run_times::marked;
 use super::seal_seat_picture::{Arrow, seat_picture};
-use super::terminal::coloured;
-use super::{interactive, page_end};
-use crate::comparison::{SceneComparison, align};
-use crate::error::{Error, Result};
-use crate::reference::MeshSection;
-use crate::result::Curves;
-use crate::result::Outcome;
-use crate::result::SEAT_CURVES;
-use crate::result::SeatQuantities;
-use crate::scene::{Scene, Setup};
+use super::{Attachments, SceneReport, interactive, page_end};
+use crate::kinds::seal_seat::SeatQuantities;
+use crate::project::project_root;
+use crate::reference::Stored;
+use crate::result::{Outcome, Summary};
+use crate::scene::Setup;
 use maud::{Markup, PreEscaped, html};
+use std::path::{Path, PathBuf};
 
-/// What reduced model and reference have cost.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cost {
-    /// Mesh to modes and flexibility, or from the cache, s.
-    pub setup_seconds: f64,
-    /// Degrees of freedom of the mesh without those that supports hold.
-    pub dofs: usize,
-}
+/// Name of the series of fields in the folder of a reference.
+const ANIMATION: &str = "stress.pvd";
 
-/// One seal-seat scene of the report.
-#[derive(Debug, Clone)]
-pub struct SeatReport {
-    /// The scene.
-    pub scene: Scene,
-    /// Its comparison.
-    pub comparison: SceneComparison<SeatQuantities>,
-    /// Result of the reference.
-    pub reference: Outcome<SeatQuantities>,
-    /// Results of the reduced models, in the order of `comparison.models`.
-    pub reduced: Vec<Outcome<SeatQuantities>>,
-    /// Cost of each reduced model, in the same order.
-    pub cost: Vec<Cost>,
-    /// How the reference was made, as its store says.
-    pub provenance: serde_json::Value,
-    /// Section of the reference's mesh in the plane of symmetry.
-    pub section: Option<MeshSection>,
-    /// The same with the stress at an instant (s), if the reference has kept one.
-    pub stress: Option<(f64, MeshSection)>,
-    /// The series of deformed states that ParaView plays, if the reference has one.
-    pub animation: Option<std::path::PathBuf>,
-    /// Command line that makes this comparison again.
-    pub command: String,
-    /// What else there is to show: trends and accepted changes.
-    pub attachments: Attachments,
+/// How a seal seat is shown.
+pub(super) struct Seat;
+
+impl Presentation for Seat {
+    fn columns(&self) -> &'static [Column] {
+        const COLUMNS: [Column; 4] = [
+            Column { is_angle: true, ..Column::new("direction", "sphere_angle") },
+            Column::new("speed", "sphere_speed"),
+            Column::new("sphere peak", "sphere_force_peak"),
+            Column::new("actuator peak", "actuator_force_peak"),
+        ];
+        &COLUMNS
+    }
+
+    fn attachments(&self, stored: &Stored) -> Attachments {
+        let peak = instant_of_peak(&stored.outcome.history, "sphere_force");
+        let animation = Some(stored.folder.join(ANIMATION)).filter(|file| file.is_file());
+        // the same on every machine, so that equal results give equal reports
+        let in_project =
+            |file: PathBuf| file.strip_prefix(project_root()).map(Path::to_owned).unwrap_or(file);
+        Attachments {
+            section: stored.section().ok(),
+            section_stress: stored.section_near(peak).ok().flatten(),
+            animation: animation.map(in_project),
+            ..Attachments::default()
+        }
+    }
+
+    fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
+        let section = section(report).map(|svg| Drawing {
+            ending: "-section",
+            caption: Some("Section with the directions of flight"),
+            svg,
+        });
+        let svg = curves(report, CHART_WIDTH);
+        let curves = Drawing { ending: "", caption: Some("Forces and velocities"), svg };
+        section.into_iter().chain([curves]).collect()
+    }
+
+    fn page(&self, report: &SceneReport) -> String {
+        page_of(report)
+    }
 }
 
 /// Directions found and intended.
-fn arrows(report: &SeatReport) -> Vec<Arrow> {
-    let of = |q: &SeatQuantities| [q.sphere_velocity_x, q.sphere_velocity_z];
-    let reference = &report.comparison.reference.quantities;
+fn arrows(report: &SceneReport) -> Vec<Arrow> {
+    let found = |summary: &Summary| SeatQuantities::of_table(&summary.quantities);
+    let arrow = |name: String, q: SeatQuantities, colour, dashes| Arrow {
+        name,
+        velocity: [q.sphere_velocity_x, q.sphere_velocity_z],
+        colour,
+        dashes,
+    };
     let mut arrows = Vec::new();
-    if let Setup::SealSeat(setup) = &report.scene.setup {
-        let (sin, cos) = setup.intended_angle.sin_cos();
-        let velocity = [sin, cos].map(|c| c * reference.sphere_speed);
-        arrows.push(Arrow {
-            name: "intended, drawn with the reference's speed".into(),
-            velocity,
-            colour: "#777777",
-            dashes: "3 4",
-        });
+    if let Some(reference) = found(&report.comparison.reference) {
+        if let Setup::SealSeat(setup) = &report.scene.setup {
+            let (sin, cos) = setup.intended_angle.sin_cos();
+            arrows.push(Arrow {
+                name: "intended, drawn with the reference's speed".into(),
+                velocity: [sin, cos].map(|c| c * reference.sphere_speed),
+                colour: "#777777",
+                dashes: "3 4",
+            });
+        }
+        arrows.push(arrow("reference".into(), reference, "#1a1a1a", ""));
     }
-    arrows.push(Arrow { name: "reference".into(), velocity: of(reference), colour: "#1a1a1a", dashes: "" });
-    for model in &report.comparison.models {
+    arrows.extend(report.comparison.models.iter().filter_map(|model| {
         let name = format!("model {}", model_name(&model.model, model.summary.modes));
-        arrows.push(Arrow {
-            name,
-            velocity: of(&model.summary.quantities),
-            colour: "#009e73",
-            dashes: "9 4",
-        });
-    }
+        Some(arrow(name, found(&model.summary)?, "#009e73", "9 4"))
+    }));
     arrows
 }
 
-/// The section with both arrows, as a stand-alone SVG; `None` for a scene of another kind.
-pub fn seat_section(report: &SeatReport) -> Option<String> {
+/// The section with all arrows, as a stand-alone SVG; `None` for a scene of another kind.
+fn section(report: &SceneReport) -> Option<String> {
     let Setup::SealSeat(setup) = &report.scene.setup else { return None };
     Some(seat_picture(setup, &arrows(report)))
 }
 
 /// Forces and velocities over time, as a stand-alone SVG.
-pub fn seat_curves(report: &SeatReport) -> String {
-    curves(report, CHART_WIDTH)
-}
-
-fn curves(report: &SeatReport, width: f64) -> String {
+fn curves(report: &SceneReport, width: f64) -> String {
     let panel = |quantity: &str, label: &str| {
-        let series = |name: String, outcome: &Outcome<SeatQuantities>| {
-            let values = outcome.history.values(quantity).unwrap_or_default();
-            let points = outcome.history.time().iter().zip(values).map(|(t, v)| (1e6 * t, *v)).collect();
+        let series = |name: String, outcome: &Outcome| {
+            let values = outcome.history.curve(quantity).unwrap_or_default();
+            let points = outcome.history.time.iter().zip(values).map(|(t, v)| (1e6 * t, *v)).collect();
             Series { name, points, marks: false }
         };
-        let models = report.comparison.models.iter().zip(&report.reduced);
+        let models = report.comparison.models.iter().zip(report.reduced);
         let reduced = models.map(|(model, outcome)| series(format!("model {}", model.model), outcome));
         ChartPanel {
             x_label: "time, µs".into(),
             y_label: label.into(),
-            series: std::iter::once(series("reference".into(), &report.reference)).chain(reduced).collect(),
+            series: std::iter::once(series("reference".into(), report.reference)).chain(reduced).collect(),
             ..ChartPanel::default()
         }
     };
@@ -155,22 +160,21 @@ fn panels() -> Vec<PanelOf> {
     ]
 }
 
-/// The page of one scene.
-pub fn seat_page(report: &SeatReport) -> String {
+fn page_of(report: &SceneReport) -> String {
     let comparison = &report.comparison;
     let name = &comparison.scene;
     let body = html! {
-        (page_end::head(&report.scene, comparison))
+        (page_end::head(report))
         h2 { "Flight of the sphere" }
-        @if let Some(section) = seat_section(report) { figure { (detailed("Section of the seat", &html! { (PreEscaped(section)) })) } }
+        @if let Some(section) = section(report) { figure { (detailed("Section of the seat", &html! { (PreEscaped(section)) })) } }
         (directions(report))
         h2 { "Curves" }
-        (interactive::panels(&seat_curves(report), &curves(report, PHONE_WIDTH)))
+        (interactive::panels(&curves(report, CHART_WIDTH), &curves(report, PHONE_WIDTH)))
         p.soft { "Displacement and velocity along x and z, and contact forces, of sphere and actuator; z points away from the "
             "actuator, forces are magnitudes. Shaded: the 95 % band of the reference. "
             a href=(format!("{name}.svg")) { "curves as SVG" } " · " a href=(format!("{name}.csv")) { "curves as CSV" } " · "
             a href=(format!("{name}-section.svg")) { "section as SVG" } }
-        @if let Some(animation) = &report.animation {
+        @if let Some(animation) = &report.attachments.animation {
             p { "Fields of the stored solution, for ParaView (`impactcheck reference SCENE --fields 40` makes a series): " code { (animation.display()) } }
         }
         @for model in &comparison.models { (model_section(model)) }
@@ -179,25 +183,22 @@ pub fn seat_page(report: &SeatReport) -> String {
         h2 { "Mesh and solver" }
         (super::seal_seat_mesh::mesh_html(report))
         (page_end::numbers(comparison))
-        (page_end::end(comparison, &report.attachments, &report.provenance, &report.command))
+        (page_end::end(report))
     };
-    let shown = Shown {
-        window: comparison.window,
-        reference: &report.reference,
-        reduced: &report.reduced,
-        bands: report.attachments.bands.as_ref(),
-    };
-    let scripts = interactive::scripts(comparison, &shown, &panels());
+    let scripts = interactive::scripts(report, &panels());
     page(&format!("{name} · impactcheck"), &[interactive::STYLE], &body, &scripts)
 }
 
 /// Size and direction of the velocity, and how far it is from the intended direction.
-fn directions(report: &SeatReport) -> Markup {
+fn directions(report: &SceneReport) -> Markup {
     let intended = match &report.scene.setup {
         Setup::SealSeat(setup) => setup.intended_angle,
         Setup::PlateImpact(_) => f64::NAN,
     };
-    let row = |name: &str, q: &SeatQuantities| {
+    let row = |name: &str, summary: &Summary| {
+        let Some(q) = SeatQuantities::of_table(&summary.quantities) else {
+            return html! { tr { th scope="row" { (name) } td.left colspan="6" { "not determined" } } };
+        };
         html! { tr {
             th scope="row" { (name) }
             td { (with_unit(q.sphere_speed, prefixed("m/s", q.sphere_speed), 4)) }
@@ -211,13 +212,13 @@ fn directions(report: &SeatReport) -> Markup {
         div.scroll role="region" tabindex="0" aria-label="Flight of the sphere" { table {
             thead { tr {
                 @for heading in ["", "speed", "direction", "from the intended", "efficiency", "left flank, µN·s", "right flank, µN·s"] {
-                    th scope="col" { (heading) }
+                    th scope="col" { (named(heading)) }
                 }
             } }
             tbody {
-                (row("reference", &report.comparison.reference.quantities))
+                (row("reference", &report.comparison.reference))
                 @for model in &report.comparison.models {
-                    (row(&model_name(&model.model, model.summary.modes), &model.summary.quantities))
+                    (row(&model_name(&model.model, model.summary.modes), &model.summary))
                 }
             }
         } }
@@ -226,10 +227,10 @@ fn directions(report: &SeatReport) -> Markup {
     }
 }
 
-fn cost(report: &SeatReport) -> Markup {
+fn cost(report: &SceneReport) -> Markup {
     let reference = report.comparison.reference.solve_seconds;
     html! {
-        @for (model, cost) in report.comparison.models.iter().zip(&report.cost) {
+        @for (model, cost) in report.comparison.models.iter().zip(&report.attachments.cost) {
             @let own = model.summary.solve_seconds;
             p { "Time loop of the reference " (with_unit(reference, prefixed("s", reference), 3)) " when it was made; model "
                 (model_name(&model.model, model.summary.modes)) " " (marked(&with_unit(own, prefixed("s", own), 3))) " when this page was made, after "
@@ -238,80 +239,4 @@ fn cost(report: &SeatReport) -> Markup {
                 " times as fast." }
         }
     }
-}
-
-/// Lines for the terminal: values of the reference and of each model, and what failed.
-pub(super) fn terminal(report: &SeatReport) -> String {
-    let comparison = &report.comparison;
-    let reference = &comparison.reference.quantities;
-    let mut text = format!("{}: {}\n", comparison.scene, coloured(comparison.verdict));
-    text += &format!(
-        "  {:<10}{:>20}{:>22}{:>22}{:>22}  verdict\n",
-        "", "direction", "speed, m/s", "sphere peak, N", "actuator peak, N"
-    );
-    let line = |name: &str, q: &SeatQuantities, verdict: &str| {
-        let cell = |own: f64, m: f64| match name {
-            "reference" => format!("{:>22}", significant(own, 4)),
-            _ => {
-                format!("{:>22}", format!("{} ({})", significant(own, 4), percent(Some((own - m) / m.abs()))))
-            }
-        };
-        let angle = match name {
-            "reference" => format!("{:+.2}°", q.sphere_angle.to_degrees()),
-            _ => format!(
-                "{:+.2}° ({:+.2}°)",
-                q.sphere_angle.to_degrees(),
-                (q.sphere_angle - reference.sphere_angle).to_degrees()
-            ),
-        };
-        format!(
-            "  {name:<10}{angle:>20}{}{}{}  {verdict}\n",
-            cell(q.sphere_speed, reference.sphere_speed),
-            cell(q.sphere_force_peak, reference.sphere_force_peak),
-            cell(q.actuator_force_peak, reference.actuator_force_peak)
-        )
-    };
-    text += &line("reference", reference, "");
-    for model in &comparison.models {
-        text += &line(&model.model, &model.summary.quantities, &coloured(model.verdict));
-    }
-    for check in comparison.integrity.iter().filter(|c| !c.verdict.passed()) {
-        text += &format!("  reference: {}\n", integrity_failure(check));
-    }
-    for model in &comparison.models {
-        for warning in &model.summary.warnings {
-            text += &format!("  warning: {warning}\n");
-        }
-        for row in model.discrepancies.iter().filter(|d| !d.verdict.passed()) {
-            text += &format!("  {}: {}\n", model.model, failure(row));
-        }
-        for check in model.integrity.iter().filter(|c| !c.verdict.passed()) {
-            text += &format!("  {}: {}\n", model.model, integrity_failure(check));
-        }
-    }
-    text + "\n"
-}
-
-/// Both histories on the reference's time axis as CSV.
-///
-/// # Errors
-/// [`Error::Internal`] if it can't be written.
-pub fn seat_curves_csv(report: &SeatReport) -> Result<Vec<u8>> {
-    let internal = |e: csv::Error| Error::Internal(format!("writing CSV: {e}"));
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let sources = || report.comparison.models.iter().map(|m| m.model.clone());
-    let names = |source: String| SEAT_CURVES.iter().map(move |(curve, _)| format!("{source}_{curve}"));
-    let header = std::iter::once("time".to_owned()).chain(names("reference".into()));
-    writer.write_record(header.chain(sources().flat_map(names))).map_err(internal)?;
-    if let Some(axis) = report.comparison.window {
-        let aligned: Vec<_> =
-            report.reduced.iter().map(|r| align(axis, &report.reference.history, &r.history)).collect();
-        for k in 0..axis.samples {
-            let reference = aligned.first().into_iter().flatten().map(|curve| curve.reference[k]);
-            let reduced = aligned.iter().flatten().map(|curve| curve.reduced[k]);
-            let row: Vec<f64> = std::iter::once(axis.time(k)).chain(reference).chain(reduced).collect();
-            writer.serialize(row).map_err(internal)?;
-        }
-    }
-    writer.into_inner().map_err(|e| internal(e.into_error().into()))
 }

@@ -1,6 +1,6 @@
 //! Mesh and stress of a seal seat's reference in the plane of symmetry.
 
-use super::SeatReport;
+use super::SceneReport;
 use super::field_raster::cividis;
 use super::figure::x2;
 use super::format::{prefixed, with_unit};
@@ -17,8 +17,8 @@ const SHARE_IN_SCALE: f64 = 0.99;
 const AROUND: f64 = 1.25;
 
 /// Section of the page; nothing if there is no picture to show.
-pub(super) fn mesh_html(report: &SeatReport) -> Markup {
-    let Some(mesh) = &report.section else { return html! {} };
+pub(super) fn mesh_html(report: &SceneReport) -> Markup {
+    let Some(mesh) = &report.attachments.section else { return html! {} };
     let views = views(mesh, report);
     html! {
         figure.pictures {
@@ -26,7 +26,7 @@ pub(super) fn mesh_html(report: &SeatReport) -> Markup {
             figcaption { "Mesh of the reference, and of the reduced model, in the plane of symmetry: the seat of the sphere, and the "
                 "whole. x and z in mm." }
         }
-        @if let Some((time, section)) = &report.stress && let Some(values) = &section.von_mises {
+        @if let Some((time, section)) = &report.attachments.section_stress && let Some(values) = &section.von_mises {
             @let largest = covering(section, values);
             figure.pictures {
                 div.pair {
@@ -42,7 +42,7 @@ pub(super) fn mesh_html(report: &SeatReport) -> Markup {
 }
 
 /// The seat, and everything.
-fn views(mesh: &MeshSection, report: &SeatReport) -> Vec<Bounds> {
+fn views(mesh: &MeshSection, report: &SceneReport) -> Vec<Bounds> {
     let range = |c: usize| {
         let values = mesh.triangles.iter().flatten().map(|p| p[c]);
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])

@@ -2,8 +2,9 @@
 
 use super::Report;
 use super::format::{percent, prefixed, with_unit};
-use crate::comparison::{Shown, Verdict};
-use crate::result::PlateQuantities;
+use super::presentation::{self, Column};
+use crate::comparison::{ModelComparison, SceneComparison, Verdict};
+use crate::result::Summary;
 use anstyle::{AnsiColor, Style};
 
 /// Styles; whoever prints takes them away where they can't be seen.
@@ -11,30 +12,58 @@ const YELLOW: Style = AnsiColor::Yellow.on_default();
 const GREEN: Style = AnsiColor::Green.on_default().bold();
 const RED: Style = AnsiColor::Red.on_default().bold();
 
-/// A verdict in its colour.
-pub(super) fn coloured(verdict: Verdict) -> String {
-    let style = if verdict.passed() { GREEN } else { RED };
-    format!("{style}{verdict}{style:#}")
-}
-
-/// A verdict as people are told it, in its colour.
-pub(super) fn told(shown: Shown) -> String {
-    let style = match shown {
-        Shown::Pass | Shown::PassAboutBias => GREEN,
-        Shown::Fail => RED,
-        Shown::NotGated => YELLOW,
+/// A verdict in its colour, in these words.
+pub(super) fn coloured(verdict: Verdict, words: &str) -> String {
+    let style = match verdict {
+        Verdict::Pass => GREEN,
+        Verdict::Fail => RED,
+        Verdict::NotGated | Verdict::Undecided => YELLOW,
     };
-    format!("{style}{}{style:#}", shown.words())
+    format!("{style}{words}{style:#}")
 }
 
-/// The columns: heading, quantity, unit.
-const COLUMNS: [(&str, &str, &str); 5] = [
-    ("efficiency", "efficiency", "1"),
-    ("outer peak", "outer_force_peak", "N"),
-    ("inner peak", "inner_force_peak", "N"),
-    ("outer end", "outer_contact_end", "s"),
-    ("inner end", "inner_contact_end", "s"),
-];
+/// A scene's line.
+pub(super) fn headline(comparison: &SceneComparison) -> String {
+    let verdict = comparison.verdict;
+    format!("{}: {}\n", comparison.scene, coloured(verdict, verdict.words()))
+}
+
+/// A model's verdict.
+pub(super) fn of_model(model: &ModelComparison) -> String {
+    coloured(model.verdict, model.verdict_in_words())
+}
+
+/// One per line: warnings, what failed and what is undecided; then how many did.
+pub(super) fn findings(comparison: &SceneComparison) -> String {
+    let mut text = String::new();
+    let mut line = |of: &str, what: String| text += &format!("  {of}: {what}\n");
+    let warning = format!("{YELLOW}warning{YELLOW:#}");
+    for of_reference in &comparison.reference.warnings {
+        line(&format!("{warning}: reference"), of_reference.clone());
+    }
+    for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
+        line("reference", super::junit::integrity_failure(check));
+    }
+    for model in &comparison.models {
+        for of_model in &model.summary.warnings {
+            line(&format!("{warning}: {}", model.model), of_model.clone());
+        }
+        for row in model.discrepancies.iter().filter(|d| d.is_told()) {
+            line(&model.model, super::junit::told(row));
+        }
+        for check in model.integrity.iter().filter(|c| c.verdict.failed()) {
+            line(&model.model, super::junit::integrity_failure(check));
+        }
+    }
+    let gated = comparison.gated_verdicts().count();
+    for (verdict, did) in [(Verdict::Fail, "failed"), (Verdict::Undecided, "are undecided")] {
+        let count = comparison.gated_verdicts().filter(|v| *v == verdict).count();
+        if count > 0 {
+            text += &format!("  {count} of {gated} gated quantities {did}\n");
+        }
+    }
+    text
+}
 
 /// Per scene a line for the reference and one per model: values, how far they are from the
 /// reference, verdict; then, one per line, what failed.
@@ -42,54 +71,36 @@ pub fn terminal(report: &Report) -> String {
     let mut text = String::new();
     for scene in &report.scenes {
         let comparison = &scene.comparison;
-        let reference = &comparison.reference.quantities;
-        text += &format!("{}: {}\n", comparison.scene, told(comparison.shown()));
-        let headings: String = COLUMNS.iter().map(|(heading, ..)| format!("{heading:>22}")).collect();
+        let (reference, columns) = (&comparison.reference, presentation::of(scene.scene).columns());
+        text += &headline(comparison);
+        let headings: String = columns.iter().map(|column| format!("{:>22}", column.heading)).collect();
         text += &format!("  {:<10}{headings}  verdict\n", "");
-        text += &format!("  {:<10}{}\n", "reference", cells(reference, None));
+        text += &format!("  {:<10}{}\n", "reference", cells(columns, reference, None));
         for model in &comparison.models {
-            let row = cells(&model.summary.quantities, Some(reference));
-            text += &format!("  {:<10}{row}  {}\n", model.model, told(model.shown()));
+            let row = cells(columns, &model.summary, Some(reference));
+            text += &format!("  {:<10}{row}  {}\n", model.model, of_model(model));
         }
         if let Some(measured) = &comparison.measured {
             text += &format!("  {}\n", super::measured_section::sentence(measured));
         }
-        for check in comparison.integrity.iter().filter(|c| !c.verdict.passed()) {
-            text += &format!("  reference: {}\n", super::junit::integrity_failure(check));
-        }
-        for model in &comparison.models {
-            for warning in &model.summary.warnings {
-                text += &format!("  {YELLOW}warning:{YELLOW:#} {warning}\n");
-            }
-            for row in model.discrepancies.iter().filter(|d| !d.verdict.passed()) {
-                text += &format!("  {}: {}\n", model.model, super::junit::failure(row));
-            }
-            for check in model.integrity.iter().filter(|c| !c.verdict.passed()) {
-                text += &format!("  {}: {}\n", model.model, super::junit::integrity_failure(check));
-            }
-        }
-        text += &failed(comparison.gated_and_failed());
+        text += &findings(comparison);
         text.push('\n');
-    }
-    for seat in &report.seats {
-        text += &super::seal_seat::terminal(seat);
     }
     text
 }
 
-/// How many gated quantities failed, if any did.
-pub(super) fn failed((gated, failed): (usize, usize)) -> String {
-    if failed == 0 { String::new() } else { format!("  {failed} of {gated} gated quantities failed\n") }
-}
-
-fn cells(quantities: &PlateQuantities, reference: Option<&PlateQuantities>) -> String {
-    let cell = |(_, quantity, unit): &(&str, &str, &str)| {
-        let value = |q: &PlateQuantities| q.get(quantity).unwrap_or(f64::NAN);
-        let own = value(quantities);
-        let shown = with_unit(own, prefixed(unit, own), 4);
-        let relative = reference.map(value).filter(|m| *m != 0.0).map(|m| (own - m) / m.abs());
+fn cells(columns: &[Column], summary: &Summary, reference: Option<&Summary>) -> String {
+    let cell = |column: &Column| {
+        let Some(quantity) = summary.quantities.get(column.quantity) else { return String::new() };
+        let Some(own) = quantity.value else { return "not determined".into() };
+        let other = reference.and_then(|reference| reference.value(column.quantity));
+        if column.is_angle {
+            let difference = other.map(|other| format!(" ({:+.2}°)", (own - other).to_degrees()));
+            return format!("{:+.2}°{}", own.to_degrees(), difference.unwrap_or_default());
+        }
+        let relative = other.filter(|other| *other != 0.0).map(|other| (own - other) / other.abs());
         let relative = relative.map_or(String::new(), |r| format!(" ({})", percent(Some(r))));
-        format!("{:>22}", shown + &relative)
+        with_unit(own, prefixed(quantity.unit, own), 4) + &relative
     };
-    COLUMNS.iter().map(cell).collect()
+    columns.iter().map(|column| format!("{:>22}", cell(column))).collect()
 }

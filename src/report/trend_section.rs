@@ -3,7 +3,7 @@
 use super::Attachments;
 use super::figure::x2;
 use super::format::{prefixed, significant, with_unit, words};
-use super::html::scrolled;
+use super::html::{badge, scrolled};
 use super::polyline::path;
 use crate::ci::trend::Trend;
 use maud::{Markup, html};
@@ -25,13 +25,13 @@ pub(super) fn trends_html(attachments: &Attachments) -> Markup {
     html! {
         h2 { "Trends" }
         p.soft {
-            "Gated numbers over the commits recorded, oldest first; shaded is what the gate admits now, and for the reference its 95 % band. A number drifts "
+            "Gated numbers over the commits recorded, oldest first; shaded is what does not fail the gate now (darker: what passes, between them it is undecided), and for the reference its 95 % band. A number drifts "
             "since the commit from which on it is farther than a tenth of its tolerance from its first value. "
             strong { (drifting) " of " (trends.len()) @if drifting == 1 { " numbers drifts." } @else { " numbers drift." } }
         }
         (scrolled("Trends", &html! { table.trends {
             thead { tr {
-                th scope="col" { "quantity" } th.left scope="col" { "of" } th.left scope="col" { "course" }
+                th scope="col" { "quantity" } th.left scope="col" { "of" } th.left scope="col" { "verdict" } th.left scope="col" { "course" }
                 th scope="col" { "commits" } th scope="col" { "first" } th scope="col" { "last" } th scope="col" { "change" }
                 th.left scope="col" { "drifts since" }
             } }
@@ -48,6 +48,7 @@ fn row(trend: &Trend) -> Markup {
         tr data-model=(trend.model) data-quantity=(trend.quantity) {
             th scope="row" { (words(&trend.quantity)) }
             td.left { (trend.model) }
+            td.left { (badge(trend.verdict)) }
             td.left { (sparkline(trend)) }
             td { (trend.points.len()) }
             td data-si=(value(first)) { (with_unit(value(first), to, 5)) }
@@ -88,7 +89,7 @@ fn sparkline(trend: &Trend) -> Markup {
     );
     html! {
         svg.spark viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) width=(WIDTH) height=(HEIGHT) role="img" aria-label=(name) {
-            @if let Some((from, to)) = trend.admissible {
+            @for (from, to) in [trend.admissible, trend.passing].into_iter().flatten() {
                 rect.fig-band x="0" width=(WIDTH) y=(x2(y(to))) height=(x2(y(from) - y(to))) {}
             }
             path.fig-B d=(path(&points)) fill="none" stroke-width="1.6" stroke-linejoin="round" {}

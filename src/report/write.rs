@@ -1,7 +1,7 @@
 //! The report's files, complete or not at all.
 
 use super::run_times::same_but_for_run_times;
-use super::{Report, Theme};
+use super::{Report, presentation};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -98,33 +98,13 @@ fn files(report: &Report) -> Result<Vec<(String, Vec<u8>)>> {
         if !names.insert(name) || name == "index" {
             return Err(Error::Usage(format!("scene name `{name}` stands for two pages of the report")));
         }
-        let svg = super::figure(scene, Theme::Standalone);
-        files.push((format!("{name}.png"), super::png(&svg, PNG_SCALE)?));
-        files.push((format!("{name}.svg"), svg.into_bytes()));
-        let measured = super::measured_figure(scene, Theme::Standalone).map(|svg| ("measured", svg));
-        let efficiencies = super::efficiency_figure(scene).map(|svg| ("efficiencies", svg));
-        for (kind, svg) in measured.into_iter().chain(efficiencies) {
-            files.push((format!("{name}-{kind}.png"), super::png(&svg, PNG_SCALE)?));
-            files.push((format!("{name}-{kind}.svg"), svg.into_bytes()));
+        for drawing in presentation::of(scene.scene).drawings(scene) {
+            let stem = format!("{name}{}", drawing.ending);
+            files.push((format!("{stem}.png"), super::png(&drawing.svg, PNG_SCALE)?));
+            files.push((format!("{stem}.svg"), drawing.svg.into_bytes()));
         }
         files.push((format!("{name}.csv"), super::curves_csv(scene)?.into_bytes()));
         files.push((format!("{name}.html"), super::scene_page(scene).into_bytes()));
-    }
-    for seat in &report.seats {
-        let name = &seat.comparison.scene;
-        if !is_file_name(name) {
-            return Err(Error::Usage(format!("scene name `{name}` can't be used as a file name")));
-        }
-        if !names.insert(name) || name == "index" {
-            return Err(Error::Usage(format!("scene name `{name}` stands for two pages of the report")));
-        }
-        let section = super::seat_section(seat).map(|svg| (format!("{name}-section"), svg));
-        for (stem, svg) in section.into_iter().chain([(name.clone(), super::seat_curves(seat))]) {
-            files.push((format!("{stem}.png"), super::png(&svg, PNG_SCALE)?));
-            files.push((format!("{stem}.svg"), svg.into_bytes()));
-        }
-        files.push((format!("{name}.csv"), super::seat_curves_csv(seat)?));
-        files.push((format!("{name}.html"), super::seat_page(seat).into_bytes()));
     }
     Ok(files)
 }

@@ -45,8 +45,9 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
     let tips = logarithmic(TIPS.0, TIPS.1, TIPS.2);
     let setups = tips.iter().map(|tip| with_tips(*tip)).collect();
     let results = Runner::new(model).run_all(setups, note)?;
-    let column =
-        |value: fn(&crate::result::PlateQuantities) -> f64| results.iter().map(value).collect::<Vec<_>>();
+    let column = |value: fn(&crate::kinds::plate_impact::PlateQuantities) -> f64| {
+        results.iter().map(value).collect::<Vec<_>>()
+    };
     let rows = tips
         .iter()
         .zip(&results)

@@ -4,8 +4,8 @@
 use super::{Cell, Claim, Note, SCHEMA_VERSION, Study};
 use crate::body::continuum::MeshOptions;
 use crate::error::Result;
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
-use crate::result::PlateQuantities;
 use crate::scene::{self, Scene};
 
 /// Scenes of Table 1 of the paper.

@@ -7,8 +7,8 @@
 use super::{Claim, Note};
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::Result;
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::reduced::Reduced;
-use crate::result::PlateQuantities;
 use crate::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings,
     Run, Scene, Setup, Shape,

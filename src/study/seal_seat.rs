@@ -5,11 +5,11 @@
 
 use super::{Axis, Cell, Claim, Note, Only, Panel, SCHEMA_VERSION, Study};
 use crate::body::cache::Cache;
-use crate::error::Result;
-use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
+use crate::error::{Error, Result};
+use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel, SeatQuantities};
 use crate::project::project_root;
 use crate::reference::{self, Lookup, Resolution, Store};
-use crate::result::SeatQuantities;
+use crate::result::{CUT, Summary};
 use crate::scene::{self, Model, Notch, Scene, SealSeat, Setup};
 
 /// How far the improved design's direction may lie from the intended one, rad.
@@ -178,8 +178,8 @@ impl Corner {
     fn reference(&self, note: &mut Note) -> Option<SeatQuantities> {
         let path = project_root().join(self.scene);
         let scene = if path.is_file() { Scene::read(path) } else { shipped(self.scene) }.ok()?;
-        match Store::open(None).find_as::<SeatQuantities>(&scene, Resolution::Paper) {
-            Lookup::Found(stored) => Some(stored.outcome.summary.quantities),
+        match Store::open(None).find(&scene, Resolution::Paper) {
+            Lookup::Found(stored) => SeatQuantities::of_table(&stored.outcome.summary.quantities),
             _ => {
                 note(&format!(
                     "{} design, {}: no reference stored; `impactcheck reference {}` computes it",
@@ -311,7 +311,16 @@ fn widen(scene: &mut SealSeat, factor: f64) {
 fn solve(scene: &Scene, resolution: Resolution, cache: &Cache) -> Result<SeatQuantities> {
     let mesh = SeatMesh::open(&reference::seat_mesh(scene, resolution, cache)?)?;
     let model = SeatModel::new(scene, Model::C, None, &mesh, cache)?;
-    Ok(model.run(DEFAULT_TOLERANCE)?.quantities)
+    determined(&model.run(DEFAULT_TOLERANCE)?)
+}
+
+/// The results of a run.
+///
+/// # Errors
+/// [`Error::Solver`] if it was cut during a contact.
+pub(super) fn determined(summary: &Summary) -> Result<SeatQuantities> {
+    SeatQuantities::of_table(&summary.quantities)
+        .ok_or_else(|| Error::Solver(format!("{}: {CUT}", summary.scene)))
 }
 
 fn row(

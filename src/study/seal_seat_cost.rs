@@ -1,11 +1,11 @@
 //! What the reduced seal seat costs, and the time loop of the finite elements on the same mesh, in one run.
 
+use super::seal_seat::determined;
 use super::{Cell, Claim, Note, SCHEMA_VERSION, Study};
 use crate::body::cache::Cache;
 use crate::error::{Error, Result};
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
 use crate::reference::{self, Resolution, Store, Stored, Wish};
-use crate::result::SeatQuantities;
 use crate::scene::Model;
 
 /// Ratio of the run times that is wanted at least.
@@ -16,7 +16,7 @@ const REPETITIONS: usize = 7;
 /// The study.
 ///
 /// # Errors
-/// As [`reference::solve_as`], [`SeatModel::new`].
+/// As [`reference::solve_with`], [`SeatModel::new`].
 pub fn run(note: &mut Note) -> Result<Study> {
     let folder = std::env::temp_dir();
     let folder = tempfile::tempdir_in(&folder).map_err(|e| Error::io("writing into", &folder, e))?;
@@ -27,8 +27,8 @@ pub fn run(note: &mut Note) -> Result<Study> {
         let scene = super::seal_seat::shipped(name)?;
         note(&format!("{name}: finite elements"));
         let wish = Wish::default();
-        let stored: Stored<SeatQuantities> =
-            reference::solve_as(&python, &scene, Resolution::Coarse, &store, &wish, &mut |_| {})?;
+        let stored: Stored =
+            reference::solve_with(&python, &scene, Resolution::Coarse, &store, &wish, &mut |_| {})?;
         note(&format!("{name}: reduced model"));
         let mesh = SeatMesh::open(&stored.folder.join("mesh.vtu"))?;
         let model = SeatModel::new(&scene, Model::C, None, &mesh, &Cache::off())?;
@@ -40,8 +40,9 @@ pub fn run(note: &mut Note) -> Result<Study> {
         }
         let summary = &stored.outcome.summary;
         let ratio = summary.solve_seconds / own;
-        let off = reduced.quantities.sphere_angle - summary.quantities.sphere_angle;
-        let speed = reduced.quantities.sphere_speed / summary.quantities.sphere_speed - 1.0;
+        let (ours, exact) = (determined(&reduced)?, determined(summary)?);
+        let off = ours.sphere_angle - exact.sphere_angle;
+        let speed = ours.sphere_speed / exact.sphere_speed - 1.0;
         let text = if name == "seal-seat-initial" { "initial" } else { "improved" };
         rows.push(vec![
             Cell::Text(text),

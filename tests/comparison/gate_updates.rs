@@ -348,25 +348,45 @@ fn github_gets_annotations_at_the_tolerances_and_a_summary() {
         "outer_force_peak     = { relative = 0.01, bias =",
         "outer_force_peak     = { relative = 0.01, bias = 0.5 } #",
     );
-    let text = fs::read_to_string(repository.scene()).unwrap();
     repository.replace(
         "[tolerances.C]\nefficiency           = { absolute = 0.002 }",
         "[tolerances.C]\nefficiency           = { absolute = 1e-9 }",
     );
-    let line = 1 + text[..text.find("[tolerances.C]").unwrap()].matches('\n').count() + 1;
+    let text = fs::read_to_string(repository.scene()).unwrap();
+    let line = |of: &str| 1 + text[..text.find(of).unwrap()].matches('\n').count();
     let environment = [("GITHUB_ACTIONS", "true"), ("GITHUB_STEP_SUMMARY", "summary.md")];
     fs::write(repository.path("summary.md"), "what was there\n").unwrap();
     let output = repository.gate_in(&environment, &["--json", "--quiet"]);
     assert_eq!(output.status.code(), Some(10));
     serde_json::from_slice::<Value>(&output.stdout).expect("standard output is the document alone");
     let said = String::from_utf8(output.stderr).unwrap();
-    let commands: Vec<_> = said.lines().filter(|l| l.starts_with("::error ")).collect();
-    let expected = format!(
-        "::error file=scene.toml,line={line},title={SCENE}%2C model C%2C efficiency::efficiency: reduced 0.38"
+    // no reference decides a tolerance of 1e-9
+    let undecided = format!(
+        ",line={},title={SCENE}%2C model C%2C efficiency::efficiency: reduced 0.38",
+        line("efficiency           = { absolute = 1e-9")
     );
-    assert!(commands.iter().any(|c| c.starts_with(&expected)), "{expected}\n{said}");
+    let failed = format!(
+        "::error file=scene.toml,line={},title={SCENE}%2C model B%2C outer force%2C peak::outer_force_peak: reduced",
+        line("outer_force_peak     = { relative = 0.01, bias = 0.5 }")
+    );
+    let has = |said: &str, command: &str| said.lines().any(|line| line.starts_with(command));
+    assert!(has(&said, &failed), "{failed}\n{said}");
+    assert!(has(&said, &format!("::warning file=scene.toml{undecided}")), "{undecided}\n{said}");
+    for (rule, level) in [("fail", Some("error")), ("pass", None)] {
+        let output = repository.gate_in(&environment[..1], &["--quiet", "--undecided", rule]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(has(&said, &failed), "{said}");
+        assert_eq!(said.contains(&undecided), level.is_some(), "{rule}: {said}");
+        let command = level.map_or(String::new(), |level| format!("::{level} file=scene.toml{undecided}"));
+        assert!(has(&said, &command), "{command}\n{said}");
+    }
     let summary = fs::read_to_string(repository.path("summary.md")).unwrap();
     assert!(summary.starts_with("what was there\n## impactcheck: fail"), "{summary}");
-    assert!(summary.contains(&format!("- {SCENE}, model C: efficiency: reduced")), "{summary}");
+    let (failed, undecided) = summary.split_once("### What is undecided").unwrap();
+    assert!(
+        failed.contains(&format!("### What failed\n\n- {SCENE}, model B: outer_force_peak: reduced")),
+        "{summary}"
+    );
+    assert!(undecided.contains(&format!("- {SCENE}, model C: efficiency: reduced")), "{summary}");
     assert!(!repository.gate(&[]).1.contains("::error"), "only where GitHub runs it");
 }

@@ -3,9 +3,11 @@
 mod curve_metrics_integral;
 mod curve_metrics_iso18571;
 mod curves;
+mod cut_runs;
 mod discrepancy_budget;
 mod gate_mutations;
 mod gate_updates;
+mod gate_verdicts;
 mod harness;
 mod measured_signals;
 

@@ -1,6 +1,7 @@
 //! Measured signals (section 3.4): synthetic records of known noise, shift, offset and drift, made from a model's history
 //! and laid over the finite-element reference.
 
+use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::measured::{
     AlignedRecord, BANDWIDTH, Channel, Filtered, Record, Series, Speed, align, compare,
@@ -8,6 +9,10 @@ use impactcheck::measured::{
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::result::Outcome;
 use impactcheck::scene::{Model, PlateImpact, Scene, Setup, resolve};
+
+fn determined(outcome: &Outcome) -> PlateQuantities {
+    PlateQuantities::of_table(&outcome.summary.quantities).unwrap()
+}
 
 fn scene(name: &str) -> (Scene, PlateImpact) {
     let scene = Scene::read(resolve(name).unwrap()).unwrap();
@@ -49,7 +54,7 @@ fn normal(random: &mut fastrand::Rng) -> f64 {
 fn record(truth: &Outcome, signals: &[&'static str], with: Disturbance) -> Record {
     let mut random = fastrand::Rng::with_seed(with.seed);
     let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
-    let last = truth.summary.quantities.outer_contact_end + 200e-6;
+    let last = truth.summary.value("outer_contact_end").unwrap() + 200e-6;
     // an uneven axis: any sampling will do
     let mut time = vec![-100e-6];
     while time[time.len() - 1] < last {
@@ -75,7 +80,7 @@ fn record(truth: &Outcome, signals: &[&'static str], with: Disturbance) -> Recor
 
 fn aligned(record: &Record, partner: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
     let filtered = Filtered::new(&partner.history, BANDWIDTH).unwrap();
-    align(record, &filtered, &partner.summary.quantities, setup, (BANDWIDTH, speed)).unwrap()
+    align(record, &filtered, &determined(partner), setup, (BANDWIDTH, speed)).unwrap()
 }
 
 #[test]
@@ -83,7 +88,7 @@ fn shift_within_a_tenth_of_a_microsecond_and_efficiency_within_half_a_point() {
     for name in ["scaled-plate-r10", "scaled-plate-r6.35"] {
         let (scene, setup) = scene(name);
         let truth = model(&scene, Model::C);
-        let expected = truth.summary.quantities.efficiency;
+        let expected = truth.summary.value("efficiency").unwrap();
         // the model the record was made from, and the finite elements, which differ from it by a little
         for (partner, seeds) in [(&truth, 1..=8), (&reference(&scene), 1..=3)] {
             for seed in seeds {
@@ -125,7 +130,7 @@ fn speed_that_differs_from_the_scene_s_is_read_from_a_signal_without_offset() {
     let record = record(&truth, &SIGNALS, disturbance);
     let found = aligned(&record, &reference(&scene), &setup, Speed::Measured);
     assert!((found.outer_velocity_initial + 0.62).abs() < 0.003, "{}", found.outer_velocity_initial);
-    let expected = truth.summary.quantities.efficiency;
+    let expected = truth.summary.value("efficiency").unwrap();
     assert!((found.efficiency.unwrap() - expected).abs() < 0.01, "{:?}", found.efficiency);
     // the partner is slower, so that its contacts last 2.4 % (4 us) longer; the shift follows by a part of that
     assert!((found.shift - 5e-6).abs() < 2e-6, "{}", found.shift);
@@ -137,7 +142,7 @@ fn speed_that_differs_from_the_scene_s_is_read_from_a_signal_without_offset() {
 fn one_signal_is_enough_and_missing_free_flight_is_told() {
     let (scene, setup) = scene("scaled-plate-r10");
     let truth = model(&scene, Model::C);
-    let expected = truth.summary.quantities.efficiency;
+    let expected = truth.summary.value("efficiency").unwrap();
     let quiet = Disturbance { noise: 0.002, ..DISTURBED };
     for signals in
         [&["inner_velocity"][..], &["inner_displacement"], &["outer_velocity", "inner_displacement"]]
@@ -159,8 +164,7 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
     };
     let late = part(&|t| t > 0.0);
     let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
-    let error =
-        align(&late, &filtered, &truth.summary.quantities, &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
+    let error = align(&late, &filtered, &determined(&truth), &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
     assert_eq!(error.exit_status() as u8, 3);
     assert!(error.to_string().contains("before the impact"), "{error}");
     let cut = aligned(&part(&|t| t < 90e-6), &truth, &setup, Speed::Scene);
@@ -178,7 +182,7 @@ fn models_are_measured_by_the_same_metrics_and_a_series_by_mean_and_scatter() {
     let found = compare(&scene, &records, &reference, &reduced, (BANDWIDTH, Speed::Scene)).unwrap();
     let series = found.efficiency.unwrap();
     assert_eq!(series, Series::of(series.values.clone()).unwrap());
-    assert!(series.count == 3 && (series.mean - truth.summary.quantities.efficiency).abs() < 0.005);
+    assert!(series.count == 3 && (series.mean - truth.summary.value("efficiency").unwrap()).abs() < 0.005);
     assert!(series.standard_deviation.unwrap() < 0.01);
     assert_eq!(
         found.partners.iter().map(|p| p.partner.as_str()).collect::<Vec<_>>(),

@@ -1,9 +1,9 @@
 //! The drawings: figures of the report and for papers, mesh and stress.
 
 use crate::report_data::{Data, between};
+use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::reference::{CurveBands, FieldMesh};
 use impactcheck::report::{FigureFormat, Theme, figure, figure_file, png, printed_figure, scene_page};
-use impactcheck::result::CURVES;
 use impactcheck::result::Outcome;
 use resvg::usvg::roxmltree::Document;
 
@@ -27,7 +27,7 @@ fn figure_is_well_formed_without_nan_and_holds_every_curve() {
         {
             assert!(texts.contains(&text), "{text}");
         }
-        let efficiency = |o: &Outcome| format!("{:.1}", 100.0 * o.summary.quantities.efficiency);
+        let efficiency = |o: &Outcome| format!("{:.1}", 100.0 * o.summary.value("efficiency").unwrap());
         for outcome in data.reduced.iter().chain([&data.reference]) {
             assert!(texts.iter().any(|t| t.starts_with(&efficiency(outcome))));
         }

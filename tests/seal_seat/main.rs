@@ -2,4 +2,5 @@
 
 mod reduced;
 mod reference;
+mod scaling;
 mod scene;

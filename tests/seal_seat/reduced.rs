@@ -4,26 +4,25 @@
 
 use assert_cmd::Command;
 use impactcheck::body::cache::Cache;
-use impactcheck::comparison::compare_scene;
+use impactcheck::comparison::{GateRules, Verdict, compare_scene};
+use impactcheck::kinds::seal_seat::SeatQuantities;
 use impactcheck::kinds::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
-use impactcheck::report::{self, Cost, Report, SeatReport};
-use impactcheck::result::Outcome;
-use impactcheck::result::SeatQuantities;
-use impactcheck::result::Source;
+use impactcheck::report::{self, Cost, Report, SceneReport};
+use impactcheck::result::{Outcome, Source, Summary};
 use impactcheck::scene::{Model, Scene};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-fn fixture(name: &str) -> PathBuf {
+pub fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures").join(name)
 }
 
-fn scene() -> Scene {
+pub fn scene() -> Scene {
     Scene::read(fixture("seal-seat.toml")).expect("scene")
 }
 
-fn mesh() -> SeatMesh {
+pub fn mesh() -> SeatMesh {
     SeatMesh::open(&fixture("seal-seat-improved-coarse.vtu")).expect("mesh")
 }
 
@@ -90,7 +89,7 @@ fn launch_converges_in_time_with_second_order_across_contact_events() {
 
 #[test]
 fn tolerance_bounds_the_error_of_the_velocity() {
-    let quantities = |tolerance| sixteen().run(tolerance).expect("run").quantities;
+    let quantities = |tolerance| determined(&sixteen().run(tolerance).expect("run"));
     let exact = quantities(1e-5);
     let found = quantities(1e-3);
     let miss = (found.sphere_velocity_x - exact.sphere_velocity_x)
@@ -100,7 +99,7 @@ fn tolerance_bounds_the_error_of_the_velocity() {
 
 #[test]
 fn ten_modes_and_the_residual_are_as_good_as_many() {
-    let quantities = |model: &SeatModel| model.run(1e-4).expect("run").quantities;
+    let quantities = |model: &SeatModel| determined(&model.run(1e-4).expect("run"));
     let many = quantities(&model(60));
     for modes in [10, 16, 25] {
         let few = quantities(&model(modes));
@@ -141,6 +140,19 @@ fn zones_too_narrow_are_widened() {
     let wider = zones.widened([1e-5, 0.0]).expect("contact fills the zone");
     assert!(wider.ring > zones.ring && wider.tip == zones.tip);
     assert_eq!(zones.widened([0.5e-5, 0.5e-5]), None);
+}
+
+#[test]
+fn a_node_that_stands_alone_in_its_zone_has_candidates_around_it() {
+    let scene = scene();
+    let setup = scene.seal_seat().expect("seal seat");
+    let narrow = Zones { ring: 1e-9, tip: 1e-9 };
+    let body = mesh().body(setup, &narrow, 1, &Cache::off()).expect("body");
+    for partner in [Partner::Sphere, Partner::Tip(0), Partner::Tip(1)] {
+        let offsets = body.candidates.iter().filter(|c| c.partner == partner).map(|c| c.offset);
+        let (inside, around): (Vec<f64>, Vec<f64>) = offsets.partition(|offset| *offset <= 1e-9);
+        assert!(!inside.is_empty() && around.len() >= 4, "{partner:?}: {inside:?} {around:?}");
+    }
 }
 
 #[test]
@@ -245,14 +257,48 @@ fn what_a_seal_seat_has_not_is_refused_in_one_sentence() {
     assert!(error.contains("not one of this seat"), "{error}");
 }
 
+#[test]
+fn the_mesh_of_another_design_is_refused_and_one_that_does_not_tell_is_warned_of() {
+    let folder = tempfile::tempdir().expect("folder");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // as another program would pass it on: without the description beside it
+    let mesh = folder.path().join("mesh.vtu");
+    std::fs::copy(root.join("meshes/seal-seat-improved.vtu"), &mesh).expect("copied");
+    let other = root.join("scenes/seal-seat-initial.toml");
+    let arguments = ["reduced", other.to_str().expect("path"), "--mesh", mesh.to_str().expect("path")];
+    let (status, output, error) = impactcheck(&arguments, folder.path());
+    assert_eq!((status, output.as_str()), (12, ""), "{error}");
+    assert!(error.contains("not one of this seat: it was made for another geometry"), "{error}");
+    let told = |mesh: &SeatMesh| {
+        let model = SeatModel::new(&scene(), Model::C, Some(4), mesh, &Cache::off()).expect("model");
+        model.run(1e-2).expect("run").warnings.join(" ")
+    };
+    assert!(told(&super::reduced::mesh()).contains("does not say which geometry"));
+    let text = std::fs::read_to_string(super::reduced::mesh().path()).expect("mesh");
+    let hash = scene().seal_seat().expect("seat").geometry_hash();
+    let own = folder.path().join("own.vtu");
+    let noted = text.replacen('\n', &format!("\n<!--geometry_hash {hash}-->\n"), 1);
+    std::fs::write(&own, noted).expect("written");
+    assert!(!told(&SeatMesh::open(&own).expect("mesh")).contains("geometry"));
+}
+
 /// A stand-in for a stored reference: model C with more modes, said to be finite elements.
-fn stand_in() -> Outcome<SeatQuantities> {
-    let (mut summary, history) = model(40).run_with_history(1e-3).expect("run");
+fn stand_in() -> Outcome {
+    let Outcome { mut summary, history } = model(40).run_with_history(1e-3).expect("run");
     summary.source = Source::Reference;
     summary.model = None;
     summary.modes = None;
     summary.sample_interval = Some(history.time[1]);
     Outcome { summary, history }
+}
+
+fn determined(summary: &Summary) -> SeatQuantities {
+    SeatQuantities::of_table(&summary.quantities).expect("determined")
+}
+
+fn alter(outcome: &mut Outcome, name: &str, change: fn(f64) -> f64) {
+    let value = outcome.summary.quantities.value_mut(name).expect("a quantity");
+    *value = value.map(change);
 }
 
 fn gated_scene() -> Scene {
@@ -268,27 +314,26 @@ fn gated_scene() -> Scene {
 fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
     let scene = gated_scene();
     let reference = stand_in();
-    let (summary, history) = sixteen().run_with_history(1e-3).expect("run");
-    let good = Outcome { summary, history };
+    let good = sixteen().run_with_history(1e-3).expect("run");
     let compared = compare_scene(&scene, &reference, std::slice::from_ref(&good));
     let failed: Vec<_> = compared.models[0].integrity.iter().filter(|c| !c.verdict.passed()).collect();
-    assert!(compared.verdict.passed(), "{failed:?} {:?}", compared.integrity);
+    assert_eq!(compared.verdict, Verdict::Pass, "{failed:?} {:?}", compared.integrity);
     assert_eq!(compared.models[0].gated(), 4);
     assert_eq!(compared.models[0].curves.len(), 10);
-    type Change = fn(&mut Outcome<SeatQuantities>);
+    type Change = fn(&mut Outcome);
     let changes: [(&str, Change); 12] = [
-        ("direction", |o| o.summary.quantities.sphere_angle += 0.0175),
-        ("speed", |o| o.summary.quantities.sphere_speed *= 1.02),
-        ("peak of the sphere's force", |o| o.summary.quantities.sphere_force_peak *= 1.05),
-        ("peak of the actuator's force", |o| o.summary.quantities.actuator_force_peak *= 0.95),
-        ("efficiency that is not the velocity's", |o| o.summary.quantities.efficiency *= 1.01),
-        ("not a number", |o| o.summary.quantities.left_flank_impulse = f64::NAN),
-        ("force curve", |o| o.history.sphere_force.iter_mut().for_each(|f| *f *= 1.05)),
+        ("direction", |o| alter(o, "sphere_angle", |v| v + 0.0175)),
+        ("speed", |o| alter(o, "sphere_speed", |v| v * 1.02)),
+        ("peak of the sphere's force", |o| alter(o, "sphere_force_peak", |v| v * 1.05)),
+        ("peak of the actuator's force", |o| alter(o, "actuator_force_peak", |v| v * 0.95)),
+        ("efficiency that is not the velocity's", |o| alter(o, "efficiency", |v| v * 1.01)),
+        ("not a number", |o| alter(o, "left_flank_impulse", |_| f64::NAN)),
+        ("force curve", |o| o.history["sphere_force"].iter_mut().for_each(|f| *f *= 1.05)),
         ("one component of the force", |o| {
-            o.history.sphere_force_components[0].iter_mut().for_each(|f| *f = -*f);
+            o.history["sphere_force_x"].iter_mut().for_each(|f| *f = -*f);
         }),
-        ("velocity curve", |o| o.history.sphere_velocity[0].iter_mut().for_each(|v| *v *= 1.05)),
-        ("path", |o| o.history.actuator_displacement.iter_mut().for_each(|x| *x *= 1.05)),
+        ("velocity curve", |o| o.history["sphere_velocity_x"].iter_mut().for_each(|v| *v *= 1.05)),
+        ("path", |o| o.history["actuator_displacement"].iter_mut().for_each(|x| *x *= 1.05)),
         ("a sample lost", |o| {
             o.history.time.pop();
         }),
@@ -297,7 +342,7 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
     for (what, change) in changes {
         let mut bad = good.clone();
         change(&mut bad);
-        assert!(!compare_scene(&scene, &reference, &[bad]).verdict.passed(), "{what}");
+        assert_eq!(compare_scene(&scene, &reference, &[bad]).verdict, Verdict::Fail, "{what}");
     }
 }
 
@@ -305,23 +350,21 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
 fn report_shows_the_seat_among_the_scenes() {
     let scene = gated_scene();
     let reference = stand_in();
-    let (summary, history) = sixteen().run_with_history(1e-3).expect("run");
-    let reduced = vec![Outcome { summary, history }];
-    let seat = SeatReport {
+    let reduced = vec![sixteen().run_with_history(1e-3).expect("run")];
+    let seat = SceneReport {
+        scene: &scene,
         comparison: compare_scene(&scene, &reference, &reduced),
-        scene,
-        reference,
-        reduced,
-        cost: vec![Cost { setup_seconds: 1.0, dofs: 5929 }],
+        reference: &reference,
+        reduced: &reduced,
         provenance: serde_json::json!({"created": "2026-01-01T00:00:00Z"}),
-        section: None,
-        stress: None,
-        animation: None,
         command: "impactcheck compare seal-seat-improved".into(),
-        attachments: report::Attachments::default(),
+        attachments: report::Attachments {
+            cost: vec![Cost { setup_seconds: 1.0, dofs: 5929 }],
+            ..report::Attachments::default()
+        },
     };
-    let angle = seat.comparison.reference.quantities.sphere_angle.to_degrees();
-    let report = Report { scenes: Vec::new(), seats: vec![seat] };
+    let angle = reference.summary.value("sphere_angle").expect("determined").to_degrees();
+    let report = Report { scenes: vec![seat], rules: GateRules::default() };
     let document: Value = serde_json::from_str(&report::json(&report).expect("JSON")).expect("JSON");
     assert_eq!(document["verdict"], "pass");
     assert_eq!(document["scenes"][0]["scene"], "seal-seat-improved");

@@ -1,7 +1,7 @@
 //! A report of the synthetic impact, for the tests of what is made of it.
 
 use crate::synthetic_impact::{self, gated_scene, reduced, reduced_of, reference};
-use impactcheck::comparison::compare_scene;
+use impactcheck::comparison::{GateRules, compare_scene};
 use impactcheck::report::{Attachments, Report, SceneReport};
 use impactcheck::result::Outcome;
 use impactcheck::scene::Scene;
@@ -31,7 +31,7 @@ impl Data {
                 command: "impactcheck compare synthetic --models A,B".into(),
                 attachments: Attachments::default(),
             }],
-            seats: Vec::new(),
+            rules: GateRules::default(),
         }
     }
 }

@@ -58,6 +58,13 @@ pub struct Integration {
     pub history: Option<History>,
 }
 
+impl Integration {
+    /// Whether the run ended while bodies touched: what the impact comes to is then open.
+    pub fn is_cut(&self) -> bool {
+        self.contacts.iter().any(|contact| contact.closed)
+    }
+}
+
 /// Steps after which a run counts as endless.
 const MAX_STEPS: u64 = 5_000_000;
 /// Step lengths are the base length times 2^-level, level in this range.

@@ -15,7 +15,7 @@ mod ladder;
 mod ledger_check;
 mod outer_body;
 mod point_laws;
-mod recorder;
+pub(crate) mod recorder;
 mod step_bounds;
 pub mod system;
 pub mod wet;

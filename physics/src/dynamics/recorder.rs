@@ -3,7 +3,20 @@
 use super::collocation::{Collocation, POINTS, Stages};
 use super::system::{INNER, System, dot};
 use crate::error::Result;
-use crate::result::History;
+use crate::result::{Curve, History};
+
+/// The curves of outer body (mass average), plate (at its centre, mean of both faces) and inner body (mass average), signed
+/// along z; contact forces are positive in compression.
+pub static CURVES: [Curve; 8] = [
+    Curve::new("outer_displacement", "m"),
+    Curve::elastic("plate_displacement", "m"),
+    Curve::new("inner_displacement", "m"),
+    Curve::new("outer_velocity", "m/s"),
+    Curve::elastic("plate_velocity", "m/s"),
+    Curve::new("inner_velocity", "m/s"),
+    Curve::new("outer_force", "N"),
+    Curve::new("inner_force", "N"),
+];
 
 /// Collects a [`History`] with samples at most `interval` s apart and at the end of every step.
 pub struct Recorder<'a, const P: usize = POINTS> {
@@ -16,7 +29,7 @@ pub struct Recorder<'a, const P: usize = POINTS> {
 impl<'a, const P: usize> Recorder<'a, P> {
     /// Starts with the sample at t = 0.
     pub fn new(system: &'a System, collocation: &'a Collocation<P>, interval: f64) -> Self {
-        let mut recorder = Self { system, collocation, interval, history: History::default() };
+        let mut recorder = Self { system, collocation, interval, history: History::new(&CURVES) };
         let (q, v) = system.initial_state();
         recorder.push(0.0, &q, &v);
         recorder
@@ -71,9 +84,8 @@ impl<'a, const P: usize> Recorder<'a, P> {
 
     fn push(&mut self, time: f64, q: &[f64], v: &[f64]) {
         let system = self.system;
-        let history = &mut self.history;
         // a step too short to move the clock adds nothing
-        if history.time.last().is_some_and(|last| *last >= time) {
+        if self.history.time.last().is_some_and(|last| *last >= time) {
             return;
         }
         let approach = system.modal_approach(q);
@@ -81,14 +93,16 @@ impl<'a, const P: usize> Recorder<'a, P> {
         let rate = [0, 1].map(|i| dot(&system.approach[i], v));
         let local = system.local_centre.map_or([0.0; 2], |centre| centre.motion(system, patch, rate, forces));
         let inner = system.masses[1].sqrt();
-        history.time.push(time);
-        history.outer.displacement.push(dot(&system.outer, q));
-        history.outer.velocity.push(dot(&system.outer, v));
-        history.inner.displacement.push(q[INNER] / inner);
-        history.inner.velocity.push(v[INNER] / inner);
-        history.plate.displacement.push(dot(&system.centre, q) + local[0]);
-        history.plate.velocity.push(dot(&system.centre, v) + local[1]);
-        history.outer_force.push(forces[0]);
-        history.inner_force.push(forces[1]);
+        let sample = [
+            dot(&system.outer, q),
+            dot(&system.centre, q) + local[0],
+            q[INNER] / inner,
+            dot(&system.outer, v),
+            dot(&system.centre, v) + local[1],
+            v[INNER] / inner,
+            forces[0],
+            forces[1],
+        ];
+        self.history.push(time, sample);
     }
 }

@@ -2,3 +2,37 @@
 
 pub mod plate_impact;
 pub mod seal_seat;
+
+use crate::result::{Curve, Quantity};
+use crate::scene::{Model, Scene, Setup};
+
+/// What everything that compares, shows or keeps results has to know of a kind of scene.
+pub trait Kind: Sync {
+    /// Its name in scene files.
+    fn name(&self) -> &'static str;
+
+    /// The reduced models it has.
+    fn models(&self) -> &'static [Model];
+
+    /// The quantities of its results, in order, without values.
+    fn quantities(&self) -> &'static [Quantity];
+
+    /// The curves of its histories, in order, without samples.
+    fn curves(&self) -> &'static [Curve];
+}
+
+/// All kinds.
+pub const KINDS: [&dyn Kind; 2] = [&plate_impact::Kind, &seal_seat::Kind];
+
+/// The kind called `name`.
+pub fn named(name: &str) -> Option<&'static dyn Kind> {
+    KINDS.into_iter().find(|kind| kind.name() == name)
+}
+
+/// The kind of `scene`.
+pub fn of(scene: &Scene) -> &'static dyn Kind {
+    match scene.setup {
+        Setup::PlateImpact(_) => &plate_impact::Kind,
+        Setup::SealSeat(_) => &seal_seat::Kind,
+    }
+}

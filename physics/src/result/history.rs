@@ -1,78 +1,58 @@
-//! The course of an impact over time, the same type for reduced models and the reference.
+//! The course of an impact over time: curves by name over one time axis.
 
-/// The course over time of one kind of scene: curves by name over one time axis.
-pub trait Curves: Clone + Default + std::fmt::Debug + PartialEq {
-    /// Name and unit of every curve.
-    const NAMES: &'static [(&'static str, &'static str)];
-    /// The columns of its file, in this order; the first is the time.
-    const COLUMNS: &'static [&'static str];
+use std::ops::{Index, IndexMut};
 
-    /// Time in s, strictly increasing.
-    fn time(&self) -> &[f64];
-
-    /// The curve called `name` in [`Curves::NAMES`].
-    fn values(&self, name: &str) -> Option<&[f64]>;
-
-    /// Rate at which the curve called `name` goes on after the last sample, in free flight; `None` if a contact is
-    /// closed there, or the curve is one of an elastic body, which swings on.
-    fn rate_after_end(&self, name: &str) -> Option<f64>;
-
-    /// Where the values of the column called `name` in [`Curves::COLUMNS`] go.
-    fn column(&mut self, name: &str) -> Option<&mut Vec<f64>>;
+/// A curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Name, as in the files of a history.
+    pub name: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Whether it is of an elastic body, which swings on when nothing touches it any more.
+    pub is_elastic: bool,
+    /// Values in the unit. Shape (samples).
+    pub values: Vec<f64>,
 }
 
-/// Motion of one body along z.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Motion {
-    /// Displacement in m since t = 0, signed along z.
-    pub displacement: Vec<f64>,
-    /// Velocity in m/s, signed along z.
-    pub velocity: Vec<f64>,
+impl Curve {
+    /// Of a rigid body or a force, without samples.
+    pub const fn new(name: &'static str, unit: &'static str) -> Self {
+        Curve { name, unit, is_elastic: false, values: Vec::new() }
+    }
+
+    /// Of an elastic body, without samples.
+    pub const fn elastic(name: &'static str, unit: &'static str) -> Self {
+        Curve { name, unit, is_elastic: true, values: Vec::new() }
+    }
 }
 
-/// Displacement, velocity and contact force over one time axis. All vectors have `time.len()` entries.
+/// Curves over one time axis, in the order of their kind of scene.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct History {
-    /// Time in s since the first touch, strictly increasing.
+    /// Time in s since the first touch, strictly increasing. Shape (samples).
     pub time: Vec<f64>,
-    /// Outer body (mass average).
-    pub outer: Motion,
-    /// Centre of the plate (mean of both faces).
-    pub plate: Motion,
-    /// Inner body (mass average).
-    pub inner: Motion,
-    /// Force between outer body and plate in N, positive in compression.
-    pub outer_force: Vec<f64>,
-    /// Force between plate and inner body in N, positive in compression.
-    pub inner_force: Vec<f64>,
+    /// The curves.
+    pub curves: Vec<Curve>,
 }
 
-/// Name, unit and symbol of a curve of the [`History`].
-pub const CURVES: [(&str, &str); 8] = [
-    ("outer_displacement", "m"),
-    ("plate_displacement", "m"),
-    ("inner_displacement", "m"),
-    ("outer_velocity", "m/s"),
-    ("plate_velocity", "m/s"),
-    ("inner_velocity", "m/s"),
-    ("outer_force", "N"),
-    ("inner_force", "N"),
-];
-
 impl History {
-    /// The curve called `name` in [`CURVES`].
+    /// These curves.
+    pub fn new(curves: &[Curve]) -> Self {
+        History { time: Vec::new(), curves: curves.to_vec() }
+    }
+
+    /// Adds a sample: its time in s and the values of all curves, in their order.
+    pub fn push<const N: usize>(&mut self, time: f64, values: [f64; N]) {
+        self.time.push(time);
+        for (curve, value) in self.curves.iter_mut().zip(values) {
+            curve.values.push(value);
+        }
+    }
+
+    /// The curve called `name`.
     pub fn curve(&self, name: &str) -> Option<&[f64]> {
-        Some(match name {
-            "outer_displacement" => &self.outer.displacement,
-            "plate_displacement" => &self.plate.displacement,
-            "inner_displacement" => &self.inner.displacement,
-            "outer_velocity" => &self.outer.velocity,
-            "plate_velocity" => &self.plate.velocity,
-            "inner_velocity" => &self.inner.velocity,
-            "outer_force" => &self.outer_force,
-            "inner_force" => &self.inner_force,
-            _ => return None,
-        })
+        self.curves.iter().find(|curve| curve.name == name).map(|curve| &curve.values[..])
     }
 
     /// Number of samples.
@@ -84,51 +64,46 @@ impl History {
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }
+
+    /// Whether there are at least two samples, every curve has a finite value at each, and time increases strictly.
+    pub fn can_be_sampled(&self) -> bool {
+        let whole = |values: &[f64]| values.len() == self.len() && values.iter().all(|v| v.is_finite());
+        self.len() >= 2
+            && whole(&self.time)
+            && self.time.windows(2).all(|w| w[0] < w[1])
+            && self.curves.iter().all(|curve| whole(&curve.values))
+    }
+
+    /// Rate at which the curve called `name` goes on after the last sample, in free flight; `None` if a contact is closed
+    /// there, or the curve is one of an elastic body.
+    pub fn rate_after_end(&self, name: &str) -> Option<f64> {
+        let curve = self.curves.iter().find(|curve| curve.name == name && !curve.is_elastic)?;
+        let mut forces = self.curves.iter().filter(|curve| curve.unit == "N");
+        if !forces.all(|force| force.values.last() == Some(&0.0)) {
+            return None;
+        }
+        // a displacement goes on with the velocity of the same name
+        let rate = self.curve(&curve.name.replace("displacement", "velocity"))?;
+        if curve.unit == "m" { rate.last().copied() } else { Some(0.0) }
+    }
 }
 
-impl Curves for History {
-    const NAMES: &'static [(&'static str, &'static str)] = &CURVES;
-    const COLUMNS: &'static [&'static str] = &[
-        "time",
-        "outer_displacement",
-        "outer_velocity",
-        "outer_force",
-        "plate_displacement",
-        "plate_velocity",
-        "inner_displacement",
-        "inner_velocity",
-        "inner_force",
-    ];
+impl Index<&str> for History {
+    type Output = Vec<f64>;
 
-    fn time(&self) -> &[f64] {
-        &self.time
+    /// # Panics
+    /// If there is no curve of this name; [`History::curve`] asks.
+    fn index(&self, name: &str) -> &Vec<f64> {
+        let curve = self.curves.iter().find(|curve| curve.name == name);
+        &curve.unwrap_or_else(|| panic!("a history without the curve `{name}`")).values
     }
+}
 
-    fn values(&self, name: &str) -> Option<&[f64]> {
-        self.curve(name)
-    }
-
-    fn rate_after_end(&self, name: &str) -> Option<f64> {
-        let last = self.len().checked_sub(1)?;
-        let flies = self.outer_force[last] == 0.0 && self.inner_force[last] == 0.0;
-        (flies && !name.starts_with("plate")).then(|| match name {
-            "outer_displacement" => self.outer.velocity[last],
-            "inner_displacement" => self.inner.velocity[last],
-            _ => 0.0,
-        })
-    }
-    fn column(&mut self, name: &str) -> Option<&mut Vec<f64>> {
-        Some(match name {
-            "time" => &mut self.time,
-            "outer_displacement" => &mut self.outer.displacement,
-            "outer_velocity" => &mut self.outer.velocity,
-            "outer_force" => &mut self.outer_force,
-            "plate_displacement" => &mut self.plate.displacement,
-            "plate_velocity" => &mut self.plate.velocity,
-            "inner_displacement" => &mut self.inner.displacement,
-            "inner_velocity" => &mut self.inner.velocity,
-            "inner_force" => &mut self.inner_force,
-            _ => return None,
-        })
+impl IndexMut<&str> for History {
+    /// # Panics
+    /// As [`Index::index`].
+    fn index_mut(&mut self, name: &str) -> &mut Vec<f64> {
+        let curve = self.curves.iter_mut().find(|curve| curve.name == name);
+        &mut curve.unwrap_or_else(|| panic!("a history without the curve `{name}`")).values
     }
 }

@@ -5,24 +5,26 @@ mod contact_pressure;
 mod drive;
 mod history;
 mod losses;
-mod seat_result;
 mod summary;
+pub(crate) mod table;
 
 pub use choice::{Candidate, Choice};
 pub use contact_pressure::{ContactPatch, ContactPressure};
 pub use drive::Drive;
-pub use history::{CURVES, Curves, History, Motion};
+pub use history::{Curve, History};
 pub use losses::Losses;
-pub use seat_result::{SEAT_CURVES, SEAT_QUANTITIES, SeatHistory, SeatQuantities, SeatSummary};
-pub use summary::{
-    BenderSummary, PLATE_QUANTITIES, PlateQuantities, Quantities, SCHEMA_VERSION, Source, Summary,
-};
+pub use summary::{BenderSummary, SCHEMA_VERSION, Source, Summary};
+pub(crate) use table::quantities;
+pub use table::{Quantity, Table};
 
-/// What a run gives.
+/// What is said of a run that ended while bodies touched.
+pub const CUT: &str = "the run ends at `run.end_time` while bodies touch, which leaves open what the impact comes to; set a later end, or none";
+
+/// What a run gives, whatever the kind of scene and whoever ran it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome<Q: Quantities = PlateQuantities> {
+pub struct Outcome {
     /// The result in a few numbers.
-    pub summary: Summary<Q>,
+    pub summary: Summary,
     /// The course over time.
-    pub history: Q::History,
+    pub history: History,
 }

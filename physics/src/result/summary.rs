@@ -1,9 +1,6 @@
 //! The result of a run in a few numbers, the same type for reduced models and the reference.
 
-use super::ContactPressure;
-use super::Drive;
-use super::Losses;
-use super::history::{Curves, History};
+use super::{ContactPressure, Drive, Losses, Quantity, Table};
 use crate::scene::{Model, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -21,98 +18,12 @@ pub enum Source {
     Reference,
 }
 
-/// The physical results of one kind of scene, by name.
-///
-/// What a summary, a store or a comparison does alike for every kind goes by this.
-pub trait Quantities: Clone + std::fmt::Debug + PartialEq + Serialize + serde::de::DeserializeOwned {
-    /// The course over time that goes with it.
-    type History: Curves;
-    /// The quantities that are compared, with their units.
-    const NAMES: &'static [(&'static str, &'static str)];
-
-    /// The value of the quantity called `name` in [`Quantities::NAMES`].
-    fn value(&self, name: &str) -> Option<f64>;
-
-    /// Time of the last release of any body, s.
-    fn last_contact(&self) -> f64;
-}
-
-/// Results of an impact through a plate (scene kind `plate-impact`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PlateQuantities {
-    /// Eq. (1): kinetic energy of the inner body after the last contact over that of the outer before the first.
-    pub efficiency: f64,
-    /// Velocity of the outer body after the last contact, m/s, signed along z.
-    pub outer_velocity_final: f64,
-    /// Velocity of the inner body after the last contact, m/s, signed along z.
-    pub inner_velocity_final: f64,
-    /// Largest force between outer body and plate, N.
-    pub outer_force_peak: f64,
-    /// Largest force between plate and inner body, N.
-    pub inner_force_peak: f64,
-    /// Time of the last release of the outer body, s.
-    pub outer_contact_end: f64,
-    /// Time of the last release of the inner body, s.
-    pub inner_contact_end: f64,
-    /// Number of separate contacts of the outer body.
-    pub outer_contacts: u32,
-    /// Number of separate contacts of the inner body.
-    pub inner_contacts: u32,
-    /// First eigenfrequency of the plate that is not a rigid motion, Hz.
-    pub first_frequency: f64,
-}
-
-/// The quantities of [`PlateQuantities`] that are compared, with their units.
-pub const PLATE_QUANTITIES: [(&str, &str); 10] = [
-    ("efficiency", "1"),
-    ("outer_velocity_final", "m/s"),
-    ("inner_velocity_final", "m/s"),
-    ("outer_force_peak", "N"),
-    ("inner_force_peak", "N"),
-    ("outer_contact_end", "s"),
-    ("inner_contact_end", "s"),
-    ("outer_contacts", "1"),
-    ("inner_contacts", "1"),
-    ("first_frequency", "Hz"),
-];
-
-impl PlateQuantities {
-    /// The value of the quantity called `name` in [`PLATE_QUANTITIES`].
-    pub fn get(&self, name: &str) -> Option<f64> {
-        Some(match name {
-            "efficiency" => self.efficiency,
-            "outer_velocity_final" => self.outer_velocity_final,
-            "inner_velocity_final" => self.inner_velocity_final,
-            "outer_force_peak" => self.outer_force_peak,
-            "inner_force_peak" => self.inner_force_peak,
-            "outer_contact_end" => self.outer_contact_end,
-            "inner_contact_end" => self.inner_contact_end,
-            "outer_contacts" => f64::from(self.outer_contacts),
-            "inner_contacts" => f64::from(self.inner_contacts),
-            "first_frequency" => self.first_frequency,
-            _ => return None,
-        })
-    }
-}
-
-impl Quantities for PlateQuantities {
-    type History = History;
-    const NAMES: &'static [(&'static str, &'static str)] = &PLATE_QUANTITIES;
-
-    fn last_contact(&self) -> f64 {
-        self.outer_contact_end.max(self.inner_contact_end)
-    }
-
-    fn value(&self, name: &str) -> Option<f64> {
-        self.get(name)
-    }
-}
-
 /// What is said about a bender besides the quantities; its eq. (1) efficiency relates to its kinetic energy.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BenderSummary {
-    /// Kinetic energy of the inner body over the strain energy of the bender before its release.
-    pub strain_energy_efficiency: f64,
+    /// Kinetic energy of the inner body over the strain energy of the bender before its release; `None` if the run was cut
+    /// during a contact.
+    pub strain_energy_efficiency: Option<f64>,
     /// How the bender was driven.
     #[serde(flatten)]
     pub drive: Drive,
@@ -120,8 +31,7 @@ pub struct BenderSummary {
 
 /// Summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct Summary<Q: Quantities = PlateQuantities> {
+pub struct Summary {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
     /// Name of the scene.
@@ -134,9 +44,9 @@ pub struct Summary<Q: Quantities = PlateQuantities> {
     pub model: Option<String>,
     /// Number of elastic modes of the reduced model; `None` for the reference.
     pub modes: Option<usize>,
-    /// The physical results.
-    #[serde(flatten)]
-    pub quantities: Q,
+    /// The physical results; of a stored summary read by [`Summary::read`] alone.
+    #[serde(flatten, skip_deserializing)]
+    pub quantities: Table,
     /// |energy at the end + losses - energy at the start| over the energy at the start.
     pub energy_residual: f64,
     /// Momentum that no impulse accounts for, over the momentum at the start.
@@ -145,6 +55,9 @@ pub struct Summary<Q: Quantities = PlateQuantities> {
     pub steps: u64,
     /// Wall time of the time integration, s.
     pub solve_seconds: f64,
+    /// Reduced models: estimated relative error from the modes that are left out; `None` if there is no estimate.
+    #[serde(default)]
+    pub truncation_error: Option<f64>,
     /// Estimated error of the final velocities from the time integration, over the impact speed; of impacts with many
     /// contacts only, which amplify it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -171,7 +84,7 @@ pub struct Summary<Q: Quantities = PlateQuantities> {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solver: Option<serde_json::Value>,
     /// What a user has to know before relying on the result, a sentence each.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub warnings: Vec<String>,
     /// Why it is this model and this number of modes, if that was left to the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -184,9 +97,46 @@ pub struct Summary<Q: Quantities = PlateQuantities> {
     pub sample_interval: Option<f64>,
 }
 
-impl<Q: Quantities> Summary<Q> {
+impl Summary {
+    /// Reads the JSON of a summary of the kind of scene that has `quantities`.
+    ///
+    /// What a run determines that ended in contact is not believed, whatever an older solution says.
+    ///
+    /// # Errors
+    /// One sentence that says what is wrong.
+    pub fn read(quantities: &[Quantity], json: &str) -> Result<Self, String> {
+        let document: serde_json::Value = serde_json::from_str(json).map_err(|e| e.to_string())?;
+        let mut table = Table::read(quantities, &document)?;
+        if document["in_contact_at_end"] == true {
+            table = table.cut();
+        }
+        let rest: Self = serde_json::from_value(document).map_err(|e| e.to_string())?;
+        Ok(Self { quantities: table, ..rest })
+    }
+
+    /// The value of the quantity called `name`; `None` if there is none, or it is not determined.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.quantities.value(name)
+    }
+
+    /// Half width of the 95 % band of the quantity called `name`, if it is known.
+    pub fn band(&self, name: &str) -> Option<f64> {
+        self.uncertainty.get(name).copied()
+    }
+
+    /// Time in s of the last release of any body, if it is determined.
+    pub fn last_contact(&self) -> Option<f64> {
+        let ends = self.quantities.iter().filter(|quantity| quantity.name.ends_with("_contact_end"));
+        ends.map(|end| end.value).try_fold(0.0_f64, |last, end| Some(last.max(end?)))
+    }
+
+    /// The names of the quantities that the run has not determined.
+    pub fn undetermined(&self) -> impl Iterator<Item = &'static str> {
+        self.quantities.iter().filter(|quantity| quantity.value.is_none()).map(|quantity| quantity.name)
+    }
+
     /// What a reduced model of `scene` says; balances, steps and time are still to be told.
-    pub(crate) fn of_reduced(scene: &Scene, model: Model, modes: usize, quantities: Q) -> Self {
+    pub(crate) fn of_reduced(scene: &Scene, model: Model, modes: usize, quantities: Table) -> Self {
         Self {
             schema_version: SCHEMA_VERSION,
             scene: scene.name.clone(),
@@ -202,6 +152,7 @@ impl<Q: Quantities> Summary<Q> {
             bender: None,
             contact_pressure: None,
             losses: None,
+            truncation_error: None,
             integration_error: None,
             choice: None,
             uncertainty: BTreeMap::new(),

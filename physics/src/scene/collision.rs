@@ -231,7 +231,20 @@ fn ring_and_walls(setup: &SealSeat) -> Vec<Collision> {
 
 fn tips(setup: &SealSeat) -> Vec<Collision> {
     let (actuator, radius) = (&setup.actuator, setup.seat.membrane_radius);
-    let mut rules = Vec::new();
+    // Hertz's approach of a half-space, (15 m v^2 / (16 E* sqrt(R)))^(2/5), is then R.
+    let energy = 15.0 / 16.0 * actuator.mass * actuator.speed.powi(2);
+    let least = (energy / setup.seat.material.plane_strain_modulus()).cbrt();
+    let mut rules = vec![Rule {
+        fields: vec!["actuator.tip_radius", "actuator.speed"],
+        holds: actuator.tip_radius >= least,
+        message: format!(
+            "the tips are too sharp: at `actuator.speed` {} m/s a tip goes deeper into the seat's material than its radius, `actuator.tip_radius` {}, which has to be at least {}",
+            actuator.speed,
+            mm(actuator.tip_radius),
+            mm(least)
+        ),
+        help: "take blunter tips, or a slower or lighter actuator",
+    }];
     for (i, x) in actuator.tip_positions.iter().enumerate() {
         rules.push(Rule {
             fields: vec!["actuator.tip_positions", "seat.membrane_radius"],

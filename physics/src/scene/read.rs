@@ -8,6 +8,7 @@ use super::specification::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS, SCENE};
 use super::*;
 use crate::analytical::cantilever;
 use crate::body::beam;
+use crate::kinds;
 use crate::{Error, Result};
 use std::io::Read;
 use std::path::Path;
@@ -91,8 +92,11 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap
     let mut checker = Checker::new(source_name, text, root);
     let place = Place { path: "", span: 0..0 };
     let values = checker.table(&place, root, &SCENE);
-    let seal_seat = values.get("kind") == Some(&Checked::Text("seal-seat".to_owned()));
-    let tolerances = checker.tolerances(root, seal_seat);
+    let kind = values.get("kind").and_then(|kind| match kind {
+        Checked::Text(name) => kinds::named(name),
+        _ => None,
+    });
+    let tolerances = checker.tolerances(root, kind.unwrap_or(kinds::KINDS[0]));
     match checker.problems.is_empty() {
         true => Ok((values, tolerances)),
         false => Err(Error::Scene(checker.problems.into_report())),

@@ -5,6 +5,7 @@ use super::check::MAX_NAME;
 use super::quantity::Dimension;
 use super::specification::{Alternative, Bound, Field, Kind, SCENE, TOLERANCES};
 use super::tolerances::{TERMS, gated_names, models};
+use crate::kinds::{self, KINDS};
 use serde_json::{Map, Value, json};
 
 /// The JSON schema (draft 2020-12) of scene files.
@@ -17,11 +18,11 @@ pub fn schema() -> Value {
     schema["title"] = json!("impactcheck scene");
     // What can have a tolerance depends on the scene's kind.
     schema["properties"][TOLERANCES.key] = described(json!({}), TOLERANCES.doc);
-    for (kind, seal_seat) in [("plate-impact", false), ("seal-seat", true)] {
-        let then = json!({ "properties": { TOLERANCES.key: tolerances(seal_seat) } });
+    for kind in KINDS {
+        let then = json!({ "properties": { TOLERANCES.key: tolerances(kind) } });
         if let Some(rules) = schema["allOf"].as_array_mut() {
             rules.push(json!({
-                "if": { "properties": { "kind": { "const": kind } }, "required": ["kind"] },
+                "if": { "properties": { "kind": { "const": kind.name() } }, "required": ["kind"] },
                 "then": then,
             }));
         }
@@ -142,7 +143,7 @@ fn quantity(dimension: Dimension, bound: Bound) -> Value {
     json!({ "anyOf": [number, { "type": "string", "pattern": pattern }], "examples": [sample] })
 }
 
-fn tolerances(seal_seat: bool) -> Value {
+fn tolerances(kind: &dyn kinds::Kind) -> Value {
     let text_or_number = |low: Option<f64>| {
         let mut number = json!({ "type": "number" });
         if let Some(low) = low {
@@ -164,9 +165,9 @@ fn tolerances(seal_seat: bool) -> Value {
         { "type": "string" },
         { "type": "object", "properties": terms, "additionalProperties": false, "anyOf": bounds },
     ] });
-    let quantities: Map<String, Value> = gated_names(seal_seat).map(|n| (n, tolerance.clone())).collect();
+    let quantities: Map<String, Value> = gated_names(kind).map(|n| (n, tolerance.clone())).collect();
     let model = json!({ "type": "object", "properties": quantities, "additionalProperties": false });
     let models: Map<String, Value> =
-        models(seal_seat).iter().map(|m| (m.name.to_owned(), model.clone())).collect();
+        models(kind).iter().map(|m| (m.name.to_owned(), model.clone())).collect();
     json!({ "type": "object", "properties": models, "additionalProperties": false })
 }

@@ -5,10 +5,7 @@ use super::problem::did_you_mean;
 use super::quantity::{Dimension, dimension_of};
 use super::specification::{Bound, Choice, MODELS};
 use super::{Model, Tolerance, Tolerances};
-use crate::result::CURVES;
-use crate::result::PLATE_QUANTITIES;
-use crate::result::SEAT_CURVES;
-use crate::result::SEAT_QUANTITIES;
+use crate::kinds::Kind;
 use std::collections::BTreeMap;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -31,36 +28,29 @@ struct Gated {
     is_residual: bool,
 }
 
-/// Names of quantities and of curves, each with its unit.
-type Names = (&'static [(&'static str, &'static str)], &'static [(&'static str, &'static str)]);
-
-/// What can have a tolerance in a scene of this kind.
-fn names(seal_seat: bool) -> Names {
-    if seal_seat { (&SEAT_QUANTITIES, &SEAT_CURVES) } else { (&PLATE_QUANTITIES, &CURVES) }
-}
-
 /// The names that can have a tolerance in a scene of this kind.
-pub(super) fn gated_names(seal_seat: bool) -> impl Iterator<Item = String> {
-    let (quantities, curves) = names(seal_seat);
-    let scalars = quantities.iter().map(|(name, _)| (*name).to_owned());
-    let curves = curves.iter().flat_map(|(name, _)| [format!("{name}_rms"), format!("{name}_max")]);
+pub(super) fn gated_names(kind: &dyn Kind) -> impl Iterator<Item = String> {
+    let (quantities, curves) = (kind.quantities(), kind.curves());
+    let scalars = quantities.iter().map(|quantity| quantity.name.to_owned());
+    let curves =
+        curves.iter().flat_map(|curve| ["rms", "max"].map(|distance| format!("{}_{distance}", curve.name)));
     scalars.chain(curves).chain(RESIDUALS.map(str::to_owned))
 }
 
 const RESIDUALS: [&str; 2] = ["energy_residual", "momentum_residual"];
 
-fn gated(name: &str, seal_seat: bool) -> Option<Gated> {
-    let (quantities, curves) = names(seal_seat);
+fn gated(name: &str, kind: &dyn Kind) -> Option<Gated> {
+    let curves = kind.curves();
     if RESIDUALS.contains(&name) {
         return Some(Gated { dimension: Dimension::NONE, has_curve: false, is_residual: true });
     }
-    if let Some((_, unit)) = quantities.iter().find(|(n, _)| *n == name) {
-        let has_curve = curves.iter().any(|(curve, _)| name.starts_with(curve));
-        return Some(Gated { dimension: dimension_of(unit)?, has_curve, is_residual: false });
+    if let Some(quantity) = kind.quantities().iter().find(|quantity| quantity.name == name) {
+        let has_curve = curves.iter().any(|curve| name.starts_with(curve.name));
+        return Some(Gated { dimension: dimension_of(quantity.unit)?, has_curve, is_residual: false });
     }
     // A difference of curves is given relative to the peak: a pure number.
     let curve = name.strip_suffix("_rms").or_else(|| name.strip_suffix("_max"))?;
-    curves.iter().any(|(c, _)| *c == curve).then_some(Gated {
+    curves.iter().any(|known| known.name == curve).then_some(Gated {
         dimension: Dimension::NONE,
         has_curve: true,
         is_residual: false,
@@ -68,14 +58,15 @@ fn gated(name: &str, seal_seat: bool) -> Option<Gated> {
 }
 
 /// The reduced models a scene of this kind has.
-pub(super) fn models(seal_seat: bool) -> &'static [Choice] {
-    if seal_seat { &MODELS[2..] } else { &MODELS }
+pub(super) fn models(kind: &dyn Kind) -> Vec<&'static Choice> {
+    let has = |model: &&Choice| kind.models().iter().any(|own| own.to_string() == model.name);
+    MODELS.iter().filter(has).collect()
 }
 
 impl Checker<'_> {
     /// Reads the table `[tolerances]`, noting every fault.
-    pub(super) fn tolerances(&mut self, root: &DeTable, seal_seat: bool) -> BTreeMap<Model, Tolerances> {
-        let known = models(seal_seat);
+    pub(super) fn tolerances(&mut self, root: &DeTable, kind: &dyn Kind) -> BTreeMap<Model, Tolerances> {
+        let known = models(kind);
         let mut models = BTreeMap::new();
         let Some((key, value)) = root.get_key_value("tolerances") else { return models };
         let place = Place { path: "tolerances", span: key.span() };
@@ -104,7 +95,7 @@ impl Checker<'_> {
                     );
                 }
                 (Some(model), DeValue::Table(quantities)) => {
-                    let tolerances = self.model(&place, quantities, seal_seat);
+                    let tolerances = self.model(&place, quantities, kind);
                     if let Ok(model) = model.name.parse() {
                         models.insert(model, tolerances);
                     }
@@ -123,14 +114,14 @@ impl Checker<'_> {
         models
     }
 
-    fn model(&mut self, place: &Place, quantities: &DeTable, seal_seat: bool) -> Tolerances {
+    fn model(&mut self, place: &Place, quantities: &DeTable, kind: &dyn Kind) -> Tolerances {
         let mut tolerances = Tolerances::new();
         for (key, value) in quantities {
             let name = key.get_ref().as_ref();
             let path = place.key(name);
             let place = Place { path: &path, span: key.span() };
-            let Some(gated) = gated(name, seal_seat) else {
-                let names: Vec<String> = gated_names(seal_seat).collect();
+            let Some(gated) = gated(name, kind) else {
+                let names: Vec<String> = gated_names(kind).collect();
                 self.problems.add(
                     key.span(),
                     format!("`{path}`: `{name}` is not a quantity that can have a tolerance"),

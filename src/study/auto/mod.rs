@@ -11,6 +11,7 @@ pub use figure::figure;
 use super::{Cell, Claim, Note, SCHEMA_VERSION, Settings, Study};
 use crate::body::cache::Cache;
 use crate::error::{Error, Result};
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::choice::{COVERED, error_scale, integration_tolerance, largest_error};
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::project::project_root;
@@ -156,8 +157,9 @@ fn references(store: &Store) -> Result<Vec<Case>> {
             }
         });
         if let Some(reference) = found
-            && is_sharp(&reference, scene.plate_impact()?.outer.speed)
-            && let Some(truth) = Truth::new(&scene, Some(reference.quantities))?
+            && let Some(exact) = PlateQuantities::of_table(&reference.quantities)
+            && is_sharp(&reference, &exact, scene.plate_impact()?.outer.speed)
+            && let Some(truth) = Truth::new(&scene, Some(exact))?
         {
             cases.push(Case { scene, truth, exact: "reference" });
         }
@@ -167,11 +169,10 @@ fn references(store: &Store) -> Result<Vec<Case>> {
 
 /// Whether a reference of an impact at `speed` m/s can tell an error from its own: the 95 % bands of what is compared are at
 /// most [`SHARP`].
-fn is_sharp(reference: &Summary, speed: f64) -> bool {
-    COVERED.iter().all(|name| {
-        let band = reference.uncertainty.get(*name).copied().unwrap_or(f64::INFINITY);
-        band <= SHARP * error_scale(name, &reference.quantities, speed)
-    })
+fn is_sharp(reference: &Summary, exact: &PlateQuantities, speed: f64) -> bool {
+    COVERED
+        .iter()
+        .all(|name| reference.band(name).is_some_and(|band| band <= SHARP * error_scale(name, exact, speed)))
 }
 
 /// `count` random scenes with a converged solution, and how many draws before the last of them had none.

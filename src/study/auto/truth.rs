@@ -1,9 +1,9 @@
 //! What the models of a scene are really off by.
 
 use crate::error::Result;
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::choice::largest_error;
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
-use crate::result::PlateQuantities;
 use crate::scene::{Model, Scene};
 
 /// Kirchhoff modes of model B tried for the cheapest choice.

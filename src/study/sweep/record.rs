@@ -4,9 +4,8 @@
 //! points run again; nothing that is in the log is ever changed. Numbers are written so that they come back bit
 //! by bit.
 
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::reduced::Point;
-use crate::result::PLATE_QUANTITIES;
-use crate::result::PlateQuantities;
 use std::fmt::Write;
 
 /// What became of one point.
@@ -50,25 +49,25 @@ impl Outcome {
     /// The numbers of `NUMBERS`.
     pub fn numbers(&self) -> Option<[f64; NUMBERS.len()]> {
         let Outcome::Done(point) = self else { return None };
-        let mut numbers = [0.0; NUMBERS.len()];
-        for (number, (name, _)) in numbers.iter_mut().zip(PLATE_QUANTITIES) {
-            *number = point.quantities.get(name).unwrap_or(f64::NAN);
-        }
+        let values = PlateQuantities::ALL.iter().filter_map(|quantity| point.quantities.get(quantity.name));
         let rest = [point.energy_residual, point.momentum_residual, point.steps as f64];
-        numbers[PLATE_QUANTITIES.len()..].copy_from_slice(&rest);
+        let mut numbers = [0.0; NUMBERS.len()];
+        for (number, value) in numbers.iter_mut().zip(values.chain(rest)) {
+            *number = value;
+        }
         Some(numbers)
     }
 }
 
 /// Name and unit of the numbers of a result.
-pub const NUMBERS: [(&str, &str); PLATE_QUANTITIES.len() + 3] = {
-    let mut numbers = [("", ""); PLATE_QUANTITIES.len() + 3];
+pub const NUMBERS: [(&str, &str); PlateQuantities::ALL.len() + 3] = {
+    let quantities = PlateQuantities::ALL;
+    let mut numbers = [("energy_residual", "1"); PlateQuantities::ALL.len() + 3];
     let mut k = 0;
-    while k < PLATE_QUANTITIES.len() {
-        numbers[k] = PLATE_QUANTITIES[k];
+    while k < quantities.len() {
+        numbers[k] = (quantities[k].name, quantities[k].unit);
         k += 1;
     }
-    numbers[k] = ("energy_residual", "1");
     numbers[k + 1] = ("momentum_residual", "1");
     numbers[k + 2] = ("steps", "1");
     numbers
@@ -117,36 +116,16 @@ impl Record {
 }
 
 fn point(text: &str) -> Option<Point> {
-    let numbers: Vec<f64> = text.split(' ').map(|number| number.parse().ok()).collect::<Option<_>>()?;
-    let numbers: [f64; NUMBERS.len()] = numbers.try_into().ok()?;
-    let [
-        efficiency,
-        outer_velocity_final,
-        inner_velocity_final,
-        outer_force_peak,
-        inner_force_peak,
-        outer_contact_end,
-        inner_contact_end,
-        outer_contacts,
-        inner_contacts,
-        first_frequency,
+    let mut numbers = text.split(' ').map(|number| number.parse().ok());
+    let quantities = PlateQuantities::of(|_| numbers.next()?)?;
+    let mut number = || numbers.next()?;
+    let (energy_residual, momentum_residual, steps): (f64, f64, f64) = (number()?, number()?, number()?);
+    numbers.next().is_none().then_some(Point {
+        quantities,
         energy_residual,
         momentum_residual,
-        steps,
-    ] = numbers;
-    let quantities = PlateQuantities {
-        efficiency,
-        outer_velocity_final,
-        inner_velocity_final,
-        outer_force_peak,
-        inner_force_peak,
-        outer_contact_end,
-        inner_contact_end,
-        outer_contacts: outer_contacts as u32,
-        inner_contacts: inner_contacts as u32,
-        first_frequency,
-    };
-    Some(Point { quantities, energy_residual, momentum_residual, steps: steps as u64 })
+        steps: steps as u64,
+    })
 }
 
 #[cfg(test)]

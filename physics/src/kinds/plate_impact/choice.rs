@@ -10,6 +10,7 @@
 //! with the error that model C itself was found to have against the finite-element reference as the floor.
 
 use super::reduced::{DEFAULT_MODES, fluid_forces, quantities};
+use super::results::PlateQuantities;
 use super::rough::Rough;
 use super::validity;
 use crate::body::continuum::ContinuumPlate;
@@ -21,7 +22,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::wet;
 use crate::error::Result;
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::result::{Candidate, Choice, PlateQuantities};
+use crate::result::{Candidate, Choice};
 use crate::scene::{Material, Model, PlateImpact, Scene, Shape};
 
 /// The quantities that a tolerance of `auto` covers, each by itself. The inner body's velocity goes with the efficiency; times
@@ -192,7 +193,7 @@ impl Trials<'_> {
             None => integrate(&system, &self.options)?,
             Some(fluid) => wet::integrate(&system, &fluid, &self.options)?,
         };
-        Ok(quantities(&system, &result))
+        quantities(&system, &result)
     }
 
     /// Share of the static flexibility at the contacts that Kirchhoff's plate with `modes` modes leaves out, the contacts' own at

@@ -1,6 +1,7 @@
 //! A reduced model of a scene: bodies reduced to modes, joined and integrated.
 
 use super::choice::{self, Cut};
+use super::results::PlateQuantities;
 use super::rough::Rough;
 use super::validity;
 use crate::analytical::hertz::HertzImpact;
@@ -18,12 +19,7 @@ use crate::dynamics::wet;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::result::BenderSummary;
-use crate::result::Choice;
-use crate::result::ContactPressure;
-use crate::result::Outcome;
-use crate::result::PlateQuantities;
-use crate::result::Summary;
+use crate::result::{BenderSummary, CUT, Choice, ContactPressure, Outcome, Summary};
 use crate::scene::{self, Edge, MAX_MODES, Material, Model, PlateImpact, Scene, Shape};
 use std::time::Instant;
 
@@ -193,12 +189,12 @@ impl Reduced {
     /// Runs the impact for its results alone, as a series of many needs them.
     ///
     /// # Errors
-    /// As [`Reduced::run`].
+    /// As [`Reduced::run`], [`Error::Solver`] if the run is cut during a contact.
     pub fn point(&self, tolerance: f64) -> Result<Point> {
         let result = self.integrate(&self.options(tolerance))?;
         ledger_check(result.energy_residual, result.momentum_residual, tolerance)?;
         Ok(Point {
-            quantities: quantities(&self.system, &result),
+            quantities: quantities(&self.system, &result)?,
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
@@ -258,6 +254,13 @@ impl Reduced {
             }
         }
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
+        let values = values(system, result);
+        let mut table = values.table();
+        if result.is_cut() {
+            table = table.cut();
+            warnings.push(CUT.into());
+        }
+        let peaks = [values.outer_force_peak, values.inner_force_peak];
         Ok(Summary {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
@@ -266,22 +269,32 @@ impl Reduced {
             integration_error: result.error_estimate,
             bender: system.drive.map(|drive| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
-                BenderSummary { strain_energy_efficiency: transmitted / drive.strain_energy, drive }
+                let efficiency = transmitted / drive.strain_energy;
+                BenderSummary { strain_energy_efficiency: (!result.is_cut()).then_some(efficiency), drive }
             }),
-            contact_pressure: Some(ContactPressure::new(
-                &system.laws,
-                [result.contacts[0].force_peak, result.contacts[1].force_peak],
-            )),
+            contact_pressure: (!result.is_cut()).then(|| ContactPressure::new(&system.laws, peaks)),
             losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
             warnings,
             choice: self.choice.clone(),
-            ..Summary::of_reduced(&self.scene, self.model, system.modes, quantities(system, result))
+            ..Summary::of_reduced(&self.scene, self.model, system.modes, table)
         })
     }
 }
 
 /// The physical results of an integration of `system`.
-pub(super) fn quantities(system: &System, result: &Integration) -> PlateQuantities {
+///
+/// # Errors
+/// [`Error::Solver`] if the run was cut during a contact.
+pub(super) fn quantities(system: &System, result: &Integration) -> Result<PlateQuantities> {
+    if result.is_cut() {
+        Err(Error::Solver(format!("reduced model: {CUT}")))
+    } else {
+        Ok(values(system, result))
+    }
+}
+
+/// The values at the end of an integration of `system`, wherever that is.
+fn values(system: &System, result: &Integration) -> PlateQuantities {
     let energy = |i: usize| 0.5 * system.masses[i] * result.velocity[i].powi(2);
     PlateQuantities {
         efficiency: energy(1) / system.initial_energy(),

@@ -20,6 +20,7 @@
 //! [`Variants::run`] then fails; there is no plate theory with half-space contact to speak of.
 
 use super::reduced::{quantities, tip_residuals};
+use super::results::PlateQuantities;
 use super::rough::Rough;
 use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
@@ -28,7 +29,6 @@ use crate::contact::PatchFlexibility;
 use crate::dynamics::integrator::{Options, integrate};
 use crate::dynamics::system::System;
 use crate::error::Result;
-use crate::result::PlateQuantities;
 use crate::scene::{PlateImpact, Scene};
 
 /// How the bodies of a scene are simplified.
@@ -130,7 +130,7 @@ impl<'a> Variants<'a> {
     ) -> Result<PlateQuantities> {
         let system = self.system(simplification, modes);
         let options = Options { tolerance, end_time: self.end_time, sample_interval: None };
-        Ok(quantities(&system, &integrate(&system, &options)?))
+        quantities(&system, &integrate(&system, &options)?)
     }
 }
 

@@ -21,11 +21,15 @@ const ON_PLANE: f64 = 1e-9;
 /// Gets what is being done and the share of the whole that is done before it, 0 to 1.
 pub type Watch<'a> = dyn FnMut(&'static str, f64) + 'a;
 
+/// How a mesh file says, in an XML comment, which geometry it is one of.
+const GEOMETRY: &str = "<!--geometry_hash ";
+
 /// A mesh file of the half seat, read once.
 #[derive(Debug, Clone)]
 pub struct SeatMesh {
     path: PathBuf,
     content_hash: String,
+    geometry_hash: Option<String>,
 }
 
 /// Half a seat, seen from its contact candidates.
@@ -48,12 +52,21 @@ impl SeatMesh {
     /// [`Error::Io`] if the file can't be read.
     pub fn open(path: &Path) -> Result<Self> {
         let content = std::fs::read(path).map_err(|e| Error::io("reading", path, e))?;
-        Ok(Self { path: path.to_path_buf(), content_hash: sha256_hex(&content) })
+        Ok(Self {
+            path: path.to_path_buf(),
+            content_hash: sha256_hex(&content),
+            geometry_hash: recorded_geometry(&content),
+        })
     }
 
     /// The file.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// [`SealSeat::geometry_hash`] of the scene it was made for, if the file says so: files from elsewhere do not.
+    pub fn geometry_hash(&self) -> Option<&str> {
+        self.geometry_hash.as_deref()
     }
 
     /// The seat of `scene` with `modes` modes and the contact candidates in `zones`, from `cache` or computed.
@@ -76,6 +89,9 @@ impl SeatMesh {
         cache: &Cache,
         watch: &mut Watch,
     ) -> Result<SeatBody> {
+        if self.geometry_hash().is_some_and(|hash| hash != scene.geometry_hash()) {
+            return Err(self.of_another("it was made for another geometry of seat, sphere or tips"));
+        }
         let mut inputs = json!({
             "body": "seal seat", "revision": REVISION, "mesh": self.content_hash, "zones": zones, "modes": modes,
             "seat": scene.seat, "ring": [scene.sphere.radius], "tips": scene.actuator.tip_positions,
@@ -84,25 +100,25 @@ impl SeatMesh {
         cache.get_or_build(&inputs, || self.build(scene, zones, modes, watch))
     }
 
+    fn of_another(&self, why: &str) -> Error {
+        Error::Solver(format!("mesh {} is not one of this seat: {why}", self.path.display()))
+    }
+
     /// Shares of the time before each part are those of a mesh with 30 000 degrees of freedom.
     fn build(&self, scene: &SealSeat, zones: &Zones, modes: usize, watch: &mut Watch) -> Result<SeatBody> {
         watch("reading the mesh", 0.0);
         let mesh = TetMesh::read(&self.path)?;
-        let wrong = |what: &str| {
-            let path = self.path.display();
-            Error::Solver(format!("mesh {path} is not one of this seat: {what}"))
-        };
         let held = supports(scene, &mesh);
         if !held.contains(&[true; 3]) {
-            return Err(wrong("it has no face on the rim of the membrane"));
+            return Err(self.of_another("it has no face on the rim of the membrane"));
         }
         let candidates = candidates(scene, &mesh, zones);
         if !candidates.iter().any(|c| c.partner == super::Partner::Sphere) {
-            return Err(wrong("it has no node on the contact ring"));
+            return Err(self.of_another("it has no node on the contact ring"));
         }
         for (tip, x) in scene.actuator.tip_positions.iter().enumerate() {
             if !candidates.iter().any(|c| c.partner == super::Partner::Tip(tip)) {
-                return Err(wrong(&format!("it has no node under the tip at x = {x} m")));
+                return Err(self.of_another(&format!("it has no node under the tip at x = {x} m")));
             }
         }
         let interface: Vec<usize> = candidates.iter().map(|c| c.node).collect();
@@ -116,6 +132,13 @@ impl SeatMesh {
             dofs: solid.size(),
         })
     }
+}
+
+/// What the comment in a mesh file says.
+fn recorded_geometry(content: &[u8]) -> Option<String> {
+    let at = content.windows(GEOMETRY.len()).position(|part| part == GEOMETRY.as_bytes())?;
+    let hash = content[at + GEOMETRY.len()..].split(|byte| *byte == b'-').next()?;
+    Some(String::from_utf8_lossy(hash).into_owned())
 }
 
 /// Which of (u_x, u_y, u_z) of each node are held: all on the membrane's rim, u_y in the plane of symmetry y = 0.

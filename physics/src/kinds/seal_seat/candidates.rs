@@ -53,10 +53,8 @@ impl Zones {
     /// the line contact (eq. 4.43) with the force spread over the ring; the flanks share it unequally, and the sphere slides on
     /// them.
     pub fn expected(scene: &SealSeat) -> Self {
-        let (actuator, ring) = (&scene.actuator, scene.ring());
+        let (actuator, ring, hit) = (&scene.actuator, scene.ring(), on_half_space(scene));
         let modulus = scene.seat.material.plane_strain_modulus();
-        let stiffness = 4.0 / 3.0 * modulus * actuator.tip_radius.sqrt();
-        let hit = HertzImpact { mass: actuator.mass, speed: actuator.speed, stiffness };
         let patch = (actuator.tip_radius * hit.approach_peak()).sqrt();
         let force = 2.0 * hit.force_peak() * scene.sphere.mass / actuator.mass;
         let length = 2.0 * std::f64::consts::PI * ring.radius;
@@ -74,43 +72,48 @@ impl Zones {
     }
 }
 
+/// The actuator's impact by one tip if the seat were a heavy half-space (Hertz).
+pub(super) fn on_half_space(scene: &SealSeat) -> HertzImpact {
+    let actuator = &scene.actuator;
+    let stiffness = 4.0 / 3.0 * scene.seat.material.plane_strain_modulus() * actuator.tip_radius.sqrt();
+    HertzImpact { mass: actuator.mass, speed: actuator.speed, stiffness }
+}
+
 /// `value` with two significant digits, so that zones of scenes that are a little different find the same body.
 fn rounded(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-/// All nodes of the outer faces on the cone and on the underside within `zones`, ascending by node.
+/// All nodes of those outer faces on the cone and on the underside that reach into `zones`, ascending by node: so around all
+/// nodes in a zone there are others, and contact at one that stands alone is known not to spread.
 pub fn candidates(scene: &SealSeat, mesh: &TetMesh, zones: &Zones) -> Vec<Candidate> {
     let cone = Cone::of(scene);
     let close = ON_SURFACE * scene.sphere.radius;
-    let mut found = Vec::new();
-    let mut seen = vec![false; mesh.points.len()];
+    let mut found: Vec<Candidate> = Vec::new();
     for face in mesh.outer_faces() {
         let all = |on: &dyn Fn([f64; 3]) -> bool| face[..3].iter().all(|&node| on(mesh.points[node]));
         let on_cone = all(&|p| p[0] < 0.0 && cone.height(p).abs() < close);
         let below = all(&|p| p[2].abs() < close);
-        for &node in face.iter().filter(|_| on_cone || below) {
-            if std::mem::replace(&mut seen[node], true) {
-                continue;
-            }
+        let candidate = |&node: &usize| {
             let place = mesh.points[node];
-            if on_cone {
-                found.extend(Some(cone.candidate(node, place)).filter(|c| c.offset <= zones.ring));
-            } else {
-                found.extend(under_tip(scene, node, place, zones.tip));
-            }
+            if on_cone { Some(cone.candidate(node, place)) } else { under_tip(scene, node, place) }
+        };
+        let nodes: Vec<_> = face.iter().filter(|_| on_cone || below).filter_map(candidate).collect();
+        if nodes.iter().any(|c| c.offset <= if on_cone { zones.ring } else { zones.tip }) {
+            found.extend(nodes);
         }
     }
-    found.sort_unstable_by_key(|c: &Candidate| c.node);
+    found.sort_unstable_by_key(|c| c.node);
+    found.dedup_by_key(|c| c.node);
     found
 }
 
-/// A node of the underside, if it is near a tip; of two tips the nearer one meets it.
-fn under_tip(scene: &SealSeat, node: usize, place: [f64; 3], zone: f64) -> Option<Candidate> {
+/// A node of the underside; of several tips the nearest one meets it.
+fn under_tip(scene: &SealSeat, node: usize, place: [f64; 3]) -> Option<Candidate> {
     let distance = |x: &f64| (place[0] - x).hypot(place[1]);
     let tips = scene.actuator.tip_positions.iter().map(distance).enumerate();
     let (tip, offset) = tips.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (offset <= zone).then_some(Candidate {
+    Some(Candidate {
         node,
         place: [place[0], place[1], 0.0],
         partner: Partner::Tip(tip),

@@ -18,12 +18,9 @@ use super::nodes::{Ball, Nodes, dot};
 use super::watch::Watch;
 use crate::error::{Error, Result};
 
-/// Largest gap in magnitude, over the radius of the partner, that a closed contact may have: of the indentations, which are some
-/// thousandths of the radius, a few 1e-5.
-pub(super) const CLOSED: f64 = 1e-7;
-/// Change of a normal in rad that counts as much as a gap of its size times this, over the radius: forces act along the
-/// normals of the last iteration, and what they indent is at most about this share of the radius.
-const TURN: f64 = 1e-2;
+/// Largest gap in magnitude that a closed contact may have, over a typical indentation. It is also the largest turn of a normal
+/// in rad since the last iteration: forces act along the normals of that, and a turn moves what they indent by its share.
+const CLOSED: f64 = 5e-6;
 /// Newton's method keeps its factor as long as a step shrinks the gaps to this share.
 const CHORD: f64 = 0.05;
 /// Exchanges of all wrong nodes at once without progress before they are exchanged singly.
@@ -46,6 +43,8 @@ pub struct Loads {
 #[derive(Debug, Clone)]
 pub struct Contact<'a> {
     pub(super) nodes: &'a Nodes,
+    /// Largest gap in magnitude in m of a closed contact.
+    pub(super) closed: f64,
     pub(super) loads: Loads,
     /// The candidates that are looked at; all in contact are among them.
     pub(super) watch: Watch,
@@ -89,11 +88,13 @@ pub struct Work {
 }
 
 impl<'a> Contact<'a> {
-    /// The problem of `nodes`, without forces; before the first solution there has to be a survey.
-    pub fn new(nodes: &'a Nodes) -> Self {
+    /// The problem of `nodes`, without forces, where contacts indent by about `indentation` in m: what is small goes by that. Before
+    /// the first solution there has to be a survey.
+    pub fn new(nodes: &'a Nodes, indentation: f64) -> Self {
         let n = nodes.len();
         Self {
             nodes,
+            closed: CLOSED * indentation,
             loads: Loads { active: Vec::with_capacity(n), force: vec![0.0; n], normal: vec![[0.0; 3]; n] },
             watch: Watch::none(n),
             gap: vec![0.0; n],
@@ -163,7 +164,7 @@ impl<'a> Contact<'a> {
         for iteration in 0..MOST {
             known = self.yield_from(known, self.watch.up_to(&self.loads.active));
             let worst = self.look_at_set(balls);
-            let closed = self.loads.active.is_empty() || (worst <= CLOSED && iteration > 0);
+            let closed = self.loads.active.is_empty() || (worst <= 1.0 && iteration > 0);
             // A set that is sure to change is not solved to the end.
             let wrong = if closed {
                 known = self.yield_from(known, self.watch.len());
@@ -203,27 +204,26 @@ impl<'a> Contact<'a> {
         known.max(end)
     }
 
-    /// Gaps and normals of the contact set; its largest gap in magnitude over the radius, or turn of a normal if that
-    /// counts more.
+    /// Gaps and normals of the contact set; its largest gap in magnitude or turn of a normal, over what a closed contact may
+    /// have.
     fn look_at_set(&mut self, balls: &[Ball]) -> f64 {
         let mut worst = 0.0f64;
         for a in 0..self.loads.active.len() {
             let i = self.loads.active[a];
             let before = self.loads.normal[i];
-            let radius = self.look(i, balls);
+            self.look(i, balls);
             let turn = (0..3).map(|c| (self.loads.normal[i][c] - before[c]).abs()).fold(0.0, f64::max);
-            worst = worst.max(self.gap[i].abs() / radius).max(TURN * turn);
+            worst = worst.max(self.gap[i].abs() / self.closed).max(turn / CLOSED);
         }
         worst
     }
 
-    /// Gap and normal of the watched candidate `i`; the radius in m of its ball.
-    fn look(&mut self, i: usize, balls: &[Ball]) -> f64 {
+    /// Gap and normal of the watched candidate `i`.
+    fn look(&mut self, i: usize, balls: &[Ball]) {
         let (d, ball) = self.watch.off_centre(i);
-        let (distance, radius) = (dot(d, d).sqrt(), balls[ball].radius);
-        self.gap[i] = distance - radius;
+        let distance = dot(d, d).sqrt();
+        self.gap[i] = distance - balls[ball].radius;
         self.loads.normal[i] = d.map(|d| d / distance);
-        radius
     }
 
     /// The forces on the body at the contact set.
@@ -267,7 +267,8 @@ impl<'a> Contact<'a> {
         for slot in 0..self.watch.len() {
             let i = self.watch.node(slot);
             if !self.touching[i] {
-                self.wrong[i] = self.look(i, balls) * -CLOSED > self.gap[i];
+                self.look(i, balls);
+                self.wrong[i] = self.gap[i] < -self.closed;
                 count += usize::from(self.wrong[i]);
             }
         }
@@ -278,6 +279,8 @@ impl<'a> Contact<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const INDENTATION: f64 = 0.3;
 
     /// Nodes on a plane above a ball of radius 10 that rises through it, with a random flexibility.
     fn nodes(n: usize, random: &mut fastrand::Rng) -> (Nodes, Vec<f64>) {
@@ -297,13 +300,12 @@ mod tests {
     #[test]
     fn gaps_are_not_negative_forces_do_not_pull_and_only_closed_gaps_carry_force() {
         let mut random = fastrand::Rng::with_seed(3);
-        // that of a closed contact of this radius, and what the last turn of the normals changes of an indentation
-        let (radius, indentation) = (10.0, 0.3);
-        let bound = CLOSED * radius + CLOSED / TURN * indentation;
+        // the gap of a closed contact, and what the last turn of the normals changes of the indentation
+        let bound = 2.0 * CLOSED * INDENTATION;
         let mut touching = 0;
         for n in [1, 2, 5, 12, 40] {
             let (nodes, residual) = nodes(n, &mut random);
-            let mut contact = Contact::new(&nodes);
+            let mut contact = Contact::new(&nodes, INDENTATION);
             let far = [Ball { centre: [0.0, 0.0, -20.0], radius: 10.0 }];
             contact.survey(&vec![0.0; 3 * n], &far, f64::INFINITY);
             // one sequence of instants: each starts from the last, deeper or shallower
@@ -335,7 +337,7 @@ mod tests {
     fn a_survey_finds_what_was_not_watched() {
         let mut random = fastrand::Rng::with_seed(5);
         let (nodes, _) = nodes(20, &mut random);
-        let mut contact = Contact::new(&nodes);
+        let mut contact = Contact::new(&nodes, INDENTATION);
         let modal = vec![0.0; 60];
         let ball = |height: f64| [Ball { centre: [0.0, 0.0, height - 10.0], radius: 10.0 }];
         contact.survey(&modal, &ball(-0.1), f64::INFINITY);

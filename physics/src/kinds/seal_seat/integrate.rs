@@ -324,6 +324,7 @@ mod tests {
             sphere_mass: 1e-4,
             actuator_mass: MASS,
             speed: SPEED,
+            indentation: SPEED * (MASS * FLEXIBILITY).sqrt(),
             balls: vec![
                 Ball { centre: [0.0, 0.0, 1.0], radius: 1e-3 },
                 Ball { centre: [0.0, 0.0, -3e-3], radius: 3e-3 },

@@ -41,6 +41,13 @@ pub struct Tally {
     pub(super) before: [[f64; 2]; 2],
 }
 
+impl Integration {
+    /// Whether the run ended while bodies touched: what the impact comes to is then open.
+    pub fn is_cut(&self) -> bool {
+        self.tally.before[0].iter().any(|force| *force > 0.0)
+    }
+}
+
 /// Result of a run; of whole bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Integration {

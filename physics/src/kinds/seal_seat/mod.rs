@@ -14,11 +14,37 @@ pub mod integrate;
 pub mod integration;
 mod model;
 pub mod nodes;
+mod results;
 mod survey;
 pub mod system;
 mod watch;
 
+use crate::result::{Curve, Quantity};
+use crate::scene::Model;
+
 pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
 pub use model::{DEFAULT_TOLERANCE, SeatModel, quantities};
+pub use results::{CURVES, SeatCurves, SeatQuantities};
 pub use survey::Survey;
+
+/// The registry's entry.
+pub struct Kind;
+
+impl super::Kind for Kind {
+    fn name(&self) -> &'static str {
+        "seal-seat"
+    }
+
+    fn models(&self) -> &'static [Model] {
+        &[Model::C]
+    }
+
+    fn quantities(&self) -> &'static [Quantity] {
+        SeatQuantities::ALL
+    }
+
+    fn curves(&self) -> &'static [Curve] {
+        &CURVES
+    }
+}

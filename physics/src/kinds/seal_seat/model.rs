@@ -1,18 +1,16 @@
 //! A reduced seal seat of a scene, ready to run.
 
 use super::body::{SeatBody, SeatMesh, Watch};
-use super::candidates::Zones;
+use super::candidates::{Zones, on_half_space};
 use super::integrate::{Options, integrate};
-use super::integration::{Integration, Sample};
+use super::integration::Integration;
+use super::results::{CURVES, SeatQuantities};
 use super::system::System;
-use crate::analytical::hertz::HertzImpact;
 use crate::body::cache::Cache;
 use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
-use crate::result::SeatHistory;
-use crate::result::SeatQuantities;
-use crate::result::SeatSummary;
+use crate::result::{CUT, History, Outcome, Summary};
 use crate::scene::{Model, Scene, SealSeat, SphereBody};
 use std::time::Instant;
 
@@ -20,6 +18,10 @@ use std::time::Instant;
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 /// Steps tried first: per period of the highest mode, and over the actuator's contact if the seat were a heavy half-space.
 const FIRST_STEPS: (f64, f64) = (3.0, 30.0);
+/// Largest energy residual over the tolerance of the velocity, and what the gaps of closed contacts leave of it however short the
+/// step is.
+const LEDGER: f64 = 0.1;
+const LEAST_RESIDUAL: f64 = 1e-6;
 /// Halvings of the step before the tolerance is given up.
 const HALVINGS: u32 = 12;
 /// Widenings of the zones of contact candidates before the mesh is given up.
@@ -88,14 +90,13 @@ impl SeatModel {
             let built = Self::with(scene, setup, &seat, modes)?;
             watch("impact", 0.95);
             let rough = built.integrate(built.first_step, false)?;
-            match zones.widened(rough.tally.reach) {
-                Some(wider) => zones = wider,
-                None => {
-                    let (rough, setup_seconds) =
-                        (rough.state.sphere_velocity, started.elapsed().as_secs_f64());
-                    return Ok(Self { rough, setup_seconds, ..built });
-                }
-            }
+            let Some(wider) = zones.widened(rough.tally.reach) else {
+                let (rough, setup_seconds) = (rough.state.sphere_velocity, started.elapsed().as_secs_f64());
+                let unknown = mesh.geometry_hash().is_none().then(|| unverified(mesh));
+                let warnings = built.warnings.into_iter().chain(unknown).collect();
+                return Ok(Self { rough, setup_seconds, warnings, ..built });
+            };
+            zones = wider;
         }
         Err(Error::Solver(format!(
             "contact of the seal seat `{}` spreads beyond {:e} m from the ring or {:e} m from a tip",
@@ -114,7 +115,7 @@ impl SeatModel {
         }
         Ok(Self {
             scene: scene.clone(),
-            first_step: period.min(contact_duration(setup) / FIRST_STEPS.1),
+            first_step: period.min(on_half_space(setup).duration() / FIRST_STEPS.1),
             end_time: scene.run.end_time,
             // until the run that finds the contact zones has been made
             rough: [f64::NAN; 2],
@@ -149,11 +150,12 @@ impl SeatModel {
     }
 
     /// Runs the impact; the step is halved until the sphere's velocity changes by less than three times `tolerance`
-    /// of its magnitude, of which the finer run has a third as its error (second order).
+    /// of its magnitude, of which the finer run has a third as its error (second order), and the energy by less than a tenth of
+    /// it.
     ///
     /// # Errors
     /// As [`integrate`] and [`ledger_check`]; [`Error::Solver`] if the tolerance can't be reached.
-    pub fn run(&self, tolerance: f64) -> Result<SeatSummary> {
+    pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let started = Instant::now();
         let (result, _) = self.converged(tolerance)?;
         self.summary(&result, tolerance, started.elapsed().as_secs_f64())
@@ -163,13 +165,13 @@ impl SeatModel {
     ///
     /// # Errors
     /// As [`SeatModel::run`].
-    pub fn run_with_history(&self, tolerance: f64) -> Result<(SeatSummary, SeatHistory)> {
+    pub fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
         let started = Instant::now();
         let (result, step) = self.converged(tolerance)?;
         let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
         let history = history(&self.integrate(step, true)?);
-        summary.samples = Some(history.time.len());
-        Ok((summary, history))
+        summary.samples = Some(history.len());
+        Ok(Outcome { summary, history })
     }
 
     /// The first result that meets the tolerance, and its step.
@@ -180,7 +182,8 @@ impl SeatModel {
             let result = self.integrate(step, false)?;
             let fine = result.state.sphere_velocity;
             let change = (coarse[0] - fine[0]).hypot(coarse[1] - fine[1]);
-            if change <= 3.0 * tolerance * fine[0].hypot(fine[1]) {
+            let balanced = result.energy_residual <= (LEDGER * tolerance).max(LEAST_RESIDUAL);
+            if balanced && change <= 3.0 * tolerance * fine[0].hypot(fine[1]) {
                 return Ok((result, step));
             }
             coarse = fine;
@@ -190,30 +193,34 @@ impl SeatModel {
         )))
     }
 
-    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<SeatSummary> {
-        let (system, modes) = (&self.system, self.system.omega.len());
+    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
+        let mut table = quantities(&self.system, result).table();
         let mut warnings = self.warnings.clone();
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
-        Ok(SeatSummary {
+        if result.is_cut() {
+            table = table.cut();
+            warnings.push(CUT.into());
+        }
+        Ok(Summary {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.tally.steps,
             solve_seconds,
             warnings,
-            ..SeatSummary::of_reduced(&self.scene, Model::C, modes, quantities(system, result))
+            ..Summary::of_reduced(&self.scene, Model::C, self.system.omega.len(), table)
         })
     }
 }
 
-/// Duration in s of the actuator's impact if the seat were a heavy half-space (Hertz).
-fn contact_duration(scene: &SealSeat) -> f64 {
-    let actuator = &scene.actuator;
-    let modulus = scene.seat.material.plane_strain_modulus();
-    let stiffness = 4.0 / 3.0 * modulus * actuator.tip_radius.sqrt();
-    HertzImpact { mass: actuator.mass, speed: actuator.speed, stiffness }.duration()
+/// What a result on a mesh has to say that does not tell its geometry.
+fn unverified(mesh: &SeatMesh) -> String {
+    format!(
+        "mesh {} does not say which geometry it was made for (`impactcheck mesh` notes it): only its rim, contact ring and tips were checked",
+        mesh.path().display()
+    )
 }
 
-/// The physical results of a run of `system`.
+/// The values at the end of a run of `system`, wherever that is.
 pub fn quantities(system: &System, result: &Integration) -> SeatQuantities {
     let [x, z] = result.state.sphere_velocity;
     let tally = &result.tally;
@@ -235,16 +242,12 @@ pub fn quantities(system: &System, result: &Integration) -> SeatQuantities {
 }
 
 /// The samples of a run as curves.
-fn history(result: &Integration) -> SeatHistory {
-    let curve = |value: &dyn Fn(&Sample) -> f64| result.samples.iter().map(value).collect();
-    SeatHistory {
-        time: curve(&|s| s.time),
-        sphere_displacement: [0, 1].map(|c| curve(&|s| s.sphere[c])),
-        sphere_velocity: [0, 1].map(|c| curve(&|s| s.sphere_velocity[c])),
-        sphere_force: curve(&|s| s.sphere_force[0].hypot(s.sphere_force[1])),
-        sphere_force_components: [0, 1].map(|c| curve(&|s| s.sphere_force[c])),
-        actuator_displacement: curve(&|s| s.actuator),
-        actuator_velocity: curve(&|s| s.actuator_velocity),
-        actuator_force: curve(&|s| s.actuator_force),
+fn history(result: &Integration) -> History {
+    let mut history = History::new(&CURVES);
+    for s in &result.samples {
+        let ([x, z], [vx, vz], [fx, fz]) = (s.sphere, s.sphere_velocity, s.sphere_force);
+        let sample = [x, z, vx, vz, fx.hypot(fz), fx, fz, s.actuator, s.actuator_velocity, s.actuator_force];
+        history.push(s.time, sample);
     }
+    history
 }

@@ -1,7 +1,7 @@
 //! Which candidates are watched from one look at all of them to the next.
 
 use super::accumulate::{add_modes, yield_under};
-use super::contact::{CLOSED, Contact};
+use super::contact::Contact;
 use super::nodes::{Ball, dot};
 
 /// Margin of the next survey over that which was needed before.
@@ -36,7 +36,7 @@ impl Contact<'_> {
             let ball = &balls[nodes.ball[i]];
             let d = [0, 1, 2].map(|c| nodes.place[i][c] + self.displaced[c * n + i] - ball.centre[c]);
             let gap = if touches { 0.0 } else { dot(d, d).sqrt() - ball.radius };
-            let passed = !self.watch.contains(i) && gap < -CLOSED * ball.radius;
+            let passed = !self.watch.contains(i) && gap < -self.closed;
             survey.missed |= passed;
             if touches || passed {
                 survey.needed = survey.needed.max(self.surveyed[i]);

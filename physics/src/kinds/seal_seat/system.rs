@@ -2,7 +2,7 @@
 //!
 //! Half the bodies (y >= 0) with half the rigid masses; whoever reports doubles forces, impulses and energies.
 
-use super::candidates::{Candidate, Partner};
+use super::candidates::{Candidate, Partner, on_half_space};
 use super::contact::Contact;
 use super::nodes::{Ball, Nodes, dot};
 use super::survey::Survey;
@@ -25,6 +25,8 @@ pub struct System {
     pub actuator_mass: f64,
     /// Speed of the actuator at the start in m/s.
     pub speed: f64,
+    /// Indentation in m by a tip if the seat were a heavy half-space (Hertz): the scale of the contacts' displacements.
+    pub indentation: f64,
     /// The sphere and the tips at the start.
     pub balls: Vec<Ball>,
     /// The candidates as the contact problem has them.
@@ -63,6 +65,7 @@ impl System {
             sphere_mass: 0.5 * scene.sphere.mass,
             actuator_mass: 0.5 * scene.actuator.mass,
             speed: scene.actuator.speed,
+            indentation: on_half_space(scene).approach_peak(),
             nodes: Nodes::new(
                 place,
                 candidates.iter().map(ball).collect(),
@@ -160,7 +163,11 @@ pub struct Workspace<'a> {
 impl<'a> Workspace<'a> {
     /// Room for `system`.
     pub fn new(system: &'a System) -> Self {
-        Self { contact: Contact::new(&system.nodes), accelerations: Vec::new(), balls: system.balls.clone() }
+        Self {
+            contact: Contact::new(&system.nodes, system.indentation),
+            accelerations: Vec::new(),
+            balls: system.balls.clone(),
+        }
     }
 
     /// Evaluates the contact forces at `state`, corrected for kicks over steps of `step` in s: F - step^2/12 H M^-1 F with the

@@ -1,7 +1,4 @@
-"""Sub-cycling of tetrahedra: the elements' critical time steps, and which of them act when.
-
-The rules are those of the axisymmetric elements (`..levels`).
-"""
+"""Stiffness and critical time step of single tetrahedra, for sub-cycling."""
 
 from __future__ import annotations
 
@@ -9,10 +6,8 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Material
-from ..explicit.levels import fastest_levels, graded_levels
 from .elasticity import LUMPED_SHARES
 from .mesh import EDGES, TetMesh, volumes
-from .model import Model
 
 CHUNK = 2000
 """Elements whose stiffness is held at once."""
@@ -69,25 +64,3 @@ def element_time_steps(mesh: TetMesh, material: Material) -> Floats:
         stiffness /= np.sqrt(mass[:, :, None] * mass[:, None, :])
         steps[start : start + CHUNK] = 2.0 / np.sqrt(np.linalg.eigvalsh(stiffness)[:, -1])
     return steps
-
-
-def model_levels(model: Model, touching: Ints, time_step: float, most: int) -> tuple[Ints, Ints]:
-    """Level of each element, body after body, and of each node, that of its fastest element.
-
-    Args:
-        model: its bodies.
-        touching: nodes that can touch; their elements have level 0.
-        time_step: of level 0, s.
-        most: levels.
-    """
-    count = int(model.first[-1])
-    nodes = np.concatenate(
-        [body.mesh.cells + offset for body, offset in zip(model.elastic, model.first, strict=False)]
-    )
-    if most <= 1:
-        return np.zeros(nodes.shape[0], np.int64), np.zeros(count, np.int64)
-    steps = np.concatenate([element_time_steps(b.mesh, b.material) for b in model.elastic])
-    at_contact = np.zeros(count, dtype=bool)
-    at_contact[touching] = True
-    level = graded_levels(steps / time_step, nodes, at_contact, most)
-    return level, fastest_levels(level, nodes, count)

@@ -1,0 +1,50 @@
+"""What a run says about its contacts: intervals and force peaks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..common.arrays import Floats
+from . import kernel
+
+
+@dataclass(frozen=True)
+class ContactRecord:
+    """What the time loop found out about one contact."""
+
+    count: int
+    """Separate contacts. Separations shorter than the chatter limit do not count."""
+    end: float | None
+    """End of the last one, s; None if they never touched."""
+    intervals: tuple[tuple[float, float], ...]
+    """First and last instant of each contact, s."""
+    force_peak: float
+    """N, averaged over the peak window."""
+    impulse: float
+    """N s"""
+    work: float
+    """Change of the discrete energy by the contact constraint, J: loss if negative."""
+    outermost_radius: float
+    """Largest radius of a pair that carried force, m."""
+
+
+def peak_force(cumulative_impulse: Floats, window: int, sample_interval: float) -> float:
+    """Largest mean force (N) over any ``window`` consecutive sampling intervals."""
+    if cumulative_impulse.size <= window:
+        return float(cumulative_impulse[-1] / (sample_interval * max(1, window)))
+    means = (cumulative_impulse[window:] - cumulative_impulse[:-window]) / (
+        window * sample_interval
+    )
+    return float(means.max())
+
+
+def intervals(record: kernel.Record, time_step: float) -> tuple[tuple[float, float], ...]:
+    """First and last instant of each contact, s."""
+    # The multiplier of step n acts from t_n - dt/2 to t_n + dt/2.
+    return tuple(
+        (
+            max(0.0, record.first_step[k] - 0.5) * time_step,
+            (record.last_step[k] + 0.5) * time_step,
+        )
+        for k in range(min(record.intervals, kernel.MAX_INTERVALS))
+    )

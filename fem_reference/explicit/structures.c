@@ -1,0 +1,109 @@
+/* Part of kernel.c: what it works on, mirrored in kernel.py. */
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+enum { C = COMPONENTS, AXIAL = C - 1, MAX_INTERVALS = 256, FACET_NODES = 6, SAMPLED = 8 };
+enum { AGAINST_SURFACE = 0, AGAINST_SPHERE = 1 };
+
+/* What a contact has done so far. */
+typedef struct {
+    double impulse; /* of the sum of the multipliers so far, N s */
+    double work;    /* on all bodies so far, J */
+    double force;   /* that sum in the last step, N */
+    int64_t last;   /* last step with a force, -1: none */
+    int64_t split;  /* a separation of more steps divides two contacts */
+    int64_t intervals;
+    int64_t first_step[MAX_INTERVALS];
+    int64_t last_step[MAX_INTERVALS];
+    int64_t outermost; /* last candidate, in the order given, that carried a force; -1: none */
+} Record;
+
+/* Matching nodes of two bodies, the first above (+1) or below (-1) the second along the last axis. */
+typedef struct {
+    int64_t count;
+    const int32_t *candidate;
+    const int32_t *opposite;
+    const double *gap;        /* initial gap, m */
+    const double *compliance; /* 1 / (1/m_candidate + 1/m_opposite), kg */
+    double *before;           /* (count) work space */
+    double normal;
+    Record record;
+} Pairs;
+
+/* A rigid body that moves without turning; vectors have room for three components. */
+typedef struct {
+    double mobility[9]; /* 3x3 inverse mass, zero along directions that are guided, 1/kg */
+    double mass;        /* kg */
+    double u[3];        /* displacement, m */
+    double v[3];        /* velocity at half steps, m/s */
+    double before[3];
+    double force[3];    /* of the contacts in the last step, N */
+} Rigid;
+
+typedef struct {
+    int32_t kind;
+    int32_t count;         /* candidates */
+    const int32_t *node;   /* (count) */
+    const int32_t *facet;  /* (6 count) nodes of the facet opposite, kind AGAINST_SURFACE */
+    const double *weight;  /* (6 count) shape functions there; zero where there is no node */
+    double *normal;        /* (C count) from the facet or the sphere's centre to the candidate */
+    double *gap;           /* (count) initial gap, m; of a sphere: at the predicted place */
+    const double *place;   /* (C count) kind AGAINST_SPHERE: candidate minus the centre, m */
+    double radius;         /* of the sphere, m */
+    int32_t rigid;         /* body the sphere belongs to */
+    int32_t reserved;
+    double *lambda;        /* (count) multipliers of the last step, N */
+    double *compliance;    /* (count) diagonal of G M^-1 G^T, 1/kg */
+    int32_t *active;       /* (count) work space */
+    double impulse[3];     /* on the candidates so far, N s */
+    double force[3];       /* on the candidates in the last step, N */
+    Record record;         /* of forces along each candidate's own normal */
+} Contact;
+
+typedef struct {
+    int64_t nodes;          /* surface nodes that can touch */
+    const int32_t *global;  /* (nodes) their number in the system */
+    const double *inverse;  /* (C nodes) 1/m, zero where fixed */
+    double *u;              /* (C nodes) work space: displacement */
+    double *predicted;      /* (C nodes) velocity after the predictor */
+    double *before;         /* (C nodes) velocity before it */
+    double *force;          /* (C nodes) result, N */
+    int32_t contacts;
+    int32_t rigids;
+    int64_t matched;
+    Contact *contact;
+    Rigid *rigid;
+    Pairs *pairs;           /* (matched), in the numbering of the system */
+    double dt;
+    double tolerance;       /* of the multipliers, over the largest one */
+    int64_t step;           /* steps done */
+    int64_t sweeps;         /* Gauss-Seidel sweeps so far */
+    int64_t unconverged;    /* steps that reached the largest number of sweeps */
+    double reaction[3];     /* impulse of the supports on the bodies so far, N s */
+} Problem;
+
+/* The elements of one level. Rows come in four groups: nodes that also have faster elements (they only
+ * receive the impulse), last those of them that are held somewhere; then nodes that move with this level,
+ * last those of them that are held. Later rows never read the displacement of a row that moves. */
+typedef struct {
+    int64_t shared_free; /* ends of the groups */
+    int64_t shared;
+    int64_t free;
+    int64_t rows;
+    const int32_t *node;   /* (rows) */
+    const int64_t *row;    /* (rows + 1) first block of each row */
+    const int32_t *column; /* the row's own node, then those of later rows */
+    const double *block;   /* (C^2 per block), the upper half of K_l; row by row, of two components column by column */
+} Level;
+
+typedef struct {
+    int64_t nodes;
+    int64_t levels;
+    const Level *level;
+    const double *inverse;  /* (C nodes) 1/m, zero where fixed */
+    double *u;              /* (C nodes) displacement */
+    double *v;              /* (C nodes) velocity at half steps */
+    double *f;              /* (C nodes) work space, zero between sweeps */
+    Problem *problem;
+} State;

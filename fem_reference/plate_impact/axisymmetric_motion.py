@@ -1,0 +1,154 @@
+"""Motion of axisymmetric bodies, and their run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..axisymmetric.modal import elastic_modes
+from ..axisymmetric.system import (
+    INNER,
+    OUTER,
+    PLATE,
+    AxisymmetricSystem,
+    critical_time_step,
+    hertz_weights,
+    patch_flexibility,
+)
+from ..common.arrays import Floats
+from ..common.fenicsx import alone
+from ..explicit import kernel
+from ..explicit.loop import Energies, SerialLoop
+from .ending import Ending, Modes, Patch
+from .motion import SIDES, State
+from .run import Run, integrate
+from .scene import Scene
+
+CHUNK_SAMPLES = 128
+"""Raw samples between two looks at progress, energy and the end of the run."""
+WINDOW = 1.1
+"""A run lasts this many times as long as its last contact: the window in which curves are
+compared. It must not depend on when the end of the run could be proven."""
+FOLLOWED_MODES = 16
+"""Modes of the plate that are followed."""
+
+
+class AxisymmetricMotion:
+    """See `motion.Motion`."""
+
+    share = 1.0
+
+    def __init__(self, system: AxisymmetricSystem) -> None:
+        self.system, self.loop = system, SerialLoop(system, alone())
+        first, second = system.matched
+        self.radii = (first.radii, second.radii)
+        self._masses = [system.body_mass(body) for body in (OUTER, PLATE, INNER)]
+        bodies = (kernel.Carried * 2)()
+        for carried, body in zip(bodies, (OUTER, INNER), strict=True):
+            carried.mass = self._masses[body]
+            carried.start = float(system.velocity[system.first[body], 1])
+        self._arrays = kernel.Arrays()
+        self._bodies = bodies
+        self._centre = self._arrays.pointer(system.centre, np.int32)
+
+    @property
+    def records(self) -> list[kernel.Record]:
+        """Of the two contacts."""
+        return self.loop.problem.records()
+
+    def sample(self, samples: int, stride: int) -> Floats:
+        """See `Motion.sample`; samples lie close, so that compiled code takes them."""
+        return self.loop.run(self._bodies, self._centre, samples, stride)
+
+    def velocities(self) -> tuple[float, float]:
+        """Mean velocity of each sphere, half a step after the displacements, m/s."""
+        return self.mean_axial(self.loop.v, OUTER), self.mean_axial(self.loop.v, INNER)
+
+    def momenta(self) -> tuple[float, float, float]:
+        """Of outer sphere, plate and inner sphere, kg m/s."""
+        outer, plate, inner = (
+            self.mean_axial(self.loop.v, body) * self._masses[body]
+            for body in (OUTER, PLATE, INNER)
+        )
+        return outer, plate, inner
+
+    def impulses(self) -> tuple[float, float]:
+        """Compressive impulse of each contact so far, N s."""
+        outer, inner = self.records
+        return outer.impulse, inner.impulse
+
+    def plate_energy(self, energies: Energies) -> float:
+        """Elastic energy of the plate, rigid motion of a free one apart, J."""
+        rigid = energies.rigid_motion[PLATE] if self._free else 0.0
+        return energies.elastic[PLATE] - rigid
+
+    def states(self, energies: Energies) -> tuple[State, State]:
+        """Of each sphere against the plate in its rigid motion."""
+        place = speed = 0.0
+        if self._free:
+            place = self.mean_axial(self.loop.u, PLATE)
+            speed = self.mean_axial(self.loop.v, PLATE)
+
+        def state(number: int, body: int) -> State:
+            opened = self.mean_axial(self.loop.u, body) - place
+            opening = self.mean_axial(self.loop.v, body) - speed
+            gap = float(self.system.matched[number].gaps.min())
+            vibration = energies.elastic[body] - energies.rigid_motion[body]
+            return State(gap + SIDES[number] * opened, SIDES[number] * opening, vibration)
+
+        return state(0, OUTER), state(1, INNER)
+
+    @property
+    def _free(self) -> bool:
+        return self.system.supports.size == 0
+
+    def mean_axial(self, values: Floats, body: int) -> float:
+        """Mass average of the axial component over a body."""
+        system = self.system
+        mass = system.mass[system.first[body] : system.first[body + 1]]
+        return float(mass @ values[system.body(body)][1::2] / mass.sum())
+
+
+def _ending(motion: AxisymmetricMotion) -> Ending:
+    system, loop = motion.system, motion.loop
+    frequencies, shapes = elastic_modes(system, FOLLOWED_MODES)
+    rows, start = system.body(PLATE), int(system.first[PLATE])
+    mass = np.repeat(system.mass, 2)[rows]
+
+    def patch(number: int, body: int) -> Patch:
+        pairs = system.matched[number]
+        weights = hertz_weights(pairs.radii)
+        shares = weights @ shapes[2 * (pairs.opposite - start) + 1]
+        whole = patch_flexibility(system, PLATE, pairs.opposite, weights)
+        rest = whole - float(np.sum((shares / frequencies) ** 2))
+        sphere = patch_flexibility(system, body, pairs.candidates, weights)
+        return Patch(max(rest, 0.0), sphere, shares)
+
+    def coordinates() -> tuple[Floats, Floats]:
+        return shapes.T @ (mass * loop.u[rows]), shapes.T @ (mass * loop.v[rows])
+
+    patches = (patch(0, OUTER), patch(1, INNER))
+    return Ending(motion, patches, WINDOW, Modes(frequencies, coordinates))
+
+
+def integrate_axisymmetric(
+    system: AxisymmetricSystem, scene: Scene, contact_duration: float, **options: Any
+) -> tuple[Run, AxisymmetricMotion]:
+    """Step a system; see `run.integrate` for the options.
+
+    Raises:
+        SolverError: time step above the critical one, divergence, or no end found.
+    """
+    motion = AxisymmetricMotion(system)
+    run = integrate(
+        motion,
+        scene,
+        contact_duration,
+        lambda: _ending(motion),
+        lambda: critical_time_step(system),
+        levels_within_samples=False,
+        chunk=CHUNK_SAMPLES,
+        **options,
+    )
+    return run, motion

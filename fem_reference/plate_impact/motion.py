@@ -1,0 +1,69 @@
+"""How the bodies of a plate impact move in a run, whatever their geometry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from ..common.arrays import Floats
+from ..explicit import kernel
+from ..explicit.loop import Energies, Loop
+
+OUTER, PLATE, INNER = "outer", "plate", "inner"
+SPHERES = (OUTER, INNER)
+SIDES = (1.0, -1.0)
+"""Where the spheres lie along z, seen from the plate."""
+
+
+@dataclass(frozen=True)
+class State:
+    """What decides whether a sphere and the plate can touch again."""
+
+    clearance: float
+    """Of the undeformed bodies in their rigid motion, m."""
+    opening_speed: float
+    """Rate of the clearance, m/s."""
+    sphere_energy: float
+    """Elastic energy of the sphere, rigid motion apart, J."""
+
+
+class Motion(Protocol):
+    """Positions, velocities and momenta along z; outer and inner sphere in this order."""
+
+    @property
+    def loop(self) -> Loop:
+        """Bodies and contacts."""
+
+    @property
+    def share(self) -> float:
+        """Of the bodies that is modelled."""
+
+    @property
+    def records(self) -> list[kernel.Record]:
+        """Of the two contacts."""
+
+    @property
+    def radii(self) -> tuple[Floats, Floats]:
+        """Of the candidates of each contact, ascending, m."""
+
+    def sample(self, samples: int, stride: int) -> Floats:
+        """Advance by samples * stride steps; (samples, 8) rows of the strides' first steps.
+
+        Outer displacement, velocity, impulse so far; displacement and velocity of the plate's
+        centre; inner displacement, velocity, impulse so far.
+        """
+
+    def velocities(self) -> tuple[float, float]:
+        """Mean velocity of each sphere, half a step after the displacements, m/s."""
+
+    def momenta(self) -> tuple[float, float, float]:
+        """Of outer sphere, plate and inner sphere, of the part modelled, kg m/s."""
+
+    def impulses(self) -> tuple[float, float]:
+        """Compressive impulse of each contact so far, on the whole bodies, N s."""
+
+    def states(self, energies: Energies) -> tuple[State, State]:
+        """Of each sphere against the plate in its rigid motion."""
+
+    def plate_energy(self, energies: Energies) -> float:
+        """Elastic energy of the plate, rigid motion of a free one apart, J."""

@@ -1,0 +1,194 @@
+"""The result of a plate impact: quantities, bands and documents, written as one folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..common import document
+from ..common.arrays import Floats
+from ..common.output import write_history, write_json
+from ..common.progress import Progress
+from ..common.series import MeshResult, Problem, Report, Solved, solve_series
+from ..common.settings import RESOLUTIONS, Options, Settings
+from ..common.versions import versions
+from .estimate import ContactEstimate
+from .history import HISTORY_COLUMNS, curve_bands, history
+from .run import Run
+from .scene import Scene
+
+RATIO = 0.84
+"""Elements of a mesh over those of the next finer one: four steps halve them."""
+
+QUANTITIES = (
+    "efficiency",
+    "outer_velocity_final",
+    "inner_velocity_final",
+    "outer_force_peak",
+    "inner_force_peak",
+    "outer_contact_end",
+    "inner_contact_end",
+    "first_frequency",
+)
+TARGETED = ("efficiency", "outer_force_peak", "inner_force_peak")
+"""Quantities whose relative band counts for a target error."""
+
+
+class Solution(Solved, Protocol):
+    """A verified run on one mesh, of either geometry."""
+
+    @property
+    def run(self) -> Run:
+        """The run."""
+
+    @property
+    def estimate(self) -> ContactEstimate:
+        """Made before any mesh."""
+
+    def first_frequency(self) -> float:
+        """Lowest elastic eigenfrequency of the plate, Hz."""
+
+    def machine(self) -> dict[str, Any]:
+        """For the summary's ``solver``."""
+
+    def mesh_report(self) -> dict[str, Any]:
+        """For the summary's ``mesh``."""
+
+    def settings(self) -> dict[str, Any]:
+        """For the provenance."""
+
+    def write_fields(self, folder: Path, scene: Scene) -> list[float]:
+        """``mesh.vtu`` and the fields kept; their instants, s."""
+
+
+def of_run(scene: Scene, run: Run) -> dict[str, float]:
+    """Those of `QUANTITIES` that a run gives, SI; a contact that never closed ends at 0."""
+    transmitted = scene.inner.mass * run.inner_velocity**2
+    return {
+        "efficiency": transmitted / (scene.outer.mass * scene.speed**2),
+        "outer_velocity_final": run.outer_velocity,
+        "inner_velocity_final": run.inner_velocity,
+        "outer_force_peak": run.contacts[0].force_peak,
+        "inner_force_peak": run.contacts[1].force_peak,
+        "outer_contact_end": run.contacts[0].end or 0.0,
+        "inner_contact_end": run.contacts[1].end or 0.0,
+    }
+
+
+def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
+    """`QUANTITIES`, SI."""
+    return {**of_run(scene, solution.run), "first_frequency": solution.first_frequency()}
+
+
+def curve_uncertainty(bands: Floats) -> dict[str, float]:
+    """Root mean square and largest half width of the bands (samples, 8) of the history's curves."""
+    found = {}
+    for name, band in zip(HISTORY_COLUMNS[1:], bands.T, strict=True):
+        found[f"{name}_rms"] = float(np.sqrt(np.mean(band**2)))
+        found[f"{name}_max"] = float(band.max())
+    return found
+
+
+def problem(scene: Scene, resolution: str, comm: Any, options: Options) -> Problem[Any]:
+    """How the scene is solved, by its geometry."""
+    compute: Callable[[float, Settings, Report, Any], Any]
+    if scene.geometry == "solid":
+        from . import solid
+
+        def compute(factor: float, settings: Settings, report: Report, lead: Any) -> Any:
+            return solid.compute(scene, factor, settings, comm, report)
+
+        method, dimension, leads = solid.method(scene), 3, None
+    else:
+        from . import axisymmetric
+
+        def compute(factor: float, settings: Settings, report: Report, lead: Any) -> Any:
+            return axisymmetric.compute(scene, factor, settings, report, lead)
+
+        method, dimension = axisymmetric.method(scene), 2
+
+        def leads(solution: Any) -> list[Any]:
+            return list(solution.radii)
+
+    def write(folder: Path, solution: Any, meshes: list[MeshResult]) -> None:
+        _write(folder, scene, solution, resolution, meshes, options)
+
+    return Problem(
+        method=method,
+        end_time=scene.end_time,
+        ratio=RATIO,
+        targeted=TARGETED,
+        compute=compute,
+        quantities=lambda solution: quantities(scene, solution),
+        write=write,
+        dimension=dimension,
+        leads=leads,
+    )
+
+
+def solve(
+    scene: Scene,
+    target: Path,
+    resolution: str,
+    comm: Any,
+    options: Options,
+    progress: Progress | None = None,
+) -> None:
+    """Solve a scene and write the result folder ``target``; see the package's README.
+
+    Raises:
+        RunError: see `compute` of the geometry and `solve_series`.
+    """
+    posed = problem(scene, resolution, comm, options)
+    solve_series(posed, target, RESOLUTIONS[resolution], comm, options, progress)
+
+
+def _write(
+    folder: Path,
+    scene: Scene,
+    solution: Solution,
+    resolution: str,
+    meshes: list[MeshResult],
+    options: Options,
+) -> None:
+    run, duration = solution.run, solution.estimate.duration
+    found = versions()
+    table, interval = history(run)
+    bands = curve_bands(meshes, [mesh.factor for mesh in meshes], duration)
+    write_history(folder / "history.csv", HISTORY_COLUMNS, table, bands, digits=10)
+    summary = document.summary(
+        scene,
+        resolution,
+        run,
+        meshes,
+        TARGETED,
+        {"versions": found, **solution.machine()},
+        outer_contacts=None if run.in_contact_at_end else run.contacts[0].count,
+        inner_contacts=None if run.in_contact_at_end else run.contacts[1].count,
+        mesh=solution.mesh_report(),
+        samples=table.shape[0],
+        sample_interval=interval,
+        stress_times=solution.write_fields(folder, scene),
+    )
+    summary["uncertainty"].update(curve_uncertainty(bands))
+    write_json(folder / "summary.json", summary)
+    provenance = document.provenance(
+        scene,
+        resolution,
+        run,
+        duration,
+        found,
+        {
+            **solution.settings(),
+            "uncertainty_companion_ratio": 1.0 / RATIO,
+            "target_error": options.target_error,
+        },
+        contacts={
+            name: [list(interval) for interval in record.intervals]
+            for name, record in zip(("outer", "inner"), run.contacts, strict=True)
+        },
+    )
+    write_json(folder / "provenance.json", provenance)

@@ -1,0 +1,157 @@
+"""A run of a plate impact: plan, ledger, contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..common.arrays import Floats
+from ..common.settings import PEAK_WINDOW_FRACTION
+from ..explicit.levels import MOST_LEVELS
+from ..explicit.loop import Energies
+from ..explicit.records import ContactRecord, intervals, peak_force
+from ..explicit.supervision import Course, Ended, Plan, supervise
+from .motion import Motion
+from .scene import Scene
+
+PEAK_WINDOW_SAMPLES = 4
+"""Raw sampling intervals, about, in the window of the peak force."""
+LONGEST_RUN = 400.0
+"""A run without end time is given up after this many Hertz contact durations."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """Result of the time loop, of the whole bodies."""
+
+    times: Floats
+    """(m,) raw sampling instants, s."""
+    rows: Floats
+    """(m, 8) as `Motion.sample`."""
+    contacts: tuple[ContactRecord, ContactRecord]
+    in_contact_at_end: bool
+    time_step: float
+    critical_time_step: float
+    steps: int
+    loop_seconds: float
+    processor_seconds: float
+    """As `loop_seconds`, without the time other programs had the processor."""
+    outer_velocity: float
+    inner_velocity: float
+    energies: Energies
+    """At the end, of the part modelled."""
+    initial_energy: float
+    energy_residual: float
+    """Energy that the ledger misses over the initial energy."""
+    contact_loss: float
+    """Energy the contact constraint took out over the initial energy."""
+    momentum_residual: float
+    """Momentum that the ledger misses over the initial momentum."""
+    support_impulse: float
+
+
+def integrate(
+    motion: Motion,
+    scene: Scene,
+    contact_duration: float,
+    make_ended: Callable[[], Ended],
+    critical_time_step: Callable[[], float],
+    *,
+    end_time: float | None = None,
+    most_levels: int = MOST_LEVELS,
+    levels_within_samples: bool = True,
+    chunk: int | None = None,
+    **options: Any,
+) -> Run:
+    """Step from the first touch to ``end_time``, or until no further contact is possible.
+
+    Args:
+        motion: of the bodies at the start.
+        scene: what they are.
+        contact_duration: Hertz's, s; sets sampling and the chatter limit.
+        make_ended: see `supervise`.
+        critical_time_step: of the system, s.
+        end_time: s.
+        most_levels: of sub-cycling (see `levels`); 1: every element at every step.
+        levels_within_samples: see `Plan`.
+        chunk: samples between two looks at the energy and the end.
+        options: further ones of `supervise`.
+
+    Raises:
+        SolverError: time step above the critical one, divergence, or no end found.
+    """
+    plan = Plan(
+        duration=contact_duration,
+        longest=LONGEST_RUN,
+        window_samples=PEAK_WINDOW_SAMPLES,
+        end_time=end_time,
+        initial_energy=0.5 * motion.share * scene.outer.mass * scene.speed**2,
+        most_levels=most_levels,
+        levels_within_samples=levels_within_samples,
+        chunk=chunk,
+    )
+    course = supervise(motion.loop, plan, motion.sample, make_ended, critical_time_step, **options)
+    return _result(motion, scene, contact_duration, course)
+
+
+def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Run:
+    loop, share = motion.loop, motion.share
+    problem = loop.problem
+    energies, in_contact = loop.energies(), loop.touching
+    work = sum(record.work for record in motion.records)
+    velocities, momenta = motion.velocities(), motion.momenta()
+    impulses = [share * impulse for impulse in motion.impulses()]
+    start = -share * scene.outer.mass * scene.speed
+    initial_energy = 0.5 * share * scene.outer.mass * scene.speed**2
+    support = problem.state.reaction[loop.components - 1]
+    # Three independent balances: all bodies against the support, each sphere against its contact.
+    misses = [
+        sum(momenta) - start - support,
+        momenta[0] - start - impulses[0],
+        momenta[2] + impulses[1],
+    ]
+    # The last sample needs one more step, which leaves the levels at different times.
+    rows = np.vstack([course.rows, motion.sample(1, 1)])
+    window = max(1, round(PEAK_WINDOW_FRACTION * duration / course.interval))
+    records = [
+        _record(motion, number, rows[:, column], course.interval, window)
+        for number, column in enumerate((2, 7))
+    ]
+    return Run(
+        times=course.times,
+        rows=rows,
+        contacts=(records[0], records[1]),
+        in_contact_at_end=in_contact,
+        time_step=loop.dt,
+        critical_time_step=course.critical_time_step,
+        steps=problem.state.step,
+        loop_seconds=course.loop_seconds,
+        processor_seconds=course.processor_seconds,
+        outer_velocity=velocities[0],
+        inner_velocity=velocities[1],
+        energies=energies,
+        initial_energy=initial_energy / share,
+        energy_residual=abs(energies.total - initial_energy - work) / initial_energy,
+        contact_loss=-work / initial_energy,
+        momentum_residual=max(abs(miss) for miss in misses) / abs(start),
+        support_impulse=support / share,
+    )
+
+
+def _record(
+    motion: Motion, number: int, impulse: Floats, interval: float, window: int
+) -> ContactRecord:
+    record, radii = motion.records[number], motion.radii[number]
+    spans = intervals(record, motion.loop.dt)
+    return ContactRecord(
+        count=int(record.intervals),
+        end=spans[-1][1] if spans else None,
+        intervals=spans,
+        force_peak=peak_force(impulse, window, interval),
+        impulse=motion.impulses()[number],
+        work=record.work / motion.share,
+        outermost_radius=float(radii[record.outermost]) if record.outermost >= 0 else 0.0,
+    )

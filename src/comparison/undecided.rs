@@ -1,0 +1,93 @@
+//! What would decide a row that the reference's band leaves open.
+
+use super::discrepancy::Discrepancy;
+use super::verdict::Verdict;
+use crate::result::Summary;
+
+/// Smallest relative band that a reference can be asked for.
+const SMALLEST_TARGET: f64 = 1e-4;
+
+/// Says of every undecided row what would decide it.
+pub(super) fn tell(rows: &mut [Discrepancy], reference: &Summary) {
+    let reached = targeted_band(reference);
+    for row in rows.iter_mut().filter(|row| row.verdict == Verdict::Undecided) {
+        row.would_decide = sentence(row, reached);
+    }
+}
+
+/// Largest relative band of what `--target-error` is about: efficiency and force peaks.
+fn targeted_band(reference: &Summary) -> Option<f64> {
+    let targeted = |name: &str| name == "efficiency" || name.ends_with("_force_peak");
+    let relative = |(name, band): (&String, &f64)| Some(band / reference.value(name)?.abs());
+    let bands = reference.uncertainty.iter().filter(|(name, _)| targeted(name)).filter_map(relative);
+    bands.filter(|band| band.is_finite()).reduce(f64::max)
+}
+
+/// With the band narrowed to the distance from the bound, the row is decided. All bands shrink alike with the mesh.
+fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
+    let (tolerance, band) = (row.tolerance?, row.uncertainty?);
+    let needed = (tolerance - row.checked()).abs();
+    let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
+    let wish = format!("a band of at most {needed:.1e}{unit} instead of {band:.1e}{unit}");
+    let target = reached.map(|reached| reached * needed / band);
+    Some(match target {
+        Some(target) if target >= SMALLEST_TARGET => {
+            let target = rounded_down(100.0 * target);
+            format!(
+                "{wish} would decide it: a reference computed with --target-error {target}% (the gate's --resolution {target}%), or a finer --resolution"
+            )
+        }
+        None if band.is_finite() => format!("{wish} would decide it: a finer --resolution"),
+        _ => format!("{wish} would decide it, which no mesh gives; state a tolerance wider than the band"),
+    })
+}
+
+/// Two digits, not larger than `value`.
+fn rounded_down(value: f64) -> f64 {
+    let unit = 10_f64.powf(value.log10().floor() - 1.0);
+    let rounded = (value / unit).floor() * unit;
+    // the shortest number that reads the same
+    format!("{rounded:.1e}").parse().unwrap_or(rounded)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{rounded_down, sentence};
+    use crate::comparison::Verdict;
+    use crate::comparison::discrepancy::{Discrepancy, Scales};
+    use crate::scene::Tolerance;
+
+    fn row(reduced: f64, band: f64) -> Discrepancy {
+        let tolerance = Tolerance { relative: Some(0.01), ..Tolerance::default() };
+        let scales = Scales { value: 100.0, peak: 100.0 };
+        Discrepancy::new(("x", "N"), (Some(reduced), Some(100.0)), scales, Some(&tolerance), Some(band))
+    }
+
+    #[test]
+    fn the_band_asked_for_decides() {
+        for (reduced, needed, verdict) in [(100.4, 0.6, Verdict::Pass), (101.4, 0.4, Verdict::Fail)] {
+            let told = sentence(&row(reduced, 2.0), Some(0.05)).expect("undecided");
+            assert!(
+                told.starts_with(&format!("a band of at most {needed:.1e} N instead of 2.0e0 N")),
+                "{told}"
+            );
+            assert_eq!(row(reduced, 2.0).verdict, Verdict::Undecided);
+            assert_eq!(row(reduced, 0.99 * needed).verdict, verdict);
+            // all bands shrink alike
+            let target = rounded_down(100.0 * 0.05 * needed / 2.0);
+            assert!(
+                told.contains(&format!("--target-error {target}% (the gate's --resolution {target}%)")),
+                "{told}"
+            );
+        }
+        assert_eq!([0.129, 1.0, 0.0999].map(rounded_down), [0.12, 1.0, 0.099]);
+    }
+
+    #[test]
+    fn what_no_mesh_gives_is_not_advised() {
+        let told = sentence(&row(100.999, 2.0), Some(0.05)).expect("undecided");
+        assert!(told.contains("which no mesh gives") && !told.contains("--target-error"), "{told}");
+        let told = sentence(&row(100.4, 2.0), None).expect("undecided");
+        assert!(told.ends_with("would decide it: a finer --resolution"), "{told}");
+    }
+}
