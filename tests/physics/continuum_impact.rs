@@ -63,7 +63,8 @@ fn wide_patches_agree_with_finite_elements_whatever_the_number_of_modes() {
         let scene = Scene::parse("scene.toml", &text).unwrap();
         for modes in modes {
             let run = Reduced::new(&scene, Model::C, Some(modes)).unwrap().run(1e-7).unwrap();
-            let ours = ["efficiency", "outer_force_peak", "inner_force_peak"].map(|name| run.value(name).unwrap());
+            let ours =
+                ["efficiency", "outer_force_peak", "inner_force_peak"].map(|name| run.value(name).unwrap());
             println!("{modes} modes: {ours:?}, energy {:e}", run.energy_residual);
             for ((ours, expected), bound) in ours.into_iter().zip(expected).zip(bounds) {
                 assert_relative_eq!(ours, expected, max_relative = bound);
