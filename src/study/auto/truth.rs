@@ -51,7 +51,7 @@ impl Truth {
             };
             let continuum = |n| variants.run(Simplification::None, n, TOLERANCE);
             let exact = match &reference {
-                Some(reference) => reference.clone(),
+                Some(reference) => *reference,
                 None => {
                     let (Ok(half), Ok(full)) = (continuum(modes / 2), continuum(modes)) else {
                         return Ok(None);
