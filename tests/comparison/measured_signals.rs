@@ -171,8 +171,7 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
     let first = whole.time.iter().position(|t| *t > 0.0).unwrap();
     let start = whole.time[first - 7];
     let short = part(&|t| t >= start);
-    let error =
-        align(&short, &filtered, &truth.summary.quantities, &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
+    let error = align(&short, &filtered, &determined(&truth), &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
     let said = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("samples before the first touch, 0 of them"), "{said}");
     assert!(!said.contains(" 0 samples before"), "{said}");
