@@ -129,6 +129,32 @@ fn a_looser_tolerance_never_takes_a_dearer_model_and_promises_are_kept_on_table_
     }
 }
 
+/// A mode that the closed form passes over is missing in all that auto holds against one another.
+#[test]
+fn auto_has_the_first_mode_of_a_plate_that_bends_to_a_paraboloid_for_nothing() {
+    let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
+    for (edge, poisson_ratio) in [("simply-supported", -0.97), ("free", -0.995)] {
+        let auxetic = format!(
+            "[materials.auxetic]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = {poisson_ratio}\ndensity = \"7780 kg/m^3\"\n\n[plate]"
+        );
+        let plate = "edge      = \"clamped\"\nmaterial  = \"steel\"";
+        assert!(text.contains(plate));
+        let text = text
+            .replace("[plate]", &auxetic)
+            .replace(plate, &format!("edge = \"{edge}\"\nmaterial = \"auxetic\""));
+        let scene = Scene::parse("auxetic.toml", &text).unwrap();
+        let exact = Reduced::new(&scene, Model::C, Some(16)).unwrap().point(1e-5).unwrap().quantities;
+        for tolerance in [0.003, 0.01, 0.03] {
+            let auto = Reduced::auto(&scene, tolerance).unwrap();
+            assert!(auto.choice().unwrap().met);
+            let ours = auto.point(1e-5).unwrap().quantities;
+            assert_relative_eq!(ours.efficiency, exact.efficiency, max_relative = tolerance);
+            assert_relative_eq!(ours.outer_force_peak, exact.outer_force_peak, max_relative = tolerance);
+            assert_relative_eq!(ours.inner_force_peak, exact.inner_force_peak, max_relative = tolerance);
+        }
+    }
+}
+
 #[test]
 fn what_no_model_meets_is_said_and_is_no_error() {
     let scene = Scene::read(resolve("scaled-plate-r10").unwrap()).unwrap();
@@ -175,11 +201,11 @@ fn column(study: &Study, name: &str) -> Vec<f64> {
     study.rows.iter().map(|row| number(&row[place])).collect()
 }
 
-/// A small part of `impactcheck study auto`, which has 200 scenes.
+/// A small part of `impactcheck study auto`, which has 1000 scenes.
 #[test]
 fn promises_are_kept_on_random_scenes() {
     let study = {
-        let extent = auto::Extent { random: 12, seed: 11, references: false, costs: false };
+        let extent = auto::Extent { random: 12, seed: 11, references: false, costed: 0 };
         auto::check(&extent, &Store::open(None), &mut |_| ()).unwrap()
     };
     let (tolerance, exact) = (column(&study, "tolerance"), column(&study, "true_error"));

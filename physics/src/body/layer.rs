@@ -63,6 +63,12 @@ impl Waves {
         self.parameter.len() - 1
     }
 
+    /// k half way between the last mode and the next.
+    pub fn cut(&self) -> f64 {
+        let modes = self.modes();
+        0.5 * (self.parameter[modes - 1] + self.parameter[modes])
+    }
+
     /// Frequency in rad/s of about mode number `n` as [`Waves::layer`] has it, from the asymptote k = n pi.
     pub fn frequency(&self, n: usize) -> f64 {
         self.lower_wave(n as f64 * PI / self.plate.radius).0
@@ -156,7 +162,7 @@ impl Waves {
                 Share { own: bent, mutual: bent, weight: weight(xi) }
             })
             .collect();
-        let cut = 0.5 * (self.parameter[modes - 1] + self.parameter[modes]) / plate.radius;
+        let cut = self.cut() / plate.radius;
         let rule = gauss_legendre(POINTS);
         let panel = PANEL * patch[0].max(patch[1]).recip().min(half.recip());
         let mut integrate = |from: f64, to: f64, continuous: bool| {

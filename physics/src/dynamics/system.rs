@@ -14,6 +14,7 @@ use crate::body::ModalBody;
 use crate::contact::{Hertz, PatchFlexibility, Residual};
 use crate::result::Drive;
 use crate::scene::{PlateImpact, Shape};
+use std::ops::Range;
 
 /// Index of the outer body's first coordinate among the oscillators: the rigid motion, or a bender's first mode. A
 /// bender's further modes stand behind those of the plate.
@@ -152,6 +153,44 @@ impl System {
                 [[first[0], second[0]], [first[1], second[1]]]
             }
         }
+    }
+
+    /// Number of elastic modes of the plate that move both faces the same way.
+    pub fn bending_modes(&self) -> usize {
+        self.elastic().filter(|k| self.approach[0][*k] * self.approach[1][*k] < 0.0).count()
+    }
+
+    /// Places of the plate's elastic modes among the oscillators, the lowest first.
+    pub fn elastic(&self) -> Range<usize> {
+        let rigid = self.oscillators.get(PLATE).is_some_and(|first| first.omega == 0.0);
+        let first = PLATE + usize::from(rigid);
+        first..first + self.modes
+    }
+
+    /// The same with the `modes` lowest elastic modes of the plate; the others follow as under static forces.
+    pub fn lowest(&self, modes: usize) -> Self {
+        let elastic = self.elastic();
+        let gone = (elastic.start + modes).min(elastic.end)..elastic.end;
+        let flexibility = |i: usize, j: usize| -> f64 {
+            let of = |k: usize| self.approach[i][k] * self.approach[j][k] / self.oscillators[k].omega.powi(2);
+            gone.clone().map(of).sum()
+        };
+        let mut system = self.softer([flexibility(0, 0), flexibility(0, 1), flexibility(1, 1)]);
+        system.modes -= gone.len();
+        system.oscillators.drain(gone.clone());
+        let [q, v] = &mut system.start;
+        let [outer, inner] = &mut system.approach;
+        for coordinates in [q, v, outer, inner, &mut system.outer, &mut system.centre] {
+            coordinates.drain(gone.clone());
+        }
+        system
+    }
+
+    /// The same with a further residual flexibility (0,0), (0,1) = (1,0), (1,1) of the approaches, in m/N.
+    pub fn softer(&self, flexibility: [f64; 3]) -> Self {
+        let none = || Residual::new(&PatchFlexibility::constant([[0.0; 2]; 2]), &self.laws);
+        let residual = self.residual.unwrap_or_else(none).with(flexibility);
+        Self { residual: (!residual.is_zero()).then_some(residual), ..self.clone() }
     }
 
     /// Number of oscillators.
