@@ -1,9 +1,12 @@
 //! An outer body strikes a plate, the plate passes the blow to an inner body: reduced models A, B and C.
 
 pub mod choice;
+pub mod errors;
 pub mod reduced;
 mod results;
 mod rough;
+mod trials;
+mod truncation;
 mod validity;
 pub mod variants;
 
