@@ -107,13 +107,7 @@ impl SeatModel {
         )))
     }
 
-    fn with(
-        scene: &Scene,
-        setup: &SealSeat,
-        mesh: &SeatMesh,
-        seat: &SeatBody,
-        modes: usize,
-    ) -> Result<Self> {
+    fn with(scene: &Scene, setup: &SealSeat, mesh: &SeatMesh, seat: &SeatBody, modes: usize) -> Result<Self> {
         let system = System::new(setup, &seat.body, &seat.candidates, modes)?;
         let highest = system.omega.iter().fold(0.0f64, |a, b| a.max(*b));
         let period = 2.0 * std::f64::consts::PI / (highest * FIRST_STEPS.0);
