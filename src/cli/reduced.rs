@@ -125,6 +125,16 @@ fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<(Summ
     let reduced = SeatModel::new_with(scene, model, arguments.modes, &mesh, &cache, &mut |part, done| {
         bar.part(part, done)
     })?;
+    let tolerance = match arguments.tolerance {
+        Some(_) => integration_tolerance(arguments)?,
+        None => seal_seat::DEFAULT_TOLERANCE,
+    };
+    let result = if arguments.history.is_none() {
+        (reduced.run(tolerance)?, None)
+    } else {
+        let outcome = reduced.run_with_history(tolerance)?;
+        (outcome.summary, Some(outcome.history))
+    };
     drop(bar);
     context.note(format_args!(
         "mesh {}, {} degrees of freedom; set up in {:.2} s",
@@ -132,15 +142,7 @@ fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<(Summ
         reduced.dofs,
         reduced.setup_seconds
     ));
-    let tolerance = match arguments.tolerance {
-        Some(_) => integration_tolerance(arguments)?,
-        None => seal_seat::DEFAULT_TOLERANCE,
-    };
-    if arguments.history.is_none() {
-        return Ok((reduced.run(tolerance)?, None));
-    }
-    let outcome = reduced.run_with_history(tolerance)?;
-    Ok((outcome.summary, Some(outcome.history)))
+    Ok(result)
 }
 
 /// Writes the history, if there is one, and prints warnings and summary.

@@ -10,6 +10,7 @@ mod candidates;
 mod cholesky;
 pub mod contact;
 mod contact_set;
+mod doubts;
 pub mod integrate;
 pub mod integration;
 mod model;
@@ -17,6 +18,7 @@ pub mod nodes;
 mod results;
 mod survey;
 pub mod system;
+mod truncation;
 mod watch;
 
 use crate::result::{Curve, Quantity};
