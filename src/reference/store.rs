@@ -7,7 +7,6 @@
 
 use super::entry::{self, Damage, Stored};
 use super::{Resolution, identity};
-use crate::kinds;
 use crate::project::project_root;
 use crate::scene::Scene;
 use crate::{Error, Result};
@@ -259,7 +258,7 @@ fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
         }
         Ok(_) => {}
     }
-    let stored = match entry::load(kinds::of(scene), folder, entry::MeshFiles::Optional) {
+    let stored = match entry::load(scene, folder, entry::MeshFiles::Optional) {
         Ok(stored) => stored,
         Err(damage) => return damage.into(),
     };

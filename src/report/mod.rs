@@ -23,6 +23,7 @@ mod interactive;
 mod json;
 mod junit;
 mod label_placement;
+mod limits_section;
 mod markdown;
 mod measured_section;
 mod mesh_section;

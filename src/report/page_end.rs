@@ -40,6 +40,7 @@ pub(super) fn end(report: &SceneReport) -> Markup {
             summary { "Checks of the reference against itself (" (comparison.integrity.len()) ")" }
             (checks(&comparison.integrity))
         }
+        (super::limits_section::limits_html(comparison))
         (super::trend_section::trends_html(attachments))
         (super::acceptance_section::acceptances_html(attachments, &comparison.changed_tolerances))
         h2 { "Provenance" }

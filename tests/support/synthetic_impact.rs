@@ -69,7 +69,13 @@ pub const REDUCED: Impact = Impact {
 
 /// Scene with two equal steel spheres.
 pub fn scene() -> Scene {
-    let steel = Material { name: "steel".into(), youngs_modulus: 210e9, poisson_ratio: 0.3, density: 7780.0 };
+    let steel = Material {
+        name: "steel".into(),
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7780.0,
+        yield_strength: None,
+    };
     let sphere = Shape::Sphere { radius: 0.01 };
     Scene {
         name: "synthetic".into(),

@@ -25,6 +25,7 @@ pub(super) fn draw(name: &str, x: &[f64]) -> Option<Scene> {
         youngs_modulus,
         poisson_ratio,
         density,
+        yield_strength: None,
     };
     let thickness = PLATE_RADIUS * between(3, 0.004, 1.0);
     let plate = Plate {

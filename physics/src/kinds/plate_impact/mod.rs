@@ -1,14 +1,15 @@
 //! An outer body strikes a plate, the plate passes the blow to an inner body: reduced models A, B and C.
 
 pub mod choice;
+mod limits;
 pub mod reduced;
 mod results;
 mod rough;
 mod validity;
 pub mod variants;
 
-use crate::result::{Curve, Quantity};
-use crate::scene::Model;
+use crate::result::{Curve, History, Quantity, Summary};
+use crate::scene::{Model, Scene, Setup};
 
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
 
@@ -30,5 +31,11 @@ impl super::Kind for Kind {
 
     fn curves(&self) -> &'static [Curve] {
         &CURVES
+    }
+
+    fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>) {
+        if let Setup::PlateImpact(setup) = &scene.setup {
+            limits::judge(setup, summary, history);
+        }
     }
 }

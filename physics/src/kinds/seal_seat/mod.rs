@@ -12,6 +12,7 @@ pub mod contact;
 mod contact_set;
 pub mod integrate;
 pub mod integration;
+mod limits;
 mod model;
 pub mod nodes;
 mod results;
@@ -19,8 +20,8 @@ mod survey;
 pub mod system;
 mod watch;
 
-use crate::result::{Curve, Quantity};
-use crate::scene::Model;
+use crate::result::{Curve, History, Quantity, Summary};
+use crate::scene::{Model, Scene, Setup};
 
 pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
@@ -46,5 +47,11 @@ impl super::Kind for Kind {
 
     fn curves(&self) -> &'static [Curve] {
         &CURVES
+    }
+
+    fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>) {
+        if let Setup::SealSeat(setup) = &scene.setup {
+            limits::judge(setup, summary, history);
+        }
     }
 }
