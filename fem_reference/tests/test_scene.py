@@ -25,7 +25,7 @@ def test_valid_scene_is_read() -> None:
 def test_yield_strength_is_admissible_and_changes_nothing() -> None:
     strong = document()
     strong["plate"]["material"] = {**strong["plate"]["material"], "yield_strength": 1.2e9}
-    assert parse_scene(strong) == parse_scene(document())
+    assert parse_scene(strong).plate == parse_scene(document()).plate
 
 
 @pytest.mark.parametrize(

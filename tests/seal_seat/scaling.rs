@@ -34,7 +34,8 @@ fn no_speed_makes_or_loses_energy() {
 /// the speed.
 #[test]
 fn slow_impacts_are_proportional_to_their_speed() {
-    let [slow, fast] = [1e-6, 1e-4].map(|speed| SeatQuantities::of_table(&at(speed).quantities).expect("determined"));
+    let [slow, fast] =
+        [1e-6, 1e-4].map(|speed| SeatQuantities::of_table(&at(speed).quantities).expect("determined"));
     for (name, a, b) in [
         ("efficiency", slow.efficiency, fast.efficiency),
         ("angle", slow.sphere_angle, fast.sphere_angle),
