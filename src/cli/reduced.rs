@@ -190,6 +190,8 @@ pub fn table(summary: &Summary) -> String {
     }
     lines.push(format!("  {:<24} {:>14.1e}", "energy_residual", summary.energy_residual));
     lines.push(format!("  {:<24} {:>14.1e}", "momentum_residual", summary.momentum_residual));
+    lines
+        .extend(summary.truncation_error.map(|error| format!("  {:<24} {error:>14.1e}", "truncation_error")));
     let seconds = with_unit(summary.solve_seconds, prefixed("s", summary.solve_seconds), 3);
     lines.push(format!("  {} steps in {seconds}, set-up apart", summary.steps));
     lines.extend(summary.choice.as_ref().map(asked_model::told));

@@ -34,6 +34,12 @@ struct Named {
     /// Reduced model, for the studies of figures [default: B, with which the paper made them]
     #[arg(long)]
     model: Option<Model>,
+    /// Number of random scenes, for the study auto [default: 1000]
+    #[arg(long, value_name = "N")]
+    cases: Option<usize>,
+    /// Seed that they are drawn with, for the study auto [default: 2]
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
     /// Write the study as JSON, CSV, Markdown and, if it is a figure, SVG and PNG into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -60,7 +66,11 @@ fn named(context: &Context, arguments: &Named) -> Result<ExitStatus> {
             entry.name
         )));
     }
-    let settings = study::Settings { model: arguments.model, store: context.store.clone() };
+    let Named { model, cases, seed, .. } = *arguments;
+    if (cases.is_some() || seed.is_some()) && entry.name != "auto" {
+        return Err(Error::Usage(format!("--cases, --seed: the study {} draws no scenes", entry.name)));
+    }
+    let settings = study::Settings { model, store: context.store.clone(), cases, seed };
     if let Some(folder) = &arguments.out {
         // refused before anything is computed
         report::check_writable(folder)?;

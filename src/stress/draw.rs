@@ -3,6 +3,7 @@
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::kirchhoff::UnitPlate;
+use crate::contact::PatchFlexibility;
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::Result;
@@ -180,7 +181,10 @@ impl Case {
             // a residual flexibility up to that of the contacts themselves, positive definite
             let flexibility = approach / force * random.log(1e-3, 1.0);
             let mutual = random.uniform(-0.9, 0.9);
-            body.residual = [[flexibility, mutual * flexibility], [mutual * flexibility, flexibility]];
+            body.residual = Some(PatchFlexibility::constant([
+                [flexibility, mutual * flexibility],
+                [mutual * flexibility, flexibility],
+            ]));
             tips = [flexibility * random.uniform(0.0, 1.0), flexibility * random.uniform(0.0, 1.0)];
         }
         let system = System::new(&setup, &body, tips);

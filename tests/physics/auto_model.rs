@@ -6,6 +6,7 @@ use assert_cmd::Command;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, sphere_residual};
 use impactcheck::body::layer::Waves;
 use impactcheck::body::{free_sphere, kirchhoff};
+use impactcheck::contact::{PatchTable, TABULATED};
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::reference::Store;
 use impactcheck::scene::{Edge, Material, Model, Plate, Scene, resolve};
@@ -80,22 +81,27 @@ fn layer_of_a_thin_plate_is_the_continuum() {
             .omega
             .iter()
             .zip(&fe.participation)
-            .filter(|(_, phi)| phi[0] * phi[1] > 0.0)
+            .filter(|(_, phi)| phi[0][0] * phi[1][0] > 0.0)
             .map(|(omega, _)| *omega)
             .collect();
         assert!(bending.len() >= 6);
         for (ours, exact) in layer.omega.iter().zip(&bending) {
             assert_relative_eq!(ours, exact, max_relative = 3e-3);
         }
-        for i in 0..2 {
-            for j in 0..2 {
-                assert_relative_eq!(layer.flexibility[i][j], fe.flexibility[i][j], max_relative = 5e-4);
-                assert_relative_eq!(layer.patch_growth[i][j], fe.patch_growth[i][j], max_relative = 0.06);
+        let (ours, exact) = (layer.flexibility, fe.flexibility);
+        for m in 0..TABULATED {
+            assert_relative_eq!(ours.own[0][m], exact.own[0][m], max_relative = 5e-4);
+            for n in 0..TABULATED {
+                assert_relative_eq!(ours.mutual[m][n], exact.mutual[m][n], max_relative = 5e-4);
             }
+            // what bending does not tell: the faces against each other, of the size of Hertz's own flexibility
+            let squeezed = |c: &PatchTable| c.own[0][m] + c.own[1][m] - 2.0 * c.mutual[m][m];
+            assert_relative_eq!(squeezed(&ours), squeezed(&exact), max_relative = 0.02);
+            // and how it changes with the patch
+            let growth = |c: &PatchTable| c.own[0][m] - c.own[0][TABULATED - 1];
+            let scale = 0.06 * growth(&exact).abs().max(growth(&PatchTable::default()));
+            assert!((growth(&ours) - growth(&exact)).abs() <= scale, "{m}");
         }
-        // what bending does not tell: the faces against each other, of the size of Hertz's own flexibility
-        let squeezed = |c: [[f64; 2]; 2]| c[0][0] + c[1][1] - c[0][1] - c[1][0];
-        assert_relative_eq!(squeezed(layer.flexibility), squeezed(fe.flexibility), max_relative = 0.02);
     }
 }
 
@@ -120,6 +126,32 @@ fn a_looser_tolerance_never_takes_a_dearer_model_and_promises_are_kept_on_table_
             }
         }
         assert!(dearest.0 < Model::C, "{name}: at 30 % model C is not needed");
+    }
+}
+
+/// A mode that the closed form passes over is missing in all that auto holds against one another.
+#[test]
+fn auto_has_the_first_mode_of_a_plate_that_bends_to_a_paraboloid_for_nothing() {
+    let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
+    for (edge, poisson_ratio) in [("simply-supported", -0.97), ("free", -0.995)] {
+        let auxetic = format!(
+            "[materials.auxetic]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = {poisson_ratio}\ndensity = \"7780 kg/m^3\"\n\n[plate]"
+        );
+        let plate = "edge      = \"clamped\"\nmaterial  = \"steel\"";
+        assert!(text.contains(plate));
+        let text = text
+            .replace("[plate]", &auxetic)
+            .replace(plate, &format!("edge = \"{edge}\"\nmaterial = \"auxetic\""));
+        let scene = Scene::parse("auxetic.toml", &text).unwrap();
+        let exact = Reduced::new(&scene, Model::C, Some(16)).unwrap().point(1e-5).unwrap().quantities;
+        for tolerance in [0.003, 0.01, 0.03] {
+            let auto = Reduced::auto(&scene, tolerance).unwrap();
+            assert!(auto.choice().unwrap().met);
+            let ours = auto.point(1e-5).unwrap().quantities;
+            assert_relative_eq!(ours.efficiency, exact.efficiency, max_relative = tolerance);
+            assert_relative_eq!(ours.outer_force_peak, exact.outer_force_peak, max_relative = tolerance);
+            assert_relative_eq!(ours.inner_force_peak, exact.inner_force_peak, max_relative = tolerance);
+        }
     }
 }
 
@@ -169,11 +201,11 @@ fn column(study: &Study, name: &str) -> Vec<f64> {
     study.rows.iter().map(|row| number(&row[place])).collect()
 }
 
-/// A small part of `impactcheck study auto`, which has 200 scenes.
+/// A small part of `impactcheck study auto`, which has 1000 scenes.
 #[test]
 fn promises_are_kept_on_random_scenes() {
     let study = {
-        let extent = auto::Extent { random: 12, seed: 11, references: false, costs: false };
+        let extent = auto::Extent { random: 12, seed: 11, references: false, costed: 0 };
         auto::check(&extent, &Store::open(None), &mut |_| ()).unwrap()
     };
     let (tolerance, exact) = (column(&study, "tolerance"), column(&study, "true_error"));

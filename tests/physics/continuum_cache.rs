@@ -79,7 +79,7 @@ fn rounding_the_patch_radii_to_three_digits_changes_the_impact_by_less_than_1e_4
         let run = |factor: f64| {
             let patch = patch.map(|a| a * factor);
             let mesh = MeshOptions::default();
-            let plate = ContinuumPlate::new(&setup.plate, patch, 16, &mesh).unwrap().modal_body(16);
+            let plate = ContinuumPlate::new(&setup.plate, patch, 16, &mesh).unwrap().modal_body(16, 0.0);
             let tip = |shape: &Shape, material, patch| {
                 sphere_residual(shape.tip_radius(), material, patch, &mesh).unwrap()
             };

@@ -12,13 +12,7 @@ use std::f64::consts::PI;
 
 #[test]
 fn sphere_rebounds_from_a_rigid_half_space() {
-    let held = ModalBody {
-        omega: vec![],
-        damping_ratio: vec![],
-        participation: vec![],
-        residual: [[0.0; 2]; 2],
-        patch_growth: [[0.0; 2]; 2],
-    };
+    let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     for (radius, speed) in [(0.01, 0.55), (0.001, 1e-4), (0.05, 50.0)] {
         let system = System::new(&common::scaled_plate(radius, speed), &held, [0.0; 2]);
         let result = integrate(&system, &Options { tolerance: 1e-9, ..Options::default() }).unwrap();

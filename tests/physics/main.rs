@@ -15,6 +15,7 @@ mod squeeze_film;
 mod studies_paper;
 mod table1_paper;
 mod table2_paper;
+mod truncation;
 mod wet_impact;
 mod zener_infinite_plate;
 

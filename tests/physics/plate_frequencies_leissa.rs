@@ -26,6 +26,26 @@ fn frequencies_and_centre_deflections_of_every_edge() {
     }
 }
 
+/// Near -1 the first frequency goes to zero: no root is passed over.
+#[test]
+fn no_mode_is_lost_at_any_poisson_ratio() {
+    for edge in [Edge::Clamped, Edge::SimplySupported, Edge::Free] {
+        for poisson_ratio in [-0.99999, -0.999, -0.99, -0.97, -0.9, -0.5, 0.0, 0.49, 0.4999999] {
+            let modes = 24;
+            let plate = UnitPlate::new(edge, poisson_ratio, modes).unwrap();
+            let rigid = plate.omega().len() - modes;
+            for (mode, k) in frequency_parameters(edge, poisson_ratio, modes).into_iter().enumerate() {
+                assert_relative_eq!(plate.omega()[rigid + mode], k * k, max_relative = 1e-5);
+                assert_relative_eq!(
+                    plate.centre()[rigid + mode],
+                    centre_deflection(edge, k),
+                    max_relative = 1e-5
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn rigid_mode_of_the_free_plate_carries_its_mass() {
     let plate = UnitPlate::new(Edge::Free, 0.3, 4).unwrap();

@@ -6,6 +6,9 @@
 use crate::scene::Edge;
 use std::f64::consts::PI;
 
+/// Frequency parameter below which differences of Bessel functions say less about a mode than that it is a paraboloid.
+const PARABOLOID: f64 = 0.01;
+
 /// Bending stiffness D = E h^3 / (12 (1 - nu^2)) in N m.
 pub fn rigidity(youngs_modulus: f64, poisson_ratio: f64, thickness: f64) -> f64 {
     youngs_modulus * thickness.powi(3) / (12.0 * (1.0 - poisson_ratio.powi(2)))
@@ -13,7 +16,10 @@ pub fn rigidity(youngs_modulus: f64, poisson_ratio: f64, thickness: f64) -> f64 
 
 /// The first `count` frequency parameters k (without the rigid motion of a free plate).
 ///
-/// `poisson_ratio` matters for simply supported and free edges only.
+/// `poisson_ratio` matters for simply supported and free edges only. With j the zeros of J0 they solve, clamped and simply
+/// supported, sum 4 j^2/(j^4 - k^4) = 0 and = 2/(1 - nu), with j those of J1, free, sum 2 k^4/(j^4 - k^4) = 1 + nu (J1/J0,
+/// I1/I0, J0/J1 and I0/I1 in partial fractions). The sums rise from pole to pole: there is one root between any two
+/// neighbours, and for simply supported and free edges one below the first.
 pub fn frequency_parameters(edge: Edge, poisson_ratio: f64, count: usize) -> Vec<f64> {
     let characteristic = |k: f64| {
         let (j0, j1, r) = (libm::j0(k), libm::j1(k), bessel_i_ratio(k));
@@ -24,23 +30,30 @@ pub fn frequency_parameters(edge: Edge, poisson_ratio: f64, count: usize) -> Vec
             Edge::Free => k * (j0 * r + j1) - 2.0 * nu1 * j1 * r,
         }
     };
-    // successive roots are about pi apart: a tenth of that brackets each one
-    let step = PI / 10.0;
-    let mut roots = Vec::with_capacity(count);
-    let (mut low, mut below) = (1.0, characteristic(1.0));
-    while roots.len() < count {
-        let high = low + step;
-        let above = characteristic(high);
-        if below * above < 0.0 {
-            roots.push(root(characteristic, [low, high], [below, above]));
-            // the next one is not near
-            low = high + 1.5;
-            below = characteristic(low);
-        } else {
-            (low, below) = (high, above);
-        }
+    let between = |low: f64, high: f64| root(characteristic, [low, high], [low, high].map(characteristic));
+    let first = softest(edge, poisson_ratio);
+    let first = first.map(|k| if k < PARABOLOID { k } else { between(0.5 * k, pole(edge, 1)) });
+    first.into_iter().chain((1..).map(|n| between(pole(edge, n), pole(edge, n + 1)))).take(count).collect()
+}
+
+/// The first frequency parameter where Poisson's ratio nears -1 and bending to a paraboloid takes no energy any more, up to
+/// terms in k^4; at most twice the true one elsewhere. None for a clamped plate.
+fn softest(edge: Edge, poisson_ratio: f64) -> Option<f64> {
+    let fourth_power = match edge {
+        Edge::Clamped => return None,
+        Edge::SimplySupported => 48.0 * (1.0 + poisson_ratio) / (1.0 - poisson_ratio),
+        Edge::Free => 96.0 * (1.0 + poisson_ratio),
+    };
+    Some(fourth_power.powf(0.25))
+}
+
+/// Zero number `n` of J1 for a free edge, else of J0, to 0.005 (McMahon's expansion; Watson, Bessel Functions, 1944, 15.53).
+fn pole(edge: Edge, n: usize) -> f64 {
+    let asymptote = |shift: f64| (n as f64 + shift) * PI;
+    match edge {
+        Edge::Free => asymptote(0.25) - 0.375 / asymptote(0.25),
+        Edge::Clamped | Edge::SimplySupported => asymptote(-0.25) + 0.125 / asymptote(-0.25),
     }
-    roots
 }
 
 /// Eigenfrequencies in Hz of a plate of `radius` m, `rigidity` N m, `mass_per_area` kg/m^2.
@@ -66,6 +79,10 @@ pub fn centre_deflection(edge: Edge, k: f64) -> f64 {
 
 /// As [`centre_deflection`] at the `radii` in 0..=1, of the sign that makes the centre's positive; `k` up to 700.
 pub fn deflection(edge: Edge, k: f64, radii: &[f64]) -> Vec<f64> {
+    if k < PARABOLOID {
+        let square = if edge == Edge::Free { 2.0 } else { 1.0 };
+        return radii.iter().map(|r| (3.0 / PI).sqrt() * (1.0 - square * r * r)).collect();
+    }
     let (j0, j1, ratio) = (libm::j0(k), libm::j1(k), bessel_i_ratio(k));
     // w = J0(k r) + g I0(k r)/I0(k); w(0) > 0
     let g = if edge == Edge::Free { -j1 / ratio } else { -j0 };
@@ -129,6 +146,21 @@ mod tests {
         for (edge, squares) in table {
             for (k, square) in frequency_parameters(edge, 0.3, squares.len()).iter().zip(squares) {
                 assert_relative_eq!(k * k, square, max_relative = 1e-5);
+            }
+        }
+    }
+
+    /// Where elements lose the energy of a paraboloid in rounding: Rayleigh's quotient of 1 - r^2 and 1 - 2 r^2, whose
+    /// bending energy is 2 pi (1 + nu) times 4 and 16, is exact.
+    #[test]
+    fn towards_poisson_ratio_minus_one_the_first_mode_is_a_paraboloid() {
+        for rest in [1e-5, 1e-8, 1e-11, 1e-15] {
+            let poisson_ratio = -1.0 + rest;
+            for (edge, quotient) in [(Edge::SimplySupported, 24.0), (Edge::Free, 96.0)] {
+                let k = frequency_parameters(edge, poisson_ratio, 2);
+                assert_relative_eq!(k[0].powi(4), quotient * (1.0 + poisson_ratio), max_relative = 1e-5);
+                assert_relative_eq!(centre_deflection(edge, k[0]), (3.0 / PI).sqrt(), max_relative = 1e-5);
+                assert!(k[1] > 5.0);
             }
         }
     }

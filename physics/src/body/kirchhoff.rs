@@ -112,8 +112,7 @@ impl UnitPlate {
             omega: self.omega.iter().map(|w| w * frequency).collect(),
             damping_ratio: vec![plate.damping_ratio; self.omega.len()],
             participation: self.centre.iter().map(|c| [c * amplitude; 2]).collect(),
-            residual: [[0.0; 2]; 2],
-            patch_growth: [[0.0; 2]; 2],
+            residual: None,
         }
     }
 }

@@ -12,10 +12,11 @@
 //! the continuum plate to three digits; what is lacking is the effect of shear on the rim, and longitudinal modes.
 
 use super::ModalBody;
-use super::continuum::ContinuumPlate;
+use super::continuum::{ContinuumPlate, WEIGHTED};
 use super::free_sphere::patch_transform;
 use super::quadrature::gauss_legendre;
 use crate::analytical::circular_plate::{centre_deflection, deflection, frequency_parameters, rigidity};
+use crate::contact::{PatchTable, RADII, Tabulated};
 use crate::scene::{Edge, Plate};
 use std::f64::consts::PI;
 
@@ -25,8 +26,6 @@ const DEEP: f64 = 12.0;
 const POINTS: usize = 16;
 /// Largest length of a panel in radii of the patch, and in half thicknesses.
 const PANEL: f64 = 3.0;
-/// Radius of the inner part of a patch over that of the whole, from which the growth with the patch is taken.
-const INSIDE: f64 = 0.5;
 
 /// Kirchhoff's modes of a plate in closed form.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,8 +43,8 @@ struct Share {
     own: f64,
     /// Between patches on opposite faces, in m/N.
     mutual: f64,
-    /// Transforms of both patches and of their inner parts.
-    weight: [f64; 4],
+    /// Transforms of both patches' tabulated radii.
+    weight: [Tabulated; 2],
 }
 
 impl Waves {
@@ -62,6 +61,12 @@ impl Waves {
     /// Number of elastic modes.
     pub fn modes(&self) -> usize {
         self.parameter.len() - 1
+    }
+
+    /// k half way between the last mode and the next.
+    pub fn cut(&self) -> f64 {
+        let modes = self.modes();
+        0.5 * (self.parameter[modes - 1] + self.parameter[modes])
     }
 
     /// Frequency in rad/s of about mode number `n` as [`Waves::layer`] has it, from the asymptote k = n pi.
@@ -104,32 +109,21 @@ impl Waves {
         let mut layer = ContinuumPlate {
             omega: Vec::new(),
             participation: Vec::new(),
-            flexibility: [[0.0; 2]; 2],
-            patch_growth: [[0.0; 2]; 2],
+            flexibility: PatchTable::default(),
             patch_radius: patch,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
             damping_ratio: plate.damping_ratio,
             degrees_of_freedom: 0,
         };
-        let shares = self.shares(patch);
-        for i in 0..2 {
-            for j in 0..2 {
-                // between the whole patch j and the whole patch i or its inner part
-                let between = |part: usize| -> f64 {
-                    let share = |s: &Share| if i == j { s.own } else { s.mutual };
-                    shares.iter().map(|s| share(s) * s.weight[part] * s.weight[j]).sum()
-                };
-                let (whole, inner) = (between(i), between(i + 2));
-                layer.flexibility[i][j] = whole;
-                layer.patch_growth[i][j] = (whole - inner) / ((1.0 - INSIDE * INSIDE) * patch[i].powi(2));
-            }
+        for share in self.shares(patch) {
+            layer.flexibility.add(share.own, share.mutual, share.weight);
         }
         for (k, centre) in self.parameter.iter().zip(&self.centre) {
             let xi = k / plate.radius;
             let (omega, share) = self.lower_wave(xi);
             let phi = centre * share.sqrt();
             layer.omega.push(omega);
-            layer.participation.push(patch.map(|a| phi * patch_transform(xi * a)));
+            layer.participation.push(patch.map(|a| WEIGHTED.map(|r| phi * patch_transform(xi * r * a))));
         }
         layer
     }
@@ -159,8 +153,7 @@ impl Waves {
         let half_space = |xi: f64| 1.0 / (plate.material.plane_strain_modulus() * xi);
         let bent = |xi: f64| half_space(xi) * bending_ratio(xi * half);
         let squeezed = |xi: f64| half_space(xi) * squeezing_ratio(xi * half);
-        let radii = [patch[0], patch[1], INSIDE * patch[0], INSIDE * patch[1]];
-        let weight = |xi: f64| radii.map(|a| patch_transform(xi * a));
+        let weight = |xi: f64| patch.map(|a| RADII.map(|r| patch_transform(xi * r * a)));
         let waves = self.parameter.iter().zip(&self.centre).take(modes);
         let mut shares: Vec<Share> = waves
             .map(|(k, centre)| {
@@ -169,7 +162,7 @@ impl Waves {
                 Share { own: bent, mutual: bent, weight: weight(xi) }
             })
             .collect();
-        let cut = 0.5 * (self.parameter[modes - 1] + self.parameter[modes]) / plate.radius;
+        let cut = self.cut() / plate.radius;
         let rule = gauss_legendre(POINTS);
         let panel = PANEL * patch[0].max(patch[1]).recip().min(half.recip());
         let mut integrate = |from: f64, to: f64, continuous: bool| {
@@ -200,8 +193,7 @@ impl Waves {
             omega: if free { vec![0.0] } else { Vec::new() },
             damping_ratio: if free { vec![0.0] } else { Vec::new() },
             participation: if free { vec![[1.0 / self.plate.mass().sqrt(); 2]] } else { Vec::new() },
-            residual: [[0.0; 2]; 2],
-            patch_growth: [[0.0; 2]; 2],
+            residual: None,
         }
     }
 

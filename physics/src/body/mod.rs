@@ -11,6 +11,7 @@ pub mod layer;
 pub mod quadrature;
 pub mod solid;
 
+use crate::contact::PatchFlexibility;
 use serde::{Deserialize, Serialize};
 
 /// Linear elastic body reduced to its modes, seen from its contact points.
@@ -18,7 +19,7 @@ use serde::{Deserialize, Serialize};
 /// With mass-normalised coordinates q the body obeys
 /// `q_k'' + 2 zeta_k omega_k q_k' + omega_k^2 q_k = sum_i participation[k][i] f_i`
 /// under forces `f_i` along +z at the contact points, and the displacement along +z of contact
-/// point i is `sum_k participation[k][i] q_k + sum_j residual[i][j] f_j`.
+/// point i is `sum_k participation[k][i] q_k + sum_j R_ij f_j` with the residual flexibility R.
 /// Contact point 0 faces the outer body, contact point 1 the inner body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModalBody {
@@ -28,10 +29,6 @@ pub struct ModalBody {
     pub damping_ratio: Vec<f64>,
     /// Mass-normalised mode shapes at the contact points, kg^(-1/2). Shape (n, 2).
     pub participation: Vec<[f64; 2]>,
-    /// Residual flexibility in m/N beyond the modes and beyond Hertz's half-spaces, for contact patches of no extent;
-    /// zero for models A and B.
-    pub residual: [[f64; 2]; 2],
-    /// How the residual flexibility grows with the contact patches: `residual[i][j]` gains `patch_growth[i][j]` times
-    /// the square of the patch radius of contact i, and `patch_growth[j][i]` times that of contact j. In m/N per m^2.
-    pub patch_growth: [[f64; 2]; 2],
+    /// Residual flexibility beyond the modes and beyond Hertz's half-spaces; `None` for models A and B.
+    pub residual: Option<PatchFlexibility>,
 }

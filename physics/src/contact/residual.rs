@@ -1,164 +1,198 @@
 //! The contacts' small nonlinear system when the bodies keep a residual flexibility.
 //!
-//! Beyond Hertz's half-spaces the bodies yield by R_ij F_j. R is smooth in the patches over which the forces are
-//! spread: R_ij = R0_ij + b_ij a_i^2 + b_ji a_j^2 with the patch radii a_i. Under Hertz's pressures the complementary
-//! energy of the contacts of tips of radii r_i and 1/E* the sum of both bodies' (1 - nu^2)/E is
+//! Beyond Hertz's half-spaces the bodies yield by R_ij F_j, where R depends on the radii a_i of the patches over which the
+//! forces are spread. With p_i = a_i^2/r_i, the approach at which an undeformed tip of radius r_i has this patch, the complementary
+//! energy of the contacts under Hertz's pressures is
 //!
-//!   U = sum_i (0.3 F_i^2/(E* a_i) + F_i a_i^2/(5 r_i)) + 1/2 sum_ij F_i F_j R_ij.
+//!   U = sum_i (0.4 F_i^2/(k_i p_i^(1/2)) + 0.2 F_i p_i) + 1/2 sum_ij F_i F_j R_ij(p_0, p_1).
 //!
-//! It is stationary in the patch radii, a_i^3 = 3 F_i r'_i/(4 E*) with 1/r'_i = 1/r_i + 5 sum_j b_ij F_j: what the
-//! bodies yield beyond half-spaces also curves their faces. Its derivative by F_i is the approach that rigid motion
-//! and modes have to give, y_i = a_i^2/r'_i + sum_j F_j (R0_ij + b_ji a_j^2). With p_i = a_i^2/r_i, the approach at which
-//! undeformed faces would have this patch, g_ij = b_ij r_i, and the relative curvature c_i = r_i/r'_i:
+//! The patches are those that make it stationary: what the bodies yield beyond half-spaces also curves their faces. With
+//! the slopes g_ii = R_ii'/2 and g_ij = dR_ij/dp_i the relative curvatures c_i and the forces are
 //!
-//!   c_i = 1 + 5 sum_j g_ij F_j,   F_i = k_i p_i^(3/2) c_i,   y_i = c_i p_i + sum_j F_j (R0_ij + g_ji p_j).
+//!   c_i = 1 + 5 sum_j g_ij F_j,   F_i = k_i p_i^(3/2) c_i,
 //!
-//! R is symmetric; its diagonal may be negative. A face curved until it fits the tip (c_i = 0) has no such patch.
+//! and the derivatives of U by the forces are the approaches that rigid motion and modes have to give,
+//!
+//!   y_i = 0.8 c_i p_i + 0.2 p_i + sum_j R_ij F_j.
+//!
+//! Forces over given patches are linear in the approaches, so that U has to be convex in the forces: there is then one
+//! equilibrium and only one. Where the polynomials of R end to be that (see [`Residual::new`]) the patch stays as it is and
+//! the contact goes on as a flat punch, F_i growing by its own: convex for certain.
 
 use super::Hertz;
+use super::patch_flexibility::{Line, PatchFlexibility, Surface, TABULATED, Tabulated};
+use wide::f64x4;
 
 /// Newton steps after which the system counts as unsolvable.
 const MAX_ITERATIONS: usize = 60;
+/// Largest x = (patch radius over that of the table)^2 up to which the table is continued.
+const FARTHEST: f64 = 9.0;
+/// Places at which the table is tested.
+const TESTED: usize = 360;
 
 /// Residual flexibility of two contacts in terms of their approaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
-    /// R0 in m/N, for patches of no extent.
-    pub flexibility: [[f64; 2]; 2],
-    /// g_ij in 1/N: growth of R_ij per m of the Hertz approach of contact i.
-    pub growth: [[f64; 2]; 2],
+    /// Coefficients in R_ii, m/N, of x_i^m with x_i = `per_patch[i]` p_i.
+    own: [Tabulated; 2],
+    /// `mutual[n]`: coefficients in R_01, m/N, of x_0^m x_1^n.
+    mutual: [f64x4; TABULATED],
+    /// x_i over p_i, 1/m.
+    per_patch: [f64; 2],
+    /// Largest p_i in m; beyond, the contact is a punch.
+    largest: [f64; 2],
 }
 
 /// State of two contacts with the patches p.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct State {
-    /// p_i in m, not negative.
+    /// p_i in m, not negative, at most the largest.
     p: [f64; 2],
+    /// 1 where the patch may grow, else 0.
+    grows: [f64; 2],
+    /// Rate of 0.8 c_i p_i by the coordinate of the patch where the contact is a punch, else 0.
+    punch: [f64; 2],
     /// Tangents of Hertz's laws at p, N/m.
     tangent: [f64; 2],
     /// Forces, N.
     pub f: [f64; 2],
     /// Relative curvatures.
     c: [f64; 2],
+    /// What 0.8 c_i p_i is, beyond the largest patch included, over 0.8; m.
+    lifted: [f64; 2],
+    /// R_ij, m/N.
+    r: [[f64; 2]; 2],
+    /// g_ij, 1/N.
+    g: [[f64; 2]; 2],
+    /// Derivatives of g_ii by p_i, 1/(N m).
+    g_own: [f64; 2],
+    /// Second derivatives of R_01 by p_0, p_0 and p_1, p_1, 1/(N m).
+    g_mutual: [f64; 3],
     /// Inverse of I - 5 diag(k p^(3/2)) g, which gives the forces under k p^(3/2) alone.
     inverse: [[f64; 2]; 2],
 }
 
+/// What a contact's patch coordinate moves: forces, approaches. Shape (contact, coordinate).
+struct Slopes {
+    force: [[f64; 2]; 2],
+    approach: [[f64; 2]; 2],
+}
+
 impl Residual {
+    /// The residual `flexibility` of the contacts `laws`, m/N, signed for forces that press. The table's polynomials hold as far
+    /// as each contact by itself and both together yield the less the wider their patches are and the approaches grow
+    /// with the forces: R_ii + 0.8/(k_i p^(1/2)) =: H falls, 2 H H'' > H'^2, and det H > 0 for patches alike.
+    pub fn new(flexibility: &PatchFlexibility, laws: &[Hertz; 2]) -> Self {
+        let mut residual = Self {
+            own: flexibility.own,
+            mutual: flexibility.mutual.map(f64x4::from),
+            per_patch: [0, 1].map(|i| flexibility.per_square[i] * laws[i].tip_radius),
+            largest: [f64::INFINITY; 2],
+        };
+        for i in 0..2 {
+            if residual.per_patch[i] > 0.0 {
+                residual.largest[i] = residual.hold(laws, i) / residual.per_patch[i];
+            }
+        }
+        residual
+    }
+
+    /// The largest x of contact `i` up to which the table holds.
+    fn hold(&self, laws: &[Hertz; 2], i: usize) -> f64 {
+        let step = FARTHEST / TESTED as f64;
+        let total = |j: usize, x: f64| {
+            let line = Line::at(&self.own[j], x);
+            let half_space = 0.8 / (laws[j].stiffness * (x / self.per_patch[j]).sqrt());
+            Line {
+                value: line.value + half_space,
+                first: line.first - 0.5 * half_space / x,
+                second: line.second + 0.75 * half_space / (x * x),
+            }
+        };
+        let holds = |x: f64| {
+            let h = total(i, x);
+            let other = if self.per_patch[1 - i] > 0.0 { total(1 - i, x).value } else { f64::INFINITY };
+            let mutual = Surface::at(&self.mutual, [x; 2]).value;
+            h.first < 0.0 && 2.0 * h.value * h.second > h.first * h.first && h.value * other > mutual * mutual
+        };
+        (1..=TESTED).map(|n| n as f64 * step).take_while(|x| holds(*x)).last().unwrap_or(0.5 * step)
+    }
+
+    /// Radii in m of the widest patches before the contacts `laws` become punches; infinite without a table.
+    pub fn reach(&self, laws: &[Hertz; 2]) -> [f64; 2] {
+        [0, 1].map(|i| (laws[i].tip_radius * self.largest[i]).sqrt())
+    }
+
     /// Whether there is none.
     pub fn is_zero(&self) -> bool {
-        self.flexibility.iter().chain(&self.growth).flatten().all(|r| *r == 0.0)
+        self.own.iter().flatten().all(|r| *r == 0.0) && self.mutual.iter().all(|r| *r == f64x4::ZERO)
     }
 
-    /// The same with a further `flexibility` (0,0), (0,1) = (1,0), (1,1) in m/N.
-    #[inline(always)]
+    /// The same with a further flexibility (0,0), (0,1) = (1,0), (1,1) in m/N.
     pub fn with(&self, [own0, mutual, own1]: [f64; 3]) -> Self {
-        let [[a, b], [c, e]] = self.flexibility;
-        Self { flexibility: [[a + own0, b + mutual], [c + mutual, e + own1]], growth: self.growth }
-    }
-
-    /// Relative curvatures under the forces `f` in N.
-    #[inline(always)]
-    fn curvature(&self, f: [f64; 2]) -> [f64; 2] {
-        let g = &self.growth;
-        [1.0 + 5.0 * (g[0][0] * f[0] + g[0][1] * f[1]), 1.0 + 5.0 * (g[1][0] * f[0] + g[1][1] * f[1])]
+        let mut sum = *self;
+        sum.own[0][0] += own0;
+        sum.own[1][0] += own1;
+        sum.mutual[0] += f64x4::from([mutual, 0.0, 0.0, 0.0]);
+        sum
     }
 
     /// The state with the patches `p` in m, negative for an open contact.
     #[inline(always)]
-    pub fn state(&self, laws: &[Hertz; 2], p: [f64; 2]) -> State {
-        let g = &self.growth;
-        let p = [p[0].max(0.0), p[1].max(0.0)];
-        let per_patch = [laws[0].stiffness * p[0].sqrt(), laws[1].stiffness * p[1].sqrt()];
-        let alone = [per_patch[0] * p[0], per_patch[1] * p[1]];
-        let off = [5.0 * alone[0] * g[0][1], 5.0 * alone[1] * g[1][0]];
-        let own = [1.0 - 5.0 * alone[0] * g[0][0], 1.0 - 5.0 * alone[1] * g[1][1]];
+    pub fn state(&self, laws: &[Hertz; 2], coordinate: [f64; 2]) -> State {
+        let mut s = State::default();
+        let (mut alone, mut pressed) = ([0.0; 2], [0.0; 2]);
+        for i in 0..2 {
+            let p = coordinate[i].max(0.0).min(self.largest[i]);
+            let beyond = (coordinate[i] - self.largest[i]).max(0.0);
+            let per_patch = laws[i].stiffness * p.sqrt();
+            let scale = self.per_patch[i];
+            let Line { value, first, second } = Line::at(&self.own[i], scale * p);
+            s.p[i] = p;
+            s.tangent[i] = 1.5 * per_patch;
+            s.grows[i] = f64::from(u8::from(coordinate[i] > 0.0 && beyond == 0.0));
+            s.punch[i] = if beyond > 0.0 { 1.5 } else { 0.0 };
+            s.lifted[i] = 1.5 * beyond;
+            s.r[i][i] = value;
+            s.g[i][i] = 0.5 * scale * first;
+            s.g_own[i] = 0.5 * scale * scale * second;
+            alone[i] = per_patch * p;
+            pressed[i] = alone[i] + s.tangent[i] * beyond;
+        }
+        let [w0, w1] = self.per_patch;
+        let surface = Surface::at(&self.mutual, [w0 * s.p[0], w1 * s.p[1]]);
+        (s.r[0][1], s.r[1][0]) = (surface.value, surface.value);
+        (s.g[0][1], s.g[1][0]) = (w0 * surface.first[0], w1 * surface.first[1]);
+        s.g_mutual = [w0 * w0 * surface.second[0], w0 * w1 * surface.second[1], w1 * w1 * surface.second[2]];
+        let off = [5.0 * alone[0] * s.g[0][1], 5.0 * alone[1] * s.g[1][0]];
+        let own = [1.0 - 5.0 * alone[0] * s.g[0][0], 1.0 - 5.0 * alone[1] * s.g[1][1]];
         let scale = 1.0 / (own[0] * own[1] - off[0] * off[1]);
-        let inverse = [[scale * own[1], scale * off[0]], [scale * off[1], scale * own[0]]];
-        let f = [0, 1].map(|i| inverse[i][0] * alone[0] + inverse[i][1] * alone[1]);
-        State { p, tangent: per_patch.map(|k| 1.5 * k), f, c: self.curvature(f), inverse }
+        s.inverse = [[scale * own[1], scale * off[0]], [scale * off[1], scale * own[0]]];
+        s.f = [0, 1].map(|i| s.inverse[i][0] * pressed[0] + s.inverse[i][1] * pressed[1]);
+        for i in 0..2 {
+            s.c[i] = 1.0 + 5.0 * (s.g[i][0] * s.f[0] + s.g[i][1] * s.f[1]);
+            s.lifted[i] += s.c[i] * s.p[i];
+        }
+        s
     }
 
-    /// What contact `i` yields beyond c_i p_i, in m.
+    /// Strain energy in J of the contacts with the patches `p` in m.
     #[inline(always)]
-    fn yielded(&self, p: [f64; 2], f: [f64; 2], i: usize) -> f64 {
-        let (r, g) = (&self.flexibility, &self.growth);
-        f[0] * (r[i][0] + g[0][i] * p[0]) + f[1] * (r[i][1] + g[1][i] * p[1])
-    }
-
-    /// Derivative of the approaches y by the patches p; an open contact has y_i = p_i + what it yields.
-    #[inline(always)]
-    fn jacobian(&self, s: &State) -> [[f64; 2]; 2] {
-        let (r, g) = (&self.flexibility, &self.growth);
-        let growing = [s.c[0] * s.tangent[0], s.c[1] * s.tangent[1]];
-        let entry = |i: usize, m: usize| {
-            let per_force = |j: usize| 5.0 * s.p[i] * g[i][j] + r[i][j] + g[j][i] * s.p[j];
-            (per_force(0) * s.inverse[0][m] + per_force(1) * s.inverse[1][m]) * growing[m] + s.f[m] * g[m][i]
-        };
-        let own = |i: usize| if s.p[i] > 0.0 { s.c[i] } else { 1.0 };
-        [[own(0) + entry(0, 0), entry(0, 1)], [entry(1, 0), own(1) + entry(1, 1)]]
-    }
-
-    /// Strain energy in J of the contacts under the forces `f` in N with the patches `p` in m that go with them.
-    #[inline(always)]
-    pub fn energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
-        let c = self.curvature(f);
-        let work = |i: usize| f[i] * (c[i] * p[i] + self.yielded(p, f, i));
-        work(0) + work(1) - self.complementary_energy(f, p)
-    }
-
-    /// U in J, see the module.
-    #[inline(always)]
-    fn complementary_energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
-        let c = self.curvature(f);
-        let own = |i: usize| 0.6 * f[i] * c[i] * p[i];
-        let pair = |i: usize, j: usize| 0.5 * f[i] * f[j] * self.flexibility[i][j];
-        own(0) + own(1) + pair(0, 0) + pair(0, 1) + pair(1, 0) + pair(1, 1)
-    }
-
-    /// Patches p in m and relative curvatures under the forces `f` in N.
-    fn patches(&self, laws: &[Hertz; 2], f: [f64; 2]) -> ([f64; 2], [f64; 2]) {
-        let c = self.curvature(f);
-        ([0, 1].map(|i| laws[i].approach(f[i] / c[i])), c)
-    }
-
-    /// Patches p in m at `y` in m under the forces `f` in N that go with it; the distance, negative, of an open contact.
-    pub fn local_approach(&self, laws: &[Hertz; 2], y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
-        let (p, _) = self.patches(laws, f);
-        [0, 1].map(|i| if f[i] > 0.0 { p[i] } else { y[i] - self.yielded(p, f, i) })
+    pub fn energy(&self, laws: &[Hertz; 2], p: [f64; 2]) -> f64 {
+        let s = self.state(laws, p);
+        let of = |i: usize| s.f[i] * (0.4 * s.lifted[i] + 0.5 * (s.r[i][0] * s.f[0] + s.r[i][1] * s.f[1]));
+        of(0) + of(1)
     }
 
     /// Forces in N and their rates in N/s with the patches `p` in m, where rigid motion and modes approach at `rate` in
     /// m/s; then the patches' rates in m/s.
     pub fn rates(&self, laws: &[Hertz; 2], p: [f64; 2], rate: [f64; 2]) -> ([f64; 2], [f64; 2]) {
         let s = self.state(laws, p);
-        let [[a, b], [c, e]] = self.jacobian(&s);
+        let slopes = s.slopes([0.0; 3]);
+        let [[a, b], [c, e]] = slopes.approach;
         let determinant = a * e - b * c;
         let p_rate = [(e * rate[0] - b * rate[1]) / determinant, (a * rate[1] - c * rate[0]) / determinant];
-        let growing = [0, 1].map(|m| s.c[m] * s.tangent[m] * p_rate[m]);
-        let f_rate = [0, 1].map(|i| s.inverse[i][0] * growing[0] + s.inverse[i][1] * growing[1]);
-        (p_rate, f_rate)
-    }
-
-    /// One Newton step for the patches in m at `y` in m, from `p`, whose [`Self::state`] is `s`; `None` if there is no
-    /// equilibrium near.
-    #[inline(always)]
-    pub fn newton(&self, s: &State, y: [f64; 2], p: [f64; 2]) -> Option<[f64; 2]> {
-        let error = self.error(s, y, p);
-        let [[a, b], [c, e]] = self.jacobian(s);
-        let determinant = a * e - b * c;
-        if determinant.is_nan() || determinant <= 0.0 {
-            return None;
-        }
-        let scale = 1.0 / determinant;
-        Some([p[0] - scale * (e * error[0] - b * error[1]), p[1] - scale * (a * error[1] - c * error[0])])
-    }
-
-    /// What the state with the patches `p` misses of the approaches `y`, m.
-    #[inline(always)]
-    fn error(&self, s: &State, y: [f64; 2], p: [f64; 2]) -> [f64; 2] {
-        let own = |i: usize| if p[i] > 0.0 { s.c[i] * p[i] } else { p[i] };
-        [own(0) + self.yielded(s.p, s.f, 0) - y[0], own(1) + self.yielded(s.p, s.f, 1) - y[1]]
+        (p_rate, [0, 1].map(|i| slopes.force[i][0] * p_rate[0] + slopes.force[i][1] * p_rate[1]))
     }
 
     /// Patches p in m, negative where a contact is open, and forces in N of both contacts at `y` in m; `guess` are the
@@ -171,23 +205,17 @@ impl Residual {
         let scale = y[0].abs().max(y[1].abs());
         let mut p = guess;
         let mut state = self.state(laws, p);
-        let mut error = self.error(&state, y, p);
+        let mut error = state.error([0.0; 3], y, p);
         for _ in 0..MAX_ITERATIONS {
             if size(error) <= 4.0 * f64::EPSILON * scale {
                 return Some((p, state.f));
             }
-            let [[a, b], [c, e]] = self.jacobian(&state);
-            let determinant = a * e - b * c;
-            if determinant <= 0.0 || !determinant.is_finite() {
-                return None;
-            }
-            let step =
-                [(e * error[0] - b * error[1]) / determinant, (a * error[1] - c * error[0]) / determinant];
+            let step = state.step([0.0; 3], error)?;
             let mut fraction = 1.0;
             loop {
                 let trial = [p[0] - fraction * step[0], p[1] - fraction * step[1]];
                 let trial_state = self.state(laws, trial);
-                let trial_error = self.error(&trial_state, y, trial);
+                let trial_error = trial_state.error([0.0; 3], y, trial);
                 if size(trial_error) < size(error) {
                     (p, state, error) = (trial, trial_state, trial_error);
                     break;
@@ -203,8 +231,84 @@ impl Residual {
     }
 }
 
+impl State {
+    /// One Newton step for the patches in m at `y` in m, from `p`, that of this state, with a `further` flexibility
+    /// (0,0), (0,1) = (1,0), (1,1) in m/N; `None` if there is no equilibrium near.
+    #[inline(always)]
+    pub fn newton(&self, further: [f64; 3], y: [f64; 2], p: [f64; 2]) -> Option<[f64; 2]> {
+        let step = self.step(further, self.error(further, y, p))?;
+        Some([p[0] - step[0], p[1] - step[1]])
+    }
+
+    /// R_ij with a `further` flexibility.
+    #[inline(always)]
+    fn flexibility(&self, [own0, mutual, own1]: [f64; 3]) -> [[f64; 2]; 2] {
+        let [[a, b], [c, e]] = self.r;
+        [[a + own0, b + mutual], [c + mutual, e + own1]]
+    }
+
+    /// What this state with the patches `p` misses of the approaches `y`, m.
+    #[inline(always)]
+    fn error(&self, further: [f64; 3], y: [f64; 2], p: [f64; 2]) -> [f64; 2] {
+        let r = self.flexibility(further);
+        [0, 1].map(|i| {
+            let own = if p[i] > 0.0 { 0.8 * self.lifted[i] + 0.2 * self.p[i] } else { p[i] };
+            own + r[i][0] * self.f[0] + r[i][1] * self.f[1] - y[i]
+        })
+    }
+
+    /// Newton's step in the patches, m, to be taken off, that answers `error` in m.
+    #[inline(always)]
+    fn step(&self, further: [f64; 3], error: [f64; 2]) -> Option<[f64; 2]> {
+        let [[a, b], [c, e]] = self.slopes(further).approach;
+        let determinant = a * e - b * c;
+        if determinant.is_nan() || determinant <= 0.0 {
+            return None;
+        }
+        let scale = 1.0 / determinant;
+        Some([scale * (e * error[0] - b * error[1]), scale * (a * error[1] - c * error[0])])
+    }
+
+    /// Derivatives by the patches; an open contact has y_i = p_i + what it yields.
+    #[inline(always)]
+    fn slopes(&self, further: [f64; 3]) -> Slopes {
+        let (r, g, f) = (self.flexibility(further), &self.g, &self.f);
+        let [twice0, both, twice1] = self.g_mutual;
+        // sum of dg_ij/dp_m F_j and of dR_ij/dp_m F_j
+        let bent = [
+            [self.g_own[0] * f[0] + twice0 * f[1], both * f[1]],
+            [both * f[0], self.g_own[1] * f[1] + twice1 * f[0]],
+        ];
+        let yielded = [
+            [2.0 * g[0][0] * f[0] + g[0][1] * f[1], g[1][0] * f[1]],
+            [g[0][1] * f[0], 2.0 * g[1][1] * f[1] + g[1][0] * f[0]],
+        ];
+        let mut slopes = Slopes { force: [[0.0; 2]; 2], approach: [[0.0; 2]; 2] };
+        for m in 0..2 {
+            let grows = self.grows[m];
+            // 5 k p^(3/2) = 10/3 p times the tangent
+            let mut pressed = [0, 1].map(|i| 10.0 / 3.0 * self.p[i] * self.tangent[i] * bent[i][m] * grows);
+            pressed[m] += self.tangent[m] * if self.punch[m] > 0.0 { 1.0 } else { grows * self.c[m] };
+            let force = [0, 1].map(|i| self.inverse[i][0] * pressed[0] + self.inverse[i][1] * pressed[1]);
+            for i in 0..2 {
+                let curvature = 5.0 * (bent[i][m] * grows + g[i][0] * force[0] + g[i][1] * force[1]);
+                slopes.force[i][m] = force[i];
+                slopes.approach[i][m] = 0.8 * self.p[i] * curvature
+                    + r[i][0] * force[0]
+                    + r[i][1] * force[1]
+                    + yielded[i][m] * grows;
+            }
+            let open = if grows + self.punch[m] > 0.0 { 0.0 } else { 1.0 };
+            slopes.approach[m][m] += grows * (0.8 * self.c[m] + 0.2) + 0.8 * self.punch[m] + open;
+        }
+        slopes
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::PatchTable;
+    use super::super::RADII;
     use super::*;
     use approx::assert_relative_eq;
 
@@ -212,8 +316,24 @@ mod tests {
         [Hertz { stiffness: 1.5e10, tip_radius: 0.01 }, Hertz { stiffness: 0.9e10, tip_radius: 0.005 }];
 
     fn constant(flexibility: [[f64; 2]; 2]) -> Residual {
-        Residual { flexibility, growth: [[0.0; 2]; 2] }
+        Residual::new(&PatchFlexibility::constant(flexibility), &LAWS)
     }
+
+    /// A residual that changes with the patches and whose table reaches to approaches of `depth` m.
+    fn varying(depth: f64) -> Residual {
+        let own = |i: usize, x: f64| [2e-9, 1e-9][i] / (1.0 + [0.3, 0.5][i] * x) - 0.4e-9;
+        let mutual = |x: f64, y: f64| 6e-10 / (1.0 + 0.2 * x + 0.4 * y);
+        let square = RADII.map(|r| r * r);
+        let table = PatchTable {
+            own: [0, 1].map(|i| square.map(|x| own(i, x))),
+            mutual: square.map(|x| square.map(|y| mutual(x, y))),
+        };
+        let patch = LAWS.map(|law| (law.tip_radius * depth).sqrt());
+        Residual::new(&PatchFlexibility::through(&table, patch), &LAWS)
+    }
+
+    const APPROACHES: [[f64; 2]; 5] =
+        [[8e-6, 5e-6], [8e-6, -1e-6], [-2e-6, 3e-6], [4e-5, 6e-5], [1e-9, 1e-12]];
 
     #[test]
     fn solution_satisfies_the_system_for_every_sign_of_the_residual() {
@@ -236,34 +356,29 @@ mod tests {
         }
     }
 
-    /// Work along any path of forces is the energy's change: the approaches derive from a potential.
+    /// The forces are the derivatives of the strain energy by the approaches, within the table and as punches beyond it.
     #[test]
-    fn approaches_are_the_energys_derivatives_by_the_forces_whatever_grows_with_the_patch() {
-        let residual = Residual {
-            flexibility: [[2e-9, -6e-10], [-6e-10, 1e-9]],
-            growth: [[-3e-5, 4e-5], [-2e-5, 6e-5]],
-        };
-        let energy = |f: [f64; 2]| residual.complementary_energy(f, residual.patches(&LAWS, f).0);
-        for y in [[8e-6, 5e-6], [8e-6, -1e-6], [-1e-6, 3e-6]] {
-            let (p, f) = residual.solve(&LAWS, y, y).unwrap();
-            let local = residual.local_approach(&LAWS, y, f);
-            let work = f[0] * y[0].max(0.0) + f[1] * y[1].max(0.0);
-            assert_relative_eq!(
-                residual.energy(f, residual.patches(&LAWS, f).0) + energy(f),
-                work,
-                max_relative = 1e-9
-            );
-            for i in 0..2 {
-                assert_eq!(f[i] > 0.0, local[i] > 0.0);
-                if f[i] > 0.0 {
-                    let step = 1e-5 * f[i];
-                    let by = |s: f64| {
-                        let mut g = f;
-                        g[i] += s;
-                        energy(g)
+    fn work_of_the_forces_is_the_change_of_the_energy() {
+        for depth in [1e-5, 1e-6] {
+            let residual = varying(depth);
+            for y in APPROACHES {
+                let (p, f) = residual.solve(&LAWS, y, y).unwrap();
+                let beyond = (0..2).any(|i| p[i] > residual.largest[i]);
+                assert_eq!(beyond, depth == 1e-6 && y[0].max(y[1]) > 1e-5, "{y:?} {p:?}");
+                for i in (0..2).filter(|i| f[*i] > 0.0) {
+                    let at = |step: f64| {
+                        let mut y = y;
+                        y[i] += step;
+                        residual.energy(&LAWS, residual.solve(&LAWS, y, y).unwrap().0)
                     };
-                    assert_relative_eq!((by(step) - by(-step)) / (2.0 * step), y[i], max_relative = 1e-8);
-                    assert_relative_eq!(local[i], p[i], max_relative = 1e-12);
+                    let step = 1e-4 * y[i];
+                    let per_approach = (at(step) - at(-step)) / (2.0 * step);
+                    assert_relative_eq!(
+                        per_approach,
+                        f[i],
+                        epsilon = 1e-9 * (f[0] + f[1]),
+                        max_relative = 1e-6
+                    );
                 }
             }
         }
@@ -271,23 +386,26 @@ mod tests {
 
     #[test]
     fn rates_are_the_differences_of_neighbouring_states() {
-        let residual = Residual {
-            flexibility: [[2e-9, -6e-10], [-6e-10, 1e-9]],
-            growth: [[-3e-5, 4e-5], [-2e-5, 6e-5]],
-        };
-        for y in [[8e-6, 5e-6], [8e-6, -1e-6]] {
-            let rate = [0.3, -0.2];
-            let at = |t: f64| {
-                let y = [y[0] + t * rate[0], y[1] + t * rate[1]];
-                residual.solve(&LAWS, y, y).unwrap()
-            };
-            let (p_rate, f_rate) = residual.rates(&LAWS, at(0.0).0, rate);
-            let t = 1e-10;
-            let ((p_after, f_after), (p_before, f_before)) = (at(t), at(-t));
-            for i in 0..2 {
-                assert_relative_eq!((p_after[i] - p_before[i]) / (2.0 * t), p_rate[i], max_relative = 1e-5);
-                let by_difference = (f_after[i] - f_before[i]) / (2.0 * t);
-                assert_relative_eq!(by_difference, f_rate[i], epsilon = 1.0, max_relative = 1e-5);
+        for depth in [1e-5, 1e-6] {
+            let residual = varying(depth);
+            for y in [[8e-6, 5e-6], [8e-6, -1e-6], [6e-5, 5e-5]] {
+                let rate = [0.3, -0.2];
+                let at = |t: f64| {
+                    let y = [y[0] + t * rate[0], y[1] + t * rate[1]];
+                    residual.solve(&LAWS, y, y).unwrap()
+                };
+                let (p_rate, f_rate) = residual.rates(&LAWS, at(0.0).0, rate);
+                let t = 1e-10;
+                let ((p_after, f_after), (p_before, f_before)) = (at(t), at(-t));
+                for i in 0..2 {
+                    assert_relative_eq!(
+                        (p_after[i] - p_before[i]) / (2.0 * t),
+                        p_rate[i],
+                        max_relative = 1e-5
+                    );
+                    let by_difference = (f_after[i] - f_before[i]) / (2.0 * t);
+                    assert_relative_eq!(by_difference, f_rate[i], epsilon = 1.0, max_relative = 1e-5);
+                }
             }
         }
     }
@@ -305,5 +423,24 @@ mod tests {
         // delta - |R| k delta^(3/2) has a maximum far below y
         let residual = constant([[-1e-6, 0.0], [0.0, 0.0]]);
         assert_eq!(residual.solve(&LAWS, [1e-4, -1.0], [1e-6, -1.0]), None);
+    }
+
+    /// With a table there is an equilibrium, and one only, whatever the table says.
+    #[test]
+    fn forces_grow_with_the_approaches_without_end_whatever_the_table() {
+        for shrinking in [0.0, 1.0, 10.0, 100.0] {
+            let square = RADII.map(|r| r * r);
+            let own = square.map(|x| -shrinking * 1e-10 * (1.0 + x));
+            let table = PatchTable { own: [own; 2], mutual: square.map(|_| square.map(|x| 1e-10 * x)) };
+            let patch = LAWS.map(|law| (law.tip_radius * 1e-5).sqrt());
+            let residual = Residual::new(&PatchFlexibility::through(&table, patch), &LAWS);
+            let mut before = [0.0; 2];
+            for n in 1..400 {
+                let y = 1e-6 * f64::from(n);
+                let (_, f) = residual.solve(&LAWS, [y; 2], [y; 2]).unwrap();
+                assert!(f[0] > before[0] && f[1] > before[1], "{shrinking} {y} {f:?}");
+                before = f;
+            }
+        }
     }
 }

@@ -113,16 +113,15 @@ impl PointLaw for ResidualPoints<'_> {
 
     #[inline(always)]
     fn visit(&mut self, visit: Visit) -> Option<Answer> {
-        let [own0, mutual, own1] = self.coupling.map(|c| c.as_array()[visit.point]);
-        let [f0, f1] = visit.force;
+        // the motion of the bodies within the step yields like a further flexibility
+        let further = self.coupling.map(|c| c.as_array()[visit.point]);
+        let ([own0, mutual, own1], [f0, f1]) = (further, visit.force);
         // the approaches if the forces of this point did not act
         let y = [visit.approach[0] + own0 * f0 + mutual * f1, visit.approach[1] + mutual * f0 + own1 * f1];
-        // the motion of the bodies within the step yields like a further flexibility
-        let together = self.residual.with([own0, mutual, own1]);
         if self.full {
-            return together.solve(self.laws, y, y);
+            return self.residual.with(further).solve(self.laws, y, y);
         }
-        let p = together.newton(&self.states[visit.point], y, visit.local)?;
+        let p = self.states[visit.point].newton(further, y, visit.local)?;
         Some((p, self.begin(visit.point, p)))
     }
 }

@@ -89,10 +89,9 @@ impl<'a, const P: usize> Recorder<'a, P> {
             return;
         }
         let approach = system.modal_approach(q);
-        let (_, forces) = system.contact(approach, approach).unwrap_or(([f64::NAN; 2], [f64::NAN; 2]));
+        let (patch, forces) = system.contact(approach, approach).unwrap_or(([f64::NAN; 2], [f64::NAN; 2]));
         let rate = [0, 1].map(|i| dot(&system.approach[i], v));
-        let local =
-            system.local_centre.map_or([0.0; 2], |centre| centre.motion(system, approach, rate, forces));
+        let local = system.local_centre.map_or([0.0; 2], |centre| centre.motion(system, patch, rate, forces));
         let inner = system.masses[1].sqrt();
         let sample = [
             dot(&system.outer, q),

@@ -11,9 +11,10 @@ use super::centre::LocalCentre;
 use super::duhamel::Oscillator;
 use super::outer_body::OuterBody;
 use crate::body::ModalBody;
-use crate::contact::{Hertz, Residual};
+use crate::contact::{Hertz, PatchFlexibility, Residual};
 use crate::result::Drive;
 use crate::scene::{PlateImpact, Shape};
+use std::ops::Range;
 
 /// Index of the outer body's first coordinate among the oscillators: the rigid motion, or a bender's first mode. A
 /// bender's further modes stand behind those of the plate.
@@ -101,19 +102,15 @@ impl System {
             start[0].push(outer_body.displacement[k]);
             start[1].push(outer_body.velocity[k]);
         }
-        // the inner contact closes when the plate moves down
-        let sign = |i: usize, j: usize| if i == j { 1.0 } else { -1.0 };
-        let tip_radius = [outer.shape.tip_radius(), inner.shape.tip_radius()];
-        let mut residual = Residual { flexibility: [[0.0; 2]; 2], growth: [[0.0; 2]; 2] };
-        for i in 0..2 {
-            for j in 0..2 {
-                residual.flexibility[i][j] = sign(i, j) * plate.residual[i][j];
-                residual.growth[i][j] = sign(i, j) * plate.patch_growth[i][j] * tip_radius[i];
-            }
-            residual.flexibility[i][i] += tip_residual[i];
-        }
         let law = |shape: &Shape, material| Hertz::new(shape.tip_radius(), material, &setup.plate.material);
         let laws = [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)];
+        let mut flexibility = plate.residual.unwrap_or(PatchFlexibility::constant([[0.0; 2]; 2]));
+        for (own, tip) in flexibility.own.iter_mut().zip(tip_residual) {
+            own[0] += tip;
+        }
+        // the inner contact closes when the plate moves down
+        flexibility.mutual.iter_mut().flatten().for_each(|mutual| *mutual = -*mutual);
+        let residual = Residual::new(&flexibility, &laws);
         let elastic = plate.omega.iter().copied().filter(|w| *w > 0.0);
         Self {
             approach,
@@ -122,8 +119,9 @@ impl System {
             centre,
             gap: [0.0, inner.gap],
             laws,
-            local_centre: (!residual.is_zero())
-                .then(|| LocalCentre::new(plate, &laws, setup.plate.material.plane_strain_modulus())),
+            local_centre: plate
+                .residual
+                .map(|r| LocalCentre::new(r, &laws, setup.plate.material.plane_strain_modulus())),
             residual: (!residual.is_zero()).then_some(residual),
             masses,
             drive: outer_body.drive,
@@ -145,7 +143,7 @@ impl System {
     }
 
     /// Change of both contact forces in N per modal approach of both in m, with the patches `local` as
-    /// [`Self::local_approach`] gives them.
+    /// [`Self::contact`] gives them.
     pub fn tangent(&self, local: [f64; 2]) -> [[f64; 2]; 2] {
         match self.residual() {
             None => [[self.laws[0].tangent(local[0]), 0.0], [0.0, self.laws[1].tangent(local[1])]],
@@ -155,6 +153,44 @@ impl System {
                 [[first[0], second[0]], [first[1], second[1]]]
             }
         }
+    }
+
+    /// Number of elastic modes of the plate that move both faces the same way.
+    pub fn bending_modes(&self) -> usize {
+        self.elastic().filter(|k| self.approach[0][*k] * self.approach[1][*k] < 0.0).count()
+    }
+
+    /// Places of the plate's elastic modes among the oscillators, the lowest first.
+    pub fn elastic(&self) -> Range<usize> {
+        let rigid = self.oscillators.get(PLATE).is_some_and(|first| first.omega == 0.0);
+        let first = PLATE + usize::from(rigid);
+        first..first + self.modes
+    }
+
+    /// The same with the `modes` lowest elastic modes of the plate; the others follow as under static forces.
+    pub fn lowest(&self, modes: usize) -> Self {
+        let elastic = self.elastic();
+        let gone = (elastic.start + modes).min(elastic.end)..elastic.end;
+        let flexibility = |i: usize, j: usize| -> f64 {
+            let of = |k: usize| self.approach[i][k] * self.approach[j][k] / self.oscillators[k].omega.powi(2);
+            gone.clone().map(of).sum()
+        };
+        let mut system = self.softer([flexibility(0, 0), flexibility(0, 1), flexibility(1, 1)]);
+        system.modes -= gone.len();
+        system.oscillators.drain(gone.clone());
+        let [q, v] = &mut system.start;
+        let [outer, inner] = &mut system.approach;
+        for coordinates in [q, v, outer, inner, &mut system.outer, &mut system.centre] {
+            coordinates.drain(gone.clone());
+        }
+        system
+    }
+
+    /// The same with a further residual flexibility (0,0), (0,1) = (1,0), (1,1) of the approaches, in m/N.
+    pub fn softer(&self, flexibility: [f64; 3]) -> Self {
+        let none = || Residual::new(&PatchFlexibility::constant([[0.0; 2]; 2]), &self.laws);
+        let residual = self.residual.unwrap_or_else(none).with(flexibility);
+        Self { residual: (!residual.is_zero()).then_some(residual), ..self.clone() }
     }
 
     /// Number of oscillators.
@@ -187,10 +223,9 @@ impl System {
     /// with them, negative where a contact is open.
     #[inline(always)]
     pub fn stored_energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
-        let p = p.map(|p| p.max(0.0));
         match self.residual() {
-            None => 0.4 * (f[0] * p[0] + f[1] * p[1]),
-            Some(residual) => residual.energy(f, p),
+            None => 0.4 * (f[0] * p[0].max(0.0) + f[1] * p[1].max(0.0)),
+            Some(residual) => residual.energy(&self.laws, p),
         }
     }
 
@@ -199,14 +234,9 @@ impl System {
         [0, 1].map(|i| dot(&self.approach[i], q) - self.gap[i])
     }
 
-    /// Patches of both contacts, squared radius over tip radius in m, at the modal approach `y` in m and the forces `f` in
-    /// N that go with it; where a contact is open, the distance, negative.
-    pub fn local_approach(&self, y: [f64; 2], f: [f64; 2]) -> [f64; 2] {
-        self.residual().map_or(y, |residual| residual.local_approach(&self.laws, y, f))
-    }
-
-    /// Patches (as [`Self::local_approach`]) and forces in N of both contacts at the modal approach `y` in m, `guess` being
-    /// the patches of a nearby state; `None` if there is no equilibrium.
+    /// Patches (squared radius over tip radius in m; of an open contact the distance, negative) and forces in N of both
+    /// contacts at the modal approach `y` in m, `guess` being the patches of a nearby state; `None` if there is no
+    /// equilibrium.
     #[inline]
     pub fn contact(&self, y: [f64; 2], guess: [f64; 2]) -> Option<([f64; 2], [f64; 2])> {
         match self.residual() {

@@ -26,6 +26,8 @@ pub struct Choice {
     pub covers: Vec<String>,
     /// The estimate of the model chosen; `None` if there is none.
     pub estimated_error: Option<f64>,
+    /// Share of such promises that is kept on random scenes, at least.
+    pub coverage: f64,
     /// Part of it that stems from what model C was found to be off by; `None` beyond what was measured.
     pub floor: Option<f64>,
     /// Whether the estimate meets the tolerance.

@@ -55,7 +55,8 @@ pub struct Summary {
     pub steps: u64,
     /// Wall time of the time integration, s.
     pub solve_seconds: f64,
-    /// Reduced models: estimated relative error from the modes that are left out; `None` if there is no estimate.
+    /// Reduced models: estimated error for want of modes, the largest of efficiency, outer velocity and force peaks; the
+    /// efficiency's relative to at least 0.05, the velocity's to the impact speed. `None` if there is no estimate.
     #[serde(default)]
     pub truncation_error: Option<f64>,
     /// Estimated error of the final velocities from the time integration, over the impact speed; of impacts with many

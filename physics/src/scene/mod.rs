@@ -28,7 +28,7 @@ pub use quantity::in_unit as quantity_in;
 pub use read::MAX_FILE_BYTES;
 pub use schema::schema;
 pub use seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
-pub use specification::unit_of;
+pub use specification::{MAX_MODES, unit_of};
 pub use template::{Field, Rejected, Template};
 
 use crate::Error;

@@ -1,6 +1,6 @@
 //! Bodies of model C through the cache on disk.
 
-use super::{ContinuumPlate, MeshOptions};
+use super::{ContinuumPlate, MeshOptions, WEIGHTED};
 use crate::body::cache::{Cache, revision};
 use crate::error::Result;
 use crate::scene::hash::drop_inelastic;
@@ -8,7 +8,7 @@ use crate::scene::{Material, Plate};
 use serde_json::{Value, json};
 
 /// Sources of the method, in alphabetical order.
-const SOURCES: [(&str, &[u8]); 11] = [
+const SOURCES: [(&str, &[u8]); 12] = [
     ("assembly.rs", include_bytes!("assembly.rs")),
     ("basis.rs", include_bytes!("basis.rs")),
     ("element.rs", include_bytes!("element.rs")),
@@ -20,6 +20,7 @@ const SOURCES: [(&str, &[u8]); 11] = [
     ("patch.rs", include_bytes!("patch.rs")),
     ("plate.rs", include_bytes!("plate.rs")),
     ("sphere.rs", include_bytes!("sphere.rs")),
+    ("the layer, a folder above", include_bytes!("../layer.rs")),
 ];
 
 /// See [`revision`].
@@ -111,7 +112,7 @@ pub fn sphere_residual_in(
 
 fn plate_inputs(plate: &Plate, patch_radius: [f64; 2], modes: usize, mesh: &MeshOptions) -> Value {
     inputs(json!({
-        "body": "plate", "plate": plate, "patch_radius": patch_radius, "modes": modes, "mesh": mesh,
+        "body": "plate", "plate": plate, "patch_radius": patch_radius, "weighted": WEIGHTED, "modes": modes, "mesh": mesh,
     }))
 }
 
@@ -165,7 +166,8 @@ mod tests {
             .filter(|name| name != "cached.rs")
             .collect();
         there.sort();
-        assert_eq!(there, SOURCES.map(|(name, _)| name));
+        assert_eq!(there, SOURCES.map(|(name, _)| name)[..there.len()]);
+        assert_eq!(there.len() + 1, SOURCES.len());
     }
 
     #[test]
@@ -177,11 +179,12 @@ mod tests {
         let sphere =
             |cache: &Cache| sphere_residual_in(cache, 10e-3, &steel(), PATCH[0], &mesh).expect("sphere");
         let bits = |plate: &ContinuumPlate| -> Vec<u64> {
-            let pairs = plate.participation.iter().chain(&plate.flexibility).flatten();
-            plate.omega.iter().chain(pairs).map(|value| value.to_bits()).collect()
+            let table = plate.flexibility.own.iter().chain(&plate.flexibility.mutual).flatten();
+            let shapes = plate.participation.iter().flatten().flatten();
+            plate.omega.iter().chain(shapes).chain(table).map(|value| value.to_bits()).collect()
         };
         let computed = bits(&plate(&Cache::off()));
-        assert_eq!(computed.len(), 7 * 3 + 4);
+        assert_eq!(computed.len(), 7 * (1 + 2 * 5) + 6 * 4);
         for _ in 0..2 {
             assert_eq!(bits(&plate(&cache)), computed);
             assert_eq!(sphere(&cache).to_bits(), sphere(&Cache::off()).to_bits());

@@ -65,7 +65,8 @@ pub(in crate::body) fn lowest_modes(
     body.remove_rigid(&mut next);
     let mut next_mass = body.mass_times(&next);
     let mut previous = Vec::new();
-    let mut next_check = wanted.min(8);
+    // with a limit a few modes may be enough
+    let mut next_check = if omega_limit.is_finite() { wanted.min(8) } else { wanted };
     let longest = body.elastic_size().min(4 * wanted + 200);
     loop {
         let norm = dot(&next, &next_mass).sqrt();

@@ -19,7 +19,7 @@ mod plate;
 mod sphere;
 
 pub use patch::half_space_flexibility;
-pub use plate::{ContinuumPlate, PlateMode, eigenfrequencies, face_shapes, plate};
+pub use plate::{ContinuumPlate, PlateMode, WEIGHTED, eigenfrequencies, face_shapes, plate};
 pub use sphere::sphere_residual;
 
 use crate::error::{Error, Result};

@@ -8,14 +8,11 @@ use super::mesh::Mesh;
 use crate::scene::Material;
 use std::f64::consts::FRAC_PI_2;
 
-/// Flexibility in m/N of a half-space under the unit Hertz pressure over `patch_radius`, weighted by that over
-/// `weight_radius`, not larger, both in m.
+/// Flexibility in m/N of a half-space under the unit Hertz pressure over `patch_radius` in m, weighted by it.
 ///
-/// The surface sinks by (1 - nu^2)/E 3/(8 a^3) (2 a^2 - r^2); the mean of r^2 under the pressure over b is 2/5 b^2.
-/// With a = b this is 0.6 (1 - nu^2)/(E a).
-pub fn half_space_flexibility(material: &Material, patch_radius: f64, weight_radius: f64) -> f64 {
-    let sunk = 0.75 - 0.15 * (weight_radius / patch_radius).powi(2);
-    sunk / (material.plane_strain_modulus() * patch_radius)
+/// The surface sinks by (1 - nu^2)/E 3/(8 a^3) (2 a^2 - r^2); the mean of r^2 under the pressure is 2/5 a^2.
+pub fn half_space_flexibility(material: &Material, patch_radius: f64) -> f64 {
+    0.6 / (material.plane_strain_modulus() * patch_radius)
 }
 
 /// Consistent nodal axial forces (node, N) of a unit force, +z, spread over a patch on the mesh's surface.

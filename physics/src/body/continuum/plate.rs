@@ -15,6 +15,8 @@ use super::mirror::{HalfBody, Parity, dot};
 use super::patch::{half_space_flexibility, nodal_forces, point};
 use super::{MeshOptions, check_patch};
 use crate::body::ModalBody;
+use crate::body::layer::Waves;
+use crate::contact::{PatchFlexibility, PatchTable, RADII, TABULATED, WHOLE};
 use crate::error::{Error, Result};
 use crate::scene::{Edge, Plate};
 use std::f64::consts::{PI, SQRT_2, TAU};
@@ -34,14 +36,10 @@ pub struct PlateMode {
 pub struct ContinuumPlate {
     /// Elastic eigenfrequencies in rad/s, ascending, one more than asked for. Shape (n + 1).
     pub omega: Vec<f64>,
-    /// Mass-normalised shapes weighted over the patches, kg^(-1/2). Shape (n + 1, 2).
-    pub participation: Vec<[f64; 2]>,
-    /// Static flexibility of all elastic modes in m/N, without Hertz's half-spaces on the diagonal, for the patches the
-    /// plate was made for.
-    pub flexibility: [[f64; 2]; 2],
-    /// How `flexibility[i][j]` changes with the square of the patch radius of contact i, that of j being held: m/N per
-    /// m^2. The half-spaces carry all that is singular in a small patch; the rest is even in its radius.
-    pub patch_growth: [[f64; 2]; 2],
+    /// Mass-normalised shapes weighted over patches of [`WEIGHTED`] times the patch radii, kg^(-1/2). Shape (n + 1, 2, 5).
+    pub participation: Vec<[[f64; WEIGHTED.len()]; 2]>,
+    /// Static flexibility of all elastic modes, without Hertz's half-spaces.
+    pub flexibility: PatchTable,
     /// Radii of the patches in m: outer, inner face.
     pub patch_radius: [f64; 2],
     /// Mass of the plate in kg if it is free to move, otherwise `None`.
@@ -63,39 +61,38 @@ impl ContinuumPlate {
     pub fn new(plate: &Plate, patch_radius: [f64; 2], modes: usize, options: &MeshOptions) -> Result<Self> {
         options.check()?;
         for a in patch_radius {
-            check_patch(a, plate.radius, "the plate's radius")?;
+            check_patch(a, 0.5 * plate.radius, "half the plate's radius")?;
         }
         let mesh = plate_mesh(plate, Some(patch_radius[0].min(patch_radius[1])), modes, options);
         let halves = Halves::new(plate, &mesh)?;
         let spectrum = halves.spectrum(modes + 1)?;
-        let forces = patch_radius.map(|a| nodal_forces(&mesh, a));
-        let inside = patch_radius.map(|a| nodal_forces(&mesh, INSIDE * a));
-        // flexibility between the inner part of patch i and the whole patch j
-        let mut inner_part = [[0.0; 2]; 2];
+        let forces = patch_radius.map(|a| WEIGHTED.map(|r| nodal_forces(&mesh, r * a)));
+        // of contact 0, between the contacts, of contact 1
+        let mut flexibility = [0.0; 3];
         let mut result = Self {
             omega: Vec::new(),
             participation: Vec::new(),
-            flexibility: [[0.0; 2]; 2],
-            patch_growth: [[0.0; 2]; 2],
+            // how it changes with the patches
+            flexibility: Waves::new(plate, WAVES).layer(patch_radius).flexibility,
             patch_radius,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
             damping_ratio: plate.damping_ratio,
             degrees_of_freedom: halves.bending.size() + halves.longitudinal.size(),
         };
         for (parity, half) in halves.each() {
-            let load = [half.axial_load(&forces[0]), half.axial_load(&forces[1])];
-            let inner_load = [half.axial_load(&inside[0]), half.axial_load(&inside[1])];
-            for (j, load_j) in load.iter().enumerate() {
-                let mut displacement = load_j.clone();
+            let load = forces.each_ref().map(|forces| forces.each_ref().map(|f| half.axial_load(f)));
+            for j in 0..2 {
+                let mut displacement = load[j][WHOLE].clone();
                 half.solve(&mut displacement);
-                for i in 0..2 {
+                for i in 0..=j {
                     let half_sign = 0.5 * sign(parity, i) * sign(parity, j);
-                    result.flexibility[i][j] += half_sign * dot(&load[i], &displacement);
-                    inner_part[i][j] += half_sign * dot(&inner_load[i], &displacement);
+                    flexibility[i + j] += half_sign * dot(&load[i][WHOLE], &displacement);
                 }
             }
             for entry in spectrum.iter().filter(|entry| entry.parity == parity) {
-                let phi = |i: usize| sign(parity, i) * dot(&load[i], &entry.shape) / SQRT_2;
+                let phi = |i: usize| {
+                    load[i].each_ref().map(|load| sign(parity, i) * dot(load, &entry.shape) / SQRT_2)
+                };
                 result.omega.push(entry.omega);
                 result.participation.push([phi(0), phi(1)]);
             }
@@ -105,37 +102,28 @@ impl ContinuumPlate {
         result.omega = order.iter().map(|&i| result.omega[i]).collect();
         result.participation = order.iter().map(|&i| result.participation[i]).collect();
         for (i, a) in patch_radius.into_iter().enumerate() {
-            result.flexibility[i][i] -= half_space_flexibility(&plate.material, a, a);
-            inner_part[i][i] -= half_space_flexibility(&plate.material, a, INSIDE * a);
+            flexibility[2 * i] -= half_space_flexibility(&plate.material, a);
         }
-        for i in 0..2 {
-            for j in 0..2 {
-                result.patch_growth[i][j] = (result.flexibility[i][j] - inner_part[i][j])
-                    / ((1.0 - INSIDE.powi(2)) * patch_radius[i].powi(2));
-            }
-        }
-        let mean = 0.5 * (result.flexibility[0][1] + result.flexibility[1][0]);
-        (result.flexibility[0][1], result.flexibility[1][0]) = (mean, mean);
+        result.flexibility.shift_to(flexibility);
         Ok(result)
     }
 
     /// The body with its `modes` lowest elastic modes (at most as many as were asked for) and what they lack
     /// as residual. The rigid motion of a free plate comes before them as a mode of its own.
-    pub fn modal_body(&self, modes: usize) -> ModalBody {
+    ///
+    /// A mode below `slow` rad/s moves by itself while the patches grow and shrink: it is weighted over the patches as they
+    /// are at most, and its curvature is none of the residual's. A quicker one follows the forces and with them the
+    /// patches: its curvature is the residual's, its weight that of a patch so wide that the residual stays positive
+    /// definite.
+    pub fn modal_body(&self, modes: usize, slow: f64) -> ModalBody {
         let modes = modes.min(self.omega.len() - 1);
+        let mut flexibility = self.flexibility;
         let mut body = ModalBody {
             omega: Vec::with_capacity(modes + 1),
             damping_ratio: Vec::with_capacity(modes + 1),
             participation: Vec::with_capacity(modes + 1),
-            residual: self.flexibility,
-            patch_growth: self.patch_growth,
+            residual: None,
         };
-        for i in 0..2 {
-            for j in 0..2 {
-                body.residual[i][j] -= self.patch_growth[i][j] * self.patch_radius[i].powi(2)
-                    + self.patch_growth[j][i] * self.patch_radius[j].powi(2);
-            }
-        }
         if let Some(mass) = self.free_mass {
             body.omega.push(0.0);
             body.damping_ratio.push(0.0);
@@ -144,13 +132,13 @@ impl ContinuumPlate {
         for (&omega, phi) in self.omega.iter().zip(&self.participation).take(modes) {
             body.omega.push(omega);
             body.damping_ratio.push(self.damping_ratio);
-            body.participation.push(*phi);
-            for i in 0..2 {
-                for j in 0..2 {
-                    body.residual[i][j] -= phi[i] * phi[j] / omega.powi(2);
-                }
-            }
+            let moving = if omega < slow { WHOLE } else { WIDE };
+            body.participation.push(phi.map(|phi| phi[moving]));
+            let taken = phi.map(|phi| std::array::from_fn(|m| phi[if omega < slow { m } else { WIDE }]));
+            let share = -omega.powi(-2);
+            flexibility.add(share, share, taken);
         }
+        body.residual = Some(PatchFlexibility::through(&flexibility, self.patch_radius));
         body
     }
 
@@ -169,7 +157,7 @@ impl ContinuumPlate {
 /// # Errors
 /// As [`ContinuumPlate::new`].
 pub fn plate(plate: &Plate, patch_radius: [f64; 2], modes: usize, mesh: &MeshOptions) -> Result<ModalBody> {
-    Ok(ContinuumPlate::new(plate, patch_radius, modes, mesh)?.modal_body(modes))
+    Ok(ContinuumPlate::new(plate, patch_radius, modes, mesh)?.modal_body(modes, 0.0))
 }
 
 /// Mass-normalised displacements along z of the inner face at `radii` in m, in the modes of [`plate`] with the same
@@ -218,8 +206,13 @@ pub fn eigenfrequencies(plate: &Plate, count: usize) -> Result<Vec<PlateMode>> {
 /// Largest [`HalfBody::rounding_error`] that is accepted; the error observed is 2 to 50 times smaller.
 const ROUNDING_LIMIT: f64 = 0.05;
 
-/// Radius of the inner part of a patch over that of the whole, from which the growth with the patch is taken.
-const INSIDE: f64 = 0.5;
+/// Radii in patch radii over which shapes are weighted: the tabulated ones and a wide one. A punch as wide as the widest
+/// patch of the table moves a wave as little as a Hertz pressure 1.3 times as wide does (sin(x)/x against 1 - x^2/10).
+pub const WEIGHTED: [f64; TABULATED + 1] = [RADII[0], RADII[1], RADII[2], RADII[3], 2.0];
+/// Index of the wide patch.
+const WIDE: usize = TABULATED;
+/// Waves of the layer that tells how the flexibility changes with the patches.
+const WAVES: usize = 32;
 
 /// +1, or -1 for the inner face in longitudinal motion.
 fn sign(parity: Parity, point: usize) -> f64 {

@@ -41,5 +41,5 @@ pub fn sphere_residual(
         half.solve(&mut displacement);
         flexibility += 0.5 * dot(&load, &displacement);
     }
-    Ok(flexibility - half_space_flexibility(material, patch_radius, patch_radius))
+    Ok(flexibility - half_space_flexibility(material, patch_radius))
 }

@@ -1,10 +1,13 @@
 //! An outer body strikes a plate, the plate passes the blow to an inner body: reduced models A, B and C.
 
 pub mod choice;
+pub mod errors;
 mod limits;
 pub mod reduced;
 mod results;
 mod rough;
+mod trials;
+mod truncation;
 mod validity;
 pub mod variants;
 

@@ -1,13 +1,16 @@
 //! A reduced model of a scene: bodies reduced to modes, joined and integrated.
 
-use super::choice::{self, Cut};
+use super::Kind;
+use super::choice::Plan;
 use super::results::PlateQuantities;
 use super::rough::Rough;
-use super::{Kind, validity};
+use super::trials::Cut;
+use super::truncation;
+use super::validity;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::cache::Cache;
-use crate::body::continuum::{MeshOptions, cached};
+use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
 use crate::dynamics::LEAN;
 use crate::dynamics::OuterBody;
@@ -21,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
 use crate::kinds::Kind as _;
 use crate::result::{BenderSummary, CUT, Choice, Outcome, Summary};
-use crate::scene::{self, Edge, Material, Model, PlateImpact, Scene, Shape};
+use crate::scene::{self, Edge, MAX_MODES, Material, Model, PlateImpact, Scene, Shape};
 use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
@@ -38,6 +41,8 @@ const SAMPLES_PER_CONTACT: f64 = 400.0;
 pub struct Reduced {
     model: Model,
     system: System,
+    /// Frequency in rad/s of the lowest mode left to the residual flexibility of model C.
+    omega_next: f64,
     /// Forces of the fluid; a dry impact has none and takes the dry integrator.
     fluid: Option<FluidForces>,
     warnings: Vec<String>,
@@ -99,6 +104,9 @@ impl Reduced {
                 return Err(Error::Usage(format!("--modes {n}: model A has exactly one mode; use model B")));
             }
             (_, Some(0)) => return Err(Error::Usage("--modes 0: at least one mode is needed".into())),
+            (_, Some(n)) if n > MAX_MODES => {
+                return Err(Error::Usage(format!("--modes {n}: at most {MAX_MODES} modes are possible")));
+            }
             (_, modes) => modes.or(scene.reduced.modes),
         };
         let built = match model {
@@ -112,7 +120,7 @@ impl Reduced {
     }
 
     /// The cheapest model and number of modes whose estimated error meets `tolerance`, or what comes nearest; see
-    /// [`Choice`]. The tolerance covers [`choice::COVERED`].
+    /// [`Choice`]. The tolerance covers [`super::errors::COVERED`].
     ///
     /// # Errors
     /// [`Error::Scene`] if the scene is no plate impact, [`Error::Solver`] for what no reduced model covers.
@@ -126,20 +134,29 @@ impl Reduced {
     /// As [`Reduced::auto`].
     pub fn auto_in(scene: &Scene, tolerance: f64, cache: &Cache) -> Result<Self> {
         let setup = scene.plate_impact()?;
-        let mut plan = choice::plan(scene, tolerance)?;
-        if let Some(cut) = plan.cut {
-            match continuum(setup, Wanted::Below(cut), &plan.rough, cache) {
-                Ok(built) => return Self::of(built, Model::C, scene.clone(), Some(plan.choice)),
-                Err(error) => plan = plan.without_continuum(&error).ok_or(error)?,
+        let mut plan = Plan::new(scene, tolerance)?;
+        let mut continua: Option<Built> = None;
+        while let Some(cut) = plan.cut {
+            match continuum(setup, Wanted::Below(cut), &plan.trials.rough, cache) {
+                Ok(built) => {
+                    plan.judge(&built.system, built.omega_next);
+                    continua = Some(built);
+                }
+                Err(error) if continua.is_none() => plan.without_continuum(error)?,
+                Err(_) => break,
             }
         }
-        let shapes = |radii: &[f64]| Ok(plan.waves.shapes(plan.modes, radii));
-        let built = kirchhoff_plate(setup, plan.waves.kirchhoff(plan.modes), shapes)?;
-        Self::of(built, plan.model, scene.clone(), Some(plan.choice))
+        let kirchhoff = || {
+            let waves = &plan.trials.waves;
+            let shapes = |radii: &[f64]| Ok(waves.shapes(plan.modes, radii));
+            kirchhoff_plate(setup, waves.kirchhoff(plan.modes), shapes)
+        };
+        let built = continua.map_or_else(kirchhoff, Ok)?;
+        Self::of(built, plan.model, scene.clone(), Some(plan.choice()))
     }
 
     fn of(built: Built, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
-        let Built { system, fluid, mut warnings } = built;
+        let Built { system, omega_next, fluid, mut warnings } = built;
         if LEAN && (fluid.is_some() || system.is_damped() || system.residual.is_some()) {
             return Err(Error::Usage(
                 "this program was built without fluid, damping and residual flexibility (feature `lean`)"
@@ -147,7 +164,7 @@ impl Reduced {
             ));
         }
         warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
-        Ok(Self { model, system, fluid, warnings, choice, scene })
+        Ok(Self { model, system, omega_next, fluid, warnings, choice, scene })
     }
 
     /// The model.
@@ -245,9 +262,13 @@ impl Reduced {
 
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
         let system = &self.system;
+        let setup = self.scene.plate_impact()?;
+        let end_time = self.scene.run.end_time;
+        let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
         let unsure = result.error_estimate.filter(|error| *error > assured::ENOUGH * tolerance);
         let mut warnings = scene::doubts(&self.scene);
         warnings.extend(self.warnings.iter().cloned());
+        warnings.extend(truncation.warning);
         warnings.extend(unsure.map(|error| {
             format!(
                 "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
@@ -271,6 +292,7 @@ impl Reduced {
             steps: result.steps,
             solve_seconds,
             integration_error: result.error_estimate,
+            truncation_error: Some(truncation.error),
             bender: system.drive.map(|drive| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
                 let efficiency = transmitted / drive.strain_energy;
@@ -317,6 +339,8 @@ fn values(system: &System, result: &Integration) -> PlateQuantities {
 struct Built {
     /// Oscillators and contacts.
     system: System,
+    /// As in [`Reduced`].
+    omega_next: f64,
     /// Forces of the fluid.
     fluid: Option<FluidForces>,
     /// What the user has to be warned of.
@@ -360,6 +384,7 @@ fn kirchhoff_plate(
 ) -> Result<Built> {
     Ok(Built {
         system: join(setup, plate, [0.0; 2])?,
+        omega_next: f64::INFINITY,
         fluid: fluid_forces(setup, shapes)?,
         warnings: Vec::new(),
     })
@@ -368,7 +393,7 @@ fn kirchhoff_plate(
 /// Model C.
 fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<Built> {
     let rigid = usize::from(setup.plate.edge == Edge::Free);
-    let plate = validity::tempered(continuum_plate(setup, wanted, rough, cache)?, setup, rough);
+    let (plate, omega_next) = continuum_plate(setup, wanted, rough, cache)?;
     let elastic = plate.omega.len() - rigid;
     let mesh = MeshOptions::default();
     let shapes = |radii: &[f64]| {
@@ -381,7 +406,10 @@ fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) 
     };
     let fluid = fluid_forces(setup, shapes)?;
     let tips = tip_residuals(setup, rough.patch_radius, &mesh, cache)?;
-    Ok(Built { system: join(setup, plate, tips)?, fluid, warnings: validity::warnings(setup, rough) })
+    let system = join(setup, plate, tips)?;
+    let warnings = validity::warnings(setup, rough, &system);
+    let slower = setup.fluid.as_ref().map_or(1.0, |fluid| mass_factor(fluid.added_mass_frequency_ratio));
+    Ok(Built { system, omega_next: omega_next / slower.sqrt(), fluid, warnings })
 }
 
 /// Film and drag of the scene, if there are any. `shapes` gives the mass-normalised shapes of the dry plate's inner
@@ -398,16 +426,23 @@ pub(super) fn fluid_forces(
     })
 }
 
-/// Plate of model C: continuum with residual flexibility.
-fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<ModalBody> {
+/// Plate of model C: continuum with residual flexibility; and the frequency in rad/s of the lowest mode that is left to it.
+fn continuum_plate(
+    setup: &PlateImpact,
+    wanted: Wanted,
+    rough: &Rough,
+    cache: &Cache,
+) -> Result<(ModalBody, f64)> {
     let mesh = MeshOptions::default();
     let build = |modes| cached::plate_in(cache, &setup.plate, rough.patch_radius, modes, &mesh);
+    let lowest =
+        |plate: &ContinuumPlate, modes| Ok((plate.modal_body(modes, rough.slow()), plate.omega_next(modes)));
     match wanted {
-        Wanted::Modes(modes) => Ok(build(modes)?.modal_body(modes)),
+        Wanted::Modes(modes) => lowest(&build(modes)?, modes),
         Wanted::Below(cut) => {
             let plate = build(cut.modes)?;
             let below = plate.omega.iter().filter(|omega| **omega < cut.omega).count();
-            Ok(plate.modal_body(below.clamp(1, cut.modes)))
+            lowest(&plate, below.clamp(1, cut.modes))
         }
         Wanted::Estimate => {
             let mut most = DEFAULT_MODES;
@@ -415,9 +450,11 @@ fn continuum_plate(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &C
                 let plate = build(most)?;
                 let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
                 if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
-                    return Ok(plate.modal_body(modes));
+                    return lowest(&plate, modes);
                 }
-                most *= 2;
+                // with twice as many modes the highest frequency is four times as high at most
+                let far = rough.truncation_error(plate.omega_next(most)) > 16.0 * TRUNCATION;
+                most = if far { MAX_CHOSEN_MODES } else { 2 * most };
             }
         }
     }

@@ -32,6 +32,11 @@ impl Rough {
         })
     }
 
+    /// Angular frequency in rad/s below which a mode does not follow the contacts' forces.
+    pub(super) fn slow(&self) -> f64 {
+        self.contact_frequency
+    }
+
     /// Relative error of a force when the modes from `omega_next` rad/s on follow statically.
     pub(super) fn truncation_error(&self, omega_next: f64) -> f64 {
         (self.contact_frequency / omega_next).powi(2)

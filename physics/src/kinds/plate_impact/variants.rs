@@ -22,10 +22,10 @@
 use super::reduced::{quantities, tip_residuals};
 use super::results::PlateQuantities;
 use super::rough::Rough;
-use super::validity;
 use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::{ModalBody, kirchhoff};
+use crate::contact::PatchFlexibility;
 use crate::dynamics::integrator::{Options, integrate};
 use crate::dynamics::system::System;
 use crate::error::Result;
@@ -107,10 +107,10 @@ impl<'a> Variants<'a> {
     /// The scene under `simplification` with `modes` elastic modes of the plate.
     pub fn system(&self, simplification: Simplification, modes: usize) -> System {
         let rigid = [0.0; 2];
-        let continuum = || validity::tempered(self.plate.modal_body(modes), self.setup, &self.rough);
+        let continuum = || self.plate.modal_body(modes, self.rough.slow());
         let (plate, tips) = match simplification {
             Simplification::KirchhoffPlate => (lowest(&self.kirchhoff, modes), rigid),
-            Simplification::MeanOfFaces => (mean_of_faces(&self.plate.modal_body(modes)), rigid),
+            Simplification::MeanOfFaces => (mean_of_faces(&continuum()), rigid),
             Simplification::RigidTips => (continuum(), rigid),
             Simplification::None => (continuum(), self.tips),
         };
@@ -145,13 +145,15 @@ fn lowest(body: &ModalBody, modes: usize) -> ModalBody {
 }
 
 /// `body` seen through the mean of its two contact points: participation P phi_k, residual P R P with
-/// P = 1/2 [[1, 1], [1, 1]].
+/// P = 1/2 [[1, 1], [1, 1]], R for patches of no extent.
 pub fn mean_of_faces(body: &ModalBody) -> ModalBody {
-    let r = body.residual;
+    let mean = |r: PatchFlexibility| {
+        let [own0, mutual, own1] = r.at([0.0; 2]);
+        PatchFlexibility::constant([[0.25 * (own0 + 2.0 * mutual + own1); 2]; 2])
+    };
     ModalBody {
         participation: body.participation.iter().map(|phi| [0.5 * (phi[0] + phi[1]); 2]).collect(),
-        residual: [[0.25 * (r[0][0] + r[0][1] + r[1][0] + r[1][1]); 2]; 2],
-        patch_growth: [[0.0; 2]; 2],
+        residual: body.residual.map(mean),
         ..body.clone()
     }
 }

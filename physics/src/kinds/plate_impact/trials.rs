@@ -1,0 +1,196 @@
+//! Impacts with plates and spheres in closed form: what a model lacks, before any continuum is meshed.
+//!
+//! The plate is Kirchhoff's or an elastic layer ([`crate::body::layer`]), which has shear, rotary inertia and the local
+//! flexibility that Kirchhoff's plate on half-spaces has not; the spheres are Lur'e's ([`crate::body::free_sphere`]). Each
+//! costs as much as a run of models A and B.
+
+use super::errors::largest_error;
+use super::reduced::{DEFAULT_MODES, fluid_forces, quantities};
+use super::results::PlateQuantities;
+use super::rough::Rough;
+use crate::analytical::circular_plate::rigidity;
+use crate::body::continuum::ContinuumPlate;
+use crate::body::layer::Waves;
+use crate::body::{ModalBody, free_sphere};
+use crate::dynamics::OuterBody;
+use crate::dynamics::integrator::{Options, integrate};
+use crate::dynamics::system::System;
+use crate::dynamics::wet;
+use crate::error::Result;
+use crate::fluid::added_mass::{immersed, mass_factor};
+use crate::scene::{Material, PlateImpact, Shape};
+use std::f64::consts::PI;
+
+/// Numbers of modes of the layer that are tried.
+pub(super) const RUNGS: [usize; 26] =
+    [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 112, 128, 160, 192];
+/// Difference of two numbers of modes over the error of the smaller, which is mostly within a tenth of it.
+const SAFETY: f64 = 1.15;
+/// Part of (contact frequency / lowest frequency left out)^2 that a truncated series of continuum modes may be off by beyond
+/// what the layer, which has no longitudinal modes, tells.
+const TRUNCATION_SHARE: f64 = 0.1;
+
+/// Which modes of the continuum plate model C is to have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cut {
+    /// Angular frequency in rad/s below which all modes are kept.
+    pub(super) omega: f64,
+    /// How many that will be at most.
+    pub(super) modes: usize,
+}
+
+/// What a model lacks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Lack {
+    /// Estimated relative error.
+    pub(super) error: f64,
+    /// The quantity that has it, if it is known.
+    pub(super) quantity: Option<&'static str>,
+}
+
+impl Lack {
+    /// The largest error of `candidate` against `exact` of the quantities covered; `speed` in m/s is that of the impact.
+    pub(super) fn between(candidate: &PlateQuantities, exact: &PlateQuantities, speed: f64) -> Self {
+        let (error, name) = largest_error(candidate, exact, speed);
+        Self { error, quantity: Some(name) }
+    }
+
+    /// The larger of two; what is not a number is the largest of all.
+    pub(super) fn or(self, other: Self) -> Self {
+        if self.error >= other.error || self.error.is_nan() { self } else { other }
+    }
+}
+
+/// The bodies of a scene in closed form.
+pub(super) struct Trials<'a> {
+    pub(super) setup: &'a PlateImpact,
+    outer: OuterBody,
+    /// Kirchhoff's plate.
+    pub(super) waves: Waves,
+    layer: ContinuumPlate,
+    pub(super) rough: Rough,
+    pub(super) options: Options,
+    tips: [f64; 2],
+}
+
+impl<'a> Trials<'a> {
+    /// For the impact `setup`, with as many modes as leave a truncation error of `resolution`, or as there are; integrated as
+    /// `options` says.
+    ///
+    /// # Errors
+    /// As [`super::reduced::Reduced::new`].
+    pub(super) fn new(setup: &'a PlateImpact, resolution: f64, options: Options) -> Result<Self> {
+        let outer = OuterBody::new(&setup.outer)?;
+        let few = Waves::new(&setup.plate, DEFAULT_MODES);
+        let rough = Rough::of(&system(setup, &outer, few.kirchhoff(DEFAULT_MODES), [0.0; 2]))?;
+        let enough = |n: &usize| slowed(setup, &rough, few.frequency(*n + 1)) <= resolution;
+        let most = RUNGS.into_iter().find(enough).unwrap_or(RUNGS[RUNGS.len() - 1]);
+        let waves = if most > DEFAULT_MODES { Waves::new(&setup.plate, most) } else { few };
+        let layer = waves.layer(rough.patch_radius);
+        Ok(Self { setup, outer, waves, layer, rough, options, tips: tips(setup, &rough) })
+    }
+
+    /// Models A and B.
+    pub(super) fn kirchhoff(&self, modes: usize) -> Result<PlateQuantities> {
+        self.run(self.waves.kirchhoff(modes), modes, [0.0; 2])
+    }
+
+    /// Kirchhoff's plate with all modes: what is beyond those there are yields as under a static force, the sum of
+    /// (w(0)/omega)^2 over k with w(0)^2 = k/2 and omega = k^2 in the plate's units, pi apart.
+    pub(super) fn converged(&self) -> Result<PlateQuantities> {
+        let modes = self.waves.modes();
+        let plate = &self.setup.plate;
+        let bending = rigidity(plate.material.youngs_modulus, plate.material.poisson_ratio, plate.thickness);
+        let rest = plate.radius.powi(2) / (4.0 * PI * self.waves.cut().powi(2) * bending);
+        let system = system(self.setup, &self.outer, self.waves.kirchhoff(modes), [0.0; 2]);
+        // the inner contact closes when the plate moves down
+        self.integrate(&system.softer([rest, -rest, rest]), modes)
+    }
+
+    /// Model C with a layer in the place of the continuum.
+    pub(super) fn continuum(&self, modes: usize) -> Result<PlateQuantities> {
+        self.run(self.layer.modal_body(modes, self.rough.slow()), modes, self.tips)
+    }
+
+    fn run(&self, plate: ModalBody, modes: usize, tips: [f64; 2]) -> Result<PlateQuantities> {
+        self.integrate(&system(self.setup, &self.outer, plate, tips), modes)
+    }
+
+    fn integrate(&self, system: &System, modes: usize) -> Result<PlateQuantities> {
+        let shapes = |radii: &[f64]| Ok(self.waves.shapes(modes, radii));
+        let result = match fluid_forces(self.setup, shapes)? {
+            None => integrate(system, &self.options)?,
+            Some(fluid) => wet::integrate(system, &fluid, &self.options)?,
+        };
+        quantities(system, &result)
+    }
+
+    /// Relative error of a force in model C when the bending modes beyond `modes` follow statically.
+    pub(super) fn truncation(&self, modes: usize) -> f64 {
+        slowed(self.setup, &self.rough, self.layer.omega_next(modes))
+    }
+
+    /// Largest estimated error of the quantities covered that model C has with `modes` bending modes for want of more, and the
+    /// quantity; `converged` is the layer with all its modes.
+    pub(super) fn truncated(&self, modes: usize, converged: Option<&PlateQuantities>) -> Lack {
+        let alone = self.truncation(modes);
+        match (converged, self.continuum(modes)) {
+            (Some(exact), Ok(ours)) => {
+                let lack = Lack::between(&ours, exact, self.setup.outer.speed);
+                Lack { error: SAFETY * lack.error + TRUNCATION_SHARE * alone, ..lack }
+            }
+            _ => Lack { error: alone, quantity: None },
+        }
+    }
+
+    /// Share of the static flexibility at the contacts that Kirchhoff's plate with `modes` modes leaves out, the contacts' own at
+    /// their force peaks being one.
+    pub(super) fn left_out(&self, modes: usize) -> f64 {
+        let plate = self.waves.kirchhoff(self.waves.modes());
+        let rigid = plate.omega.iter().filter(|omega| **omega == 0.0).count();
+        let modal = plate.omega.iter().zip(&plate.participation).skip(rigid + modes);
+        let flexibility: f64 = modal.map(|(omega, phi)| (phi[0] / omega).powi(2)).sum();
+        let system = system(self.setup, &self.outer, plate.clone(), [0.0; 2]);
+        let of = |i: usize| {
+            let force = self.rough.force_peak[i];
+            flexibility * force / system.laws[i].approach(force)
+        };
+        of(0).max(of(1))
+    }
+
+    /// The frequency between bending mode `modes` and the next, and how many modes of any kind there are below.
+    pub(super) fn cut(&self, modes: usize) -> Cut {
+        let omega = 0.5 * (self.layer.omega[modes - 1] + self.layer.omega_next(modes));
+        let material = &self.setup.plate.material;
+        let stretching = (material.plane_strain_modulus() / material.density).sqrt();
+        let longitudinal = omega * self.setup.plate.radius / (PI * stretching) + 1.0;
+        Cut { omega, modes: modes + longitudinal as usize }
+    }
+}
+
+/// [`Rough::truncation_error`] with the modes from `omega_next` rad/s on as slow as the fluid's mass makes them.
+fn slowed(setup: &PlateImpact, rough: &Rough, omega_next: f64) -> f64 {
+    let slower = setup.fluid.as_ref().map_or(1.0, |fluid| mass_factor(fluid.added_mass_frequency_ratio));
+    slower * rough.truncation_error(omega_next)
+}
+
+/// Joins plate and bodies.
+fn system(setup: &PlateImpact, outer: &OuterBody, plate: ModalBody, tips: [f64; 2]) -> System {
+    let plate = match &setup.fluid {
+        Some(fluid) => immersed(plate, fluid),
+        None => plate,
+    };
+    System::with_outer(setup, outer.clone(), &plate, tips)
+}
+
+/// Residual flexibilities in m/N of both bodies in closed form.
+fn tips(setup: &PlateImpact, rough: &Rough) -> [f64; 2] {
+    let tip = |shape: &Shape, material: &Material, patch: f64| match *shape {
+        Shape::Sphere { radius } => free_sphere::sphere_residual(radius, material, patch),
+        Shape::Compact { .. } | Shape::Bender(_) => 0.0,
+    };
+    [
+        tip(&setup.outer.shape, &setup.outer.material, rough.patch_radius[0]),
+        tip(&setup.inner.shape, &setup.inner.material, rough.patch_radius[1]),
+    ]
+}

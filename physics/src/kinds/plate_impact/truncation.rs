@@ -1,0 +1,108 @@
+//! What the modes that a reduced model leaves out would change.
+//!
+//! Models A and B are held against Kirchhoff's plate with all its modes. Model C is held against the plate as an elastic layer
+//! with more modes ([`Trials`]), which knows bending far from the rim, and against itself with fewer modes, which knows the
+//! rest. A fluid's film and drag are left out of both.
+
+use super::reduced::quantities;
+use super::trials::{Lack, RUNGS, Trials};
+use crate::dynamics::integrator::{Options, integrate};
+use crate::dynamics::system::System;
+use crate::error::Result;
+use crate::scene::{Model, PlateImpact};
+
+/// Relative errors of which the user is warned.
+const LARGEST: f64 = 0.01;
+/// Truncation error of what counts as converged: of the layer, which has a residual, and of Kirchhoff's plate.
+const RESOLUTION: [f64; 2] = [5e-4, 5e-6];
+/// Relative error of the time integration.
+const INTEGRATION: f64 = 1e-5;
+/// Largest ratio of two models' errors that is trusted.
+const NEAR: f64 = 0.9;
+
+/// The error that a model has for want of modes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Truncation {
+    /// Largest estimated relative error of the quantities covered ([`super::errors::COVERED`]).
+    pub(super) error: f64,
+    /// What the user has to be told of it.
+    pub(super) warning: Option<String>,
+}
+
+/// Estimates what the modes left out of `system`, which is `model` of `setup`, change within `end_time` s; the plate of model C
+/// has its next frequency at `omega_next` rad/s.
+///
+/// # Errors
+/// As [`Trials::new`].
+pub(super) fn estimate(
+    setup: &PlateImpact,
+    model: Model,
+    system: &System,
+    omega_next: f64,
+    end_time: Option<f64>,
+) -> Result<Truncation> {
+    let mut dry = setup.clone();
+    if let Some(fluid) = &mut dry.fluid {
+        (fluid.squeeze_film, fluid.drag_coefficient) = (false, 0.0);
+    }
+    let options = Options { tolerance: INTEGRATION, end_time, sample_interval: None };
+    let resolution = RESOLUTION[usize::from(model < Model::C)];
+    let trials = Trials::new(&dry, resolution, options)?;
+    let converged = match model {
+        Model::A | Model::B => trials.converged(),
+        Model::C => trials.continuum(trials.waves.modes()),
+    }
+    .ok();
+    let of = |modes: usize| match (model, &converged) {
+        (Model::C, layer) => trials.truncated(modes, layer.as_ref()),
+        (_, Some(all)) => match trials.kirchhoff(modes) {
+            Ok(ours) => Lack::between(&ours, all, setup.outer.speed),
+            Err(_) => Lack { error: trials.truncation(modes), quantity: None },
+        },
+        (_, None) => Lack { error: trials.truncation(modes), quantity: None },
+    };
+    let modes = system.bending_modes();
+    let mut lack = of(modes);
+    if model == Model::C {
+        lack = lack.or(of_continuum(system, omega_next, &options));
+    }
+    let warning = (lack.error > LARGEST).then(|| {
+        let enough = RUNGS.into_iter().find(|n| *n > modes && of(*n).error <= LARGEST);
+        warning(model, system.modes, lack, enough)
+    });
+    Ok(Truncation { error: lack.error, warning })
+}
+
+/// What the modes that `system`, a model C, leaves out change, from what its own upper ones do: the error goes with the square of
+/// (contact frequency / lowest frequency left out), that of the system being `omega_next` rad/s.
+pub(super) fn of_continuum(system: &System, omega_next: f64, options: &Options) -> Lack {
+    let run = |system: &System| quantities(system, &integrate(system, options)?);
+    let unknown = Lack { error: f64::INFINITY, quantity: None };
+    let Ok(whole) = run(system) else { return unknown };
+    let part = |modes: usize| {
+        let Ok(part) = run(&system.lowest(modes)) else { return unknown };
+        let left_out = system.oscillators[system.elastic().start + modes].omega;
+        let ratio = (left_out / omega_next).powi(2).min(NEAR);
+        let lack = Lack::between(&part, &whole, system.speed);
+        Lack { error: lack.error * ratio / (1.0 - ratio), ..lack }
+    };
+    part(system.modes / 2).or(part(3 * system.modes / 4))
+}
+
+fn warning(model: Model, modes: usize, lack: Lack, enough: Option<usize>) -> String {
+    let most = lack.quantity.map_or(String::new(), |name| format!(", most of all {name}"));
+    let remedy = match (model, enough) {
+        (Model::A, Some(enough)) => {
+            format!("model B with {enough} modes is within 1 % of all modes of its plate")
+        }
+        (Model::B, Some(enough)) => format!("{enough} modes are enough for 1 % (--modes {enough})"),
+        (Model::C, Some(enough)) => format!("try about {enough} modes (--modes {enough})"),
+        (Model::C, None) => format!("try {} modes (--modes {})", 2 * modes, 2 * modes),
+        (_, None) => "more than 192 modes are needed for 1 %".to_owned(),
+    };
+    let plural = if modes == 1 { "" } else { "s" };
+    format!(
+        "model {model} with {modes} mode{plural}: the modes left out would change the result by an estimated {:.2} %{most}; {remedy}",
+        100.0 * lack.error
+    )
+}

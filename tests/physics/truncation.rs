@@ -1,0 +1,70 @@
+//! What a model says that it lacks modes for, against the same model with several times as many.
+
+use approx::assert_relative_eq;
+use impactcheck::kinds::plate_impact::PlateQuantities;
+use impactcheck::kinds::plate_impact::errors::largest_error;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
+use impactcheck::scene::{Model, Scene, resolve};
+
+/// Table 1's impact on a plate of `radius`.
+fn scene(radius: &str) -> Scene {
+    let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
+    let text = text.replace("\"33 mm\"", &format!("\"{radius}\""));
+    Scene::parse("large.toml", &text).unwrap()
+}
+
+/// Estimated truncation error, and whether the user is warned of it, of `model` with `modes`; the error against `many` modes.
+fn estimated_and_true(scene: &Scene, model: Model, modes: usize, many: (Model, usize)) -> (f64, bool, f64) {
+    let run = |model, modes| Reduced::new(scene, model, Some(modes)).unwrap().run(1e-6).unwrap();
+    let (ours, exact) = (run(model, modes), run(many.0, many.1));
+    let speed = scene.plate_impact().unwrap().outer.speed;
+    let warned = ours.warnings.iter().any(|warning| warning.contains("the modes left out"));
+    let [values, exact] = [&ours, &exact].map(|run| PlateQuantities::of_table(&run.quantities).unwrap());
+    (ours.truncation_error.unwrap(), warned, largest_error(&values, &exact, speed).0)
+}
+
+/// From a plate whose modes are too few by far to one with enough of them.
+#[test]
+fn kirchhoff_models_tell_their_distance_from_all_modes_of_their_plate() {
+    for (radius, model, modes) in [
+        ("33 mm", Model::A, 1),
+        ("33 mm", Model::B, 3),
+        ("33 mm", Model::B, 16),
+        ("0.65 m", Model::B, 16),
+        ("0.65 m", Model::B, 48),
+        ("1 m", Model::B, 16),
+        ("1 m", Model::B, 64),
+    ] {
+        let (estimated, warned, exact) = estimated_and_true(&scene(radius), model, modes, (Model::B, 240));
+        assert_relative_eq!(estimated, exact, max_relative = 0.05, epsilon = 2e-3);
+        assert_eq!(warned, estimated > 0.01, "{radius}, model {model} with {modes} modes");
+    }
+}
+
+/// Model C stops to add modes at 64: on a wide plate it says that they are not enough.
+#[test]
+fn model_c_tells_what_its_modes_lack() {
+    for (radius, modes) in [("33 mm", 2), ("33 mm", 4), ("33 mm", 16), ("0.65 m", 48), ("0.65 m", 64)] {
+        let (estimated, warned, exact) =
+            estimated_and_true(&scene(radius), Model::C, modes, (Model::C, 2 * modes + 8));
+        assert!(
+            exact <= estimated && estimated <= 6.0 * exact + 1e-3,
+            "{radius}, {modes}: {estimated} for {exact}"
+        );
+        assert_eq!(warned, estimated > 0.01);
+    }
+    let default = Reduced::new(&scene("0.65 m"), Model::C, None).unwrap().run(1e-6).unwrap();
+    assert_eq!((default.modes, default.warnings.len()), (Some(64), 1), "{:?}", default.warnings);
+}
+
+/// What the film does is left out of the estimate, and one there is.
+#[test]
+fn wet_impacts_benders_and_auto_have_an_estimate() {
+    for name in ["scenes/examples/wet-valve-plate.toml", "scenes/examples/rocker-bender.toml"] {
+        let scene = Scene::read(resolve(name).unwrap()).unwrap();
+        for reduced in [Reduced::new(&scene, Model::B, Some(2)), Reduced::auto(&scene, 0.03)] {
+            let error = reduced.unwrap().run(1e-4).unwrap().truncation_error.unwrap();
+            assert!(error.is_finite() && error > 0.0, "{name}: {error}");
+        }
+    }
+}
