@@ -199,6 +199,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         integration_error: None,
         choice: None,
         warnings: Vec::new(),
+        limits: Vec::new(),
         samples: None,
         sample_interval: None,
     }
