@@ -1,5 +1,6 @@
 //! A reduced seal seat of a scene, ready to run.
 
+use super::Kind;
 use super::body::{SeatBody, SeatMesh, Watch};
 use super::candidates::{Zones, on_half_space};
 use super::doubts;
@@ -11,6 +12,7 @@ use super::truncation;
 use crate::body::cache::Cache;
 use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
+use crate::kinds::Kind as _;
 use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
 use crate::result::{CUT, History, Outcome, Summary};
 use crate::scene::{Model, Scene, SealSeat};
@@ -161,7 +163,9 @@ impl SeatModel {
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let started = Instant::now();
         let (result, _) = self.converged(tolerance)?;
-        self.summary(&result, tolerance, started.elapsed().as_secs_f64())
+        let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
+        Kind.judge(&self.scene, &mut summary, None);
+        Ok(summary)
     }
 
     /// As [`SeatModel::run`], with the course over time. The summary's time is that of a run without.
@@ -174,6 +178,7 @@ impl SeatModel {
         let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
         let history = history(&self.integrate(step, true)?);
         summary.samples = Some(history.len());
+        Kind.judge(&self.scene, &mut summary, Some(&history));
         Ok(Outcome { summary, history })
     }
 
