@@ -53,10 +53,11 @@ pub(super) fn tolerance(text: &str) -> std::result::Result<f64, String> {
 pub(super) fn told(choice: &Choice) -> String {
     let percent = |error: Option<f64>| error.map_or("unknown".to_owned(), |e| format!("{:.2} %", 100.0 * e));
     let mut lines = vec![format!(
-        "auto, tolerance {:.4} % of {}: estimated error {}",
+        "auto, tolerance {:.4} % of {}: estimated error {}, kept in at least {:.1} % of random scenes where it meets the tolerance",
         100.0 * choice.tolerance,
         choice.covers.join(", "),
-        percent(choice.estimated_error)
+        percent(choice.estimated_error),
+        100.0 * choice.coverage
     )];
     for tried in &choice.tried {
         let kind = if tried.model == "C" { "bending " } else { "" };

@@ -261,7 +261,9 @@ impl<'a> Job<'a> {
             Some((file, commit)) => trend::record(file, &comparison, commit)?,
             None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
         };
+        let now = chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string();
         for scene in &mut report.scenes {
+            scene.attachments.compared = Some(now.clone());
             scene.attachments.trends = trend::trends(&entries, &scene.comparison);
         }
         report::write(&report, &self.arguments.out)?;

@@ -11,7 +11,7 @@ use crate::kinds::seal_seat::{self, SeatMesh, SeatModel};
 use crate::reference::{self, Resolution};
 use crate::report::format::{prefixed, with_unit};
 use crate::report::{self, TableFormat};
-use crate::result::{ContactPressure, History, Quantity, Summary};
+use crate::result::{ContactPressure, Outcome, Quantity, Summary};
 use crate::scene::{Model, Scene, Setup};
 use clap::Args;
 use std::path::PathBuf;
@@ -54,14 +54,14 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         TableFormat::of(file)?;
     }
     let (_, scene) = super::read_scene(&arguments.scene)?;
-    let (summary, history) = match &scene.setup {
+    let outcome = match &scene.setup {
         Setup::PlateImpact(_) => plate(&scene, arguments)?,
         Setup::SealSeat(_) => seat(context, &scene, arguments)?,
     };
-    finish(context, arguments, &summary, history)
+    finish(context, arguments, &outcome)
 }
 
-fn plate(scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<History>)> {
+fn plate(scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
     if let Some(mesh) = &arguments.mesh {
         return Err(Error::Usage(format!(
             "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
@@ -84,11 +84,8 @@ fn plate(scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<Histor
             (Reduced::auto(scene, tolerance)?, choice::integration_tolerance(tolerance))
         }
     };
-    if arguments.history.is_none() {
-        return Ok((reduced.run(tolerance)?, None));
-    }
-    let outcome = reduced.run_with_history(tolerance)?;
-    Ok((outcome.summary, Some(outcome.history)))
+    // with its history, of which the deflection is judged
+    reduced.run_with_history(tolerance)
 }
 
 /// The tolerance of the time integration of a model that is named.
@@ -102,7 +99,7 @@ fn integration_tolerance(arguments: &Arguments) -> Result<f64> {
     Ok(tolerance)
 }
 
-fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<History>)> {
+fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
     let model = match arguments.model {
         Some(AskedModel::Named(model)) => model,
         Some(AskedModel::Auto) => {
@@ -125,6 +122,11 @@ fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<(Summ
     let reduced = SeatModel::new_with(scene, model, arguments.modes, &mesh, &cache, &mut |part, done| {
         bar.part(part, done)
     })?;
+    let tolerance = match arguments.tolerance {
+        Some(_) => integration_tolerance(arguments)?,
+        None => seal_seat::DEFAULT_TOLERANCE,
+    };
+    let outcome = reduced.run_with_history(tolerance)?;
     drop(bar);
     context.note(format_args!(
         "mesh {}, {} degrees of freedom; set up in {:.2} s",
@@ -132,25 +134,13 @@ fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<(Summ
         reduced.dofs,
         reduced.setup_seconds
     ));
-    let tolerance = match arguments.tolerance {
-        Some(_) => integration_tolerance(arguments)?,
-        None => seal_seat::DEFAULT_TOLERANCE,
-    };
-    if arguments.history.is_none() {
-        return Ok((reduced.run(tolerance)?, None));
-    }
-    let outcome = reduced.run_with_history(tolerance)?;
-    Ok((outcome.summary, Some(outcome.history)))
+    Ok(outcome)
 }
 
-/// Writes the history, if there is one, and prints warnings and summary.
-fn finish(
-    context: &Context,
-    arguments: &Arguments,
-    summary: &Summary,
-    history: Option<History>,
-) -> Result<ExitStatus> {
-    if let (Some(path), Some(history)) = (&arguments.history, &history) {
+/// Writes the history, if it is asked for, and prints warnings and summary.
+fn finish(context: &Context, arguments: &Arguments, outcome: &Outcome) -> Result<ExitStatus> {
+    let Outcome { summary, history } = outcome;
+    if let Some(path) = &arguments.history {
         crate::file::write_file(path, &report::history_file(history, TableFormat::of(path)?)?)?;
         context.note(format_args!("history of {} samples in {}", history.len(), path.display()));
     }

@@ -4,7 +4,6 @@ use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::store::Installed;
 use super::{Resolution, Store, identity, python};
-use crate::kinds;
 use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use std::ffi::OsStr;
@@ -91,7 +90,7 @@ pub fn solve_with(
     if !output.is_dir() {
         return Err(unusable("it wrote no result".to_owned()));
     }
-    let stored = entry::load(kinds::of(scene), &output, entry::MeshFiles::Required).map_err(|d| {
+    let stored = entry::load(scene, &output, entry::MeshFiles::Required).map_err(|d| {
         let file = d.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         unusable(format!("its {file} {}", d.reason))
     })?;

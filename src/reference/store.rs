@@ -8,7 +8,6 @@
 use super::entry::{self, Damage, Stored};
 use super::{Resolution, identity};
 use crate::interrupt::Scratch;
-use crate::kinds;
 use crate::project;
 use crate::scene::Scene;
 use crate::{Error, Result};
@@ -304,7 +303,7 @@ fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
         }
         Ok(_) => {}
     }
-    let stored = match entry::load(kinds::of(scene), folder, entry::MeshFiles::Optional) {
+    let stored = match entry::load(scene, folder, entry::MeshFiles::Optional) {
         Ok(stored) => stored,
         Err(damage) => return damage.into(),
     };

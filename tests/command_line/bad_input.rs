@@ -92,6 +92,7 @@ fn command_lines_that_make_no_sense_end_with_2() {
         &["reduced", "scaled-plate-r10", "--model", "D"],
         &["reduced", "scaled-plate-r10", "--model", "A", "--modes", "2"],
         &["reduced", "scaled-plate-r10", "--modes", "0"],
+        &["reduced", "scaled-plate-r10", "--modes", "1000000"],
         &["reduced", "scaled-plate-r10", "--tolerance", "2"],
         &["reference", "scaled-plate-r10", "--resolution", "finest"],
         &["reference", "scaled-plate-r10", "--np", "2"],

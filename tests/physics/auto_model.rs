@@ -17,7 +17,7 @@ use serde_json::Value;
 const EDGES: [Edge; 3] = [Edge::Clamped, Edge::SimplySupported, Edge::Free];
 
 fn material(poisson_ratio: f64) -> Material {
-    Material { name: "m".into(), youngs_modulus: 210e9, poisson_ratio, density: 7780.0 }
+    Material { name: "m".into(), youngs_modulus: 210e9, poisson_ratio, density: 7780.0, yield_strength: None }
 }
 
 fn plate(edge: Edge, thickness_over_radius: f64) -> Plate {
@@ -211,11 +211,13 @@ fn promises_are_kept_on_random_scenes() {
     let (tolerance, exact) = (column(&study, "tolerance"), column(&study, "true_error"));
     assert_eq!(tolerance.len(), 12 * 3);
     let promised = column(&study, "promised");
-    assert!(promised.iter().sum::<f64>() >= 30.0, "{promised:?}");
-    let kept = (0..36).filter(|k| promised[*k] == 0.0 || exact[*k] <= tolerance[*k]).count();
-    assert!(kept >= 35, "{kept} of 36: {exact:?}");
+    let decided = exact.iter().filter(|error| error.is_finite()).count();
+    assert!(decided >= 8, "{promised:?}, {exact:?}");
+    for k in 0..36 {
+        assert!(promised[k] == 0.0 || exact[k].is_nan() || exact[k] <= tolerance[k], "{k}: {exact:?}");
+    }
     let svg = auto::figure(&study);
-    assert!(svg.matches("<circle").count() >= 36 && !svg.contains("NaN"));
+    assert!(svg.matches("<circle").count() >= decided && !svg.contains("NaN"));
 }
 
 fn program(arguments: &[&str]) -> (i32, String, String) {

@@ -207,8 +207,12 @@ impl<'a> Node<'a> {
         }
     }
 
+    pub(super) fn optional_number(&self, key: &str) -> Result<Option<f64>> {
+        self.0.contains_key(key).then(|| self.number(key)).transpose()
+    }
+
     pub(super) fn number_or(&self, key: &str, default: f64) -> Result<f64> {
-        if self.0.contains_key(key) { self.number(key) } else { Ok(default) }
+        Ok(self.optional_number(key)?.unwrap_or(default))
     }
 
     pub(super) fn text(&self, key: &str) -> Result<&'a str> {
@@ -288,6 +292,7 @@ pub(super) fn material(materials: &Node, name: &str) -> Result<Material> {
         youngs_modulus: material.number("youngs_modulus")?,
         poisson_ratio: material.number("poisson_ratio")?,
         density: material.number("density")?,
+        yield_strength: material.optional_number("yield_strength")?,
     })
 }
 

@@ -12,7 +12,7 @@ const KIRCHHOFF: [usize; 6] = [2, 4, 8, 16, 32, 64];
 /// Modes of model C tried for the cheapest choice.
 const CONTINUUM: [usize; 13] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96];
 /// Modes of the high-fidelity solution, doubled until it stands.
-const MODES: [usize; 4] = [32, 64, 128, 256];
+const MODES: [usize; 3] = [32, 64, 128];
 /// Change by the last doubling, over a tolerance, at which it stands; what the next would change is far less.
 const CONVERGED: f64 = 1.0 / 3.0;
 /// Relative error of the time integration.

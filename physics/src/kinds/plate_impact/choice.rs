@@ -33,6 +33,8 @@ const LAYER_SHARE: [f64; 2] = [0.25, 3.0];
 const REFERENCE_SHARE: f64 = 0.05;
 /// Share of the contacts' flexibility, relative to the tolerance, below which more Kirchhoff modes don't help.
 const LEFT_OUT_SHARE: f64 = 0.25;
+/// Fewest bending modes that model C is built with: with fewer it can't be held against itself.
+const LEAST_BUILT: usize = 4;
 /// Most modes that model C is built with when its first ones turn out to be too few.
 const MOST_BUILT: usize = 128;
 /// Share of promises that `study auto` finds to be kept on random scenes, at least.
@@ -100,7 +102,7 @@ impl<'a> Plan<'a> {
             Some((model, modes, error)) => (plan.model, plan.modes, plan.error) = (model, modes, Some(error)),
             None => {
                 (plan.modes, plan.error) = plan.continuum();
-                plan.cut = Some(plan.trials.cut(plan.modes));
+                plan.cut = Some(plan.trials.cut(plan.modes.max(LEAST_BUILT)));
             }
         }
         Ok(plan)

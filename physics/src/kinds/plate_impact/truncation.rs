@@ -17,6 +17,8 @@ const LARGEST: f64 = 0.01;
 const RESOLUTION: [f64; 2] = [5e-4, 5e-6];
 /// Relative error of the time integration.
 const INTEGRATION: f64 = 1e-5;
+/// Thickness over radius up to which the layer knows the plate well enough alone.
+const THIN: f64 = 0.1;
 /// Largest ratio of two models' errors that is trusted.
 const NEAR: f64 = 0.9;
 
@@ -63,7 +65,7 @@ pub(super) fn estimate(
     };
     let modes = system.bending_modes();
     let mut lack = of(modes);
-    if model == Model::C {
+    if model == Model::C && setup.plate.thickness > THIN * setup.plate.radius {
         lack = lack.or(of_continuum(system, omega_next, &options));
     }
     let warning = (lack.error > LARGEST).then(|| {
