@@ -2,7 +2,7 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use impactcheck::body::kirchhoff::{UnitPlate, UnitPlates};
-use impactcheck::contact::{Hertz, PatchFlexibility, Residual};
+use impactcheck::contact::{Hertz, PatchFlexibility, PatchTable, RADII, Residual};
 use impactcheck::dynamics::duhamel::Oscillator;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Edge, Model, Scene};
@@ -30,15 +30,20 @@ fn moments(c: &mut Criterion) {
 fn contact(c: &mut Criterion) {
     let laws =
         [Hertz { stiffness: 1.5e10, tip_radius: 0.01 }, Hertz { stiffness: 0.9e10, tip_radius: 0.005 }];
-    let residual = Residual::new(&PatchFlexibility::constant([[2e-9, -6e-10], [-6e-10, 1e-9]]), &laws);
+    let table = PatchTable {
+        own: [RADII.map(|r| 2e-9 - 3e-10 * r), RADII.map(|r| 1e-9 + 2e-10 * r)],
+        mutual: RADII.map(|r| RADII.map(|s| -6e-10 + 1e-10 * (r + s))),
+    };
+    let patch = laws.map(|law| (law.tip_radius * 8e-6).sqrt());
+    let residual = Residual::new(&PatchFlexibility::through(&table, patch), &laws);
     let approach = [8e-6, 5e-6];
     let mut group = c.benchmark_group("contact");
     group.bench_function("hertz", |b| {
         b.iter(|| [0, 1].map(|i| laws[i].force(black_box(approach[i]))));
     });
-    group.bench_function("residual_state", |b| {
+    group.bench_function("residual_newton", |b| {
         let patches = black_box([7e-6, 4e-6]);
-        b.iter(|| residual.state(&laws, black_box(patches)));
+        b.iter(|| residual.state(&laws, black_box(patches)).newton([0.0; 3], black_box(approach), patches));
     });
     group.bench_function("residual_solve", |b| {
         b.iter(|| residual.solve(&laws, black_box(approach), black_box([7e-6, 4e-6])));

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 from .common.errors import RunError, SceneError, SolverError
+from .common.parent import end_with_parent
 from .common.progress import Progress
 from .common.reader import read_document
 from .kinds import commands_of
@@ -85,9 +86,9 @@ def _parser() -> argparse.ArgumentParser:
 def _run(arguments: argparse.Namespace) -> None:
     # Only `versions` must work without the finite-element modules: import late.
     if arguments.command == "versions":
-        from .common.versions import versions
+        from .common.versions import package, versions
 
-        print(json.dumps(versions(), indent=2))
+        print(json.dumps({"fem_reference": package(), **versions()}, indent=2))
         return
     try:
         if arguments.command == "bands":
@@ -119,6 +120,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 def main() -> int:
     """Run; returns the exit status."""
+    end_with_parent()
     arguments = _parser().parse_args()
     # FFCx and its compiler driver log through the root logger.
     logging.disable(logging.WARNING)

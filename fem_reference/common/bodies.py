@@ -90,7 +90,8 @@ def sphere_profile(radius: float, r: Floats) -> Floats:
 
 def read_material(reader: Reader) -> Material:
     """The material an object describes."""
-    reader.allow("name", "youngs_modulus", "poisson_ratio", "density")
+    # the yield strength changes no elastic result
+    reader.allow("name", "youngs_modulus", "poisson_ratio", "density", "yield_strength")
     return Material(
         name=reader.text("name"),
         youngs_modulus=reader.number("youngs_modulus", "Pa"),

@@ -23,6 +23,9 @@ except ImportError as error:  # pragma: no cover - a dolfinx without PETSc
     raise ImportError("dolfinx was built without PETSc") from error
 
 from .arrays import Floats, Ints
+from .jit_cache import clear_unfinished
+
+clear_unfinished()
 
 # FFCx logs through the root logger, at INFO and WARNING.
 for _name in ("FFCx", "UFL", "ffcx", "root"):

@@ -11,17 +11,11 @@ from collections.abc import Callable
 from typing import Any
 
 from .errors import RunError, SolverError
+from .parent import launched
 from .progress import Progress
 
-SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS")
-"""Number of processes, set by MPI's launchers in the processes they start."""
 INHERITED = ("PMIX_", "PMI_", "OMPI_COMM_", "OMPI_UNIVERSE", "OMPI_MCA_ess", "OMPI_MCA_orte")
 """What a process that has used MPI leaves in the environment of those it starts."""
-
-
-def _launched() -> bool:
-    sizes = (os.environ.get(name, "") for name in SIZES)
-    return any(size.isdecimal() and int(size) > 1 for size in sizes)
 
 
 def _launch(processes: int) -> None:
@@ -39,6 +33,8 @@ def _launch(processes: int) -> None:
         "OMP_NUM_THREADS": "1",
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        # Processes that are told to end do so at once: they have nothing to put in order.
+        "OMPI_MCA_odls_base_sigkill_timeout": "0",
     }
     if processes >= (os.cpu_count() or 1):
         # Somebody else needs a processor too: waiting must not keep it busy.
@@ -54,7 +50,7 @@ def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> 
     Raises:
         RunError: in a run of one process; several are ended together with its exit status.
     """
-    if arguments.np > 1 and not _launched():
+    if arguments.np > 1 and not launched():
         _launch(arguments.np)
     from .fenicsx import world
 

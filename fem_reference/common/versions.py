@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import platform
 from importlib import import_module
+from pkgutil import walk_packages
 
+PACKAGE = __name__.partition(".")[0]
 MODULES = {
     "dolfinx": ("dolfinx", "__version__"),
+    "ufl": ("ufl", "__version__"),
+    "basix": ("basix", "__version__"),
     "ffcx": ("ffcx", "__version__"),
+    "cffi": ("cffi", "__version__"),
+    "mpi4py": ("mpi4py", "__version__"),
     "petsc4py": ("petsc4py", "__version__"),
     "slepc4py": ("slepc4py", "__version__"),
     "gmsh": ("gmsh", "__version__"),
@@ -51,3 +57,16 @@ def versions() -> dict[str, str | None]:
     found["petsc"] = _petsc()
     found["compiler"] = _compiler()
     return found
+
+
+def package() -> str | None:
+    """Folder of this package; None if one of its modules cannot be imported."""
+    root = import_module(PACKAGE)
+    modules = [module.name for module in walk_packages(root.__path__, PACKAGE + ".")]
+    try:
+        for name in modules:
+            if ".tests" not in name and not name.endswith("__main__"):
+                import_module(name)
+    except Exception:  # as in `_version`
+        return None
+    return str(root.__path__[0])

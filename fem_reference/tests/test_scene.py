@@ -22,6 +22,12 @@ def test_valid_scene_is_read() -> None:
     assert scene.outer.mass == pytest.approx(7780.0 * 4 / 3 * math.pi * 1e-6, rel=1e-15)
 
 
+def test_yield_strength_is_admissible_and_changes_nothing() -> None:
+    strong = document()
+    strong["plate"]["material"] = {**strong["plate"]["material"], "yield_strength": 1.2e9}
+    assert parse_scene(strong).plate == parse_scene(document()).plate
+
+
 @pytest.mark.parametrize(
     ("changes", "field"),
     [

@@ -39,8 +39,10 @@ class Alone:
 class Convergent:
     """A method of known order; keeps the factors it was asked for."""
 
-    def __init__(self, order: float, leads: bool = False, revision: int = 1) -> None:
-        self.order, self.leads, self.revision = order, leads, revision
+    def __init__(
+        self, order: float, leads: bool = False, revision: int = 1, cut: bool = False
+    ) -> None:
+        self.order, self.leads, self.revision, self.cut = order, leads, revision, cut
         self.led_by: list[float | None] = []
         self.factors: list[float] = []
         self.meshes: list[MeshResult] = []
@@ -87,9 +89,13 @@ class Convergent:
 @pytest.fixture
 def solve(tmp_path: Path) -> Callable[..., Convergent]:
     def solve(
-        order: float = 2.0, leads: bool = False, revision: int = 1, **options: Any
+        order: float = 2.0,
+        leads: bool = False,
+        revision: int = 1,
+        cut: bool = False,
+        **options: Any,
     ) -> Convergent:
-        method = Convergent(order, leads, revision)
+        method = Convergent(order, leads, revision, cut)
         asked = Options(courant=0.5, checkpoint=tmp_path / "kept", **options)
         solve_series(method.problem(), tmp_path / "out", 1.0, Alone(), asked)
         return method
@@ -105,6 +111,14 @@ def test_the_band_holds_the_error_and_the_extrapolation_removes_it(
     assert found.order == pytest.approx(order, rel=1e-3)
     assert found.extrapolated == pytest.approx(EXACT, abs=1e-5)
     assert 0.1 <= found.band <= 0.13
+
+
+def test_a_run_cut_during_a_contact_has_no_band_to_refine_to(
+    solve: Callable[..., Convergent],
+) -> None:
+    solve(cut=True)
+    with pytest.raises(SceneError, match="run.end_time"):
+        solve(cut=True, target_error=0.02)
 
 
 def test_refinement_ends_as_soon_as_the_target_is_met(

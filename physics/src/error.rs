@@ -1,5 +1,6 @@
 //! Errors and the exit status each one ends the program with.
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 /// Exit status of the program; every status there is stands here.
@@ -63,6 +64,8 @@ impl Error {
             Error::Scene(_) => ExitStatus::InvalidScene,
             Error::Reference(_) => ExitStatus::Reference,
             Error::Solver(_) | Error::BeyondModel(_) => ExitStatus::Solver,
+            // Somebody named a file where a folder is needed, or the other way round.
+            Error::Io { source, .. } if is_of_the_wrong_kind(source.kind()) => ExitStatus::Usage,
             Error::Io { .. } | Error::Internal(_) => ExitStatus::Internal,
         }
     }
@@ -71,6 +74,10 @@ impl Error {
     pub fn io(action: &'static str, path: impl Into<PathBuf>, source: std::io::Error) -> Self {
         Error::Io { action, path: path.into(), source }
     }
+}
+
+fn is_of_the_wrong_kind(error: ErrorKind) -> bool {
+    matches!(error, ErrorKind::NotADirectory | ErrorKind::IsADirectory | ErrorKind::AlreadyExists)
 }
 
 /// Result of anything that can fail for a user.

@@ -41,7 +41,7 @@ pub struct Arguments {
     #[arg(long)]
     compute: bool,
     /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
-    /// repeated impacts
+    /// repeated impacts, with commas or spaces between them
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
     measured: Vec<PathBuf>,
     /// Bandwidth of the instrument, to which the models' curves are filtered
@@ -102,6 +102,19 @@ pub(super) struct Outputs {
     pub(super) record: Option<(PathBuf, Commit)>,
 }
 
+impl Arguments {
+    /// Tables among the scenes belong to `--measured`, whose files a shell lists with spaces between them.
+    pub(super) fn with_tables_measured(mut self) -> Self {
+        if !self.measured.is_empty() {
+            let is_table = |name: &String| name.to_lowercase().ends_with(".csv");
+            let (tables, scenes) = self.scenes.into_iter().partition(is_table);
+            self.scenes = scenes;
+            self.measured.extend(Vec::into_iter(tables).map(PathBuf::from));
+        }
+        self
+    }
+}
+
 impl<'a> Job<'a> {
     pub(super) fn read(context: &Context, arguments: &'a Arguments) -> Result<Self> {
         let start = Instant::now();
@@ -110,6 +123,9 @@ impl<'a> Job<'a> {
             return Err(Error::Usage(format!(
                 "--tolerance {tolerance} is for the model auto, which is not among --models"
             )));
+        }
+        if let Some(file) = arguments.trends.as_ref().filter(|file| !file.is_file()) {
+            return Err(Error::Usage(format!("--trends: there is no file {}", file.display())));
         }
         let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
         // refused before anything is computed; of all shipped scenes those are compared that have one of the models
@@ -143,8 +159,7 @@ impl<'a> Job<'a> {
 
     /// References from the store (or computed), and the reduced models' runs, of every scene.
     pub(super) fn results(&self, context: &Context) -> Result<Vec<Results>> {
-        let scenes: Vec<&Scene> = self.scenes.iter().map(|(_, scene)| scene).collect();
-        let references = look_up(context, self.arguments.resolution, self.arguments.compute, &scenes)?;
+        let references = look_up(context, self.arguments.resolution, self.arguments.compute, &self.scenes)?;
         for stored in &references {
             tell_reused(context, stored);
         }
@@ -155,7 +170,7 @@ impl<'a> Job<'a> {
             };
             Ok(Results { stored, reduced, cost })
         };
-        scenes.into_iter().zip(references).map(result).collect()
+        self.scenes.iter().map(|(_, scene)| scene).zip(references).map(result).collect()
     }
 
     /// The models of a plate impact.
@@ -246,7 +261,9 @@ impl<'a> Job<'a> {
             Some((file, commit)) => trend::record(file, &comparison, commit)?,
             None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
         };
+        let now = chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string();
         for scene in &mut report.scenes {
+            scene.attachments.compared = Some(now.clone());
             scene.attachments.trends = trend::trends(&entries, &scene.comparison);
         }
         report::write(&report, &self.arguments.out)?;

@@ -3,7 +3,7 @@
 use super::{Context, JsonArgument};
 use crate::error::{ExitStatus, Result};
 
-/// Runs the checks; missing programs are told, not failed on: stored solutions need none of them.
+/// Runs the checks. If anything is missing, the exit status says so too; what is stored can be compared all the same.
 pub fn run(context: &Context, arguments: JsonArgument) -> Result<ExitStatus> {
     let checks = crate::reference::doctor(&context.store());
     if arguments.json {
@@ -22,5 +22,6 @@ pub fn run(context: &Context, arguments: JsonArgument) -> Result<ExitStatus> {
             super::print(&line)?;
         }
     }
-    Ok(ExitStatus::Pass)
+    let is_complete = checks.iter().all(|check| check.found.is_some());
+    Ok(if is_complete { ExitStatus::Pass } else { ExitStatus::Solver })
 }

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    compare: compare::Arguments,
+    pub(super) compare: compare::Arguments,
     /// Write the checks as JUnit XML to this file
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,

@@ -4,17 +4,16 @@ use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::reference::{self, Resolution};
-use crate::scene::{self, Scene};
 use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file of kind seal-seat, or the name of a shipped scene
+    /// Scene file of kind seal-seat, the name of a shipped scene, or `-` for standard input
     scene: String,
-    /// The mesh file, .vtu; a description .json appears beside it
+    /// The mesh file, .vtu; a description .json appears beside it [default: the scene's name]
     #[arg(long, value_name = "FILE")]
-    out: PathBuf,
+    out: Option<PathBuf>,
     /// How fine the mesh is
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
@@ -31,19 +30,20 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     if !(0.1..=10.0).contains(&factor) {
         return Err(Error::Usage(format!("--size-factor {factor} has to lie between 0.1 and 10")));
     }
-    let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
+    let (_, scene) = super::read_scene(&arguments.scene)?;
     scene.seal_seat()?;
+    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.vtu", scene.name)));
     let python = reference::python()?;
     let bar = Bar::new(context, &scene.name);
     bar.part("mesh: gmsh", 0.0);
-    let info = reference::make_seat_mesh(&python, &scene, arguments.resolution, factor, &arguments.out)?;
+    let info = reference::make_seat_mesh(&python, &scene, arguments.resolution, factor, &out)?;
     drop(bar);
     if arguments.json.json {
         super::print_json(&info)?;
     } else {
         context.note(format_args!(
             "{}: {} nodes, {} dofs, {} tetrahedra of order {}, quality {:.2} at worst, {:.2} on average",
-            arguments.out.display(),
+            out.display(),
             info.nodes,
             info.dofs,
             info.elements,

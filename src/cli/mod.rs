@@ -21,6 +21,7 @@ mod study;
 mod sweep;
 
 use crate::error::{Error, ExitStatus, Result};
+use crate::scene::{self, Scene};
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
 use std::ffi::OsString;
@@ -32,8 +33,9 @@ use std::path::PathBuf;
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Folder of the stored references [default: $IMPACTCHECK_STORE, else the project's fem_reference/solutions, where what is
-    /// not in DIR is looked for all the same, except by `reference`, which fills DIR]
+    /// Folder of the stored references [default: $IMPACTCHECK_STORE, else the user's data folder; new ones of a checkout's own
+    /// scenes go to its fem_reference/solutions]. What is not in DIR is looked for among those shipped with the project, except
+    /// by `reference`, which fills DIR
     #[arg(long, global = true, value_name = "DIR")]
     store: Option<PathBuf>,
     /// Say nothing but results and errors
@@ -82,7 +84,7 @@ enum Command {
     /// Try the time integration on random scenes over the whole admissible range
     #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
     Stress(stress::Arguments),
-    /// Tell what is installed, and the command that installs what is missing
+    /// Tell what is installed, and the command that installs what is missing (exit status 12 if anything is)
     #[command(after_help = "Example: impactcheck doctor")]
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
@@ -152,9 +154,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     let result = match cli.command {
         Command::Reduced(arguments) => reduced::run(&context, &arguments),
         Command::Reference(arguments) => reference::run(&context, &arguments),
-        Command::Compare(arguments) => compare::run(&context, &arguments),
+        Command::Compare(arguments) => compare::run(&context, &arguments.with_tables_measured()),
         Command::Mesh(arguments) => mesh::run(&context, &arguments),
-        Command::Gate(arguments) => gate::run(&context, &arguments),
+        Command::Gate(mut arguments) => {
+            arguments.compare = arguments.compare.with_tables_measured();
+            gate::run(&context, &arguments)
+        }
         Command::Study(arguments) => study::run(&context, &arguments),
         Command::Optimise(arguments) => optimise::run(&context, &arguments),
         Command::Bench(arguments) => bench::run(&context, &arguments),
@@ -169,6 +174,18 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         eprintln!("{}", describe(&error));
         error.exit_status()
     })
+}
+
+/// The scene that `argument` names, and its file; `-` is standard input, which can be read only once.
+fn read_scene(argument: &str) -> Result<(PathBuf, Scene)> {
+    if argument == "-" {
+        return Ok((
+            PathBuf::from(argument),
+            Scene::read_from("standard input", &mut std::io::stdin().lock())?,
+        ));
+    }
+    let file = scene::resolve(argument)?;
+    Scene::read(&file).map(|scene| (file, scene))
 }
 
 /// The error as a person reads it; scene errors come with the place in the file.

@@ -28,8 +28,8 @@ impl Kind {
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of the scene; the file is NAME.toml
-    name: String,
+    /// Name of the scene, or its file; the file is NAME.toml
+    name: PathBuf,
     /// What strikes what
     #[arg(long, value_enum, default_value = "plate-impact")]
     kind: Kind,
@@ -40,14 +40,17 @@ pub struct Arguments {
 
 /// Writes a valid scene file; one that exists stays as it is.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let file = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.toml", arguments.name)));
+    let named = arguments.name.to_string_lossy();
+    let named = named.strip_suffix(".toml").unwrap_or(&named);
+    let file = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{named}.toml")));
+    let name = named.rsplit(std::path::is_separator).next().unwrap_or(named);
     if file.exists() {
         return Err(Error::Usage(format!(
             "{} exists and stays as it is; take another name, or another file with --out",
             file.display()
         )));
     }
-    let text = arguments.kind.starter().replacen("NAME", &arguments.name, 1);
+    let text = arguments.kind.starter().replacen("NAME", name, 1);
     // a name that can't be one is refused as it would be in a file
     Scene::parse(&file.display().to_string(), &text)?;
     write_file(&file, text.as_bytes())?;

@@ -10,14 +10,15 @@ use crate::kinds::plate_impact::reduced::Reduced;
 use crate::kinds::seal_seat::{self, SeatMesh, SeatModel};
 use crate::reference::{self, Resolution};
 use crate::report::format::{prefixed, with_unit};
-use crate::result::{ContactPressure, History, Quantity, Summary};
-use crate::scene::{self, Model, Scene, Setup};
+use crate::report::{self, TableFormat};
+use crate::result::{ContactPressure, Outcome, Quantity, Summary};
+use crate::scene::{Model, Scene, Setup};
 use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, or the name of a shipped scene
+    /// Scene file, the name of a shipped scene, or `-` for standard input
     scene: String,
     /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility), or auto, the cheapest whose
     /// estimated error meets the tolerance [default: the scene's, else C]
@@ -34,7 +35,7 @@ pub struct Arguments {
     /// Mesh of the seat (.vtu, tetrahedra), for seal-seat scenes [default: that in meshes/ or the cache, else a new one]
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Write displacement, velocity and force over time to this CSV file
+    /// Write displacement, velocity and force over time to this file (.csv or .parquet)
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
     #[command(flatten)]
@@ -48,15 +49,19 @@ const LARGEST_INTEGRATION: f64 = 1e-2;
 
 /// Runs the model and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
-    let (summary, history) = match &scene.setup {
+    if let Some(file) = &arguments.history {
+        // refused before anything is computed
+        TableFormat::of(file)?;
+    }
+    let (_, scene) = super::read_scene(&arguments.scene)?;
+    let outcome = match &scene.setup {
         Setup::PlateImpact(_) => plate(&scene, arguments)?,
         Setup::SealSeat(_) => seat(context, &scene, arguments)?,
     };
-    finish(context, arguments, &summary, history)
+    finish(context, arguments, &outcome)
 }
 
-fn plate(scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<History>)> {
+fn plate(scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
     if let Some(mesh) = &arguments.mesh {
         return Err(Error::Usage(format!(
             "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
@@ -79,11 +84,8 @@ fn plate(scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<Histor
             (Reduced::auto(scene, tolerance)?, choice::integration_tolerance(tolerance))
         }
     };
-    if arguments.history.is_none() {
-        return Ok((reduced.run(tolerance)?, None));
-    }
-    let outcome = reduced.run_with_history(tolerance)?;
-    Ok((outcome.summary, Some(outcome.history)))
+    // with its history, of which the deflection is judged
+    reduced.run_with_history(tolerance)
 }
 
 /// The tolerance of the time integration of a model that is named.
@@ -97,7 +99,7 @@ fn integration_tolerance(arguments: &Arguments) -> Result<f64> {
     Ok(tolerance)
 }
 
-fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<(Summary, Option<History>)> {
+fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
     let model = match arguments.model {
         Some(AskedModel::Named(model)) => model,
         Some(AskedModel::Auto) => {
@@ -120,6 +122,11 @@ fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<(Summ
     let reduced = SeatModel::new_with(scene, model, arguments.modes, &mesh, &cache, &mut |part, done| {
         bar.part(part, done)
     })?;
+    let tolerance = match arguments.tolerance {
+        Some(_) => integration_tolerance(arguments)?,
+        None => seal_seat::DEFAULT_TOLERANCE,
+    };
+    let outcome = reduced.run_with_history(tolerance)?;
     drop(bar);
     context.note(format_args!(
         "mesh {}, {} degrees of freedom; set up in {:.2} s",
@@ -127,26 +134,14 @@ fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<(Summ
         reduced.dofs,
         reduced.setup_seconds
     ));
-    let tolerance = match arguments.tolerance {
-        Some(_) => integration_tolerance(arguments)?,
-        None => seal_seat::DEFAULT_TOLERANCE,
-    };
-    if arguments.history.is_none() {
-        return Ok((reduced.run(tolerance)?, None));
-    }
-    let outcome = reduced.run_with_history(tolerance)?;
-    Ok((outcome.summary, Some(outcome.history)))
+    Ok(outcome)
 }
 
-/// Writes the history, if there is one, and prints warnings and summary.
-fn finish(
-    context: &Context,
-    arguments: &Arguments,
-    summary: &Summary,
-    history: Option<History>,
-) -> Result<ExitStatus> {
-    if let (Some(path), Some(history)) = (&arguments.history, &history) {
-        crate::file::write_file(path, &csv(history)?)?;
+/// Writes the history, if it is asked for, and prints warnings and summary.
+fn finish(context: &Context, arguments: &Arguments, outcome: &Outcome) -> Result<ExitStatus> {
+    let Outcome { summary, history } = outcome;
+    if let Some(path) = &arguments.history {
+        crate::file::write_file(path, &report::history_file(history, TableFormat::of(path)?)?)?;
         context.note(format_args!("history of {} samples in {}", history.len(), path.display()));
     }
     for warning in &summary.warnings {
@@ -207,18 +202,4 @@ pub fn table(summary: &Summary) -> String {
     lines.push(format!("  {} steps in {seconds}, set-up apart", summary.steps));
     lines.extend(summary.choice.as_ref().map(asked_model::told));
     lines.join("\n")
-}
-
-/// The history as a CSV file with the columns of a reference's history.
-fn csv(history: &History) -> Result<Vec<u8>> {
-    let written = || -> std::result::Result<Vec<u8>, csv::Error> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(std::iter::once("time").chain(history.curves.iter().map(|curve| curve.name)))?;
-        for (i, time) in history.time.iter().enumerate() {
-            let row = history.curves.iter().map(|curve| curve.values[i]);
-            writer.serialize(std::iter::once(*time).chain(row).collect::<Vec<f64>>())?;
-        }
-        writer.into_inner().map_err(|e| e.into_error().into())
-    };
-    written().map_err(|e| Error::Internal(format!("writing CSV: {e}")))
 }

@@ -4,12 +4,12 @@ use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
-use crate::scene::{self, Geometry, Scene};
+use crate::scene::{Geometry, Scene};
 use clap::Args;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, or the name of a shipped scene
+    /// Scene file, the name of a shipped scene, or `-` for standard input
     scene: String,
     /// How fine the mesh is: coarse, paper or fine
     #[arg(long, default_value = "paper")]
@@ -35,15 +35,14 @@ pub struct Arguments {
 
 /// Finds or computes the reference and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let scene = Scene::read(scene::resolve(&arguments.scene)?)?;
+    let (file, scene) = super::read_scene(&arguments.scene)?;
     if arguments.np != 1 && scene.reference.geometry == Geometry::Axisymmetric {
         return Err(Error::Usage(format!(
             "--np {}: an axisymmetric reference runs as one process",
             arguments.np
         )));
     }
-    let store = context.store();
-    let (scene, store) = (&scene, &store);
+    let (scene, store) = (&scene, &context.store().for_scene_in(&file));
     let resolution = arguments.target_error.map_or(arguments.resolution, Resolution::Within);
     let wanted = !arguments.fresh && arguments.stress_at.is_empty() && arguments.fields == 0;
     let stored = match wanted.then(|| store.find(scene, resolution)) {
@@ -55,8 +54,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             if let Some(lookup @ (Lookup::Stale { .. } | Lookup::Damaged { .. })) = &other {
                 context.note(format_args!("{}; computing it again", problem(scene, resolution, lookup)));
             }
-            if let (Some(Lookup::Missing), Lookup::Found(shipped)) =
-                (&other, Store::shipped().find(scene, resolution))
+            if let (Some(Lookup::Missing), Ok(Lookup::Found(shipped))) =
+                (&other, Store::shipped().map(|shipped| shipped.find(scene, resolution)))
             {
                 context.note(format_args!(
                     "computing it for {}; comparisons would find {} as well",

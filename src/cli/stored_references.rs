@@ -4,6 +4,7 @@ use super::{Context, reference};
 use crate::error::{Error, Result};
 use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
 use crate::scene::Scene;
+use std::path::PathBuf;
 
 /// The references of `scenes`, from the store or computed.
 ///
@@ -13,11 +14,11 @@ pub(super) fn look_up(
     context: &Context,
     resolution: Resolution,
     compute: bool,
-    scenes: &[&Scene],
+    scenes: &[(PathBuf, Scene)],
 ) -> Result<Vec<Stored>> {
-    let store = context.store();
     let (mut found, mut problems) = (Vec::new(), Vec::new());
-    for scene in scenes {
+    for (file, scene) in scenes {
+        let store = context.store().for_scene_in(file);
         match store.find_here_or_shipped(scene, resolution) {
             Lookup::Found(stored) => found.push(*stored),
             Lookup::Missing | Lookup::Stale { .. } if compute => {
@@ -26,7 +27,7 @@ pub(super) fn look_up(
             }
             other => {
                 let mut problem = reference::problem(scene, resolution, &other);
-                let shipped = Some(Store::shipped()).filter(|shipped| *shipped != store);
+                let shipped = Store::shipped().ok().filter(|shipped| *shipped != store);
                 for store in [Some(&store), shipped.as_ref()].into_iter().flatten() {
                     let there: Vec<String> =
                         store.resolutions(scene).into_iter().map(Resolution::argument).collect();
@@ -46,11 +47,12 @@ pub(super) fn look_up(
     Ok(found)
 }
 
-/// Where a reference comes from: that it is not from the caller's own store is always said.
+/// Where a reference comes from: that it is not from the store the caller named is always said.
 pub(super) fn tell_reused(context: &Context, stored: &Stored) {
     let scene = &stored.outcome.summary.scene;
     let made = stored.provenance["created"].as_str().map_or(String::new(), |when| format!(", made {when}"));
-    if stored.folder.starts_with(context.store().root()) {
+    let store = context.store();
+    if !store.is_named() || stored.folder.starts_with(store.root()) {
         context.detail(format_args!("{scene}: reference from the store{made}"));
     } else {
         let folder = stored.folder.display();

@@ -4,7 +4,8 @@ use super::progress::Counter;
 use super::{Context, JsonArgument};
 use crate::error::{ExitStatus, Result};
 use crate::report;
-use crate::study::sweep::{self, Format, Plan, Shard, Table};
+use crate::report::TableFormat;
+use crate::study::sweep::{self, Plan, Shard, Table};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -43,7 +44,7 @@ pub struct Arguments {
     out: Option<PathBuf>,
     /// Format of the table: csv or parquet
     #[arg(long, default_value = "csv")]
-    format: Format,
+    format: TableFormat,
     #[command(flatten)]
     json: JsonArgument,
 }

@@ -104,8 +104,7 @@ impl SceneComparison {
 
     /// Verdicts of the rows of all models that have a tolerance.
     pub fn gated_verdicts(&self) -> impl Iterator<Item = Verdict> {
-        let rows = self.models.iter().flat_map(|model| &model.discrepancies);
-        rows.filter(|row| row.tolerance.is_some()).map(|row| row.verdict)
+        self.models.iter().flat_map(ModelComparison::gated_verdicts)
     }
 
     /// Adds the discrepancy budget (see [`mod@budget`]) if models B and C are both compared.
@@ -174,9 +173,14 @@ impl ModelComparison {
         self.discrepancies.iter().filter(|d| d.tolerance.is_some()).max_by(|a, b| used(a).total_cmp(&used(b)))
     }
 
+    /// Verdicts of the rows that have a tolerance.
+    pub fn gated_verdicts(&self) -> impl Iterator<Item = Verdict> {
+        self.discrepancies.iter().filter(|row| row.tolerance.is_some()).map(|row| row.verdict)
+    }
+
     /// Number of rows that have a tolerance.
     pub fn gated(&self) -> usize {
-        self.discrepancies.iter().filter(|d| d.tolerance.is_some()).count()
+        self.gated_verdicts().count()
     }
 
     /// Number of gated rows whose tolerance lies about a known discrepancy.

@@ -1,9 +1,9 @@
 //! What a check comes to, and what the gate makes of it.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Outcome of a check, and of everything made of checks: the worst of its parts, in this order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// No bound was given.

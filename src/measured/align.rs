@@ -259,15 +259,18 @@ impl Alignment<'_> {
     fn flight(&self, channel: &Channel, shift: f64) -> Result<Flight> {
         let Contact { start, end } = self.contact(channel.quantity);
         let samples = || self.record.time.iter().map(|t| t - shift).zip(channel.values.iter().copied());
+        let early = samples().take_while(|(t, _)| *t < 0.0).count();
         let before: Vec<(f64, f64)> = samples().filter(|(t, _)| *t < start).collect();
         let after: Vec<(f64, f64)> = samples().filter(|(t, _)| *t > end).collect();
         if before.len() < FEWEST {
             return Err(Error::Scene(miette::miette!(
                 help = "record from before the first touch, at least some periods of the bandwidth",
-                "{}: {} has {} samples before the impact; at least {FEWEST} of free flight are needed for its offset",
+                "{}: {} has {early} samples before the first touch, {} of them earlier than {:.3e} s before it, as far as the bandwidth of {:.3e} Hz smears the impact; at least {FEWEST} are needed there for its offset",
                 self.record.file.display(),
                 channel.quantity,
-                before.len()
+                before.len(),
+                -start,
+                self.bandwidth
             )));
         }
         let outer = channel.quantity.starts_with("outer");

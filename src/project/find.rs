@@ -9,24 +9,27 @@ use std::path::{Path, PathBuf};
 /// without `.toml`. A path wins over a name.
 ///
 /// # Errors
-/// [`Error::Usage`] if there is neither; it lists the shipped scenes.
+/// [`Error::Usage`] if there is neither; it lists the shipped scenes. As [`project_root`] if they are needed.
 pub fn resolve(argument: &str) -> Result<PathBuf> {
-    resolve_in(&project_root().join("scenes"), argument)
+    let (path, beside) = (PathBuf::from(argument), PathBuf::from(format!("{argument}.toml")));
+    if path.is_file() {
+        return Ok(path);
+    }
+    match project_root() {
+        Err(_) if beside.is_file() => Ok(beside),
+        root => resolve_in(&root?.join("scenes"), argument, path, beside),
+    }
 }
 
 /// The scene files the project ships, sorted by name.
 ///
 /// # Errors
-/// [`Error::Io`] if the folder `scenes/` can't be read.
+/// As [`project_root`]; [`Error::Io`] if the folder `scenes/` can't be read.
 pub fn shipped() -> Result<Vec<PathBuf>> {
-    scenes_in(&project_root().join("scenes"))
+    scenes_in(&project_root()?.join("scenes"))
 }
 
-fn resolve_in(folder: &Path, argument: &str) -> Result<PathBuf> {
-    let path = PathBuf::from(argument);
-    if path.is_file() {
-        return Ok(path);
-    }
+fn resolve_in(folder: &Path, argument: &str, path: PathBuf, beside: PathBuf) -> Result<PathBuf> {
     let is_name = !argument.is_empty() && !argument.contains(['/', '\\']);
     for candidate in [format!("{argument}.toml"), argument.to_owned()] {
         let shipped = folder.join(candidate);
@@ -38,7 +41,6 @@ fn resolve_in(folder: &Path, argument: &str) -> Result<PathBuf> {
         // A folder, a pipe: what it is worth shows when it is read.
         return Ok(path);
     }
-    let beside = PathBuf::from(format!("{argument}.toml"));
     if beside.is_file() {
         return Ok(beside);
     }

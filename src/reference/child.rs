@@ -1,9 +1,10 @@
 //! A running `fem_reference`: its progress, what it says when it fails, and its end.
 
+use crate::interrupt::Running;
 use serde::Deserialize;
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read};
-use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
+use std::process::{ChildStdout, Command, ExitStatus, Stdio};
 use std::thread::JoinHandle;
 
 /// How far a solver is.
@@ -53,31 +54,19 @@ const LOG_LINES: usize = 12;
 /// Characters of a line that are shown.
 const SHOWN: usize = 200;
 
-/// A child that does not outlive its owner, however that ends.
-struct Guarded(Child);
-
-impl Drop for Guarded {
-    fn drop(&mut self) {
-        // Both do nothing to a child that has ended and been waited for.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-/// Runs `command` to its end, handing on its progress. If this process dies, the child's next
-/// line of progress finds the pipe closed and ends it; Ctrl-C in a terminal reaches both.
+/// Runs `command` to its end, handing on its progress.
 ///
 /// # Errors
 /// What the system says if the program can't be started or waited for.
 pub(super) fn run(mut command: Command, progress: &mut dyn FnMut(&Progress)) -> std::io::Result<Ending> {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = Guarded(command.spawn()?);
-    let log = child.0.stderr.take().map(|stderr| std::thread::spawn(move || tail(stderr)));
-    let (error, stray) = match child.0.stdout.take() {
+    let mut child = Running::start(&mut command)?;
+    let log = child.child().stderr.take().map(|stderr| std::thread::spawn(move || tail(stderr)));
+    let (error, stray) = match child.child().stdout.take() {
         Some(stdout) => listen(stdout, progress)?,
         None => (None, None),
     };
-    let status = child.0.wait()?;
+    let status = child.wait()?;
     let log = log.and_then(|thread: JoinHandle<String>| thread.join().ok()).unwrap_or_default();
     Ok(Ending { status, error, stray, log })
 }

@@ -1,8 +1,11 @@
 //! What the reference needs and what of it is there.
 
 use super::{Lookup, Resolution, Store, python};
+use crate::project::project_root;
 use crate::scene::{Scene, shipped};
 use serde::Serialize;
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::process::{Command, Stdio};
 
 /// One thing that is needed, and whether it is there.
@@ -18,14 +21,22 @@ pub struct Check {
     pub install: String,
 }
 
-/// Checks Python and its modules, the C compiler, the store and its entries for the shipped scenes.
+/// Checks the project's files, Python and all it will import, the C compiler, MPI's launcher, the store and its entries for
+/// the shipped scenes.
 pub fn doctor(store: &Store) -> Vec<Check> {
-    let mut checks = interpreter();
+    let mut checks = vec![project()];
+    checks.extend(interpreter());
     checks.push(Check {
         name: "C compiler".to_owned(),
         found: compiler(),
         needed_for: "computing references: dolfinx and the time loop compile their kernels".to_owned(),
         install: "sudo apt-get install gcc libc6-dev".to_owned(),
+    });
+    checks.push(Check {
+        name: "mpirun".to_owned(),
+        found: version_of("mpirun"),
+        needed_for: "several processes (`reference --np`)".to_owned(),
+        install: "sudo apt-get install openmpi-bin".to_owned(),
     });
     checks.push(store_folder(store));
     for path in shipped().unwrap_or_default() {
@@ -36,48 +47,83 @@ pub fn doctor(store: &Store) -> Vec<Check> {
     checks
 }
 
+fn project() -> Check {
+    let root = project_root();
+    Check {
+        name: "project files".to_owned(),
+        needed_for: match &root {
+            Ok(_) => "shipped scenes, their references, the package fem_reference".to_owned(),
+            Err(error) => format!("shipped scenes, their references, the package fem_reference; {error}"),
+        },
+        found: root.ok().map(|root| root.display().to_string()),
+        install: "export IMPACTCHECK_HOME=FOLDER, a checkout of the project".to_owned(),
+    }
+}
+
+/// Python and all modules that a reference needs, as the package itself imports them.
 fn interpreter() -> Vec<Check> {
-    let best = python::best();
-    let version = |module: &str| best.as_ref().and_then(|b| b.modules.get(module).cloned().flatten());
-    let check = |name: &str, found: Option<String>, needed_for: &str, package: &str| Check {
-        name: name.to_owned(),
-        found,
-        needed_for: needed_for.to_owned(),
-        install: format!("sudo apt-get install {package}"),
+    let (modules, why) = match python::best() {
+        Ok(mut best) => {
+            best.modules.entry("python".to_owned()).and_modify(|version| {
+                *version = version.take().map(|version| format!("{version} ({})", best.path.display()));
+            });
+            (best.modules, String::new())
+        }
+        Err(why) => (BTreeMap::from([("python".to_owned(), None)]), format!("; {why}")),
     };
-    let python = best.as_ref().zip(version("python")).map(|(b, v)| format!("{v} ({})", b.path.display()));
-    vec![
-        check("Python", python, "computing references that are not stored", "python3"),
-        check("dolfinx", version("dolfinx"), "computing references: finite elements", "python3-dolfinx"),
-        check("gmsh", version("gmsh"), "computing references: meshes", "python3-gmsh"),
-        check("cffi", version("cffi"), "computing references: compiled element kernels", "python3-cffi"),
-    ]
+    let check = |(name, found): (String, Option<String>)| {
+        let (needed_for, package) = purpose(&name);
+        Check {
+            found,
+            needed_for: format!("computing references{needed_for}{why}"),
+            install: format!("sudo apt-get install {package}"),
+            name: if name == "python" { "Python".to_owned() } else { name },
+        }
+    };
+    modules.into_iter().map(check).collect()
+}
+
+/// What a module is for, and Debian's package of it.
+fn purpose(module: &str) -> (&'static str, &'static str) {
+    match module {
+        "python" => (" that are not stored", "python3"),
+        "gmsh" => (": meshes", "python3-gmsh"),
+        "meshio" => (": files of meshes and fields", "python3-meshio"),
+        "cffi" => (": compiled element kernels", "python3-cffi"),
+        "numpy" => (": arrays", "python3-numpy"),
+        "scipy" => (": sparse matrices", "python3-scipy"),
+        "slepc4py" => (": eigenmodes", "python3-slepc4py"),
+        _ => (": finite elements", "python3-dolfinx"),
+    }
 }
 
 /// First line a C compiler says about itself.
 fn compiler() -> Option<String> {
     let asked = std::env::var("CC").ok().filter(|c| !c.is_empty());
     let names = asked.map_or_else(|| ["cc", "gcc", "clang"].map(str::to_owned).to_vec(), |c| vec![c]);
-    names.iter().find_map(|name| {
-        let output = Command::new(name).arg("--version").stdin(Stdio::null()).output().ok()?;
-        let text = String::from_utf8_lossy(&output.stdout).into_owned();
-        output.status.success().then(|| text.lines().next().unwrap_or("unknown version").to_owned())
-    })
+    names.iter().find_map(|name| version_of(name))
+}
+
+/// First line a program says about itself.
+fn version_of(program: &str) -> Option<String> {
+    let output = Command::new(program).arg("--version").stdin(Stdio::null()).output().ok()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    output.status.success().then(|| text.lines().next().unwrap_or("unknown version").to_owned())
 }
 
 fn store_folder(store: &Store) -> Check {
     let root = store.root().display().to_string();
-    let read = std::fs::read_dir(store.root());
-    let needed_for = match &read {
-        Ok(_) => "references that need no solver".to_owned(),
-        Err(error) => format!("references that need no solver; {root} can't be read: {error}"),
+    let needed_for = "references that need no solver".to_owned();
+    let (found, needed_for) = match std::fs::read_dir(store.root()) {
+        Ok(_) => (Some(root), needed_for),
+        // It is made with the first solution.
+        Err(e) if e.kind() == ErrorKind::NotFound => {
+            (Some(format!("{root} (nothing there yet)")), needed_for)
+        }
+        Err(e) => (None, format!("{needed_for}; {root} can't be read: {e}")),
     };
-    Check {
-        name: "store of references".to_owned(),
-        found: read.ok().map(|_| root),
-        needed_for,
-        install: "impactcheck reference SCENE".to_owned(),
-    }
+    let install = "impactcheck reference SCENE".to_owned();
+    Check { name: "store of references".to_owned(), found, needed_for, install }
 }
 
 /// The state of one entry. Only the `paper` resolution is expected to be there.

@@ -1,8 +1,9 @@
 //! One stored solution: a folder whose files are verified before they are believed.
 
 use super::{CurveBands, history_file};
-use crate::kinds::Kind;
+use crate::kinds;
 use crate::result::{Outcome, SCHEMA_VERSION, Source, Summary};
+use crate::scene::Scene;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -49,11 +50,13 @@ pub(super) enum MeshFiles {
     Optional,
 }
 
-/// Verifies the folder's checksums and reads it.
-pub(super) fn load(kind: &dyn Kind, folder: &Path, mesh_files: MeshFiles) -> Result<Stored, Damage> {
+/// Verifies the folder's checksums and reads it; what the solver can't know, how near the solution comes to the bounds of its
+/// theories, is judged by `scene`.
+pub(super) fn load(scene: &Scene, folder: &Path, mesh_files: MeshFiles) -> Result<Stored, Damage> {
     verify(folder, mesh_files)?;
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
-    let summary = Summary::read(kind.quantities(), &text(folder, SUMMARY)?)
+    let kind = kinds::of(scene);
+    let mut summary = Summary::read(kind.quantities(), &text(folder, SUMMARY)?)
         .map_err(|e| damage(SUMMARY, format!("is not what is expected: {e}")))?;
     let provenance: Value = read_json(folder, PROVENANCE)?;
     let (history, bands) =
@@ -71,6 +74,7 @@ pub(super) fn load(kind: &dyn Kind, folder: &Path, mesh_files: MeshFiles) -> Res
             format!("scene_hash is {}, but {} in {SUMMARY}", provenance["scene_hash"], summary.scene_hash);
         return Err(damage(PROVENANCE, reason));
     }
+    kind.judge(scene, &mut summary, Some(&history));
     Ok(Stored {
         outcome: Outcome { summary, history },
         bands,

@@ -24,7 +24,7 @@ pub use entry::Stored;
 pub use fields::FieldMesh;
 pub use identity::settings_hash;
 pub use modes::{plate_modes, seat_frequencies};
-pub use python::{python, versions};
+pub use python::python;
 pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_mesh_with, seat_meshes};
 pub use section::MeshSection;
 pub use solve::{Wish, solve, solve_with};

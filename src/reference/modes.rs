@@ -2,6 +2,7 @@
 
 use super::{Resolution, identity, python};
 use crate::body::continuum::PlateMode;
+use crate::interrupt::Scratch;
 use crate::scene::Scene;
 use crate::{Error, Result};
 use serde::Deserialize;
@@ -52,11 +53,12 @@ pub fn seat_frequencies(python: &Path, scene: &Scene, mesh: &Path, count: usize)
 fn modes(python: &Path, scene: &Scene, mesh: Option<&Path>, count: usize, body: &str) -> Result<Vec<Mode>> {
     let failed = |what: String| Error::Solver(format!("modes of {body} by SLEPc: {what}"));
     let folder = std::env::temp_dir();
-    let folder = tempfile::tempdir_in(&folder).map_err(|e| Error::io("writing into", &folder, e))?;
+    let folder =
+        Scratch::new_in(&folder, "impactcheck-").map_err(|e| Error::io("writing into", &folder, e))?;
     let input = folder.path().join("scene.json");
     let document = identity::solver_document(scene, Resolution::Paper)?;
     std::fs::write(&input, document.to_string()).map_err(|e| Error::io("writing", &input, e))?;
-    let mut command = python::fem_reference(python);
+    let mut command = python::fem_reference(python)?;
     command.args(["modes", "--count", &count.to_string(), "--scene"]).arg(&input);
     if let Some(mesh) = mesh {
         command.arg("--mesh").arg(mesh);

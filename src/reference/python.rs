@@ -2,7 +2,6 @@
 
 use crate::project::project_root;
 use crate::{Error, Result};
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -12,20 +11,7 @@ use std::process::{Command, Stdio};
 const PYTHON_VARIABLE: &str = "IMPACTCHECK_PYTHON";
 
 /// How the modules are installed on Debian.
-pub(super) const INSTALL: &str =
-    "`sudo apt-get update` and `sudo apt-get install python3-dolfinx python3-gmsh`";
-
-/// Imports the modules and prints their versions; a module that is there but broken counts as missing.
-const PROBE: &str = r#"
-import importlib, json, platform
-found = {"python": platform.python_version()}
-for name in ("dolfinx", "gmsh", "cffi"):
-    try:
-        found[name] = str(getattr(importlib.import_module(name), "__version__", "unknown"))
-    except Exception:
-        found[name] = None
-print("\n" + json.dumps(found))
-"#;
+pub(super) const INSTALL: &str = "`sudo apt-get update` and `sudo apt-get install python3-dolfinx python3-slepc4py python3-gmsh python3-meshio python3-scipy`";
 
 /// An interpreter and the versions of what it can import; `None` = missing.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,17 +21,20 @@ pub(super) struct Interpreter {
 }
 
 impl Interpreter {
+    /// Lets the interpreter import all that a reference needs; a module that is there but broken counts as missing.
     fn probe(path: &Path) -> std::result::Result<Self, String> {
-        let mut command = Command::new(path);
-        command.args(["-c", PROBE]).stdin(Stdio::null());
-        let output = command.output().map_err(|e| format!("it can't be run ({e})"))?;
+        let mut command = fem_reference(path).map_err(|e| e.to_string())?;
+        let output = command.arg("versions").output().map_err(|e| format!("it can't be run ({e})"))?;
         let text = String::from_utf8_lossy(&output.stdout);
-        // Modules may print while they are imported; the answer is the last line.
-        let answer = text.lines().last().and_then(|line| serde_json::from_str(line).ok());
-        match answer {
-            Some(modules) if output.status.success() => Ok(Interpreter { path: path.to_path_buf(), modules }),
-            _ => Err(format!("it is no working Python ({})", output.status)),
-        }
+        // Modules may print while they are imported; the answer comes last.
+        let answer = text.rfind('{').and_then(|at| serde_json::from_str(&text[at..]).ok());
+        let Some(mut modules) = answer.filter(|_| output.status.success()) else {
+            let log = String::from_utf8_lossy(&output.stderr);
+            let last = log.lines().last().map(|line| format!(": {line}")).unwrap_or_default();
+            return Err(format!("it is no working Python ({}{last})", output.status));
+        };
+        BTreeMap::remove(&mut modules, "compiler");
+        Ok(Interpreter { path: path.to_path_buf(), modules })
     }
 
     fn missing(&self) -> Vec<&str> {
@@ -54,12 +43,12 @@ impl Interpreter {
 }
 
 /// The Python that runs `fem_reference`: the one the environment variable `IMPACTCHECK_PYTHON`
-/// names, else the first of `/usr/bin/python3` and every `python3` on `PATH` that can import
-/// dolfinx, gmsh and cffi.
+/// names, else the first of `/usr/bin/python3` and every `python3` on `PATH` that can import it with all that it needs.
 ///
 /// # Errors
-/// [`Error::Solver`] if there is none; it says where was looked and what was missing.
+/// [`Error::Solver`] if there is none; it says where was looked and what was missing. As [`project_root`].
 pub fn python() -> Result<PathBuf> {
+    project_root()?;
     find(asked(), &std::env::var_os("PATH").unwrap_or_default())
 }
 
@@ -76,11 +65,11 @@ fn find(asked: Option<PathBuf>, path: &OsStr) -> Result<PathBuf> {
     }
     Err(Error::Solver(match asked {
         Some(_) => format!(
-            "the Python named by {PYTHON_VARIABLE} can't run the reference: {}; name one that imports dolfinx, gmsh and cffi, or install them on Debian with {INSTALL}",
+            "the Python named by {PYTHON_VARIABLE} can't run the reference: {}; name one that imports dolfinx, gmsh and meshio, or install them on Debian with {INSTALL}",
             looked.join("; ")
         ),
         None => format!(
-            "the reference needs a Python that imports dolfinx, gmsh and cffi; looked at: {}; install them on Debian with {INSTALL}, or name an interpreter in {PYTHON_VARIABLE}",
+            "the reference needs a Python that imports dolfinx, gmsh and meshio; looked at: {}; install them on Debian with {INSTALL}, or name an interpreter in {PYTHON_VARIABLE}",
             if looked.is_empty() {
                 "/usr/bin/python3 and PATH, no python3 there".to_owned()
             } else {
@@ -90,13 +79,21 @@ fn find(asked: Option<PathBuf>, path: &OsStr) -> Result<PathBuf> {
     }))
 }
 
-/// The best interpreter there is, complete or not; `None` if no candidate runs.
-pub(super) fn best() -> Option<Interpreter> {
+/// The best interpreter there is, complete or not.
+///
+/// # Errors
+/// Why none of the candidates runs.
+pub(super) fn best() -> std::result::Result<Interpreter, String> {
     let path = std::env::var_os("PATH").unwrap_or_default();
-    let found: Vec<Interpreter> =
-        candidates(asked(), &path).iter().filter_map(|path| Interpreter::probe(path).ok()).collect();
-    let fewest = found.iter().map(|i| i.missing().len()).min()?;
-    found.into_iter().find(|i| i.missing().len() == fewest)
+    let mut reasons = Vec::new();
+    let mut found: Vec<Interpreter> = Vec::new();
+    for path in candidates(asked(), &path) {
+        match Interpreter::probe(&path) {
+            Ok(interpreter) => found.push(interpreter),
+            Err(reason) => reasons.push(format!("{}: {reason}", path.display())),
+        }
+    }
+    found.into_iter().min_by_key(|i| i.missing().len()).ok_or_else(|| reasons.join("; "))
 }
 
 fn asked() -> Option<PathBuf> {
@@ -123,8 +120,11 @@ fn candidates(asked: Option<PathBuf>, path: &OsStr) -> Vec<PathBuf> {
 }
 
 /// A command that runs `fem_reference` of this project with `python`.
-pub(super) fn fem_reference(python: &Path) -> Command {
-    let root = project_root();
+///
+/// # Errors
+/// As [`project_root`].
+pub(super) fn fem_reference(python: &Path) -> Result<Command> {
+    let root = project_root()?;
     let mut paths = vec![root.clone()];
     paths.extend(std::env::split_paths(&std::env::var_os("PYTHONPATH").unwrap_or_default()));
     let mut command = Command::new(python);
@@ -133,25 +133,7 @@ pub(super) fn fem_reference(python: &Path) -> Command {
     if let Ok(joined) = std::env::join_paths(paths) {
         command.env("PYTHONPATH", joined);
     }
-    command
-}
-
-/// Versions of everything a reference depends on, as `fem_reference versions` reports them;
-/// null = missing.
-///
-/// # Errors
-/// [`Error::Solver`] if it can't be run or does not answer in JSON.
-pub fn versions(python: &Path) -> Result<Value> {
-    let failed =
-        |what: String| Error::Solver(format!("`{} -m fem_reference versions` {what}", python.display()));
-    let mut command = fem_reference(python);
-    let output = command.arg("versions").output().map_err(|e| failed(format!("can't be run: {e}")))?;
-    if !output.status.success() {
-        let log = String::from_utf8_lossy(&output.stderr);
-        let last = log.lines().last().unwrap_or("it says nothing").to_owned();
-        return Err(failed(format!("failed ({}): {last}", output.status)));
-    }
-    serde_json::from_slice(&output.stdout).map_err(|e| failed(format!("does not answer in JSON: {e}")))
+    Ok(command)
 }
 
 #[cfg(all(test, unix))]
@@ -167,8 +149,9 @@ mod tests {
         path
     }
 
-    const COMPLETE: &str = r#"{"python": "3.11.2", "dolfinx": "0.5.2", "gmsh": "4.8.4", "cffi": "1.15.1"}"#;
-    const BARE: &str = r#"{"python": "3.11.2", "dolfinx": null, "gmsh": null, "cffi": "1.15.1"}"#;
+    const COMPLETE: &str =
+        r#"{"python": "3.11.2", "dolfinx": "0.5.2", "gmsh": "4.8.4", "meshio": "5.3.4", "compiler": null}"#;
+    const BARE: &str = r#"{"python": "3.11.2", "dolfinx": null, "gmsh": "4.8.4", "meshio": null}"#;
 
     #[test]
     fn an_interpreter_without_dolfinx_is_named_with_what_installs_it() {
@@ -178,7 +161,7 @@ mod tests {
         assert_eq!(error.exit_status(), crate::ExitStatus::Solver);
         let said = error.to_string();
         let bare = bare.to_string_lossy();
-        for word in [&*bare, "has no dolfinx, gmsh", PYTHON_VARIABLE, INSTALL] {
+        for word in [&*bare, "has no dolfinx, meshio", PYTHON_VARIABLE, INSTALL] {
             assert!(said.contains(word), "`{word}` is not in: {said}");
         }
     }

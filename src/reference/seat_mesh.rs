@@ -2,6 +2,7 @@
 
 use super::{Progress, Resolution, child, identity, python};
 use crate::body::cache::Cache;
+use crate::interrupt::Scratch;
 use crate::project::project_root;
 use crate::scene::Scene;
 use crate::scene::hash::sha256_hex;
@@ -72,11 +73,10 @@ pub fn seat_mesh_with(
     cache: &Cache,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<PathBuf> {
-    let shipped = project_root().join("meshes");
-    let found = if resolution == Resolution::Paper && shipped.is_dir() {
-        seat_meshes(&shipped, scene)?
-    } else {
-        Vec::new()
+    let shipped = project_root().map(|root| root.join("meshes"));
+    let found = match shipped {
+        Ok(shipped) if resolution == Resolution::Paper && shipped.is_dir() => seat_meshes(&shipped, scene)?,
+        _ => Vec::new(),
     };
     let of_that_name = |path: &Path| path.file_stem().is_some_and(|stem| *stem == *scene.name);
     let best = found.iter().find(|(path, _)| of_that_name(path)).or(found.first());
@@ -123,11 +123,12 @@ pub fn make_seat_mesh(
     }
     let out = std::path::absolute(out).map_err(|e| Error::io("finding", out, e))?;
     let folder = std::env::temp_dir();
-    let folder = tempfile::tempdir_in(&folder).map_err(|e| Error::io("writing into", &folder, e))?;
+    let folder =
+        Scratch::new_in(&folder, "impactcheck-").map_err(|e| Error::io("writing into", &folder, e))?;
     let input = folder.path().join("scene.json");
     let document = identity::solver_document(scene, resolution)?;
     std::fs::write(&input, document.to_string()).map_err(|e| Error::io("writing", &input, e))?;
-    let mut command = python::fem_reference(python);
+    let mut command = python::fem_reference(python)?;
     command.args(["mesh", "--resolution", resolution.first()]);
     command.args(["--size-factor", &size_factor.to_string(), "--scene"]).arg(&input).arg("--out").arg(&out);
     let ending = child::run(command, &mut |_| {})

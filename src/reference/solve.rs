@@ -4,7 +4,6 @@ use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::store::Installed;
 use super::{Resolution, Store, identity, python};
-use crate::kinds;
 use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use std::ffi::OsStr;
@@ -60,7 +59,7 @@ pub fn solve_with(
     let document = identity::solver_document(scene, resolution)?;
     std::fs::write(&input, format!("{document:#}\n")).map_err(|e| Error::io("writing", &input, e))?;
 
-    let mut command = python::fem_reference(python);
+    let mut command = python::fem_reference(python)?;
     command.args([OsStr::new("solve"), OsStr::new("--scene"), input.as_os_str()]);
     command.args([OsStr::new("--out"), output.as_os_str()]);
     command.args(["--resolution", resolution.first()]);
@@ -91,7 +90,7 @@ pub fn solve_with(
     if !output.is_dir() {
         return Err(unusable("it wrote no result".to_owned()));
     }
-    let stored = entry::load(kinds::of(scene), &output, entry::MeshFiles::Required).map_err(|d| {
+    let stored = entry::load(scene, &output, entry::MeshFiles::Required).map_err(|d| {
         let file = d.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         unusable(format!("its {file} {}", d.reason))
     })?;

@@ -7,8 +7,8 @@
 
 use super::entry::{self, Damage, Stored};
 use super::{Resolution, identity};
-use crate::kinds;
-use crate::project::project_root;
+use crate::interrupt::Scratch;
+use crate::project;
 use crate::scene::Scene;
 use crate::{Error, Result};
 use std::fs::{self, File, TryLockError};
@@ -29,6 +29,8 @@ const LOCK_GRACE: Duration = Duration::from_secs(10);
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Store {
     root: PathBuf,
+    /// Not the default one.
+    named: bool,
 }
 
 /// What the store has for a scene at a resolution.
@@ -59,12 +61,37 @@ impl From<Damage> for Lookup {
 }
 
 impl Store {
-    /// The store at `root`, else at the environment variable `IMPACTCHECK_STORE`, else the
-    /// project's own (`fem_reference/solutions`). Nothing is created.
+    /// The store at `root`, else at the environment variable `IMPACTCHECK_STORE`, else in the user's data folder; what is
+    /// not in that one is looked for among the project's own solutions too. Nothing is created.
     pub fn open(root: Option<&Path>) -> Store {
         let variable = || std::env::var_os(STORE_VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
-        let root = root.map(Path::to_path_buf).or_else(variable);
-        root.map_or_else(Store::shipped, |root| Store { root })
+        match root.map(Path::to_path_buf).or_else(variable) {
+            Some(root) => Store { root, named: true },
+            None => {
+                let folder =
+                    project::data_folder().unwrap_or_else(|| std::env::temp_dir().join("impactcheck"));
+                Store { root: folder.join("solutions"), named: false }
+            }
+        }
+    }
+
+    /// Whether somebody named this store.
+    pub fn is_named(&self) -> bool {
+        self.named
+    }
+
+    /// Where a new solution of the scene in `file` belongs: here, but if nobody named a store and the scene is one of a
+    /// checkout's own, into the checkout.
+    pub fn for_scene_in(&self, file: &Path) -> Store {
+        let own = |root: &Path| {
+            let file = file.canonicalize().unwrap_or_default();
+            project::is_checkout(root)
+                && root.join("scenes").canonicalize().is_ok_and(|own| file.starts_with(own))
+        };
+        match project::project_root() {
+            Ok(root) if !self.named && own(&root) => Store::of_project(&root),
+            _ => self.clone(),
+        }
     }
 
     /// The folder all entries lie in.
@@ -87,13 +114,28 @@ impl Store {
         Ok(parent.join(format!(".checkpoint-{}", resolution)))
     }
 
-    /// The project's own store.
-    pub fn shipped() -> Store {
-        Store { root: project_root().join("fem_reference").join("solutions") }
+    /// The project's own solutions.
+    ///
+    /// # Errors
+    /// As [`project::project_root`].
+    pub fn shipped() -> Result<Store> {
+        Ok(Store::of_project(&project::project_root()?))
+    }
+
+    fn of_project(root: &Path) -> Store {
+        Store { root: root.join("fem_reference/solutions"), named: true }
     }
 
     /// Looks for the solution of `scene` at `resolution`. Every file is verified by its checksum.
     pub fn find(&self, scene: &Scene, resolution: Resolution) -> Lookup {
+        if self.named {
+            self.find_here(scene, resolution)
+        } else {
+            self.find_here_or_shipped(scene, resolution)
+        }
+    }
+
+    fn find_here(&self, scene: &Scene, resolution: Resolution) -> Lookup {
         let lookup = settled(&self.folder(scene, resolution), scene, resolution);
         if matches!(lookup, Lookup::Found(_)) {
             return lookup;
@@ -106,12 +148,14 @@ impl Store {
 
     /// As [`Store::find`]; what is missing or stale here is looked for in the project's own store too, which is only read.
     pub fn find_here_or_shipped(&self, scene: &Scene, resolution: Resolution) -> Lookup {
-        let lookup = self.find(scene, resolution);
+        let lookup = self.find_here(scene, resolution);
         if !matches!(lookup, Lookup::Missing | Lookup::Stale { .. }) {
             return lookup;
         }
-        match Store::shipped().find(scene, resolution) {
-            Lookup::Found(stored) => Lookup::Found(stored),
+        match Store::shipped().map(|shipped| shipped.find_here(scene, resolution)) {
+            Ok(Lookup::Found(stored)) => Lookup::Found(stored),
+            // why the only one there is can't be used
+            Ok(other) if !self.named && lookup == Lookup::Missing => other,
             _ => lookup,
         }
     }
@@ -146,7 +190,7 @@ impl Store {
         let parent = parent.canonicalize().map_err(|e| Error::io("finding", &parent, e))?;
         remove_leftovers(&parent);
         let failed = |e| Error::io("creating a work folder in", &parent, e);
-        let folder = tempfile::Builder::new().prefix(PARTIAL_PREFIX).tempdir_in(&parent).map_err(failed)?;
+        let folder = Scratch::new_in(&parent, PARTIAL_PREFIX).map_err(failed)?;
         let lock = File::create(folder.path().join(LOCK)).map_err(failed)?;
         // Where locks don't work, leftovers go by their age.
         let _ = lock.lock();
@@ -259,7 +303,7 @@ fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
         }
         Ok(_) => {}
     }
-    let stored = match entry::load(kinds::of(scene), folder, entry::MeshFiles::Optional) {
+    let stored = match entry::load(scene, folder, entry::MeshFiles::Optional) {
         Ok(stored) => stored,
         Err(damage) => return damage.into(),
     };
@@ -270,10 +314,11 @@ fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
     }
 }
 
-/// A `.partial-*` folder that goes when it is dropped, or, if its process dies, at the next run.
+/// A `.partial-*` folder that goes when it is dropped or the program is interrupted, or, if its process is killed, at the
+/// next run.
 #[derive(Debug)]
 pub(super) struct WorkFolder {
-    folder: tempfile::TempDir,
+    folder: Scratch,
     _lock: File,
 }
 

@@ -25,6 +25,8 @@ pub struct Attachments {
     pub animation: Option<PathBuf>,
     /// What the reduced models have cost, in their order; of models that share a mesh with the reference.
     pub cost: Vec<Cost>,
+    /// When the scene was compared (UTC).
+    pub compared: Option<String>,
     /// The gated numbers over the commits recorded.
     pub trends: Vec<Trend>,
     /// Changes of tolerances and reference accepted so far, oldest first.

@@ -27,7 +27,7 @@ pub(super) fn model_section(model: &ModelComparison) -> Markup {
         p.soft { "Difference is reduced minus reference. A row without tolerance is not gated. Bias is the known "
             "discrepancy about which the tolerance lies. A distance of curves is relative to the reference's peak. "
             "|E| against u (ASME V&V 20): a difference within the reference's 95 % band proves no error of the model." }
-        @if let Some(pressure) = &model.summary.contact_pressure { (pressures(pressure)) }
+        @if let Some(pressure) = &model.summary.contact_pressure { (pressures("Model", pressure)) }
         h3 { "Curve metrics" }
         (scrolled(&format!("Curve metrics of model {}", model.model), &html! { table.curves data-model=(model.model) {
             thead { tr {
@@ -59,14 +59,14 @@ fn undecided(rows: &[Discrepancy]) -> Markup {
 }
 
 /// Contact patches at the force peaks, in a sentence.
-fn pressures(pressure: &ContactPressure) -> Markup {
+pub(super) fn pressures(source: &str, pressure: &ContactPressure) -> Markup {
     let patch = |of: &ContactPatch| {
         let [radius, highest] = [("m", of.contact_radius), ("Pa", of.maximum_pressure)]
             .map(|(unit, value)| with_unit(value, prefixed(unit, value), 3));
         format!("{highest} at the centre of a patch of radius {radius}")
     };
     html! {
-        p { "Contact pressure at the force peaks (Hertz, elastic): outer body " (patch(&pressure.outer)) "; inner body "
+        p { (source) ": contact pressure at the force peaks (Hertz, elastic): outer body " (patch(&pressure.outer)) "; inner body "
             (patch(&pressure.inner)) "." }
     }
 }

@@ -1,10 +1,12 @@
 //! The frame of every page, and `index.html` with the verdicts. Pages are self-contained: style, script and figures are
 //! inside, nothing is loaded. Every number carries its SI value in `data-si`.
 
-use super::format::{Prefixed, model_name, percent, prefixed, significant, with_unit, words};
-use super::{Report, SceneReport};
-use crate::comparison::{AMONG, Discrepancy, ModelComparison, SceneComparison, Verdict};
-use crate::result::Summary;
+use super::Report;
+use super::format::{Prefixed, percent, prefixed, significant, with_unit, words};
+use super::overview::{ModelOverview, Overview, RowOverview};
+use super::run_times::marked;
+use super::standing::{self, Standing};
+use crate::comparison::{AMONG, ModelComparison, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("assets/style.css");
@@ -86,11 +88,16 @@ pub(super) fn number(field: &str, value: Option<f64>, to: Prefixed, digits: usiz
 
 /// The page with the verdict of every scene and model.
 pub fn index_page(report: &Report) -> String {
+    index_of(&standing::of_run(report))
+}
+
+/// The index of all scenes whose results stand in a folder.
+pub(super) fn index_of(scenes: &[Standing]) -> String {
     let body = html! {
-        h1 { "impactcheck " (badge(report.comparison().verdict)) }
-        p.soft { "Reduced models of an impact against explicit finite elements. " (counts(report)) }
+        h1 { "impactcheck " (badge(standing::verdict(scenes))) }
+        p.soft { "Reduced models of an impact against explicit finite elements. " (counts(scenes)) }
         div.cards {
-            @for scene in &report.scenes { (card(scene)) }
+            @for scene in scenes { (card(scene)) }
         }
         h2 { "Verdicts" }
         (scrolled("Verdicts", &html! { table.verdicts {
@@ -101,7 +108,7 @@ pub fn index_page(report: &Report) -> String {
                 th.left scope="col" { "nearest to its bound" } th scope="col" { "tolerance used" }
             } }
             tbody {
-                @for scene in &report.scenes { (index_rows(&scene.comparison)) }
+                @for scene in scenes { (index_rows(&scene.overview)) }
             }
         } }))
         p.soft { (EFFICIENCY) } p.soft { (AMONG) }
@@ -115,18 +122,17 @@ pub fn index_page(report: &Report) -> String {
 }
 
 /// How much was gated and what came of it, in a sentence.
-fn counts(report: &Report) -> String {
-    let verdicts = report.scenes.iter().flat_map(|scene| scene.comparison.gated_verdicts());
-    let verdicts: Vec<Verdict> = verdicts.collect();
+fn counts(scenes: &[Standing]) -> String {
+    let models = scenes.iter().flat_map(|scene| &scene.overview.models);
+    let verdicts: Vec<Verdict> = models.flat_map(|model| model.gated.iter().copied()).collect();
     if verdicts.is_empty() {
         return "Nothing is gated: no scene has tolerances.".into();
     }
     let count = |verdict| verdicts.iter().filter(|v| **v == verdict).count();
-    let scenes = report.scenes.len();
-    let plural = |n: usize| if n == 1 { "" } else { "s" };
     format!(
-        "{scenes} scene{}, {} gated quantities: {} within their tolerances, {} undecided, {} not within.",
-        plural(scenes),
+        "{} scene{}, {} gated quantities: {} within their tolerances, {} undecided, {} not within.",
+        scenes.len(),
+        if scenes.len() == 1 { "" } else { "s" },
         verdicts.len(),
         count(Verdict::Pass),
         count(Verdict::Undecided),
@@ -135,74 +141,73 @@ fn counts(report: &Report) -> String {
 }
 
 /// A scene in short.
-fn card(scene: &SceneReport) -> Markup {
-    let (comparison, trends) = (&scene.comparison, &scene.attachments.trends);
+fn card(scene: &Standing) -> Markup {
+    let overview = &scene.overview;
+    let [drifting, recorded] = overview.drift;
     html! {
         section.card {
-            h2 { (scene_link(comparison)) " " (badge(comparison.verdict)) }
-            p.soft { (scene.scene.description) }
-            ul.models { @for model in &comparison.models { li { (model_line(model)) } } }
-            @let drifting = trends.iter().filter(|trend| trend.drifts_since.is_some()).count();
-            @if drifting > 0 { p { strong { "Drift: " } (drifting) " of " (trends.len()) " numbers recorded over commits." } }
+            h2 { (scene_link(overview)) " " (badge(overview.verdict)) }
+            p.soft { (overview.description) }
+            ul.models { @for model in &overview.models { li { (model_line(model)) } } }
+            @if drifting > 0 { p { strong { "Drift: " } (drifting) " of " (recorded) " numbers recorded over commits." } }
+            p.soft { (marked(&scene.when())) }
         }
     }
 }
 
 /// Verdict of a model with its largest discrepancy, the band it is to be seen against, and what the gate makes of it.
-pub(super) fn model_line(model: &ModelComparison) -> Markup {
+pub(super) fn model_line(model: &ModelOverview) -> Markup {
     html! {
-        (model_badge(model)) " model " (model_name(&model.model, model.summary.modes))
-        @if let Some(d) = model.largest() {
+        (worded(model.verdict, &model.verdict_in_words)) " model " (model.name)
+        @if let Some(d) = &model.largest {
             ": largest discrepancy of the summary " strong { (percent(d.relative)) } " (" (words(&d.quantity)) (relative_band(d)) ")"
         }
         "; "
-        @if let Some((d, used)) = model.tightest().and_then(|d| Some((d, d.used()?))) {
-            (model.gated()) " of " (model.discrepancies.len()) " rows gated, at most " (significant(100.0 * used, 2))
+        @if let Some((d, used)) = model.tightest.as_ref().and_then(|d| Some((d, d.used?))) {
+            (model.gated.len()) " of " (model.rows) " rows gated, at most " (significant(100.0 * used, 2))
             " % of a tolerance used (" (words(&d.quantity)) ")"
         } @else { "nothing gated" }
     }
 }
 
-fn relative_band(row: &Discrepancy) -> String {
+fn relative_band(row: &RowOverview) -> String {
     let band = row.uncertainty.zip(row.reference).map(|(u, m)| 100.0 * u / m.abs()).filter(|u| u.is_finite());
     band.map_or_else(String::new, |band| format!("; 95 % band of the reference ±{} %", significant(band, 2)))
 }
 
-fn scene_link(comparison: &SceneComparison) -> Markup {
-    html! { a href=(format!("{}.html", comparison.scene)) { (comparison.scene) } }
+fn scene_link(overview: &Overview) -> Markup {
+    html! { a href=(format!("{}.html", overview.scene)) { (overview.scene) } }
 }
 
-fn index_rows(comparison: &SceneComparison) -> Markup {
+fn index_rows(overview: &Overview) -> Markup {
     html! {
-        @for model in &comparison.models { (index_row(comparison, model)) }
-        @if comparison.models.is_empty() {
+        @for model in &overview.models { (index_row(overview, model)) }
+        @if overview.models.is_empty() {
             tr {
-                th scope="row" { (scene_link(comparison)) } td.left { "–" }
-                td.left { (badge(comparison.verdict)) }
+                th scope="row" { (scene_link(overview)) } td.left { "–" }
+                td.left { (badge(overview.verdict)) }
             }
         }
     }
 }
 
-fn index_row(comparison: &SceneComparison, model: &ModelComparison) -> Markup {
-    let efficiency = |summary: &Summary| summary.value("efficiency");
+fn index_row(overview: &Overview, model: &ModelOverview) -> Markup {
     let plain = prefixed("1", 1.0);
-    let largest = model.largest();
-    let tightest = model.tightest();
+    let [own, reference] = model.efficiency;
     html! {
-        tr data-scene=(comparison.scene) data-model=(model.model) {
-            th scope="row" { (scene_link(comparison)) }
-            td.left { (model_name(&model.model, model.summary.modes)) }
-            td.left { (model_badge(model)) }
-            (number("reduced", efficiency(&model.summary), plain, 4))
-            (number("reference", efficiency(&comparison.reference), plain, 4))
-            td.left { @if let Some(d) = largest { (words(&d.quantity)) " " (percent(d.relative)) } @else { "–" } }
-            @match largest.and_then(|d| d.uncertainty.map(|u| (d, u))) {
+        tr data-scene=(overview.scene) data-model=(model.model) {
+            th scope="row" { (scene_link(overview)) }
+            td.left { (model.name) }
+            td.left { (worded(model.verdict, &model.verdict_in_words)) }
+            (number("reduced", own, plain, 4))
+            (number("reference", reference, plain, 4))
+            td.left { @if let Some(d) = &model.largest { (words(&d.quantity)) " " (percent(d.relative)) } @else { "–" } }
+            @match model.largest.as_ref().and_then(|d| d.uncertainty.map(|u| (d, u))) {
                 Some((d, u)) => { (number("uncertainty", Some(u), prefixed(&d.unit, d.reference.unwrap_or(u)), 2)) }
                 None => { td { "–" } }
             }
-            td.left { @if let Some(d) = tightest { (words(&d.quantity)) } @else { "–" } }
-            td { @if let Some(used) = tightest.and_then(Discrepancy::used) { (significant(100.0 * used, 2)) " %" } @else { "–" } }
+            td.left { @if let Some(d) = &model.tightest { (words(&d.quantity)) } @else { "–" } }
+            td { @if let Some(used) = model.tightest.as_ref().and_then(|d| d.used) { (significant(100.0 * used, 2)) " %" } @else { "–" } }
         }
     }
 }

@@ -1,41 +1,47 @@
 //! The report as Markdown: verdicts, discrepancies and curve metrics as tables.
 
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
+use super::overview::{ModelOverview, Overview};
+use super::standing::{self, Standing};
 use super::{Report, SceneReport, presentation};
-use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison, SceneComparison};
-use crate::result::Summary;
+use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison};
 
 /// Markdown of the whole report.
 pub fn markdown(report: &Report) -> String {
-    let verdict = report.comparison().verdict;
+    of(report, &standing::of_run(report))
+}
+
+/// Markdown of all scenes whose results stand in a folder; those that are kept have their tables on their pages.
+pub(super) fn of(report: &Report, scenes: &[Standing]) -> String {
     let mut text = format!(
-        "# impactcheck: {verdict}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy of the summary |\n|---|---|---|--:|--:|---|\n"
+        "# impactcheck: {}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy of the summary |\n|---|---|---|--:|--:|---|\n",
+        standing::verdict(scenes)
     );
-    for scene in &report.scenes {
-        for model in &scene.comparison.models {
-            text += &row(&scene.comparison, model);
-        }
+    for scene in scenes {
+        text.extend(scene.overview.models.iter().map(|model| row(&scene.overview.scene, model)));
     }
     text += &format!("\n{AMONG}\n");
     for scene in &report.scenes {
         text += &section(scene);
     }
+    for kept in scenes.iter().filter(|scene| scene.is_kept()) {
+        let Overview { scene, verdict, command, .. } = &kept.overview;
+        text += &format!(
+            "\n## {0}: {verdict}\n\n{1} Its tables are on [its page]({scene}.html).\n\nMade by:\n\n    {command}\n",
+            escape(scene),
+            kept.when()
+        );
+    }
     text
 }
 
 /// A model's row in the table of verdicts.
-fn row(comparison: &SceneComparison, model: &ModelComparison) -> String {
-    let largest =
-        model.largest().map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
-    let efficiency = |summary: &Summary| significant(summary.value("efficiency").unwrap_or(f64::NAN), 4);
-    format!(
-        "| {} | {} | {} | {} | {} | {largest} |\n",
-        escape(&comparison.scene),
-        escape(&model_name(&model.model, model.summary.modes)),
-        model.verdict_in_words(),
-        efficiency(&model.summary),
-        efficiency(&comparison.reference),
-    )
+fn row(scene: &str, model: &ModelOverview) -> String {
+    let largest = model.largest.as_ref();
+    let largest = largest.map_or("–".into(), |d| format!("{} {}", words(&d.quantity), percent(d.relative)));
+    let [own, reference] = model.efficiency.map(|e| significant(e.unwrap_or(f64::NAN), 4));
+    let (scene, name, verdict) = (escape(scene), escape(&model.name), &model.verdict_in_words);
+    format!("| {scene} | {name} | {verdict} | {own} | {reference} | {largest} |\n")
 }
 
 fn section(scene: &SceneReport) -> String {

@@ -4,6 +4,7 @@ use super::SceneReport;
 use super::discrepancy_section::{checks, contradictions};
 use super::facts::facts;
 use super::html::{badge, model_line};
+use super::overview::ModelOverview;
 use crate::comparison::{AMONG, SceneComparison};
 use maud::{Markup, html};
 
@@ -14,7 +15,7 @@ pub(super) fn head(report: &SceneReport) -> Markup {
         nav { a href="index.html" { "all scenes" } }
         h1 { (comparison.scene) " " (badge(comparison.verdict)) }
         p.soft { (report.scene.description) }
-        ul.models { @for model in &comparison.models { li { (model_line(model)) } } }
+        ul.models { @for model in &comparison.models { li { (model_line(&ModelOverview::of(comparison, model))) } } }
         p.soft { (AMONG) }
         @for warning in &comparison.reference.warnings { p { strong { "Warning, reference: " } (warning) } }
         (contradictions("reference", &comparison.integrity))
@@ -40,6 +41,7 @@ pub(super) fn end(report: &SceneReport) -> Markup {
             summary { "Checks of the reference against itself (" (comparison.integrity.len()) ")" }
             (checks(&comparison.integrity))
         }
+        (super::limits_section::limits_html(comparison))
         (super::trend_section::trends_html(attachments))
         (super::acceptance_section::acceptances_html(attachments, &comparison.changed_tolerances))
         h2 { "Provenance" }

@@ -1,11 +1,12 @@
-//! Run times in the report's files: the only thing in them that differs from run to run and from machine to machine.
+//! Run times, and the time of the run, in the report's files: the only things in them that differ from run to run and from
+//! machine to machine.
 
 use maud::{Markup, html};
 
 /// What stands before a run time on a page, and what ends it.
 const MARK: [&str; 2] = ["<span class=\"run-time\">", "</span>"];
-/// The key of a run time in a JSON document.
-const KEY: &str = "\"solve_seconds\":";
+/// The keys of run times, and of the time of the run, in a JSON document.
+const KEYS: [&str; 2] = ["\"solve_seconds\":", "\"compared\":"];
 
 /// A run time on a page.
 pub(super) fn marked(time: &str) -> Markup {
@@ -26,9 +27,9 @@ fn without(text: &str) -> String {
     let mut rest = text;
     let mut kept = String::with_capacity(text.len());
     loop {
-        let key = rest.find(KEY).map(|at| at + KEY.len());
+        let keys = KEYS.iter().filter_map(|key| Some(rest.find(key)? + key.len()));
         let mark = rest.find(MARK[0]).map(|at| at + MARK[0].len());
-        let Some(start) = key.into_iter().chain(mark).min() else { break };
+        let Some(start) = keys.chain(mark).min() else { break };
         let (before, after) = rest.split_at(start);
         kept += before;
         let length = match Some(start) == mark {

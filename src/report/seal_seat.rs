@@ -40,8 +40,8 @@ impl Presentation for Seat {
         let peak = instant_of_peak(&stored.outcome.history, "sphere_force");
         let animation = Some(stored.folder.join(ANIMATION)).filter(|file| file.is_file());
         // the same on every machine, so that equal results give equal reports
-        let in_project =
-            |file: PathBuf| file.strip_prefix(project_root()).map(Path::to_owned).unwrap_or(file);
+        let root = project_root().unwrap_or_default();
+        let in_project = |file: PathBuf| file.strip_prefix(&root).map(Path::to_owned).unwrap_or(file);
         Attachments {
             section: stored.section().ok(),
             section_stress: stored.section_near(peak).ok().flatten(),

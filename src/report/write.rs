@@ -1,6 +1,7 @@
 //! The report's files, complete or not at all.
 
 use super::run_times::same_but_for_run_times;
+use super::standing::{self, DOCUMENT, Standing};
 use super::{Report, presentation};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,6 +15,9 @@ const PNG_SCALE: f32 = 3.0;
 /// Writes `index.html`, `comparison.json`, `comparison.md`, `junit.xml` and, per scene, its page,
 /// figure (SVG, PNG) and curves (CSV) into `dir`, which is made if it does not exist.
 ///
+/// Index, JSON and Markdown are of all scenes whose results stand in the folder: a scene that an earlier run has compared
+/// and this one has not is kept as long as its page is there, and marked with its date. `junit.xml` is of this run alone.
+///
 /// Everything is made in a temporary folder inside `dir` first and then renamed into place; on an error
 /// before that, no file of the report has changed. If all files of an earlier report say the same but for run times, they
 /// stay as they are, run times included, and only what is missing is written: equal results leave a working tree clean.
@@ -23,7 +27,7 @@ const PNG_SCALE: f32 = 3.0;
 /// [`Error::Io`] naming the folder or file; [`Error::Usage`] for scenes whose names can't be file
 /// names or are the same.
 pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
-    let files = files(report)?;
+    let files = files(report, &standing::in_folder(report, dir))?;
     for (name, _) in &files {
         let target = dir.join(name);
         if target.is_dir() {
@@ -82,12 +86,12 @@ pub fn check_writable(dir: &Path) -> Result<()> {
 }
 
 /// Name and content of every file.
-fn files(report: &Report) -> Result<Vec<(String, Vec<u8>)>> {
+fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)>> {
     let mut names = BTreeSet::new();
     let mut files = vec![
-        ("index.html".to_owned(), super::index_page(report).into_bytes()),
-        ("comparison.json".to_owned(), super::json(report)?.into_bytes()),
-        ("comparison.md".to_owned(), super::markdown(report).into_bytes()),
+        ("index.html".to_owned(), super::html::index_of(standing).into_bytes()),
+        (DOCUMENT.to_owned(), standing::document(report, standing)?.into_bytes()),
+        ("comparison.md".to_owned(), super::markdown::of(report, standing).into_bytes()),
         ("junit.xml".to_owned(), super::junit(report)?.into_bytes()),
     ];
     for scene in &report.scenes {

@@ -127,6 +127,7 @@ impl Case {
             youngs_modulus: random.log(1e6, 1e12),
             poisson_ratio,
             density: random.log(500.0, 2e4),
+            yield_strength: None,
         };
         let (plate_material, outer_material, inner_material) =
             (material("plate", 0.0), material("outer", 0.3), material("inner", 0.3));

@@ -23,12 +23,24 @@ const SPEED: f64 = 0.5;
 
 /// Steel of the paper's scaled model (section 3.3).
 pub fn steel() -> Material {
-    Material { name: "steel".into(), youngs_modulus: 210e9, poisson_ratio: 0.3, density: 7780.0 }
+    Material {
+        name: "steel".into(),
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7780.0,
+        yield_strength: None,
+    }
 }
 
 /// Titanium alloy of the paper (Table 3).
 pub fn titanium() -> Material {
-    Material { name: "titanium".into(), youngs_modulus: 115e9, poisson_ratio: 0.37, density: 4430.0 }
+    Material {
+        name: "titanium".into(),
+        youngs_modulus: 115e9,
+        poisson_ratio: 0.37,
+        density: 4430.0,
+        yield_strength: None,
+    }
 }
 
 /// Steel spheres of `sphere` m radius on both sides of a plate of `radius` and `thickness` m.

@@ -56,7 +56,13 @@ const fn panel(column: &'static str, label: &'static str) -> Panel {
 }
 
 fn sapphire() -> Material {
-    Material { name: "sapphire".into(), youngs_modulus: 350e9, poisson_ratio: 0.27, density: 3980.0 }
+    Material {
+        name: "sapphire".into(),
+        youngs_modulus: 350e9,
+        poisson_ratio: 0.27,
+        density: 3980.0,
+        yield_strength: None,
+    }
 }
 
 /// The membrane with its inner sphere, struck by `shape` at `speed` m/s.

@@ -176,7 +176,7 @@ const CORNERS: [Corner; 4] = [
 impl Corner {
     /// What the stored reference says; without one it is told how to get it.
     fn reference(&self, note: &mut Note) -> Option<SeatQuantities> {
-        let path = project_root().join(self.scene);
+        let path = project_root().ok()?.join(self.scene);
         let scene = if path.is_file() { Scene::read(path) } else { shipped(self.scene) }.ok()?;
         match Store::open(None).find(&scene, Resolution::Paper) {
             Lookup::Found(stored) => SeatQuantities::of_table(&stored.outcome.summary.quantities),

@@ -92,6 +92,7 @@ fn command_lines_that_make_no_sense_end_with_2() {
         &["reduced", "scaled-plate-r10", "--model", "D"],
         &["reduced", "scaled-plate-r10", "--model", "A", "--modes", "2"],
         &["reduced", "scaled-plate-r10", "--modes", "0"],
+        &["reduced", "scaled-plate-r10", "--modes", "1000000"],
         &["reduced", "scaled-plate-r10", "--tolerance", "2"],
         &["reference", "scaled-plate-r10", "--resolution", "finest"],
         &["reference", "scaled-plate-r10", "--np", "2"],
@@ -105,13 +106,14 @@ fn command_lines_that_make_no_sense_end_with_2() {
 }
 
 #[test]
-fn output_folder_that_cannot_be_written_ends_with_1_before_anything_is_computed() {
+fn output_folder_that_is_a_file_ends_with_2_and_one_that_cannot_be_written_with_1_before_anything_is_computed()
+ {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "not a folder").unwrap();
-    for out in [file.join("report"), PathBuf::from("/proc/report")] {
+    for (out, status) in [(file.clone(), 2), (file.join("report"), 2), (PathBuf::from("/proc/report"), 1)] {
         let ended = impactcheck(&["compare", "scaled-plate-r10", "--out", out.to_str().unwrap()], &[]);
-        assert_eq!(ended.status, 1, "{}", ended.error);
+        assert_eq!(ended.status, status, "{}", ended.error);
         assert!(ended.error.contains(out.to_str().unwrap()), "{}", ended.error);
     }
     assert_eq!(fs::read_to_string(&file).unwrap(), "not a folder");
@@ -162,7 +164,9 @@ fn without_a_usable_python_a_reference_ends_with_12_and_names_what_is_missing() 
 fn json_is_the_only_thing_on_standard_output() {
     for arguments in [&["reduced", "scaled-plate-r10", "--json"][..], &["doctor", "--json"], &["schema"]] {
         let ended = impactcheck(arguments, &[]);
-        assert_eq!(ended.status, 0, "{arguments:?}: {}", ended.error);
+        // without FEniCSx the doctor says so by its status
+        let ill = arguments[0] == "doctor" && ended.status == 12;
+        assert!(ended.status == 0 || ill, "{arguments:?}: {}", ended.error);
         serde_json::from_str::<serde_json::Value>(&ended.out).unwrap();
     }
 }

@@ -1,7 +1,14 @@
 //! Tests of the program as a user calls it.
 
 mod bad_input;
+#[cfg(unix)]
+mod elsewhere;
+mod first_day;
 mod guide;
+#[cfg(unix)]
+mod interruption;
 mod scene_files;
 mod snapshots;
+#[path = "../support/store_fixture.rs"]
+mod store_fixture;
 mod studies;

@@ -10,6 +10,7 @@ mod gate_updates;
 mod gate_verdicts;
 mod harness;
 mod measured_signals;
+mod range_of_validity;
 
 #[path = "../support/synthetic_impact.rs"]
 mod synthetic_impact;

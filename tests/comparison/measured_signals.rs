@@ -166,7 +166,15 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
     let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
     let error = align(&late, &filtered, &determined(&truth), &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
     assert_eq!(error.exit_status() as u8, 3);
-    assert!(error.to_string().contains("before the impact"), "{error}");
+    assert!(error.to_string().contains("0 samples before the first touch"), "{error}");
+    // samples that the instrument smears the impact over are told apart
+    let first = whole.time.iter().position(|t| *t > 0.0).unwrap();
+    let start = whole.time[first - 7];
+    let short = part(&|t| t >= start);
+    let error = align(&short, &filtered, &determined(&truth), &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
+    let said = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("samples before the first touch, 0 of them"), "{said}");
+    assert!(!said.contains(" 0 samples before"), "{said}");
     let cut = aligned(&part(&|t| t < 90e-6), &truth, &setup, Speed::Scene);
     assert!(cut.efficiency.is_none() && cut.inner_velocity_final.is_none(), "no free flight to read it from");
 }

@@ -41,18 +41,49 @@ fn number_of_modes_patch_radius_and_mesh_hardly_matter() {
     assert_eq!(study.rows.len(), 2 * 10);
 }
 
-/// A patch wider than the membrane is thick is beyond the model: it still gives an answer, and says so.
+/// Finite elements (five meshes, the finest extrapolated) of wide contacts: a soft plate whose patches are 0.35 and 0.39 times
+/// as wide as it is thick, a softer impact of 0.7, a membrane of 1.04. Quadratic growth of the residual found no equilibrium in the
+/// first, and was 15 % off in the last.
 #[test]
-fn a_contact_wider_than_the_plate_is_thick_is_warned_of() {
+fn wide_patches_agree_with_finite_elements_whatever_the_number_of_modes() {
+    let text = |name: &str| {
+        std::fs::read_to_string(resolve(&format!("scenes/validation/{name}.toml")).unwrap()).unwrap()
+    };
+    let thinner = text("soft-plate")
+        .replace("1.45 mm", "1.1 mm")
+        .replace("3.45 mm", "5 mm")
+        .replace("5.37 mm", "6 mm")
+        .replace("0.6 m/s", "0.8 m/s");
+    let cases = [
+        (text("soft-plate"), [0.4866, 0.7448, 0.6883], [0.004, 0.01, 0.01], vec![32, 40, 48, 64]),
+        (thinner, [0.8424, 2.456, 2.377], [0.002, 0.01, 0.01], vec![16, 32, 48, 64]),
+        (text("wide-patch"), [0.99455, 13.63, 13.60], [0.0005, 0.005, 0.005], vec![4, 8, 16, 32, 48, 64]),
+    ];
+    for (text, expected, bounds, modes) in cases {
+        let scene = Scene::parse("scene.toml", &text).unwrap();
+        for modes in modes {
+            let run = Reduced::new(&scene, Model::C, Some(modes)).unwrap().run(1e-7).unwrap();
+            let ours =
+                ["efficiency", "outer_force_peak", "inner_force_peak"].map(|name| run.value(name).unwrap());
+            println!("{modes} modes: {ours:?}, energy {:e}", run.energy_residual);
+            for ((ours, expected), bound) in ours.into_iter().zip(expected).zip(bounds) {
+                assert_relative_eq!(ours, expected, max_relative = bound);
+            }
+            assert!(run.energy_residual < 1e-5, "{modes}: {:e}", run.energy_residual);
+        }
+    }
+}
+
+/// Beyond what was measured it still gives an answer, and says so.
+#[test]
+fn a_contact_much_wider_than_the_plate_is_thick_is_warned_of() {
     let text = std::fs::read_to_string(resolve("scenes/validation/titanium-membrane.toml").unwrap()).unwrap();
     let run = |thickness: &str| {
         let scene = Scene::parse("scene.toml", &text.replace("\"0.1 mm\"", thickness)).unwrap();
         Reduced::new(&scene, Model::C, None).unwrap().run(1e-8).unwrap()
     };
     assert!(run("\"0.1 mm\"").warnings.is_empty());
-    let thin = run("\"0.05 mm\"");
-    assert_eq!(thin.warnings.len(), 1);
-    let near = |ratio: &&str| thin.warnings[0].contains(&format!("{ratio} times as wide"));
-    assert!(["1.04", "1.05"].iter().any(near), "{}", thin.warnings[0]);
+    let thin = run("\"0.03 mm\"");
+    assert!(thin.warnings.iter().any(|warning| warning.contains("times as wide")), "{:?}", thin.warnings);
     assert!(thin.value("efficiency").unwrap() > 0.9 && thin.energy_residual < 1e-5);
 }

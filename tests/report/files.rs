@@ -81,6 +81,59 @@ fn equal_results_leave_the_files_as_they_are() {
     }
 }
 
+/// A run on one scene neither forgets nor claims the others.
+#[test]
+fn scenes_of_earlier_runs_stay_in_index_and_document_with_their_date() {
+    let root = tempfile::tempdir().unwrap();
+    let read = |name: &str| fs::read_to_string(root.path().join(name)).unwrap();
+    let write_one = |name: &str, compared: &str, force: f64| {
+        let (scene, reference) = (Scene { name: name.into(), ..scene() }, reference());
+        let mut reduced = [reduced()];
+        synthetic_impact::alter(&mut reduced[0].summary, "first_frequency", |f| f * force);
+        let mut report = report(&scene, &reference, &reduced);
+        report.scenes[0].comparison.scene = name.into();
+        report.scenes[0].attachments.compared = Some(compared.into());
+        write(&report, root.path()).unwrap();
+    };
+    let names = || -> Vec<String> {
+        let document: serde_json::Value = serde_json::from_str(&read("comparison.json")).unwrap();
+        let scenes = document["scenes"].as_array().unwrap();
+        scenes.iter().map(|scene| scene["scene"].as_str().unwrap().to_owned()).collect()
+    };
+    write_one("first", "on Monday", 1.0);
+    let entry = |name: &str| {
+        let document: serde_json::Value = serde_json::from_str(&read("comparison.json")).unwrap();
+        document["scenes"].as_array().unwrap().iter().find(|s| s["scene"] == name).cloned().unwrap()
+    };
+    let first = entry("first");
+    write_one("second", "on Tuesday", 1.0);
+    assert_eq!(names(), ["first", "second"]);
+    assert_eq!(entry("first"), first, "what was not compared again is what it was");
+    let index = read("index.html");
+    assert!(index.contains("href=\"first.html\"") && index.contains("href=\"second.html\""));
+    assert!(index.contains("Kept from an earlier run, not compared again: compared on Monday."));
+    assert!(index.contains("Compared on Tuesday.") && index.contains("2 scenes"));
+    assert!(read("comparison.md").contains("[its page](first.html)"));
+
+    // compared again it keeps its place, and nothing is said to be kept any more but the other
+    write_one("first", "on Wednesday", 1.01);
+    assert_eq!(names(), ["first", "second"]);
+    assert_ne!(entry("first"), first);
+    let index = read("index.html");
+    assert!(
+        index.contains("Compared on Wednesday.")
+            && index.contains("not compared again: compared on Tuesday.")
+    );
+
+    // a page that is taken away is not missed, a document that is none keeps nothing
+    fs::remove_file(root.path().join("first.html")).unwrap();
+    write_one("second", "on Thursday", 1.02);
+    assert_eq!(names(), ["second"]);
+    fs::write(root.path().join("comparison.json"), "{").unwrap();
+    write_one("third", "on Friday", 1.0);
+    assert_eq!(names(), ["third"]);
+}
+
 /// The error names the folder; what was there stays as it was.
 #[test]
 fn impossible_folders_are_errors_that_name_them() {

@@ -116,6 +116,38 @@ fn ten_modes_and_the_residual_are_as_good_as_many() {
 }
 
 #[test]
+fn the_truncation_error_is_estimated_and_a_large_one_warned_of() {
+    let many = model(60).run(1e-4).expect("run");
+    let value = |summary: &Summary, name: &str| summary.value(name).expect("determined");
+    for modes in [1, 6, 10, 16] {
+        let few = model(modes).run(1e-4).expect("run");
+        let error = ["sphere_speed", "sphere_force_peak", "actuator_force_peak"]
+            .map(|name| (value(&few, name) / value(&many, name) - 1.0).abs())
+            .into_iter()
+            .fold(0.0, f64::max);
+        let estimate = few.truncation_error.expect("estimate");
+        assert!(estimate > 0.5 * error && estimate < 10.0 * error, "{modes} modes: {estimate}, is {error}");
+        let warned = few.warnings.iter().any(|warning| warning.contains("take more (--modes)"));
+        assert_eq!(warned, estimate > 0.01, "{modes} modes: {:?}", few.warnings);
+    }
+    assert!(many.truncation_error.expect("estimate") < 0.005, "{:?}", many.truncation_error);
+}
+
+#[test]
+fn a_contact_at_single_nodes_is_warned_of() {
+    let text = std::fs::read_to_string(fixture("seal-seat.toml")).expect("scene");
+    let alone = |speed: &str| {
+        let scene = Scene::parse("seat.toml", &text.replace("1 m/s", speed)).expect("scene");
+        let model = SeatModel::new(&scene, Model::C, Some(8), &mesh(), &Cache::off()).expect("model");
+        let warnings = model.run(1e-2).expect("run").warnings;
+        ["nodes on the contact ring only", "touches one node only"]
+            .map(|what| warnings.iter().any(|w| w.contains(what)))
+    };
+    assert_eq!(alone("10 mm/s"), [true, true]);
+    assert_eq!(alone("10 m/s"), [false, false]);
+}
+
+#[test]
 fn wider_zones_of_candidates_change_nothing() {
     let scene = scene();
     let setup = scene.seal_seat().expect("seal seat");

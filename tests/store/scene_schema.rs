@@ -1,10 +1,11 @@
 //! The JSON schema for editors: it accepts the shipped scenes and refuses what the reader refuses.
 
 use impactcheck::scene::{Scene, schema, shipped};
+use regex::Regex;
 use serde_json::{Map, Value, json};
 
-/// Whether `schema` accepts `value`: the keywords of draft 2020-12 that the schema uses, apart
-/// from `pattern`. A keyword it does not know fails the test.
+/// Whether `schema` accepts `value`: the keywords of draft 2020-12 that the schema uses. A keyword it does not know fails
+/// the test.
 fn accepts(schema: &Value, value: &Value) -> bool {
     if let Some(flag) = schema.as_bool() {
         return flag;
@@ -19,7 +20,7 @@ fn accepts_keyword(schema: &Map<String, Value>, keyword: &str, rule: &Value, val
         value.as_f64().is_none_or(|v| check(v, rule.as_f64().expect("numeric bound")))
     };
     match keyword {
-        "$schema" | "title" | "description" | "examples" | "then" | "pattern" => true,
+        "$schema" | "title" | "description" | "examples" | "then" => true,
         "type" => match rule.as_str().expect("type") {
             "object" => value.is_object(),
             "string" => value.is_string(),
@@ -29,6 +30,9 @@ fn accepts_keyword(schema: &Map<String, Value>, keyword: &str, rule: &Value, val
             "integer" => value.is_u64() || value.is_i64(),
             other => panic!("unknown type {other}"),
         },
+        "pattern" => value.as_str().is_none_or(|text| {
+            Regex::new(rule.as_str().expect("pattern")).expect("a regular expression").is_match(text)
+        }),
         "const" => value == rule,
         "enum" => all(rule).contains(value),
         "minimum" => number(|v, bound| v >= bound),
@@ -102,6 +106,23 @@ fn schema_and_reader_agree() {
         ("[reduced]", half_a_law.as_str(), false),
         ("modes", "modes", true),
         ("\"33 mm\"", "0.033", true),
+        ("\"33 mm\"", "\"33mm\"", true),
+        ("\"33 mm\"", "\"3.3e1 \u{b5}m\"", true),
+        ("\"33 mm\"", "\" +33 mm \"", true),
+        ("\"33 mm\"", "\".033\"", true),
+        ("\"33 mm\"", "\"33 N mm/N\"", true),
+        ("\"33 mm\"", "\"33 mm^2 m^-1\"", true),
+        ("\"33 mm\"", "\"33 mN\"", false),
+        ("\"33 mm\"", "\"33 kg\"", false),
+        ("\"33 mm\"", "\"33 inch\"", false),
+        ("\"33 mm\"", "\"33,5 mm\"", false),
+        ("\"33 mm\"", "\"-33 mm\"", false),
+        ("\"33 mm\"", "\"mm\"", false),
+        ("\"33 mm\"", "33000", false),
+        ("\"550 mm/s\"", "\"550 mm\"", false),
+        ("\"210 GPa\"", "\"210 kN/mm\u{b2}\"", true),
+        ("0.3", "\"30 %\"", true),
+        ("0.3", "\"0.3 mm\"", false),
         (sphere, compact, true),
         ("[reduced]", fluid, true),
         ("[reduced]", tolerances, true),

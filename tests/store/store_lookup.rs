@@ -242,7 +242,7 @@ fn what_is_not_physics_leaves_the_entry_valid() {
 #[test]
 fn the_projects_own_store_is_read_where_ones_own_has_nothing() {
     let root = tempfile::tempdir().expect("folder");
-    let (store, shipped) = (Store::open(Some(root.path())), Store::shipped());
+    let (store, shipped) = (Store::open(Some(root.path())), Store::shipped().expect("a checkout"));
     let find = || store.find_here_or_shipped(&scene(), PAPER);
     let folder_of = |lookup| match lookup {
         Lookup::Found(stored) => stored.folder,

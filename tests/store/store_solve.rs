@@ -352,7 +352,7 @@ fn a_store_that_can_not_be_written_is_named() {
     let bench = Bench::new();
     fs::write(bench.path("store"), "a file").expect("file");
     let error = bench.solve(COPY).expect_err("no store");
-    assert_eq!(error.exit_status(), ExitStatus::Internal);
+    assert_eq!(error.exit_status(), ExitStatus::Usage);
     assert!(flat(&error).contains("creating") && flat(&error).contains("store/scaled-plate-r10"), "{error}");
 }
 

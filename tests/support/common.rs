@@ -5,7 +5,13 @@ use impactcheck::scene::*;
 
 /// Steel of Table 1.
 pub fn steel() -> Material {
-    Material { name: "steel".into(), youngs_modulus: 210e9, poisson_ratio: 0.3, density: 7780.0 }
+    Material {
+        name: "steel".into(),
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7780.0,
+        yield_strength: None,
+    }
 }
 
 /// Clamped steel plate of Table 1 between two steel spheres of `radius` m, struck at `speed` m/s.

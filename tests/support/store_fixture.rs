@@ -1,4 +1,5 @@
 //! A small stored solution, written as `fem_reference` writes it.
+#![allow(dead_code)] // each test file uses its part
 
 use impactcheck::reference::{Resolution, settings_hash};
 use impactcheck::scene::Scene;

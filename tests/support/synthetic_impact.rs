@@ -69,7 +69,13 @@ pub const REDUCED: Impact = Impact {
 
 /// Scene with two equal steel spheres.
 pub fn scene() -> Scene {
-    let steel = Material { name: "steel".into(), youngs_modulus: 210e9, poisson_ratio: 0.3, density: 7780.0 };
+    let steel = Material {
+        name: "steel".into(),
+        youngs_modulus: 210e9,
+        poisson_ratio: 0.3,
+        density: 7780.0,
+        yield_strength: None,
+    };
     let sphere = Shape::Sphere { radius: 0.01 };
     Scene {
         name: "synthetic".into(),
@@ -193,6 +199,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         integration_error: None,
         choice: None,
         warnings: Vec::new(),
+        limits: Vec::new(),
         samples: None,
         sample_interval: None,
     }

@@ -10,7 +10,7 @@ use wide::f64x4;
 /// Radii of the table.
 pub const TABULATED: usize = 4;
 /// Their values in patch radii: from the early contact to more than a first look at the impact expects.
-pub const RADII: [f64; TABULATED] = [0.5, 1.0, 1.3, 1.6];
+pub const RADII: [f64; TABULATED] = [0.35, 1.0, 1.35, 1.6];
 /// Index of the patch radius itself.
 pub const WHOLE: usize = 1;
 

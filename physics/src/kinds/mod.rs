@@ -3,7 +3,7 @@
 pub mod plate_impact;
 pub mod seal_seat;
 
-use crate::result::{Curve, Quantity};
+use crate::result::{Curve, History, Quantity, Summary};
 use crate::scene::{Model, Scene, Setup};
 
 /// What everything that compares, shows or keeps results has to know of a kind of scene.
@@ -19,6 +19,10 @@ pub trait Kind: Sync {
 
     /// The curves of its histories, in order, without samples.
     fn curves(&self) -> &'static [Curve];
+
+    /// Adds to the `summary` of any model or reference of a scene of this kind how near it comes to the bounds of the
+    /// theories behind it, and warns where it is beyond. Without `history` some of it is not known.
+    fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>);
 }
 
 /// All kinds.

@@ -1,6 +1,6 @@
 //! The result of a run in a few numbers, the same type for reduced models and the reference.
 
-use super::{ContactPressure, Drive, Losses, Quantity, Table};
+use super::{ContactPressure, Drive, Limit, Losses, Quantity, Table};
 use crate::scene::{Model, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -66,7 +66,7 @@ pub struct Summary {
     /// Of a bender only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bender: Option<BenderSummary>,
-    /// Reduced models of plate impacts: contact patches at the force peaks.
+    /// Plate impacts: Hertz's contact patches at the force peaks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact_pressure: Option<ContactPressure>,
     /// Energy lost to damping and fluid, if there are any.
@@ -87,6 +87,9 @@ pub struct Summary {
     /// What a user has to know before relying on the result, a sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
+    /// How near it comes to the bounds of the theories behind it; beyond them there is a warning.
+    #[serde(default)]
+    pub limits: Vec<Limit>,
     /// Why it is this model and this number of modes, if that was left to the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub choice: Option<crate::result::Choice>,
@@ -131,6 +134,12 @@ impl Summary {
         ends.map(|end| end.value).try_fold(0.0_f64, |last, end| Some(last.max(end?)))
     }
 
+    /// Keeps the limits, and warns of those exceeded.
+    pub(crate) fn set_limits(&mut self, limits: Vec<Limit>) {
+        self.warnings.extend(limits.iter().filter_map(Limit::warning));
+        self.limits = limits;
+    }
+
     /// The names of the quantities that the run has not determined.
     pub fn undetermined(&self) -> impl Iterator<Item = &'static str> {
         self.quantities.iter().filter(|quantity| quantity.value.is_none()).map(|quantity| quantity.name)
@@ -161,6 +170,7 @@ impl Summary {
             mesh: None,
             solver: None,
             warnings: Vec::new(),
+            limits: Vec::new(),
             samples: None,
             sample_interval: None,
         }

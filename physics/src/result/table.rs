@@ -195,7 +195,7 @@ mod tests {
         let document = serde_json::to_value(ALL.table()).expect("JSON");
         assert_eq!(document, json!({"length": 0.5, "number": 2, "first_frequency": 7.0}));
         let read = Table::read(Three::ALL, &document).expect("complete");
-        assert_eq!(Three::of(|name| read.value(name)), Some(ALL));
+        assert_eq!(Three::of_table(&read), Some(ALL));
     }
 
     #[test]

@@ -166,7 +166,8 @@ impl<'a> Checker<'a> {
                 self.fault(place, value, "which it can't be", "not valid", help)
             }
             (Kind::Quantity(dimension, bound), _) => {
-                self.quantity(place, value, *dimension, *bound).map(Checked::Number)
+                let number = self.quantity(place, value, *dimension, *bound)?;
+                self.plausible(place, value, *dimension, number).map(Checked::Number)
             }
             (Kind::Count(low, high), _) => self.count(place, value, *low, *high),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(Checked::Flag(*flag)),
@@ -282,9 +283,29 @@ impl<'a> Checker<'a> {
             let help = format!("write a list like [\"{}\"]", dimension.describe().2);
             return self.fault(place, value, &message, "wrong length", help);
         }
-        let numbers: Vec<Option<f64>> =
-            items.iter().map(|item| self.quantity(place, item, dimension, bound)).collect();
+        let mut read = |item| {
+            let number = self.quantity(place, item, dimension, bound)?;
+            self.plausible(place, item, dimension, number)
+        };
+        let numbers: Vec<Option<f64>> = items.iter().map(&mut read).collect();
         Some(Checked::Numbers(numbers.into_iter().collect::<Option<_>>()?))
+    }
+
+    /// `number` if anybody can mean it.
+    fn plausible(
+        &mut self,
+        place: &Place,
+        value: &Spanned<DeValue>,
+        dimension: Dimension,
+        number: f64,
+    ) -> Option<f64> {
+        if dimension.is_plausible(number) {
+            return Some(number);
+        }
+        let ([low, high], (what, ..)) = (dimension.span(), dimension.describe());
+        let message = format!("but {what} has to lie between {low:e} and {high:e}{}", dimension.suffix());
+        let help = "a number that is much larger or smaller than anything that is struck is a slip: is it the right unit, the right power of ten?";
+        self.fault(place, value, &message, "out of range", help.to_owned())
     }
 
     /// Reads a number or a text with unit, in SI.
@@ -295,7 +316,7 @@ impl<'a> Checker<'a> {
         dimension: Dimension,
         bound: Bound,
     ) -> Option<f64> {
-        let (what, unit, sample) = dimension.describe();
+        let (needed, (what, unit, sample)) = (dimension.in_words(), dimension.describe());
         let in_degrees = dimension == Dimension::ANGLE
             && matches!(value.get_ref(), DeValue::String(text) if text.trim_end().ends_with("deg"));
         let (unit, range) = if in_degrees {
@@ -317,7 +338,7 @@ impl<'a> Checker<'a> {
                 .map_err(|_| QuantityError::OutOfRange),
             DeValue::String(text) => quantity::parse(text, dimension),
             found => {
-                let message = format!("but it has to be {what} in {unit}; found: {}", found.type_str());
+                let message = format!("but it has to be {needed}; found: {}", found.type_str());
                 return self.fault(place, value, &message, "wrong type", help);
             }
         };
@@ -326,20 +347,21 @@ impl<'a> Checker<'a> {
             Err(error) => {
                 let message = match error {
                     QuantityError::NotANumber => {
-                        format!("which is not a number with a unit; {what} in {unit} is needed")
+                        format!("which is not a number with a unit; {needed} is needed")
                     }
                     QuantityError::UnknownUnit(u) if u.starts_with(',') => {
-                        format!("but decimals stand behind a point, not a comma; {what} in {unit} is needed")
+                        format!("but decimals stand behind a point, not a comma; {needed} is needed")
                     }
                     QuantityError::UnknownUnit(u) => {
                         format!(
-                            "but `{u}` is not a known unit; {what} in {unit} is needed (units are written as symbols: mm, um, kg, ms)"
+                            "but `{u}` is not a known unit; {needed} is needed (units are written as symbols: mm, um, kg, ms)"
                         )
                     }
                     QuantityError::MalformedUnit(u) => {
-                        format!("but `{u}` is not a product of units; {what} in {unit} is needed")
+                        format!("but `{u}` is not a product of units; {needed} is needed")
                     }
                     QuantityError::WrongDimension(u) => {
+                        let unit = if dimension == Dimension::NONE { "none" } else { unit };
                         format!("but `{u}` is not the unit of {what}; {unit} is needed, with any prefix")
                     }
                     QuantityError::OutOfRange => "which double precision can't hold".to_owned(),

@@ -1,6 +1,6 @@
-//! Geometry of a seal seat that can't be: which two features collide.
+//! Geometry that can't be: which two features collide.
 
-use super::{Scene, SealSeat, Setup};
+use super::{Plate, Scene, SealSeat, Setup};
 use std::f64::consts::FRAC_PI_2;
 
 /// Two features of a scene that can't both be as they are.
@@ -14,14 +14,19 @@ pub(super) struct Collision {
     pub(super) help: &'static str,
 }
 
+/// Least and largest thickness of a plate over its radius.
+const SLENDERNESS: [f64; 2] = [1e-6, 100.0];
 /// Least thickness of a wall between two features, over the island's height: what a mesh can follow.
 const LEAST_WALL: f64 = 0.02;
 /// Least distance of two tips over their radius: closer ones make one contact.
 const LEAST_TIP_DISTANCE: f64 = 0.1;
 
-/// The collisions in a scene; a scene without a seal seat has none.
+/// The collisions in a scene.
 pub(super) fn collisions(scene: &Scene) -> Vec<Collision> {
-    let Setup::SealSeat(setup) = &scene.setup else { return Vec::new() };
+    let setup = match &scene.setup {
+        Setup::PlateImpact(setup) => return plate(&setup.plate),
+        Setup::SealSeat(setup) => setup,
+    };
     let mut found = island(setup);
     found.extend(cone_and_bore(setup));
     // Where the ring lies means nothing unless cone and island are sound.
@@ -48,6 +53,20 @@ fn broken(rules: Vec<Rule>) -> Vec<Collision> {
 /// A length in mm, as people read it; the rounding is far below what a mesh resolves.
 fn mm(length: f64) -> String {
     format!("{} mm", (length * 1e9).round() / 1e6)
+}
+
+/// A plate that is no plate: its waves and its contacts live on scales that no run brings together.
+fn plate(plate: &Plate) -> Vec<Collision> {
+    let ratio = plate.thickness / plate.radius;
+    let [least, most] = SLENDERNESS;
+    broken(vec![Rule {
+        fields: vec!["plate.thickness", "plate.radius"],
+        holds: (least..=most).contains(&ratio),
+        message: format!(
+            "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it has to be {least:e} to {most} times"
+        ),
+        help: "is one of them in the wrong unit?",
+    }])
 }
 
 fn island(setup: &SealSeat) -> Vec<Collision> {

@@ -7,23 +7,24 @@ use sha2::{Digest, Sha256};
 impl Scene {
     /// SHA-256 (hexadecimal) of what is physical in the scene: bodies, motion, fluid, length of the run.
     ///
-    /// Name, description, names of materials, tolerances and the settings of models and
+    /// Name, description, names and yield strengths of materials, tolerances and the settings of models and
     /// reference are left out: two scenes with the same hash have the same exact solution.
     pub fn hash(&self) -> String {
         let mut physical = json!({ "setup": self.setup, "run": self.run });
-        drop_material_names(&mut physical);
+        drop_inelastic(&mut physical);
         sha256_hex(canonical(&physical).as_bytes())
     }
 }
 
-/// Takes the names out of all materials below `value`: they change nothing.
-pub fn drop_material_names(value: &mut Value) {
+/// Takes out of all materials below `value` what changes no elastic result: names and yield strengths.
+pub fn drop_inelastic(value: &mut Value) {
     let Value::Object(map) = value else { return };
     for (key, child) in map.iter_mut() {
         if let (true, Value::Object(material)) = (key == "material", &mut *child) {
             material.remove("name");
+            material.remove("yield_strength");
         }
-        drop_material_names(child);
+        drop_inelastic(child);
     }
 }
 

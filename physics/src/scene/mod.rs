@@ -46,12 +46,25 @@ pub struct Material {
     pub poisson_ratio: f64,
     /// Density rho in kg/m^3.
     pub density: f64,
+    /// Yield strength in uniaxial tension in Pa, if it is known. It changes no elastic result, only what is warned of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yield_strength: Option<f64>,
 }
 
 impl Material {
     /// Plane-strain modulus E / (1 - nu^2) in Pa.
     pub fn plane_strain_modulus(&self) -> f64 {
         self.youngs_modulus / (1.0 - self.poisson_ratio.powi(2))
+    }
+
+    /// Shear modulus E / (2 (1 + nu)) in Pa.
+    pub fn shear_modulus(&self) -> f64 {
+        0.5 * self.youngs_modulus / (1.0 + self.poisson_ratio)
+    }
+
+    /// Speed of longitudinal waves in a thin bar, sqrt(E / rho), in m/s.
+    pub fn bar_wave_speed(&self) -> f64 {
+        (self.youngs_modulus / self.density).sqrt()
     }
 }
 

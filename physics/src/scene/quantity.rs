@@ -66,6 +66,42 @@ impl Dimension {
     }
 }
 
+impl Dimension {
+    /// Least and largest magnitude, in SI, that a scene may have besides 0: far beyond what anybody strikes and measures, so
+    /// that what lies outside is a slip of the pen, and within what the methods can be tried on.
+    pub fn span(self) -> [f64; 2] {
+        match self {
+            Dimension::LENGTH => [1e-9, 1e3],
+            Dimension::MASS => [1e-15, 1e6],
+            Dimension::TIME => [1e-12, 1e6],
+            Dimension::SPEED => [1e-9, 1e5],
+            Dimension::PRESSURE => [1.0, 1e18],
+            Dimension::DENSITY => [1e-6, 1e9],
+            Dimension::VISCOSITY => [1e-18, 1e6],
+            Dimension::FREQUENCY => [1e-6, 1e12],
+            Dimension::NONE => [0.0, 1e6],
+            _ => [1e-30, 1e30],
+        }
+    }
+
+    /// Whether `value` is 0 or lies in the [span](Self::span).
+    pub fn is_plausible(self, value: f64) -> bool {
+        let [low, high] = self.span();
+        value == 0.0 || (low..=high).contains(&value.abs())
+    }
+
+    /// The SI unit behind a number; nothing for a pure number.
+    pub fn suffix(self) -> String {
+        if self == Dimension::NONE { String::new() } else { format!(" {}", self.describe().1) }
+    }
+
+    /// "a length in m", "a pure number".
+    pub fn in_words(self) -> String {
+        let (what, unit, _) = self.describe();
+        if self == Dimension::NONE { what.to_owned() } else { format!("{what} in {unit}") }
+    }
+}
+
 /// A unit: its dimension and its size `factor * 10^exponent` in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Unit {
@@ -103,6 +139,19 @@ const PREFIXES: [(&str, i32); 12] = [
     ("n", -9),
     ("p", -12),
 ];
+
+/// The units of `dimension` that have a symbol of their own, and whether prefixes may stand before them.
+pub(super) fn symbols(dimension: Dimension) -> impl Iterator<Item = (&'static str, bool)> {
+    UNITS
+        .iter()
+        .filter(move |(_, of, ..)| *of == dimension.0)
+        .map(|(symbol, .., prefixed)| (*symbol, *prefixed))
+}
+
+/// The prefixes.
+pub(super) fn prefixes() -> [&'static str; PREFIXES.len()] {
+    PREFIXES.map(|(prefix, _)| prefix)
+}
 
 /// Why a text is not the quantity that is needed.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,14 +204,13 @@ pub fn dimension_of(unit: &str) -> Option<Dimension> {
 /// A clause that says what is wrong and what is needed.
 pub fn in_unit(text: &str, unit: &str) -> Result<f64, String> {
     let dimension = dimension_of(unit).unwrap_or(Dimension::NONE);
+    let needed = dimension.in_words();
     parse(text, dimension).map_err(|error| match error {
-        QuantityError::NotANumber => format!("`{text}` is not a number with a unit of {unit}"),
-        QuantityError::UnknownUnit(u) => format!("`{u}` is not a known unit; one of {unit} is needed"),
-        QuantityError::MalformedUnit(u) => {
-            format!("`{u}` is not a product of units; one of {unit} is needed")
-        }
+        QuantityError::NotANumber => format!("`{text}` is not {needed}"),
+        QuantityError::UnknownUnit(u) => format!("`{u}` is not a known unit; {needed} is needed"),
+        QuantityError::MalformedUnit(u) => format!("`{u}` is not a product of units; {needed} is needed"),
         QuantityError::WrongDimension(u) => {
-            format!("`{u}` is not the unit that is needed, {unit} with any prefix")
+            format!("`{u}` is the unit of something else; {needed} is needed")
         }
         QuantityError::OutOfRange => format!("double precision can't hold `{text}`"),
     })

@@ -28,6 +28,14 @@ impl Scene {
         Scene::parse(&path.display().to_string(), &read_text(path)?)
     }
 
+    /// Reads and checks a scene file from a stream; `source_name` is what messages call it.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn read_from(source_name: &str, stream: &mut dyn Read) -> Result<Scene> {
+        Scene::parse(source_name, &stream_text(source_name, stream)?)
+    }
+
     /// Checks `text`, the content of a scene file; `source_name` is what messages call the file.
     ///
     /// # Errors
@@ -57,23 +65,28 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
             "name the .toml file inside it",
         ));
     }
-    let too_large = |size: String| {
-        refused(
-            &format!("{name} has {size} bytes; a scene file has at most {MAX_FILE_BYTES} (1 MiB)"),
-            "give a scene file, such as one of the folder scenes/",
-        )
-    };
     if metadata.is_file() && metadata.len() > MAX_FILE_BYTES {
-        return Err(too_large(metadata.len().to_string()));
+        return Err(too_large(&name, metadata.len().to_string()));
     }
+    stream_text(&name, &mut std::fs::File::open(path).map_err(system)?)
+}
+
+/// The text of a stream called `name`: a pipe or a device has no size to check beforehand.
+fn stream_text(name: &str, stream: &mut dyn Read) -> Result<String> {
     let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(system)?;
-    // A pipe or a device has no size to check beforehand.
-    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(system)?;
+    let read = stream.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
+    read.map_err(|e| Error::io("reading", name, e))?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(too_large(format!("more than {MAX_FILE_BYTES}")));
+        return Err(too_large(name, format!("more than {MAX_FILE_BYTES}")));
     }
-    decode(&name, bytes)
+    decode(name, bytes)
+}
+
+fn too_large(name: &str, size: String) -> Error {
+    refused(
+        &format!("{name} has {size} bytes; a scene file has at most {MAX_FILE_BYTES} (1 MiB)"),
+        "give a scene file, such as one of the folder scenes/",
+    )
 }
 
 /// The checked values of a scene file and its tolerances.
@@ -194,8 +207,12 @@ impl<'a> Node<'a> {
         }
     }
 
+    pub(super) fn optional_number(&self, key: &str) -> Result<Option<f64>> {
+        self.0.contains_key(key).then(|| self.number(key)).transpose()
+    }
+
     pub(super) fn number_or(&self, key: &str, default: f64) -> Result<f64> {
-        if self.0.contains_key(key) { self.number(key) } else { Ok(default) }
+        Ok(self.optional_number(key)?.unwrap_or(default))
     }
 
     pub(super) fn text(&self, key: &str) -> Result<&'a str> {
@@ -275,6 +292,7 @@ pub(super) fn material(materials: &Node, name: &str) -> Result<Material> {
         youngs_modulus: material.number("youngs_modulus")?,
         poisson_ratio: material.number("poisson_ratio")?,
         density: material.number("density")?,
+        yield_strength: material.optional_number("yield_strength")?,
     })
 }
 

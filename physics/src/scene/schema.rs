@@ -2,7 +2,7 @@
 
 use super::alternatives::groups;
 use super::check::MAX_NAME;
-use super::quantity::Dimension;
+use super::quantity::{Dimension, prefixes, symbols};
 use super::specification::{Alternative, Bound, Field, Kind, SCENE, TOLERANCES};
 use super::tolerances::{TERMS, gated_names, models};
 use crate::kinds::{self, KINDS};
@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 /// The JSON schema (draft 2020-12) of scene files.
 ///
 /// It refuses what can be told without arithmetic: unknown and missing keys, wrong types,
-/// bare numbers out of range. Units and names of materials are checked by [`super::Scene::parse`].
+/// bare numbers out of range. Products of units and names of materials are checked by [`super::Scene::parse`].
 pub fn schema() -> Value {
     let mut schema = table(&SCENE);
     schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
@@ -126,21 +126,36 @@ fn value(kind: &Kind) -> Value {
     }
 }
 
-/// A number in SI, or a text that begins with a decimal number.
+/// A number in SI, or a text: a decimal number with a unit of this dimension.
 fn quantity(dimension: Dimension, bound: Bound) -> Value {
     let (_, unit, sample) = dimension.describe();
-    let mut number =
-        json!({ "type": "number", "description": format!("in {unit}, {}", bound.describe(unit)) });
+    let range = bound.describe(unit);
+    let range = if dimension == Dimension::NONE { range } else { format!("in {unit}, {range}") };
+    let mut number = json!({ "type": "number", "description": range });
+    let high = bound.high.or(Some((dimension.span()[1], true)));
     for (end, valid, open) in
-        [(bound.low, "minimum", "exclusiveMinimum"), (bound.high, "maximum", "exclusiveMaximum")]
+        [(bound.low, "minimum", "exclusiveMinimum"), (high, "maximum", "exclusiveMaximum")]
     {
         if let Some((at, is_valid)) = end {
             number[if is_valid { valid } else { open }] = json!(at);
         }
     }
     let sign = if bound.low.is_some_and(|(at, _)| at >= 0.0) { r"\+?" } else { "[+-]?" };
-    let pattern = format!(r"^\s*{sign}([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*[^0-9]?.*$");
+    let pattern =
+        format!(r"^\s*{sign}([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*({})?\s*$", units(dimension));
     json!({ "anyOf": [number, { "type": "string", "pattern": pattern }], "examples": [sample] })
+}
+
+/// A pattern of the units that a quantity may have: single symbols of its dimension, and products of whatever symbols,
+/// which only arithmetic tells apart.
+fn units(dimension: Dimension) -> String {
+    let prefix = prefixes().join("|");
+    let symbol = |(symbol, prefixed): (&str, bool)| {
+        if prefixed { format!("({prefix})?{symbol}") } else { symbol.to_owned() }
+    };
+    let mut ways: Vec<String> = symbols(dimension).map(symbol).collect();
+    ways.push(r"[^0-9*/^\s]+\s*([*/^·⋅²³]|\s[^\s]).*".to_owned());
+    ways.join("|")
 }
 
 fn tolerances(kind: &dyn kinds::Kind) -> Value {

@@ -6,7 +6,7 @@
 //! leans inwards by the tilt, widening upwards, and a bore below it. The cone touches the sphere along the ring.
 
 use super::Material;
-use super::hash::{canonical, drop_material_names, sha256_hex};
+use super::hash::{canonical, drop_inelastic, sha256_hex};
 use serde::Serialize;
 use serde_json::json;
 
@@ -148,7 +148,7 @@ impl SealSeat {
             "sphere_radius": self.sphere.radius,
             "tip_positions": self.actuator.tip_positions,
         });
-        drop_material_names(&mut geometry);
+        drop_inelastic(&mut geometry);
         if let Some(seat) = geometry["seat"].as_object_mut() {
             seat.remove("material");
         }

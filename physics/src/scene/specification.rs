@@ -206,10 +206,15 @@ pub(super) static SCENE: [Field; 17] = [
 pub(super) static TOLERANCES: Field =
     optional("tolerances", Kind::Tolerances, "Tolerances of the gate, by reduced model and quantity");
 
-static MATERIAL: [Field; 3] = [
+static MATERIAL: [Field; 4] = [
     required("youngs_modulus", positive(Dimension::PRESSURE), "Young's modulus E"),
     required("poisson_ratio", pure(POISSON), "Poisson's ratio nu"),
     required("density", positive(Dimension::DENSITY), "Density rho"),
+    optional(
+        "yield_strength",
+        positive(Dimension::PRESSURE),
+        "Yield strength in uniaxial tension, beyond which contacts are warned of; absent = not checked",
+    ),
 ];
 
 static PLATE: [Field; 5] = [

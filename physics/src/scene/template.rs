@@ -78,9 +78,10 @@ impl Field {
     /// # Errors
     /// [`Error::Usage`] with the text and what is needed.
     pub fn parse(&self, text: &str) -> Result<f64> {
-        let (what, unit, sample) = self.dimension().describe();
+        let (what, _, sample) = self.dimension().describe();
         let fault = |reason: String| {
-            let like = if unit == "1" { sample.to_owned() } else { format!("\"{sample}\"") };
+            let like =
+                if self.dimension() == Dimension::NONE { sample.to_owned() } else { format!("\"{sample}\"") };
             Error::Usage(format!("`{}` = `{text}`: {reason}; write {what}, for example {like}", self.path))
         };
         let number = quantity::parse(text, self.dimension()).map_err(|error| {
@@ -89,7 +90,7 @@ impl Field {
                 QuantityError::UnknownUnit(u) => format!("`{u}` is not a known unit"),
                 QuantityError::MalformedUnit(u) => format!("`{u}` is not a product of units"),
                 QuantityError::WrongDimension(u) => {
-                    format!("`{u}` is not the unit of {what}, which is {unit}")
+                    format!("`{u}` is not the unit of {}", self.dimension().in_words())
                 }
                 QuantityError::OutOfRange => "double precision can't hold it".into(),
             })
@@ -103,12 +104,20 @@ impl Field {
     /// [`Rejected`] with field, value, bound and unit.
     pub fn check(&self, value: f64) -> std::result::Result<(), Rejected> {
         let unit = self.unit();
-        let shown = if unit == "1" { String::new() } else { format!(" {unit}") };
+        let shown = self.dimension().suffix();
         let rejected =
             |range: String| Rejected(format!("`{}` is {value}{shown}, but it has to be {range}", self.path));
         match self.kind {
-            Kind::Quantity(_, bound) | Kind::Quantities(_, bound, _) if bound.holds(value) => Ok(()),
-            Kind::Quantity(_, bound) | Kind::Quantities(_, bound, _) => Err(rejected(bound.describe(unit))),
+            Kind::Quantity(_, bound) | Kind::Quantities(_, bound, _) if !bound.holds(value) => {
+                Err(rejected(bound.describe(unit)))
+            }
+            Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..)
+                if !dimension.is_plausible(value) =>
+            {
+                let [low, high] = dimension.span();
+                Err(rejected(format!("between {low:e} and {high:e}{shown}")))
+            }
+            Kind::Quantity(..) | Kind::Quantities(..) => Ok(()),
             Kind::Count(low, high) => {
                 let whole = value.fract() == 0.0 && value >= *low as f64 && value <= *high as f64;
                 if whole { Ok(()) } else { Err(rejected(format!("a whole number from {low} to {high}"))) }

@@ -25,6 +25,7 @@ pub(super) fn draw(name: &str, x: &[f64]) -> Option<Scene> {
         youngs_modulus: between(first, 1e7, 1e12),
         poisson_ratio: -0.99 + 1.489 * x[first + 1],
         density: between(first + 2, 500.0, 2e4),
+        yield_strength: None,
     };
     let compact = |radius: f64, material: &Material, share: f64, ratio: f64| {
         let sphere = Shape::Sphere { radius };

@@ -212,7 +212,7 @@ fn judged(case: &Case, cache: &Cache) -> Result<Judged> {
 /// The plate impacts among the project's scenes that have a stored reference with narrow bands.
 fn references(store: &Store) -> Result<Vec<Case>> {
     let mut files = scene::shipped()?;
-    let further = project_root().join("scenes/validation");
+    let further = project_root()?.join("scenes/validation");
     if let Ok(folder) = std::fs::read_dir(&further) {
         let mut more: Vec<_> = folder.filter_map(|entry| Some(entry.ok()?.path())).collect();
         more.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));

@@ -12,4 +12,4 @@ mod table;
 pub use plan::{DEFAULT_TOLERANCE, Plan};
 pub use record::{Outcome, Record};
 pub use run::{Progress, Shard, run};
-pub use table::{Format, Table};
+pub use table::Table;

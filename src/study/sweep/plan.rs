@@ -5,7 +5,7 @@ use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::sampling::latin_hypercube;
-use crate::scene::hash::{canonical, drop_material_names, sha256_hex};
+use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
 use crate::scene::{self, Field, Model, Template};
 use serde::Deserialize;
 use serde_json::json;
@@ -244,7 +244,7 @@ impl Plan {
             "samples": file.samples, "seed": file.seed,
             "axes": self.axes.iter().map(axis).collect::<Vec<_>>(),
         });
-        drop_material_names(&mut identity);
+        drop_inelastic(&mut identity);
         sha256_hex(canonical(&identity).as_bytes())
     }
 

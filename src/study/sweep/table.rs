@@ -5,6 +5,7 @@ use super::record::{NUMBERS, Outcome, Record};
 use super::run::{Shard, read_all};
 use crate::error::{Error, Result};
 use crate::file::write_file;
+use crate::report::TableFormat;
 use crate::study::SCHEMA_VERSION;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -19,33 +20,6 @@ use std::sync::Arc;
 
 /// Rows of a row group of a Parquet file.
 const ROW_GROUP: usize = 100_000;
-
-/// File format of a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Comma-separated text, units in the header.
-    Csv,
-    /// Apache Parquet, units in the metadata.
-    Parquet,
-}
-
-impl Format {
-    fn extension(self) -> &'static str {
-        match self {
-            Format::Csv => "csv",
-            Format::Parquet => "parquet",
-        }
-    }
-}
-
-impl std::str::FromStr for Format {
-    type Err = String;
-
-    fn from_str(text: &str) -> std::result::Result<Self, String> {
-        let found = [Format::Csv, Format::Parquet].into_iter().find(|format| format.extension() == text);
-        found.ok_or_else(|| format!("`{text}` is not a format; there are csv and parquet"))
-    }
-}
 
 /// Points and results of a sweep.
 #[derive(Debug)]
@@ -163,11 +137,11 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// [`Error::Io`] naming the file.
-    pub fn write(&self, dir: &Path, format: Format) -> Result<PathBuf> {
+    pub fn write(&self, dir: &Path, format: TableFormat) -> Result<PathBuf> {
         let path = dir.join(format!("sweep.{}", format.extension()));
         let bytes = match format {
-            Format::Csv => self.csv()?,
-            Format::Parquet => {
+            TableFormat::Csv => self.csv()?,
+            TableFormat::Parquet => {
                 self.parquet().map_err(|e| Error::Internal(format!("writing Parquet: {e}")))?
             }
         };

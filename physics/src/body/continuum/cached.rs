@@ -3,7 +3,7 @@
 use super::{ContinuumPlate, MeshOptions, WEIGHTED};
 use crate::body::cache::{Cache, revision};
 use crate::error::Result;
-use crate::scene::hash::drop_material_names;
+use crate::scene::hash::drop_inelastic;
 use crate::scene::{Material, Plate};
 use serde_json::{Value, json};
 
@@ -124,7 +124,7 @@ fn sphere_inputs(radius: f64, material: &Material, patch_radius: f64, mesh: &Mes
 
 /// `content` without what does not matter, with the revision of the method.
 fn inputs(mut content: Value) -> Value {
-    drop_material_names(&mut content);
+    drop_inelastic(&mut content);
     content["revision"] = CONTINUUM_REVISION.into();
     content
 }
@@ -139,7 +139,13 @@ mod tests {
     const PATCH: [f64; 2] = [0.3e-3, 0.2e-3];
 
     fn steel() -> Material {
-        Material { name: "steel".into(), youngs_modulus: 210e9, poisson_ratio: 0.3, density: 7780.0 }
+        Material {
+            name: "steel".into(),
+            youngs_modulus: 210e9,
+            poisson_ratio: 0.3,
+            density: 7780.0,
+            yield_strength: None,
+        }
     }
 
     fn table1() -> Plate {

@@ -6,9 +6,10 @@
 //! the sparse factor, and to a number of modes that is known beforehand.
 
 use super::mirror::{axpy, dot};
+use crate::body::eigenmodes::symmetric;
 use crate::error::{Error, Result};
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 
 /// An elastic body with factorised stiffness K and mass M over n degrees of freedom.
 pub(in crate::body) trait ShiftInvert {
@@ -150,7 +151,9 @@ fn orthogonalise(body: &impl ShiftInvert, w: &mut [f64], w_mass: &mut Vec<f64>, 
     let n = w.len();
     for _ in 0..2 {
         let before = dot(w, w_mass);
-        let part = basis.matrix().transpose() * MatRef::from_column_major_slice(w_mass, n, 1);
+        let mut part = Mat::zeros(basis.len(), 1);
+        let mass = MatRef::from_column_major_slice(w_mass, n, 1);
+        matmul(part.as_mut(), Accum::Replace, basis.matrix().transpose(), mass, 1.0, Par::Seq);
         let vector = MatMut::from_column_major_slice_mut(w, n, 1);
         matmul(vector, Accum::Add, basis.matrix(), &part, -1.0, Par::Seq);
         *w_mass = body.mass_times(w);
@@ -168,11 +171,10 @@ fn tridiagonal_eigen(alpha: &[f64], beta: &[f64]) -> Result<(Vec<f64>, Mat<f64>)
         1 => beta[i.min(j)],
         _ => 0.0,
     });
-    let eigen = matrix
-        .self_adjoint_eigen(Side::Lower)
-        .map_err(|e| Error::Solver(format!("the modes of the continuum mesh did not converge: {e:?}")))?;
-    let theta = (0..n).rev().map(|k| eigen.S().column_vector()[k]).collect();
-    Ok((theta, eigen.U().to_owned()))
+    let (mut theta, vectors) = symmetric(&matrix)
+        .ok_or_else(|| Error::Solver("the modes of the continuum mesh did not converge".into()))?;
+    theta.reverse();
+    Ok((theta, vectors))
 }
 
 fn ritz(basis: &Columns, theta: &[f64], vectors: &Mat<f64>) -> Modes {
@@ -214,6 +216,7 @@ mod tests {
     use super::*;
     use crate::scene::Material;
     use approx::assert_relative_eq;
+    use faer::Side;
     use std::rc::Rc;
 
     /// All elastic eigenfrequencies of a small body from dense matrices: M = C C^T, C^T K^-1 C.
@@ -236,7 +239,13 @@ mod tests {
 
     #[test]
     fn no_mode_is_missed_or_found_twice_against_a_dense_solution() {
-        let material = Material { name: "m".into(), youngs_modulus: 1.0, poisson_ratio: 0.3, density: 1.0 };
+        let material = Material {
+            name: "m".into(),
+            youngs_modulus: 1.0,
+            poisson_ratio: 0.3,
+            density: 1.0,
+            yield_strength: None,
+        };
         let plate = mesh::plate(2, &[0.0, 0.2, 0.5, 1.0], &[0.0, 0.1, 0.25]);
         let matrices = Rc::new(Matrices::new(&plate, &material).unwrap());
         for (parity, free) in

@@ -195,7 +195,13 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn material() -> Material {
-        Material { name: "m".into(), youngs_modulus: 2e11, poisson_ratio: 0.3, density: 7780.0 }
+        Material {
+            name: "m".into(),
+            youngs_modulus: 2e11,
+            poisson_ratio: 0.3,
+            density: 7780.0,
+            yield_strength: None,
+        }
     }
 
     fn free_half(mesh: &Mesh, parity: Parity) -> HalfBody {

@@ -184,7 +184,13 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn material() -> Material {
-        Material { name: "m".into(), youngs_modulus: 2.6e9, poisson_ratio: 0.38, density: 1320.0 }
+        Material {
+            name: "m".into(),
+            youngs_modulus: 2.6e9,
+            poisson_ratio: 0.38,
+            density: 1320.0,
+            yield_strength: None,
+        }
     }
 
     /// Force on the nodes under the displacements `u`. Shape (nodes, 3).

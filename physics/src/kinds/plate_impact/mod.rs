@@ -2,6 +2,7 @@
 
 pub mod choice;
 pub mod errors;
+mod limits;
 pub mod reduced;
 mod results;
 mod rough;
@@ -10,8 +11,8 @@ mod truncation;
 mod validity;
 pub mod variants;
 
-use crate::result::{Curve, Quantity};
-use crate::scene::Model;
+use crate::result::{Curve, History, Quantity, Summary};
+use crate::scene::{Model, Scene, Setup};
 
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
 
@@ -33,5 +34,11 @@ impl super::Kind for Kind {
 
     fn curves(&self) -> &'static [Curve] {
         &CURVES
+    }
+
+    fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>) {
+        if let Setup::PlateImpact(setup) = &scene.setup {
+            limits::judge(setup, summary, history);
+        }
     }
 }

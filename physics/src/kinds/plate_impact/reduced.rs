@@ -1,5 +1,6 @@
 //! A reduced model of a scene: bodies reduced to modes, joined and integrated.
 
+use super::Kind;
 use super::choice::Plan;
 use super::results::PlateQuantities;
 use super::rough::Rough;
@@ -21,7 +22,8 @@ use crate::dynamics::wet;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::result::{BenderSummary, CUT, Choice, ContactPressure, Outcome, Summary};
+use crate::kinds::Kind as _;
+use crate::result::{BenderSummary, CUT, Choice, Outcome, Summary};
 use crate::scene::{self, Edge, MAX_MODES, Material, Model, PlateImpact, Scene, Shape};
 use std::time::Instant;
 
@@ -194,6 +196,12 @@ impl Reduced {
     /// # Errors
     /// As [`integrate`] and [`ledger_check`].
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
+        let mut summary = self.unjudged(tolerance)?;
+        Kind.judge(&self.scene, &mut summary, None);
+        Ok(summary)
+    }
+
+    fn unjudged(&self, tolerance: f64) -> Result<Summary> {
         let start = Instant::now();
         let result = self.integrate(&self.options(tolerance))?;
         self.summary(&result, tolerance, start.elapsed().as_secs_f64())
@@ -228,7 +236,7 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::run`].
     pub fn run_with_history_until(&self, tolerance: f64, end: f64) -> Result<Outcome> {
-        let mut summary = self.run(tolerance)?;
+        let mut summary = self.unjudged(tolerance)?;
         let system = &self.system;
         let hit =
             HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
@@ -244,6 +252,7 @@ impl Reduced {
             history = record(&Options { end_time: Some(end * (1.0 + 1e-9)), ..options })?;
         }
         summary.samples = Some(history.len());
+        Kind.judge(&self.scene, &mut summary, Some(&history));
         Ok(Outcome { summary, history })
     }
 
@@ -277,7 +286,6 @@ impl Reduced {
             table = table.cut();
             warnings.push(CUT.into());
         }
-        let peaks = [values.outer_force_peak, values.inner_force_peak];
         Ok(Summary {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
@@ -290,7 +298,6 @@ impl Reduced {
                 let efficiency = transmitted / drive.strain_energy;
                 BenderSummary { strain_energy_efficiency: (!result.is_cut()).then_some(efficiency), drive }
             }),
-            contact_pressure: (!result.is_cut()).then(|| ContactPressure::new(&system.laws, peaks)),
             losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
             warnings,
             choice: self.choice.clone(),

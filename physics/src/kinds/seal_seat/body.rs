@@ -5,7 +5,7 @@ use crate::body::cache::{Cache, revision};
 use crate::body::solid::{InterfaceBody, SOURCES, Solid, TetMesh};
 use crate::error::{Error, Result};
 use crate::scene::SealSeat;
-use crate::scene::hash::{drop_material_names, sha256_hex};
+use crate::scene::hash::{drop_inelastic, sha256_hex};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -96,7 +96,7 @@ impl SeatMesh {
             "body": "seal seat", "revision": REVISION, "mesh": self.content_hash, "zones": zones, "modes": modes,
             "seat": scene.seat, "ring": [scene.sphere.radius], "tips": scene.actuator.tip_positions,
         });
-        drop_material_names(&mut inputs);
+        drop_inelastic(&mut inputs);
         cache.get_or_build(&inputs, || self.build(scene, zones, modes, watch))
     }
 

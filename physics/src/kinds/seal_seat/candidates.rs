@@ -60,7 +60,12 @@ impl Zones {
         let length = 2.0 * std::f64::consts::PI * ring.radius;
         let line_load = force / (length * (0.5 * scene.seat.aperture_angle).sin());
         let half_width = (4.0 * line_load * scene.sphere.radius / (std::f64::consts::PI * modulus)).sqrt();
-        Self { ring: rounded(5.0 * half_width), tip: rounded(patch) }
+        Self { ring: rounded(5.0 * half_width), tip: rounded(patch) }.at_most(scene)
+    }
+
+    /// These, but no wider than the radii of what touches there: farther out nothing can.
+    pub fn at_most(self, scene: &SealSeat) -> Self {
+        Self { ring: self.ring.min(scene.sphere.radius), tip: self.tip.min(scene.actuator.tip_radius) }
     }
 
     /// Zones that hold contact up to `reach` in m from where sphere and tips touch first, with room beyond it; `None`

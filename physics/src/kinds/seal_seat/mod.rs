@@ -10,17 +10,20 @@ mod candidates;
 mod cholesky;
 pub mod contact;
 mod contact_set;
+mod doubts;
 pub mod integrate;
 pub mod integration;
+mod limits;
 mod model;
 pub mod nodes;
 mod results;
 mod survey;
 pub mod system;
+mod truncation;
 mod watch;
 
-use crate::result::{Curve, Quantity};
-use crate::scene::Model;
+use crate::result::{Curve, History, Quantity, Summary};
+use crate::scene::{Model, Scene, Setup};
 
 pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
@@ -46,5 +49,11 @@ impl super::Kind for Kind {
 
     fn curves(&self) -> &'static [Curve] {
         &CURVES
+    }
+
+    fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>) {
+        if let Setup::SealSeat(setup) = &scene.setup {
+            limits::judge(setup, summary, history);
+        }
     }
 }

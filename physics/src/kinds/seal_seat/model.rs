@@ -1,17 +1,21 @@
 //! A reduced seal seat of a scene, ready to run.
 
+use super::Kind;
 use super::body::{SeatBody, SeatMesh, Watch};
 use super::candidates::{Zones, on_half_space};
+use super::doubts;
 use super::integrate::{Options, integrate};
 use super::integration::Integration;
 use super::results::{CURVES, SeatQuantities};
 use super::system::System;
+use super::truncation;
 use crate::body::cache::Cache;
 use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
+use crate::kinds::Kind as _;
 use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
 use crate::result::{CUT, History, Outcome, Summary};
-use crate::scene::{Model, Scene, SealSeat, SphereBody};
+use crate::scene::{Model, Scene, SealSeat};
 use std::time::Instant;
 
 /// Relative error of the sphere's velocity from the time integration when the caller names none.
@@ -32,6 +36,8 @@ const WIDENINGS: u32 = 8;
 pub struct SeatModel {
     scene: Scene,
     system: System,
+    /// With half the modes, for [`truncation`].
+    half: System,
     end_time: Option<f64>,
     first_step: f64,
     /// Velocity of the sphere in m/s at the end of a run with the first step; that run found the contact zones.
@@ -87,15 +93,14 @@ impl SeatModel {
         let mut zones = Zones::expected(setup);
         for _ in 0..WIDENINGS {
             let seat = mesh.body_with(setup, &zones, modes, cache, watch)?;
-            let built = Self::with(scene, setup, &seat, modes)?;
+            let built = Self::with(scene, setup, mesh, &seat, modes)?;
             watch("impact", 0.95);
             let rough = built.integrate(built.first_step, false)?;
-            let Some(wider) = zones.widened(rough.tally.reach) else {
+            let wider = zones.widened(rough.tally.reach).map_or(zones, |wider| wider.at_most(setup));
+            if wider == zones {
                 let (rough, setup_seconds) = (rough.state.sphere_velocity, started.elapsed().as_secs_f64());
-                let unknown = mesh.geometry_hash().is_none().then(|| unverified(mesh));
-                let warnings = built.warnings.into_iter().chain(unknown).collect();
-                return Ok(Self { rough, setup_seconds, warnings, ..built });
-            };
+                return Ok(Self { rough, setup_seconds, ..built });
+            }
             zones = wider;
         }
         Err(Error::Solver(format!(
@@ -104,23 +109,19 @@ impl SeatModel {
         )))
     }
 
-    fn with(scene: &Scene, setup: &SealSeat, seat: &SeatBody, modes: usize) -> Result<Self> {
+    fn with(scene: &Scene, setup: &SealSeat, mesh: &SeatMesh, seat: &SeatBody, modes: usize) -> Result<Self> {
         let system = System::new(setup, &seat.body, &seat.candidates, modes)?;
         let highest = system.omega.iter().fold(0.0f64, |a, b| a.max(*b));
         let period = 2.0 * std::f64::consts::PI / (highest * FIRST_STEPS.0);
-        let mut warnings = Vec::new();
-        if setup.sphere.body == SphereBody::Elastic {
-            warnings
-                .push("the reduced model takes the sphere as rigid, the scene has an elastic one".to_owned());
-        }
         Ok(Self {
             scene: scene.clone(),
             first_step: period.min(on_half_space(setup).duration() / FIRST_STEPS.1),
             end_time: scene.run.end_time,
             // until the run that finds the contact zones has been made
             rough: [f64::NAN; 2],
+            half: System::new(setup, &seat.body, &seat.candidates, modes / 2)?,
             system,
-            warnings,
+            warnings: doubts::of_model(setup, mesh),
             setup_seconds: 0.0,
             dofs: seat.dofs,
         })
@@ -141,12 +142,16 @@ impl SeatModel {
     /// # Errors
     /// As [`integrate`].
     pub fn integrate(&self, step: f64, history: bool) -> Result<Integration> {
+        self.integrate_of(&self.system, step, history)
+    }
+
+    fn integrate_of(&self, system: &System, step: f64, history: bool) -> Result<Integration> {
         let step = match self.end_time {
             // whole steps to the end
             Some(end) => end / (end / step).ceil(),
             None => step,
         };
-        integrate(&self.system, &Options { step, end_time: self.end_time, history })
+        integrate(system, &Options { step, end_time: self.end_time, history })
     }
 
     /// Runs the impact; the step is halved until the sphere's velocity changes by less than three times `tolerance`
@@ -158,7 +163,9 @@ impl SeatModel {
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let started = Instant::now();
         let (result, _) = self.converged(tolerance)?;
-        self.summary(&result, tolerance, started.elapsed().as_secs_f64())
+        let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
+        Kind.judge(&self.scene, &mut summary, None);
+        Ok(summary)
     }
 
     /// As [`SeatModel::run`], with the course over time. The summary's time is that of a run without.
@@ -171,6 +178,7 @@ impl SeatModel {
         let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
         let history = history(&self.integrate(step, true)?);
         summary.samples = Some(history.len());
+        Kind.judge(&self.scene, &mut summary, Some(&history));
         Ok(Outcome { summary, history })
     }
 
@@ -196,6 +204,10 @@ impl SeatModel {
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
         let mut table = quantities(&self.system, result).table();
         let mut warnings = self.warnings.clone();
+        warnings.extend(doubts::of_contacts(&self.system, result));
+        let step = result.time / result.tally.steps as f64;
+        let error = truncation::estimate(result, &self.integrate_of(&self.half, step, false)?);
+        warnings.extend(truncation::warning(error, self.system.omega.len()));
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if result.is_cut() {
             table = table.cut();
@@ -206,18 +218,11 @@ impl SeatModel {
             momentum_residual: result.momentum_residual,
             steps: result.tally.steps,
             solve_seconds,
+            truncation_error: Some(error),
             warnings,
             ..Summary::of_reduced(&self.scene, Model::C, self.system.omega.len(), table)
         })
     }
-}
-
-/// What a result on a mesh has to say that does not tell its geometry.
-fn unverified(mesh: &SeatMesh) -> String {
-    format!(
-        "mesh {} does not say which geometry it was made for (`impactcheck mesh` notes it): only its rim, contact ring and tips were checked",
-        mesh.path().display()
-    )
 }
 
 /// The values at the end of a run of `system`, wherever that is.

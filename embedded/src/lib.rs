@@ -1,0 +1,58 @@
+//! The project's files for a program that is moved away from them.
+//!
+//! A macro of its own, so that only the small binary, not the library and its tests, is built again when a scene or a
+//! Python file changes.
+
+use proc_macro::TokenStream;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// An expression of type `(&str, &[(&str, &[u8])])`: a word that changes with the files, and their paths, relative to the
+/// project, with their contents.
+#[proc_macro]
+pub fn files(_: TokenStream) -> TokenStream {
+    let root = std::env::var("CARGO_MANIFEST_DIR").expect("cargo tells where the project is");
+    let mut found = BTreeMap::new();
+    for folder in ["scenes", "meshes", "fem_reference"] {
+        collect(Path::new(&root), folder, &mut found);
+    }
+    let shipped = |name: &str| found.contains_key(&format!("scenes/{name}.toml"));
+    let wanted: Vec<_> = found.iter().filter(|(path, _)| is_wanted(path, shipped)).collect();
+    let hash = wanted.iter().fold(0, |hash, (path, bytes)| fnv(fnv(hash, path.as_bytes()), bytes));
+    let entry =
+        |path: &str| format!("({path:?}, include_bytes!({:?}).as_slice()),", format!("{root}/{path}"));
+    let entries: String = wanted.iter().map(|(path, _)| entry(path)).collect();
+    format!("({:?}, &[{entries}])", format!("{hash:016x}")).parse().expect("Rust")
+}
+
+fn is_wanted(path: &str, shipped: impl Fn(&str) -> bool) -> bool {
+    match path.strip_prefix("fem_reference/") {
+        None => !path.ends_with(".md"),
+        Some(rest) => match rest.strip_prefix("solutions/") {
+            // what the first command needs
+            Some(entry) => entry.split_once("/paper/").is_some_and(|(scene, _)| shipped(scene)),
+            None => (rest.ends_with(".py") || rest.ends_with(".c")) && !rest.starts_with("tests/"),
+        },
+    }
+}
+
+/// Puts the files below `folder` into `found`.
+fn collect(root: &Path, folder: &str, found: &mut BTreeMap<String, Vec<u8>>) {
+    for entry in fs::read_dir(root.join(folder)).expect(folder) {
+        let entry = entry.expect(folder);
+        let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
+        if entry.path().is_dir() {
+            collect(root, &path, found);
+        } else {
+            found.insert(path, fs::read(entry.path()).expect("a file of the project"));
+        }
+    }
+}
+
+/// FNV-1a, 64 bit (Fowler, Noll, Vo).
+fn fnv(hash: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(hash ^ 0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}

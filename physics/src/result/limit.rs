@@ -1,0 +1,142 @@
+//! How near a result comes to the bounds of the theories that the reduced models and the reference share.
+
+use crate::contact::Hertz;
+use crate::scene::Material;
+use serde::{Deserialize, Serialize};
+
+/// A theory that is relied on up to a bound of a dimensionless measure.
+#[derive(Debug, Clone, Copy)]
+pub struct Theory {
+    /// The measure, as part of names.
+    measure: &'static str,
+    /// Largest value up to which the theory is relied on.
+    bound: f64,
+    /// What is wrong beyond.
+    beyond: &'static str,
+}
+
+/// Contact of half-spaces: radius of the contact patch over that of the tip. Of a rigid sphere (Sneddon, Int. J. Eng. Sci. 3,
+/// 1965, 47) Hertz's force at the same approach is 0.4 % high at the bound.
+pub const HERTZ: Theory = Theory {
+    measure: "contact_radius_over_tip_radius",
+    bound: 0.2,
+    beyond: "the contact is none of half-spaces with small displacements any more; for a rigid sphere Hertz's force is 0.4 % high at 0.2 and 3 % at 0.5",
+};
+
+/// Linear elasticity: largest shear strain below a contact, 0.31 p0 / G (Johnson, Contact Mechanics, 1985, section 4.2).
+pub const SMALL_STRAIN: Theory = Theory {
+    measure: "shear_strain",
+    bound: 0.02,
+    beyond: "linear elasticity leaves out terms of the order of the strain, and few solids stay elastic",
+};
+
+/// Linear theory of plates: deflection over thickness w/t. A clamped plate under a central force is stiffer by 0.443 (w/t)^2
+/// (Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, 2nd ed., article 100): 4 % at the bound.
+pub const SMALL_DEFLECTION: Theory = Theory {
+    measure: "deflection_over_thickness",
+    bound: 0.3,
+    beyond: "a plate that is bent so far also stretches, which linear theory leaves out; a clamped one is 4 % stiffer at 0.3 and 11 % at 0.5",
+};
+
+/// Quasi-static contact: impact speed over sqrt(E/rho), the wave speed of a bar, of the slowest body (Johnson 1985, section
+/// 11.4). The share of the energy left in waves grows as its 3/5th power (Hutchings, J. Phys. D 12, 1979, 1819).
+pub const QUASI_STATIC: Theory = Theory {
+    measure: "impact_speed_over_wave_speed",
+    bound: 0.01,
+    beyond: "the contact is no longer quasi-static: some per cent of the energy stay in waves within bodies that the reduced models take as rigid",
+};
+
+/// Elasticity: Hertz's largest pressure over 1.6 times the yield strength, at which plastic flow begins below the surface
+/// (Johnson 1985, section 6.1, von Mises).
+pub const ELASTICITY: Theory = Theory {
+    measure: "contact_pressure_over_onset_of_yield",
+    bound: 1.0,
+    beyond: "plastic flow has begun below the surface (at 1.6 times the yield strength), and the result is elastic",
+};
+
+/// How near a result comes to the bound of a theory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Limit {
+    /// Place and measure, such as `outer_shear_strain`.
+    pub measure: String,
+    /// Value of the measure.
+    pub value: f64,
+    /// Largest value up to which the theory is relied on.
+    pub bound: f64,
+}
+
+/// Largest shear stress below a Hertz contact over its largest pressure (Johnson 1985, section 4.2).
+const SHEAR: f64 = 0.31;
+/// Plastic flow below a Hertz contact begins at this multiple of the yield strength (Johnson 1985, section 6.1, von Mises).
+const ONSET_OF_YIELD: f64 = 1.6;
+
+/// The limits of a contact by `law` at `place` under its largest `force` in N, between bodies of these elastic `materials`.
+pub(crate) fn of_contact<'m>(
+    place: &str,
+    law: &Hertz,
+    force: f64,
+    materials: &[&'m Material],
+) -> impl Iterator<Item = Limit> + use<'m> {
+    let pressure = law.maximum_pressure(force);
+    let least = |of: fn(&Material) -> Option<f64>| materials.iter().filter_map(|m| of(m)).reduce(f64::min);
+    let strain = least(|m| Some(m.shear_modulus())).map(|g| SMALL_STRAIN.at(place, SHEAR * pressure / g));
+    let yielding = least(|m| m.yield_strength).map(|y| ELASTICITY.at(place, pressure / (ONSET_OF_YIELD * y)));
+    [Some(HERTZ.at(place, law.contact_radius(force) / law.tip_radius)), strain, yielding]
+        .into_iter()
+        .flatten()
+}
+
+impl Theory {
+    /// The limit at `place` where the measure is `value`.
+    pub fn at(&self, place: &str, value: f64) -> Limit {
+        Limit { measure: format!("{place}_{}", self.measure), value, bound: self.bound }
+    }
+}
+
+impl Limit {
+    /// Whether the measure is beyond its bound.
+    pub fn is_exceeded(&self) -> bool {
+        self.value > self.bound
+    }
+
+    /// Whether it is about the yield strength of a material.
+    pub fn is_of_yield(&self) -> bool {
+        self.measure.ends_with(ELASTICITY.measure)
+    }
+
+    /// If the bound is exceeded: by what, and what that means, in one sentence.
+    pub fn warning(&self) -> Option<String> {
+        let theories = [HERTZ, SMALL_STRAIN, SMALL_DEFLECTION, QUASI_STATIC, ELASTICITY];
+        let theory = theories.iter().find(|theory| self.measure.ends_with(theory.measure))?;
+        let measure = self.measure.replace('_', " ");
+        self.is_exceeded()
+            .then(|| format!("{measure} is {:.2e}, beyond {}: {}", self.value, self.bound, theory.beyond))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{HERTZ, Limit};
+
+    /// Sneddon's rigid sphere of radius R on a half-space, patch of radius a: delta = a/2 ln((R+a)/(R-a)),
+    /// F = E*/2 ((a^2 + R^2) ln((R+a)/(R-a)) - 2 a R).
+    #[test]
+    fn hertz_is_as_far_off_at_its_bound_as_is_said() {
+        let error = |a: f64| {
+            let log = ((1.0 + a) / (1.0 - a)).ln();
+            let (approach, force) = (0.5 * a * log, 0.5 * ((1.0 + a * a) * log - 2.0 * a));
+            4.0 / 3.0 * approach.powf(1.5) / force - 1.0
+        };
+        assert!((error(HERTZ.bound) - 0.004).abs() < 1e-4 && (error(0.5) - 0.03).abs() < 2e-3);
+    }
+
+    #[test]
+    fn only_what_exceeds_its_bound_is_warned_of() {
+        assert_eq!(HERTZ.at("outer", 0.2).warning(), None);
+        assert_eq!(HERTZ.at("outer", f64::NAN).warning(), None);
+        let told = HERTZ.at("outer", 0.25).warning().expect("beyond");
+        assert!(told.starts_with("outer contact radius over tip radius is 2.50e-1, beyond 0.2: "), "{told}");
+        let unknown = Limit { measure: "x".into(), value: 2.0, bound: 1.0 };
+        assert_eq!(unknown.warning(), None);
+    }
+}

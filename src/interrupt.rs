@@ -1,0 +1,140 @@
+//! Ctrl-C and SIGTERM: what runs is ended, what is half made goes, then the program ends as the signal wants it to.
+//!
+//! Nothing else is needed for children whose parent dies without a word: `fem_reference` asks the system to be told
+//! (`fem_reference/common/parent.py`).
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::TempDir;
+
+/// What an interruption has to clear away.
+struct Open {
+    children: Vec<u32>,
+    folders: Vec<PathBuf>,
+}
+
+static OPEN: Mutex<Open> = Mutex::new(Open { children: Vec::new(), folders: Vec::new() });
+
+fn open() -> MutexGuard<'static, Open> {
+    OPEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// From now on Ctrl-C and SIGTERM leave no child and no [`Scratch`] folder behind. For programs, called once.
+///
+/// # Errors
+/// What the system says if it refuses.
+#[cfg(unix)]
+pub fn listen() -> io::Result<()> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM])?;
+    let end = move || {
+        if let Some(signal) = signals.forever().next() {
+            // Held until the end: whoever waits for a child that ends now does not get to say that it failed.
+            let open = open();
+            unix::end(&open.children);
+            for folder in &open.folders {
+                let _ = std::fs::remove_dir_all(folder);
+            }
+            let _ = signal_hook::low_level::emulate_default_handler(signal);
+        }
+    };
+    std::thread::Builder::new().name("signals".into()).spawn(end).map(drop)
+}
+
+/// Other systems end children with their console.
+#[cfg(not(unix))]
+pub fn listen() -> io::Result<()> {
+    Ok(())
+}
+
+#[cfg(unix)]
+mod unix {
+    use rustix::process::{Pid, Signal, kill_process, test_kill_process};
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
+
+    /// How long a child may take to end its own.
+    const PATIENCE: Duration = Duration::from_millis(300);
+
+    /// Ends the processes with these numbers; their owners take their leave of them.
+    pub(super) fn end(children: &[u32]) {
+        let pids = || children.iter().filter_map(|pid| Pid::from_raw(i32::try_from(*pid).ok()?));
+        let send = |signal| pids().for_each(|pid| _ = kill_process(pid, signal));
+        send(Signal::TERM);
+        let start = Instant::now();
+        while start.elapsed() < PATIENCE && pids().any(|pid| test_kill_process(pid).is_ok()) {
+            sleep(Duration::from_millis(5));
+        }
+        send(Signal::KILL);
+    }
+}
+
+/// A child that does not outlive its owner, however that ends.
+#[derive(Debug)]
+pub struct Running(Child);
+
+impl Running {
+    /// Starts `command`.
+    ///
+    /// # Errors
+    /// What the system says if the program can't be started.
+    pub fn start(command: &mut Command) -> io::Result<Self> {
+        // An interruption comes before the start or finds the child in the list.
+        let mut open = open();
+        let child = command.env("IMPACTCHECK_PARENT", std::process::id().to_string()).spawn()?;
+        open.children.push(child.id());
+        Ok(Running(child))
+    }
+
+    /// The process itself.
+    pub fn child(&mut self) -> &mut Child {
+        &mut self.0
+    }
+
+    /// Waits for its end.
+    ///
+    /// # Errors
+    /// What the system says if it can't be waited for.
+    pub fn wait(&mut self) -> io::Result<ExitStatus> {
+        self.0.wait()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // Both do nothing to a child that has ended and been waited for.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+        open().children.retain(|pid| *pid != self.0.id());
+    }
+}
+
+/// A folder for what is half made; it goes with its owner, or when the program is interrupted.
+#[derive(Debug)]
+pub struct Scratch(TempDir);
+
+impl Scratch {
+    /// A new folder in `parent` whose name begins with `prefix`.
+    ///
+    /// # Errors
+    /// What the system says if it can't be made.
+    pub fn new_in(parent: &Path, prefix: &str) -> io::Result<Self> {
+        let mut open = open();
+        let folder = tempfile::Builder::new().prefix(prefix).tempdir_in(parent)?;
+        open.folders.push(folder.path().to_path_buf());
+        Ok(Scratch(folder))
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        open().folders.retain(|folder| folder != self.0.path());
+    }
+}

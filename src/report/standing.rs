@@ -1,0 +1,107 @@
+//! The scenes whose results stand in a folder: those of this run, and those of earlier runs whose pages are there.
+
+use super::overview::Overview;
+use super::{Report, SceneReport};
+use crate::comparison::Verdict;
+use crate::error::{Error, Result};
+use crate::result::SCHEMA_VERSION;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::path::Path;
+
+/// The document of all scenes of a folder.
+pub(super) const DOCUMENT: &str = "comparison.json";
+/// Where an entry of the document keeps the scene in short.
+const OVERVIEW: &str = "overview";
+
+/// A scene whose results stand in a folder.
+pub(super) struct Standing {
+    pub(super) overview: Overview,
+    /// Its entry of the document, if it was not part of this run.
+    kept: Option<Value>,
+}
+
+impl Standing {
+    /// Whether it was not part of this run.
+    pub(super) fn is_kept(&self) -> bool {
+        self.kept.is_some()
+    }
+
+    /// When it was compared, and whether in another run than this.
+    pub(super) fn when(&self) -> String {
+        let compared = self.overview.compared.as_deref().unwrap_or("at an unknown time");
+        if self.is_kept() {
+            format!("Kept from an earlier run, not compared again: compared {compared}.")
+        } else {
+            format!("Compared {compared}.")
+        }
+    }
+}
+
+/// The document as it is written and read again.
+#[derive(Serialize, Deserialize)]
+struct Document {
+    schema_version: u32,
+    verdict: Value,
+    scenes: Vec<Value>,
+}
+
+/// The scenes of `report`.
+pub(super) fn of_run(report: &Report) -> Vec<Standing> {
+    report.scenes.iter().map(|scene| Standing { overview: Overview::of(scene), kept: None }).collect()
+}
+
+/// The scenes of `report` in the places that they had in the document in `dir`, the others there whose pages are there, and
+/// what is new. A document that can't be read keeps nothing.
+pub(super) fn in_folder(report: &Report, dir: &Path) -> Vec<Standing> {
+    let mut run = of_run(report);
+    let mut standing = Vec::new();
+    for entry in entries(dir) {
+        let Ok(overview) = Overview::deserialize(&entry[OVERVIEW]) else { continue };
+        match run.iter().position(|new| new.overview.scene == overview.scene) {
+            Some(place) => standing.push(run.remove(place)),
+            None if dir.join(format!("{}.html", overview.scene)).is_file() => {
+                standing.push(Standing { overview, kept: Some(entry) });
+            }
+            None => {}
+        }
+    }
+    standing.extend(run);
+    standing
+}
+
+fn entries(dir: &Path) -> Vec<Value> {
+    let read = std::fs::read(dir.join(DOCUMENT)).ok();
+    let document = read.and_then(|text| serde_json::from_slice::<Document>(&text).ok());
+    document.filter(|d| d.schema_version == SCHEMA_VERSION).map_or_else(Vec::new, |d| d.scenes)
+}
+
+/// The worst of the scenes' verdicts.
+pub(super) fn verdict(standing: &[Standing]) -> Verdict {
+    Verdict::worst(standing.iter().map(|scene| scene.overview.verdict))
+}
+
+/// Pretty JSON of all scenes, ending with a line break.
+///
+/// # Errors
+/// [`Error::Internal`] if it can't be serialised.
+pub(super) fn document(report: &Report, standing: &[Standing]) -> Result<String> {
+    let internal = |e: serde_json::Error| Error::Internal(format!("writing the comparison as JSON: {e}"));
+    let entry = |scene: &Standing| {
+        let is_same = |of_run: &&SceneReport| of_run.comparison.scene == scene.overview.scene;
+        match (&scene.kept, report.scenes.iter().find(is_same)) {
+            (None, Some(of_run)) => {
+                let mut entry = serde_json::to_value(&of_run.comparison)?;
+                entry[OVERVIEW] = serde_json::to_value(&scene.overview)?;
+                Ok(entry)
+            }
+            (kept, _) => Ok(kept.clone().unwrap_or_default()),
+        }
+    };
+    let document = Document {
+        schema_version: SCHEMA_VERSION,
+        verdict: verdict(standing).name().into(),
+        scenes: standing.iter().map(entry).collect::<std::result::Result<_, _>>().map_err(internal)?,
+    };
+    Ok(serde_json::to_string_pretty(&document).map_err(internal)? + "\n")
+}

@@ -1,0 +1,74 @@
+//! Ctrl-C and SIGTERM: within half a second no solver runs on and nothing half made is left.
+
+use crate::store_fixture::SCENE;
+use assert_cmd::cargo::cargo_bin;
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Until the folder or file is there.
+fn wait_for(path: &Path) {
+    let start = Instant::now();
+    while !path.exists() {
+        assert!(start.elapsed() < Duration::from_secs(20), "{} does not appear", path.display());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn is_running(pid: &str) -> bool {
+    let state = Command::new("ps").args(["-o", "stat=", "-p", pid]).output().expect("ps").stdout;
+    !state.is_empty() && state[0] != b'Z'
+}
+
+/// Interrupts a run of a solver that does `script`; its process number stands in `$here/pid`.
+fn interrupted(signal: &str, number: i32, script: &str) {
+    let folder = tempfile::tempdir().expect("folder");
+    let here = folder.path();
+    let python = here.join("python");
+    let text = format!(
+        "#!/bin/sh\nhere='{}'\n[ $3 = versions ] && {{ echo '{{\"python\": \"3\"}}'; exit; }}\nmkdir \"$7\"\n{script}\n",
+        here.display()
+    );
+    fs::write(&python, text).expect("script");
+    fs::set_permissions(&python, fs::Permissions::from_mode(0o755)).expect("executable");
+    fs::write(here.join("mine.toml"), SCENE.replacen("scaled-plate-r10", "mine", 1)).expect("scene");
+    let mut program = Command::new(cargo_bin("impactcheck"))
+        .args(["reference", "mine.toml", "--store", "store"])
+        .current_dir(here)
+        .env("IMPACTCHECK_PYTHON", &python)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("runs");
+    wait_for(&here.join("pid"));
+    std::thread::sleep(Duration::from_millis(50));
+    let pid = fs::read_to_string(here.join("pid")).expect("pid");
+    assert!(is_running(pid.trim()));
+    let start = Instant::now();
+    let kill = Command::new("kill").args([signal, &program.id().to_string()]).status();
+    assert!(kill.expect("kill").success());
+    let status = program.wait().expect("ends");
+    let elapsed = start.elapsed();
+    assert!(elapsed < Duration::from_millis(500), "{signal}: {elapsed:?}");
+    assert_eq!(status.signal(), Some(number), "ends as the signal wants it to: {status}");
+    assert!(!is_running(pid.trim()), "{signal}: the solver runs on");
+    let left: Vec<_> = fs::read_dir(here.join("store/mine")).expect("store").flatten().collect();
+    assert!(left.is_empty(), "{signal}: {left:?}");
+}
+
+const LONG: &str = "echo $$ > \"$here/half\"; mv \"$here/half\" \"$here/pid\"; exec sleep 60";
+
+#[test]
+fn ctrl_c_and_sigterm_end_the_solver_and_leave_nothing() {
+    interrupted("-INT", 2, LONG);
+    interrupted("-TERM", 15, LONG);
+}
+
+#[test]
+fn a_solver_that_does_not_listen_is_ended_all_the_same() {
+    let deaf = "trap '' TERM; echo $$ > \"$here/half\"; mv \"$here/half\" \"$here/pid\"; while :; do read x; done < /dev/zero";
+    interrupted("-INT", 2, deaf);
+}
