@@ -118,10 +118,11 @@ impl<'a> Plan<'a> {
         let mut best: Option<Rated> = None;
         for modes in KIRCHHOFF_RUNGS.into_iter().take_while(|n| *n <= most) {
             let model = if modes == 1 { Model::A } else { Model::B };
-            let lack = Lack::between(&self.trials.kirchhoff(modes).ok()?, &layer, speed);
+            let Ok(ours) = self.trials.kirchhoff(modes) else { break };
+            let lack = Lack::between(&ours, &layer, speed);
             let error = self.total(SAFETY * lack.error + share * corrected);
             self.note(model, modes, error, lack.quantity);
-            let error = error?;
+            let Some(error) = error else { break };
             if best.is_none_or(|(.., least)| error < least) {
                 best = Some((model, modes, error));
             }
