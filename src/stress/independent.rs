@@ -1,7 +1,10 @@
 //! An independent solution of a random impact: a Runge-Kutta method of order 8 that knows neither modes nor contacts.
 
 use crate::analytical::hertz::HertzImpact;
+use super::between::Watch;
+use crate::dynamics::assured::differences;
 use crate::dynamics::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};
+use crate::dynamics::integrator::Integration;
 use crate::dynamics::system::{INNER, System};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 
@@ -19,56 +22,63 @@ pub(super) enum Comparison {
     TooDear,
     /// The independent solution is itself uncertain: at two tolerances it differs by more than a third of the bound.
     Undecided,
-    /// Largest difference of a velocity, over the impact speed.
-    Difference(f64),
+    /// Largest difference of a velocity, over the impact speed, and of a force peak, relative (see [`differences`]).
+    Differences([f64; 2]),
 }
 
-/// Compares the final velocities `velocity` in m/s with the independent solution, which is to tell whether they differ by
-/// more than `bound`.
+/// Velocities in m/s at the end and force peaks in N of outer and inner body.
+#[derive(Clone, Copy)]
+struct Answer {
+    velocity: [f64; 2],
+    force_peak: [f64; 2],
+}
+
+/// Compares the `result` of the program with the independent solution, which is to tell whether they differ by more than
+/// `bound`.
 pub(super) fn compare(
     system: &System,
     fluid: Option<&FluidForces>,
     end_time: f64,
-    velocity: [f64; 2],
+    result: &Integration,
     bound: f64,
 ) -> Comparison {
-    let apart = |a: [f64; 2], b: [f64; 2]| {
-        // max() would drop a value that is not a number
-        let [first, second] = [0, 1].map(|i| (a[i] - b[i]).abs() / system.speed);
-        if first >= second || first.is_nan() { first } else { second }
+    let impulse = result.contacts.map(|c| c.impulse);
+    let apart = |a: Answer, b: Answer| {
+        differences(system, [a.velocity, b.velocity], [a.force_peak, b.force_peak], impulse)
     };
+    // max() would drop a value that is not a number
+    let within = |[velocity, force]: [f64; 2], bound: f64| velocity <= bound && force <= bound;
+    let ours = Answer { velocity: result.velocity, force_peak: result.contacts.map(|c| c.force_peak) };
     let [quick, careful] = TOLERANCES;
     let Some(quick) = solve(system, fluid, end_time, quick, WORK) else { return Comparison::TooDear };
-    let difference = apart(quick, velocity);
+    let difference = apart(ours, quick);
     // much of a larger one is the quick solution's own
-    if difference <= 0.1 * bound {
-        return Comparison::Difference(difference);
+    if within(difference, 0.1 * bound) {
+        return Comparison::Differences(difference);
     }
     let more = if fluid.is_some() { 4.0 } else { 20.0 };
-    let careful = solve(system, fluid, end_time, careful, more * WORK);
-    match careful {
-        None if difference <= bound => Comparison::Difference(difference),
+    match solve(system, fluid, end_time, careful, more * WORK) {
+        None if within(difference, bound) => Comparison::Differences(difference),
         None => Comparison::Undecided,
         Some(careful) => {
-            let difference = apart(careful, velocity);
-            let unsure = apart(careful, quick) > bound / 3.0;
-            if difference > bound && unsure {
+            let difference = apart(ours, careful);
+            if !within(difference, bound) && !within(apart(quick, careful), bound / 3.0) {
                 Comparison::Undecided
             } else {
-                Comparison::Difference(difference)
+                Comparison::Differences(difference)
             }
         }
     }
 }
 
-/// Velocities of outer and inner body in m/s at the end; `None` if that would take more than `work` (see [`WORK`]).
+/// The solution at the end; `None` if it would take more than `work` (see [`WORK`]).
 fn solve(
     system: &System,
     fluid: Option<&FluidForces>,
     end_time: f64,
     tolerance: f64,
     work: f64,
-) -> Option<[f64; 2]> {
+) -> Option<Answer> {
     let equations = Equations::new(system);
     let hit =
         HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
@@ -92,7 +102,17 @@ fn solve(
             }
         }
     };
-    runge_kutta::integrate(&DORMAND_PRINCE_8, rate, &mut state, &scale, end_time, &tolerances)?;
+    let mut watch = Watch::new(system);
+    runge_kutta::integrate_watched(
+        &DORMAND_PRINCE_8,
+        rate,
+        |step| watch.accepts(step),
+        &mut state,
+        &scale,
+        end_time,
+        &tolerances,
+    )?;
     // a film so stiff that an explicit method leaves the numbers has no solution here
-    Some(equations.velocity(&state)).filter(|velocity| velocity.iter().all(|v| v.is_finite()))
+    let answer = Answer { velocity: equations.velocity(&state), force_peak: watch.force_peak };
+    Some(answer).filter(|answer| answer.velocity.iter().all(|v| v.is_finite()))
 }

@@ -2,6 +2,7 @@
 //!
 //! Every case is drawn from its own seed, so that one command repeats it alone.
 
+mod between;
 mod draw;
 mod independent;
 
@@ -21,17 +22,19 @@ use std::collections::BTreeMap;
 
 /// Tolerance of the integrator under test: the program's default.
 const TOLERANCE: f64 = 1e-7;
-/// Largest difference of a final velocity to the independent solution, over the impact speed.
-const VELOCITY_BOUND: f64 = 1e-5;
+/// Largest difference to the independent solution: of a final velocity, over the impact speed, and of a force peak, relative.
+const DIFFERENCE_BOUND: f64 = 1e-5;
 /// Bounds of the invariants. Momentum relative to the initial one; energy gained relative to the initial one;
-/// velocities against the independent solution relative to the impact speed.
-const BOUNDS: [(&str, f64); 6] = [
+/// velocities against the independent solution relative to the impact speed, force peaks to the independent ones.
+const BOUNDS: [(&str, f64); 8] = [
     ("momentum", 1e-10),
     ("energy_gained", 1e-6),
-    ("velocity_difference", VELOCITY_BOUND),
+    ("velocity_difference", DIFFERENCE_BOUND),
+    ("force_difference", DIFFERENCE_BOUND),
     ("wet_momentum", 1e-10),
     ("wet_energy_gained", 1e-6),
-    ("wet_velocity_difference", VELOCITY_BOUND),
+    ("wet_velocity_difference", DIFFERENCE_BOUND),
+    ("wet_force_difference", DIFFERENCE_BOUND),
 ];
 
 /// The largest value of an invariant, and where it came from.
@@ -138,8 +141,9 @@ pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<Stress
 }
 
 /// Names of the values of a run, in the order of `BOUNDS`, and that of its steps.
-const DRY: [&str; 4] = ["momentum", "energy_gained", "velocity_difference", "steps"];
-const WET: [&str; 4] = ["wet_momentum", "wet_energy_gained", "wet_velocity_difference", "wet_steps"];
+const DRY: [&str; 5] = ["momentum", "energy_gained", "velocity_difference", "force_difference", "steps"];
+const WET: [&str; 5] =
+    ["wet_momentum", "wet_energy_gained", "wet_velocity_difference", "wet_force_difference", "wet_steps"];
 
 /// Runs one case and checks what has to hold.
 fn check(case: &Case) -> Checked {
@@ -185,9 +189,9 @@ impl Solved {
 }
 
 /// Solves an impact until `end_time` s as the program does, and looks at what has to hold; `names` are those of its values.
-fn solve(system: &System, fluid: Option<&FluidForces>, end_time: f64, names: &[&'static str; 4]) -> Solved {
+fn solve(system: &System, fluid: Option<&FluidForces>, end_time: f64, names: &[&'static str; 5]) -> Solved {
     let options = Options { tolerance: TOLERANCE, end_time: Some(end_time), sample_interval: None };
-    let result = assured(&options, system.speed, |options| match fluid {
+    let result = assured(&options, system, |options| match fluid {
         None => integrate(system, options),
         Some(fluid) => wet::integrate(system, fluid, options),
     });
@@ -202,7 +206,7 @@ fn judge(
     system: &System,
     fluid: Option<&FluidForces>,
     end_time: f64,
-    names: &[&'static str; 4],
+    names: &[&'static str; 5],
     result: &Integration,
 ) -> Solved {
     let mut solved =
@@ -212,16 +216,16 @@ fn judge(
         solved.reason = Some(format!("not finite: velocities {:?}, force peaks {peaks:?}", result.velocity));
         return solved;
     }
-    let [momentum, energy, difference, steps] = *names;
+    let [momentum, energy, velocity, force, steps] = *names;
     solved.values.push((momentum, result.momentum_residual));
     solved.values.push((energy, result.energy_gained.max(0.0)));
     solved.values.push((steps, result.steps as f64));
-    match independent::compare(system, fluid, end_time, result.velocity, VELOCITY_BOUND) {
+    match independent::compare(system, fluid, end_time, result, DIFFERENCE_BOUND) {
         Comparison::TooDear => {}
         Comparison::Undecided => (solved.compared, solved.undecided) = (true, true),
-        Comparison::Difference(value) => {
+        Comparison::Differences(values) => {
             solved.compared = true;
-            solved.values.push((difference, value));
+            solved.values.extend([velocity, force].into_iter().zip(values));
         }
     }
     let broken: Vec<String> = BOUNDS
@@ -273,7 +277,7 @@ mod tests {
         let (system, asked) = (&case.system, options(&case, 1e-7));
         let plain = integrate(system, &asked).unwrap();
         assert!(error(&case, &plain) > 1e-5 && plain.error_estimate.is_none());
-        let sure = assured(&asked, system.speed, |options| integrate(system, options)).unwrap();
+        let sure = assured(&asked, system, |options| integrate(system, options)).unwrap();
         let estimate = sure.error_estimate.unwrap();
         assert!(error(&case, &sure) <= estimate && estimate <= 1e-6, "{estimate:e}");
     }

@@ -1,37 +1,45 @@
-//! Impacts of many contacts: solved again with a smaller tolerance until the result stands.
+//! Impacts that may amplify errors: solved again with a smaller tolerance until the result stands.
 //!
 //! Every touch and release amplifies what was wrong before it: when it comes a little later, or grazes where it would have
-//! missed, everything after it is another. A bound on the error of single steps can't know that. Two solutions with
-//! tolerances apart can: their difference is the error of the less exact of the two.
+//! missed, everything after it is another. So does a light inner body, which takes the momentum that the outer one hardly
+//! misses, and so do the phases of quick vibrations between the contacts, step after step. A bound on the error of
+//! single steps can't know that. Two solutions with tolerances apart can: their difference is the error of the less exact of
+//! the two.
 
 use super::integrator::{Integration, Options};
+use super::step_bounds::{Bounds, least_impulse};
+use super::system::System;
 use crate::error::Result;
 
-/// Touches of both contacts from which on a result is checked. Of random impacts with fewer, one in a thousand is off by
-/// more than ten times the tolerance, none by more than a hundred times.
-const MANY_TOUCHES: u32 = 4;
+/// Touches of both contacts, steps and defects of the forces, over what they may be, up to which, and share of the outer impulse from
+/// which on that the inner body takes, an impact amplifies no errors: of random ones none was then off by more than
+/// ten times the tolerance.
+const FEW_TOUCHES: u32 = 2;
+const FEW_STEPS: u64 = 200;
+const SMALL_DEFECT: f64 = 1.0 / 6.0;
+const FULL_SHARE: f64 = 0.2;
 /// Factor between the tolerances of two solutions.
 const TIGHTER: f64 = 0.1;
 /// Tightest tolerance that is tried.
 const TIGHTEST: f64 = 1e-12;
 /// Tolerances above this ask for a rough answer.
 const ROUGH: f64 = 1e-4;
-/// Difference of the velocities that is in order, in tolerances.
+/// Difference of velocities and force peaks that is in order, in tolerances.
 pub const ENOUGH: f64 = 10.0;
 
-/// Integrates by `run` with smaller and smaller tolerances until the velocities after an impact at `speed` m/s differ by
-/// at most ten times the tolerance of `options`, if there are many touches. The last one is the result, its
+/// Integrates the impact of `system` by `run`, unless it is a simple one with smaller and smaller tolerances until final
+/// velocities and force peaks differ by at most ten times the tolerance of `options`. The last one is the result, its
 /// [`Integration::error_estimate`] the difference to the one before.
 ///
 /// # Errors
 /// Those of `run` at the tolerance asked for.
 pub fn assured(
     options: &Options,
-    speed: f64,
+    system: &System,
     run: impl Fn(&Options) -> Result<Integration>,
 ) -> Result<Integration> {
     let mut best = run(options)?;
-    if options.tolerance > ROUGH || touches(&best) < MANY_TOUCHES {
+    if options.tolerance > ROUGH || is_simple(&best, options.tolerance) {
         return Ok(best);
     }
     let mut options = *options;
@@ -39,7 +47,7 @@ pub fn assured(
     while options.tolerance * TIGHTER >= TIGHTEST {
         options.tolerance *= TIGHTER;
         let Ok(next) = run(&options) else { break };
-        let change = difference(&best, &next) / speed;
+        let change = difference(system, &best, &next);
         best = Integration { error_estimate: Some(change), ..next };
         if change <= enough {
             break;
@@ -48,11 +56,37 @@ pub fn assured(
     Ok(best)
 }
 
-fn touches(result: &Integration) -> u32 {
-    result.contacts.iter().map(|c| c.contacts).sum()
+fn is_simple(result: &Integration, tolerance: f64) -> bool {
+    let [outer, inner] = &result.contacts;
+    let small = SMALL_DEFECT * Bounds::new(tolerance).force_defect;
+    outer.contacts + inner.contacts <= FEW_TOUCHES
+        && result.steps <= FEW_STEPS
+        && result.contacts.iter().all(|c| c.force_defect <= small * c.force_peak)
+        && (inner.contacts == 0 || inner.impulse >= FULL_SHARE * outer.impulse)
 }
 
-/// Largest difference of a velocity in m/s.
-fn difference(a: &Integration, b: &Integration) -> f64 {
-    (0..2).map(|i| (a.velocity[i] - b.velocity[i]).abs()).fold(0.0, f64::max)
+/// Largest difference between two results.
+fn difference(system: &System, a: &Integration, b: &Integration) -> f64 {
+    let peaks = [a, b].map(|result| result.contacts.map(|c| c.force_peak));
+    let [velocity, force] =
+        differences(system, [a.velocity, b.velocity], peaks, b.contacts.map(|c| c.impulse));
+    velocity.max(force)
+}
+
+/// Largest difference of the `velocities` in m/s of two results, over the impact speed, and of their force `peaks` in N,
+/// relative. The peak of a contact that transmits next to nothing (`impulse` in N s) counts for as much less. A value that is
+/// no number comes out as one.
+pub fn differences(
+    system: &System,
+    velocities: [[f64; 2]; 2],
+    peaks: [[f64; 2]; 2],
+    impulse: [f64; 2],
+) -> [f64; 2] {
+    let worst = |[first, second]: [f64; 2]| if first >= second || first.is_nan() { first } else { second };
+    let velocity = |i: usize| (velocities[0][i] - velocities[1][i]).abs() / system.speed;
+    let peak = |i: usize| {
+        let weight = (impulse[i] / least_impulse(system)).min(1.0);
+        weight * (peaks[0][i] - peaks[1][i]).abs() / peaks[1][i].max(f64::MIN_POSITIVE)
+    };
+    [worst([velocity(0), velocity(1)]), worst([peak(0), peak(1)])]
 }

@@ -5,7 +5,7 @@
 //! contact acts on, which stay at rest.
 
 use super::LEAN;
-use super::collocation::STAGES;
+use super::collocation::{STAGES, Stages, powers};
 use super::duhamel::{MOMENTS, Oscillator};
 use super::system::System;
 use bytemuck::cast;
@@ -75,6 +75,41 @@ impl Bank {
             }
         };
         Self { blocks: system.oscillators.chunks(LANES).zip((0..).step_by(LANES)).map(block).collect() }
+    }
+
+    /// Approaches in m, without the gaps, with their first and second derivatives by time, `t` s after the state
+    /// (`q`, `v`) under forces of which `forces` are the derivatives by time in that state.
+    pub fn approach_after(&self, (q, v): (&[f64x4], &[f64x4]), forces: &[Stages; 2], t: f64) -> [[f64; 2]; 3] {
+        let powers = powers(t);
+        let now = forces.map(|force| force.iter().zip(&powers).map(|(f, power)| f * power).sum::<f64>());
+        let mut sums = [[f64x4::ZERO; 2]; 3];
+        for ((block, &q), &v) in self.blocks.iter().zip(q).zip(v) {
+            let Block { stiffness, damping, approach: [b0, b1], .. } = *block;
+            let moments = block.moments(t, &powers);
+            let mut displacement = moments[0] * q + moments[1] * (v + damping * q);
+            let mut rate = moments[0] * v - stiffness * moments[1] * q;
+            for p in 0..STAGES {
+                let force = b0 * forces[0][p] + b1 * forces[1][p];
+                displacement -= moments[p + 2] * force;
+                rate -= moments[p + 1] * force;
+            }
+            let acceleration = -(stiffness * displacement) - damping * rate - (b0 * now[0] + b1 * now[1]);
+            for (sums, value) in sums.iter_mut().zip([displacement, rate, acceleration]) {
+                sums[0] += b0 * value;
+                sums[1] += b1 * value;
+            }
+        }
+        sums.map(|sums| sums.map(f64x4::reduce_add))
+    }
+
+    /// Rates of the approaches in m/s with the rates `v` of the oscillators.
+    pub fn approach_rate(&self, v: &[f64x4]) -> [f64; 2] {
+        let mut sums = [f64x4::ZERO; 2];
+        for (block, &v) in self.blocks.iter().zip(v) {
+            sums[0] += block.approach[0] * v;
+            sums[1] += block.approach[1] * v;
+        }
+        sums.map(f64x4::reduce_add)
     }
 }
 

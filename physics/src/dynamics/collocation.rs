@@ -162,6 +162,17 @@ impl<const P: usize> Collocation<P> {
             .map(|polynomial| f64x4::from(self.nodes.map(|node| horner(&polynomial, 1.0 + node * ratio))))
     }
 
+    /// Derivatives by time, at the start of a step of `h` s, of the polynomial through `values` at the nodes.
+    pub fn derivatives(&self, values: &Stages, h: f64) -> Stages {
+        let mut scale = 1.0;
+        std::array::from_fn(|p| {
+            if p > 0 {
+                scale *= p as f64 / h;
+            }
+            scale * values.iter().zip(&self.lagrange).map(|(value, polynomial)| value * polynomial[p]).sum::<f64>()
+        })
+    }
+
     /// Weights of the values at the nodes in the polynomial's value at `u` (in units of the step).
     pub fn interpolation(&self, u: f64) -> Stages {
         self.lagrange.map(|polynomial| horner(&polynomial, u))
@@ -355,7 +366,7 @@ impl StepTable {
 
 /// t^p / p! for p < STAGES.
 #[inline(always)]
-fn powers(t: f64) -> [f64; STAGES] {
+pub(super) fn powers(t: f64) -> [f64; STAGES] {
     let mut powers = [1.0; STAGES];
     for p in 1..STAGES {
         powers[p] = powers[p - 1] * t / p as f64;

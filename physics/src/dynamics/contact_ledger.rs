@@ -1,6 +1,6 @@
 //! What is booked about one contact: impulse, peak force, touches and releases.
 
-use super::collocation::{Collocation, STAGES, Stages, crossing, horner};
+use super::collocation::{Collocation, STAGES, Stages, crossing};
 use super::system::dot;
 
 /// Course of one contact over one step, known at `P` points of it: start, Gauss (Radau) points and end.
@@ -27,6 +27,8 @@ pub struct ContactLedger {
     pub work: f64,
     /// Largest force so far in N.
     pub force_peak: f64,
+    /// Largest distance in N between the force at the end of a step and the step's polynomial, where the force is smooth.
+    pub force_defect: f64,
     /// Time of the latest release in s.
     pub end: f64,
     /// Number of separate contacts so far.
@@ -52,10 +54,6 @@ impl ContactLedger {
         let before = self.impulse;
         self.impulse += course.h * stages.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
         self.work += course.work;
-        let (highest, largest) = argmax(&course.force);
-        if largest > self.force_peak {
-            self.force_peak = largest.max(self.interpolated_peak(collocation, course, highest));
-        }
         for point in 1..P {
             let closed = course.local_approach[point] > 0.0;
             if closed && !self.closed {
@@ -70,23 +68,6 @@ impl ContactLedger {
             }
             self.closed = closed;
         }
-    }
-
-    /// Peak of the polynomial through all points of the step, around the highest of them.
-    fn interpolated_peak<const P: usize>(
-        &self,
-        collocation: &Collocation<P>,
-        course: &StepCourse<P>,
-        highest: usize,
-    ) -> f64 {
-        if highest == 0 || highest == P - 1 || course.force.contains(&0.0) {
-            return course.force[highest];
-        }
-        let polynomial = collocation.through(&course.force);
-        let slope: [f64; P] =
-            std::array::from_fn(|p| polynomial.get(p + 1).map_or(0.0, |c| (p + 1) as f64 * c));
-        let around = [collocation.points[highest - 1], collocation.points[highest + 1]];
-        horner(&polynomial, crossing(&slope, around, around.map(|u| horner(&slope, u))))
     }
 }
 
@@ -104,12 +85,4 @@ fn release<const P: usize>(collocation: &Collocation<P>, course: &StepCourse<P>,
     let polynomial = collocation.through(&course.local_approach);
     let around = |values: &[f64; P]| [values[point - 1], values[point]];
     crossing(&polynomial, around(&collocation.points), around(&course.local_approach))
-}
-
-fn argmax(values: &[f64]) -> (usize, f64) {
-    values
-        .iter()
-        .copied()
-        .enumerate()
-        .fold((0, f64::NEG_INFINITY), |best, (i, v)| if v > best.1 { (i, v) } else { best })
 }

@@ -72,13 +72,37 @@ pub struct Tolerances {
 /// evaluations, or `None` if they exceed the most allowed.
 pub fn integrate(
     method: &Method,
+    rate: impl FnMut(&[f64], &mut [f64]),
+    y: &mut [f64],
+    scale: &[f64],
+    duration: f64,
+    tolerances: &Tolerances,
+) -> Option<u64> {
+    integrate_watched(method, rate, |_| true, y, scale, duration, tolerances)
+}
+
+/// A step of which the error is small enough.
+pub struct Step<'a> {
+    /// Its length in s.
+    pub h: f64,
+    /// State and its rate at the start.
+    pub start: [&'a [f64]; 2],
+    /// The same at the end.
+    pub end: [&'a [f64]; 2],
+}
+
+/// As [`integrate`]; a step that `watch` refuses is tried again with half the length.
+pub fn integrate_watched(
+    method: &Method,
     mut rate: impl FnMut(&[f64], &mut [f64]),
+    mut watch: impl FnMut(&Step) -> bool,
     y: &mut [f64],
     scale: &[f64],
     duration: f64,
     tolerances: &Tolerances,
 ) -> Option<u64> {
     let n = y.len();
+    let mut after = vec![0.0; n];
     let stages = method.a.len();
     let mut k = vec![vec![0.0; n]; stages];
     let mut trial = vec![0.0; n];
@@ -115,10 +139,15 @@ pub fn integrate(
         let size = if error > 0.0 { h * error / (denominator * n as f64).sqrt() } else { 0.0 };
         let factor = 0.9 * size.powf(-1.0 / f64::from(method.order + 1));
         if size < 1.0 {
+            rate(&trial, &mut after);
+            evaluations += 1;
+            if !watch(&Step { h, start: [y, &k[0]], end: [&trial, &after] }) {
+                h *= 0.5;
+                continue;
+            }
             time += h;
             y.copy_from_slice(&trial);
-            rate(y, &mut k[0]);
-            evaluations += 1;
+            k[0].copy_from_slice(&after);
             h *= factor.clamp(0.2, 10.0);
         } else {
             h *= if factor.is_nan() { 0.2 } else { factor.clamp(0.2, 1.0) };

@@ -6,10 +6,11 @@ use super::clearance::touch_between;
 use super::collocation::{Collocation, POINTS, Points, STAGES, crossing};
 use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse};
+use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::step_bounds::{Bounds, EnergyAccount, momentum_scale};
+use super::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale};
 use super::system::{INNER, PLATE, System, dot};
 use crate::analytical::hertz::HertzImpact;
 use crate::error::{Error, Result};
@@ -88,6 +89,22 @@ pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
         .filter(|_| !LEAN)
         .map(|interval| Recorder::new(system, &COLLOCATION, interval));
     Run::new(system, &COLLOCATION, options, recorder).go()
+}
+
+/// What is wrong with a step.
+struct Judged {
+    /// Its largest error over what may be.
+    excess: f64,
+    /// Where in it (0..1) the first touch or release is that it should end at.
+    event: Option<f64>,
+    /// Distance in N between both forces at the end and the polynomials of the step, where they are smooth.
+    force_defect: [f64; 2],
+}
+
+impl Judged {
+    fn event_at(&mut self, place: f64) {
+        self.event = Some(self.event.map_or(place, |event| event.min(place)));
+    }
 }
 
 /// State of a run.
@@ -233,34 +250,8 @@ impl<'a> Run<'a> {
                 continue;
             };
             let made = self.made_by(&trial);
-            let energy_excess = self.energy.excess(made, h);
-            let mut excess: f64 = energy_excess;
-            let mut event: Option<f64> = None;
-            for i in 0..2 {
-                let defect = self.defect(&trial, i) / scale[i];
-                let change = if is_kinked(&trial, i) { change_inside(collocation, &trial, i) } else { None };
-                let bound = match change {
-                    Some(_) => self.bounds.kinked,
-                    None if is_kinked(&trial, i) => self.bounds.edge,
-                    None => self.bounds.smooth,
-                };
-                excess = excess.max(defect / bound);
-                if let Some(u) = change
-                    && (defect > bound || energy_excess > 1.0)
-                {
-                    event = Some(event.map_or(u, |e| e.min(u)));
-                }
-                if is_open(&trial, i)
-                    && let Some(touch) = touch_between(collocation, &trial.local_approach[i])
-                {
-                    let impulse = system.laws[i].force(touch.depth) * h;
-                    let missed = impulse / (scale[i] * self.bounds.kinked);
-                    excess = excess.max(missed);
-                    if missed > 1.0 && EVENTS.contains(&touch.place) {
-                        event = Some(event.map_or(touch.place, |e| e.min(touch.place)));
-                    }
-                }
-            }
+            let Judged { excess, event, force_defect } =
+                self.judge(&trial, scale, self.energy.excess(made, h));
             if excess > 1.0 {
                 match event {
                     Some(u) if wanted.is_none() => wanted = Some(u * h),
@@ -271,6 +262,9 @@ impl<'a> Run<'a> {
                 }
                 continue;
             }
+            for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
+                contact.force_defect = contact.force_defect.max(defect);
+            }
             self.energy.book(made);
             self.accept(trial)?;
             // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
@@ -279,6 +273,47 @@ impl<'a> Run<'a> {
             }
             return Ok(());
         }
+    }
+
+    /// What `trial` is wrong by, with the momenta `scale` (see [`momentum_scale`]) and the excess of its energy.
+    fn judge(&self, trial: &Course, scale: [f64; 2], energy_excess: f64) -> Judged {
+        let (collocation, h) = (self.solver.collocation, trial.h);
+        let share = Bounds::share(self.steps);
+        let mut judged = Judged { excess: energy_excess, event: None, force_defect: [0.0; 2] };
+        for i in 0..2 {
+            let defect = self.defect(trial, i) / scale[i];
+            let kinked = is_kinked(trial, i);
+            let change = if kinked { change_inside(collocation, trial, i) } else { None };
+            let bound = match change {
+                Some(_) => self.bounds.kinked,
+                None if kinked => self.bounds.edge,
+                None => share * self.bounds.smooth,
+            };
+            judged.excess = judged.excess.max(defect / bound);
+            if let Some(u) = change
+                && (defect > bound || energy_excess > 1.0)
+            {
+                judged.event_at(u);
+            }
+            if !kinked {
+                let force = defect * scale[i] / h;
+                let peak = self.contacts[i].force_peak;
+                let of = force_scale(&trial.force[i], peak, scale[i], self.energy.contact_time);
+                judged.excess = judged.excess.max(force / (share * self.bounds.force_defect * of));
+                judged.force_defect[i] = force;
+            }
+            if is_open(trial, i)
+                && let Some(touch) = touch_between(collocation, &trial.local_approach[i])
+            {
+                let impulse = self.solver.system.laws[i].force(touch.depth) * h;
+                let missed = impulse / (scale[i] * self.bounds.kinked);
+                judged.excess = judged.excess.max(missed);
+                if missed > 1.0 && EVENTS.contains(&touch.place) {
+                    judged.event_at(touch.place);
+                }
+            }
+        }
+        judged
     }
 
     /// Why no step is short enough; whether the last one could be `solved`.
@@ -330,12 +365,37 @@ impl<'a> Run<'a> {
             };
             contact.book(self.solver.collocation, &course);
         }
+        self.book_peaks(&trial);
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);
         self.time += trial.h;
         self.steps += 1;
         self.course = trial;
         Ok(())
+    }
+
+    /// Books the largest forces of the step from the present state to the next.
+    fn book_peaks(&mut self, trial: &Course) {
+        let StepSolver { system, collocation, bank, .. } = &self.solver;
+        let h = trial.h;
+        let motion = |place: f64| {
+            let forces = trial.stages().map(|stages| collocation.derivatives(&stages, h));
+            let [approach, rate, acceleration] = bank.approach_after((&self.q, &self.v), &forces, place * h);
+            [
+                [approach[0] - system.gap[0], approach[1] - system.gap[1]],
+                rate.map(|rate| rate * h),
+                acceleration.map(|acceleration| acceleration * (h * h)),
+            ]
+        };
+        let step =
+            SolvedStep { system, collocation, h, approach: &trial.approach, force: &trial.force, motion };
+        for (i, contact) in self.contacts.iter_mut().enumerate() {
+            contact.force_peak = step.peak(i, contact.force_peak, |end| {
+                let v = if end == 0 { &self.v } else { &self.next_v };
+                let local = trial.local_approach.map(|values| values[end * (POINTS - 1)]);
+                system.force_rate(local, bank.approach_rate(v))[i] > 0.0
+            });
+        }
     }
 
     fn finish(self) -> Integration {

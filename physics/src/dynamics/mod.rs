@@ -9,6 +9,7 @@ mod contact_forces;
 mod contact_ledger;
 pub mod duhamel;
 pub mod explicit_runge_kutta;
+mod force_peak;
 mod free_flight;
 pub mod integrator;
 mod ladder;

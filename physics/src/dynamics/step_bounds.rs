@@ -7,10 +7,18 @@ use crate::analytical::hertz::HertzImpact;
 /// Share of the impact's energy by which one step's rounding errors may change it.
 const ROUNDING: f64 = 1e-12;
 
+/// Steps up to which their errors hardly add up; of more each may have a smaller one.
+const FEW_STEPS: f64 = 150.0;
+/// Force of a contact, over the momentum per duration of the impact, that counts at least: its peak may be still to come.
+const LEAST_FORCE: f64 = 0.4;
+
 /// Defects that a step may have, as impulses over the momentum.
 pub(super) struct Bounds {
     /// Where the force is smooth.
     pub(super) smooth: f64,
+    /// There too, of the force over its peak: where contacts are much shorter than the impact, impulses alone leave the
+    /// forces open.
+    pub(super) force_defect: f64,
     /// Where a contact touches or opens at the start or the end of the step.
     pub(super) edge: f64,
     /// Where a contact touches or opens within the step.
@@ -30,7 +38,13 @@ impl Bounds {
         let kinked = 1e-3 * tolerance.powf(0.95);
         // a force that is off makes energy however short the step is
         let force = (0.5 * tolerance).clamp(1e-11, 1e-5);
-        Self { smooth, kinked, edge: 10.0 * kinked, impulse: 0.02 * smooth, force }
+        let force_defect = 80.0 * smooth;
+        Self { smooth, force_defect, kinked, edge: 10.0 * kinked, impulse: 0.02 * smooth, force }
+    }
+
+    /// Share of the bounds for smooth forces that each step may use up after `steps` of them.
+    pub(super) fn share(steps: u64) -> f64 {
+        (FEW_STEPS / steps as f64).min(1.0)
     }
 }
 
@@ -41,7 +55,7 @@ pub(super) struct EnergyAccount {
     /// Bound per `contact_time` in J.
     per_contact: f64,
     /// Duration of the outer body's impact on a rigid wall, s.
-    contact_time: f64,
+    pub(super) contact_time: f64,
     /// Made so far, J.
     made: f64,
 }
@@ -75,5 +89,17 @@ pub(super) fn momentum_scale(system: &System, contacts: &[ContactLedger; 2]) -> 
     let initial = system.masses[0] * system.speed;
     let light = initial.min(system.masses[1] * system.speed);
     // a light inner body feels an error that the heavy outer one would not
-    [initial.min(3.0 * light), contacts[1].impulse.max(0.01 * light)]
+    [initial.min(3.0 * light), contacts[1].impulse.max(least_impulse(system))]
+}
+
+/// Impulse in N s up to which a contact hardly moves even the lighter body; its errors count as if it had this one.
+pub(super) fn least_impulse(system: &System) -> f64 {
+    0.01 * system.speed * system.masses[0].min(system.masses[1])
+}
+
+/// Force in N in relation to which the `forces` of a step have to be right, of a contact with the peak `peak` N so far and
+/// the `momentum` N s (see [`momentum_scale`]) in an impact of about `duration` s.
+#[inline]
+pub(super) fn force_scale(forces: &[f64], peak: f64, momentum: f64, duration: f64) -> f64 {
+    forces.iter().fold(peak.max(LEAST_FORCE * momentum / duration), |scale, force| scale.max(*force))
 }

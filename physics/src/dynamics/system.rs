@@ -193,6 +193,11 @@ impl System {
         Self { residual: (!residual.is_zero()).then_some(residual), ..self.clone() }
     }
 
+    /// Rates of both contact forces in N/s with the patches `local` in m and the modal approaches' rates `rate` in m/s.
+    pub fn force_rate(&self, local: [f64; 2], rate: [f64; 2]) -> [f64; 2] {
+        self.tangent(local).map(|row| row[0] * rate[0] + row[1] * rate[1])
+    }
+
     /// Number of oscillators.
     pub fn size(&self) -> usize {
         self.oscillators.len()

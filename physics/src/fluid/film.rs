@@ -49,7 +49,8 @@ pub struct FilmForces {
     pub resistance: f64,
     /// Power dissipated in W.
     pub dissipation: f64,
-    /// Where the bodies overlap most beside the contact on the axis, if by more than the minimal gap.
+    /// Where the bodies overlap most beside the contact on the axis. Up to the minimal gap that is no more than the film's
+    /// equation leaves open.
     pub overlap: Option<Overlap>,
     /// Flow through the outer face of each cell. Shape (cells), or empty where there is no film.
     pub faces: Vec<Face>,
@@ -100,10 +101,15 @@ impl Film {
         self.rim
     }
 
+    /// The minimal gap in m.
+    pub fn minimum_gap(&self) -> f64 {
+        self.minimum_gap
+    }
+
     /// The deeper one of `before` and the overlap with `gap` m at `radius` m, if that is one: below `level` m.
-    fn deeper(&self, before: Option<Overlap>, level: f64, radius: f64, gap: f64) -> Option<Overlap> {
+    fn deeper(before: Option<Overlap>, level: f64, radius: f64, gap: f64) -> Option<Overlap> {
         let depth = level - gap;
-        if depth > before.map_or(self.minimum_gap, |o| o.depth) {
+        if depth > before.map_or(0.0, |o| o.depth) {
             Some(Overlap { radius, depth })
         } else {
             before
@@ -111,10 +117,10 @@ impl Film {
     }
 
     /// The deepest overlap inside r^2 = `start`.
-    fn deepest_inside(&self, gap: impl Fn(f64) -> f64, axis_gap: f64, start: f64) -> Option<Overlap> {
+    fn deepest_inside(gap: impl Fn(f64) -> f64, axis_gap: f64, start: f64) -> Option<Overlap> {
         (1..OVERLAP_SAMPLES)
             .map(|i| start * f64::from(i) / f64::from(OVERLAP_SAMPLES))
-            .fold(None, |found, square| self.deeper(found, axis_gap, square.sqrt(), gap(square)))
+            .fold(None, |found, square| Self::deeper(found, axis_gap, square.sqrt(), gap(square)))
     }
 
     /// Solves for the pressure and writes its loads into `forces`.
@@ -133,9 +139,13 @@ impl Film {
         // where the overlap would end on a flat plate
         let flat = (-axis_gap).max(0.0) / curvature;
         let start = if flat > 0.0 { edge_of_overlap(gap, axis_gap, flat, end) } else { 0.0 };
-        forces.overlap = (start > flat).then(|| self.deepest_inside(gap, axis_gap, start)).flatten();
+        forces.overlap = (start > flat).then(|| Self::deepest_inside(gap, axis_gap, start)).flatten();
         // nothing is wet, or nothing that matters
         if start >= end * (1.0 - 1e-9) {
+            // up to the rim the plate lies on the tip: how far it may is left to Hertz's contact, but where an open
+            // film closes there the law jumps
+            let depth = (-gap(end)).clamp(0.0, self.minimum_gap);
+            forces.overlap = forces.overlap.or(Some(Overlap { radius: end.sqrt(), depth }));
             return;
         }
         // cell faces in r^2: start + first (growth^k - 1)
@@ -156,7 +166,7 @@ impl Film {
             unit_flow += area;
             let (face_radius, face_gap) = (next.sqrt(), gap(next));
             if face_gap < 0.0 {
-                forces.overlap = self.deeper(forces.overlap, 0.0, face_radius, face_gap);
+                forces.overlap = Self::deeper(forces.overlap, 0.0, face_radius, face_gap);
             }
             let width = face_gap.max(self.minimum_gap);
             let rate = 6.0 * flow.abs() / (2.0 * PI * face_radius * width * width);

@@ -90,6 +90,11 @@ impl FluidForces {
         1 + self.film.as_ref().map_or(0, |(_, deflection)| deflection.modes())
     }
 
+    /// Minimal gap of the film in m; no gap is smaller than that of no film.
+    pub(super) fn minimum_gap(&self) -> f64 {
+        self.film.as_ref().map_or(f64::INFINITY, |(film, _)| film.minimum_gap())
+    }
+
     /// The forces in the state (`q`, `v`) of the coordinates of a [`System`](crate::dynamics::system::System).
     pub fn evaluate(&self, q: &[f64], v: &[f64], load: &mut FluidLoad) {
         const { assert!(PLATE == INNER + 1) };

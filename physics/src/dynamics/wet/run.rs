@@ -6,13 +6,15 @@ use super::table::Table;
 use crate::analytical::hertz::HertzImpact;
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
 use crate::dynamics::contact_ledger::{ContactLedger, StepCourse, work};
+use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
 use crate::dynamics::integrator::{Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::step_bounds::{EnergyAccount, momentum_scale};
+use crate::dynamics::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale};
 use crate::dynamics::system::{INNER, PLATE, System, dot};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::error::{Error, Result};
+use crate::fluid::film::Overlap;
 use crate::result::Losses;
 use std::collections::BTreeMap;
 
@@ -49,6 +51,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         recorder,
         end_time: options.end_time.unwrap_or(f64::INFINITY),
         defect_bound: defect_bound(options.tolerance),
+        force_defect_bound: Bounds::new(options.tolerance).force_defect,
         base_step: 0.25 * hit.duration(),
         tables: BTreeMap::new(),
         level: 8,
@@ -107,6 +110,7 @@ struct Run<'a> {
     recorder: Option<Recorder<'a, RADAU_POINTS>>,
     end_time: f64,
     defect_bound: f64,
+    force_defect_bound: f64,
     base_step: f64,
     tables: BTreeMap<i32, Table>,
     level: i32,
@@ -166,8 +170,8 @@ impl Run<'_> {
         }
         loop {
             if self.level > LAST_LEVEL {
-                // the film's law jumps where an overlap begins
-                self.check_overlap(0.0)?;
+                // the film's law jumps where an overlap begins, however small
+                self.check_overlap(0.0, |_| true)?;
                 return Err(Error::Solver(format!(
                     "reduced model: the time step fell below {:.1e} s at t = {:.6e} s without meeting the tolerance",
                     self.length(LAST_LEVEL),
@@ -193,7 +197,10 @@ impl Run<'_> {
                 continue;
             }
             let account = self.account(h);
-            let excess = (self.defect(h, scale) / self.defect_bound).max(self.energy.excess(account.made, h));
+            let force_defect = self.force_defect();
+            let excess = (self.defect(h, scale) / self.defect_bound)
+                .max(self.energy.excess(account.made, h))
+                .max(self.force_excess(force_defect, scale));
             if excess > 1.0 {
                 self.level += ((excess.log2() / (STAGES + 1) as f64).ceil() as i32).clamp(1, 8);
                 continue;
@@ -208,6 +215,9 @@ impl Run<'_> {
                 return Ok(true);
             }
             self.accept(h, &account)?;
+            for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
+                contact.force_defect = contact.force_defect.max(defect);
+            }
             // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
             if excess < 0.5_f64.powi(STAGES as i32 + 2) {
                 self.level -= 1;
@@ -222,23 +232,8 @@ impl Run<'_> {
     fn end_in_step(&self, h: f64) -> Option<f64> {
         let system = self.wet.system;
         let forces = self.wet.generalised(&self.trial);
-        let at = |t: f64| -> (Vec<f64>, Vec<f64>) {
-            let answer = |k: usize| {
-                let r = self.collocation.response(&system.oscillators[k], t, h);
-                let (q, v) = (self.q[k], self.v[k]);
-                (
-                    r.displacement_per_displacement * q
-                        + r.displacement_per_velocity * v
-                        + dot(&r.displacement_per_force, &forces[k]),
-                    r.velocity_per_displacement * q
-                        + r.velocity_per_velocity * v
-                        + dot(&r.velocity_per_force, &forces[k]),
-                )
-            };
-            (0..system.size()).map(answer).unzip()
-        };
         let over = |t: f64| {
-            let (q, v) = at(t);
+            let (q, v) = self.motion_at(&forces, t, h);
             is_open(system.modal_approach(&q)) && free_flight::is_over(system, &q, &v)
         };
         if !over(h) {
@@ -250,6 +245,62 @@ impl Run<'_> {
             if over(middle) { late = middle } else { early = middle }
         }
         Some(late)
+    }
+
+    /// Coordinates and their rates after `t` s of the step of `h` s just solved, under the generalised `forces` at its nodes.
+    fn motion_at(&self, forces: &[Stages], t: f64, h: f64) -> (Vec<f64>, Vec<f64>) {
+        let answer = |k: usize| {
+            let r = self.collocation.response(&self.wet.system.oscillators[k], t, h);
+            let (q, v) = (self.q[k], self.v[k]);
+            (
+                r.displacement_per_displacement * q
+                    + r.displacement_per_velocity * v
+                    + dot(&r.displacement_per_force, &forces[k]),
+                r.velocity_per_displacement * q
+                    + r.velocity_per_velocity * v
+                    + dot(&r.velocity_per_force, &forces[k]),
+            )
+        };
+        (0..self.wet.system.size()).map(answer).unzip()
+    }
+
+    /// Books the largest contact forces of the step of `h` s just solved.
+    fn book_peaks(&mut self, h: f64) {
+        let (system, trial) = (self.wet.system, &self.trial);
+        let forces = self.wet.generalised(trial);
+        let approach = [0, 1].map(|i| joined(self.approach[i], &trial.approach[i]));
+        let force = [0, 1].map(|i| joined(self.force[i], &trial.forces[i]));
+        let motion = |place: f64| {
+            let (q, v) = self.motion_at(&forces, place * h, h);
+            let weights = self.collocation.interpolation(place);
+            let acceleration: Vec<f64> = system
+                .oscillators
+                .iter()
+                .enumerate()
+                .map(|(k, o)| dot(&weights, &forces[k]) - o.omega.powi(2) * q[k] - 2.0 * o.alpha * v[k])
+                .collect();
+            let along = |motion: &[f64], scale: f64| [0, 1].map(|i| scale * dot(&system.approach[i], motion));
+            [system.modal_approach(&q), along(&v, h), along(&acceleration, h * h)]
+        };
+        let step = SolvedStep {
+            system,
+            collocation: self.collocation,
+            h,
+            approach: &approach,
+            force: &force,
+            motion: &motion,
+        };
+        let peaks = [0, 1].map(|i| {
+            step.peak(i, self.contacts[i].force_peak, |end| {
+                let [approach, rate, _] = motion(end as f64);
+                system
+                    .contact(approach, approach)
+                    .is_some_and(|(local, _)| system.force_rate(local, rate)[i] > 0.0)
+            })
+        });
+        for (contact, peak) in self.contacts.iter_mut().zip(peaks) {
+            contact.force_peak = peak;
+        }
     }
 
     /// Distance between the forces at the start of the step and the polynomials of the step, as an impulse in relation
@@ -265,6 +316,26 @@ impl Run<'_> {
             .zip([scale[0], scale[1], scale[1]])
             .map(|((stages, start), scale)| (start - dot(&extrapolation, stages)).abs() * h / scale)
             .fold(0.0, f64::max)
+    }
+
+    /// Distance in N between the contact forces at the start of the step and the polynomials of the step, where they are
+    /// smooth.
+    fn force_defect(&self) -> [f64; 2] {
+        let extrapolation = self.collocation.ends[0];
+        std::array::from_fn(|i| {
+            let (start, stages) = (self.force[i], &self.trial.forces[i]);
+            let smooth = start > 0.0 && stages.iter().all(|force| *force > 0.0);
+            if smooth { (start - dot(&extrapolation, stages)).abs() } else { 0.0 }
+        })
+    }
+
+    /// The same over what may be.
+    fn force_excess(&self, defect: [f64; 2], scale: [f64; 2]) -> f64 {
+        let of = |i: usize| {
+            let peak = self.contacts[i].force_peak;
+            force_scale(&self.trial.forces[i], peak, scale[i], self.energy.contact_time)
+        };
+        (0..2).map(|i| defect[i] / (self.force_defect_bound * of(i))).fold(0.0, f64::max)
     }
 
     /// What the fluid does in the step of `h` s just solved.
@@ -304,14 +375,15 @@ impl Run<'_> {
         StepAccount { fluid, contact_work, made }
     }
 
-    /// Looks whether the plate overlaps the inner body beside the axis in the step of `h` s just tried.
+    /// Looks whether the plate overlaps the inner body beside the axis, by what is `too_deep`, in the step of `h` s just tried.
     ///
     /// # Errors
     /// [`Error::BeyondModel`] if it does.
-    fn check_overlap(&self, h: f64) -> Result<()> {
-        let Some(overlap) = self.trial.loads.iter().find_map(FluidLoad::overlap) else { return Ok(()) };
+    fn check_overlap(&self, h: f64, too_deep: impl Fn(&Overlap) -> bool) -> Result<()> {
+        let overlaps = self.trial.loads.iter().filter_map(FluidLoad::overlap);
+        let Some(overlap) = overlaps.filter(too_deep).next() else { return Ok(()) };
         Err(Error::BeyondModel(format!(
-            "reduced model: at t = {:.6e} s the plate bends around the inner body: at r = {:.2e} m they overlap by {:.2e} m beside the contact on the axis, more than the film's minimal gap; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`",
+            "reduced model: at t = {:.6e} s the plate bends around the inner body: at r = {:.2e} m they overlap by {:.2e} m beside the contact on the axis; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`",
             self.time + h,
             overlap.radius,
             overlap.depth
@@ -323,7 +395,7 @@ impl Run<'_> {
     /// # Errors
     /// [`Error::BeyondModel`] as [`Run::check_overlap`].
     fn accept(&mut self, h: f64, account: &StepAccount) -> Result<()> {
-        self.check_overlap(h)?;
+        self.check_overlap(h, |overlap| overlap.depth > self.wet.fluid.minimum_gap())?;
         if let Some(recorder) = &mut self.recorder {
             let forces = self.wet.generalised(&self.trial);
             recorder.step_under(self.time, h, &self.q, &self.v, |k| forces[k])?;
@@ -339,6 +411,7 @@ impl Run<'_> {
             };
             self.contacts[i].book(self.collocation, &course);
         }
+        self.book_peaks(h);
         self.booked.add(&account.fluid);
         self.energy.book(account.made);
         let trial = &mut self.trial;

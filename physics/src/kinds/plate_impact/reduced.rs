@@ -184,7 +184,7 @@ impl Reduced {
 
     fn integrate(&self, options: &Options) -> Result<Integration> {
         let system = &self.system;
-        assured(options, system.speed, |options| match self.fluid.as_ref().filter(|_| !LEAN) {
+        assured(options, system, |options| match self.fluid.as_ref().filter(|_| !LEAN) {
             None => integrate(system, options),
             Some(fluid) => wet::integrate(system, fluid, options),
         })
