@@ -74,7 +74,8 @@ mod tests {
             assert_eq!(row(reduced, 2.0).verdict, Verdict::Undecided);
             assert_eq!(row(reduced, 0.99 * needed).verdict, verdict);
             // all bands shrink alike
-            let target = rounded_down(100.0 * 0.05 * needed / 2.0);
+            let exactly: f64 = 1.0 - (reduced - 100.0_f64).abs();
+            let target = rounded_down(100.0 * 0.05 * exactly.abs() / 2.0);
             assert!(
                 told.contains(&format!("--target-error {target}% (the gate's --resolution {target}%)")),
                 "{told}"

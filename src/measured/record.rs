@@ -178,7 +178,7 @@ mod tests {
             (text("time [us],outer_speed,inner_velocity", rows()), "`outer_speed` is no column"),
             (
                 text("time [um],outer_velocity,inner_velocity", rows()),
-                "`um` is not the unit that is needed, s",
+                "`um` is the unit of something else; a time in s is needed",
             ),
             (text("time [us,outer_velocity,inner_velocity", rows()), "`]` is missing"),
             (text("outer_displacement,outer_velocity,inner_velocity", rows()), "no column `time`"),

@@ -1,7 +1,7 @@
 //! An independent solution of a random impact: a Runge-Kutta method of order 8 that knows neither modes nor contacts.
 
-use crate::analytical::hertz::HertzImpact;
 use super::between::Watch;
+use crate::analytical::hertz::HertzImpact;
 use crate::dynamics::assured::differences;
 use crate::dynamics::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};
 use crate::dynamics::integrator::Integration;

@@ -79,7 +79,12 @@ impl Bank {
 
     /// Approaches in m, without the gaps, with their first and second derivatives by time, `t` s after the state
     /// (`q`, `v`) under forces of which `forces` are the derivatives by time in that state.
-    pub fn approach_after(&self, (q, v): (&[f64x4], &[f64x4]), forces: &[Stages; 2], t: f64) -> [[f64; 2]; 3] {
+    pub fn approach_after(
+        &self,
+        (q, v): (&[f64x4], &[f64x4]),
+        forces: &[Stages; 2],
+        t: f64,
+    ) -> [[f64; 2]; 3] {
         let powers = powers(t);
         let now = forces.map(|force| force.iter().zip(&powers).map(|(f, power)| f * power).sum::<f64>());
         let mut sums = [[f64x4::ZERO; 2]; 3];

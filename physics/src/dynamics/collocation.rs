@@ -169,7 +169,12 @@ impl<const P: usize> Collocation<P> {
             if p > 0 {
                 scale *= p as f64 / h;
             }
-            scale * values.iter().zip(&self.lagrange).map(|(value, polynomial)| value * polynomial[p]).sum::<f64>()
+            scale
+                * values
+                    .iter()
+                    .zip(&self.lagrange)
+                    .map(|(value, polynomial)| value * polynomial[p])
+                    .sum::<f64>()
         })
     }
 

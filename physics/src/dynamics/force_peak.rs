@@ -81,7 +81,8 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
         let quickest = self.system.oscillators.iter().map(|o| o.omega).fold(0.0, f64::max);
         let places = (PER_RADIAN * quickest * self.h).clamp(PLACES.0, PLACES.1).ceil();
         let at = |k: f64| (k / places).clamp(0.0, 1.0);
-        let forces: Vec<f64> = (0..=places as usize).map(|k| self.force_at(contact, at(k as f64))[0]).collect();
+        let forces: Vec<f64> =
+            (0..=places as usize).map(|k| self.force_at(contact, at(k as f64))[0]).collect();
         let (highest, _) = argmax(&forces);
         let k = highest as f64;
         self.climb(contact, at(k), [at(k - 1.0), at(k + 1.0)])

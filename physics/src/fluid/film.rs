@@ -109,11 +109,7 @@ impl Film {
     /// The deeper one of `before` and the overlap with `gap` m at `radius` m, if that is one: below `level` m.
     fn deeper(before: Option<Overlap>, level: f64, radius: f64, gap: f64) -> Option<Overlap> {
         let depth = level - gap;
-        if depth > before.map_or(0.0, |o| o.depth) {
-            Some(Overlap { radius, depth })
-        } else {
-            before
-        }
+        if depth > before.map_or(0.0, |o| o.depth) { Some(Overlap { radius, depth }) } else { before }
     }
 
     /// The deepest overlap inside r^2 = `start`.
