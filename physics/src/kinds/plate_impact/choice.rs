@@ -24,11 +24,13 @@ use crate::scene::{Model, Scene};
 pub const DEFAULT_TOLERANCE: f64 = 0.01;
 /// Share of the tolerance that is left to the time integration.
 const INTEGRATION_SHARE: f64 = 0.01;
-/// Error over the difference to the layer, which is mostly within a tenth of what it corrects.
-const SAFETY: f64 = 1.15;
+/// Error over the difference to the layer.
+const SAFETY: f64 = 1.5;
+/// Error over what model C is estimated to lack.
+const BUILT_SAFETY: f64 = 2.0;
 /// Share of what the layer corrects of Kirchhoff's plate that it may be off by, of a thin plate and per thickness over radius:
 /// it does not know what shear does at the rim.
-const LAYER_SHARE: [f64; 2] = [0.25, 3.0];
+const LAYER_SHARE: [f64; 2] = [0.5, 3.0];
 /// Truncation error, relative to the tolerance, at which the layer's own modes end.
 const REFERENCE_SHARE: f64 = 0.05;
 /// Share of the contacts' flexibility, relative to the tolerance, below which more Kirchhoff modes don't help.
@@ -147,9 +149,9 @@ impl<'a> Plan<'a> {
         let rungs: Vec<usize> = RUNGS.into_iter().filter(possible).collect();
         let mut attempt = |modes: usize| {
             let lack = self.trials.truncated(modes, self.layer.as_ref());
-            let error = self.total(lack.error);
+            let error = self.total(BUILT_SAFETY * lack.error);
             self.note(Model::C, modes, error, lack.quantity);
-            (lack.error <= room, error)
+            (BUILT_SAFETY * lack.error <= room, error)
         };
         let (mut low, mut high) = (0, rungs.len() - 1);
         let mut found = None;
@@ -170,7 +172,7 @@ impl<'a> Plan<'a> {
         self.modes = built.bending_modes();
         let lack = self.trials.truncated(self.modes, self.layer.as_ref());
         let lack = lack.or(of_continuum(built, omega_next, &self.trials.options));
-        self.error = self.total(lack.error);
+        self.error = self.total(BUILT_SAFETY * lack.error);
         self.note(Model::C, self.modes, self.error, lack.quantity);
         let more = 2 * built.modes;
         let helps =
