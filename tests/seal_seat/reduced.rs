@@ -119,7 +119,7 @@ fn ten_modes_and_the_residual_are_as_good_as_many() {
 fn the_truncation_error_is_estimated_and_a_large_one_warned_of() {
     let many = model(60).run(1e-4).expect("run");
     let value = |summary: &Summary, name: &str| summary.value(name).expect("determined");
-    for modes in [1, 6, 10, 16] {
+    for modes in [8, 16] {
         let few = model(modes).run(1e-4).expect("run");
         let error = ["sphere_speed", "sphere_force_peak", "actuator_force_peak"]
             .map(|name| (value(&few, name) / value(&many, name) - 1.0).abs())
