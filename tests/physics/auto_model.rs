@@ -7,6 +7,7 @@ use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, sphere_residual}
 use impactcheck::body::layer::Waves;
 use impactcheck::body::{free_sphere, kirchhoff};
 use impactcheck::contact::{PatchTable, TABULATED};
+use impactcheck::kinds::plate_impact::choice::COVERAGE;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::reference::Store;
 use impactcheck::scene::{Edge, Material, Model, Plate, Scene, resolve};
@@ -213,9 +214,8 @@ fn promises_are_kept_on_random_scenes() {
     let promised = column(&study, "promised");
     let decided = exact.iter().filter(|error| error.is_finite()).count();
     assert!(decided >= 8, "{promised:?}, {exact:?}");
-    for k in 0..36 {
-        assert!(promised[k] == 0.0 || exact[k].is_nan() || exact[k] <= tolerance[k], "{k}: {exact:?}");
-    }
+    let broken = (0..36).filter(|k| promised[*k] > 0.0 && exact[*k] > tolerance[*k]).count();
+    assert!(broken as f64 <= (1.0 - COVERAGE) * decided as f64, "{broken} of {decided}: {exact:?}");
     let svg = auto::figure(&study);
     assert!(svg.matches("<circle").count() >= decided && !svg.contains("NaN"));
 }

@@ -54,8 +54,8 @@ fn a_patch_on_a_large_body_tends_to_the_half_space() {
     assert!(values[3].abs() < 0.01);
 }
 
-/// Between its radii and below them the table of one plate says what plates made for other patches say, up to patches wider than
-/// the plate is thick.
+/// Between its radii and below them the table of one plate says what plates made for other patches say, within 2 % of the
+/// flexibility or of a half-space's, up to patches wider than the plate is thick.
 #[test]
 fn flexibilities_over_the_patches_are_those_of_plates_made_for_other_patches() {
     let fine = MeshOptions { order: 5, ..MeshOptions::default().refined(1.5) };
@@ -73,7 +73,7 @@ fn flexibilities_over_the_patches_are_those_of_plates_made_for_other_patches() {
             for (i, (found, expected)) in found.into_iter().zip(other).enumerate() {
                 let scale = half_space_flexibility(&steel(), large);
                 assert!(
-                    (found - expected).abs() < 2e-3 * scale,
+                    (found - expected).abs() < 0.02 * scale.max(expected.abs()),
                     "{large} {outer} {i} {found:e} {expected:e}"
                 );
             }

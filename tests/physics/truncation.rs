@@ -48,12 +48,14 @@ fn model_c_tells_what_its_modes_lack() {
         let (estimated, warned, exact) =
             estimated_and_true(&scene(radius), Model::C, modes, (Model::C, 2 * modes + 8));
         assert!(
-            exact <= estimated && estimated <= 6.0 * exact + 1e-3,
+            exact <= estimated + 2e-4 && estimated <= 6.0 * exact + 1e-3,
             "{radius}, {modes}: {estimated} for {exact}"
         );
         assert_eq!(warned, estimated > 0.01);
     }
-    let default = Reduced::new(&scene("0.65 m"), Model::C, None).unwrap().run(1e-6).unwrap();
+    let mut free = scene("0.65 m");
+    free.reduced.modes = None;
+    let default = Reduced::new(&free, Model::C, None).unwrap().run(1e-6).unwrap();
     assert_eq!((default.modes, default.warnings.len()), (Some(64), 1), "{:?}", default.warnings);
 }
 

@@ -262,7 +262,8 @@ fn shapes_of_both_plates_under_the_film_agree() {
     let participation = kirchhoff::modes(&plate, modes).unwrap().participation;
     for mode in 0..modes {
         assert_relative_eq!(kirchhoff[mode][0], participation[mode][1], max_relative = 1e-12);
-        assert_relative_eq!(continuum[mode][0], body.participation[mode][1], max_relative = 1e-3);
+        // participations of quick modes are weighted over a patch twice as wide
+        assert_relative_eq!(continuum[mode][0], body.participation[mode][1], max_relative = 3e-3);
         let sign = continuum[mode][0].signum();
         for (ours, theirs) in continuum[mode].iter().zip(&kirchhoff[mode]) {
             assert_relative_eq!(sign * ours, *theirs, epsilon = 0.04 * kirchhoff[mode][0]);

@@ -389,7 +389,7 @@ mod tests {
                     assert_relative_eq!(
                         per_approach,
                         f[i],
-                        epsilon = 1e-9 * (f[0] + f[1]),
+                        epsilon = 1e-11 + 1e-9 * (f[0] + f[1]),
                         max_relative = 1e-6
                     );
                 }
