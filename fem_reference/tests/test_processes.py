@@ -15,9 +15,9 @@ from typing import Any
 import pytest
 
 from fem_reference.common.parent import PARENT
+from fem_reference.common.versions import MODULES
 from fem_reference.tests.conftest import document
 from fem_reference.tests.program import ROOT
-from fem_reference.common.versions import MODULES
 
 PROGRAM = f"""
 import os, subprocess, sys
@@ -69,7 +69,9 @@ def test_a_run_ends_with_the_program_that_started_it(tmp_path: Path, processes: 
 
 
 def test_a_run_started_by_hand_is_left_alone() -> None:
-    code = f"import os; os.environ.pop({PARENT!r}, None); from fem_reference.common.parent import *; "
+    code = (
+        f"import os; os.environ.pop({PARENT!r}, None); from fem_reference.common.parent import *; "
+    )
     read = "import ctypes; s = ctypes.c_int(); ctypes.CDLL(None).prctl(2, ctypes.byref(s)); "
     told = subprocess.run(
         [sys.executable, "-c", f"{code} end_with_parent(); {read} print(s.value)"],

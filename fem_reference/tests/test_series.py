@@ -117,7 +117,7 @@ def test_a_run_cut_during_a_contact_has_no_band_to_refine_to(
     solve: Callable[..., Convergent],
 ) -> None:
     solve(cut=True)
-    with pytest.raises(SceneError, match="run.end_time"):
+    with pytest.raises(SceneError, match=r"run\.end_time"):
         solve(cut=True, target_error=0.02)
 
 

@@ -58,7 +58,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
             let variants = Variants::new(&scene, [PATCH_MODES, most], PATCH_MODES, &case.setup)?;
             for &modes in case.modes {
                 let result = variants.run(Simplification::None, modes, TOLERANCE)?;
-                let normal = normal.get_or_insert_with(|| result);
+                let normal = normal.get_or_insert(result);
                 rows.push(row(name, case.name, case.setup.patch_factor, modes, &result, normal));
                 let what = if case.modes.len() > 1 { format!("{modes} modes") } else { case.name.to_owned() };
                 claims.extend(change(&result, normal).into_iter().zip(BOUNDS).map(

@@ -1,11 +1,11 @@
 //! Writing the report: complete or not at all, the same for the same results.
 
 use crate::synthetic_impact::{self, reduced, reference, scene};
+use impactcheck::Error;
 use impactcheck::comparison::{GateRules, compare_scene};
 use impactcheck::report::{Attachments, Report, SceneReport, check_writable, write};
 use impactcheck::result::Outcome;
 use impactcheck::scene::Scene;
-use impactcheck::{Error, ExitStatus};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

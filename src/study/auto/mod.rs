@@ -181,7 +181,7 @@ fn judged(case: &Case, cache: &Cache) -> Result<Judged> {
     let modes =
         chosen.iter().flatten().filter(|auto| auto.model() == Model::C).map(|auto| auto.system().modes);
     let truth = match (&case.reference, strictest) {
-        (Some(exact), _) => Some(Truth::of_reference(exact.clone())),
+        (Some(exact), _) => Some(Truth::of_reference(*exact)),
         (None, Some(tolerance)) => Truth::new(&case.scene, modes.max().unwrap_or(1), tolerance)?,
         (None, None) => None,
     };

@@ -380,8 +380,8 @@ impl Run<'_> {
     /// # Errors
     /// [`Error::BeyondModel`] if it does.
     fn check_overlap(&self, h: f64, too_deep: impl Fn(&Overlap) -> bool) -> Result<()> {
-        let overlaps = self.trial.loads.iter().filter_map(FluidLoad::overlap);
-        let Some(overlap) = overlaps.filter(too_deep).next() else { return Ok(()) };
+        let mut overlaps = self.trial.loads.iter().filter_map(FluidLoad::overlap);
+        let Some(overlap) = overlaps.find(too_deep) else { return Ok(()) };
         Err(Error::BeyondModel(format!(
             "reduced model: at t = {:.6e} s the plate bends around the inner body: at r = {:.2e} m they overlap by {:.2e} m beside the contact on the axis; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`",
             self.time + h,

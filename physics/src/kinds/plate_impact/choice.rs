@@ -112,7 +112,7 @@ impl<'a> Plan<'a> {
 
     /// Tries models A and B until one meets the tolerance, or more modes don't help; the best with its estimate.
     fn kirchhoff(&mut self) -> Option<Rated> {
-        let (layer, speed) = (self.layer.clone()?, self.trials.setup.outer.speed);
+        let (layer, speed) = (self.layer?, self.trials.setup.outer.speed);
         let corrected = Lack::between(&self.trials.converged().ok()?, &layer, speed).error;
         let plate = &self.trials.setup.plate;
         let share = LAYER_SHARE[0] + LAYER_SHARE[1] * plate.thickness / plate.radius;
