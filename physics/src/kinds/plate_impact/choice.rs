@@ -1,13 +1,13 @@
 //! `auto`: the cheapest reduced model whose estimated error meets a tolerance, before any continuum is meshed.
 //!
-//! What models A and B lack is estimated by solving the impact once more with the plate as an elastic layer ([`Trials`]). Their
+//! What models A and B lack is estimated by solving the impact once more with the plate as an elastic layer (`trials`). Their
 //! estimated error is
 //!
 //!   sqrt((safety |candidate - layer| + share |all Kirchhoff modes - layer|)^2 + floor^2)
 //!
 //! with the share of what the layer corrects that it may itself be off by, and the error that model C was found to have against
 //! the finite-element reference as the floor. The same layer with fewer modes tells how many model C needs; built, model C
-//! is held against itself with fewer modes ([`super::truncation`]), and has more of them where that finds too large an error.
+//! is held against itself with fewer modes (`truncation`), and has more of them where that finds too large an error.
 
 use super::errors::COVERED;
 use super::results::PlateQuantities;
