@@ -10,7 +10,7 @@ pub struct CurveBands {
 }
 
 impl CurveBands {
-    /// `widths` by the name of the curve (see [`CURVES`](crate::result::CURVES)), in its unit, each of shape (time.len());
+    /// `widths` by the name of the curve of `history.csv`, in its unit, each of shape (time.len());
     /// `time` in s, strictly increasing.
     pub fn new(time: Vec<f64>, widths: Vec<(&'static str, Vec<f64>)>) -> Self {
         CurveBands { time, widths }

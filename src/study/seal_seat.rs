@@ -108,7 +108,7 @@ impl Case {
 /// The study.
 ///
 /// # Errors
-/// [`Error::Usage`](crate::Error::Usage) if a shipped scene is gone, [`Error::Solver`](crate::Error::Solver) if a seat can't
+/// [`Error::Usage`] if a shipped scene is gone, [`Error::Solver`] if a seat can't
 /// be meshed or solved.
 pub fn run(note: &mut Note) -> Result<Study> {
     let [initial, improved] = [shipped(DESIGNS[0].1)?, shipped(DESIGNS[1].1)?];
