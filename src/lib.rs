@@ -12,7 +12,7 @@
 //!
 //! let scene = Scene::read(resolve("scaled-plate-r6.35")?)?;
 //! let reduced = Reduced::new(&scene, Model::B, Some(16))?.run_with_history(1e-7)?;
-//! println!("efficiency {:.4}", reduced.summary.quantities.efficiency);
+//! println!("efficiency {:.4}", reduced.summary.value("efficiency").unwrap_or(f64::NAN));
 //!
 //! // the stored finite-element solution of exactly this scene
 //! let Lookup::Found(stored) = Store::open(None).find(&scene, Resolution::Paper) else { panic!("not stored") };
