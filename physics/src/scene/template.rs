@@ -16,9 +16,9 @@ use std::path::Path;
 /// A checked scene file, open to variation.
 ///
 /// ```
-/// use impactcheck_physics::scene::{Template, resolve};
+/// use impactcheck_physics::scene::Template;
 ///
-/// let template = Template::read(resolve("scaled-plate-r10")?)?;
+/// let template = Template::read("../scenes/scaled-plate-r10.toml")?;
 /// let thickness = template.field("plate.thickness")?;
 /// let thinner = template.with(&[(&thickness, 1e-3)]).expect("a valid plate");
 /// assert_eq!(thinner.plate_impact()?.plate.thickness, 1e-3);
