@@ -1,7 +1,6 @@
 //! The time integration against general-purpose integrators on the same equations.
 
 use super::{Bench, OURS, Settings, WorkPrecision, timed};
-use crate::analytical::hertz::HertzImpact;
 use crate::dynamics::explicit_runge_kutta::{
     self as runge_kutta, DORMAND_PRINCE_5, DORMAND_PRINCE_8, Equations, Tolerances,
 };
@@ -48,7 +47,7 @@ pub(super) fn run(modes: usize, settings: &Settings, bench: &mut Bench) -> Resul
         add(OURS, tolerance, result.velocity[1], seconds);
     }
     let equations = Equations::new(system);
-    let (start, scale) = equations.start(hertz(system).duration());
+    let (start, scale) = equations.start(system.hertz_impact().duration());
     for method in [DORMAND_PRINCE_5, DORMAND_PRINCE_8] {
         for &relative in &settings.peer_tolerances {
             let max_evaluations = (PEER_WORK / start.len() as f64) as u64;
@@ -92,10 +91,6 @@ fn peers(settings: &Settings) -> Result<Vec<(String, Command)>> {
         peers.push((name.trim_end_matches("-peer").to_owned(), Command::new(program)));
     }
     Ok(peers)
-}
-
-fn hertz(system: &System) -> HertzImpact {
-    HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness }
 }
 
 /// A run of a peer.

@@ -1,6 +1,5 @@
 //! A random impact over the whole admissible range.
 
-use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::kirchhoff::UnitPlate;
 use crate::contact::PatchFlexibility;
@@ -171,7 +170,7 @@ impl Case {
         let unit = plates.get(edge, poisson, tier)?;
         let mut body = lowest(unit.scale(&setup.plate), modes);
         let dry = System::new(&setup, &body, [0.0; 2]);
-        let hit = HertzImpact { mass: outer_mass, speed, stiffness: dry.laws[0].stiffness };
+        let hit = dry.hertz_impact();
         let (approach, force) = (hit.approach_peak(), hit.force_peak());
         if random.0.bool() {
             setup.inner.gap = approach * random.log(1e-4, 10.0);

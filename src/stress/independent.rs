@@ -1,7 +1,6 @@
 //! An independent solution of a random impact: a Runge-Kutta method of order 8 that knows neither modes nor contacts.
 
 use super::between::Watch;
-use crate::analytical::hertz::HertzImpact;
 use crate::dynamics::assured::differences;
 use crate::dynamics::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};
 use crate::dynamics::integrator::Integration;
@@ -42,10 +41,8 @@ pub(super) fn compare(
     result: &Integration,
     bound: f64,
 ) -> Comparison {
-    let impulse = result.contacts.map(|c| c.impulse);
-    let apart = |a: Answer, b: Answer| {
-        differences(system, [a.velocity, b.velocity], [a.force_peak, b.force_peak], impulse)
-    };
+    let apart =
+        |a: Answer, b: Answer| differences(system, [a.velocity, b.velocity], [a.force_peak, b.force_peak]);
     // max() would drop a value that is not a number
     let within = |[velocity, force]: [f64; 2], bound: f64| velocity <= bound && force <= bound;
     let ours = Answer { velocity: result.velocity, force_peak: result.contacts.map(|c| c.force_peak) };
@@ -80,8 +77,6 @@ fn solve(
     work: f64,
 ) -> Option<Answer> {
     let equations = Equations::new(system);
-    let hit =
-        HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
     let n = system.size();
     let fastest = system.oscillators.iter().map(|o| o.omega + 2.0 * o.alpha).fold(0.0, f64::max);
     let entries = n + 20 + if fluid.is_some() { FILM_ENTRIES } else { 0 };
@@ -90,7 +85,7 @@ fn solve(
     if fastest * end_time / 3.0 * 12.0 > max_evaluations as f64 {
         return None;
     }
-    let (mut state, scale) = equations.start(hit.duration());
+    let (mut state, scale) = equations.start(system.hertz_impact().duration());
     let tolerances = Tolerances { relative: tolerance, absolute: tolerance, max_evaluations };
     let mut load = FluidLoad::default();
     let rate = |y: &[f64], dy: &mut [f64]| {

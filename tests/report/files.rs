@@ -2,6 +2,7 @@
 
 use crate::synthetic_impact::{self, reduced, reference, scene};
 use impactcheck::Error;
+use impactcheck::ExitStatus;
 use impactcheck::comparison::{GateRules, compare_scene};
 use impactcheck::report::{Attachments, Report, SceneReport, check_writable, write};
 use impactcheck::result::Outcome;
@@ -143,7 +144,10 @@ fn impossible_folders_are_errors_that_name_them() {
     let file = root.path().join("file");
     fs::write(&file, "kept").unwrap();
     for dir in [file.clone(), file.join("below"), Path::new("/proc/impactcheck").into()] {
+        // what the user named wrongly is his to change; where the system refuses, it is not
+        let status = if dir.starts_with(root.path()) { ExitStatus::Usage } else { ExitStatus::Internal };
         for error in [check_writable(&dir).unwrap_err(), write(&report, &dir).unwrap_err()] {
+            assert_eq!(error.exit_status(), status, "{error}");
             assert!(error.to_string().contains(dir.to_str().unwrap()), "{error}");
         }
     }

@@ -7,7 +7,7 @@
 //! the two.
 
 use super::integrator::{Integration, Options};
-use super::step_bounds::{Bounds, least_impulse};
+use super::step_bounds::{Bounds, least_force, least_impulse};
 use super::system::System;
 use crate::error::Result;
 
@@ -68,25 +68,17 @@ fn is_simple(result: &Integration, tolerance: f64) -> bool {
 /// Largest difference between two results.
 fn difference(system: &System, a: &Integration, b: &Integration) -> f64 {
     let peaks = [a, b].map(|result| result.contacts.map(|c| c.force_peak));
-    let [velocity, force] =
-        differences(system, [a.velocity, b.velocity], peaks, b.contacts.map(|c| c.impulse));
+    let [velocity, force] = differences(system, [a.velocity, b.velocity], peaks);
     velocity.max(force)
 }
 
 /// Largest difference of the `velocities` in m/s of two results, over the impact speed, and of their force `peaks` in N,
-/// relative. The peak of a contact that transmits next to nothing (`impulse` in N s) counts for as much less. A value that is
-/// no number comes out as one.
-pub fn differences(
-    system: &System,
-    velocities: [[f64; 2]; 2],
-    peaks: [[f64; 2]; 2],
-    impulse: [f64; 2],
-) -> [f64; 2] {
+/// relative; a contact that hardly moves even the lighter body counts as if its peak were [`least_force`]. A value that is no
+/// number comes out as one.
+pub fn differences(system: &System, velocities: [[f64; 2]; 2], peaks: [[f64; 2]; 2]) -> [f64; 2] {
+    let least = least_force(least_impulse(system), system.hertz_impact().duration());
     let worst = |[first, second]: [f64; 2]| if first >= second || first.is_nan() { first } else { second };
     let velocity = |i: usize| (velocities[0][i] - velocities[1][i]).abs() / system.speed;
-    let peak = |i: usize| {
-        let weight = (impulse[i] / least_impulse(system)).min(1.0);
-        weight * (peaks[0][i] - peaks[1][i]).abs() / peaks[1][i].max(f64::MIN_POSITIVE)
-    };
+    let peak = |i: usize| (peaks[0][i] - peaks[1][i]).abs() / peaks[1][i].max(least);
     [worst([velocity(0), velocity(1)]), worst([peak(0), peak(1)])]
 }

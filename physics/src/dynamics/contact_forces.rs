@@ -55,11 +55,11 @@ impl Course {
     }
 }
 
-/// When sweeps may end: both bounds hold.
+/// When sweeps may end: all bounds hold.
 #[derive(Debug, Clone, Copy)]
 pub struct ForceError {
-    /// In N, for the impulse of the step.
-    pub absolute: f64,
+    /// Of each contact in N, for the impulse of the step and its own peak.
+    pub absolute: [f64; 2],
     /// Over the largest force of the step, for its energy.
     pub relative: f64,
 }
@@ -173,7 +173,7 @@ impl<'a> StepSolver<'a> {
         let mut unknowns = Unknowns { approach: *free, local, force };
         let (mut contraction, mut earlier) = (self.contraction, f64::INFINITY);
         for _ in 0..max_sweeps {
-            let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
+            let (mut changes, mut largest) = ([0.0_f64; 2], 0.0_f64);
             law.prepare(&unknowns.local);
             for j in 0..STAGES {
                 let visit = Visit {
@@ -187,13 +187,14 @@ impl<'a> StepSolver<'a> {
                 y0 -= own0[j] * step[0] + mutual[j] * step[1];
                 y1 -= mutual[j] * step[0] + own1[j] * step[1];
                 for i in 0..2 {
-                    change = change.max(step[i].abs());
+                    changes[i] = changes[i].max(step[i].abs());
                     largest = largest.max(f[i]);
                     unknowns.local[i][j] = d[i];
                     unknowns.force[i][j] = f[i];
                 }
             }
             unknowns.approach = [y0, y1];
+            let change = changes[0].max(changes[1]);
             if !change.is_finite() {
                 return None;
             }
@@ -201,8 +202,9 @@ impl<'a> StepSolver<'a> {
                 contraction = change / earlier;
             }
             // in a very short step any force gives the right impulse, but not the right energy
-            if change * contraction.clamp(BEST_CONTRACTION, 1.0)
-                <= force_error.absolute.min(force_error.relative * largest)
+            let left = contraction.clamp(BEST_CONTRACTION, 1.0);
+            if change * left <= force_error.relative * largest
+                && (0..2).all(|i| changes[i] * left <= force_error.absolute[i])
             {
                 return Some((unknowns, contraction));
             }

@@ -12,7 +12,6 @@ use super::ladder::Ladder;
 use super::recorder::Recorder;
 use super::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale};
 use super::system::{INNER, PLATE, System, dot};
-use crate::analytical::hertz::HertzImpact;
 use crate::error::{Error, Result};
 use crate::result::{History, Losses};
 use std::sync::LazyLock;
@@ -72,6 +71,8 @@ const MAX_STEPS: u64 = 5_000_000;
 const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
 pub(super) const NEGLIGIBLE: f64 = 1e-8;
+/// Share of a force's admissible defect at which the sweeps may end.
+const SETTLED: f64 = 0.1;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
 
@@ -143,8 +144,7 @@ impl<'a> Run<'a> {
     ) -> Self {
         let (q, v) = system.initial_state();
         let (q, v) = (in_blocks(&q), in_blocks(&v));
-        let hit =
-            HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
+        let hit = system.hertz_impact();
         Self {
             recorder,
             end_time: options.end_time.unwrap_or(f64::INFINITY),
@@ -231,6 +231,8 @@ impl<'a> Run<'a> {
             let (bank, collocation, system) =
                 (&self.solver.bank, self.solver.collocation, self.solver.system);
             let scale = momentum_scale(system, &self.contacts);
+            let least = self.least_forces(scale);
+            let share = Bounds::share(self.steps);
             let table = match shorter {
                 Some(h) => self.tables.other(bank, collocation, h),
                 None => self.tables.get(bank, collocation, self.level, h),
@@ -241,7 +243,13 @@ impl<'a> Run<'a> {
                 &self.course,
                 (&self.q, &self.v),
                 (&mut self.next_q, &mut self.next_v),
-                ForceError { absolute: self.bounds.impulse * scale[1] / h, relative: self.bounds.force },
+                ForceError {
+                    absolute: least.map(|least| {
+                        let peak = SETTLED * share * self.bounds.force_defect * least;
+                        peak.min(self.bounds.impulse * scale[1] / h)
+                    }),
+                    relative: self.bounds.force,
+                },
             );
             solved = trial.is_some();
             let Some(trial) = trial else {
@@ -273,6 +281,11 @@ impl<'a> Run<'a> {
             }
             return Ok(());
         }
+    }
+
+    /// Forces in N in relation to which those of a step have to be right at least, see [`force_scale`].
+    fn least_forces(&self, scale: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| force_scale(&[], self.contacts[i].force_peak, scale[i], self.energy.contact_time))
     }
 
     /// What `trial` is wrong by, with the momenta `scale` (see [`momentum_scale`]) and the excess of its energy.

@@ -9,8 +9,6 @@ const ROUNDING: f64 = 1e-12;
 
 /// Steps up to which their errors hardly add up; of more each may have a smaller one.
 const FEW_STEPS: f64 = 150.0;
-/// Force of a contact, over the momentum per duration of the impact, that counts at least: its peak may be still to come.
-const LEAST_FORCE: f64 = 0.4;
 
 /// Defects that a step may have, as impulses over the momentum.
 pub(super) struct Bounds {
@@ -97,9 +95,15 @@ pub(super) fn least_impulse(system: &System) -> f64 {
     0.01 * system.speed * system.masses[0].min(system.masses[1])
 }
 
+/// Force in N of a contact that gives a body the `momentum` in N s in about `duration` s: its peak may be still to come.
+#[inline]
+pub(super) fn least_force(momentum: f64, duration: f64) -> f64 {
+    0.4 * momentum / duration
+}
+
 /// Force in N in relation to which the `forces` of a step have to be right, of a contact with the peak `peak` N so far and
 /// the `momentum` N s (see [`momentum_scale`]) in an impact of about `duration` s.
 #[inline]
 pub(super) fn force_scale(forces: &[f64], peak: f64, momentum: f64, duration: f64) -> f64 {
-    forces.iter().fold(peak.max(LEAST_FORCE * momentum / duration), |scale, force| scale.max(*force))
+    forces.iter().fold(peak.max(least_force(momentum, duration)), |scale, force| scale.max(*force))
 }

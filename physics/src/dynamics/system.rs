@@ -10,6 +10,7 @@ use super::LEAN;
 use super::centre::LocalCentre;
 use super::duhamel::Oscillator;
 use super::outer_body::OuterBody;
+use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::contact::{Hertz, PatchFlexibility, Residual};
 use crate::result::Drive;
@@ -212,6 +213,11 @@ impl System {
     /// Kinetic energy of the outer body before the impact in J, to which eq. (1) relates the efficiency.
     pub fn initial_energy(&self) -> f64 {
         0.5 * self.masses[0] * self.speed.powi(2)
+    }
+
+    /// The outer body's impact if the plate were a half-space at rest: the measure of duration and force.
+    pub fn hertz_impact(&self) -> HertzImpact {
+        HertzImpact { mass: self.masses[0], speed: self.speed, stiffness: self.laws[0].stiffness }
     }
 
     /// Whether the outer body is held by a spring of its own (a bender) and comes back whatever happens.

@@ -3,7 +3,6 @@
 use super::guess::StepForces;
 use super::solve::{END, Trial, Wet};
 use super::table::Table;
-use crate::analytical::hertz::HertzImpact;
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
 use crate::dynamics::contact_ledger::{ContactLedger, StepCourse, work};
 use crate::dynamics::force_peak::SolvedStep;
@@ -35,8 +34,7 @@ const SETTLED: f64 = 1e-3;
 pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Result<Integration> {
     let collocation = Collocation::radau();
     let recorder = options.sample_interval.map(|interval| Recorder::new(system, &collocation, interval));
-    let hit =
-        HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
+    let hit = system.hertz_impact();
     let (q, v) = system.initial_state();
     let mut start = FluidLoad::default();
     fluid.evaluate(&q, &v, &mut start);
@@ -180,6 +178,8 @@ impl Run<'_> {
             }
             let (h, rest) = (self.length(self.level), self.end_time - self.time);
             let start = (self.force, &self.load.force[..]);
+            let scale = momentum_scale(self.wet.system, &self.contacts);
+            let settled = self.settled(scale);
             self.before.guess(self.collocation, h.min(rest), start, &mut self.trial);
             let system = self.wet.system;
             let last;
@@ -190,9 +190,7 @@ impl Run<'_> {
                 self.tables.entry(self.level).or_insert_with(|| Table::new(system, self.collocation, h))
             };
             let h = table.h;
-            let scale = momentum_scale(system, &self.contacts);
-            let settled = SETTLED * self.defect_bound * scale[1];
-            if !self.wet.solve(table, &self.q, &self.v, settled / h, &mut self.trial) {
+            if !self.wet.solve(table, &self.q, &self.v, settled(h), &mut self.trial) {
                 self.level += 1;
                 continue;
             }
@@ -207,7 +205,7 @@ impl Run<'_> {
             }
             if may_end && let Some(end) = self.end_in_step(h) {
                 let table = Table::new(system, self.collocation, end);
-                if !self.wet.solve(&table, &self.q, &self.v, settled / end, &mut self.trial) {
+                if !self.wet.solve(&table, &self.q, &self.v, settled(end), &mut self.trial) {
                     self.level += 1;
                     continue;
                 }
@@ -224,6 +222,14 @@ impl Run<'_> {
             }
             return Ok(false);
         }
+    }
+
+    /// Force error in N at which the iteration for a step of some s may end.
+    fn settled(&self, scale: [f64; 2]) -> impl Fn(f64) -> f64 + use<> {
+        let impulse = SETTLED * self.defect_bound * scale[1];
+        let least = (0..2).map(|i| self.force_scale(i, &[], scale)).fold(f64::INFINITY, f64::min);
+        let peak = SETTLED * self.force_defect_bound * least;
+        move |h| peak.min(impulse / h)
     }
 
     /// When in the step of `h` s just solved, in s from its start, contact ceases to be possible; `None` if it is possible
@@ -331,11 +337,13 @@ impl Run<'_> {
 
     /// The same over what may be.
     fn force_excess(&self, defect: [f64; 2], scale: [f64; 2]) -> f64 {
-        let of = |i: usize| {
-            let peak = self.contacts[i].force_peak;
-            force_scale(&self.trial.forces[i], peak, scale[i], self.energy.contact_time)
-        };
+        let of = |i: usize| self.force_scale(i, &self.trial.forces[i], scale);
         (0..2).map(|i| defect[i] / (self.force_defect_bound * of(i))).fold(0.0, f64::max)
+    }
+
+    /// See [`force_scale`].
+    fn force_scale(&self, contact: usize, forces: &[f64], scale: [f64; 2]) -> f64 {
+        force_scale(forces, self.contacts[contact].force_peak, scale[contact], self.energy.contact_time)
     }
 
     /// What the fluid does in the step of `h` s just solved.

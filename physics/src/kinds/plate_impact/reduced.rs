@@ -7,7 +7,6 @@ use super::rough::Rough;
 use super::trials::Cut;
 use super::truncation;
 use super::validity;
-use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
@@ -238,9 +237,7 @@ impl Reduced {
     pub fn run_with_history_until(&self, tolerance: f64, end: f64) -> Result<Outcome> {
         let mut summary = self.unjudged(tolerance)?;
         let system = &self.system;
-        let hit =
-            HertzImpact { mass: system.masses[0], speed: system.speed, stiffness: system.laws[0].stiffness };
-        let sample_interval = Some(hit.duration() / SAMPLES_PER_CONTACT);
+        let sample_interval = Some(system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
         let options = Options { sample_interval, ..self.options(tolerance) };
         let record = |options: &Options| -> Result<_> {
             let result = self.integrate(options)?;
