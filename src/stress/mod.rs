@@ -327,6 +327,34 @@ mod tests {
         }
     }
 
+    /// The light inner body comes to rest on the plate with forces of which the outer one's rounding is a million times larger.
+    #[test]
+    fn a_force_far_below_the_others_is_solved_for_itself() {
+        assert_eq!(run(1, 770_000_323, &|| ()).unwrap().failures, []);
+    }
+
+    /// Vibrations bring the outer body and the plate together once more, between the points of a step.
+    #[test]
+    fn a_short_touch_in_a_fluid_is_not_passed() {
+        let report = run(1, 20_105_727, &|| ()).unwrap();
+        assert_eq!((report.failures, report.wet_compared), (vec![], 1));
+    }
+
+    /// The film of a soft plate that bends up to the inner body's rim grows to millions of newtons, and the rounding of its work
+    /// with it.
+    #[test]
+    fn a_film_that_closes_at_the_rim_is_refused_and_does_not_stall() {
+        let report = run(1, 78_838, &|| ()).unwrap();
+        assert_eq!((report.failures, report.beyond_model), (vec![], vec![78_838]));
+    }
+
+    /// What never transmits anything has no force peak to be relatively right about.
+    #[test]
+    fn a_contact_that_transmits_nothing_is_compared() {
+        let report = run(1, 770_000_003, &|| ()).unwrap();
+        assert_eq!((report.failures, report.wet_compared), (vec![], 1));
+    }
+
     #[test]
     fn dry_and_wet_cases_hold() {
         let report = run(24, 700_000, &|| ()).unwrap();

@@ -22,8 +22,8 @@ const FULL_SHARE: f64 = 0.2;
 const TIGHTER: f64 = 0.1;
 /// Tightest tolerance that is tried.
 const TIGHTEST: f64 = 1e-12;
-/// Tolerances above this ask for a rough answer.
-const ROUGH: f64 = 1e-4;
+/// Tolerances above this ask for a rough answer: it is not looked whether the impact amplifies errors.
+pub const ROUGH: f64 = 1e-4;
 /// Difference of velocities and force peaks that is in order, in tolerances.
 pub const ENOUGH: f64 = 10.0;
 

@@ -259,7 +259,7 @@ impl<'a> Run<'a> {
             };
             let made = self.made_by(&trial);
             let Judged { excess, event, force_defect } =
-                self.judge(&trial, scale, self.energy.excess(made, h));
+                self.judge(&trial, scale, self.energy.excess(made, h, 0.0));
             if excess > 1.0 {
                 match event {
                     Some(u) if wanted.is_none() => wanted = Some(u * h),

@@ -65,12 +65,14 @@ impl EnergyAccount {
         Self { initial, per_contact: share * initial, contact_time: hit.duration(), made: 0.0 }
     }
 
-    /// Energy `made` in a step of `h` s over what may be. Errors of one sign, step after step, have to become smaller.
+    /// Energy `made` in a step of `h` s over what may be, `rounding` J of it for the rounding of work. Errors of one sign, step
+    /// after step, have to become smaller.
     #[inline]
-    pub(super) fn excess(&self, made: f64, h: f64) -> f64 {
+    pub(super) fn excess(&self, made: f64, h: f64, rounding: f64) -> f64 {
         let same_sign = (self.made * made.signum()).max(0.0);
         let left = (0.5 * self.per_contact / same_sign).min(1.0);
-        let bound = self.per_contact * (left * left) * h / self.contact_time + self.initial * ROUNDING;
+        let bound =
+            self.per_contact * (left * left) * h / self.contact_time + self.initial * ROUNDING + rounding;
         made.abs() / bound
     }
 

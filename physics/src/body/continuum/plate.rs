@@ -279,7 +279,7 @@ impl Halves {
     }
 }
 
-/// Mesh of the upper half, fine at the patch (if any) and at a clamped rim, and
+/// Mesh of the upper half, fine at the patch (if any) and at a held rim, and
 /// fine enough everywhere for the `modes` lowest modes.
 fn plate_mesh(plate: &Plate, patch_radius: Option<f64>, modes: usize, options: &MeshOptions) -> Mesh {
     let half_thickness = 0.5 * plate.thickness;
@@ -292,8 +292,14 @@ fn plate_mesh(plate: &Plate, patch_radius: Option<f64>, modes: usize, options: &
     let wave_size = options.order as f64 * wavelength / options.nodes_per_wavelength;
     let largest = wave_size.min(plate.radius / 4.0);
     let thick = largest.min(half_thickness / options.thickness_elements);
-    // The stress at the clamped rim's corners is singular.
-    let rim_size = if plate.edge == Edge::Clamped { 0.25 * thick } else { thick };
+    // The stress at the corners of a held rim is singular. A simply supported plate of nu near -1 bends into its first
+    // shape for next to nothing, so that what the corners yield is a part of its flexibility that grows with 1/(1 + nu).
+    let bending = (1.0 + plate.material.poisson_ratio) * (0.1 * plate.radius / plate.thickness).max(0.8);
+    let rim_size = match plate.edge {
+        Edge::Clamped => 0.25 * thick,
+        Edge::SimplySupported => bending.min(0.25) * thick,
+        Edge::Free => thick,
+    };
     let size = patch_radius.map(|a| a / options.patch_elements);
     let radial_grading = |start: f64| Grading { start, end: rim_size, largest, growth: options.growth };
     let radial = match (patch_radius, size) {

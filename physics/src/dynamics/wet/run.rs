@@ -3,6 +3,7 @@
 use super::guess::StepForces;
 use super::solve::{END, Trial, Wet};
 use super::table::Table;
+use super::touch_between;
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
 use crate::dynamics::contact_ledger::{ContactLedger, StepCourse, work};
 use crate::dynamics::force_peak::SolvedStep;
@@ -25,6 +26,9 @@ const LAST_LEVEL: i32 = 44;
 const LONGEST: i32 = -8;
 /// Share of a step's admissible defect at which its iteration may end, if rounding errors permit.
 const SETTLED: f64 = 1e-3;
+
+/// Rounding errors of coordinates that a step's work may be off by.
+const ROUNDINGS: f64 = 64.0;
 
 /// Integrates the impact of `system` in a `fluid`.
 ///
@@ -49,7 +53,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         recorder,
         end_time: options.end_time.unwrap_or(f64::INFINITY),
         defect_bound: defect_bound(options.tolerance),
-        force_defect_bound: Bounds::new(options.tolerance).force_defect,
+        bounds: Bounds::new(options.tolerance),
         base_step: 0.25 * hit.duration(),
         tables: BTreeMap::new(),
         level: 8,
@@ -100,6 +104,8 @@ struct StepAccount {
     contact_work: [f64; 2],
     /// Energy made from nothing, J.
     made: f64,
+    /// What of it the rounding of coordinates may be, J: a film can be millions of newtons strong.
+    rounding: f64,
 }
 
 struct Run<'a> {
@@ -108,7 +114,7 @@ struct Run<'a> {
     recorder: Option<Recorder<'a, RADAU_POINTS>>,
     end_time: f64,
     defect_bound: f64,
-    force_defect_bound: f64,
+    bounds: Bounds,
     base_step: f64,
     tables: BTreeMap<i32, Table>,
     level: i32,
@@ -197,8 +203,9 @@ impl Run<'_> {
             let account = self.account(h);
             let force_defect = self.force_defect();
             let excess = (self.defect(h, scale) / self.defect_bound)
-                .max(self.energy.excess(account.made, h))
-                .max(self.force_excess(force_defect, scale));
+                .max(self.energy.excess(account.made, h, account.rounding))
+                .max(self.force_excess(force_defect, scale))
+                .max(self.passed_touch(h, scale));
             if excess > 1.0 {
                 self.level += ((excess.log2() / (STAGES + 1) as f64).ceil() as i32).clamp(1, 8);
                 continue;
@@ -228,7 +235,7 @@ impl Run<'_> {
     fn settled(&self, scale: [f64; 2]) -> impl Fn(f64) -> f64 + use<> {
         let impulse = SETTLED * self.defect_bound * scale[1];
         let least = (0..2).map(|i| self.force_scale(i, &[], scale)).fold(f64::INFINITY, f64::min);
-        let peak = SETTLED * self.force_defect_bound * least;
+        let peak = SETTLED * self.bounds.force_defect * least;
         move |h| peak.min(impulse / h)
     }
 
@@ -338,12 +345,26 @@ impl Run<'_> {
     /// The same over what may be.
     fn force_excess(&self, defect: [f64; 2], scale: [f64; 2]) -> f64 {
         let of = |i: usize| self.force_scale(i, &self.trial.forces[i], scale);
-        (0..2).map(|i| defect[i] / (self.force_defect_bound * of(i))).fold(0.0, f64::max)
+        (0..2).map(|i| defect[i] / (self.bounds.force_defect * of(i))).fold(0.0, f64::max)
     }
 
     /// See [`force_scale`].
     fn force_scale(&self, contact: usize, forces: &[f64], scale: [f64; 2]) -> f64 {
         force_scale(forces, self.contacts[contact].force_peak, scale[contact], self.energy.contact_time)
+    }
+
+    /// Impulse, over what may be wrong, of a touch between the points of the step of `h` s just solved.
+    fn passed_touch(&self, h: f64, scale: [f64; 2]) -> f64 {
+        let (system, trial) = (self.wet.system, &self.trial);
+        let points = [0, 1].map(|i| {
+            let open = trial.forces[i] == [0.0; STAGES];
+            open.then(|| joined(self.approach[i], &trial.approach[i]))
+        });
+        let forces = self.wet.generalised(trial);
+        let motion = |place: f64| system.modal_approach(&self.motion_at(&forces, place * h, h).0);
+        let depths = touch_between::depths(system, h, [&self.q, &self.v], points, motion);
+        let missed = |i: usize| system.laws[i].force(depths[i]) * h / (scale[i] * self.bounds.kinked);
+        missed(0).max(missed(1))
     }
 
     /// What the fluid does in the step of `h` s just solved.
@@ -380,7 +401,10 @@ impl Run<'_> {
             - system.stored_energy(self.force, self.local);
         let dissipated = fluid.dissipated[0] + fluid.dissipated[1];
         let made = stored - (contact_work[0] + contact_work[1]) + dissipated + fluid.work;
-        StepAccount { fluid, contact_work, made }
+        let forces = self.wet.generalised(trial);
+        let largest = |stages: &Stages| stages.iter().fold(0.0, |a: f64, f| a.max(f.abs()));
+        let work: f64 = forces.iter().zip(&trial.motion.q[END]).map(|(f, q)| largest(f) * q.abs()).sum();
+        StepAccount { fluid, contact_work, made, rounding: ROUNDINGS * f64::EPSILON * work }
     }
 
     /// Looks whether the plate overlaps the inner body beside the axis, by what is `too_deep`, in the step of `h` s just tried.

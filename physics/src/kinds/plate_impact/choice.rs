@@ -14,23 +14,27 @@ use super::results::PlateQuantities;
 use super::trials::{Cut, Lack, RUNGS, Trials};
 use super::truncation::of_continuum;
 use super::validity;
+use crate::dynamics::assured;
 use crate::dynamics::integrator::Options;
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::result::{Candidate, Choice};
-use crate::scene::{Model, Scene};
+use crate::scene::{Edge, Model, Scene};
 
 /// Tolerance of `auto` when the user names none.
 pub const DEFAULT_TOLERANCE: f64 = 0.01;
 /// Share of the tolerance that is left to the time integration.
-const INTEGRATION_SHARE: f64 = 0.01;
+const INTEGRATION_SHARE: f64 = 0.003;
 /// Error over the difference to the layer.
 const SAFETY: f64 = 1.5;
 /// Error over what model C is estimated to lack.
 const BUILT_SAFETY: f64 = 2.0;
 /// Share of what the layer corrects of Kirchhoff's plate that it may be off by, of a thin plate and per thickness over radius:
 /// it does not know what shear does at the rim.
-const LAYER_SHARE: [f64; 2] = [0.5, 3.0];
+const LAYER_SHARE: [f64; 2] = [0.5, 6.0];
+/// Error of Kirchhoff's simply supported plate over (thickness over radius / (1 + nu))^2: the rim's resistance to turning, which
+/// the layer does not know either, is felt where bending into a paraboloid costs next to nothing.
+const RIM: f64 = 0.03;
 /// Truncation error, relative to the tolerance, at which the layer's own modes end.
 const REFERENCE_SHARE: f64 = 0.05;
 /// Share of the contacts' flexibility, relative to the tolerance, below which more Kirchhoff modes don't help.
@@ -70,7 +74,8 @@ pub(super) struct Plan<'a> {
 
 /// Relative tolerance of the time integration for a tolerance of `auto`.
 pub fn integration_tolerance(tolerance: f64) -> f64 {
-    (INTEGRATION_SHARE * tolerance).min(1e-3)
+    // above this no integration assures itself, and many contacts amplify what it is off by
+    (INTEGRATION_SHARE * tolerance).min(assured::ROUGH)
 }
 
 impl<'a> Plan<'a> {
@@ -116,13 +121,20 @@ impl<'a> Plan<'a> {
         let corrected = Lack::between(&self.trials.converged().ok()?, &layer, speed).error;
         let plate = &self.trials.setup.plate;
         let share = LAYER_SHARE[0] + LAYER_SHARE[1] * plate.thickness / plate.radius;
+        let rim = match plate.edge {
+            Edge::SimplySupported => {
+                let thickness = plate.thickness / plate.radius;
+                RIM * (thickness / (1.0 + plate.material.poisson_ratio)).powi(2)
+            }
+            Edge::Clamped | Edge::Free => 0.0,
+        };
         let most = self.trials.waves.modes();
         let mut best: Option<Rated> = None;
         for modes in KIRCHHOFF_RUNGS.into_iter().take_while(|n| *n <= most) {
             let model = if modes == 1 { Model::A } else { Model::B };
             let Ok(ours) = self.trials.kirchhoff(modes) else { break };
             let lack = Lack::between(&ours, &layer, speed);
-            let error = self.total(SAFETY * lack.error + share * corrected);
+            let error = self.total(SAFETY * lack.error + share * corrected + rim);
             self.note(model, modes, error, lack.quantity);
             let Some(error) = error else { break };
             if best.is_none_or(|(.., least)| error < least) {
