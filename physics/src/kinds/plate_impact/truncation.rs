@@ -70,6 +70,8 @@ pub(super) fn estimate(
     }
     let warning = (lack.error > LARGEST).then(|| {
         let enough = RUNGS.into_iter().find(|n| *n > modes && of(*n).error <= LARGEST);
+        // of a continuum some modes are no bending modes
+        let enough = enough.map(|bending| bending + system.modes - modes);
         warning(model, system.modes, lack, enough)
     });
     Ok(Truncation { error: lack.error, warning })
