@@ -112,7 +112,7 @@ fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
 /// What is wrong with a row, or open, in one sentence with numbers, unit and bound.
 pub(crate) fn told(row: &Discrepancy) -> String {
     let Discrepancy { quantity, unit, .. } = row;
-    let side = |value: Option<f64>| value.map_or("not determined".into(), |v| format!("{} {unit}", short(v)));
+    let side = |value: Option<f64>| value.map_or("not determined".into(), |v| in_unit(short(v), unit));
     let numbers = format!("{quantity}: reduced {}, reference {}", side(row.reduced), side(row.reference));
     let Some(difference) = row.difference else {
         return format!("{numbers}; a tolerance needs both: set a later `run.end_time`, or none");
@@ -121,7 +121,7 @@ pub(crate) fn told(row: &Discrepancy) -> String {
     let whole = row.relative.filter(|r| *r != 0.0).map(|relative| difference / relative);
     let with_share = |value: f64| {
         let share = whole.map_or(String::new(), |whole| format!(" ({})", percent(Some(value / whole))));
-        format!("{} {unit}{share}", short(value))
+        in_unit(short(value), unit) + &share
     };
     let difference = with_share(difference);
     // a bound has no sign
@@ -143,11 +143,17 @@ pub(crate) fn told(row: &Discrepancy) -> String {
     }
 }
 
+/// `number` with the SI `unit`, if it has one.
+fn in_unit(number: String, unit: &str) -> String {
+    if unit == "1" { number } else { format!("{number} {unit}") }
+}
+
 /// What is wrong with a check, in one sentence with numbers, unit and bound.
 pub(crate) fn integrity_failure(check: &Check) -> String {
     // all digits: many of these bounds are a matter of rounding
     let Check { check, unit, found, expected, bound, .. } = check;
+    let [found, expected, bound] = [found, expected, bound].map(|value| in_unit(value.to_string(), unit));
     format!(
-        "{check}: the history says {found} {unit}, the summary or the scene {expected} {unit}; they may differ by {bound} {unit}"
+        "{check}: the history says {found}, the summary or the scene {expected}; they may differ by {bound}"
     )
 }
