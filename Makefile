@@ -11,6 +11,8 @@ SUDO   := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc openmpi-bin chromium git
 VENV   := target/python-tools
 TOOL   := $(VENV)/bin/python
+# a program built before a change, that `make evidence` is to hold this one's instructions against
+BEFORE :=
 RUN    := cargo run --release --quiet --
 OUT    := target/check
 SCENES := $(basename $(notdir $(wildcard scenes/*.toml)))
@@ -83,10 +85,7 @@ evidence: setup
 	cargo build --release --manifest-path benches/diffsol/Cargo.toml
 	$(RUN) bench --peer benches/diffsol/target/release/diffsol-peer --out $(OUT)/bench
 	$(RUN) stress --cases 100000
-	cp target/release/impactcheck $(OUT)/impactcheck-full
-	cargo build --release --features lean && mv target/release/impactcheck $(OUT)/impactcheck-lean
-	cargo build --release
-	$(PYTHON) benches/unneeded.py $(OUT)/impactcheck-full $(OUT)/impactcheck-lean --out $(OUT)/unneeded
+	$(PYTHON) benches/unneeded.py target/release/impactcheck $(addprefix --before ,$(BEFORE)) --out $(OUT)/unneeded
 	fuzz/run.sh scene 1800
 	fuzz/run.sh store 1800
 	PROPTEST_CASES=200000 cargo test --release --test store random_input

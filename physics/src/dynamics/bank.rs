@@ -4,7 +4,6 @@
 //! time. Nothing depends on the order of the oscillators; the last block is filled up with rigid coordinates no
 //! contact acts on, which stay at rest.
 
-use super::LEAN;
 use super::collocation::{STAGES, Stages, powers};
 use super::duhamel::{MOMENTS, Oscillator};
 use super::system::System;
@@ -123,7 +122,7 @@ impl Block {
     #[inline(always)]
     pub fn moments(&self, t: f64, powers: &[f64; STAGES]) -> [f64x4; MOMENTS] {
         let angle = self.omega * t;
-        if (!LEAN && self.damped) || angle.simd_lt(f64x4::splat(MAX_ANGLE)).to_bitmask() != 0b1111 {
+        if self.damped || angle.simd_lt(f64x4::splat(MAX_ANGLE)).to_bitmask() != 0b1111 {
             return self.one_by_one(t);
         }
         match angle.simd_lt(f64x4::splat(SERIES)).to_bitmask() {

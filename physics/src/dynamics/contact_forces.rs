@@ -5,7 +5,6 @@
 //! residual flexibility every visit of a point does one Newton step of the contacts' own small system, from
 //! the Hertz approaches of the visit before.
 
-use super::LEAN;
 use super::bank::Bank;
 use super::collocation::{Collocation, POINTS, Points, STAGES, Stages, StepTable};
 use super::contact_ledger::work;
@@ -109,7 +108,7 @@ impl<'a> StepSolver<'a> {
         let unforced = free.map(f64x4::to_array);
         let guess = self.guess(before, table.h).unwrap_or(unforced);
         let laws = &self.system.laws;
-        let solved = match self.system.residual.filter(|_| !LEAN) {
+        let solved = match self.system.residual {
             None => self.sweep(table, &free, guess, MAX_SWEEPS, force_error, HertzPoints::new(laws, table)),
             Some(residual) => {
                 let points = |full| ResidualPoints::new(laws, residual, table, full);

@@ -1,6 +1,5 @@
 //! The time integration of a plate impact: steps of adapted length while bodies touch, exact flight between.
 
-use super::LEAN;
 use super::bank::in_blocks;
 use super::clearance::touch_between;
 use super::collocation::{Collocation, POINTS, Points, STAGES, crossing};
@@ -85,10 +84,7 @@ const EVENTS: std::ops::Range<f64> = 0.002..0.99;
 /// [`Error::Solver`] if the contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does not end.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
-    let recorder = options
-        .sample_interval
-        .filter(|_| !LEAN)
-        .map(|interval| Recorder::new(system, &COLLOCATION, interval));
+    let recorder = options.sample_interval.map(|interval| Recorder::new(system, &COLLOCATION, interval));
     Run::new(system, &COLLOCATION, options, recorder).go()
 }
 
@@ -165,7 +161,7 @@ impl<'a> Run<'a> {
             v,
             contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
             steps: 0,
-            damped: !LEAN && system.is_damped(),
+            damped: system.is_damped(),
         }
     }
 
@@ -350,7 +346,7 @@ impl<'a> Run<'a> {
     /// done on them, which misses vibrations quicker than the step.
     fn made_by(&self, trial: &Course) -> f64 {
         let stored = trial.stored - self.course.stored;
-        if !LEAN && self.damped {
+        if self.damped {
             stored - trial.work[0] - trial.work[1]
         } else {
             stored + trial.motion - self.course.motion
@@ -364,7 +360,7 @@ impl<'a> Run<'a> {
     }
 
     fn accept(&mut self, trial: Course) -> Result<()> {
-        if let (false, Some(recorder)) = (LEAN, &mut self.recorder) {
+        if let Some(recorder) = &mut self.recorder {
             let n = self.solver.system.size();
             recorder.step(self.time, trial.h, &flat(&self.q)[..n], &flat(&self.v)[..n], &trial.stages())?;
         }

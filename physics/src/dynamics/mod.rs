@@ -24,7 +24,3 @@ pub mod wet;
 pub use contact_ledger::ContactLedger;
 pub use ledger_check::ledger_check;
 pub use outer_body::OuterBody;
-
-/// Whether this build leaves out fluid, damping, residual flexibility and histories (feature `lean`), to measure what they
-/// cost where they are not used.
-pub(crate) const LEAN: bool = cfg!(feature = "lean");

@@ -6,7 +6,6 @@
 //! its force acts back as q_k'' + 2 alpha_k q_k' + omega_k^2 q_k = -sum_i b_ik F_i.
 //! Contact 0 joins outer body and plate, contact 1 plate and inner body.
 
-use super::LEAN;
 use super::centre::LocalCentre;
 use super::duhamel::Oscillator;
 use super::outer_body::OuterBody;
@@ -133,11 +132,6 @@ impl System {
         }
     }
 
-    #[inline(always)]
-    fn residual(&self) -> Option<&Residual> {
-        self.residual.as_ref().filter(|_| !LEAN)
-    }
-
     /// Whether any oscillator is damped.
     pub fn is_damped(&self) -> bool {
         self.oscillators.iter().any(|o| o.alpha > 0.0)
@@ -146,7 +140,7 @@ impl System {
     /// Change of both contact forces in N per modal approach of both in m, with the patches `local` as
     /// [`Self::contact`] gives them.
     pub fn tangent(&self, local: [f64; 2]) -> [[f64; 2]; 2] {
-        match self.residual() {
+        match &self.residual {
             None => [[self.laws[0].tangent(local[0]), 0.0], [0.0, self.laws[1].tangent(local[1])]],
             Some(residual) => {
                 let per = |rate| residual.rates(&self.laws, local, rate).1;
@@ -234,7 +228,7 @@ impl System {
     /// with them, negative where a contact is open.
     #[inline(always)]
     pub fn stored_energy(&self, f: [f64; 2], p: [f64; 2]) -> f64 {
-        match self.residual() {
+        match &self.residual {
             None => 0.4 * (f[0] * p[0].max(0.0) + f[1] * p[1].max(0.0)),
             Some(residual) => residual.energy(&self.laws, p),
         }
@@ -250,7 +244,7 @@ impl System {
     /// equilibrium.
     #[inline]
     pub fn contact(&self, y: [f64; 2], guess: [f64; 2]) -> Option<([f64; 2], [f64; 2])> {
-        match self.residual() {
+        match &self.residual {
             None => Some((y, [self.laws[0].force(y[0]), self.laws[1].force(y[1])])),
             Some(residual) => residual.solve(&self.laws, y, guess),
         }

@@ -11,7 +11,6 @@ use crate::body::ModalBody;
 use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
-use crate::dynamics::LEAN;
 use crate::dynamics::OuterBody;
 use crate::dynamics::assured::{self, assured};
 use crate::dynamics::integrator::{Integration, Options, integrate};
@@ -156,12 +155,6 @@ impl Reduced {
 
     fn of(built: Built, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
         let Built { system, omega_next, fluid, mut warnings } = built;
-        if LEAN && (fluid.is_some() || system.is_damped() || system.residual.is_some()) {
-            return Err(Error::Usage(
-                "this program was built without fluid, damping and residual flexibility (feature `lean`)"
-                    .into(),
-            ));
-        }
         warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
         Ok(Self { model, system, omega_next, fluid, warnings, choice, scene })
     }
@@ -183,7 +176,7 @@ impl Reduced {
 
     fn integrate(&self, options: &Options) -> Result<Integration> {
         let system = &self.system;
-        assured(options, system, |options| match self.fluid.as_ref().filter(|_| !LEAN) {
+        assured(options, system, |options| match &self.fluid {
             None => integrate(system, options),
             Some(fluid) => wet::integrate(system, fluid, options),
         })
