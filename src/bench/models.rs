@@ -4,7 +4,7 @@ use super::{Bench, Ratio, WorkPrecision, timed};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::reference::{Lookup, Resolution, Store};
-use crate::scene::{self, Model, Scene, Setup};
+use crate::scene::{self, Model, Scene};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -23,7 +23,7 @@ const ERROR: f64 = 3e-3;
 pub(super) fn run(store: &Store, bench: &mut Bench) -> Result<()> {
     for path in scene::shipped()? {
         let scene = Scene::read(&path)?;
-        if matches!(scene.setup, Setup::SealSeat(_)) {
+        if scene.plate_impact().is_err() {
             bench
                 .notes
                 .push(format!("scene `{}` is a seal seat: `impactcheck study seal-seat-cost`", scene.name));

@@ -2,25 +2,22 @@
 
 use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
-use super::compare_seats;
 use super::stored_references::{look_up, tell_reused};
-use super::{Context, JsonArgument};
+use super::{Context, JsonArgument, kinds};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
-use crate::comparison::{CommonAxis, Comparison, GateRules, SceneComparison, compare_scene};
+use crate::comparison::{Comparison, GateRules, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
 use crate::reference::{Resolution, Stored};
 use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport};
 use crate::result::Outcome;
-use crate::scene::{Model, Scene, Setup};
+use crate::scene::Scene;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Relative error of the efficiency that the reduced models' time integration may have in a comparison.
-const TOLERANCE: f64 = 1e-7;
 /// Results over commits, beside the report.
 const TRENDS: &str = "trends.jsonl";
 
@@ -129,12 +126,19 @@ impl<'a> Job<'a> {
         }
         let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
         // refused before anything is computed; of all shipped scenes those are compared that have one of the models
-        if arguments.scenes.is_empty() && !arguments.models.contains(&AskedModel::Named(Model::C)) {
-            scenes.retain(|(_, scene)| !is_seat(scene));
-            context.note("the shipped seal seats are left out: they have model C only");
+        if arguments.scenes.is_empty() {
+            let (kept, left_out) =
+                scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
+            scenes = kept;
+            for (_, scene) in left_out {
+                context.note(format_args!("{}", kinds::lacks(&scene)));
+            }
         }
-        if let Some((_, seat)) = scenes.iter().find(|(_, scene)| is_seat(scene)) {
-            compare_seats::check_models(seat, &arguments.models)?;
+        if let Some((_, scene)) =
+            scenes.iter().find(|(_, scene)| !kinds::has_one_of(scene, &arguments.models))
+        {
+            let names: Vec<String> = arguments.models.iter().map(AskedModel::to_string).collect();
+            return Err(Error::Usage(format!("--models {}: {}", names.join(","), kinds::lacks(scene))));
         }
         let records = compare_inputs::records(&arguments.measured, &scenes)?;
         let figures = compare_inputs::figures(arguments.figure.as_ref(), &scenes)?;
@@ -164,36 +168,11 @@ impl<'a> Job<'a> {
             tell_reused(context, stored);
         }
         let result = |(scene, stored): (&Scene, Stored)| {
-            let (reduced, cost) = match scene.setup {
-                Setup::PlateImpact(_) => (self.plate_models(context, scene, &stored)?, Vec::new()),
-                Setup::SealSeat(_) => compare_seats::run(context, scene, &stored)?,
-            };
+            let asked = (&self.arguments.models[..], self.arguments.tolerance);
+            let (reduced, cost) = kinds::of(scene).beside(context, scene, &stored, asked)?;
             Ok(Results { stored, reduced, cost })
         };
         self.scenes.iter().map(|(_, scene)| scene).zip(references).map(result).collect()
-    }
-
-    /// The models of a plate impact.
-    fn plate_models(&self, context: &Context, scene: &Scene, stored: &Stored) -> Result<Vec<Outcome>> {
-        // the models' curves are drawn and compared as far as the reference's
-        let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
-        let models = asked_model::set_up(scene, &self.arguments.models, self.arguments.tolerance)?;
-        let outcomes = models.into_iter().map(|(body, set_up)| {
-            let outcome = body.run_with_history_until(TOLERANCE, end)?;
-            context.detail(format_args!(
-                "{}: model {} set up in {:.1} ms, run in {:.2} ms",
-                scene.name,
-                body.model(),
-                1e3 * set_up,
-                1e3 * outcome.summary.solve_seconds
-            ));
-            if let Some(choice) = &outcome.summary.choice {
-                let told = asked_model::told(choice);
-                context.note(format_args!("{}: model {}, {told}", scene.name, body.model()));
-            }
-            Ok(outcome)
-        });
-        outcomes.collect()
     }
 
     /// The comparison of all scenes, and what is shown with it.
@@ -287,10 +266,6 @@ impl<'a> Job<'a> {
         ));
         Ok(comparison)
     }
-}
-
-pub(super) fn is_seat(scene: &Scene) -> bool {
-    matches!(scene.setup, Setup::SealSeat(_))
 }
 
 /// The comparison with its discrepancy budget. A budget that can't be drawn up is said to be missing: the comparison

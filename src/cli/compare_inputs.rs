@@ -1,6 +1,5 @@
 //! What a comparison is asked to use, checked before anything is computed.
 
-use super::compare::is_seat;
 use crate::ci::acceptance::Acceptance;
 use crate::ci::tolerance_watch;
 use crate::comparison::ChangedTolerance;
@@ -37,7 +36,7 @@ pub(super) fn figures(
 ) -> Result<Vec<(PathBuf, FigureFormat)>> {
     let Some(file) = file else { return Ok(Vec::new()) };
     let format = FigureFormat::of(file)?;
-    if let Some((_, seat)) = scenes.iter().find(|(_, scene)| is_seat(scene)) {
+    if let Some((_, seat)) = scenes.iter().find(|(_, scene)| scene.plate_impact().is_err()) {
         return Err(Error::Usage(format!(
             "--figure draws plate impacts, and scene `{0}` is a seal seat; its drawings {0}.svg and {0}-section.svg are in the folder of the report",
             seat.name
@@ -70,7 +69,7 @@ pub(super) fn figure_width(text: &str) -> std::result::Result<f64, String> {
 
 /// The measured files; they belong to one scene.
 pub(super) fn records(files: &[PathBuf], scenes: &[(PathBuf, Scene)]) -> Result<Vec<Record>> {
-    let plates = scenes.iter().filter(|(_, scene)| !is_seat(scene)).count();
+    let plates = scenes.iter().filter(|(_, scene)| scene.plate_impact().is_ok()).count();
     if !files.is_empty() && (plates != 1 || scenes.len() != 1) {
         return Err(Error::Usage(format!(
             "--measured needs exactly one plate impact, to which the files belong; there are {} scenes, {plates} of that kind",

@@ -1,18 +1,12 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
 use super::asked_model::{self, AskedModel};
-use super::progress::Bar;
-use super::{Context, JsonArgument};
-use crate::body::cache::Cache;
+use super::{Context, JsonArgument, kinds};
 use crate::error::{Error, ExitStatus, Result};
-use crate::kinds::plate_impact::choice;
-use crate::kinds::plate_impact::reduced::Reduced;
-use crate::kinds::seal_seat::{self, SeatMesh, SeatModel};
-use crate::reference::{self, Resolution};
+use crate::file::write_file;
 use crate::report::format::{prefixed, with_unit};
 use crate::report::{self, TableFormat};
 use crate::result::{ContactPressure, Outcome, Quantity, Summary};
-use crate::scene::{Model, Scene, Setup};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -23,29 +17,42 @@ pub struct Arguments {
     /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility), or auto, the cheapest whose
     /// estimated error meets the tolerance [default: the scene's, else C]
     #[arg(long)]
-    model: Option<AskedModel>,
+    pub(super) model: Option<AskedModel>,
     /// Number of modes [default: the scene's, else 16 for B and as many as needed for C]
     #[arg(long, value_name = "N")]
-    modes: Option<usize>,
+    pub(super) modes: Option<usize>,
     /// Relative error that the time integration may have: of the efficiency, of a seal seat's sphere of its velocity [default: 1e-7,
     /// of a seal seat 1e-3]; with --model auto the error of the model itself: of the efficiency, the outer body's final velocity
     /// and both force peaks [default: 1%]
     #[arg(long, value_parser = asked_model::tolerance)]
-    tolerance: Option<f64>,
+    pub(super) tolerance: Option<f64>,
     /// Mesh of the seat (.vtu, tetrahedra), for seal-seat scenes [default: that in meshes/ or the cache, else a new one]
     #[arg(long, value_name = "FILE")]
-    mesh: Option<PathBuf>,
+    pub(super) mesh: Option<PathBuf>,
     /// Write displacement, velocity and force over time to this file (.csv or .parquet)
     #[arg(long, value_name = "FILE")]
-    history: Option<PathBuf>,
+    pub(super) history: Option<PathBuf>,
     #[command(flatten)]
     json: JsonArgument,
 }
 
-/// Relative error of the efficiency of a plate impact when the caller names none.
-const DEFAULT_TOLERANCE: f64 = 1e-7;
 /// Largest tolerance of a time integration.
 const LARGEST_INTEGRATION: f64 = 1e-2;
+
+impl Arguments {
+    /// The tolerance of the time integration of a model that is named, `default` if the user names none.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if it is too large for that.
+    pub(super) fn integration_tolerance(&self, default: f64) -> Result<f64> {
+        match self.tolerance {
+            Some(tolerance) if tolerance > LARGEST_INTEGRATION => Err(Error::Usage(format!(
+                "--tolerance {tolerance} is more than {LARGEST_INTEGRATION}: with a model that is named it is the error of the time integration; --model auto takes larger ones"
+            ))),
+            tolerance => Ok(tolerance.unwrap_or(default)),
+        }
+    }
+}
 
 /// Runs the model and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
@@ -54,94 +61,15 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         TableFormat::of(file)?;
     }
     let (_, scene) = super::read_scene(&arguments.scene)?;
-    let outcome = match &scene.setup {
-        Setup::PlateImpact(_) => plate(&scene, arguments)?,
-        Setup::SealSeat(_) => seat(context, &scene, arguments)?,
-    };
+    let outcome = kinds::of(&scene).reduced(context, &scene, arguments)?;
     finish(context, arguments, &outcome)
-}
-
-fn plate(scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
-    if let Some(mesh) = &arguments.mesh {
-        return Err(Error::Usage(format!(
-            "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
-            mesh.display(),
-            scene.name
-        )));
-    }
-    let default = AskedModel::Named(scene.reduced.model.unwrap_or(Model::C));
-    let (reduced, tolerance) = match arguments.model.unwrap_or(default) {
-        AskedModel::Named(model) => {
-            (Reduced::new(scene, model, arguments.modes)?, integration_tolerance(arguments)?)
-        }
-        AskedModel::Auto => {
-            if let Some(modes) = arguments.modes {
-                return Err(Error::Usage(format!(
-                    "--modes {modes}: --model auto chooses the number of modes"
-                )));
-            }
-            let tolerance = arguments.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
-            (Reduced::auto(scene, tolerance)?, choice::integration_tolerance(tolerance))
-        }
-    };
-    // with its history, of which the deflection is judged
-    reduced.run_with_history(tolerance)
-}
-
-/// The tolerance of the time integration of a model that is named.
-fn integration_tolerance(arguments: &Arguments) -> Result<f64> {
-    let tolerance = arguments.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-    if tolerance > LARGEST_INTEGRATION {
-        return Err(Error::Usage(format!(
-            "--tolerance {tolerance} is more than {LARGEST_INTEGRATION}: with a model that is named it is the error of the time integration; --model auto takes larger ones"
-        )));
-    }
-    Ok(tolerance)
-}
-
-fn seat(context: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
-    let model = match arguments.model {
-        Some(AskedModel::Named(model)) => model,
-        Some(AskedModel::Auto) => {
-            return Err(Error::Usage(format!(
-                "--model auto: scene `{}` is a seal seat, which has model C only",
-                scene.name
-            )));
-        }
-        None => scene.reduced.model.unwrap_or(Model::C),
-    };
-    let cache = Cache::from_environment();
-    let bar = Bar::new(context, &scene.name);
-    let mesh = match &arguments.mesh {
-        Some(path) => SeatMesh::open(path)?,
-        None => {
-            let show = &mut |step: &_| bar.show(step);
-            SeatMesh::open(&reference::seat_mesh_with(scene, Resolution::Paper, &cache, show)?)?
-        }
-    };
-    let reduced = SeatModel::new_with(scene, model, arguments.modes, &mesh, &cache, &mut |part, done| {
-        bar.part(part, done)
-    })?;
-    let tolerance = match arguments.tolerance {
-        Some(_) => integration_tolerance(arguments)?,
-        None => seal_seat::DEFAULT_TOLERANCE,
-    };
-    let outcome = reduced.run_with_history(tolerance)?;
-    drop(bar);
-    context.note(format_args!(
-        "mesh {}, {} degrees of freedom; set up in {:.2} s",
-        mesh.path().display(),
-        reduced.dofs,
-        reduced.setup_seconds
-    ));
-    Ok(outcome)
 }
 
 /// Writes the history, if it is asked for, and prints warnings and summary.
 fn finish(context: &Context, arguments: &Arguments, outcome: &Outcome) -> Result<ExitStatus> {
     let Outcome { summary, history } = outcome;
     if let Some(path) = &arguments.history {
-        crate::file::write_file(path, &report::history_file(history, TableFormat::of(path)?)?)?;
+        write_file(path, &report::history_file(history, TableFormat::of(path)?)?)?;
         context.note(format_args!("history of {} samples in {}", history.len(), path.display()));
     }
     for warning in &summary.warnings {

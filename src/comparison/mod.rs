@@ -7,7 +7,6 @@
 //! belong to its summary proves nothing, whatever the summary says.
 
 mod alignment;
-mod balance;
 pub mod budget;
 mod changed_tolerance;
 mod curve_metrics;
@@ -18,7 +17,6 @@ mod integrity;
 mod interpolation;
 mod iso18571;
 mod russell;
-mod seal_seat;
 mod sprague_geers;
 mod undecided;
 mod verdict;

@@ -1,9 +1,10 @@
 //! The kinds of scene, each with its reduced models.
 
+mod consistency;
 pub mod plate_impact;
 pub mod seal_seat;
 
-use crate::result::{Curve, History, Quantity, Summary};
+use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
 use crate::scene::{Model, Scene, Setup};
 
 /// What everything that compares, shows or keeps results has to know of a kind of scene.
@@ -23,6 +24,9 @@ pub trait Kind: Sync {
     /// Adds to the `summary` of any model or reference of a scene of this kind how near it comes to the bounds of the
     /// theories behind it, and warns where it is beyond. Without `history` some of it is not known.
     fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>);
+
+    /// What must hold of a result of `scene` whose curves can be sampled.
+    fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement>;
 }
 
 /// All kinds.

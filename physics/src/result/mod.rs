@@ -6,6 +6,7 @@ mod drive;
 mod history;
 pub(crate) mod limit;
 mod losses;
+mod statement;
 mod summary;
 pub(crate) mod table;
 
@@ -15,6 +16,7 @@ pub use drive::Drive;
 pub use history::{Curve, History};
 pub use limit::Limit;
 pub use losses::Losses;
+pub use statement::Statement;
 pub use summary::{BenderSummary, SCHEMA_VERSION, Source, Summary};
 pub(crate) use table::quantities;
 pub use table::{Quantity, Table};

@@ -19,7 +19,7 @@ use crate::project::project_root;
 use crate::reference::{Lookup, Resolution, Store};
 use crate::result::Summary;
 use crate::sampling::latin_hypercube;
-use crate::scene::{self, Model, Scene, Setup};
+use crate::scene::{self, Model, Scene};
 use cost::Cost;
 use draw::{DIMENSIONS, draw};
 use rayon::prelude::*;
@@ -222,7 +222,7 @@ fn references(store: &Store) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     for file in files {
         let scene = Scene::read(&file)?;
-        if matches!(scene.setup, Setup::SealSeat(_)) {
+        if scene.plate_impact().is_err() {
             continue;
         }
         let found = [Resolution::Fine, Resolution::Paper].into_iter().find_map(|resolution| {

@@ -357,13 +357,13 @@ impl Run<'_> {
     fn passed_touch(&self, h: f64, scale: [f64; 2]) -> f64 {
         let (system, trial) = (self.wet.system, &self.trial);
         let points = [0, 1].map(|i| {
-            let open = trial.forces[i] == [0.0; STAGES];
-            open.then(|| joined(self.approach[i], &trial.approach[i]))
+            let open = self.force[i] == 0.0 && trial.forces[i] == [0.0; STAGES];
+            open.then(|| joined(self.local[i], &trial.local[i]))
         });
         let forces = self.wet.generalised(trial);
         let motion = |place: f64| system.modal_approach(&self.motion_at(&forces, place * h, h).0);
-        let depths = touch_between::depths(system, h, [&self.q, &self.v], points, motion);
-        let missed = |i: usize| system.laws[i].force(depths[i]) * h / (scale[i] * self.bounds.kinked);
+        let largest = touch_between::forces(system, h, [&self.q, &self.v], points, motion);
+        let missed = |i: usize| largest[i] * h / (scale[i] * self.bounds.kinked);
         missed(0).max(missed(1))
     }
 

@@ -10,10 +10,10 @@ use crate::dynamics::system::System;
 const PER_RADIAN: f64 = 2.0;
 const PLACES: (f64, f64) = (8.0, 512.0);
 
-/// Deepest approaches of both contacts in m, 0 where they stay open, in a step of `h` s from the state `start` (coordinates and
-/// their rates); `points` are the approaches at the points of the step of a contact that is open at all of them, and `motion`
-/// gives both at a place from 0 to 1.
-pub(super) fn depths(
+/// Largest forces of both contacts in N, 0 where they stay open, in a step of `h` s from the state `start` (coordinates and their
+/// rates); `points` are the local approaches at the points of the step of a contact that is open at all of them, and `motion`
+/// gives both modal approaches at a place from 0 to 1.
+pub(super) fn forces(
     system: &System,
     h: f64,
     start: [&[f64]; 2],
@@ -31,17 +31,18 @@ pub(super) fn depths(
         nearest + change + 2.0 * unseen > 0.0
     };
     let near = [0, 1].map(is_near);
-    let mut depths = [0.0; 2];
+    let mut largest = [0.0; 2];
     if near == [false; 2] {
-        return depths;
+        return largest;
     }
     let quickest = system.oscillators.iter().map(|o| o.omega).fold(0.0, f64::max);
     let places = (PER_RADIAN * quickest * h).clamp(PLACES.0, PLACES.1).ceil();
     for place in 1..places as u32 {
         let approach = motion(f64::from(place) / places);
+        let Some((_, force)) = system.contact(approach, approach) else { continue };
         for i in (0..2).filter(|i| near[*i]) {
-            depths[i] = approach[i].max(depths[i]);
+            largest[i] = force[i].max(largest[i]);
         }
     }
-    depths
+    largest
 }

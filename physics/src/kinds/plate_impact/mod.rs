@@ -1,5 +1,6 @@
 //! An outer body strikes a plate, the plate passes the blow to an inner body: reduced models A, B and C.
 
+mod checks;
 pub mod choice;
 pub mod errors;
 mod limits;
@@ -11,7 +12,7 @@ mod truncation;
 mod validity;
 pub mod variants;
 
-use crate::result::{Curve, History, Quantity, Summary};
+use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
 use crate::scene::{Model, Scene, Setup};
 
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
@@ -40,5 +41,9 @@ impl super::Kind for Kind {
         if let Setup::PlateImpact(setup) = &scene.setup {
             limits::judge(setup, summary, history);
         }
+    }
+
+    fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {
+        scene.plate_impact().map_or_else(|_| Vec::new(), |setup| checks::checks(setup, outcome))
     }
 }

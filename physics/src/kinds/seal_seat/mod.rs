@@ -7,6 +7,7 @@
 mod accumulate;
 mod body;
 mod candidates;
+mod checks;
 mod cholesky;
 pub mod contact;
 mod contact_set;
@@ -22,7 +23,7 @@ pub mod system;
 mod truncation;
 mod watch;
 
-use crate::result::{Curve, History, Quantity, Summary};
+use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
 use crate::scene::{Model, Scene, Setup};
 
 pub use body::{SeatBody, SeatMesh, Watch, supports};
@@ -55,5 +56,9 @@ impl super::Kind for Kind {
         if let Setup::SealSeat(setup) = &scene.setup {
             limits::judge(setup, summary, history);
         }
+    }
+
+    fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {
+        scene.seal_seat().map_or_else(|_| Vec::new(), |setup| checks::checks(setup, outcome))
     }
 }

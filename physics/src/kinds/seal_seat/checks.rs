@@ -1,15 +1,15 @@
 //! What a result of a seal-seat scene must obey by itself: it starts as the scene says, its summary is found again in
 //! its history, impulse changes momentum, and velocity changes displacement.
 
-use super::alignment::peak;
-use super::balance::{displacement_balance, momentum_balance};
-use super::integrity::{Check, EFFICIENCY_SLACK, Stated, VELOCITY_SLACK, contact};
-use crate::kinds::seal_seat::{SeatCurves, SeatQuantities};
-use crate::result::Outcome;
+use super::{SeatCurves, SeatQuantities};
+use crate::kinds::consistency::{
+    EFFICIENCY_SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance, momentum_balance, peak,
+};
+use crate::result::{Outcome, Statement};
 use crate::scene::SealSeat;
 
-/// Whether a result whose curves can be sampled is consistent with itself and with the scene.
-pub(super) fn check(setup: &SealSeat, outcome: &Outcome) -> Vec<Check> {
+/// Statements about a result whose curves can be sampled.
+pub(super) fn checks(setup: &SealSeat, outcome: &Outcome) -> Vec<Statement> {
     let summary = &outcome.summary;
     let Some(history) = SeatCurves::of(&outcome.history) else { return Vec::new() };
     let mut checks = start(setup, &history);
@@ -25,32 +25,32 @@ pub(super) fn check(setup: &SealSeat, outcome: &Outcome) -> Vec<Check> {
     checks
 }
 
-fn start(setup: &SealSeat, history: &SeatCurves) -> Vec<Check> {
+fn start(setup: &SealSeat, history: &SeatCurves) -> Vec<Statement> {
     let speed = setup.actuator.speed;
     let velocity = |name: &str, curve: &[f64], expected: f64| {
-        Check::new(name, "m/s", curve[0], expected, VELOCITY_SLACK * speed)
+        Statement::new(name, "m/s", curve[0], expected, VELOCITY_SLACK * speed)
     };
     let [x, z] = history.sphere_displacement;
     vec![
         velocity("actuator_velocity_start", history.actuator_velocity, speed),
         velocity("sphere_velocity_x_start", history.sphere_velocity[0], 0.0),
         velocity("sphere_velocity_z_start", history.sphere_velocity[1], 0.0),
-        Check::new("sphere_displacement_start", "m", x[0].hypot(z[0]), 0.0, 1e-3 * peak(z)),
+        Statement::new("sphere_displacement_start", "m", x[0].hypot(z[0]), 0.0, 1e-3 * peak(z)),
     ]
 }
 
 /// Velocities and what follows from them: speed, direction, efficiency.
-fn velocities(setup: &SealSeat, q: &SeatQuantities, history: &SeatCurves) -> Vec<Check> {
+fn velocities(setup: &SealSeat, q: &SeatQuantities, history: &SeatCurves) -> Vec<Statement> {
     let last = history.time.len() - 1;
     let bound = VELOCITY_SLACK * setup.actuator.speed;
-    let velocity = |name: &str, found: f64, stated: f64| Check::new(name, "m/s", found, stated, bound);
+    let velocity = |name: &str, found: f64, stated: f64| Statement::new(name, "m/s", found, stated, bound);
     let (x, z) = (q.sphere_velocity_x, q.sphere_velocity_z);
     let mass_ratio = setup.sphere.mass / setup.actuator.mass;
     let efficiency = mass_ratio * (x * x + z * z) / setup.actuator.speed.powi(2);
     let mut checks = vec![
         velocity("sphere_speed", q.sphere_speed, x.hypot(z)),
-        Check::new("sphere_angle", "rad", q.sphere_angle, x.atan2(z), 1e-6),
-        Check::new("efficiency", "1", q.efficiency, efficiency, EFFICIENCY_SLACK * efficiency),
+        Statement::new("sphere_angle", "rad", q.sphere_angle, x.atan2(z), 1e-6),
+        Statement::new("efficiency", "1", q.efficiency, efficiency, EFFICIENCY_SLACK * efficiency),
     ];
     // The last sample tells if it lies in free flight.
     if history.sphere_force[last] == 0.0 {
@@ -65,16 +65,16 @@ fn velocities(setup: &SealSeat, q: &SeatQuantities, history: &SeatCurves) -> Vec
 }
 
 /// The sphere's force is that of its components.
-fn components(history: &SeatCurves) -> Check {
+fn components(history: &SeatCurves) -> Statement {
     let [fx, fz] = history.sphere_force_components;
     let missed =
         history.sphere_force.iter().zip(fx.iter().zip(fz)).map(|(f, (x, z))| (f - x.hypot(*z)).abs());
     let bound = 1e-6 * peak(history.sphere_force);
-    Check::new("sphere_force_components", "N", missed.fold(0.0, f64::max), 0.0, bound)
+    Statement::new("sphere_force_components", "N", missed.fold(0.0, f64::max), 0.0, bound)
 }
 
 /// Momentum against impulse and path against velocity, of sphere and actuator.
-fn balances(setup: &SealSeat, interval: f64, history: &SeatCurves) -> Vec<Check> {
+fn balances(setup: &SealSeat, interval: f64, history: &SeatCurves) -> Vec<Statement> {
     let time = history.time;
     let mut checks = Vec::new();
     for (axis, c) in [("x", 0), ("z", 1)] {

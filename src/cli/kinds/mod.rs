@@ -1,0 +1,62 @@
+//! How the commands run the reduced models of each kind of scene.
+
+mod plate_impact;
+mod seal_seat;
+
+use super::Context;
+use super::asked_model::AskedModel;
+use super::reduced::Arguments;
+use crate::error::Result;
+use crate::kinds;
+use crate::reference::Stored;
+use crate::report::Cost;
+use crate::result::Outcome;
+use crate::scene::{Scene, Setup};
+
+/// Results of the models, and what they have cost if they share a mesh with the reference.
+pub(super) type Compared = (Vec<Outcome>, Vec<Cost>);
+
+/// The reduced models of a kind of scene.
+pub(super) trait Models: Sync {
+    /// Runs the model that `reduced` is asked for.
+    ///
+    /// # Errors
+    /// Those of the arguments and of the model.
+    fn reduced(&self, context: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome>;
+
+    /// Runs those of the models `asked` for that there are, with the tolerance of `auto`, beside a reference.
+    ///
+    /// # Errors
+    /// Those of the models.
+    fn beside(
+        &self,
+        context: &Context,
+        scene: &Scene,
+        stored: &Stored,
+        asked: (&[AskedModel], Option<f64>),
+    ) -> Result<Compared>;
+}
+
+/// The models of `scene`.
+pub(super) fn of(scene: &Scene) -> &'static dyn Models {
+    match scene.setup {
+        Setup::PlateImpact(_) => &plate_impact::Plates,
+        Setup::SealSeat(_) => &seal_seat::Seats,
+    }
+}
+
+/// Whether one of the models `asked` for is one of `scene`; `auto` chooses among several.
+pub(super) fn has_one_of(scene: &Scene, asked: &[AskedModel]) -> bool {
+    let own = kinds::of(scene).models();
+    asked.iter().any(|asked| match asked {
+        AskedModel::Named(model) => own.contains(model),
+        AskedModel::Auto => own.len() > 1,
+    })
+}
+
+/// That `scene` has other models than those asked for.
+pub(super) fn lacks(scene: &Scene) -> String {
+    let kind = kinds::of(scene);
+    let models: Vec<String> = kind.models().iter().map(ToString::to_string).collect();
+    format!("scene `{}` is of kind `{}`, which has model {} only", scene.name, kind.name(), models.join(", "))
+}

@@ -1,0 +1,79 @@
+//! The reduced models of plate impacts.
+
+use super::{Compared, Models};
+use crate::cli::Context;
+use crate::cli::asked_model::{self, AskedModel};
+use crate::cli::reduced::Arguments;
+use crate::comparison::CommonAxis;
+use crate::error::{Error, Result};
+use crate::kinds::plate_impact::choice;
+use crate::kinds::plate_impact::reduced::Reduced;
+use crate::reference::Stored;
+use crate::result::Outcome;
+use crate::scene::{Model, Scene};
+
+/// Relative error of the efficiency when the caller names none.
+const DEFAULT_TOLERANCE: f64 = 1e-7;
+/// Relative error of the efficiency that the time integration may have in a comparison.
+const COMPARISON_TOLERANCE: f64 = 1e-7;
+
+/// Models A, B and C.
+pub(super) struct Plates;
+
+impl Models for Plates {
+    fn reduced(&self, _: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
+        if let Some(mesh) = &arguments.mesh {
+            return Err(Error::Usage(format!(
+                "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
+                mesh.display(),
+                scene.name
+            )));
+        }
+        let default = AskedModel::Named(scene.reduced.model.unwrap_or(Model::C));
+        let (reduced, tolerance) = match arguments.model.unwrap_or(default) {
+            AskedModel::Named(model) => (
+                Reduced::new(scene, model, arguments.modes)?,
+                arguments.integration_tolerance(DEFAULT_TOLERANCE)?,
+            ),
+            AskedModel::Auto => {
+                if let Some(modes) = arguments.modes {
+                    return Err(Error::Usage(format!(
+                        "--modes {modes}: --model auto chooses the number of modes"
+                    )));
+                }
+                let tolerance = arguments.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
+                (Reduced::auto(scene, tolerance)?, choice::integration_tolerance(tolerance))
+            }
+        };
+        // with its history, of which the deflection is judged
+        reduced.run_with_history(tolerance)
+    }
+
+    fn beside(
+        &self,
+        context: &Context,
+        scene: &Scene,
+        stored: &Stored,
+        (models, tolerance): (&[AskedModel], Option<f64>),
+    ) -> Result<Compared> {
+        // the models' curves are drawn and compared as far as the reference's
+        let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
+        let models = asked_model::set_up(scene, models, tolerance)?;
+        let outcomes = models.into_iter().map(|(body, set_up)| {
+            let outcome = body.run_with_history_until(COMPARISON_TOLERANCE, end)?;
+            context.detail(format_args!(
+                "{}: model {} set up in {:.1} ms, run in {:.2} ms",
+                scene.name,
+                body.model(),
+                1e3 * set_up,
+                1e3 * outcome.summary.solve_seconds
+            ));
+            if let Some(choice) = &outcome.summary.choice {
+                let told = asked_model::told(choice);
+                context.note(format_args!("{}: model {}, {told}", scene.name, body.model()));
+            }
+            Ok(outcome)
+        });
+        Ok((outcomes.collect::<Result<_>>()?, Vec::new()))
+    }
+}

@@ -1,0 +1,72 @@
+//! The reduced model of seal seats; beside a stored reference it runs on the reference's very mesh.
+
+use super::{Compared, Models};
+use crate::body::cache::Cache;
+use crate::cli::Context;
+use crate::cli::asked_model::AskedModel;
+use crate::cli::progress::Bar;
+use crate::cli::reduced::Arguments;
+use crate::error::{Error, Result};
+use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
+use crate::reference::{self, Resolution, Stored};
+use crate::report::Cost;
+use crate::result::Outcome;
+use crate::scene::{Model, Scene};
+
+/// Model C.
+pub(super) struct Seats;
+
+impl Models for Seats {
+    fn reduced(&self, context: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
+        let model = match arguments.model {
+            Some(AskedModel::Named(model)) => model,
+            Some(AskedModel::Auto) => {
+                return Err(Error::Usage(format!(
+                    "--model auto: scene `{}` is a seal seat, which has model C only",
+                    scene.name
+                )));
+            }
+            None => scene.reduced.model.unwrap_or(Model::C),
+        };
+        let cache = Cache::from_environment();
+        let bar = Bar::new(context, &scene.name);
+        let mesh = match &arguments.mesh {
+            Some(path) => SeatMesh::open(path)?,
+            None => {
+                let show = &mut |step: &_| bar.show(step);
+                SeatMesh::open(&reference::seat_mesh_with(scene, Resolution::Paper, &cache, show)?)?
+            }
+        };
+        let reduced =
+            SeatModel::new_with(scene, model, arguments.modes, &mesh, &cache, &mut |part, done| {
+                bar.part(part, done)
+            })?;
+        drop(bar);
+        context.note(format_args!(
+            "mesh {}, {} degrees of freedom; set up in {:.2} s",
+            mesh.path().display(),
+            reduced.dofs,
+            reduced.setup_seconds
+        ));
+        let tolerance = arguments.integration_tolerance(DEFAULT_TOLERANCE)?;
+        reduced.run_with_history(tolerance)
+    }
+
+    fn beside(
+        &self,
+        context: &Context,
+        scene: &Scene,
+        stored: &Stored,
+        _: (&[AskedModel], Option<f64>),
+    ) -> Result<Compared> {
+        let mesh = SeatMesh::open(&stored.folder.join("mesh.vtu"))?;
+        let bar = Bar::new(context, &scene.name);
+        let cache = Cache::from_environment();
+        let watch = &mut |part, done| bar.part(part, done);
+        let model = SeatModel::new_with(scene, Model::C, None, &mesh, &cache, watch)?;
+        drop(bar);
+        let outcome = model.run_with_history(DEFAULT_TOLERANCE)?;
+        let cost = Cost { setup_seconds: model.setup_seconds, dofs: model.dofs };
+        Ok((vec![outcome], vec![cost]))
+    }
+}
