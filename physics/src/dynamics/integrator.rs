@@ -9,7 +9,7 @@ use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale};
+use super::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale, peak_share};
 use super::system::{INNER, PLATE, System, dot};
 use crate::error::{Error, Result};
 use crate::result::{History, Losses};
@@ -308,7 +308,8 @@ impl<'a> Run<'a> {
                 let force = defect * scale[i] / h;
                 let peak = self.contacts[i].force_peak;
                 let of = force_scale(&trial.force[i], peak, scale[i], self.energy.contact_time);
-                judged.excess = judged.excess.max(force / (share * self.bounds.force_defect * of));
+                let bound = share * peak_share(&trial.force[i], peak) * self.bounds.force_defect;
+                judged.excess = judged.excess.max(force / (bound * of));
                 judged.force_defect[i] = force;
             }
             if is_open(trial, i)

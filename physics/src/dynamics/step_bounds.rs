@@ -10,6 +10,11 @@ const ROUNDING: f64 = 1e-12;
 /// Steps up to which their errors hardly add up; of more each may have a smaller one.
 const FEW_STEPS: f64 = 150.0;
 
+/// See [`peak_share`].
+const PEAK_SHARE: f64 = 1.0 / 40.0;
+/// Rise of a force between the last points of a step, over itself, below which its maximum is near.
+const FLAT: f64 = 0.02;
+
 /// Defects that a step may have, as impulses over the momentum.
 pub(super) struct Bounds {
     /// Where the force is smooth.
@@ -101,6 +106,19 @@ pub(super) fn least_impulse(system: &System) -> f64 {
 #[inline]
 pub(super) fn least_force(momentum: f64, duration: f64) -> f64 {
     0.4 * momentum / duration
+}
+
+/// Share of the bound on a force's defect that a step may use up whose `forces` at its points, in N, have a maximum of at least
+/// `peak` N: the peak itself is off by nearly as much.
+#[inline]
+pub(super) fn peak_share(forces: &[f64], peak: f64) -> f64 {
+    let last = forces.len() - 1;
+    let (highest, largest) = forces
+        .iter()
+        .enumerate()
+        .fold((0, 0.0), |(at, largest), (p, force)| if *force > largest { (p, *force) } else { (at, largest) });
+    let passes = highest != last || forces[last] - forces[last - 1] < FLAT * largest;
+    if passes && largest >= peak { PEAK_SHARE } else { 1.0 }
 }
 
 /// Force in N in relation to which the `forces` of a step have to be right, of a contact with the peak `peak` N so far and

@@ -10,7 +10,7 @@ use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
 use crate::dynamics::integrator::{Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale};
+use crate::dynamics::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale, peak_share};
 use crate::dynamics::system::{INNER, PLATE, System, dot};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::error::{Error, Result};
@@ -344,8 +344,12 @@ impl Run<'_> {
 
     /// The same over what may be.
     fn force_excess(&self, defect: [f64; 2], scale: [f64; 2]) -> f64 {
-        let of = |i: usize| self.force_scale(i, &self.trial.forces[i], scale);
-        (0..2).map(|i| defect[i] / (self.bounds.force_defect * of(i))).fold(0.0, f64::max)
+        let excess = |i: usize| {
+            let forces = joined(self.force[i], &self.trial.forces[i]);
+            let share = peak_share(&forces, self.contacts[i].force_peak);
+            defect[i] / (share * self.bounds.force_defect * self.force_scale(i, &forces, scale))
+        };
+        excess(0).max(excess(1))
     }
 
     /// See [`force_scale`].
