@@ -74,8 +74,8 @@ fn rounding_the_patch_radii_to_three_digits_changes_the_impact_by_less_than_1e_4
         let setup = scene.plate_impact().unwrap();
         let reduced = Reduced::new(&scene, Model::B, None).unwrap();
         let system = reduced.system();
-        let rough = integrate(system, &Options { tolerance: 1e-3, ..Options::default() }).unwrap();
-        let patch = [0, 1].map(|i| system.laws[i].contact_radius(rough.contacts[i].force_peak));
+        let predictor = integrate(system, &Options { tolerance: 1e-3, ..Options::default() }).unwrap();
+        let patch = [0, 1].map(|i| system.laws[i].contact_radius(predictor.contacts[i].force_peak));
         let run = |factor: f64| {
             let patch = patch.map(|a| a * factor);
             let mesh = MeshOptions::default();

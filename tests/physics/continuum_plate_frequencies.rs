@@ -80,7 +80,8 @@ fn thin_plates_follow_kirchhoff_closed_form() {
 fn the_default_mesh_resolves_the_rim_of_auxetic_plates() {
     for (poisson_ratio, thickness) in [(-0.96, 0.11), (-0.96, 1.0), (-0.9, 0.3), (-0.5, 0.11)] {
         let plate = plate_of(1.0, thickness, Edge::SimplySupported, material(23e9, poisson_ratio, 1500.0));
-        let first = |options| ContinuumPlate::new(&plate, [0.2 * thickness; 2], 4, &options).unwrap().omega[0];
+        let first =
+            |options| ContinuumPlate::new(&plate, [0.2 * thickness; 2], 4, &options).unwrap().omega[0];
         let fine = MeshOptions { order: 4, ..MeshOptions::default().refined(2.0) };
         assert_relative_eq!(first(MeshOptions::default()), first(fine), max_relative = 2e-4);
     }

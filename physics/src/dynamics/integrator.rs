@@ -253,9 +253,9 @@ impl<'a> Run<'a> {
                 self.level += 1;
                 continue;
             };
-            let made = self.made_by(&trial);
+            let energy_error = self.energy_error(&trial);
             let Judged { excess, event, force_defect } =
-                self.judge(&trial, scale, self.energy.excess(made, h, 0.0));
+                self.judge(&trial, scale, self.energy.excess(energy_error, h, 0.0));
             if excess > 1.0 {
                 match event {
                     Some(u) if wanted.is_none() => wanted = Some(u * h),
@@ -269,7 +269,7 @@ impl<'a> Run<'a> {
             for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
                 contact.force_defect = contact.force_defect.max(defect);
             }
-            self.energy.book(made);
+            self.energy.book(energy_error);
             self.accept(trial)?;
             // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
             if excess < 0.5_f64.powi(STAGES as i32 + 2) && shorter.is_none() {
@@ -345,7 +345,7 @@ impl<'a> Run<'a> {
 
     /// Energy in J that the step makes from nothing. Damped bodies lose some: then what the contacts store beyond the work
     /// done on them, which misses vibrations quicker than the step.
-    fn made_by(&self, trial: &Course) -> f64 {
+    fn energy_error(&self, trial: &Course) -> f64 {
         let stored = trial.stored - self.course.stored;
         if self.damped {
             stored - trial.work[0] - trial.work[1]

@@ -60,31 +60,31 @@ pub(super) struct EnergyAccount {
     /// Duration of the outer body's impact on a rigid wall, s.
     pub(super) contact_time: f64,
     /// Made so far, J.
-    made: f64,
+    energy_error: f64,
 }
 
 impl EnergyAccount {
     /// Of an impact `hit` with `initial` J, for a relative error `tolerance` of the efficiency.
     pub(super) fn new(hit: &HertzImpact, initial: f64, tolerance: f64) -> Self {
         let share = (5.0 * tolerance).max(1e-9);
-        Self { initial, per_contact: share * initial, contact_time: hit.duration(), made: 0.0 }
+        Self { initial, per_contact: share * initial, contact_time: hit.duration(), energy_error: 0.0 }
     }
 
     /// Energy `made` in a step of `h` s over what may be, `rounding` J of it for the rounding of work. Errors of one sign, step
     /// after step, have to become smaller.
     #[inline]
-    pub(super) fn excess(&self, made: f64, h: f64, rounding: f64) -> f64 {
-        let same_sign = (self.made * made.signum()).max(0.0);
+    pub(super) fn excess(&self, energy_error: f64, h: f64, rounding: f64) -> f64 {
+        let same_sign = (self.energy_error * energy_error.signum()).max(0.0);
         let left = (0.5 * self.per_contact / same_sign).min(1.0);
         let bound =
             self.per_contact * (left * left) * h / self.contact_time + self.initial * ROUNDING + rounding;
-        made.abs() / bound
+        energy_error.abs() / bound
     }
 
     /// Books the energy made in an accepted step, J.
     #[inline]
-    pub(super) fn book(&mut self, made: f64) {
-        self.made += made;
+    pub(super) fn book(&mut self, energy_error: f64) {
+        self.energy_error += energy_error;
     }
 }
 
@@ -113,10 +113,11 @@ pub(super) fn least_force(momentum: f64, duration: f64) -> f64 {
 #[inline]
 pub(super) fn peak_share(forces: &[f64], peak: f64) -> f64 {
     let last = forces.len() - 1;
-    let (highest, largest) = forces
-        .iter()
-        .enumerate()
-        .fold((0, 0.0), |(at, largest), (p, force)| if *force > largest { (p, *force) } else { (at, largest) });
+    let (highest, largest) =
+        forces.iter().enumerate().fold(
+            (0, 0.0),
+            |(at, largest), (p, force)| if *force > largest { (p, *force) } else { (at, largest) },
+        );
     let passes = highest != last || forces[last] - forces[last - 1] < FLAT * largest;
     if passes && largest >= peak { PEAK_SHARE } else { 1.0 }
 }

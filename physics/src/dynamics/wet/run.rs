@@ -103,7 +103,7 @@ struct StepAccount {
     /// Work of both contacts' force polynomials, J.
     contact_work: [f64; 2],
     /// Energy made from nothing, J.
-    made: f64,
+    energy_error: f64,
     /// What of it the rounding of coordinates may be, J: a film can be millions of newtons strong.
     rounding: f64,
 }
@@ -203,7 +203,7 @@ impl Run<'_> {
             let account = self.account(h);
             let force_defect = self.force_defect();
             let excess = (self.defect(h, scale) / self.defect_bound)
-                .max(self.energy.excess(account.made, h, account.rounding))
+                .max(self.energy.excess(account.energy_error, h, account.rounding))
                 .max(self.force_excess(force_defect, scale))
                 .max(self.passed_touch(h, scale));
             if excess > 1.0 {
@@ -404,11 +404,11 @@ impl Run<'_> {
         let stored = system.stored_energy(trial.end_force, trial.local.map(|p| p[END]))
             - system.stored_energy(self.force, self.local);
         let dissipated = fluid.dissipated[0] + fluid.dissipated[1];
-        let made = stored - (contact_work[0] + contact_work[1]) + dissipated + fluid.work;
+        let energy_error = stored - (contact_work[0] + contact_work[1]) + dissipated + fluid.work;
         let forces = self.wet.generalised(trial);
         let largest = |stages: &Stages| stages.iter().fold(0.0, |a: f64, f| a.max(f.abs()));
         let work: f64 = forces.iter().zip(&trial.motion.q[END]).map(|(f, q)| largest(f) * q.abs()).sum();
-        StepAccount { fluid, contact_work, made, rounding: ROUNDINGS * f64::EPSILON * work }
+        StepAccount { fluid, contact_work, energy_error, rounding: ROUNDINGS * f64::EPSILON * work }
     }
 
     /// Looks whether the plate overlaps the inner body beside the axis, by what is `too_deep`, in the step of `h` s just tried.
@@ -449,7 +449,7 @@ impl Run<'_> {
         }
         self.book_peaks(h);
         self.booked.add(&account.fluid);
-        self.energy.book(account.made);
+        self.energy.book(account.energy_error);
         let trial = &mut self.trial;
         self.before.keep(h, trial);
         std::mem::swap(&mut self.q, &mut trial.motion.q[END]);

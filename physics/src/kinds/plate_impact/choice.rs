@@ -93,7 +93,7 @@ impl<'a> Plan<'a> {
         let trials = Trials::new(setup, REFERENCE_SHARE * tolerance, options)?;
         let mut plan = Self {
             tolerance,
-            floor: validity::measured_error(trials.rough.patch_radius, setup.plate.thickness),
+            floor: validity::measured_error(trials.predictor.patch_radius, setup.plate.thickness),
             layer: trials.continuum(trials.waves.modes()).ok(),
             trials,
             tried: Vec::new(),

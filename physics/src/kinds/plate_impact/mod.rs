@@ -3,10 +3,11 @@
 mod checks;
 pub mod choice;
 pub mod errors;
+mod joined;
 mod limits;
+mod predictor;
 pub mod reduced;
 mod results;
-mod rough;
 mod trials;
 mod truncation;
 mod validity;

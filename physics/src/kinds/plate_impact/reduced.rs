@@ -2,16 +2,12 @@
 
 use super::Kind;
 use super::choice::Plan;
-use super::results::PlateQuantities;
-use super::rough::Rough;
-use super::trials::Cut;
+use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate, kirchhoff_system};
+use super::predictor::Predictor;
+use super::results::{PlateQuantities, quantities, values};
 use super::truncation;
-use super::validity;
-use crate::body::ModalBody;
 use crate::body::cache::Cache;
-use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
-use crate::dynamics::OuterBody;
 use crate::dynamics::assured::{self, assured};
 use crate::dynamics::integrator::{Integration, Options, integrate};
 use crate::dynamics::ledger_check;
@@ -19,18 +15,13 @@ use crate::dynamics::system::System;
 use crate::dynamics::wet;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
-use crate::fluid::added_mass::{immersed, mass_factor};
 use crate::kinds::Kind as _;
 use crate::result::{BenderSummary, CUT, Choice, Outcome, Summary};
-use crate::scene::{self, Edge, MAX_MODES, Material, Model, PlateImpact, Scene, Shape};
+use crate::scene::{self, MAX_MODES, Model, Scene};
 use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
 pub const DEFAULT_MODES: usize = 16;
-/// Relative error of the forces at which model C, left to choose, stops adding modes.
-const TRUNCATION: f64 = 5e-4;
-/// Most modes that model C chooses by itself.
-const MAX_CHOSEN_MODES: usize = 64;
 /// Samples of a history per duration of a Hertz contact.
 const SAMPLES_PER_CONTACT: f64 = 400.0;
 
@@ -110,8 +101,8 @@ impl Reduced {
         let built = match model {
             Model::A | Model::B => kirchhoff(setup, modes.unwrap_or(DEFAULT_MODES), plates)?,
             Model::C => {
-                let rough = Rough::of(&kirchhoff_system(setup, DEFAULT_MODES, plates)?)?;
-                continuum(setup, modes.map_or(Wanted::Estimate, Wanted::Modes), &rough, cache)?
+                let predictor = Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, plates)?)?;
+                continuum(setup, modes.map_or(Wanted::Estimate, Wanted::Modes), &predictor, cache)?
             }
         };
         Self::of(built, model, scene, None)
@@ -133,9 +124,9 @@ impl Reduced {
     pub fn auto_in(scene: &Scene, tolerance: f64, cache: &Cache) -> Result<Self> {
         let setup = scene.plate_impact()?;
         let mut plan = Plan::new(scene, tolerance)?;
-        let mut continua: Option<Built> = None;
+        let mut continua: Option<Joined> = None;
         while let Some(cut) = plan.cut {
-            match continuum(setup, Wanted::Below(cut), &plan.trials.rough, cache) {
+            match continuum(setup, Wanted::Below(cut), &plan.trials.predictor, cache) {
                 Ok(built) => {
                     plan.judge(&built.system, built.omega_next);
                     continua = Some(built);
@@ -153,8 +144,8 @@ impl Reduced {
         Self::of(built, plan.model, scene.clone(), Some(plan.choice()))
     }
 
-    fn of(built: Built, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
-        let Built { system, omega_next, fluid, mut warnings } = built;
+    fn of(built: Joined, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
+        let Joined { system, omega_next, fluid, mut warnings } = built;
         warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
         Ok(Self { model, system, omega_next, fluid, warnings, choice, scene })
     }
@@ -294,179 +285,6 @@ impl Reduced {
             ..Summary::of_reduced(&self.scene, self.model, system.modes, table)
         })
     }
-}
-
-/// The physical results of an integration of `system`.
-///
-/// # Errors
-/// [`Error::Solver`] if the run was cut during a contact.
-pub(super) fn quantities(system: &System, result: &Integration) -> Result<PlateQuantities> {
-    if result.is_cut() {
-        Err(Error::Solver(format!("reduced model: {CUT}")))
-    } else {
-        Ok(values(system, result))
-    }
-}
-
-/// The values at the end of an integration of `system`, wherever that is.
-fn values(system: &System, result: &Integration) -> PlateQuantities {
-    let energy = |i: usize| 0.5 * system.masses[i] * result.velocity[i].powi(2);
-    PlateQuantities {
-        efficiency: energy(1) / system.initial_energy(),
-        outer_velocity_final: result.velocity[0],
-        inner_velocity_final: result.velocity[1],
-        outer_force_peak: result.contacts[0].force_peak,
-        inner_force_peak: result.contacts[1].force_peak,
-        outer_contact_end: result.contacts[0].end,
-        inner_contact_end: result.contacts[1].end,
-        outer_contacts: result.contacts[0].contacts,
-        inner_contacts: result.contacts[1].contacts,
-        first_frequency: system.first_frequency,
-    }
-}
-
-/// A model of a scene.
-struct Built {
-    /// Oscillators and contacts.
-    system: System,
-    /// As in [`Reduced`].
-    omega_next: f64,
-    /// Forces of the fluid.
-    fluid: Option<FluidForces>,
-    /// What the user has to be warned of.
-    warnings: Vec<String>,
-}
-
-/// Which modes of the continuum plate are wanted.
-enum Wanted {
-    /// So many.
-    Modes(usize),
-    /// As many as the error estimate asks for.
-    Estimate,
-    /// All below a frequency.
-    Below(Cut),
-}
-
-/// `plate`, immersed if there is a fluid, between the bodies of the scene.
-fn join(setup: &PlateImpact, plate: ModalBody, tips: [f64; 2]) -> Result<System> {
-    let plate = match &setup.fluid {
-        Some(fluid) => immersed(plate, fluid),
-        None => plate,
-    };
-    Ok(System::with_outer(setup, OuterBody::new(&setup.outer)?, &plate, tips))
-}
-
-fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<System> {
-    join(setup, plates.modes(&setup.plate, modes)?, [0.0; 2])
-}
-
-/// Models A and B with `modes` elastic modes.
-fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<Built> {
-    let shapes = |radii: &[f64]| plates.shapes(&setup.plate, modes, radii);
-    kirchhoff_plate(setup, plates.modes(&setup.plate, modes)?, shapes)
-}
-
-/// Models A and B of a `plate` that is reduced to modes; `shapes` as [`FluidForces::new`] takes them.
-fn kirchhoff_plate(
-    setup: &PlateImpact,
-    plate: ModalBody,
-    shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
-) -> Result<Built> {
-    Ok(Built {
-        system: join(setup, plate, [0.0; 2])?,
-        omega_next: f64::INFINITY,
-        fluid: fluid_forces(setup, shapes)?,
-        warnings: Vec::new(),
-    })
-}
-
-/// Model C.
-fn continuum(setup: &PlateImpact, wanted: Wanted, rough: &Rough, cache: &Cache) -> Result<Built> {
-    let rigid = usize::from(setup.plate.edge == Edge::Free);
-    let (plate, omega_next) = continuum_plate(setup, wanted, rough, cache)?;
-    let elastic = plate.omega.len() - rigid;
-    let mesh = MeshOptions::default();
-    let shapes = |radii: &[f64]| {
-        let mut shapes = cached::face_shapes(&setup.plate, rough.patch_radius, elastic, &mesh, radii)?;
-        for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
-            let sign = (shape[0] * phi[1]).signum();
-            shape.iter_mut().for_each(|value| *value *= sign);
-        }
-        Ok(shapes)
-    };
-    let fluid = fluid_forces(setup, shapes)?;
-    let tips = tip_residuals(setup, rough.patch_radius, &mesh, cache)?;
-    let system = join(setup, plate, tips)?;
-    let warnings = validity::warnings(setup, rough, &system);
-    let slower = setup.fluid.as_ref().map_or(1.0, |fluid| mass_factor(fluid.added_mass_frequency_ratio));
-    Ok(Built { system, omega_next: omega_next / slower.sqrt(), fluid, warnings })
-}
-
-/// Film and drag of the scene, if there are any. `shapes` gives the mass-normalised shapes of the dry plate's inner
-/// face at radii in m.
-pub(super) fn fluid_forces(
-    setup: &PlateImpact,
-    shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
-) -> Result<Option<FluidForces>> {
-    let Some(fluid) = &setup.fluid else { return Ok(None) };
-    let per_mass = mass_factor(fluid.added_mass_frequency_ratio).sqrt().recip();
-    FluidForces::new(fluid, &setup.plate, &setup.inner, |radii| {
-        let scaled = |shape: &Vec<f64>| shape.iter().map(|value| value * per_mass).collect();
-        Ok(shapes(radii)?.iter().map(scaled).collect())
-    })
-}
-
-/// Plate of model C: continuum with residual flexibility; and the frequency in rad/s of the lowest mode that is left to it.
-fn continuum_plate(
-    setup: &PlateImpact,
-    wanted: Wanted,
-    rough: &Rough,
-    cache: &Cache,
-) -> Result<(ModalBody, f64)> {
-    let mesh = MeshOptions::default();
-    let build = |modes| cached::plate_in(cache, &setup.plate, rough.patch_radius, modes, &mesh);
-    let lowest =
-        |plate: &ContinuumPlate, modes| Ok((plate.modal_body(modes, rough.slow()), plate.omega_next(modes)));
-    match wanted {
-        Wanted::Modes(modes) => lowest(&build(modes)?, modes),
-        Wanted::Below(cut) => {
-            let plate = build(cut.modes)?;
-            let below = plate.omega.iter().filter(|omega| **omega < cut.omega).count();
-            lowest(&plate, below.clamp(1, cut.modes))
-        }
-        Wanted::Estimate => {
-            let mut most = DEFAULT_MODES;
-            loop {
-                let plate = build(most)?;
-                let enough = (1..=most).find(|n| rough.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
-                if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
-                    return lowest(&plate, modes);
-                }
-                // with twice as many modes the highest frequency is four times as high at most
-                let far = rough.truncation_error(plate.omega_next(most)) > 16.0 * TRUNCATION;
-                most = if far { MAX_CHOSEN_MODES } else { 2 * most };
-            }
-        }
-    }
-}
-
-/// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
-/// radii `patch` in m.
-pub(super) fn tip_residuals(
-    setup: &PlateImpact,
-    patch: [f64; 2],
-    mesh: &MeshOptions,
-    cache: &Cache,
-) -> Result<[f64; 2]> {
-    let tip = |shape: &Shape, material: &Material, patch| match *shape {
-        Shape::Sphere { radius } => cached::sphere_residual_in(cache, radius, material, patch, mesh),
-        // a compact body and the tip of a bender are rigid but for their Hertz contact
-        Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
-    };
-    Ok([
-        tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
-        tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
-    ])
 }
 
 #[cfg(test)]

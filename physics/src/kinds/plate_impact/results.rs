@@ -1,7 +1,10 @@
 //! What the results of an impact through a plate are called, and the views of them that the kind itself works with.
 
+use crate::dynamics::integrator::Integration;
 pub use crate::dynamics::recorder::CURVES;
-use crate::result::{History, quantities};
+use crate::dynamics::system::System;
+use crate::error::{Error, Result};
+use crate::result::{CUT, History, quantities};
 
 quantities! {
     /// Results of an impact through a plate (scene kind `plate-impact`), all determined.
@@ -69,5 +72,34 @@ impl<'a> PlateCurves<'a> {
             outer_force: history.curve("outer_force")?,
             inner_force: history.curve("inner_force")?,
         })
+    }
+}
+
+/// The physical results of an integration of `system`.
+///
+/// # Errors
+/// [`Error::Solver`] if the run was cut during a contact.
+pub(super) fn quantities(system: &System, result: &Integration) -> Result<PlateQuantities> {
+    if result.is_cut() {
+        Err(Error::Solver(format!("reduced model: {CUT}")))
+    } else {
+        Ok(values(system, result))
+    }
+}
+
+/// The values at the end of an integration of `system`, wherever that is.
+pub(super) fn values(system: &System, result: &Integration) -> PlateQuantities {
+    let energy = |i: usize| 0.5 * system.masses[i] * result.velocity[i].powi(2);
+    PlateQuantities {
+        efficiency: energy(1) / system.initial_energy(),
+        outer_velocity_final: result.velocity[0],
+        inner_velocity_final: result.velocity[1],
+        outer_force_peak: result.contacts[0].force_peak,
+        inner_force_peak: result.contacts[1].force_peak,
+        outer_contact_end: result.contacts[0].end,
+        inner_contact_end: result.contacts[1].end,
+        outer_contacts: result.contacts[0].contacts,
+        inner_contacts: result.contacts[1].contacts,
+        first_frequency: system.first_frequency,
     }
 }

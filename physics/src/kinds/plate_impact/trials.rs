@@ -5,9 +5,10 @@
 //! costs as much as a run of models A and B.
 
 use super::errors::largest_error;
-use super::reduced::{DEFAULT_MODES, fluid_forces, quantities};
-use super::results::PlateQuantities;
-use super::rough::Rough;
+use super::joined::fluid_forces;
+use super::predictor::Predictor;
+use super::reduced::DEFAULT_MODES;
+use super::results::{PlateQuantities, quantities};
 use crate::analytical::circular_plate::rigidity;
 use crate::body::continuum::ContinuumPlate;
 use crate::body::layer::Waves;
@@ -68,7 +69,7 @@ pub(super) struct Trials<'a> {
     /// Kirchhoff's plate.
     pub(super) waves: Waves,
     layer: ContinuumPlate,
-    pub(super) rough: Rough,
+    pub(super) predictor: Predictor,
     pub(super) options: Options,
     tips: [f64; 2],
 }
@@ -82,12 +83,12 @@ impl<'a> Trials<'a> {
     pub(super) fn new(setup: &'a PlateImpact, resolution: f64, options: Options) -> Result<Self> {
         let outer = OuterBody::new(&setup.outer)?;
         let few = Waves::new(&setup.plate, DEFAULT_MODES);
-        let rough = Rough::of(&system(setup, &outer, few.kirchhoff(DEFAULT_MODES), [0.0; 2]))?;
-        let enough = |n: &usize| slowed(setup, &rough, few.frequency(*n + 1)) <= resolution;
+        let predictor = Predictor::of(&system(setup, &outer, few.kirchhoff(DEFAULT_MODES), [0.0; 2]))?;
+        let enough = |n: &usize| slowed(setup, &predictor, few.frequency(*n + 1)) <= resolution;
         let most = RUNGS.into_iter().find(enough).unwrap_or(RUNGS[RUNGS.len() - 1]);
         let waves = if most > DEFAULT_MODES { Waves::new(&setup.plate, most) } else { few };
-        let layer = waves.layer(rough.patch_radius);
-        Ok(Self { setup, outer, waves, layer, rough, options, tips: tips(setup, &rough) })
+        let layer = waves.layer(predictor.patch_radius);
+        Ok(Self { setup, outer, waves, layer, predictor, options, tips: tips(setup, &predictor) })
     }
 
     /// Models A and B.
@@ -109,7 +110,7 @@ impl<'a> Trials<'a> {
 
     /// Model C with a layer in the place of the continuum.
     pub(super) fn continuum(&self, modes: usize) -> Result<PlateQuantities> {
-        self.run(self.layer.modal_body(modes, self.rough.slow()), modes, self.tips)
+        self.run(self.layer.modal_body(modes, self.predictor.slow()), modes, self.tips)
     }
 
     fn run(&self, plate: ModalBody, modes: usize, tips: [f64; 2]) -> Result<PlateQuantities> {
@@ -127,7 +128,7 @@ impl<'a> Trials<'a> {
 
     /// Relative error of a force in model C when the bending modes beyond `modes` follow statically.
     pub(super) fn truncation(&self, modes: usize) -> f64 {
-        slowed(self.setup, &self.rough, self.layer.omega_next(modes))
+        slowed(self.setup, &self.predictor, self.layer.omega_next(modes))
     }
 
     /// Largest estimated error of the quantities covered that model C has with `modes` bending modes for want of more, and the
@@ -152,7 +153,7 @@ impl<'a> Trials<'a> {
         let flexibility: f64 = modal.map(|(omega, phi)| (phi[0] / omega).powi(2)).sum();
         let system = system(self.setup, &self.outer, plate.clone(), [0.0; 2]);
         let of = |i: usize| {
-            let force = self.rough.force_peak[i];
+            let force = self.predictor.force_peak[i];
             flexibility * force / system.laws[i].approach(force)
         };
         of(0).max(of(1))
@@ -168,10 +169,10 @@ impl<'a> Trials<'a> {
     }
 }
 
-/// [`Rough::truncation_error`] with the modes from `omega_next` rad/s on as slow as the fluid's mass makes them.
-fn slowed(setup: &PlateImpact, rough: &Rough, omega_next: f64) -> f64 {
+/// [`Predictor::truncation_error`] with the modes from `omega_next` rad/s on as slow as the fluid's mass makes them.
+fn slowed(setup: &PlateImpact, predictor: &Predictor, omega_next: f64) -> f64 {
     let slower = setup.fluid.as_ref().map_or(1.0, |fluid| mass_factor(fluid.added_mass_frequency_ratio));
-    slower * rough.truncation_error(omega_next)
+    slower * predictor.truncation_error(omega_next)
 }
 
 /// Joins plate and bodies.
@@ -184,13 +185,13 @@ fn system(setup: &PlateImpact, outer: &OuterBody, plate: ModalBody, tips: [f64; 
 }
 
 /// Residual flexibilities in m/N of both bodies in closed form.
-fn tips(setup: &PlateImpact, rough: &Rough) -> [f64; 2] {
+fn tips(setup: &PlateImpact, predictor: &Predictor) -> [f64; 2] {
     let tip = |shape: &Shape, material: &Material, patch: f64| match *shape {
         Shape::Sphere { radius } => free_sphere::sphere_residual(radius, material, patch),
         Shape::Compact { .. } | Shape::Bender(_) => 0.0,
     };
     [
-        tip(&setup.outer.shape, &setup.outer.material, rough.patch_radius[0]),
-        tip(&setup.inner.shape, &setup.inner.material, rough.patch_radius[1]),
+        tip(&setup.outer.shape, &setup.outer.material, predictor.patch_radius[0]),
+        tip(&setup.inner.shape, &setup.inner.material, predictor.patch_radius[1]),
     ]
 }

@@ -4,7 +4,7 @@
 //! with more modes ([`Trials`]), which knows bending far from the rim, and against itself with fewer modes, which knows the
 //! rest. A fluid's film and drag are left out of both.
 
-use super::reduced::quantities;
+use super::results::quantities;
 use super::trials::{Lack, RUNGS, Trials};
 use crate::dynamics::integrator::{Options, integrate};
 use crate::dynamics::system::System;

@@ -9,7 +9,7 @@
 //!
 //! With wider patches Hertz's distribution of the pressure is lost, and nothing was measured.
 
-use super::rough::Rough;
+use super::predictor::Predictor;
 use crate::dynamics::system::System;
 use crate::scene::{Model, PlateImpact};
 
@@ -32,9 +32,9 @@ pub(super) fn measured_error(patch: [f64; 2], thickness: f64) -> Option<f64> {
 }
 
 /// What a user has to know before relying on model C of `setup`, made to `system`: one sentence per reason, none if there is no reason.
-pub(super) fn warnings(setup: &PlateImpact, rough: &Rough, system: &System) -> Vec<String> {
+pub(super) fn warnings(setup: &PlateImpact, predictor: &Predictor, system: &System) -> Vec<String> {
     let mut warnings = Vec::new();
-    let patch = rough.patch_radius[0].max(rough.patch_radius[1]);
+    let patch = predictor.patch_radius[0].max(predictor.patch_radius[1]);
     let ratio = patch / setup.plate.thickness;
     let (widest, error) = MEASURED[MEASURED.len() - 1];
     if ratio > widest {
@@ -47,7 +47,7 @@ pub(super) fn warnings(setup: &PlateImpact, rough: &Rough, system: &System) -> V
         ));
     }
     let reach = system.residual.map_or([f64::INFINITY; 2], |residual| residual.reach(&system.laws));
-    for (reach, patch) in reach.into_iter().zip(rough.patch_radius) {
+    for (reach, patch) in reach.into_iter().zip(predictor.patch_radius) {
         if reach < REACH * patch {
             warnings.push(format!(
                 "model {}: beyond a radius of {:.3} mm a contact patch of about {:.3} mm is continued as a flat punch: compare with the reference, or take fewer modes",

@@ -19,9 +19,10 @@
 //! than the plate does, the mean's residual turns strongly negative and the contacts may have no equilibrium.
 //! [`Variants::run`] then fails; there is no plate theory with half-space contact to speak of.
 
-use super::reduced::{quantities, tip_residuals};
+use super::joined::tip_residuals;
+use super::predictor::Predictor;
 use super::results::PlateQuantities;
-use super::rough::Rough;
+use super::results::quantities;
 use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::{ModalBody, kirchhoff};
@@ -67,7 +68,7 @@ pub struct Variants<'a> {
     end_time: Option<f64>,
     kirchhoff: ModalBody,
     plate: ContinuumPlate,
-    rough: Rough,
+    predictor: Predictor,
     tips: [f64; 2],
 }
 
@@ -86,16 +87,16 @@ impl<'a> Variants<'a> {
         let setup = scene.plate_impact()?;
         let kirchhoff = kirchhoff::modes(&setup.plate, modes[0].max(patch_modes))?;
         let few = lowest(&kirchhoff, patch_modes);
-        let mut rough = Rough::of(&System::new(setup, &few, [0.0; 2]))?;
-        let patch = rough.patch_radius.map(|a| a * continuum.patch_factor);
-        rough.patch_radius = patch;
+        let mut predictor = Predictor::of(&System::new(setup, &few, [0.0; 2]))?;
+        let patch = predictor.patch_radius.map(|a| a * continuum.patch_factor);
+        predictor.patch_radius = patch;
         Ok(Self {
             setup,
             end_time: scene.run.end_time,
             plate: cached::plate(&setup.plate, patch, modes[1], &continuum.mesh)?,
             tips: tip_residuals(setup, patch, &continuum.mesh, &Cache::from_environment())?,
             kirchhoff,
-            rough,
+            predictor,
         })
     }
 
@@ -107,7 +108,7 @@ impl<'a> Variants<'a> {
     /// The scene under `simplification` with `modes` elastic modes of the plate.
     pub fn system(&self, simplification: Simplification, modes: usize) -> System {
         let rigid = [0.0; 2];
-        let continuum = || self.plate.modal_body(modes, self.rough.slow());
+        let continuum = || self.plate.modal_body(modes, self.predictor.slow());
         let (plate, tips) = match simplification {
             Simplification::KirchhoffPlate => (lowest(&self.kirchhoff, modes), rigid),
             Simplification::MeanOfFaces => (mean_of_faces(&continuum()), rigid),

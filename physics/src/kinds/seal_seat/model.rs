@@ -41,7 +41,7 @@ pub struct SeatModel {
     end_time: Option<f64>,
     first_step: f64,
     /// Velocity of the sphere in m/s at the end of a run with the first step; that run found the contact zones.
-    rough: [f64; 2],
+    predictor: [f64; 2],
     warnings: Vec<String>,
     /// Wall time in s that building took, the cache's help included.
     pub setup_seconds: f64,
@@ -95,11 +95,12 @@ impl SeatModel {
             let seat = mesh.body_with(setup, &zones, modes, cache, watch)?;
             let built = Self::with(scene, setup, mesh, &seat, modes)?;
             watch("impact", 0.95);
-            let rough = built.integrate(built.first_step, false)?;
-            let wider = zones.widened(rough.tally.reach).map_or(zones, |wider| wider.at_most(setup));
+            let predictor = built.integrate(built.first_step, false)?;
+            let wider = zones.widened(predictor.tally.reach).map_or(zones, |wider| wider.at_most(setup));
             if wider == zones {
-                let (rough, setup_seconds) = (rough.state.sphere_velocity, started.elapsed().as_secs_f64());
-                return Ok(Self { rough, setup_seconds, ..built });
+                let (predictor, setup_seconds) =
+                    (predictor.state.sphere_velocity, started.elapsed().as_secs_f64());
+                return Ok(Self { predictor, setup_seconds, ..built });
             }
             zones = wider;
         }
@@ -118,7 +119,7 @@ impl SeatModel {
             first_step: period.min(on_half_space(setup).duration() / FIRST_STEPS.1),
             end_time: scene.run.end_time,
             // until the run that finds the contact zones has been made
-            rough: [f64::NAN; 2],
+            predictor: [f64::NAN; 2],
             half: System::new(setup, &seat.body, &seat.candidates, modes / 2)?,
             system,
             warnings: doubts::of_model(setup, mesh),
@@ -184,7 +185,7 @@ impl SeatModel {
 
     /// The first result that meets the tolerance, and its step.
     fn converged(&self, tolerance: f64) -> Result<(Integration, f64)> {
-        let (mut step, mut coarse) = (self.first_step, self.rough);
+        let (mut step, mut coarse) = (self.first_step, self.predictor);
         for _ in 0..HALVINGS {
             step *= 0.5;
             let result = self.integrate(step, false)?;

@@ -6,7 +6,7 @@ use crate::error::Result;
 
 /// What model C has to know of the impact before it is solved, from a model without residual.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Rough {
+pub(super) struct Predictor {
     /// Radii in m of the patches over which loads are weighted: Hertz's at the force peaks. The result hardly
     /// depends on them: they are rounded, so that an impact that is a little different finds its bodies in the cache.
     pub(super) patch_radius: [f64; 2],
@@ -16,7 +16,7 @@ pub(super) struct Rough {
     contact_frequency: f64,
 }
 
-impl Rough {
+impl Predictor {
     pub(super) fn of(system: &System) -> Result<Self> {
         let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
         let radius = |i: usize| rounded(system.laws[i].contact_radius(run.contacts[i].force_peak));

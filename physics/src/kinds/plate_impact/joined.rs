@@ -1,0 +1,172 @@
+//! The models of a scene before they run: the plate reduced to modes, and the bodies joined by their contacts.
+
+use super::predictor::Predictor;
+use super::reduced::DEFAULT_MODES;
+use super::trials::Cut;
+use super::validity;
+use crate::body::ModalBody;
+use crate::body::cache::Cache;
+use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
+use crate::body::kirchhoff::UnitPlates;
+use crate::dynamics::OuterBody;
+use crate::dynamics::system::System;
+use crate::dynamics::wet::FluidForces;
+use crate::error::Result;
+use crate::fluid::added_mass::{immersed, mass_factor};
+use crate::scene::{Edge, Material, PlateImpact, Shape};
+
+/// Relative error of the forces at which model C, left to choose, stops adding modes.
+const TRUNCATION: f64 = 5e-4;
+/// Most modes that model C chooses by itself.
+const MAX_CHOSEN_MODES: usize = 64;
+
+/// A model of a scene.
+pub(super) struct Joined {
+    /// Oscillators and contacts.
+    pub(super) system: System,
+    /// Frequency in rad/s of the lowest mode left to the residual flexibility of model C.
+    pub(super) omega_next: f64,
+    /// Forces of the fluid.
+    pub(super) fluid: Option<FluidForces>,
+    /// What the user has to be warned of.
+    pub(super) warnings: Vec<String>,
+}
+
+/// Which modes of the continuum plate are wanted.
+pub(super) enum Wanted {
+    /// So many.
+    Modes(usize),
+    /// As many as the error estimate asks for.
+    Estimate,
+    /// All below a frequency.
+    Below(Cut),
+}
+
+/// `plate`, immersed if there is a fluid, between the bodies of the scene.
+fn join(setup: &PlateImpact, plate: ModalBody, tips: [f64; 2]) -> Result<System> {
+    let plate = match &setup.fluid {
+        Some(fluid) => immersed(plate, fluid),
+        None => plate,
+    };
+    Ok(System::with_outer(setup, OuterBody::new(&setup.outer)?, &plate, tips))
+}
+
+pub(super) fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<System> {
+    join(setup, plates.modes(&setup.plate, modes)?, [0.0; 2])
+}
+
+/// Models A and B with `modes` elastic modes.
+pub(super) fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<Joined> {
+    let shapes = |radii: &[f64]| plates.shapes(&setup.plate, modes, radii);
+    kirchhoff_plate(setup, plates.modes(&setup.plate, modes)?, shapes)
+}
+
+/// Models A and B of a `plate` that is reduced to modes; `shapes` as [`FluidForces::new`] takes them.
+pub(super) fn kirchhoff_plate(
+    setup: &PlateImpact,
+    plate: ModalBody,
+    shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
+) -> Result<Joined> {
+    Ok(Joined {
+        system: join(setup, plate, [0.0; 2])?,
+        omega_next: f64::INFINITY,
+        fluid: fluid_forces(setup, shapes)?,
+        warnings: Vec::new(),
+    })
+}
+
+/// Model C.
+pub(super) fn continuum(
+    setup: &PlateImpact,
+    wanted: Wanted,
+    predictor: &Predictor,
+    cache: &Cache,
+) -> Result<Joined> {
+    let rigid = usize::from(setup.plate.edge == Edge::Free);
+    let (plate, omega_next) = continuum_plate(setup, wanted, predictor, cache)?;
+    let elastic = plate.omega.len() - rigid;
+    let mesh = MeshOptions::default();
+    let shapes = |radii: &[f64]| {
+        let mut shapes = cached::face_shapes(&setup.plate, predictor.patch_radius, elastic, &mesh, radii)?;
+        for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
+            let sign = (shape[0] * phi[1]).signum();
+            shape.iter_mut().for_each(|value| *value *= sign);
+        }
+        Ok(shapes)
+    };
+    let fluid = fluid_forces(setup, shapes)?;
+    let tips = tip_residuals(setup, predictor.patch_radius, &mesh, cache)?;
+    let system = join(setup, plate, tips)?;
+    let warnings = validity::warnings(setup, predictor, &system);
+    let slower = setup.fluid.as_ref().map_or(1.0, |fluid| mass_factor(fluid.added_mass_frequency_ratio));
+    Ok(Joined { system, omega_next: omega_next / slower.sqrt(), fluid, warnings })
+}
+
+/// Film and drag of the scene, if there are any. `shapes` gives the mass-normalised shapes of the dry plate's inner
+/// face at radii in m.
+pub(super) fn fluid_forces(
+    setup: &PlateImpact,
+    shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
+) -> Result<Option<FluidForces>> {
+    let Some(fluid) = &setup.fluid else { return Ok(None) };
+    let per_mass = mass_factor(fluid.added_mass_frequency_ratio).sqrt().recip();
+    FluidForces::new(fluid, &setup.plate, &setup.inner, |radii| {
+        let scaled = |shape: &Vec<f64>| shape.iter().map(|value| value * per_mass).collect();
+        Ok(shapes(radii)?.iter().map(scaled).collect())
+    })
+}
+
+/// Plate of model C: continuum with residual flexibility; and the frequency in rad/s of the lowest mode that is left to it.
+fn continuum_plate(
+    setup: &PlateImpact,
+    wanted: Wanted,
+    predictor: &Predictor,
+    cache: &Cache,
+) -> Result<(ModalBody, f64)> {
+    let mesh = MeshOptions::default();
+    let build = |modes| cached::plate_in(cache, &setup.plate, predictor.patch_radius, modes, &mesh);
+    let lowest = |plate: &ContinuumPlate, modes| {
+        Ok((plate.modal_body(modes, predictor.slow()), plate.omega_next(modes)))
+    };
+    match wanted {
+        Wanted::Modes(modes) => lowest(&build(modes)?, modes),
+        Wanted::Below(cut) => {
+            let plate = build(cut.modes)?;
+            let below = plate.omega.iter().filter(|omega| **omega < cut.omega).count();
+            lowest(&plate, below.clamp(1, cut.modes))
+        }
+        Wanted::Estimate => {
+            let mut most = DEFAULT_MODES;
+            loop {
+                let plate = build(most)?;
+                let enough =
+                    (1..=most).find(|n| predictor.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
+                if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
+                    return lowest(&plate, modes);
+                }
+                // with twice as many modes the highest frequency is four times as high at most
+                let far = predictor.truncation_error(plate.omega_next(most)) > 16.0 * TRUNCATION;
+                most = if far { MAX_CHOSEN_MODES } else { 2 * most };
+            }
+        }
+    }
+}
+
+/// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
+/// radii `patch` in m.
+pub(super) fn tip_residuals(
+    setup: &PlateImpact,
+    patch: [f64; 2],
+    mesh: &MeshOptions,
+    cache: &Cache,
+) -> Result<[f64; 2]> {
+    let tip = |shape: &Shape, material: &Material, patch| match *shape {
+        Shape::Sphere { radius } => cached::sphere_residual_in(cache, radius, material, patch, mesh),
+        // a compact body and the tip of a bender are rigid but for their Hertz contact
+        Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
+    };
+    Ok([
+        tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
+        tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
+    ])
+}
