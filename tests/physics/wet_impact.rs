@@ -2,14 +2,15 @@
 //! dry integrator, conservation and closed forms.
 
 use crate::common::scaled_plate;
+use crate::runge_kutta::final_velocities;
 use approx::assert_relative_eq;
 use impactcheck::body::continuum::{self, MeshOptions};
 use impactcheck::body::kirchhoff;
 use impactcheck::dynamics::OuterBody;
 use impactcheck::dynamics::integrator::{self, Integration, Options};
-use impactcheck::dynamics::system::{INNER, System};
+use impactcheck::dynamics::system::System;
 use impactcheck::dynamics::wet;
-use impactcheck::dynamics::wet::{FluidForces, FluidLoad};
+use impactcheck::dynamics::wet::FluidForces;
 use impactcheck::fluid::added_mass::immersed;
 use impactcheck::scene::{Bender, Edge, Fluid, PlateImpact, Shape, ShearThinning};
 
@@ -75,39 +76,7 @@ impl Wet {
 
     /// Velocity of the inner body after `steps` explicit steps of `h` s.
     fn runge_kutta(&self, h: f64, steps: usize) -> f64 {
-        let (system, n) = (&self.system, self.system.size());
-        let (q, v) = system.initial_state();
-        let mut state: Vec<f64> = q.into_iter().chain(v).collect();
-        let mut load = FluidLoad::default();
-        let mut rate = |state: &[f64]| -> Vec<f64> {
-            let (q, v) = state.split_at(n);
-            let approach = system.modal_approach(q);
-            let (_, forces) = system.contact(approach, approach).expect("equilibrium");
-            self.fluid.evaluate(q, v, &mut load);
-            let acceleration = (0..n).map(|k| {
-                let o = system.oscillators[k];
-                let fluid = k.checked_sub(INNER).and_then(|i| load.force.get(i)).copied().unwrap_or(0.0);
-                fluid
-                    - 2.0 * o.alpha * v[k]
-                    - o.omega.powi(2) * q[k]
-                    - system.approach[0][k] * forces[0]
-                    - system.approach[1][k] * forces[1]
-            });
-            v.iter().copied().chain(acceleration).collect()
-        };
-        let add = |state: &[f64], k: &[f64], c: f64| -> Vec<f64> {
-            state.iter().zip(k).map(|(s, k)| s + c * k).collect()
-        };
-        for _ in 0..steps {
-            let k1 = rate(&state);
-            let k2 = rate(&add(&state, &k1, 0.5 * h));
-            let k3 = rate(&add(&state, &k2, 0.5 * h));
-            let k4 = rate(&add(&state, &k3, h));
-            for i in 0..2 * n {
-                state[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
-            }
-        }
-        state[n + INNER] / system.masses[1].sqrt()
+        final_velocities(&self.system, Some(&self.fluid), h, steps)[1]
     }
 }
 

@@ -1,19 +1,26 @@
 //! An independent, slow integration of the reduced model: classical Runge-Kutta with a fixed small step.
 
-use impactcheck::dynamics::system::System;
+use impactcheck::dynamics::system::{INNER, System};
+use impactcheck::dynamics::wet::{FluidForces, FluidLoad};
 
-/// Velocities of outer and inner body in m/s after `steps` steps of `h` s.
-pub fn final_velocities(system: &System, h: f64, steps: usize) -> [f64; 2] {
+/// Velocities of outer and inner body in m/s after `steps` steps of `h` s, in a `fluid` if there is one.
+pub fn final_velocities(system: &System, fluid: Option<&FluidForces>, h: f64, steps: usize) -> [f64; 2] {
     let n = system.size();
     let (q, v) = system.initial_state();
     let mut state: Vec<f64> = q.into_iter().chain(v).collect();
-    let rate = |state: &[f64]| -> Vec<f64> {
+    let mut load = FluidLoad::default();
+    let mut rate = |state: &[f64]| -> Vec<f64> {
         let (q, v) = state.split_at(n);
         let y = system.modal_approach(q);
         let (_, forces) = system.contact(y, y).expect("equilibrium");
+        if let Some(fluid) = fluid {
+            fluid.evaluate(q, v, &mut load);
+        }
         let acceleration = (0..n).map(|k| {
             let o = system.oscillators[k];
-            -2.0 * o.alpha * v[k]
+            let fluid = k.checked_sub(INNER).and_then(|i| load.force.get(i)).copied().unwrap_or(0.0);
+            fluid
+                - 2.0 * o.alpha * v[k]
                 - o.omega.powi(2) * q[k]
                 - system.approach[0][k] * forces[0]
                 - system.approach[1][k] * forces[1]
