@@ -73,7 +73,7 @@ fn difference(system: &System, a: &Integration, b: &Integration) -> f64 {
 }
 
 /// Largest difference of the `velocities` in m/s of two results, over the impact speed, and of their force `peaks` in N,
-/// relative; a contact that hardly moves even the lighter body counts as if its peak were [`least_force`]. A value that is no
+/// relative; a contact that hardly moves even the lighter body counts as if its peak were the least that could. A value that is no
 /// number comes out as one.
 pub fn differences(system: &System, velocities: [[f64; 2]; 2], peaks: [[f64; 2]; 2]) -> [f64; 2] {
     let least = least_force(least_impulse(system), system.hertz_impact().duration());

@@ -59,7 +59,7 @@ pub(super) struct EnergyAccount {
     per_contact: f64,
     /// Duration of the outer body's impact on a rigid wall, s.
     pub(super) contact_time: f64,
-    /// Made so far, J.
+    /// Sum of the steps' errors so far, J.
     energy_error: f64,
 }
 
@@ -70,8 +70,8 @@ impl EnergyAccount {
         Self { initial, per_contact: share * initial, contact_time: hit.duration(), energy_error: 0.0 }
     }
 
-    /// Energy `made` in a step of `h` s over what may be, `rounding` J of it for the rounding of work. Errors of one sign, step
-    /// after step, have to become smaller.
+    /// The `energy_error` in J of a step of `h` s over what it may be, `rounding` J of that for the rounding of work. Errors of one
+    /// sign, step after step, have to become smaller.
     #[inline]
     pub(super) fn excess(&self, energy_error: f64, h: f64, rounding: f64) -> f64 {
         let same_sign = (self.energy_error * energy_error.signum()).max(0.0);

@@ -16,6 +16,7 @@ use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::error::{Error, Result};
 use crate::fluid::film::Overlap;
 use crate::result::Losses;
+use std::cell::LazyCell;
 use std::collections::BTreeMap;
 
 /// Steps after which a run counts as endless.
@@ -364,7 +365,7 @@ impl Run<'_> {
             let open = self.force[i] == 0.0 && trial.forces[i] == [0.0; STAGES];
             open.then(|| joined(self.local[i], &trial.local[i]))
         });
-        let forces = self.wet.generalised(trial);
+        let forces = LazyCell::new(|| self.wet.generalised(trial));
         let motion = |place: f64| system.modal_approach(&self.motion_at(&forces, place * h, h).0);
         let largest = touch_between::forces(system, h, [&self.q, &self.v], points, motion);
         let missed = |i: usize| largest[i] * h / (scale[i] * self.bounds.kinked);
