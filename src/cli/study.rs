@@ -37,7 +37,7 @@ struct Named {
     /// Number of random scenes, for the study auto [default: 1000]
     #[arg(long, value_name = "N")]
     cases: Option<usize>,
-    /// Seed that they are drawn with, for the study auto [default: 2]
+    /// Seed that they are drawn with, for the study auto [default: 3]
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
     /// Write the study as JSON, CSV, Markdown and, if it is a figure, SVG and PNG into this folder

@@ -27,8 +27,8 @@ use truth::{Setting, Truth};
 
 /// Tolerances asked for.
 pub const TOLERANCES: [f64; 3] = [0.003, 0.01, 0.03];
-/// Random scenes of the study, and the seed they are drawn with. The estimate was calibrated on seed 1.
-const SCENES: (usize, u64) = (1000, 2);
+/// Random scenes of the study, and the seed they are drawn with. The estimate was calibrated on seeds 1 and 2.
+const SCENES: (usize, u64) = (1000, 3);
 /// Random scenes whose costs are measured.
 const COSTED: usize = 100;
 /// Draws per scene: of some the speed is out of proportion.

@@ -94,16 +94,13 @@ impl Matrices {
         Ok(SparseColMat::new(SymbolicSparseColMat::new_checked(size, size, start, None, rows), values))
     }
 
-    /// Largest ratio of a diagonal entry of the stiffness to that of the mass, in rad^2/s^2.
-    pub fn largest_nodal_frequency_squared(&self) -> f64 {
-        let mut largest = 0.0f64;
-        for (node, range) in self.row_start.windows(2).enumerate() {
-            for entry in (range[0]..range[1]).filter(|&e| self.column[e] == node) {
-                let block = self.stiffness[entry];
-                largest = largest.max(block[0].max(block[3]) / self.mass[entry]);
-            }
-        }
-        largest
+    /// Diagonal of the stiffness: of (u_r, u_z) of each node. Shape (nodes, 2).
+    pub fn stiffness_diagonal(&self) -> Vec<[f64; 2]> {
+        let own = |(node, range): (usize, &[usize])| {
+            let entry = (range[0]..range[1]).find(|&e| self.column[e] == node);
+            entry.map_or([0.0; 2], |e| [self.stiffness[e][0], self.stiffness[e][3]])
+        };
+        self.row_start.windows(2).enumerate().map(own).collect()
     }
 
     /// Mass matrix times the nodal displacements `x` (u_r, u_z). Shape (nodes, 2).

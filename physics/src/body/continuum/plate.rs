@@ -203,8 +203,8 @@ pub fn eigenfrequencies(plate: &Plate, count: usize) -> Result<Vec<PlateMode>> {
     Ok(modes)
 }
 
-/// Largest [`HalfBody::rounding_error`] that is accepted; the error observed is 2 to 50 times smaller.
-const ROUNDING_LIMIT: f64 = 0.05;
+/// Largest [`HalfBody::rounding_error`] that is accepted; what neighbouring meshes differ by is 3 to 10 times smaller.
+const ROUNDING_LIMIT: f64 = 0.01;
 
 /// Radii in patch radii over which shapes are weighted: the tabulated ones and a wide one. A punch as wide as the widest
 /// patch of the table moves a wave as little as a Hertz pressure 1.3 times as wide does (sin(x)/x against 1 - x^2/10).
@@ -261,8 +261,8 @@ impl Halves {
             })
         };
         let bending = lowest_modes(&self.bending, count, f64::INFINITY)?;
-        if let Some(&first) = bending.omega.first() {
-            let error = self.bending.rounding_error(first);
+        if let (Some(&first), Some(shape)) = (bending.omega.first(), bending.shape.first()) {
+            let error = self.bending.rounding_error(first, shape);
             if error > ROUNDING_LIMIT {
                 return Err(Error::Solver(format!(
                     "the continuum plate is too thin or too nearly incompressible for double precision: rounding may change its stiffness by {error:.1e}, the limit is {ROUNDING_LIMIT}; use model B"

@@ -25,10 +25,10 @@ use crate::scene::{Edge, Model, Scene};
 pub const DEFAULT_TOLERANCE: f64 = 0.01;
 /// Share of the tolerance that is left to the time integration.
 const INTEGRATION_SHARE: f64 = 0.003;
-/// Error over the difference to the layer.
-const SAFETY: f64 = 1.5;
-/// Error over what model C is estimated to lack.
-const BUILT_SAFETY: f64 = 2.0;
+/// Error of models A and B over the difference to the layer, of a thin plate and per thickness over radius.
+const SAFETY: [f64; 2] = [1.5, 15.0];
+/// Error over what model C is estimated to lack, of a thin plate and per thickness over radius.
+const BUILT_SAFETY: [f64; 2] = [2.0, 2.0];
 /// Share of what the layer corrects of Kirchhoff's plate that it may be off by, of a thin plate and per thickness over radius:
 /// it does not know what shear does at the rim.
 const LAYER_SHARE: [f64; 2] = [0.5, 6.0];
@@ -44,7 +44,7 @@ const LEAST_BUILT: usize = 4;
 /// Most modes that model C is built with when its first ones turn out to be too few.
 const MOST_BUILT: usize = 128;
 /// Share of promises that `study auto` finds to be kept on random scenes, at least.
-pub const COVERAGE: f64 = 0.85;
+pub const COVERAGE: f64 = 0.99;
 /// Numbers of Kirchhoff modes tried: model A and then B.
 const KIRCHHOFF_RUNGS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 
@@ -120,7 +120,7 @@ impl<'a> Plan<'a> {
         let (layer, speed) = (self.layer?, self.trials.setup.outer.speed);
         let corrected = Lack::between(&self.trials.converged().ok()?, &layer, speed).error;
         let plate = &self.trials.setup.plate;
-        let share = LAYER_SHARE[0] + LAYER_SHARE[1] * plate.thickness / plate.radius;
+        let (share, safety) = (self.by_thickness(LAYER_SHARE), self.by_thickness(SAFETY));
         let rim = match plate.edge {
             Edge::SimplySupported => {
                 let thickness = plate.thickness / plate.radius;
@@ -134,7 +134,7 @@ impl<'a> Plan<'a> {
             let model = if modes == 1 { Model::A } else { Model::B };
             let Ok(ours) = self.trials.kirchhoff(modes) else { break };
             let lack = Lack::between(&ours, &layer, speed);
-            let error = self.total(SAFETY * lack.error + share * corrected + rim);
+            let error = self.total(safety * lack.error + share * corrected + rim);
             self.note(model, modes, error, lack.quantity);
             let Some(error) = error else { break };
             if best.is_none_or(|(.., least)| error < least) {
@@ -159,11 +159,12 @@ impl<'a> Plan<'a> {
         // without the modes of the contact's own frequency nothing is right
         let possible = |n: &usize| *n == most || *n < most && self.trials.truncation(*n) <= 1.0;
         let rungs: Vec<usize> = RUNGS.into_iter().filter(possible).collect();
+        let safety = self.by_thickness(BUILT_SAFETY);
         let mut attempt = |modes: usize| {
             let lack = self.trials.truncated(modes, self.layer.as_ref());
-            let error = self.total(BUILT_SAFETY * lack.error);
+            let error = self.total(safety * lack.error);
             self.note(Model::C, modes, error, lack.quantity);
-            (BUILT_SAFETY * lack.error <= room, error)
+            (safety * lack.error <= room, error)
         };
         let (mut low, mut high) = (0, rungs.len() - 1);
         let mut found = None;
@@ -184,7 +185,7 @@ impl<'a> Plan<'a> {
         self.modes = built.bending_modes();
         let lack = self.trials.truncated(self.modes, self.layer.as_ref());
         let lack = lack.or(of_continuum(built, omega_next, &self.trials.options));
-        self.error = self.total(BUILT_SAFETY * lack.error);
+        self.error = self.total(self.by_thickness(BUILT_SAFETY) * lack.error);
         self.note(Model::C, self.modes, self.error, lack.quantity);
         let more = 2 * built.modes;
         let helps =
@@ -201,6 +202,12 @@ impl<'a> Plan<'a> {
         self.refused = Some(error.to_string());
         (self.model, self.modes, self.error, self.cut) = (model, modes, Some(estimate), None);
         Ok(())
+    }
+
+    /// A factor from that of a thin plate and what it grows by per thickness over radius.
+    fn by_thickness(&self, [thin, more]: [f64; 2]) -> f64 {
+        let plate = &self.trials.setup.plate;
+        thin + more * plate.thickness / plate.radius
     }
 
     /// An error with the floor; `None` where there is none.
