@@ -26,7 +26,7 @@ pub const DEFAULT_TOLERANCE: f64 = 0.01;
 /// Share of the tolerance that is left to the time integration.
 const INTEGRATION_SHARE: f64 = 0.003;
 /// Error of models A and B over the difference to the layer, of a thin plate and per thickness over radius.
-const SAFETY: [f64; 2] = [1.5, 15.0];
+const SAFETY: [f64; 2] = [1.5, 8.0];
 /// Error over what model C is estimated to lack, of a thin plate and per thickness over radius.
 const BUILT_SAFETY: [f64; 2] = [2.0, 2.0];
 /// Share of what the layer corrects of Kirchhoff's plate that it may be off by, of a thin plate and per thickness over radius:
