@@ -1,21 +1,23 @@
 //! Steps of adapted length through a wet impact, and what is booked on the way.
 
+mod ledger;
+
+use self::ledger::{Booked, StepAccount};
 use super::guess::StepForces;
 use super::solve::{END, Trial, Wet};
 use super::table::Table;
 use super::touch_between;
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
-use crate::dynamics::contact_ledger::{ContactLedger, StepCourse, work};
+use crate::dynamics::contact_ledger::{ContactLedger, StepCourse};
 use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
 use crate::dynamics::integrator::{Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale, peak_share};
-use crate::dynamics::system::{INNER, PLATE, System, dot};
+use crate::dynamics::system::{System, dot};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::error::{Error, Result};
 use crate::fluid::film::Overlap;
-use crate::result::Losses;
 use std::cell::LazyCell;
 use std::collections::BTreeMap;
 
@@ -27,9 +29,6 @@ const LAST_LEVEL: i32 = 44;
 const LONGEST: i32 = -8;
 /// Share of a step's admissible defect at which its iteration may end, if rounding errors permit.
 const SETTLED: f64 = 1e-3;
-
-/// Rounding errors of coordinates that a step's work may be off by.
-const ROUNDINGS: f64 = 64.0;
 
 /// Integrates the impact of `system` in a `fluid`.
 ///
@@ -74,39 +73,6 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
     };
     run.go()?;
     Ok(run.finish())
-}
-
-/// What the fluid did so far.
-#[derive(Debug, Clone, Copy, Default)]
-struct Booked {
-    /// Impulse of film and drag on the inner body in N s.
-    film_impulse: f64,
-    drag_impulse: f64,
-    /// Energy dissipated in film and by drag, J.
-    dissipated: [f64; 2],
-    /// Work of the fluid's force polynomials on the bodies, J.
-    work: f64,
-}
-
-impl Booked {
-    fn add(&mut self, step: &Self) {
-        self.film_impulse += step.film_impulse;
-        self.drag_impulse += step.drag_impulse;
-        self.dissipated[0] += step.dissipated[0];
-        self.dissipated[1] += step.dissipated[1];
-        self.work += step.work;
-    }
-}
-
-/// What is booked of a step.
-struct StepAccount {
-    fluid: Booked,
-    /// Work of both contacts' force polynomials, J.
-    contact_work: [f64; 2],
-    /// Energy made from nothing, J.
-    energy_error: f64,
-    /// What of it the rounding of coordinates may be, J: a film can be millions of newtons strong.
-    rounding: f64,
 }
 
 struct Run<'a> {
@@ -372,46 +338,6 @@ impl Run<'_> {
         missed(0).max(missed(1))
     }
 
-    /// What the fluid does in the step of `h` s just solved.
-    fn fluid_in_step(&self, h: f64) -> Booked {
-        let trial = &self.trial;
-        let sum = |value: fn(&FluidLoad) -> f64| -> f64 {
-            let weights = &self.collocation.weights;
-            h * weights.iter().zip(&trial.loads).map(|(w, load)| w * value(load)).sum::<f64>()
-        };
-        let work = trial.fluid.iter().enumerate().map(|(k, stages)| {
-            let course = std::array::from_fn(|p| match p {
-                0 => self.q[INNER + k],
-                _ => trial.motion.q[p - 1][INNER + k],
-            });
-            work(self.collocation, stages, &course)
-        });
-        Booked {
-            film_impulse: -sum(|load| load.film_force),
-            drag_impulse: sum(|load| load.drag_force),
-            dissipated: [sum(|load| load.dissipation[0]), sum(|load| load.dissipation[1])],
-            work: work.sum(),
-        }
-    }
-
-    /// The account of the step of `h` s just solved.
-    fn account(&self, h: f64) -> StepAccount {
-        let (system, trial) = (self.wet.system, &self.trial);
-        let fluid = self.fluid_in_step(h);
-        let contact_work = [0, 1].map(|i| {
-            let approach = joined(self.approach[i], &trial.approach[i]);
-            work(self.collocation, &trial.forces[i], &approach)
-        });
-        let stored = system.stored_energy(trial.end_force, trial.local.map(|p| p[END]))
-            - system.stored_energy(self.force, self.local);
-        let dissipated = fluid.dissipated[0] + fluid.dissipated[1];
-        let energy_error = stored - (contact_work[0] + contact_work[1]) + dissipated + fluid.work;
-        let forces = self.wet.generalised(trial);
-        let largest = |stages: &Stages| stages.iter().fold(0.0, |a: f64, f| a.max(f.abs()));
-        let work: f64 = forces.iter().zip(&trial.motion.q[END]).map(|(f, q)| largest(f) * q.abs()).sum();
-        StepAccount { fluid, contact_work, energy_error, rounding: ROUNDINGS * f64::EPSILON * work }
-    }
-
     /// Looks whether the plate overlaps the inner body beside the axis, by what is `too_deep`, in the step of `h` s just tried.
     ///
     /// # Errors
@@ -463,50 +389,6 @@ impl Run<'_> {
         self.time += h;
         self.steps += 1;
         Ok(())
-    }
-
-    fn finish(self) -> Integration {
-        let system = self.wet.system;
-        let (contacts, booked) = (self.contacts, self.booked);
-        let velocity = [dot(&system.outer, &self.v), self.v[INNER] / system.masses[1].sqrt()];
-        let [start_q, start_v] = &system.start;
-        let initial = system.energy(start_q, start_v);
-        let stored = system.stored_energy(self.force, self.local);
-        let end = system.energy(&self.q, &self.v);
-        let dissipated = booked.dissipated[0] + booked.dissipated[1];
-        let contact_work = contacts[0].work + contacts[1].work;
-        let damped = system.is_damped();
-        let unaccounted = if damped {
-            stored - contact_work + dissipated + booked.work
-        } else {
-            end + stored - initial + dissipated
-        };
-        let fluid_impulse = booked.film_impulse + booked.drag_impulse;
-        let impulses = [contacts[0].impulse, contacts[1].impulse];
-        let mut unexplained = vec![system.masses[1] * velocity[1] + impulses[1] - fluid_impulse];
-        if !system.outer_returns() {
-            unexplained.push(system.masses[0] * (velocity[0] + system.speed) - impulses[0]);
-        }
-        if system.oscillators.get(PLATE).is_some_and(|o| o.omega == 0.0) {
-            let plate = self.v[PLATE] / system.centre[PLATE];
-            unexplained.push(plate + impulses[0] - impulses[1] + booked.film_impulse);
-        }
-        Integration {
-            velocity,
-            contacts,
-            energy_residual: unaccounted.abs() / initial,
-            energy_gained: unaccounted / initial,
-            momentum_residual: unexplained.into_iter().fold(0.0, |worst: f64, p| worst.max(p.abs()))
-                / (system.masses[0] * system.speed),
-            losses: Losses {
-                plate_damping: if damped { initial - end - contact_work + booked.work } else { 0.0 },
-                squeeze_film: booked.dissipated[0],
-                drag: booked.dissipated[1],
-            },
-            steps: self.steps,
-            error_estimate: None,
-            history: self.recorder.map(Recorder::finish),
-        }
     }
 }
 
