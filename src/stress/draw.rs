@@ -67,11 +67,6 @@ pub struct Wet {
 }
 
 impl Wet {
-    /// Highest angular frequency in rad/s.
-    fn fastest(&self) -> f64 {
-        self.system.oscillators.iter().map(|o| o.omega).fold(0.0, f64::max)
-    }
-
     /// The impact `setup` on a plate reduced to `body` in a random fluid; each of its effects may be absent. `unit` is the
     /// plate of unit radius.
     fn draw(
@@ -203,7 +198,7 @@ impl Case {
         let wet = (modes <= WET_MODES && random.0.u8(0..4) < WET_SHARE)
             .then(|| Wet::draw(&mut random, setup, body, tips, &unit))
             .transpose()?
-            .filter(|wet| wet.fastest() * end_time <= WET_TURNS);
+            .filter(|wet| wet.system.highest_frequency() * end_time <= WET_TURNS);
         Ok(Self { seed, description, system, end_time, wet })
     }
 }

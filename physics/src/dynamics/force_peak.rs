@@ -6,6 +6,7 @@
 //! to it is the force whose peak is meant.
 
 use super::collocation::{Collocation, crossing, horner};
+use super::step_bounds::argmax;
 use super::system::{System, dot};
 
 /// Gain of a further Newton step, over the force, at which the peak is found.
@@ -78,8 +79,7 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
 
     /// The highest of the peaks in the whole step.
     fn search(&self, contact: usize) -> f64 {
-        let quickest = self.system.oscillators.iter().map(|o| o.omega).fold(0.0, f64::max);
-        let places = (PER_RADIAN * quickest * self.h).clamp(PLACES.0, PLACES.1).ceil();
+        let places = (PER_RADIAN * self.system.highest_frequency() * self.h).clamp(PLACES.0, PLACES.1).ceil();
         let at = |k: f64| (k / places).clamp(0.0, 1.0);
         let forces: Vec<f64> =
             (0..=places as usize).map(|k| self.force_at(contact, at(k as f64))[0]).collect();
@@ -117,12 +117,4 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
         let along = |motion: [f64; 2]| self.system.force_rate(local, motion)[contact];
         [force[contact], along(rate), along(acceleration)]
     }
-}
-
-fn argmax(values: &[f64]) -> (usize, f64) {
-    values
-        .iter()
-        .copied()
-        .enumerate()
-        .fold((0, f64::NEG_INFINITY), |best, (i, v)| if v > best.1 { (i, v) } else { best })
 }

@@ -1,16 +1,19 @@
 //! The time integration of a plate impact: steps of adapted length while bodies touch, exact flight between.
 
+mod judged;
+
+use self::judged::Judged;
 use super::bank::in_blocks;
-use super::clearance::touch_between;
-use super::collocation::{Collocation, POINTS, Points, STAGES, crossing};
+use super::closing::{Closing, FluidAccount};
+use super::collocation::{Collocation, POINTS, STAGES};
 use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse};
 use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale, peak_share};
-use super::system::{INNER, PLATE, System, dot};
+use super::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale};
+use super::system::System;
 use crate::error::{Error, Result};
 use crate::result::{History, Losses};
 use std::sync::LazyLock;
@@ -75,9 +78,6 @@ const SETTLED: f64 = 0.1;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
 
-/// Places of a step (0..1) at which it is cut for an event; nearer to its ends shorter steps find it.
-const EVENTS: std::ops::Range<f64> = 0.002..0.99;
-
 /// Integrates the impact.
 ///
 /// # Errors
@@ -86,22 +86,6 @@ pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
     let recorder = options.sample_interval.map(|interval| Recorder::new(system, &COLLOCATION, interval));
     Run::new(system, &COLLOCATION, options, recorder).go()
-}
-
-/// What is wrong with a step.
-struct Judged {
-    /// Its largest error over what may be.
-    excess: f64,
-    /// Where in it (0..1) the first touch or release is that it should end at.
-    event: Option<f64>,
-    /// Distance in N between both forces at the end and the polynomials of the step, where they are smooth.
-    force_defect: [f64; 2],
-}
-
-impl Judged {
-    fn event_at(&mut self, place: f64) {
-        self.event = Some(self.event.map_or(place, |event| event.min(place)));
-    }
 }
 
 /// State of a run.
@@ -284,48 +268,6 @@ impl<'a> Run<'a> {
         [0, 1].map(|i| force_scale(&[], self.contacts[i].force_peak, scale[i], self.energy.contact_time))
     }
 
-    /// What `trial` is wrong by, with the momenta `scale` (see [`momentum_scale`]) and the excess of its energy.
-    fn judge(&self, trial: &Course, scale: [f64; 2], energy_excess: f64) -> Judged {
-        let (collocation, h) = (self.solver.collocation, trial.h);
-        let share = Bounds::share(self.steps);
-        let mut judged = Judged { excess: energy_excess, event: None, force_defect: [0.0; 2] };
-        for i in 0..2 {
-            let defect = self.defect(trial, i) / scale[i];
-            let kinked = is_kinked(trial, i);
-            let change = if kinked { change_inside(collocation, trial, i) } else { None };
-            let bound = match change {
-                Some(_) => self.bounds.kinked,
-                None if kinked => self.bounds.edge,
-                None => share * self.bounds.smooth,
-            };
-            judged.excess = judged.excess.max(defect / bound);
-            if let Some(u) = change
-                && (defect > bound || energy_excess > 1.0)
-            {
-                judged.event_at(u);
-            }
-            if !kinked {
-                let force = defect * scale[i] / h;
-                let peak = self.contacts[i].force_peak;
-                let of = force_scale(&trial.force[i], peak, scale[i], self.energy.contact_time);
-                let bound = share * peak_share(&trial.force[i], peak) * self.bounds.force_defect;
-                judged.excess = judged.excess.max(force / (bound * of));
-                judged.force_defect[i] = force;
-            }
-            if is_open(trial, i)
-                && let Some(touch) = touch_between(collocation, &trial.local_approach[i])
-            {
-                let impulse = self.solver.system.laws[i].force(touch.depth) * h;
-                let missed = impulse / (scale[i] * self.bounds.kinked);
-                judged.excess = judged.excess.max(missed);
-                if missed > 1.0 && EVENTS.contains(&touch.place) {
-                    judged.event_at(touch.place);
-                }
-            }
-        }
-        judged
-    }
-
     /// Why no step is short enough; whether the last one could be `solved`.
     fn stuck(&self, solved: bool) -> Error {
         let [_, _, [outer, inner]] = self.course.end();
@@ -352,12 +294,6 @@ impl<'a> Run<'a> {
         } else {
             stored + trial.motion - self.course.motion
         }
-    }
-
-    /// Distance between the force at the end of the step and the polynomial of the step, as an impulse in N s.
-    fn defect(&self, trial: &Course, contact: usize) -> f64 {
-        let extrapolated = dot(&self.solver.collocation.ends[1], &trial.stages()[contact]);
-        (trial.force[contact][POINTS - 1] - extrapolated).abs() * trial.h
     }
 
     fn accept(&mut self, trial: Course) -> Result<()> {
@@ -411,41 +347,16 @@ impl<'a> Run<'a> {
     fn finish(self) -> Integration {
         let system = self.solver.system;
         let n = system.size();
-        let (q, v) = (&flat(&self.q)[..n], &flat(&self.v)[..n]);
-        let velocity = [dot(&system.outer, v), v[INNER] / system.masses[1].sqrt()];
-        let [start_q, start_v] = &system.start;
-        let initial = system.energy(start_q, start_v);
-        let stored = self.course.stored;
-        let damped = self.damped;
-        let end = system.energy(q, v);
-        let contact_work = self.contacts[0].work + self.contacts[1].work;
-        // damping takes energy out of the bodies; between them and the contacts none may be lost all the same
-        let unaccounted = if damped { stored - contact_work } else { end + stored - initial };
-        let impulses = [self.contacts[0].impulse, self.contacts[1].impulse];
-        let mut unexplained = vec![system.masses[1] * velocity[1] + impulses[1]];
-        if !system.outer_returns() {
-            unexplained.push(system.masses[0] * (velocity[0] + system.speed) - impulses[0]);
-        }
-        if system.oscillators.get(PLATE).is_some_and(|o| o.omega == 0.0) {
-            // rigid motion of a free plate: rate / participation = momentum
-            unexplained.push(v[PLATE] / system.centre[PLATE] + impulses[0] - impulses[1]);
-        }
-        let momentum = system.masses[0] * system.speed;
-        Integration {
-            velocity,
+        let closing = Closing {
+            system,
+            q: &flat(&self.q)[..n],
+            v: &flat(&self.v)[..n],
+            stored: self.course.stored,
             contacts: self.contacts,
-            energy_residual: unaccounted.abs() / initial,
-            energy_gained: unaccounted / initial,
-            momentum_residual: unexplained.into_iter().fold(0.0, |worst: f64, p| worst.max(p.abs()))
-                / momentum,
-            losses: Losses {
-                plate_damping: if damped { initial - end - contact_work } else { 0.0 },
-                ..Losses::default()
-            },
+            fluid: FluidAccount::default(),
             steps: self.steps,
-            error_estimate: None,
-            history: self.recorder.map(Recorder::finish),
-        }
+        };
+        closing.integration(self.recorder.map(Recorder::finish))
     }
 }
 
@@ -457,27 +368,4 @@ fn at_rest(y: [f64; 2], motion: f64) -> Course {
         course.local_approach[i][POINTS - 1] = y[i];
     }
     course
-}
-
-/// Whether `contact` touches or opens at the start, in or at the end of the step.
-fn is_kinked(trial: &Course, contact: usize) -> bool {
-    let forces = &trial.force[contact];
-    forces.contains(&0.0) && forces.iter().any(|f| *f > 0.0)
-}
-
-/// Whether `contact` is open at all points of the step, but perhaps for a rounding error at its start.
-fn is_open(trial: &Course, contact: usize) -> bool {
-    trial.force[contact][1..] == [0.0; POINTS - 1]
-}
-
-/// Where inside the step (0..1) `contact` first touches or opens, if it does so well away from the ends.
-fn change_inside(collocation: &Collocation, trial: &Course, contact: usize) -> Option<f64> {
-    let local = &trial.local_approach[contact];
-    let closed = |value: f64| value > 0.0;
-    let point =
-        (1..POINTS).find(|p| closed(local[*p]) != closed(local[p - 1]) && (*p > 1 || local[0] != 0.0))?;
-    let polynomial = collocation.through(local);
-    let around = |values: &Points| [values[point - 1], values[point]];
-    let u = crossing(&polynomial, around(&collocation.points), around(local));
-    EVENTS.contains(&u).then_some(u)
 }

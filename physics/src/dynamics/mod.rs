@@ -4,6 +4,7 @@ pub mod assured;
 mod bank;
 mod centre;
 mod clearance;
+mod closing;
 pub mod collocation;
 mod contact_forces;
 mod contact_ledger;

@@ -113,11 +113,7 @@ pub(super) fn least_force(momentum: f64, duration: f64) -> f64 {
 #[inline]
 pub(super) fn peak_share(forces: &[f64], peak: f64) -> f64 {
     let last = forces.len() - 1;
-    let (highest, largest) =
-        forces.iter().enumerate().fold(
-            (0, 0.0),
-            |(at, largest), (p, force)| if *force > largest { (p, *force) } else { (at, largest) },
-        );
+    let (highest, largest) = argmax(forces);
     let passes = highest != last || forces[last] - forces[last - 1] < FLAT * largest;
     if passes && largest >= peak { PEAK_SHARE } else { 1.0 }
 }
@@ -127,4 +123,11 @@ pub(super) fn peak_share(forces: &[f64], peak: f64) -> f64 {
 #[inline]
 pub(super) fn force_scale(forces: &[f64], peak: f64, momentum: f64, duration: f64) -> f64 {
     forces.iter().fold(peak.max(least_force(momentum, duration)), |scale, force| scale.max(*force))
+}
+
+/// Index and value of the largest of `values`, of equal ones the first.
+#[inline]
+pub(super) fn argmax(values: &[f64]) -> (usize, f64) {
+    let values = values.iter().copied().enumerate();
+    values.fold((0, f64::NEG_INFINITY), |best, (i, v)| if v > best.1 { (i, v) } else { best })
 }

@@ -137,6 +137,11 @@ impl System {
         self.oscillators.iter().any(|o| o.alpha > 0.0)
     }
 
+    /// Highest angular frequency of an oscillator without damping, rad/s.
+    pub fn highest_frequency(&self) -> f64 {
+        self.oscillators.iter().map(|o| o.omega).fold(0.0, f64::max)
+    }
+
     /// Change of both contact forces in N per modal approach of both in m, with the patches `local` as
     /// [`Self::contact`] gives them.
     pub fn tangent(&self, local: [f64; 2]) -> [[f64; 2]; 2] {

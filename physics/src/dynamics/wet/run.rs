@@ -1,24 +1,25 @@
 //! Steps of adapted length through a wet impact, and what is booked on the way.
 
+mod judged;
 mod ledger;
 
-use self::ledger::{Booked, StepAccount};
+use self::judged::defect_bound;
+use self::ledger::StepAccount;
 use super::guess::StepForces;
 use super::solve::{END, Trial, Wet};
 use super::table::Table;
-use super::touch_between;
+use crate::dynamics::closing::{Closing, FluidAccount};
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
 use crate::dynamics::contact_ledger::{ContactLedger, StepCourse};
 use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
 use crate::dynamics::integrator::{Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale, peak_share};
+use crate::dynamics::step_bounds::{Bounds, EnergyAccount, momentum_scale};
 use crate::dynamics::system::{System, dot};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::error::{Error, Result};
 use crate::fluid::film::Overlap;
-use std::cell::LazyCell;
 use std::collections::BTreeMap;
 
 /// Steps after which a run counts as endless.
@@ -27,9 +28,6 @@ const MAX_STEPS: u64 = 300_000;
 const LAST_LEVEL: i32 = 44;
 /// Longest step without a touch in sight, as a power of 2 of the base length.
 const LONGEST: i32 = -8;
-/// Share of a step's admissible defect at which its iteration may end, if rounding errors permit.
-const SETTLED: f64 = 1e-3;
-
 /// Integrates the impact of `system` in a `fluid`.
 ///
 /// # Errors
@@ -67,12 +65,21 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         trial,
         before: StepForces::default(),
         contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
-        booked: Booked::default(),
+        booked: FluidAccount::default(),
         energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
         steps: 0,
     };
     run.go()?;
-    Ok(run.finish())
+    let closing = Closing {
+        system,
+        q: &run.q,
+        v: &run.v,
+        stored: system.stored_energy(run.force, run.local),
+        contacts: run.contacts,
+        fluid: run.booked,
+        steps: run.steps,
+    };
+    Ok(closing.integration(run.recorder.map(Recorder::finish)))
 }
 
 struct Run<'a> {
@@ -97,7 +104,7 @@ struct Run<'a> {
     trial: Trial,
     before: StepForces,
     contacts: [ContactLedger; 2],
-    booked: Booked,
+    booked: FluidAccount,
     energy: EnergyAccount,
     steps: u64,
 }
@@ -163,7 +170,7 @@ impl Run<'_> {
                 self.tables.entry(self.level).or_insert_with(|| Table::new(system, self.collocation, h))
             };
             let h = table.h;
-            if !self.wet.solve(table, &self.q, &self.v, settled(h), &mut self.trial) {
+            if !self.wet.solve(table, &self.q, &self.v, settled.in_step(h), &mut self.trial) {
                 self.level += 1;
                 continue;
             }
@@ -179,7 +186,7 @@ impl Run<'_> {
             }
             if may_end && let Some(end) = self.end_in_step(h) {
                 let table = Table::new(system, self.collocation, end);
-                if !self.wet.solve(&table, &self.q, &self.v, settled(end), &mut self.trial) {
+                if !self.wet.solve(&table, &self.q, &self.v, settled.in_step(end), &mut self.trial) {
                     self.level += 1;
                     continue;
                 }
@@ -196,14 +203,6 @@ impl Run<'_> {
             }
             return Ok(false);
         }
-    }
-
-    /// Force error in N at which the iteration for a step of some s may end.
-    fn settled(&self, scale: [f64; 2]) -> impl Fn(f64) -> f64 + use<> {
-        let impulse = SETTLED * self.defect_bound * scale[1];
-        let least = (0..2).map(|i| self.force_scale(i, &[], scale)).fold(f64::INFINITY, f64::min);
-        let peak = SETTLED * self.bounds.force_defect * least;
-        move |h| peak.min(impulse / h)
     }
 
     /// When in the step of `h` s just solved, in s from its start, contact ceases to be possible; `None` if it is possible
@@ -283,61 +282,6 @@ impl Run<'_> {
         }
     }
 
-    /// Distance between the forces at the start of the step and the polynomials of the step, as an impulse in relation
-    /// to the momenta.
-    fn defect(&self, h: f64, scale: [f64; 2]) -> f64 {
-        let extrapolation = self.collocation.ends[0];
-        let film = std::array::from_fn(|j| self.trial.loads[j].film_force);
-        let [outer, inner] = self.trial.forces;
-        let starts = [self.force[0], self.force[1], self.load.film_force];
-        [outer, inner, film]
-            .iter()
-            .zip(starts)
-            .zip([scale[0], scale[1], scale[1]])
-            .map(|((stages, start), scale)| (start - dot(&extrapolation, stages)).abs() * h / scale)
-            .fold(0.0, f64::max)
-    }
-
-    /// Distance in N between the contact forces at the start of the step and the polynomials of the step, where they are
-    /// smooth.
-    fn force_defect(&self) -> [f64; 2] {
-        let extrapolation = self.collocation.ends[0];
-        std::array::from_fn(|i| {
-            let (start, stages) = (self.force[i], &self.trial.forces[i]);
-            let smooth = start > 0.0 && stages.iter().all(|force| *force > 0.0);
-            if smooth { (start - dot(&extrapolation, stages)).abs() } else { 0.0 }
-        })
-    }
-
-    /// The same over what may be.
-    fn force_excess(&self, defect: [f64; 2], scale: [f64; 2]) -> f64 {
-        let excess = |i: usize| {
-            let forces = joined(self.force[i], &self.trial.forces[i]);
-            let share = peak_share(&forces, self.contacts[i].force_peak);
-            defect[i] / (share * self.bounds.force_defect * self.force_scale(i, &forces, scale))
-        };
-        excess(0).max(excess(1))
-    }
-
-    /// See [`force_scale`].
-    fn force_scale(&self, contact: usize, forces: &[f64], scale: [f64; 2]) -> f64 {
-        force_scale(forces, self.contacts[contact].force_peak, scale[contact], self.energy.contact_time)
-    }
-
-    /// Impulse, over what may be wrong, of a touch between the points of the step of `h` s just solved.
-    fn passed_touch(&self, h: f64, scale: [f64; 2]) -> f64 {
-        let (system, trial) = (self.wet.system, &self.trial);
-        let points = [0, 1].map(|i| {
-            let open = self.force[i] == 0.0 && trial.forces[i] == [0.0; STAGES];
-            open.then(|| joined(self.local[i], &trial.local[i]))
-        });
-        let forces = LazyCell::new(|| self.wet.generalised(trial));
-        let motion = |place: f64| system.modal_approach(&self.motion_at(&forces, place * h, h).0);
-        let largest = touch_between::forces(system, h, [&self.q, &self.v], points, motion);
-        let missed = |i: usize| largest[i] * h / (scale[i] * self.bounds.kinked);
-        missed(0).max(missed(1))
-    }
-
     /// Looks whether the plate overlaps the inner body beside the axis, by what is `too_deep`, in the step of `h` s just tried.
     ///
     /// # Errors
@@ -400,11 +344,4 @@ fn joined(start: f64, stages: &Stages) -> [f64; RADAU_POINTS] {
 /// Whether both contacts are open at these approaches.
 fn is_open(approach: [f64; 2]) -> bool {
     approach[0] <= 0.0 && approach[1] <= 0.0
-}
-
-/// Defect that a step may have for a relative error `tolerance` of the efficiency. The error of a step is of about
-/// twice the order of its defect, so that the bound may fall more slowly than the tolerance; factor and exponent
-/// are measured over scenes and numbers of modes.
-fn defect_bound(tolerance: f64) -> f64 {
-    0.1 * tolerance.powf(0.87)
 }

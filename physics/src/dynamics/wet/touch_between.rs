@@ -35,8 +35,7 @@ pub(super) fn forces(
     if near == [false; 2] {
         return largest;
     }
-    let quickest = system.oscillators.iter().map(|o| o.omega).fold(0.0, f64::max);
-    let places = (PER_RADIAN * quickest * h).clamp(PLACES.0, PLACES.1).ceil();
+    let places = (PER_RADIAN * system.highest_frequency() * h).clamp(PLACES.0, PLACES.1).ceil();
     for place in 1..places as u32 {
         let approach = motion(f64::from(place) / places);
         let Some((_, force)) = system.contact(approach, approach) else { continue };

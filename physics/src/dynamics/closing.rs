@@ -1,0 +1,93 @@
+//! What a run comes to: its results, and what its balances of energy and momentum leave unexplained.
+
+use super::contact_ledger::ContactLedger;
+use super::integrator::Integration;
+use super::system::{INNER, PLATE, System, dot};
+use crate::result::{History, Losses};
+
+/// What a fluid did in a run; nothing in a dry one.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct FluidAccount {
+    /// Impulse of film and drag on the inner body in N s.
+    pub(super) film_impulse: f64,
+    pub(super) drag_impulse: f64,
+    /// Energy dissipated in film and by drag, J.
+    pub(super) dissipated: [f64; 2],
+    /// Work of the fluid's force polynomials on the bodies, J.
+    pub(super) work: f64,
+}
+
+impl FluidAccount {
+    pub(super) fn add(&mut self, step: &Self) {
+        self.film_impulse += step.film_impulse;
+        self.drag_impulse += step.drag_impulse;
+        self.dissipated[0] += step.dissipated[0];
+        self.dissipated[1] += step.dissipated[1];
+        self.work += step.work;
+    }
+}
+
+/// The end of a run.
+pub(super) struct Closing<'a> {
+    pub(super) system: &'a System,
+    /// Coordinates and their rates.
+    pub(super) q: &'a [f64],
+    pub(super) v: &'a [f64],
+    /// Energy that the contacts store, J.
+    pub(super) stored: f64,
+    pub(super) contacts: [ContactLedger; 2],
+    pub(super) fluid: FluidAccount,
+    pub(super) steps: u64,
+}
+
+impl Closing<'_> {
+    /// The results of the run with the `history` that was kept.
+    pub(super) fn integration(self, history: Option<History>) -> Integration {
+        let Self { system, v, ref contacts, fluid, .. } = self;
+        let velocity = [dot(&system.outer, v), v[INNER] / system.masses[1].sqrt()];
+        let [start_q, start_v] = &system.start;
+        let initial = system.energy(start_q, start_v);
+        let end = system.energy(self.q, v);
+        let contact_work = contacts[0].work + contacts[1].work;
+        let dissipated = fluid.dissipated[0] + fluid.dissipated[1];
+        let damped = system.is_damped();
+        // damping takes energy out of the bodies; between them and the contacts none may be lost all the same
+        let unaccounted = if damped {
+            self.stored - contact_work + dissipated + fluid.work
+        } else {
+            end + self.stored - initial + dissipated
+        };
+        Integration {
+            velocity,
+            contacts: self.contacts,
+            energy_residual: unaccounted.abs() / initial,
+            energy_gained: unaccounted / initial,
+            momentum_residual: self.unexplained_momentum(velocity) / (system.masses[0] * system.speed),
+            losses: Losses {
+                plate_damping: if damped { initial - end - contact_work + fluid.work } else { 0.0 },
+                squeeze_film: fluid.dissipated[0],
+                drag: fluid.dissipated[1],
+            },
+            steps: self.steps,
+            error_estimate: None,
+            history,
+        }
+    }
+
+    /// Largest momentum of a body in N s that no impulse accounts for; `velocity` of outer and inner body in m/s.
+    fn unexplained_momentum(&self, velocity: [f64; 2]) -> f64 {
+        let Self { system, fluid, contacts: [outer, inner], .. } = self;
+        let fluid_impulse = fluid.film_impulse + fluid.drag_impulse;
+        let mut largest = (system.masses[1] * velocity[1] + inner.impulse - fluid_impulse).abs();
+        if !system.outer_returns() {
+            let momentum = system.masses[0] * (velocity[0] + system.speed);
+            largest = largest.max((momentum - outer.impulse).abs());
+        }
+        if system.oscillators.get(PLATE).is_some_and(|o| o.omega == 0.0) {
+            // rigid motion of a free plate: rate / participation = momentum
+            let plate = self.v[PLATE] / system.centre[PLATE];
+            largest = largest.max((plate + outer.impulse - inner.impulse + fluid.film_impulse).abs());
+        }
+        largest
+    }
+}
