@@ -6,32 +6,19 @@
 //! It is fail, too, if one of the two results contradicts itself ([`Check`]): a history that does not
 //! belong to its summary proves nothing, whatever the summary says.
 
-mod alignment;
 pub mod budget;
 mod changed_tolerance;
-mod curve_metrics;
 mod discrepancy;
-mod dynamic_time_warping;
-mod inner_products;
 mod integrity;
-mod interpolation;
-mod iso18571;
-mod russell;
-mod sprague_geers;
 mod undecided;
 mod verdict;
 
-pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
 pub use changed_tolerance::ChangedTolerance;
-pub use curve_metrics::CurveMetrics;
 pub use discrepancy::{BandVerdict, Discrepancy};
 pub use integrity::Check;
-pub(crate) use interpolation::MonotoneCubic;
-pub use iso18571::{Grade, Iso18571, iso18571};
-pub use russell::{Russell, russell};
-pub use sprague_geers::{SpragueGeers, sprague_geers};
 pub use verdict::{GateRules, Undecided, Verdict};
 
+use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, align, peak};
 use crate::error::Result;
 use crate::kinds;
 use crate::measured::Measured;
@@ -268,7 +255,7 @@ fn quantities(
         // `outer_force_peak` belongs to the curve `outer_force`, and so on; a quantity that
         // belongs to none is its own peak.
         let curve = kind.curves().iter().find(|curve| name.starts_with(curve.name));
-        let peak = curve.and_then(|curve| reference.history.curve(curve.name)).map_or(size, alignment::peak);
+        let peak = curve.and_then(|curve| reference.history.curve(curve.name)).map_or(size, peak);
         Discrepancy::new(
             (name, unit),
             (reduced.value(name), value),

@@ -5,7 +5,7 @@ use super::RULE;
 use super::align::{AlignedRecord, Speed, align};
 use super::filter::{Filtered, SIGNALS};
 use super::record::Record;
-use crate::comparison::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
+use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::{CURVES, PlateQuantities};
 use crate::result::{CUT, Outcome};

@@ -1,6 +1,6 @@
 //! Model curves as an instrument of limited bandwidth shows them.
 
-use crate::comparison::MonotoneCubic;
+use crate::curves::MonotoneCubic;
 use crate::error::{Error, Result};
 use crate::result::History;
 use biquad::{Biquad, Coefficients, DirectForm2Transposed, Q_BUTTERWORTH_F64, ToHertz, Type};

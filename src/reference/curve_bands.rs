@@ -1,6 +1,6 @@
 //! The 95 % bands of a reference's curves, as its store has them beside the history.
 
-use crate::comparison::CommonAxis;
+use crate::curves::CommonAxis;
 
 /// Half widths of the 95 % bands of the curves of a history, at its instants.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,7 @@ impl CurveBands {
 #[cfg(test)]
 mod tests {
     use super::CurveBands;
-    use crate::comparison::CommonAxis;
+    use crate::curves::CommonAxis;
 
     #[test]
     fn widths_are_linear_between_samples_and_constant_beyond() {

@@ -1,7 +1,7 @@
 //! The curves of a scene on the common axis as CSV, SI units.
 
 use super::SceneReport;
-use crate::comparison::sample;
+use crate::curves::sample;
 use crate::error::{Error, Result};
 use crate::kinds;
 

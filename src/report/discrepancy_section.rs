@@ -2,7 +2,8 @@
 
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::html::{badge, model_badge, named, number, scrolled};
-use crate::comparison::{BandVerdict, Check, CurveMetrics, Discrepancy, ModelComparison, Verdict};
+use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison, Verdict};
+use crate::curves::CurveMetrics;
 use crate::result::ContactPatch;
 use crate::result::ContactPressure;
 use maud::{Markup, html};

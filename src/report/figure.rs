@@ -8,7 +8,7 @@ use super::SceneReport;
 use super::figure_panel::panel;
 use super::format::{model_name, significant};
 use super::ticks::{tick_label, ticks};
-use crate::comparison::{CommonAxis, SampledCurve, sample};
+use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::measured::Measured;
 use crate::result::Outcome;
 use maud::{Markup, PreEscaped, html};

@@ -5,7 +5,7 @@ use super::figure::{FONT_SIZE, Geometry, Line, Quantity, stroke, text_width, x2}
 use super::label_placement::{Panel, Rect};
 use super::polyline::{Point, path, thinned};
 use super::ticks::{tick_label, ticks};
-use crate::comparison::{CommonAxis, SampledCurve};
+use crate::curves::{CommonAxis, SampledCurve};
 use maud::{Markup, html};
 
 /// Lowest and highest value over all lines and bands, with room on both sides.

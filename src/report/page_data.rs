@@ -3,7 +3,7 @@
 use super::SceneReport;
 use super::figure::{QUANTITIES, Quantity, dash};
 use super::format::model_name;
-use crate::comparison::{CommonAxis, SampledCurve, sample};
+use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::reference::CurveBands;
 use serde_json::{Value, json};
 

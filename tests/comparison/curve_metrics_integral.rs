@@ -1,7 +1,7 @@
 //! Integral error measures of curves: Sprague-Geers (2004) and Russell (1997).
 
 use approx::assert_abs_diff_eq;
-use impactcheck::comparison::{russell, sprague_geers};
+use impactcheck::curves::{russell, sprague_geers};
 use std::f64::consts::PI;
 
 /// One period of a sine, `amplitude` and lag in rad; trapezoidal sums over a period are exact.

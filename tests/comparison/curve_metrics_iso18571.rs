@@ -5,7 +5,7 @@
 //! on the signals below sampled at t = 0, 0.1 ms, ..., 150 ms.
 
 use approx::assert_abs_diff_eq;
-use impactcheck::comparison::{Grade, iso18571};
+use impactcheck::curves::{Grade, iso18571};
 use std::f64::consts::PI;
 
 fn sampled(samples: usize, signal: impl Fn(f64) -> f64) -> Vec<f64> {

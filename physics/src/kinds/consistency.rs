@@ -95,18 +95,8 @@ pub(crate) fn momentum_balance(
     Statement::new(format!("{name}_momentum_balance"), "N*s", missed, 0.0, bound)
 }
 
-/// The displacement of a rigid body is the integral of its velocity.
+/// A displacement is the integral of its velocity, up to `slack` of its peak and what the sampling hides.
 pub(crate) fn displacement_balance(
-    name: &str,
-    time: &[f64],
-    displacement: &[f64],
-    velocity: &[f64],
-    interval: f64,
-) -> Statement {
-    path_balance(name, time, (displacement, velocity), interval, SLACK)
-}
-
-pub(crate) fn path_balance(
     name: &str,
     time: &[f64],
     (displacement, velocity): (&[f64], &[f64]),

@@ -4,7 +4,7 @@ use super::{Compared, Models};
 use crate::cli::Context;
 use crate::cli::asked_model::{self, AskedModel};
 use crate::cli::reduced::Arguments;
-use crate::comparison::CommonAxis;
+use crate::curves::CommonAxis;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::choice;
 use crate::kinds::plate_impact::reduced::Reduced;

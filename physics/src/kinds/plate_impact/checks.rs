@@ -3,8 +3,8 @@
 
 use super::{Motion, PlateCurves};
 use crate::kinds::consistency::{
-    EFFICIENCY_SLACK, FORCE_FLOOR, SLACK, Stated, VELOCITY_SLACK, contact, momentum_balance, path_balance,
-    peak,
+    EFFICIENCY_SLACK, FORCE_FLOOR, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance,
+    momentum_balance, peak,
 };
 use crate::result::{Outcome, Statement, Summary};
 use crate::scene::PlateImpact;
@@ -103,7 +103,7 @@ fn balances(setup: &PlateImpact, summary: &Summary, history: &PlateCurves) -> Ve
     ];
     for (name, motion, slack) in motions {
         let motion = (motion.displacement, motion.velocity);
-        checks.push(path_balance(name, history.time, motion, interval, slack));
+        checks.push(displacement_balance(name, history.time, motion, interval, slack));
     }
     checks
 }

@@ -3,7 +3,7 @@
 
 use super::{SeatCurves, SeatQuantities};
 use crate::kinds::consistency::{
-    EFFICIENCY_SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance, momentum_balance, peak,
+    EFFICIENCY_SLACK, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance, momentum_balance, peak,
 };
 use crate::result::{Outcome, Statement};
 use crate::scene::SealSeat;
@@ -82,11 +82,11 @@ fn balances(setup: &SealSeat, interval: f64, history: &SeatCurves) -> Vec<Statem
         let force = history.sphere_force_components[c];
         let name = format!("sphere_{axis}");
         checks.push(momentum_balance(&name, setup.sphere.mass, time, velocity, force, 1.0, interval));
-        checks.push(displacement_balance(&name, time, path, velocity, interval));
+        checks.push(displacement_balance(&name, time, (path, velocity), interval, SLACK));
     }
     let (path, velocity) = (history.actuator_displacement, history.actuator_velocity);
     let force = history.actuator_force;
     checks.push(momentum_balance("actuator", setup.actuator.mass, time, velocity, force, -1.0, interval));
-    checks.push(displacement_balance("actuator", time, path, velocity, interval));
+    checks.push(displacement_balance("actuator", time, (path, velocity), interval, SLACK));
     checks
 }

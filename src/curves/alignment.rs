@@ -85,7 +85,7 @@ impl AlignedCurve {
 }
 
 /// Largest magnitude in `values`.
-pub(super) fn peak(values: &[f64]) -> f64 {
+pub(crate) fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |p, v| p.max(v.abs()))
 }
 
