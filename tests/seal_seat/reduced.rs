@@ -194,7 +194,7 @@ fn candidates_lie_on_the_exact_surfaces() {
     let [cx, cz] = setup.ring().sphere_centre;
     let mut on_ring = 0;
     for candidate in &sixteen().system().candidates {
-        let [x, y, z] = candidate.place;
+        let [x, y, z] = candidate.place.into();
         match candidate.partner {
             Partner::Sphere => {
                 // a cone that touches the sphere: r^2 + d^2 at the distance d from the ring

@@ -78,7 +78,7 @@ fn scaled(scale: f64) -> SealSeat {
 fn run(scale: f64) -> Integration {
     let setup = scaled(scale);
     let small = TetMesh::read(mesh().path()).expect("mesh");
-    let points = small.points.iter().map(|p| p.map(|x| scale * x)).collect();
+    let points = small.points.iter().map(|p| scale * p).collect();
     let mesh = TetMesh::new(points, small.cells.clone(), small.order).expect("mesh");
     let zones = Zones::expected(&setup);
     let candidates = candidates(&setup, &mesh, &zones);

@@ -1,8 +1,9 @@
 //! Linear elasticity of straight tetrahedra: stiffness and lumped mass of a body without supports.
 
-use super::mesh::{EDGES, TetMesh, cross, dot3, volume};
+use super::mesh::{EDGES, TetMesh, volume};
 use crate::scene::Material;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 
 /// Number of a displacement component that is held at zero.
@@ -104,12 +105,11 @@ fn lumped_mass(mesh: &TetMesh, density: f64) -> Vec<f64> {
 }
 
 /// Gradients in 1/m of the barycentric coordinates, and the volume in m^3.
-fn barycentric_gradients(corners: &[[f64; 3]; 4]) -> ([[f64; 3]; 4], f64) {
-    let [a, b, c]: [[f64; 3]; 3] = [1, 2, 3].map(|k| std::array::from_fn(|d| corners[k][d] - corners[0][d]));
-    let six_volumes = dot3(a, cross(b, c));
-    let [g1, g2, g3] = [cross(b, c), cross(c, a), cross(a, b)].map(|g| g.map(|x| x / six_volumes));
-    let g0 = std::array::from_fn(|d| -(g1[d] + g2[d] + g3[d]));
-    ([g0, g1, g2, g3], six_volumes / 6.0)
+fn barycentric_gradients(corners: &[Vector3<f64>; 4]) -> ([Vector3<f64>; 4], f64) {
+    let [a, b, c] = [1, 2, 3].map(|k| corners[k] - corners[0]);
+    let six_volumes = a.dot(&b.cross(&c));
+    let [g1, g2, g3] = [b.cross(&c), c.cross(&a), a.cross(&b)].map(|g| g / six_volumes);
+    ([-(g1 + g2 + g3), g1, g2, g3], six_volumes / 6.0)
 }
 
 /// Blocks of the stiffness between the element's nodes, row by row. Shape (n * n).
@@ -117,11 +117,11 @@ fn element_stiffness(mesh: &TetMesh, cell: &[usize], lame: Lame) -> Vec<Block> {
     let (gradients, volume) = barycentric_gradients(&mesh.corners(cell));
     let n = cell.len();
     let mut blocks = vec![[0.0; 9]; n * n];
-    let mut add = |gradient: &[[f64; 3]], weight: f64| {
+    let mut add = |gradient: &[Vector3<f64>], weight: f64| {
         for (a, ga) in gradient.iter().enumerate() {
             for (b, gb) in gradient.iter().enumerate() {
                 let block = &mut blocks[a * n + b];
-                let trace = weight * lame.mu * dot3(*ga, *gb);
+                let trace = weight * lame.mu * ga.dot(gb);
                 for c in 0..3 {
                     for d in 0..3 {
                         block[3 * c + d] += weight * (lame.lambda * ga[c] * gb[d] + lame.mu * ga[d] * gb[c]);
@@ -139,13 +139,12 @@ fn element_stiffness(mesh: &TetMesh, cell: &[usize], lame: Lame) -> Vec<Block> {
     let (near, far) = (0.585_410_196_624_968_5, 0.138_196_601_125_010_5);
     for point in 0..4 {
         let l: [f64; 4] = std::array::from_fn(|a| if a == point { near } else { far });
-        let mut gradient = [[0.0; 3]; 10];
+        let mut gradient = [Vector3::zeros(); 10];
         for a in 0..4 {
-            gradient[a] = gradients[a].map(|g| (4.0 * l[a] - 1.0) * g);
+            gradient[a] = (4.0 * l[a] - 1.0) * gradients[a];
         }
         for (k, [a, b]) in EDGES.into_iter().enumerate() {
-            gradient[4 + k] =
-                std::array::from_fn(|c| 4.0 * (l[a] * gradients[b][c] + l[b] * gradients[a][c]));
+            gradient[4 + k] = 4.0 * (l[a] * gradients[b] + l[b] * gradients[a]);
         }
         add(&gradient, 0.25 * volume);
     }
@@ -182,6 +181,7 @@ mod tests {
     use super::super::mesh::boxes;
     use super::*;
     use approx::assert_relative_eq;
+    use nalgebra::Matrix3;
 
     fn material() -> Material {
         Material {
@@ -194,16 +194,11 @@ mod tests {
     }
 
     /// Force on the nodes under the displacements `u`. Shape (nodes, 3).
-    fn forces(matrices: &Matrices, u: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    fn forces(matrices: &Matrices, u: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
         (0..matrices.mass.len())
             .map(|node| {
-                let mut force = [0.0; 3];
-                for (other, block) in matrices.row(node) {
-                    for c in 0..3 {
-                        force[c] += dot3([block[3 * c], block[3 * c + 1], block[3 * c + 2]], u[other]);
-                    }
-                }
-                force
+                let force = |(other, block): (usize, &Block)| Matrix3::from_row_slice(block) * u[other];
+                matrices.row(node).map(force).sum()
             })
             .collect()
     }
@@ -220,11 +215,12 @@ mod tests {
             let matrices = Matrices::new(&mesh, &material());
             let scale = 2.6e9 * 3.0;
             for axis in 0..3 {
-                let shift = vec![std::array::from_fn(|c| f64::from(u8::from(c == axis))); mesh.points.len()];
-                let omega: [f64; 3] = shift[0];
-                let turn: Vec<[f64; 3]> = mesh.points.iter().map(|p| cross(omega, *p)).collect();
+                let mut omega = Vector3::zeros();
+                omega[axis] = 1.0;
+                let shift = vec![omega; mesh.points.len()];
+                let turn = mesh.points.iter().map(|p| omega.cross(p)).collect();
                 for u in [shift, turn] {
-                    let worst = forces(&matrices, &u).into_iter().flatten().map(f64::abs).fold(0.0, f64::max);
+                    let worst = forces(&matrices, &u).iter().map(Vector3::amax).fold(0.0, f64::max);
                     assert!(worst < 1e-13 * scale, "order {order}: {worst}");
                 }
             }
@@ -233,27 +229,25 @@ mod tests {
 
     #[test]
     fn patch_test_uniform_strain_gives_the_exact_energy_and_no_force_inside() {
-        let gradient = [[1e-3, 4e-4, -2e-4], [-3e-4, 2e-3, 5e-4], [6e-4, -1e-4, -1.5e-3]];
+        let gradient: Matrix3<f64> = Matrix3::new(1e-3, 4e-4, -2e-4, -3e-4, 2e-3, 5e-4, 6e-4, -1e-4, -1.5e-3);
         let (e, nu) = (2.6e9, 0.38);
         let (lambda, mu) = (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)));
-        let trace: f64 = (0..3).map(|i| gradient[i][i]).sum();
-        let squares: f64 =
-            (0..9).map(|k| (0.5 * (gradient[k / 3][k % 3] + gradient[k % 3][k / 3])).powi(2)).sum();
-        let density = 0.5 * lambda * trace * trace + mu * squares;
+        let strain = gradient.symmetric_part();
+        let density = 0.5 * lambda * strain.trace().powi(2) + mu * strain.norm_squared();
         for order in [1, 2] {
             let mesh = sheared(order);
             let matrices = Matrices::new(&mesh, &material());
-            let u: Vec<[f64; 3]> = mesh.points.iter().map(|p| gradient.map(|row| dot3(row, *p))).collect();
+            let u: Vec<_> = mesh.points.iter().map(|p| gradient * p).collect();
             let force = forces(&matrices, &u);
             let whole: f64 = mesh.cells().map(|cell| volume(&mesh.corners(cell))).sum();
-            let energy: f64 = 0.5 * u.iter().zip(&force).map(|(u, f)| dot3(*u, *f)).sum::<f64>();
+            let energy: f64 = 0.5 * u.iter().zip(&force).map(|(u, f)| u.dot(f)).sum::<f64>();
             assert_relative_eq!(energy, density * whole, max_relative = 1e-12);
             let mut inside = vec![true; mesh.points.len()];
             mesh.outer_faces().iter().flatten().for_each(|&n| inside[n] = false);
             assert!(inside.contains(&true));
-            let largest = force.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
+            let largest = force.iter().map(Vector3::amax).fold(0.0, f64::max);
             for (force, _) in force.iter().zip(&inside).filter(|(_, inside)| **inside) {
-                assert!(force.iter().all(|f| f.abs() < 1e-12 * largest), "order {order}: {force:?}");
+                assert!(force.amax() < 1e-12 * largest, "order {order}: {force:?}");
             }
         }
     }

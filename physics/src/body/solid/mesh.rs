@@ -1,6 +1,7 @@
 //! Mesh of a solid body: straight-edged tetrahedra, linear or quadratic, read from a VTK file.
 
 use crate::error::{Error, Result};
+use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::path::Path;
 use vtkio::model::{CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk};
@@ -17,8 +18,8 @@ const STRAIGHT: f64 = 1e-6;
 /// Tetrahedra with four nodes (linear) or ten (quadratic, straight edges).
 #[derive(Debug, Clone, PartialEq)]
 pub struct TetMesh {
-    /// Places of the nodes in m. Shape (nodes, 3).
-    pub points: Vec<[f64; 3]>,
+    /// Places of the nodes in m. Shape (nodes).
+    pub points: Vec<Vector3<f64>>,
     /// Nodes of the cells one after the other, corners first, midside nodes in VTK's order.
     /// Shape (cells * [`TetMesh::nodes_per_cell`]).
     pub cells: Vec<usize>,
@@ -32,7 +33,11 @@ impl TetMesh {
     /// # Errors
     /// One sentence that says which cell or node is unusable: a node that does not exist or belongs to no cell, a
     /// cell that is flat or turned inside out, a curved edge.
-    pub fn new(points: Vec<[f64; 3]>, cells: Vec<usize>, order: usize) -> std::result::Result<Self, String> {
+    pub fn new(
+        points: Vec<Vector3<f64>>,
+        cells: Vec<usize>,
+        order: usize,
+    ) -> std::result::Result<Self, String> {
         let mesh = Self { points, cells, order };
         mesh.check()?;
         Ok(mesh)
@@ -48,7 +53,7 @@ impl TetMesh {
         let piece = grid(vtk).map_err(&failed)?;
         let points =
             piece.points.cast_into::<f64>().ok_or_else(|| failed("its points are no numbers".into()))?;
-        let points: Vec<[f64; 3]> = points.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
+        let points = points.chunks_exact(3).map(Vector3::from_column_slice).collect();
         let order = match piece.cells.types.first() {
             Some(CellType::Tetra) => 1,
             Some(CellType::QuadraticTetra) => 2,
@@ -73,7 +78,7 @@ impl TetMesh {
     }
 
     /// Places of the corners of a cell.
-    pub(super) fn corners(&self, cell: &[usize]) -> [[f64; 3]; 4] {
+    pub(super) fn corners(&self, cell: &[usize]) -> [Vector3<f64>; 4] {
         std::array::from_fn(|a| self.points[cell[a]])
     }
 
@@ -117,8 +122,8 @@ impl TetMesh {
                 return Err(format!("cell {number} is flat or turned inside out"));
             }
             for ([a, b], &midside) in EDGES.iter().zip(&cell[4..]) {
-                let middle = std::array::from_fn(|c| 0.5 * (corners[*a][c] + corners[*b][c]));
-                if distance(middle, self.points[midside]) > STRAIGHT * distance(corners[*a], corners[*b]) {
+                let (a, b) = (corners[*a], corners[*b]);
+                if (0.5 * (a + b)).metric_distance(&self.points[midside]) > STRAIGHT * a.metric_distance(&b) {
                     return Err(format!(
                         "node {midside} is not in the middle of its edge: edges must be straight"
                     ));
@@ -137,24 +142,9 @@ fn nodes_per_cell(order: usize) -> usize {
 }
 
 /// Volume of a tetrahedron in m^3, positive if its corners are in VTK's order.
-pub(super) fn volume(corners: &[[f64; 3]; 4]) -> f64 {
-    let [a, b, c] = [1, 2, 3].map(|k| std::array::from_fn(|d| corners[k][d] - corners[0][d]));
-    dot3(a, cross(b, c)) / 6.0
-}
-
-/// Vector product.
-pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// Scalar product.
-pub(super) fn dot3(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let d = std::array::from_fn(|c| a[c] - b[c]);
-    dot3(d, d).sqrt()
+pub(super) fn volume(corners: &[Vector3<f64>; 4]) -> f64 {
+    let [a, b, c] = [1, 2, 3].map(|k| corners[k] - corners[0]);
+    a.dot(&b.cross(&c)) / 6.0
 }
 
 /// The only piece of an unstructured grid.
@@ -198,7 +188,7 @@ pub(super) fn boxes(
     let mut points = Vec::new();
     for (i, j, k) in grid_points([nx + 1, ny + 1, nz + 1]) {
         let at = [(i, nx, 0), (j, ny, 1), (k, nz, 2)];
-        points.push(place(at.map(|(i, n, c)| lengths[c] * i as f64 / n as f64)));
+        points.push(place(at.map(|(i, n, c)| lengths[c] * i as f64 / n as f64)).into());
     }
     let mut corners = Vec::new();
     for (i, j, k) in grid_points(bricks) {
@@ -225,7 +215,7 @@ pub(super) fn boxes(
             let mut edge = [cell[*a], cell[*b]];
             edge.sort_unstable();
             let middle = *midsides.entry(edge).or_insert_with(|| {
-                points.push(std::array::from_fn(|c| 0.5 * (points[edge[0]][c] + points[edge[1]][c])));
+                points.push(0.5 * (points[edge[0]] + points[edge[1]]));
                 points.len() - 1
             });
             cells.push(middle);
@@ -254,14 +244,13 @@ mod tests {
                 .iter()
                 .map(|face| {
                     let [a, b, c] = [0, 1, 2].map(|k| mesh.points[face[k]]);
-                    let n = cross(std::array::from_fn(|d| b[d] - a[d]), std::array::from_fn(|d| c[d] - a[d]));
-                    0.5 * dot3(n, n).sqrt()
+                    0.5 * (b - a).cross(&(c - a)).norm()
                 })
                 .sum();
             assert!((area - 22.0).abs() < 1e-12);
             let middle = |face: &[usize], a: usize, b: usize, m: usize| {
                 let [a, b, m] = [a, b, m].map(|k| mesh.points[face[k]]);
-                (0..3).all(|c| (0.5 * (a[c] + b[c]) - m[c]).abs() < 1e-12)
+                (0.5 * (a + b) - m).amax() < 1e-12
             };
             if order == 2 {
                 let on_edges = |face: &Vec<usize>| {
@@ -275,7 +264,7 @@ mod tests {
     #[test]
     fn unusable_meshes_are_told_apart() {
         let good = boxes([1.0; 3], [1, 1, 1], 2, |p| p);
-        let told = |points: Vec<[f64; 3]>, cells: Vec<usize>, order| {
+        let told = |points: Vec<Vector3<f64>>, cells: Vec<usize>, order| {
             TetMesh::new(points, cells, order).expect_err("unusable")
         };
         let mut inverted = good.cells.clone();
@@ -289,7 +278,7 @@ mod tests {
         missing[0] = 99;
         assert!(told(good.points.clone(), missing, 2).contains("names node 99"));
         let mut more = good.points.clone();
-        more.push([0.0; 3]);
+        more.push(Vector3::zeros());
         assert!(told(more, good.cells.clone(), 2).contains("belongs to no cell"));
         assert!(told(good.points.clone(), good.cells[..9].to_vec(), 2).contains("no tetrahedra"));
         let mut lost = good.points.clone();

@@ -1,5 +1,6 @@
 //! Sums of columns times numbers, vectorised for the processor that runs them.
 
+use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
@@ -13,7 +14,7 @@ struct Yield<'a, C> {
     u: &'a mut [f64],
     part: Range<usize>,
     column: C,
-    push: &'a [(usize, [f64; 3])],
+    push: &'a [(usize, Vector3<f64>)],
 }
 
 /// Displacements `u` (shape (3, width)) of the nodes in `part` under the forces `push` on nodes whose columns `column` gives.
@@ -21,7 +22,7 @@ pub(super) fn yield_under<'c>(
     u: &mut [f64],
     part: Range<usize>,
     column: impl Fn(usize) -> Column<'c>,
-    push: &[(usize, [f64; 3])],
+    push: &[(usize, Vector3<f64>)],
 ) {
     Arch::new().dispatch(Yield { u, part, column, push });
 }
@@ -58,7 +59,7 @@ impl<'c, C: Fn(usize) -> Column<'c>> WithSimd for Yield<'_, C> {
 }
 
 #[inline(always)]
-fn add(u: &mut [f64], [x, y, z]: [&[f32]; 3], f: &[f64; 3]) {
+fn add(u: &mut [f64], [x, y, z]: [&[f32]; 3], f: &Vector3<f64>) {
     let n = u.len();
     let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
     for k in 0..n {
@@ -67,7 +68,13 @@ fn add(u: &mut [f64], [x, y, z]: [&[f32]; 3], f: &[f64; 3]) {
 }
 
 #[inline(always)]
-fn add_two(u: &mut [f64], [p, q, r]: [&[f32]; 3], f: &[f64; 3], [x, y, z]: [&[f32]; 3], g: &[f64; 3]) {
+fn add_two(
+    u: &mut [f64],
+    [p, q, r]: [&[f32]; 3],
+    f: &Vector3<f64>,
+    [x, y, z]: [&[f32]; 3],
+    g: &Vector3<f64>,
+) {
     let n = u.len();
     let (p, q, r, x, y, z) = (&p[..n], &q[..n], &r[..n], &x[..n], &y[..n], &z[..n]);
     for k in 0..n {
@@ -113,7 +120,7 @@ mod tests {
         for (width, count) in [(1, 1), (7, 2), (33, 5)] {
             let columns: Vec<f32> = (0..count * 9 * width).map(|_| random.f32() - 0.5).collect();
             let column = |j: usize| &columns[j * 9 * width..][..9 * width];
-            let push: Vec<_> = (0..count).map(|j| (j, std::array::from_fn(|_| random.f64() - 0.5))).collect();
+            let push: Vec<_> = (0..count).map(|j| (j, Vector3::from_fn(|_, _| random.f64() - 0.5))).collect();
             let part = width / 3..width;
             let mut u = vec![7.0; 3 * width];
             yield_under(&mut u, part.clone(), column, &push);

@@ -6,6 +6,7 @@ use crate::body::solid::{InterfaceBody, SOURCES, Solid, TetMesh};
 use crate::error::{Error, Result};
 use crate::scene::SealSeat;
 use crate::scene::hash::{drop_inelastic, sha256_hex};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -144,12 +145,12 @@ fn recorded_geometry(content: &[u8]) -> Option<String> {
 /// Which of (u_x, u_y, u_z) of each node are held: all on the membrane's rim, u_y in the plane of symmetry y = 0.
 pub fn supports(scene: &SealSeat, mesh: &TetMesh) -> Vec<[bool; 3]> {
     let radius = scene.seat.membrane_radius;
-    let in_plane = |p: &[f64; 3]| p[1].abs() <= ON_PLANE * radius;
+    let in_plane = |p: &Vector3<f64>| p.y.abs() <= ON_PLANE * radius;
     let mut held: Vec<[bool; 3]> = mesh.points.iter().map(|p| [false, in_plane(p), false]).collect();
     for face in mesh.outer_faces() {
         let on_rim = |&node: &usize| {
-            let [x, y, _] = mesh.points[node];
-            (x.hypot(y) - radius).abs() < ON_RIM * radius
+            let p = mesh.points[node];
+            (p.x.hypot(p.y) - radius).abs() < ON_RIM * radius
         };
         if face[..3].iter().all(on_rim) {
             face.iter().for_each(|&node| held[node] = [true; 3]);

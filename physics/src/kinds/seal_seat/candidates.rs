@@ -3,6 +3,7 @@
 use crate::analytical::hertz::HertzImpact;
 use crate::body::solid::TetMesh;
 use crate::scene::SealSeat;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// How far from a surface the corners of a face may lie that belongs to it, over the sphere's radius. A mesh has its
@@ -27,7 +28,7 @@ pub struct Candidate {
     /// Number of the node in the mesh.
     pub node: usize,
     /// Place in m on the exact surface: nodes of straight elements lie beside the cone by the edges' sagitta.
-    pub place: [f64; 3],
+    pub place: Vector3<f64>,
     /// What it may meet.
     pub partner: Partner,
     /// Distance in m from where the partner touches first: from the ring along the cone, from the tip's axis.
@@ -96,7 +97,7 @@ pub fn candidates(scene: &SealSeat, mesh: &TetMesh, zones: &Zones) -> Vec<Candid
     let close = ON_SURFACE * scene.sphere.radius;
     let mut found: Vec<Candidate> = Vec::new();
     for face in mesh.outer_faces() {
-        let all = |on: &dyn Fn([f64; 3]) -> bool| face[..3].iter().all(|&node| on(mesh.points[node]));
+        let all = |on: &dyn Fn(Vector3<f64>) -> bool| face[..3].iter().all(|&node| on(mesh.points[node]));
         let on_cone = all(&|p| p[0] < 0.0 && cone.height(p).abs() < close);
         let below = all(&|p| p[2].abs() < close);
         let candidate = |&node: &usize| {
@@ -114,23 +115,29 @@ pub fn candidates(scene: &SealSeat, mesh: &TetMesh, zones: &Zones) -> Vec<Candid
 }
 
 /// A node of the underside; of several tips the nearest one meets it.
-fn under_tip(scene: &SealSeat, node: usize, place: [f64; 3]) -> Option<Candidate> {
+fn under_tip(scene: &SealSeat, node: usize, place: Vector3<f64>) -> Option<Candidate> {
     let distance = |x: &f64| (place[0] - x).hypot(place[1]);
     let tips = scene.actuator.tip_positions.iter().map(distance).enumerate();
     let (tip, offset) = tips.min_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(Candidate {
         node,
-        place: [place[0], place[1], 0.0],
+        place: Vector3::new(place.x, place.y, 0.0),
         partner: Partner::Tip(tip),
         offset,
         right_flank: false,
     })
 }
 
+/// The vector with the components x and z.
+pub(super) fn in_plane([x, z]: [f64; 2]) -> Vector3<f64> {
+    Vector3::new(x, 0.0, z)
+}
+
 /// The cone of the seat in which the sphere rests, seen from the sphere's centre.
 struct Cone {
-    centre: [f64; 2],
-    axis: [f64; 2],
+    centre: Vector3<f64>,
+    /// Unit vector.
+    axis: Vector3<f64>,
     radius: f64,
     /// Half the aperture angle.
     half_angle: f64,
@@ -140,46 +147,44 @@ impl Cone {
     fn of(scene: &SealSeat) -> Self {
         let ring = scene.ring();
         Self {
-            centre: ring.sphere_centre,
-            axis: ring.axis,
+            centre: in_plane(ring.sphere_centre),
+            axis: in_plane(ring.axis),
             radius: scene.sphere.radius,
             half_angle: 0.5 * scene.seat.aperture_angle,
         }
     }
 
     /// Distance in m of `p` from the sphere's centre across the axis and along it, and the unit vector across.
-    fn meridian(&self, p: [f64; 3]) -> (f64, f64, [f64; 3]) {
-        let [sin, cos] = self.axis;
-        let d = [p[0] - self.centre[0], p[1], p[2] - self.centre[1]];
-        let along = d[0] * sin + d[2] * cos;
-        let across = [d[0] - along * sin, d[1], d[2] - along * cos];
-        let radius = across.iter().map(|a| a * a).sum::<f64>().sqrt();
-        (radius, along, across.map(|a| a / radius))
+    fn meridian(&self, p: Vector3<f64>) -> (f64, f64, Vector3<f64>) {
+        let d = p - self.centre;
+        let along = d.dot(&self.axis);
+        let across = d - along * self.axis;
+        let radius = across.norm();
+        (radius, along, across / radius)
     }
 
     /// Distance in m of `p` behind the cone, seen from the sphere.
-    fn height(&self, p: [f64; 3]) -> f64 {
+    fn height(&self, p: Vector3<f64>) -> f64 {
         let (sin, cos) = self.half_angle.sin_cos();
         let (across, along, _) = self.meridian(p);
         across * cos - along * sin - self.radius
     }
 
     /// Distance in m of `p` from the ring, along the cone and up.
-    fn along(&self, p: [f64; 3]) -> f64 {
+    fn along(&self, p: Vector3<f64>) -> f64 {
         let (sin, cos) = self.half_angle.sin_cos();
         let (across, along, _) = self.meridian(p);
         across * sin + along * cos
     }
 
-    fn candidate(&self, node: usize, p: [f64; 3]) -> Candidate {
+    fn candidate(&self, node: usize, p: Vector3<f64>) -> Candidate {
         let (sin, cos) = self.half_angle.sin_cos();
-        let [axis_x, axis_z] = self.axis;
         let (radius, along, across) = self.meridian(p);
         // Along the radius from the seat's axis onto the cone, as the reference moves it.
         let exact = (self.radius + along * sin) / cos;
         // The seat's +x flank is where the unit vector across has a positive component along (cos, 0, -sin).
-        let side = across[0] * axis_z - across[2] * axis_x;
-        let place = std::array::from_fn(|c| p[c] + (exact - radius) * across[c]);
+        let side = across.x * self.axis.z - across.z * self.axis.x;
+        let place = p + (exact - radius) * across;
         Candidate {
             node,
             place,

@@ -14,9 +14,10 @@
 //! whether one has been missed.
 
 use super::cholesky::Cholesky;
-use super::nodes::{Ball, Nodes, dot};
+use super::nodes::{Ball, Nodes};
 use super::watch::Watch;
 use crate::error::{Error, Result};
+use nalgebra::Vector3;
 
 /// Largest gap in magnitude that a closed contact may have, over a typical indentation. It is also the largest turn of a normal
 /// in rad since the last iteration: forces act along the normals of that, and a turn moves what they indent by its share.
@@ -36,7 +37,7 @@ pub struct Loads {
     /// Force of each candidate in N. Shape (n).
     pub(super) force: Vec<f64>,
     /// Normals from the balls to the candidates. Shape (n).
-    pub(super) normal: Vec<[f64; 3]>,
+    pub(super) normal: Vec<Vector3<f64>>,
 }
 
 /// The contact problem and its last solution.
@@ -57,11 +58,11 @@ pub struct Contact<'a> {
     pub(super) factor: Cholesky,
     pub(super) factored: Vec<usize>,
     /// Normals that the factor's rows were made with. Shape (n).
-    pub(super) factor_normal: Vec<[f64; 3]>,
+    pub(super) factor_normal: Vec<Vector3<f64>>,
     pub(super) previous: Vec<usize>,
     pub(super) step: Vec<f64>,
     /// Contact set with the forces on the body in N.
-    pub(super) push: Vec<(usize, [f64; 3])>,
+    pub(super) push: Vec<(usize, Vector3<f64>)>,
     /// Gaps at the last survey, 0 in contact. Shape (n).
     pub(super) surveyed: Vec<f64>,
     /// Displacements of all candidates at a survey in m. Shape (3, n).
@@ -95,14 +96,18 @@ impl<'a> Contact<'a> {
         Self {
             nodes,
             closed: CLOSED * indentation,
-            loads: Loads { active: Vec::with_capacity(n), force: vec![0.0; n], normal: vec![[0.0; 3]; n] },
+            loads: Loads {
+                active: Vec::with_capacity(n),
+                force: vec![0.0; n],
+                normal: vec![Vector3::zeros(); n],
+            },
             watch: Watch::none(n),
             gap: vec![0.0; n],
             wrong: vec![false; n],
             touching: vec![false; n],
             factor: Cholesky::with_capacity(n),
             factored: Vec::with_capacity(n),
-            factor_normal: vec![[0.0; 3]; n],
+            factor_normal: vec![Vector3::zeros(); n],
             previous: Vec::with_capacity(n),
             step: Vec::with_capacity(n),
             push: Vec::with_capacity(n),
@@ -124,18 +129,18 @@ impl<'a> Contact<'a> {
     }
 
     /// Unit vector along which the force on the elastic body acts at a candidate in contact.
-    pub fn normal(&self, candidate: usize) -> [f64; 3] {
+    pub fn normal(&self, candidate: usize) -> Vector3<f64> {
         self.loads.normal[candidate]
     }
 
     /// Force vector in N on the elastic body at a candidate.
-    pub fn force_vector(&self, candidate: usize) -> [f64; 3] {
-        self.loads.normal[candidate].map(|n| n * self.loads.force[candidate])
+    pub fn force_vector(&self, candidate: usize) -> Vector3<f64> {
+        self.loads.force[candidate] * self.loads.normal[candidate]
     }
 
     /// Elastic energy in J that the residual flexibility holds.
     pub fn energy(&self) -> f64 {
-        let work = |&i: &usize| dot(self.force_vector(i), self.watch.yielded(i));
+        let work = |&i: &usize| self.force_vector(i).dot(&self.watch.yielded(i));
         0.5 * self.loads.active.iter().map(work).sum::<f64>()
     }
 
@@ -212,7 +217,7 @@ impl<'a> Contact<'a> {
             let i = self.loads.active[a];
             let before = self.loads.normal[i];
             self.look(i, balls);
-            let turn = (0..3).map(|c| (self.loads.normal[i][c] - before[c]).abs()).fold(0.0, f64::max);
+            let turn = (self.loads.normal[i] - before).amax();
             worst = worst.max(self.gap[i].abs() / self.closed).max(turn / CLOSED);
         }
         worst
@@ -221,16 +226,16 @@ impl<'a> Contact<'a> {
     /// Gap and normal of the watched candidate `i`.
     fn look(&mut self, i: usize, balls: &[Ball]) {
         let (d, ball) = self.watch.off_centre(i);
-        let distance = dot(d, d).sqrt();
+        let distance = d.norm();
         self.gap[i] = distance - balls[ball].radius;
-        self.loads.normal[i] = d.map(|d| d / distance);
+        self.loads.normal[i] = d / distance;
     }
 
     /// The forces on the body at the contact set.
     pub(super) fn collect_push(&mut self) {
         self.push.clear();
         let (normal, force) = (&self.loads.normal, &self.loads.force);
-        self.push.extend(self.loads.active.iter().map(|&j| (j, normal[j].map(|n| n * force[j]))));
+        self.push.extend(self.loads.active.iter().map(|&j| (j, force[j] * normal[j])));
     }
 
     /// Newton step on the contact set.
@@ -249,8 +254,8 @@ impl<'a> Contact<'a> {
     /// set and the last factor as they are; `each` gets candidate, normal and change in N.
     pub fn respond(
         &mut self,
-        opening: impl Fn(usize, [f64; 3]) -> f64,
-        mut each: impl FnMut(usize, [f64; 3], f64),
+        opening: impl Fn(usize, Vector3<f64>) -> f64,
+        mut each: impl FnMut(usize, Vector3<f64>, f64),
     ) {
         let normal = &self.loads.normal;
         self.step.clear();
@@ -284,7 +289,8 @@ mod tests {
 
     /// Nodes on a plane above a ball of radius 10 that rises through it, with a random flexibility.
     fn nodes(n: usize, random: &mut fastrand::Rng) -> (Nodes, Vec<f64>) {
-        let place = (0..n).map(|_| [2.0 * random.f64() - 1.0, 2.0 * random.f64() - 1.0, 0.0]).collect();
+        let place =
+            (0..n).map(|_| Vector3::new(2.0 * random.f64() - 1.0, 2.0 * random.f64() - 1.0, 0.0)).collect();
         let m = 3 * n;
         let a: Vec<f64> = (0..m * m).map(|_| random.f64() - 0.5).collect();
         let product = |i: usize, j: usize| (0..m).map(|k| a[i * m + k] * a[j * m + k]).sum::<f64>();
@@ -306,26 +312,27 @@ mod tests {
         for n in [1, 2, 5, 12, 40] {
             let (nodes, residual) = nodes(n, &mut random);
             let mut contact = Contact::new(&nodes, INDENTATION);
-            let far = [Ball { centre: [0.0, 0.0, -20.0], radius: 10.0 }];
+            let far = [Ball { centre: Vector3::new(0.0, 0.0, -20.0), radius: 10.0 }];
             contact.survey(&vec![0.0; 3 * n], &far, f64::INFINITY);
             // one sequence of instants: each starts from the last, deeper or shallower
             for height in [0.0, 0.01, 0.08, 0.06, 0.2, 0.02, -0.5, 0.05] {
                 let modal: Vec<f64> = (0..3 * n).map(|_| 0.02 * (random.f64() - 0.5)).collect();
-                let ball = Ball { centre: [0.0, 0.0, height - 10.0], radius: 10.0 };
+                let ball = Ball { centre: Vector3::new(0.0, 0.0, height - 10.0), radius: 10.0 };
                 contact.solve(&modal, &[ball]).expect("solution");
-                let force: Vec<f64> = (0..n).flat_map(|i| contact.force_vector(i)).collect();
+                let force: Vec<f64> =
+                    (0..n).flat_map(|i| <[f64; 3]>::from(contact.force_vector(i))).collect();
                 for i in 0..n {
-                    let at: [f64; 3] = std::array::from_fn(|c| {
+                    let at = Vector3::from_fn(|c, _| {
                         let row = 3 * i + c;
                         let yields: f64 = (0..3 * n).map(|k| residual[row * 3 * n + k] * force[k]).sum();
                         nodes.place[i][c] + modal[row] + yields - ball.centre[c]
                     });
-                    let distance = dot(at, at).sqrt();
+                    let distance = at.norm();
                     let (gap, load) = (distance - 10.0, contact.force(i));
                     assert!(load >= 0.0 && gap >= -bound, "{n} nodes: force {load}, gap {gap}");
                     assert!(load == 0.0 || gap < bound, "{n} nodes: force {load} over a gap of {gap}");
-                    let f: [f64; 3] = std::array::from_fn(|c| force[3 * i + c]);
-                    assert!(dot(f, at) > (1.0 - 1e-6) * load * distance - 1e-12, "the force is not normal");
+                    let f = contact.force_vector(i);
+                    assert!(f.dot(&at) > (1.0 - 1e-6) * load * distance - 1e-12, "the force is not normal");
                     touching += usize::from(load > 0.0);
                 }
             }
@@ -339,7 +346,7 @@ mod tests {
         let (nodes, _) = nodes(20, &mut random);
         let mut contact = Contact::new(&nodes, INDENTATION);
         let modal = vec![0.0; 60];
-        let ball = |height: f64| [Ball { centre: [0.0, 0.0, height - 10.0], radius: 10.0 }];
+        let ball = |height: f64| [Ball { centre: Vector3::new(0.0, 0.0, height - 10.0), radius: 10.0 }];
         contact.survey(&modal, &ball(-0.1), f64::INFINITY);
         contact.solve(&modal, &ball(-0.1)).expect("apart");
         // none is near: none is watched

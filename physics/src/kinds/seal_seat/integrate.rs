@@ -8,10 +8,12 @@
 //! touches or lets go. In contact positions and velocities are off by that change of coordinates, of second order; the corrected
 //! forces are those at the places without it.
 
+use super::candidates::in_plane;
 use super::contact::Loads;
 use super::integration::{Integration, Sample, Tally};
 use super::system::{Forces, State, System, Workspace};
 use crate::error::{Error, Result};
+use nalgebra::Vector3;
 
 /// Most time steps of a run.
 const MOST_STEPS: u64 = 2_000_000;
@@ -251,26 +253,20 @@ impl<'a> Running<'a> {
                 .map(|(shape, a)| a * shape[3 * i..3 * i + 3].iter().map(|s| s * s).sum::<f64>().sqrt())
                 .sum();
             let (ball, moved, velocity) = self.partner(candidate);
-            let from: [f64; 3] =
-                std::array::from_fn(|c| self.system.balls[ball].centre[c] + moved[c] - candidate.place[c]);
-            let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-            let speed = dot(velocity, velocity);
-            let nearest = if speed > 0.0 { (-dot(from, velocity) / speed).max(0.0) } else { 0.0 };
-            let then: [f64; 3] = std::array::from_fn(|c| from[c] + nearest * velocity[c]);
-            dot(then, then).sqrt() - self.system.balls[ball].radius > room
+            let from = self.system.balls[ball].centre + moved - candidate.place;
+            let square = velocity.norm_squared();
+            let nearest = if square > 0.0 { (-from.dot(&velocity) / square).max(0.0) } else { 0.0 };
+            (from + nearest * velocity).norm() - self.system.balls[ball].radius > room
         })
     }
 
     /// Number of the ball a candidate meets, its displacement and velocity.
-    fn partner(&self, candidate: &super::Candidate) -> (usize, [f64; 3], [f64; 3]) {
+    fn partner(&self, candidate: &super::Candidate) -> (usize, Vector3<f64>, Vector3<f64>) {
         let state = &self.state;
         match candidate.partner {
-            super::Partner::Sphere => {
-                let in_plane = |[x, z]: [f64; 2]| [x, 0.0, z];
-                (0, in_plane(state.sphere), in_plane(state.sphere_velocity))
-            }
+            super::Partner::Sphere => (0, in_plane(state.sphere), in_plane(state.sphere_velocity)),
             super::Partner::Tip(tip) => {
-                (1 + tip, [0.0, 0.0, state.actuator], [0.0, 0.0, state.actuator_velocity])
+                (1 + tip, in_plane([0.0, state.actuator]), in_plane([0.0, state.actuator_velocity]))
             }
         }
     }
@@ -308,7 +304,7 @@ mod tests {
     /// (omega, participation along z).
     fn spring(modes: &[(f64, f64)]) -> System {
         let residual = [[FLEXIBILITY, 0.0, 0.0], [0.0, FLEXIBILITY, 0.0], [0.0, 0.0, FLEXIBILITY]].concat();
-        let place = [0.0; 3];
+        let place = Vector3::zeros();
         let participation: Vec<Vec<f64>> = modes.iter().map(|m| vec![0.0, 0.0, m.1]).collect();
         System {
             nodes: Nodes::new(vec![place], vec![1], &participation, &residual),
@@ -326,8 +322,8 @@ mod tests {
             speed: SPEED,
             indentation: SPEED * (MASS * FLEXIBILITY).sqrt(),
             balls: vec![
-                Ball { centre: [0.0, 0.0, 1.0], radius: 1e-3 },
-                Ball { centre: [0.0, 0.0, -3e-3], radius: 3e-3 },
+                Ball { centre: Vector3::new(0.0, 0.0, 1.0), radius: 1e-3 },
+                Ball { centre: Vector3::new(0.0, 0.0, -3e-3), radius: 3e-3 },
             ],
         }
     }

@@ -1,10 +1,12 @@
 //! Nodes that rigid spheres may touch, and how they yield.
 
+use nalgebra::Vector3;
+
 /// A rigid sphere that candidates meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     /// Centre in m.
-    pub centre: [f64; 3],
+    pub centre: Vector3<f64>,
     /// Radius in m.
     pub radius: f64,
 }
@@ -13,7 +15,7 @@ pub struct Ball {
 #[derive(Debug, Clone)]
 pub struct Nodes {
     /// Places at rest in m. Shape (n).
-    pub(super) place: Vec<[f64; 3]>,
+    pub(super) place: Vec<Vector3<f64>>,
     /// Number of the ball each one meets. Shape (n).
     pub(super) ball: Vec<usize>,
     /// Mass-normalised shapes in kg^(-1/2). Shape (N, 3, n).
@@ -25,7 +27,7 @@ pub struct Nodes {
 impl Nodes {
     /// Candidates at `place`, each against the ball of the number in `ball`, with the `shapes` of the modes (x, y, z of each
     /// candidate; shape (N, 3 n)) in kg^(-1/2) and the symmetric `residual` flexibility (shape (3 n, 3 n), row by row) in m/N.
-    pub fn new(place: Vec<[f64; 3]>, ball: Vec<usize>, shapes: &[Vec<f64>], residual: &[f64]) -> Self {
+    pub fn new(place: Vec<Vector3<f64>>, ball: Vec<usize>, shapes: &[Vec<f64>], residual: &[f64]) -> Self {
         let n = place.len();
         // from x, y, z of each node to x of all nodes, then y, then z
         let apart = |row: &[f64]| (0..3 * n).map(|k| row[3 * (k % n) + k / n]).collect::<Vec<f64>>();
@@ -52,8 +54,4 @@ impl Nodes {
         let size = 9 * self.len();
         &self.columns[j * size..][..size]
     }
-}
-
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

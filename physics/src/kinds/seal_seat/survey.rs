@@ -2,7 +2,8 @@
 
 use super::accumulate::{add_modes, yield_under};
 use super::contact::Contact;
-use super::nodes::{Ball, dot};
+use super::nodes::Ball;
+use nalgebra::Vector3;
 
 /// Margin of the next survey over that which was needed before.
 const RESERVE: f64 = 3.0;
@@ -34,8 +35,9 @@ impl Contact<'_> {
             let touches = self.loads.active.get(active) == Some(&i);
             active += usize::from(touches);
             let ball = &balls[nodes.ball[i]];
-            let d = [0, 1, 2].map(|c| nodes.place[i][c] + self.displaced[c * n + i] - ball.centre[c]);
-            let gap = if touches { 0.0 } else { dot(d, d).sqrt() - ball.radius };
+            let displaced = Vector3::from_fn(|c, _| self.displaced[c * n + i]);
+            let distance = (nodes.place[i] + displaced - ball.centre).norm();
+            let gap = if touches { 0.0 } else { distance - ball.radius };
             let passed = !self.watch.contains(i) && gap < -self.closed;
             survey.missed |= passed;
             if touches || passed {

@@ -4,11 +4,12 @@
 
 use super::candidates::{Candidate, Partner, on_half_space};
 use super::contact::Contact;
-use super::nodes::{Ball, Nodes, dot};
+use super::nodes::{Ball, Nodes};
 use super::survey::Survey;
 use crate::body::solid::InterfaceBody;
 use crate::error::{Error, Result};
 use crate::scene::SealSeat;
+use nalgebra::Vector3;
 
 /// Oscillators and rigid bodies, joined by unilateral contact.
 #[derive(Debug, Clone)]
@@ -49,10 +50,15 @@ impl System {
         }
         let residual = body.residual(modes)?;
         let [x, z] = scene.ring().sphere_centre;
-        let mut balls = vec![Ball { centre: [x, 0.0, z], radius: scene.sphere.radius }];
+        let mut balls = vec![Ball { centre: Vector3::new(x, 0.0, z), radius: scene.sphere.radius }];
         let radius = scene.actuator.tip_radius;
-        balls
-            .extend(scene.actuator.tip_positions.iter().map(|&x| Ball { centre: [x, 0.0, -radius], radius }));
+        balls.extend(
+            scene
+                .actuator
+                .tip_positions
+                .iter()
+                .map(|&x| Ball { centre: Vector3::new(x, 0.0, -radius), radius }),
+        );
         let ball = |candidate: &Candidate| match candidate.partner {
             Partner::Sphere => 0,
             Partner::Tip(tip) => 1 + tip,
@@ -133,8 +139,8 @@ impl Forces {
     }
 
     /// Adds the normal force `force` in N at candidate `i`.
-    fn add(&mut self, system: &System, i: usize, normal: [f64; 3], force: f64) {
-        let (f, candidate) = (normal.map(|n| n * force), &system.candidates[i]);
+    fn add(&mut self, system: &System, i: usize, normal: Vector3<f64>, force: f64) {
+        let (f, candidate) = (force * normal, &system.candidates[i]);
         for (sum, shape) in self.modal.iter_mut().zip(&system.participation) {
             *sum += shape[3 * i] * f[0] + shape[3 * i + 1] * f[1] + shape[3 * i + 2] * f[2];
         }
@@ -200,15 +206,15 @@ impl<'a> Workspace<'a> {
         accelerations.clone_from(&forces.modal);
         let [x, z] = forces.sphere.map(|f| f / system.sphere_mass);
         let actuator = forces.actuator / system.actuator_mass;
-        let opening = |i: usize, normal: [f64; 3]| {
+        let opening = |i: usize, normal: Vector3<f64>| {
             let mut a = match system.candidates[i].partner {
-                Partner::Sphere => [-x, 0.0, -z],
-                Partner::Tip(_) => [0.0, 0.0, -actuator],
+                Partner::Sphere => Vector3::new(-x, 0.0, -z),
+                Partner::Tip(_) => Vector3::new(0.0, 0.0, -actuator),
             };
             for (q, shape) in accelerations.iter().zip(&system.participation) {
                 a.iter_mut().zip(&shape[3 * i..]).for_each(|(a, s)| *a += q * s);
             }
-            shift * dot(normal, a)
+            shift * normal.dot(&a)
         };
         contact.respond(opening, |i, normal, change| forces.add(system, i, normal, change));
     }

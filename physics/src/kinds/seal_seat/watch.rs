@@ -1,7 +1,8 @@
 //! The candidates that are watched, side by side in memory.
 
 use super::accumulate::{add_modes, yield_under};
-use super::nodes::{Ball, Nodes, dot};
+use super::nodes::{Ball, Nodes};
+use nalgebra::Vector3;
 use std::ops::Range;
 
 /// Slot of a candidate that is not watched, and number of a column that has not been gathered.
@@ -120,7 +121,7 @@ impl Watch {
     }
 
     /// Lets the residual yield in the slots `part` under forces in N on watched candidates.
-    pub fn yield_under(&mut self, nodes: &Nodes, push: &[(usize, [f64; 3])], part: Range<usize>) {
+    pub fn yield_under(&mut self, nodes: &Nodes, push: &[(usize, Vector3<f64>)], part: Range<usize>) {
         push.iter().for_each(|(j, _)| self.gather(nodes, *j));
         let (size, columns) = (9 * self.len(), &self.columns);
         let column = |j: usize| &columns[self.gathered[self.slot[j]] * size..][..size];
@@ -128,7 +129,7 @@ impl Watch {
     }
 
     /// Keeps the displacements under a unit force on `j` along `normal`, for [`Watch::compliance`].
-    pub fn under(&mut self, nodes: &Nodes, j: usize, normal: [f64; 3]) {
+    pub fn under(&mut self, nodes: &Nodes, j: usize, normal: Vector3<f64>) {
         self.gather(nodes, j);
         let (w, columns) = (self.len(), &self.columns);
         let column = |j: usize| &columns[self.gathered[self.slot[j]] * 9 * w..][..9 * w];
@@ -136,20 +137,21 @@ impl Watch {
     }
 
     /// n_i^T R_ij n_j in m/N, the displacement of `i` along its `normal`, after [`Watch::under`] for j.
-    pub fn compliance(&self, i: usize, normal: [f64; 3]) -> f64 {
+    pub fn compliance(&self, i: usize, normal: Vector3<f64>) -> f64 {
         let (w, slot) = (self.len(), self.slot[i]);
-        dot(normal, [0, 1, 2].map(|c| self.unit[c * w + slot]))
+        normal.dot(&Vector3::from_fn(|c, _| self.unit[c * w + slot]))
     }
 
     /// Vector in m from the centre of its ball to the watched candidate `i`, and the number of the ball.
-    pub fn off_centre(&self, i: usize) -> ([f64; 3], usize) {
+    pub fn off_centre(&self, i: usize) -> (Vector3<f64>, usize) {
         let (w, slot) = (self.len(), self.slot[i]);
-        ([0, 1, 2].map(|c| self.base[c * w + slot] + self.yielding[c * w + slot]), self.ball[slot])
+        let at = |c, _| self.base[c * w + slot] + self.yielding[c * w + slot];
+        (Vector3::from_fn(at), self.ball[slot])
     }
 
     /// Displacement in m of the watched candidate `i` by the residual.
-    pub fn yielded(&self, i: usize) -> [f64; 3] {
+    pub fn yielded(&self, i: usize) -> Vector3<f64> {
         let (w, slot) = (self.len(), self.slot[i]);
-        [0, 1, 2].map(|c| self.yielding[c * w + slot])
+        Vector3::from_fn(|c, _| self.yielding[c * w + slot])
     }
 }
