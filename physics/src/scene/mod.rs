@@ -9,18 +9,20 @@ mod alternatives;
 mod check;
 mod collision;
 pub mod hash;
+mod plate_impact;
 mod plausibility;
 mod problem;
 mod quantity;
 mod read;
-mod read_seat;
 mod schema;
 mod seal_seat;
-mod seat_specification;
 mod specification;
 mod template;
 mod tolerances;
 
+pub use plate_impact::{
+    Bender, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Shape, ShearThinning,
+};
 pub use plausibility::doubts;
 pub use problem::suggestion;
 pub use problem::{Problem, Problems, problems};
@@ -28,7 +30,7 @@ pub use quantity::in_unit as quantity_in;
 pub use read::MAX_FILE_BYTES;
 pub use schema::schema;
 pub use seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
-pub use specification::{MAX_MODES, unit_of};
+pub use specification::unit_of;
 pub use template::{Field, Rejected, Template};
 
 use crate::Error;
@@ -68,167 +70,6 @@ impl Material {
     }
 }
 
-/// Support of the plate's rim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Edge {
-    /// Deflection and slope are zero.
-    Clamped,
-    /// Deflection is zero, the rim may rotate.
-    SimplySupported,
-    /// The rim is free; the plate keeps its rigid motion.
-    Free,
-}
-
-/// Circular plate of constant thickness.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Plate {
-    /// Radius R in m.
-    pub radius: f64,
-    /// Thickness t in m.
-    pub thickness: f64,
-    /// Support of the rim.
-    pub edge: Edge,
-    /// Material of the plate.
-    pub material: Material,
-    /// Modal damping ratio (Lehr), the same for every mode; 0 = undamped.
-    pub damping_ratio: f64,
-}
-
-impl Plate {
-    /// Mass in kg.
-    pub fn mass(&self) -> f64 {
-        std::f64::consts::PI * self.radius.powi(2) * self.thickness * self.material.density
-    }
-}
-
-/// Piezo bender (section 4.3): a beam clamped at one end, with a point mass and a spherical tip at the other.
-///
-/// It is bent away from the plate by a bending moment that is uniform along the beam, as a piezo layer gives it,
-/// and released from rest: the moment is gone at once or, as a piezo is discharged through a resistor (section 2.2.2),
-/// decays. It strikes where its tip passes the straight position.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Bender {
-    /// Length L of the beam in m.
-    pub length: f64,
-    /// Bending stiffness E I in N m^2.
-    pub bending_stiffness: f64,
-    /// Mass per length rho A in kg/m.
-    pub line_mass: f64,
-    /// Point mass at the tip in kg.
-    pub tip_mass: f64,
-    /// Radius of curvature at the contact in m.
-    pub tip_radius: f64,
-    /// Time constant in s with which the moment decays after the release; 0 = it is gone at once.
-    pub discharge_time: f64,
-}
-
-impl Bender {
-    /// Mass of beam and tip in kg.
-    pub fn mass(&self) -> f64 {
-        self.line_mass * self.length + self.tip_mass
-    }
-}
-
-/// Shape of a striking or struck body.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Shape {
-    /// Homogeneous sphere.
-    Sphere {
-        /// Radius in m.
-        radius: f64,
-    },
-    /// Compact body whose mass and tip radius are independent (section 4.2.3).
-    Compact {
-        /// Mass in kg.
-        mass: f64,
-        /// Radius of the spherical tip in m.
-        tip_radius: f64,
-    },
-    /// Beam with a tip mass, an elastic body; outer body only.
-    Bender(Bender),
-}
-
-impl Shape {
-    /// Mass in kg of the body made of `material` (of a bender: beam and tip).
-    pub fn mass(&self, material: &Material) -> f64 {
-        match *self {
-            Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * material.density,
-            Shape::Compact { mass, .. } => mass,
-            Shape::Bender(bender) => bender.mass(),
-        }
-    }
-
-    /// Radius of curvature at the contact in m.
-    pub fn tip_radius(&self) -> f64 {
-        match *self {
-            Shape::Sphere { radius } => radius,
-            Shape::Compact { tip_radius, .. } => tip_radius,
-            Shape::Bender(bender) => bender.tip_radius,
-        }
-    }
-}
-
-/// The outer body: strikes the plate from above.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Outer {
-    /// Shape.
-    #[serde(flatten)]
-    pub shape: Shape,
-    /// Material.
-    pub material: Material,
-    /// Speed towards the plate in m/s, positive; of a bender that of its tip when it strikes.
-    pub speed: f64,
-}
-
-/// The inner body: rests below the plate.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Inner {
-    /// Shape.
-    #[serde(flatten)]
-    pub shape: Shape,
-    /// Material.
-    pub material: Material,
-    /// Initial distance to the plate in m, not negative.
-    pub gap: f64,
-}
-
-/// Fluid on the inner side (section 3.5); absent = dry.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Fluid {
-    /// Dynamic viscosity in Pa s (at rest, if the fluid is shear-thinning).
-    pub viscosity: f64,
-    /// Density in kg/m^3.
-    pub density: f64,
-    /// Minimal gap of eq. (4) in m.
-    pub minimum_gap: f64,
-    /// Whether the squeeze film of eq. (3) acts.
-    pub squeeze_film: bool,
-    /// First wet over first dry eigenfrequency (section 3.5.3); 1 = no added mass.
-    pub added_mass_frequency_ratio: f64,
-    /// Modal damping ratio of the wet plate, replacing the dry one.
-    pub plate_damping_ratio: f64,
-    /// c_W of eq. (2); 0 = no drag.
-    pub drag_coefficient: f64,
-    /// Shear thinning of the viscosity; `None` = Newtonian.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shear_thinning: Option<ShearThinning>,
-}
-
-/// Carreau's law: mu = mu_inf + (mu_0 - mu_inf) (1 + (lambda rate)^2)^((n - 1)/2).
-///
-/// Between its two bounds it is the power law mu ~ rate^(n - 1).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ShearThinning {
-    /// mu_inf in Pa s; mu_0 is the fluid's `viscosity`.
-    pub infinite_shear_viscosity: f64,
-    /// lambda in s.
-    pub relaxation_time: f64,
-    /// n, 0 < n <= 1.
-    pub power_index: f64,
-}
-
 /// What strikes what.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -239,17 +80,22 @@ pub enum Setup {
     SealSeat(Box<SealSeat>),
 }
 
-/// Outer body, circular plate, inner body on one axis.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PlateImpact {
-    /// The plate.
-    pub plate: Plate,
-    /// The striking body.
-    pub outer: Outer,
-    /// The struck body.
-    pub inner: Inner,
-    /// The fluid, if any.
-    pub fluid: Option<Fluid>,
+impl Setup {
+    fn part(&self) -> &dyn Part {
+        match self {
+            Setup::PlateImpact(setup) => setup.as_ref(),
+            Setup::SealSeat(setup) => setup.as_ref(),
+        }
+    }
+}
+
+/// What is looked at in the bodies of any kind once they are read.
+trait Part {
+    /// Geometry that can't be.
+    fn collisions(&self) -> Vec<collision::Collision>;
+
+    /// Numbers that are admissible and yet hardly meant.
+    fn doubts(&self) -> Vec<String>;
 }
 
 /// Length of the run.

@@ -1,22 +1,15 @@
 //! Numbers that are admissible and yet hardly meant: a forgotten unit most often.
 
-use super::{Material, PlateImpact, Scene, Setup, Tolerance};
+use super::{Material, Scene, Tolerance};
 
 /// Densities of solids, from aerogel-filled foams to osmium, in kg/m^3.
 const DENSITY: [f64; 2] = [50.0, 23e3];
 /// Young's moduli from soft rubber to diamond, in Pa.
 const MODULUS: [f64; 2] = [1e5, 1.3e12];
-/// Sizes of what is struck and measured with these methods, in m.
-const LENGTH: [f64; 2] = [1e-6, 1.0];
 
 /// One sentence per doubtful number, none if there is none.
 pub fn doubts(scene: &Scene) -> Vec<String> {
-    let mut found = match &scene.setup {
-        Setup::PlateImpact(setup) => plate_impact(setup),
-        Setup::SealSeat(seat) => {
-            [&seat.seat.material, &seat.sphere.material].into_iter().flat_map(material).collect()
-        }
-    };
+    let mut found = scene.setup.part().doubts();
     for (model, tolerances) in &scene.tolerances {
         for (quantity, Tolerance { relative, .. }) in tolerances {
             if let Some(relative) = relative.filter(|r| *r > 1.0) {
@@ -31,31 +24,8 @@ pub fn doubts(scene: &Scene) -> Vec<String> {
     found
 }
 
-fn plate_impact(setup: &PlateImpact) -> Vec<String> {
-    let bodies = [&setup.plate.material, &setup.outer.material, &setup.inner.material];
-    let mut found: Vec<String> = Vec::new();
-    for doubt in bodies.into_iter().flat_map(material) {
-        if !found.contains(&doubt) {
-            found.push(doubt);
-        }
-    }
-    let lengths = [
-        ("plate.radius", setup.plate.radius),
-        ("plate.thickness", setup.plate.thickness),
-        ("outer's tip radius", setup.outer.shape.tip_radius()),
-        ("inner's tip radius", setup.inner.shape.tip_radius()),
-    ];
-    found.extend(lengths.into_iter().filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
-    if setup.plate.thickness > 4.0 * setup.plate.radius {
-        found.push(format!(
-            "plate.thickness is {:.3} times plate.radius: a rod rather than a plate; is one of them a diameter?",
-            setup.plate.thickness / setup.plate.radius
-        ));
-    }
-    found
-}
-
-fn material(material: &Material) -> Vec<String> {
+/// Doubts about a material.
+pub(super) fn material(material: &Material) -> Vec<String> {
     let name = |key: &str| format!("materials.{}.{key}", material.name);
     [
         outside(&name("density"), material.density, DENSITY, "kg/m^3"),
@@ -66,7 +36,8 @@ fn material(material: &Material) -> Vec<String> {
     .collect()
 }
 
-fn outside(name: &str, value: f64, [low, high]: [f64; 2], unit: &str) -> Option<String> {
+/// A doubt about a `value` in `unit` that lies outside its usual range.
+pub(super) fn outside(name: &str, value: f64, [low, high]: [f64; 2], unit: &str) -> Option<String> {
     (!(low..=high).contains(&value)).then(|| {
         format!(
             "{name} = {value:e} {unit} lies outside {low:e} to {high:e} {unit}; a number without unit is in {unit}"

@@ -1,13 +1,11 @@
 //! From the text of a scene file to a [`Scene`].
 
 use super::check::{Checked, Checker, Place, Values};
-use super::collision::collisions;
+use super::plate_impact::{plate_impact, reference};
 use super::problem::Collector;
-use super::read_seat::{seal_seat, seat_reference};
-use super::specification::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS, SCENE};
+use super::seal_seat::{seal_seat, seat_reference};
+use super::specification::SCENE;
 use super::*;
-use crate::analytical::cantilever;
-use crate::body::beam;
 use crate::kinds;
 use crate::{Error, Result};
 use std::io::Read;
@@ -121,7 +119,7 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap
 /// # Errors
 /// [`Error::Scene`] with every collision.
 pub(super) fn refuse_collisions(scene: &Scene, source_name: &str, text: &str) -> Result<()> {
-    let collisions = collisions(scene);
+    let collisions = scene.setup.part().collisions();
     if collisions.is_empty() {
         return Ok(());
     }
@@ -144,7 +142,7 @@ fn span_of(table: &DeTable, path: &str) -> Option<std::ops::Range<usize>> {
     }
 }
 
-fn refused(message: &str, help: &str) -> Error {
+pub(super) fn refused(message: &str, help: &str) -> Error {
     Error::Scene(miette::miette!(help = help.to_owned(), "{message}"))
 }
 
@@ -227,7 +225,7 @@ fn mismatch(key: &str, found: &Checked) -> Error {
     Error::Internal(format!("the scene's `{key}` was checked as {found:?}"))
 }
 
-fn unknown(key: &str, word: &str) -> Error {
+pub(super) fn unknown(key: &str, word: &str) -> Error {
     Error::Internal(format!("the scene's `{key}` = `{word}` has no type"))
 }
 
@@ -259,32 +257,6 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>)
     })
 }
 
-fn plate_impact(root: &Node, materials: &Node) -> Result<PlateImpact> {
-    let (plate, outer, inner) = (root.table("plate")?, root.table("outer")?, root.table("inner")?);
-    let plate = Plate {
-        radius: plate.number("radius")?,
-        thickness: plate.number("thickness")?,
-        edge: match plate.text("edge")? {
-            "clamped" => Edge::Clamped,
-            "simply-supported" => Edge::SimplySupported,
-            "free" => Edge::Free,
-            other => return Err(unknown("edge", other)),
-        },
-        material: material(materials, plate.text("material")?)?,
-        damping_ratio: plate.number_or("damping_ratio", 0.0)?,
-    };
-    Ok(PlateImpact {
-        fluid: root.optional_table("fluid")?.map(|f| fluid(&f, &plate)).transpose()?,
-        outer: striker(&outer, material(materials, outer.text("material")?)?)?,
-        inner: Inner {
-            shape: shape(&inner)?,
-            material: material(materials, inner.text("material")?)?,
-            gap: inner.number_or("gap", 0.0)?,
-        },
-        plate,
-    })
-}
-
 pub(super) fn material(materials: &Node, name: &str) -> Result<Material> {
     let material = materials.table(name)?;
     Ok(Material {
@@ -293,99 +265,6 @@ pub(super) fn material(materials: &Node, name: &str) -> Result<Material> {
         poisson_ratio: material.number("poisson_ratio")?,
         density: material.number("density")?,
         yield_strength: material.optional_number("yield_strength")?,
-    })
-}
-
-fn shape(body: &Node) -> Result<Shape> {
-    match body.text("kind")? {
-        "sphere" => Ok(Shape::Sphere { radius: body.number("radius")? }),
-        "compact" => {
-            Ok(Shape::Compact { mass: body.number("mass")?, tip_radius: body.number("tip_radius")? })
-        }
-        other => Err(unknown("kind", other)),
-    }
-}
-
-/// The outer body; the speed of a bender's tip follows from its drive.
-fn striker(outer: &Node, material: Material) -> Result<Outer> {
-    if outer.text("kind")? != "bender" {
-        return Ok(Outer { shape: shape(outer)?, material, speed: outer.number("speed")? });
-    }
-    let bender = bender(outer)?;
-    let speed = if outer.0.contains_key("speed") {
-        outer.number("speed")?
-    } else {
-        let torque = if outer.0.contains_key("torque") {
-            outer.number("torque")?
-        } else {
-            cantilever::moment_for_deflection(
-                bender.length,
-                bender.bending_stiffness,
-                outer.number("tip_deflection")?,
-            )
-        };
-        torque * beam::Release::new(&bender)?.speed_per_moment
-    };
-    Ok(Outer { shape: Shape::Bender(bender), material, speed })
-}
-
-fn bender(outer: &Node) -> Result<Bender> {
-    let (length, tip_mass) = (outer.number("length")?, outer.number("tip_mass")?);
-    let (bending_stiffness, line_mass) = if outer.0.contains_key("bending_stiffness") {
-        (outer.number("bending_stiffness")?, outer.number("line_mass")?)
-    } else {
-        let (frequency, stiffness) = (outer.number("first_frequency")?, outer.number("tip_stiffness")?);
-        let Some(mass) = cantilever::mass_from_frequency(frequency, stiffness, tip_mass) else {
-            let bound = cantilever::largest_tip_mass(frequency, stiffness);
-            return Err(refused(
-                &format!(
-                    "`outer.tip_mass` is {tip_mass} kg, but a massless beam of `outer.tip_stiffness` = {stiffness} N/m already swings below `outer.first_frequency` = {frequency} Hz with more than {bound:.6e} kg at its tip"
-                ),
-                "lower the tip mass or the frequency, or raise the stiffness",
-            ));
-        };
-        (cantilever::bending_stiffness(length, stiffness), mass / length)
-    };
-    Ok(Bender {
-        length,
-        bending_stiffness,
-        line_mass,
-        tip_mass,
-        tip_radius: outer.number("tip_radius")?,
-        discharge_time: outer.number_or("discharge_time", 0.0)?,
-    })
-}
-
-fn fluid(fluid: &Node, plate: &Plate) -> Result<Fluid> {
-    let shear_thinning = fluid.0.contains_key("power_index").then(|| -> Result<ShearThinning> {
-        Ok(ShearThinning {
-            infinite_shear_viscosity: fluid.number("infinite_shear_viscosity")?,
-            relaxation_time: fluid.number("relaxation_time")?,
-            power_index: fluid.number("power_index")?,
-        })
-    });
-    let shear_thinning = shear_thinning.transpose()?;
-    if let Some(law) = &shear_thinning
-        && law.infinite_shear_viscosity > fluid.number("viscosity")?
-    {
-        return Err(refused(
-            &format!(
-                "`fluid.infinite_shear_viscosity` is {} Pa*s, but it has to be at most `fluid.viscosity`, {} Pa*s",
-                law.infinite_shear_viscosity,
-                fluid.number("viscosity")?
-            ),
-            "a shear-thinning fluid is the thinner the faster it is sheared",
-        ));
-    }
-    Ok(Fluid {
-        viscosity: fluid.number("viscosity")?,
-        density: fluid.number("density")?,
-        minimum_gap: fluid.number("minimum_gap")?,
-        squeeze_film: !matches!(fluid.0.get("squeeze_film"), Some(Checked::Flag(false))),
-        added_mass_frequency_ratio: fluid.number_or("added_mass_frequency_ratio", 1.0)?,
-        plate_damping_ratio: fluid.number_or("plate_damping_ratio", plate.damping_ratio)?,
-        drag_coefficient: fluid.number_or("drag_coefficient", 0.0)?,
-        shear_thinning,
     })
 }
 
@@ -407,27 +286,4 @@ pub(super) fn element_order(settings: &Node) -> Option<u64> {
         Some(Checked::Count(order)) => Some(*order),
         _ => None,
     }
-}
-
-fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
-    let empty = Values::new();
-    let settings = settings.unwrap_or(Node(&empty));
-    let geometry = match settings.0.get("geometry") {
-        Some(Checked::Text(word)) if word == "solid" => Geometry::Solid,
-        _ => Geometry::Axisymmetric,
-    };
-    let default = if geometry == Geometry::Solid { DEFAULT_SOLID_ELEMENTS } else { DEFAULT_ELEMENTS };
-    let rigid = match settings.0.get("rigid") {
-        Some(Checked::Text(word)) if word == "outer" => Some(Rigid::Outer),
-        Some(Checked::Text(word)) if word == "inner" => Some(Rigid::Inner),
-        Some(Checked::Text(word)) if word == "both" => Some(Rigid::Both),
-        _ => None,
-    };
-    Ok(ReferenceSettings {
-        geometry,
-        elements_per_contact_radius: Some(settings.number_or("elements_per_contact_radius", default)?),
-        elements_per_ring_radius: None,
-        element_order: element_order(&settings),
-        rigid,
-    })
 }

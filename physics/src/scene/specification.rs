@@ -1,7 +1,8 @@
 //! Every key a scene file may have: one table that drives reading, checking and the JSON schema.
 
+use super::plate_impact::{FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE};
 use super::quantity::Dimension;
-use super::seat_specification::{ACTUATOR, INTENDED, SEAT, SEAT_REDUCED, SEAT_REFERENCE, SEATED_SPHERE};
+use super::seal_seat::{ACTUATOR, INTENDED, SEAT, SEAT_REDUCED, SEAT_REFERENCE, SEATED_SPHERE};
 
 /// Valid range of a number, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,7 +14,7 @@ pub(super) struct Bound {
 }
 
 impl Bound {
-    const POSITIVE: Bound = Bound { low: Some((0.0, false)), high: None };
+    pub(super) const POSITIVE: Bound = Bound { low: Some((0.0, false)), high: None };
     pub(super) const NOT_NEGATIVE: Bound = Bound { low: Some((0.0, true)), high: None };
     pub(super) const ANY: Bound = Bound { low: None, high: None };
 
@@ -130,7 +131,7 @@ pub(super) const fn optional(key: &'static str, kind: Kind, doc: &'static str) -
     Field { key, kind, required: false, only: &[], alternative: None, doc }
 }
 
-const fn only(kinds: &'static [&'static str], field: Field) -> Field {
+pub(super) const fn only(kinds: &'static [&'static str], field: Field) -> Field {
     Field { only: kinds, ..field }
 }
 
@@ -151,10 +152,7 @@ pub(super) const fn pure(bound: Bound) -> Kind {
     Kind::Quantity(Dimension::NONE, bound)
 }
 
-/// Smallest and largest number of elements across the contact radius.
-const ELEMENTS: Bound = Bound { low: Some((2.0, true)), high: Some((64.0, true)) };
 const POISSON: Bound = Bound { low: Some((-1.0, false)), high: Some((0.5, false)) };
-const FRACTION: Bound = Bound { low: Some((0.0, false)), high: Some((1.0, true)) };
 
 /// The names of the reduced models.
 pub(super) const MODELS: [Choice; 3] = [choice("A"), choice("B"), choice("C")];
@@ -206,6 +204,11 @@ pub(super) static SCENE: [Field; 17] = [
 pub(super) static TOLERANCES: Field =
     optional("tolerances", Kind::Tolerances, "Tolerances of the gate, by reduced model and quantity");
 
+pub(super) const TIP_RADIUS: Field =
+    required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");
+pub(super) const BODY_MATERIAL: Field =
+    required("material", Kind::Material, "Material of the body, a name under [materials]");
+
 static MATERIAL: [Field; 4] = [
     required("youngs_modulus", positive(Dimension::PRESSURE), "Young's modulus E"),
     required("poisson_ratio", pure(POISSON), "Poisson's ratio nu"),
@@ -217,179 +220,11 @@ static MATERIAL: [Field; 4] = [
     ),
 ];
 
-static PLATE: [Field; 5] = [
-    required("radius", positive(Dimension::LENGTH), "Radius R of the plate"),
-    required("thickness", positive(Dimension::LENGTH), "Thickness t of the plate"),
-    required(
-        "edge",
-        Kind::Choice(&[choice("clamped"), choice("simply-supported"), choice("free")]),
-        "Support of the rim",
-    ),
-    required("material", Kind::Material, "Material of the plate, a name under [materials]"),
-    optional("damping_ratio", pure(Bound::NOT_NEGATIVE), "Modal damping ratio of every mode; 0 = undamped"),
-];
-
-const SHAPE_KIND: &str = "Shape of the body";
-const SPHERE_RADIUS: Field =
-    only(&["sphere"], required("radius", positive(Dimension::LENGTH), "Radius of the sphere"));
-const COMPACT_MASS: Field =
-    only(&["compact"], required("mass", positive(Dimension::MASS), "Mass of the body"));
-pub(super) const TIP_RADIUS: Field =
-    required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");
-pub(super) const BODY_MATERIAL: Field =
-    required("material", Kind::Material, "Material of the body, a name under [materials]");
-
-/// A key of the bender (section 4.3 of the paper).
-const fn bender(key: &'static str, dimension: Dimension, doc: &'static str) -> Field {
-    only(&["bender"], required(key, positive(dimension), doc))
-}
-
-/// A key of one of the two ways to give the bender's beam.
-const fn beam(set: &'static str, field: Field) -> Field {
-    one_way(Some("bender"), "the beam's stiffness and mass", set, field)
-}
-
-/// A key of one of the ways to give how far the bender is bent before it is released.
-const fn drive(set: &'static str, field: Field) -> Field {
-    one_way(Some("bender"), "the drive", set, field)
-}
-
-static OUTER: [Field; 15] = [
-    required("kind", Kind::Choice(&[choice("sphere"), choice("compact"), choice("bender")]), SHAPE_KIND),
-    SPHERE_RADIUS,
-    COMPACT_MASS,
-    only(&["compact", "bender"], TIP_RADIUS),
-    bender("length", Dimension::LENGTH, "Length of the beam"),
-    bender("tip_mass", Dimension::MASS, "Point mass at the tip of the beam"),
-    beam(
-        "section",
-        bender("bending_stiffness", Dimension::BENDING_STIFFNESS, "Bending stiffness E I of the beam"),
-    ),
-    beam("section", bender("line_mass", Dimension::LINE_MASS, "Mass of the beam per length, rho A")),
-    beam(
-        "measured",
-        bender("first_frequency", Dimension::FREQUENCY, "Measured first frequency with the tip mass"),
-    ),
-    beam(
-        "measured",
-        bender("tip_stiffness", Dimension::STIFFNESS, "Measured force at the tip per deflection"),
-    ),
-    drive(
-        "torque",
-        bender("torque", Dimension::TORQUE, "Bending moment, uniform along the beam, before the release"),
-    ),
-    drive(
-        "deflection",
-        bender("tip_deflection", Dimension::LENGTH, "Deflection of the tip before the release"),
-    ),
-    only(
-        &["bender"],
-        optional(
-            "discharge_time",
-            Kind::Quantity(Dimension::TIME, Bound::NOT_NEGATIVE),
-            "Time constant with which the drive's moment decays after the release; absent = it is gone at once",
-        ),
-    ),
-    BODY_MATERIAL,
-    drive(
-        "speed",
-        required("speed", positive(Dimension::SPEED), "Speed towards the plate; of a bender that of its tip"),
-    ),
-];
-
-static INNER: [Field; 6] = [
-    required("kind", Kind::Choice(&[choice("sphere"), choice("compact")]), SHAPE_KIND),
-    SPHERE_RADIUS,
-    COMPACT_MASS,
-    only(&["compact"], TIP_RADIUS),
-    BODY_MATERIAL,
-    optional(
-        "gap",
-        Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
-        "Initial distance to the plate; absent = 0",
-    ),
-];
-
-/// A key of the shear-thinning viscosity law.
-const fn thinning(key: &'static str, kind: Kind, doc: &'static str) -> Field {
-    one_way(None, "shear thinning", "shear thinning", optional(key, kind, doc))
-}
-
-static FLUID: [Field; 10] = [
-    required("viscosity", positive(Dimension::VISCOSITY), "Dynamic viscosity"),
-    required("density", positive(Dimension::DENSITY), "Density of the fluid"),
-    required("minimum_gap", positive(Dimension::LENGTH), "Minimal gap of eq. (4)"),
-    optional("squeeze_film", Kind::Flag, "Whether the squeeze film of eq. (3) acts; absent = true"),
-    optional(
-        "added_mass_frequency_ratio",
-        pure(FRACTION),
-        "First wet over first dry eigenfrequency; absent = 1, no added mass",
-    ),
-    optional(
-        "plate_damping_ratio",
-        pure(Bound::NOT_NEGATIVE),
-        "Modal damping ratio of the wet plate; absent = that of the dry plate",
-    ),
-    optional("drag_coefficient", pure(Bound::NOT_NEGATIVE), "c_W of eq. (2); absent = 0, no drag"),
-    thinning(
-        "infinite_shear_viscosity",
-        positive(Dimension::VISCOSITY),
-        "Carreau's law: viscosity at high shear rates, `viscosity` being that at rest; absent = Newtonian",
-    ),
-    thinning("relaxation_time", positive(Dimension::TIME), "Carreau's law: time lambda"),
-    thinning("power_index", pure(FRACTION), "Carreau's law: power n"),
-];
-
 static RUN: [Field; 1] = [optional(
     "end_time",
     positive(Dimension::TIME),
     "End time after the first touch; absent = until no further contact is possible",
 )];
-
-/// Most modes of a plate that a model is built with: with so many the bodies of model C take a quarter of a minute, with twice as many ten
-/// times as long.
-pub const MAX_MODES: usize = 256;
-
-static REDUCED: [Field; 2] = [
-    optional("model", Kind::Choice(&MODELS), "The model to run when the command line names none"),
-    optional("modes", Kind::Count(1, MAX_MODES as u64), "Number of modes of the plate"),
-];
-
-static REFERENCE: [Field; 4] = [
-    optional(
-        "geometry",
-        Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
-        "Geometry of the elements; absent = axisymmetric",
-    ),
-    optional(
-        "elements_per_contact_radius",
-        pure(ELEMENTS),
-        "Elements across the contact radius at `paper` resolution; absent = 12, with solid geometry 3",
-    ),
-    only(
-        &["solid"],
-        optional(
-            "element_order",
-            Kind::Count(1, 2),
-            "Order of the tetrahedra: 1 linear, 2 quadratic; absent = 2",
-        ),
-    ),
-    only(
-        &["solid"],
-        optional(
-            "rigid",
-            Kind::Choice(&[choice("none"), choice("outer"), choice("inner"), choice("both")]),
-            "Spheres that are rigid; absent = none",
-        ),
-    ),
-];
-
-/// Default of `reference.geometry`.
-pub(super) const DEFAULT_GEOMETRY: &str = "axisymmetric";
-/// Default of `reference.elements_per_contact_radius` with axisymmetric geometry (bilinear elements).
-pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;
-/// The same with solid geometry (quadratic elements).
-pub(super) const DEFAULT_SOLID_ELEMENTS: f64 = 3.0;
 
 /// The SI unit of the quantity at `path` in a scene's JSON form, such as `plate.material.density`.
 pub fn unit_of(path: &str) -> Option<&'static str> {

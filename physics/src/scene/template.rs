@@ -4,7 +4,6 @@
 //! costs a few microseconds.
 
 use super::check::{Checked, Values};
-use super::collision::collisions;
 use super::quantity::{self, Dimension, QuantityError};
 use super::read::{assemble, checked, read_text, refuse_collisions};
 use super::specification::{self, Kind, SCENE};
@@ -192,7 +191,7 @@ impl Template {
             set(&mut values, &field.keys, checked);
         }
         let scene = assemble(&values, self.tolerances.clone()).map_err(|e| Rejected(e.to_string()))?;
-        match collisions(&scene).into_iter().next() {
+        match scene.setup.part().collisions().into_iter().next() {
             Some(collision) => Err(Rejected(collision.message)),
             None => Ok(scene),
         }

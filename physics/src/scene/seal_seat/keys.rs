@@ -1,7 +1,7 @@
 //! The keys of a seal-seat scene, part of the table in `specification.rs`.
 
-use super::quantity::Dimension;
-use super::specification::{
+use crate::scene::quantity::Dimension;
+use crate::scene::specification::{
     BODY_MATERIAL, Bound, Field, Kind, TIP_RADIUS, choice, one_way, optional, positive, pure, required,
 };
 
@@ -15,7 +15,7 @@ const fn notch(key: &'static str, doc: &'static str) -> Field {
     one_way(None, "the notch", "notch", optional(key, positive(Dimension::LENGTH), doc))
 }
 
-pub(super) static SEAT: [Field; 14] = [
+pub(in crate::scene) static SEAT: [Field; 14] = [
     required("material", Kind::Material, "Material of the whole piece, a name under [materials]"),
     required("membrane_radius", positive(Dimension::LENGTH), "Radius of the membrane, whose rim is clamped"),
     required("membrane_thickness", positive(Dimension::LENGTH), "Thickness of the membrane, from z = 0 up"),
@@ -44,7 +44,7 @@ pub(super) static SEAT: [Field; 14] = [
     notch("notch_floor", "z of the slot's floor"),
 ];
 
-pub(super) static SEATED_SPHERE: [Field; 4] = [
+pub(in crate::scene) static SEATED_SPHERE: [Field; 4] = [
     required("radius", positive(Dimension::LENGTH), "Radius of the sphere"),
     BODY_MATERIAL,
     optional("mass", positive(Dimension::MASS), "Mass of the sphere; absent = that of a full one"),
@@ -58,7 +58,7 @@ pub(super) static SEATED_SPHERE: [Field; 4] = [
 /// Largest number of tips of the actuator.
 const MOST_TIPS: usize = 8;
 
-pub(super) static ACTUATOR: [Field; 4] = [
+pub(in crate::scene) static ACTUATOR: [Field; 4] = [
     required("mass", positive(Dimension::MASS), "Mass of the actuator"),
     required("speed", positive(Dimension::SPEED), "Speed towards the seat"),
     TIP_RADIUS,
@@ -69,13 +69,13 @@ pub(super) static ACTUATOR: [Field; 4] = [
     ),
 ];
 
-pub(super) static INTENDED: [Field; 1] = [required(
+pub(in crate::scene) static INTENDED: [Field; 1] = [required(
     "angle",
     Kind::Quantity(Dimension::ANGLE, HALF_TURN),
     "Direction of the sphere's flight against z, positive towards +x",
 )];
 
-pub(super) static SEAT_REDUCED: [Field; 2] = [
+pub(in crate::scene) static SEAT_REDUCED: [Field; 2] = [
     optional("model", Kind::Choice(&[choice("C")]), "The model to run: only C knows this kind"),
     optional("modes", Kind::Count(1, 1024), "Number of modes of the seat"),
 ];
@@ -83,7 +83,7 @@ pub(super) static SEAT_REDUCED: [Field; 2] = [
 /// Smallest and largest number of elements across the ring's radius.
 const RING_ELEMENTS: Bound = Bound { low: Some((1.0, true)), high: Some((64.0, true)) };
 
-pub(super) static SEAT_REFERENCE: [Field; 2] = [
+pub(in crate::scene) static SEAT_REFERENCE: [Field; 2] = [
     optional(
         "element_order",
         Kind::Count(1, 2),
@@ -97,4 +97,4 @@ pub(super) static SEAT_REFERENCE: [Field; 2] = [
 ];
 
 /// Default of `reference.elements_per_ring_radius`.
-pub(super) const DEFAULT_RING_ELEMENTS: f64 = 10.0;
+pub(in crate::scene) const DEFAULT_RING_ELEMENTS: f64 = 10.0;

@@ -1,13 +1,14 @@
 //! From the checked values of a seal-seat scene to its types.
 
-use super::check::{Checked, Values};
-use super::read::{Node, element_order, material};
-use super::seat_specification::DEFAULT_RING_ELEMENTS;
-use super::{Actuator, Geometry, Notch, ReferenceSettings, SealSeat, Seat, SeatedSphere, Shape, SphereBody};
+use super::keys::DEFAULT_RING_ELEMENTS;
+use super::{Actuator, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
 use crate::Result;
+use crate::scene::check::{Checked, Values};
+use crate::scene::read::{Node, element_order, material};
+use crate::scene::{Geometry, ReferenceSettings, Shape};
 
 /// Seat, sphere, actuator and the intended direction.
-pub(super) fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
+pub(in crate::scene) fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
     let (seat, sphere, actuator) = (root.table("seat")?, root.table("sphere")?, root.table("actuator")?);
     let notch = seat.0.contains_key("notch_width").then(|| -> Result<Notch> {
         Ok(Notch { width: seat.number("notch_width")?, floor: seat.number("notch_floor")? })
@@ -50,7 +51,7 @@ pub(super) fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
 }
 
 /// Settings of the reference of a seal seat.
-pub(super) fn seat_reference(settings: Option<Node>) -> Result<ReferenceSettings> {
+pub(in crate::scene) fn seat_reference(settings: Option<Node>) -> Result<ReferenceSettings> {
     let empty = Values::new();
     let settings = settings.unwrap_or(Node(&empty));
     Ok(ReferenceSettings {

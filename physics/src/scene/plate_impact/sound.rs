@@ -1,0 +1,53 @@
+//! Plate impacts that can't be, and numbers that are hardly meant.
+
+use super::PlateImpact;
+use crate::scene::Part;
+use crate::scene::collision::{Collision, Rule, broken};
+use crate::scene::plausibility::{material, outside};
+
+/// Least and largest thickness of a plate over its radius.
+const SLENDERNESS: [f64; 2] = [1e-6, 100.0];
+/// Sizes of what is struck and measured with these methods, in m.
+const LENGTH: [f64; 2] = [1e-6, 1.0];
+
+impl Part for PlateImpact {
+    /// A plate that is no plate: its waves and its contacts live on scales that no run brings together.
+    fn collisions(&self) -> Vec<Collision> {
+        let plate = &self.plate;
+        let ratio = plate.thickness / plate.radius;
+        let [least, most] = SLENDERNESS;
+        broken(vec![Rule {
+            fields: vec!["plate.thickness", "plate.radius"],
+            holds: (least..=most).contains(&ratio),
+            message: format!(
+                "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it has to be {least:e} to {most} times"
+            ),
+            help: "is one of them in the wrong unit?",
+        }])
+    }
+
+    fn doubts(&self) -> Vec<String> {
+        let setup = self;
+        let bodies = [&setup.plate.material, &setup.outer.material, &setup.inner.material];
+        let mut found: Vec<String> = Vec::new();
+        for doubt in bodies.into_iter().flat_map(material) {
+            if !found.contains(&doubt) {
+                found.push(doubt);
+            }
+        }
+        let lengths = [
+            ("plate.radius", setup.plate.radius),
+            ("plate.thickness", setup.plate.thickness),
+            ("outer's tip radius", setup.outer.shape.tip_radius()),
+            ("inner's tip radius", setup.inner.shape.tip_radius()),
+        ];
+        found.extend(lengths.into_iter().filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
+        if setup.plate.thickness > 4.0 * setup.plate.radius {
+            found.push(format!(
+            "plate.thickness is {:.3} times plate.radius: a rod rather than a plate; is one of them a diameter?",
+            setup.plate.thickness / setup.plate.radius
+        ));
+        }
+        found
+    }
+}
