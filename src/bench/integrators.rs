@@ -4,7 +4,8 @@ use super::{Bench, OURS, Settings, WorkPrecision, timed};
 use crate::dynamics::explicit_runge_kutta::{
     self as runge_kutta, DORMAND_PRINCE_5, DORMAND_PRINCE_8, Equations, Tolerances,
 };
-use crate::dynamics::integrator::{Options, integrate};
+use crate::dynamics::integration::Options;
+use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::{INNER, System};
 use crate::error::Result;
 use crate::kinds::plate_impact::reduced::Reduced;
@@ -95,7 +96,7 @@ fn peers(settings: &Settings) -> Result<Vec<(String, Command)>> {
 
 /// A run of a peer.
 #[derive(Deserialize)]
-struct Run {
+struct PeerRun {
     solver: String,
     tolerance: f64,
     inner_rate: f64,
@@ -127,7 +128,7 @@ fn problem(
 }
 
 /// All runs of a peer, or why there are none.
-fn ask(mut command: Command, problem: &serde_json::Value) -> std::result::Result<Vec<Run>, String> {
+fn ask(mut command: Command, problem: &serde_json::Value) -> std::result::Result<Vec<PeerRun>, String> {
     let mut child = command
         // one core, as this program's integrator
         .envs([("OMP_NUM_THREADS", "1"), ("OPENBLAS_NUM_THREADS", "1")])

@@ -3,7 +3,7 @@
 use super::between::Watch;
 use crate::dynamics::assured::differences;
 use crate::dynamics::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};
-use crate::dynamics::integrator::Integration;
+use crate::dynamics::integration::Integration;
 use crate::dynamics::system::{INNER, System};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 

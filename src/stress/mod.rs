@@ -9,9 +9,9 @@ mod independent;
 pub use draw::{Case, UnitPlates, Wet};
 
 use crate::dynamics::assured::assured;
-use crate::dynamics::integrator::{Integration, Options, integrate};
+use crate::dynamics::integrate;
+use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::system::System;
-use crate::dynamics::wet;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::result::SCHEMA_VERSION;
@@ -191,11 +191,7 @@ impl Solved {
 /// Solves an impact until `end_time` s as the program does, and looks at what has to hold; `names` are those of its values.
 fn solve(system: &System, fluid: Option<&FluidForces>, end_time: f64, names: &[&'static str; 5]) -> Solved {
     let options = Options { tolerance: TOLERANCE, end_time: Some(end_time), sample_interval: None };
-    let result = assured(&options, system, |options| match fluid {
-        None => integrate(system, options),
-        Some(fluid) => wet::integrate(system, fluid, options),
-    });
-    match result {
+    match assured(&options, system, |options| integrate(system, fluid, options)) {
         Ok(result) => judge(system, fluid, end_time, names, &result),
         Err(Error::BeyondModel(_)) => Solved { beyond_model: true, ..Solved::default() },
         Err(error) => Solved { reason: Some(error.to_string()), ..Solved::default() },
@@ -256,7 +252,7 @@ mod tests {
 
     /// Largest difference of a velocity to the solution at the tightest tolerance, over the impact speed.
     fn error(case: &Case, result: &Integration) -> f64 {
-        let exact = integrate(&case.system, &options(case, 1e-12)).unwrap();
+        let exact = integrate(&case.system, None, &options(case, 1e-12)).unwrap();
         let apart = |i: usize| (result.velocity[i] - exact.velocity[i]).abs() / case.system.speed;
         apart(0).max(apart(1))
     }
@@ -265,7 +261,7 @@ mod tests {
     #[test]
     fn a_short_touch_is_not_passed() {
         let case = draw(242_304);
-        let result = integrate(&case.system, &options(&case, 1e-7)).unwrap();
+        let result = integrate(&case.system, None, &options(&case, 1e-7)).unwrap();
         assert_eq!(result.contacts[1].contacts, 9);
         assert!(error(&case, &result) < 1e-6, "{:e}", error(&case, &result));
     }
@@ -275,9 +271,9 @@ mod tests {
     fn amplified_errors_are_estimated_and_mended() {
         let case = draw(236_931);
         let (system, asked) = (&case.system, options(&case, 1e-7));
-        let plain = integrate(system, &asked).unwrap();
+        let plain = integrate(system, None, &asked).unwrap();
         assert!(error(&case, &plain) > 1e-5 && plain.error_estimate.is_none());
-        let sure = assured(&asked, system, |options| integrate(system, options)).unwrap();
+        let sure = assured(&asked, system, |options| integrate(system, None, options)).unwrap();
         let estimate = sure.error_estimate.unwrap();
         assert!(error(&case, &sure) <= estimate && estimate <= 1e-6, "{estimate:e}");
     }
@@ -286,7 +282,7 @@ mod tests {
     #[test]
     fn energy_made_by_many_steps_is_bounded() {
         let case = draw(100_019);
-        let result = integrate(&case.system, &options(&case, 1e-7)).unwrap();
+        let result = integrate(&case.system, None, &options(&case, 1e-7)).unwrap();
         assert!(result.energy_gained < 1e-6, "{:e}", result.energy_gained);
     }
 
@@ -296,9 +292,8 @@ mod tests {
     fn a_stiff_film_over_a_soft_plate_costs_few_steps() {
         let case = draw(1_000_823);
         let wet = case.wet.as_ref().unwrap();
-        let solve = |tolerance| {
-            wet::integrate(&wet.system, wet.forces.as_ref().unwrap(), &options(&case, tolerance)).unwrap()
-        };
+        let solve =
+            |tolerance| integrate(&wet.system, wet.forces.as_ref(), &options(&case, tolerance)).unwrap();
         let (result, finer) = (solve(1e-7), solve(1e-9));
         assert!(result.steps < 3000, "{} steps", result.steps);
         assert!(result.momentum_residual < 1e-10 && result.energy_gained < 1e-6);
@@ -312,7 +307,7 @@ mod tests {
     fn a_plate_that_bends_around_the_inner_body_is_refused() {
         let case = draw(4_000_352);
         let wet = case.wet.as_ref().unwrap();
-        let solved = wet::integrate(&wet.system, wet.forces.as_ref().unwrap(), &options(&case, 1e-7));
+        let solved = integrate(&wet.system, wet.forces.as_ref(), &options(&case, 1e-7));
         assert!(matches!(solved, Err(Error::BeyondModel(_))), "{solved:?}");
         assert_eq!(run(1, 4_000_352, &|| ()).unwrap().beyond_model, [4_000_352]);
     }

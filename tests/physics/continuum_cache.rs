@@ -3,7 +3,8 @@
 
 use assert_cmd::Command;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, sphere_residual};
-use impactcheck::dynamics::integrator::{Options, integrate};
+use impactcheck::dynamics::integration::Options;
+use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Model, Scene, Shape, resolve};

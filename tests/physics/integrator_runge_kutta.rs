@@ -5,7 +5,8 @@ use crate::common::scaled_plate;
 use crate::runge_kutta;
 use approx::assert_relative_eq;
 use impactcheck::body::kirchhoff;
-use impactcheck::dynamics::integrator::{Integration, Options, integrate};
+use impactcheck::dynamics::integration::{Integration, Options};
+use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
 use impactcheck::scene::{Edge, PlateImpact, Shape};
 

@@ -5,7 +5,8 @@ use crate::common;
 use approx::assert_relative_eq;
 use impactcheck::analytical::{circular_plate::rigidity, zener};
 use impactcheck::body::kirchhoff;
-use impactcheck::dynamics::integrator::{Options, integrate};
+use impactcheck::dynamics::integration::Options;
+use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
 
 /// Restitution and force peak of the reduced model and of Zener's equation, and Zener's lambda.

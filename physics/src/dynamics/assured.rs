@@ -6,7 +6,7 @@
 //! single steps can't know that. Two solutions with tolerances apart can: their difference is the error of the less exact of
 //! the two.
 
-use super::integrator::{Integration, Options};
+use super::integration::{Integration, Options};
 use super::step_bounds::{Bounds, least_force, least_impulse};
 use super::system::System;
 use crate::error::Result;

@@ -4,75 +4,24 @@ mod judged;
 
 use self::judged::Judged;
 use super::bank::in_blocks;
-use super::closing::{Closing, FluidAccount};
 use super::collocation::{Collocation, POINTS, STAGES};
 use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse};
 use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
+use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
 use super::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale};
 use super::system::System;
 use crate::error::{Error, Result};
-use crate::result::{History, Losses};
 use std::sync::LazyLock;
 use wide::f64x4;
-
-/// What the user may choose about the integration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
-    /// Bound aimed at for the relative error of the efficiency from the time integration.
-    pub tolerance: f64,
-    /// End of the run in s; `None` = when no further contact is possible.
-    pub end_time: Option<f64>,
-    /// Largest distance of samples in s; `None` = no history is kept.
-    pub sample_interval: Option<f64>,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { tolerance: 1e-7, end_time: None, sample_interval: None }
-    }
-}
-
-/// Result of the integration.
-#[derive(Debug, Clone)]
-pub struct Integration {
-    /// Velocities of outer and inner body at the end in m/s, signed along z.
-    pub velocity: [f64; 2],
-    /// Accounts of both contacts.
-    pub contacts: [ContactLedger; 2],
-    /// Energy that no strain energy, motion or damping accounts for, over the initial energy.
-    pub energy_residual: f64,
-    /// The same with its sign: positive where energy came out of nothing.
-    pub energy_gained: f64,
-    /// Largest momentum no impulse accounts for, over the initial momentum.
-    pub momentum_residual: f64,
-    /// Energy that went into damping and into the fluid.
-    pub losses: Losses,
-    /// Accepted steps.
-    pub steps: u64,
-    /// Estimated error of the velocities from the time integration, over the impact speed, if it was looked for
-    /// ([`crate::dynamics::assured`]).
-    pub error_estimate: Option<f64>,
-    /// Course over time, if asked for.
-    pub history: Option<History>,
-}
-
-impl Integration {
-    /// Whether the run ended while bodies touched: what the impact comes to is then open.
-    pub fn is_cut(&self) -> bool {
-        self.contacts.iter().any(|contact| contact.closed)
-    }
-}
 
 /// Steps after which a run counts as endless.
 const MAX_STEPS: u64 = 5_000_000;
 /// Step lengths are the base length times 2^-level, level in this range.
 const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
-/// Impulse of a contact, over the initial momentum, below which it is not counted.
-pub(super) const NEGLIGIBLE: f64 = 1e-8;
 /// Share of a force's admissible defect at which the sweeps may end.
 const SETTLED: f64 = 0.1;
 /// Level of the first step after a touch.
@@ -85,11 +34,11 @@ const START_LEVEL: i32 = 4;
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
     let recorder = options.sample_interval.map(|interval| Recorder::new(system, &COLLOCATION, interval));
-    Run::new(system, &COLLOCATION, options, recorder).go()
+    Stepper::new(system, &COLLOCATION, options, recorder).go()
 }
 
 /// State of a run.
-struct Run<'a> {
+struct Stepper<'a> {
     solver: StepSolver<'a>,
     recorder: Option<Recorder<'a>>,
     end_time: f64,
@@ -115,7 +64,7 @@ fn flat(blocks: &[f64x4]) -> &[f64] {
     bytemuck::cast_slice(blocks)
 }
 
-impl<'a> Run<'a> {
+impl<'a> Stepper<'a> {
     fn new(
         system: &'a System,
         collocation: &'a Collocation,

@@ -4,7 +4,6 @@ pub mod assured;
 mod bank;
 mod centre;
 mod clearance;
-mod closing;
 pub mod collocation;
 mod contact_forces;
 mod contact_ledger;
@@ -12,6 +11,7 @@ pub mod duhamel;
 pub mod explicit_runge_kutta;
 mod force_peak;
 mod free_flight;
+pub mod integration;
 pub mod integrator;
 mod ladder;
 mod ledger_check;
@@ -25,3 +25,22 @@ pub mod wet;
 pub use contact_ledger::ContactLedger;
 pub use ledger_check::ledger_check;
 pub use outer_body::OuterBody;
+
+use crate::error::Result;
+use integration::{Integration, Options};
+
+/// Integrates the impact of `system`, in a fluid that acts by forces or without.
+///
+/// # Errors
+/// [`crate::Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does not end;
+/// [`crate::Error::BeyondModel`] if the plate bends around the inner body in a film.
+pub fn integrate(
+    system: &system::System,
+    fluid: Option<&wet::FluidForces>,
+    options: &Options,
+) -> Result<Integration> {
+    match fluid {
+        None => integrator::integrate(system, options),
+        Some(fluid) => wet::integrate(system, fluid, options),
+    }
+}

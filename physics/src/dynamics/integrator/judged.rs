@@ -1,6 +1,6 @@
 //! What a solved step is wrong by, and where it should have ended.
 
-use super::Run;
+use super::Stepper;
 use crate::dynamics::clearance::touch_between;
 use crate::dynamics::collocation::{Collocation, POINTS, Points, crossing};
 use crate::dynamics::contact_forces::Course;
@@ -26,7 +26,7 @@ impl Judged {
     }
 }
 
-impl Run<'_> {
+impl Stepper<'_> {
     /// What `trial` is wrong by, with the momenta `scale` (see [`momentum_scale`]) and the excess of its energy.
     pub(super) fn judge(&self, trial: &Course, scale: [f64; 2], energy_excess: f64) -> Judged {
         let (collocation, h) = (self.solver.collocation, trial.h);

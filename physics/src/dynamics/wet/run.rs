@@ -8,12 +8,11 @@ use self::ledger::StepAccount;
 use super::guess::StepForces;
 use super::solve::{END, Trial, Wet};
 use super::table::Table;
-use crate::dynamics::closing::{Closing, FluidAccount};
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
 use crate::dynamics::contact_ledger::{ContactLedger, StepCourse};
 use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
-use crate::dynamics::integrator::{Integration, NEGLIGIBLE, Options};
+use crate::dynamics::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::step_bounds::{Bounds, EnergyAccount, momentum_scale};
 use crate::dynamics::system::{System, dot};
@@ -28,6 +27,7 @@ const MAX_STEPS: u64 = 300_000;
 const LAST_LEVEL: i32 = 44;
 /// Longest step without a touch in sight, as a power of 2 of the base length.
 const LONGEST: i32 = -8;
+
 /// Integrates the impact of `system` in a `fluid`.
 ///
 /// # Errors
@@ -45,7 +45,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         loads: vec![FluidLoad::default(); STAGES],
         ..Trial::default()
     };
-    let mut run = Run {
+    let mut stepper = Stepper {
         wet: Wet { system, fluid },
         collocation: &collocation,
         recorder,
@@ -69,20 +69,20 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
         steps: 0,
     };
-    run.go()?;
+    stepper.go()?;
     let closing = Closing {
         system,
-        q: &run.q,
-        v: &run.v,
-        stored: system.stored_energy(run.force, run.local),
-        contacts: run.contacts,
-        fluid: run.booked,
-        steps: run.steps,
+        q: &stepper.q,
+        v: &stepper.v,
+        stored: system.stored_energy(stepper.force, stepper.local),
+        contacts: stepper.contacts,
+        fluid: stepper.booked,
+        steps: stepper.steps,
     };
-    Ok(closing.integration(run.recorder.map(Recorder::finish)))
+    Ok(closing.integration(stepper.recorder.map(Recorder::finish)))
 }
 
-struct Run<'a> {
+struct Stepper<'a> {
     wet: Wet<'a>,
     collocation: &'a Collocation<RADAU_POINTS>,
     recorder: Option<Recorder<'a, RADAU_POINTS>>,
@@ -109,7 +109,7 @@ struct Run<'a> {
     steps: u64,
 }
 
-impl Run<'_> {
+impl Stepper<'_> {
     fn go(&mut self) -> Result<()> {
         let system = self.wet.system;
         let mut touching = true;
@@ -300,7 +300,7 @@ impl Run<'_> {
     /// Books the step of `h` s just solved.
     ///
     /// # Errors
-    /// [`Error::BeyondModel`] as [`Run::check_overlap`].
+    /// [`Error::BeyondModel`] as [`Stepper::check_overlap`].
     fn accept(&mut self, h: f64, account: &StepAccount) -> Result<()> {
         self.check_overlap(h, |overlap| overlap.depth > self.wet.fluid.minimum_gap())?;
         if let Some(recorder) = &mut self.recorder {

@@ -15,7 +15,7 @@ use super::trials::{Cut, Lack, RUNGS, Trials};
 use super::truncation::of_continuum;
 use super::validity;
 use crate::dynamics::assured;
-use crate::dynamics::integrator::Options;
+use crate::dynamics::integration::Options;
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::result::{Candidate, Choice};

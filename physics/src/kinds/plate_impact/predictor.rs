@@ -1,6 +1,7 @@
 //! A first look at an impact: contact patches, force peaks and how quick the contacts are.
 
-use crate::dynamics::integrator::{Options, integrate};
+use crate::dynamics::integration::Options;
+use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
 use crate::error::Result;
 

@@ -9,10 +9,10 @@ use super::truncation;
 use crate::body::cache::Cache;
 use crate::body::kirchhoff::UnitPlates;
 use crate::dynamics::assured::{self, assured};
-use crate::dynamics::integrator::{Integration, Options, integrate};
+use crate::dynamics::integrate;
+use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::ledger_check;
 use crate::dynamics::system::System;
-use crate::dynamics::wet;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
@@ -167,10 +167,7 @@ impl Reduced {
 
     fn integrate(&self, options: &Options) -> Result<Integration> {
         let system = &self.system;
-        assured(options, system, |options| match &self.fluid {
-            None => integrate(system, options),
-            Some(fluid) => wet::integrate(system, fluid, options),
-        })
+        assured(options, system, |options| integrate(system, self.fluid.as_ref(), options))
     }
 
     /// Runs the impact without keeping its history; `tolerance` bounds the efficiency's relative error from the

@@ -1,6 +1,6 @@
 //! What the results of an impact through a plate are called, and the views of them that the kind itself works with.
 
-use crate::dynamics::integrator::Integration;
+use crate::dynamics::integration::Integration;
 pub use crate::dynamics::recorder::CURVES;
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};

@@ -14,9 +14,9 @@ use crate::body::continuum::ContinuumPlate;
 use crate::body::layer::Waves;
 use crate::body::{ModalBody, free_sphere};
 use crate::dynamics::OuterBody;
-use crate::dynamics::integrator::{Options, integrate};
+use crate::dynamics::integrate;
+use crate::dynamics::integration::Options;
 use crate::dynamics::system::System;
-use crate::dynamics::wet;
 use crate::error::Result;
 use crate::fluid::added_mass::{immersed, mass_factor};
 use crate::scene::{Material, PlateImpact, Shape};
@@ -119,11 +119,8 @@ impl<'a> Trials<'a> {
 
     fn integrate(&self, system: &System, modes: usize) -> Result<PlateQuantities> {
         let shapes = |radii: &[f64]| Ok(self.waves.shapes(modes, radii));
-        let result = match fluid_forces(self.setup, shapes)? {
-            None => integrate(system, &self.options)?,
-            Some(fluid) => wet::integrate(system, &fluid, &self.options)?,
-        };
-        quantities(system, &result)
+        let fluid = fluid_forces(self.setup, shapes)?;
+        quantities(system, &integrate(system, fluid.as_ref(), &self.options)?)
     }
 
     /// Relative error of a force in model C when the bending modes beyond `modes` follow statically.

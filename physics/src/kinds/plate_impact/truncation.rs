@@ -6,7 +6,8 @@
 
 use super::results::quantities;
 use super::trials::{Lack, RUNGS, Trials};
-use crate::dynamics::integrator::{Options, integrate};
+use crate::dynamics::integration::Options;
+use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::scene::{Model, PlateImpact};

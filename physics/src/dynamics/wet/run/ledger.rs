@@ -1,9 +1,9 @@
 //! What is booked of a wet step: impulses, work and losses.
 
-use super::{Run, joined};
-use crate::dynamics::closing::FluidAccount;
+use super::{Stepper, joined};
 use crate::dynamics::collocation::Stages;
 use crate::dynamics::contact_ledger::work;
+use crate::dynamics::integration::FluidAccount;
 use crate::dynamics::system::INNER;
 use crate::dynamics::wet::FluidLoad;
 use crate::dynamics::wet::solve::END;
@@ -22,7 +22,7 @@ pub(super) struct StepAccount {
     pub(super) rounding: f64,
 }
 
-impl Run<'_> {
+impl Stepper<'_> {
     /// What the fluid does in the step of `h` s just solved.
     fn fluid_in_step(&self, h: f64) -> FluidAccount {
         let trial = &self.trial;

@@ -1,9 +1,60 @@
-//! What a run comes to: its results, and what its balances of energy and momentum leave unexplained.
+//! What an integration is asked for and what it comes to: its results, and what the balances of energy and momentum leave
+//! unexplained.
 
 use super::contact_ledger::ContactLedger;
-use super::integrator::Integration;
 use super::system::{INNER, PLATE, System, dot};
 use crate::result::{History, Losses};
+
+/// What the user may choose about the integration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Bound aimed at for the relative error of the efficiency from the time integration.
+    pub tolerance: f64,
+    /// End of the run in s; `None` = when no further contact is possible.
+    pub end_time: Option<f64>,
+    /// Largest distance of samples in s; `None` = no history is kept.
+    pub sample_interval: Option<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { tolerance: 1e-7, end_time: None, sample_interval: None }
+    }
+}
+
+/// Result of the integration.
+#[derive(Debug, Clone)]
+pub struct Integration {
+    /// Velocities of outer and inner body at the end in m/s, signed along z.
+    pub velocity: [f64; 2],
+    /// Accounts of both contacts.
+    pub contacts: [ContactLedger; 2],
+    /// Energy that no strain energy, motion or damping accounts for, over the initial energy.
+    pub energy_residual: f64,
+    /// The same with its sign: positive where energy came out of nothing.
+    pub energy_gained: f64,
+    /// Largest momentum no impulse accounts for, over the initial momentum.
+    pub momentum_residual: f64,
+    /// Energy that went into damping and into the fluid.
+    pub losses: Losses,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Estimated error of the velocities from the time integration, over the impact speed, if it was looked for
+    /// ([`crate::dynamics::assured`]).
+    pub error_estimate: Option<f64>,
+    /// Course over time, if asked for.
+    pub history: Option<History>,
+}
+
+impl Integration {
+    /// Whether the run ended while bodies touched: what the impact comes to is then open.
+    pub fn is_cut(&self) -> bool {
+        self.contacts.iter().any(|contact| contact.closed)
+    }
+}
+
+/// Impulse of a contact, over the initial momentum, below which it is not counted.
+pub(super) const NEGLIGIBLE: f64 = 1e-8;
 
 /// What a fluid did in a run; nothing in a dry one.
 #[derive(Debug, Clone, Copy, Default)]
