@@ -33,7 +33,7 @@ pub use seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, 
 pub use specification::unit_of;
 pub use template::{Field, Rejected, Template};
 
-use crate::Error;
+use crate::{Error, kinds};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -233,7 +233,7 @@ impl Scene {
     pub fn plate_impact(&self) -> crate::Result<&PlateImpact> {
         match &self.setup {
             Setup::PlateImpact(setup) => Ok(setup),
-            Setup::SealSeat(_) => Err(self.other_kind("seal-seat", "plate-impact")),
+            _ => Err(self.not_of("plate-impact")),
         }
     }
 
@@ -244,16 +244,18 @@ impl Scene {
     pub fn seal_seat(&self) -> crate::Result<&SealSeat> {
         match &self.setup {
             Setup::SealSeat(setup) => Ok(setup),
-            Setup::PlateImpact(_) => Err(self.other_kind("plate-impact", "seal-seat")),
+            _ => Err(self.not_of("seal-seat")),
         }
     }
 
-    fn other_kind(&self, found: &str, needed: &str) -> Error {
+    /// That this scene is not of the kind `needed`.
+    fn not_of(&self, needed: &str) -> Error {
         let help = format!("name a scene of kind = \"{needed}\"");
         Error::Scene(miette::miette!(
             help = help,
-            "scene `{}` is of kind `{found}`, but this runs scenes of kind `{needed}` only",
-            self.name
+            "scene `{}` is of kind `{}`, but this runs scenes of kind `{needed}` only",
+            self.name,
+            kinds::of(self).name()
         ))
     }
 }
