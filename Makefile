@@ -66,9 +66,10 @@ solutions: setup
 	    $(RUN) reference $$scene --resolution $$resolution --fresh || exit 1; done; done
 	for scene in $(PLATES); do $(RUN) reference $$scene --resolution fine --fresh || exit 1; done
 	$(RUN) reference scenes/validation/solid-plate-r10.toml --fresh
-	# the stress pictures of the report, at the outer force's peak
+	# the stress pictures of the report: plates at the outer force's peak
 	$(RUN) reference scaled-plate-r10 --stress-at 46.9e-6
 	$(RUN) reference scaled-plate-r6.35 --stress-at 25.3e-6
+	for seat in seal-seat-improved seal-seat-initial; do $(RUN) reference $$seat --stress-at 20e-6 || exit 1; done
 
 evidence: setup
 	for scene in $(PLATES); do for resolution in coarse paper fine; do \
@@ -77,7 +78,7 @@ evidence: setup
 	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution paper || exit 1; done
 	$(RUN) --store $(OUT)/evidence gate scenes/validation/*.toml --models B,C --out $(OUT)/evidence-report
 	$(RUN) --store $(OUT)/evidence study auto --out $(OUT)/studies
-	$(PYTHON) -m fem_reference bands --scene $(OUT)/evidence/*/paper/provenance.json --out $(OUT)/bands.json
+	$(PYTHON) -m fem_reference bands --random 50 --out $(OUT)/bands
 	for scene in $(PLATES); do $(PYTHON) -m fem_reference cost --out reports/reference-cost-$$scene.json \
 	    --scene fem_reference/solutions/$$scene/paper/provenance.json || exit 1; done
 	for study in table2 rocker fluid insensitivity seal-seat seal-seat-cost; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 from .series import MeshResult, Run, estimates, relative_error
 from .settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION, RESOLUTIONS
-from .uncertainty import Estimate
+from .uncertainty import ORDER, Estimate
 
 SCHEMA_VERSION = 1
 OF_A_BODY = "first_frequency"
@@ -64,12 +64,12 @@ def _convergence(
     """What the meshes (finest first) say together, per quantity that is determined."""
     determined = set(targeted) <= set(found)
     return {
-        "rule": "least squares after Eca & Hoekstra 2014",
+        "rule": "least squares after Eca & Hoekstra 2014, order fixed",
+        "order": ORDER,
         "meshes": [mesh.numbers for mesh in meshes],
         "quantities": {
             name: {
                 "values": [mesh.values[name] for mesh in meshes],
-                "order": estimate.order,
                 "extrapolated": estimate.extrapolated,
                 "scatter": estimate.scatter,
                 "band": estimate.band,

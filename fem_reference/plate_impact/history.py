@@ -9,10 +9,7 @@ import numpy as np
 
 from ..common.arrays import Floats
 from ..common.output import SAMPLES
-from ..common.uncertainty import curve_band
-
-CURVE_REACH = 0.02
-"""Half width of the window of the curves' band over the Hertz contact duration."""
+from ..common.uncertainty import bands
 
 HISTORY_COLUMNS = (
     "time",
@@ -77,18 +74,14 @@ def resampled(run: Sampled, times: Floats) -> Floats:
     return table
 
 
-def curve_bands(runs: Iterable[Sampled], factors: list[float], duration: float) -> Floats:
+def curve_bands(runs: Iterable[Sampled], factors: list[float]) -> Floats:
     """(samples, 8) half widths of the 95 % bands of the finest run's history.
 
     Args:
         runs: finest first.
         factors: of each mesh, on the number of elements.
-        duration: Hertz contact duration, s.
     """
     finest, *coarser = runs
-    table, interval = history(finest)
+    table, _ = history(finest)
     tables = np.stack([table, *(resampled(run, table[:, 0]) for run in coarser)])
-    reach = max(1, round(CURVE_REACH * duration / interval))
-    columns = range(1, len(HISTORY_COLUMNS))
-    sizes = 1.0 / np.array(factors)
-    return np.stack([curve_band(tables[:, :, k], sizes, reach) for k in columns], axis=1)
+    return bands(tables[:, :, 1:], 1.0 / np.array(factors))[2]

@@ -157,7 +157,7 @@ def _write(
     run, duration = solution.run, solution.estimate.duration
     found = versions()
     table, interval = history(run)
-    bands = curve_bands(meshes, [mesh.factor for mesh in meshes], duration)
+    bands = curve_bands(meshes, [mesh.factor for mesh in meshes])
     write_history(folder / "history.csv", HISTORY_COLUMNS, table, bands, digits=10)
     summary = document.summary(
         scene,

@@ -12,7 +12,7 @@ from ..common.output import write_history, write_json
 from ..common.progress import Progress
 from ..common.series import MeshResult, Problem, solve_series
 from ..common.settings import RESOLUTIONS, Options
-from ..common.uncertainty import curve_band
+from ..common.uncertainty import bands
 from ..common.versions import versions
 from ..solid.elasticity import write_fields
 from ..solid.memory import machine
@@ -24,9 +24,6 @@ from .solve import HISTORY_COLUMNS, Solution, compute, history, method, quantiti
 
 RATIO = 0.8
 """Elements of neighbouring meshes, in every direction."""
-BAND_REACH = 0.02
-"""Reach of a curve's band over the estimated duration of the actuator's contact."""
-
 
 TARGETED = ("efficiency", "sphere_force_peak", "actuator_force_peak")
 """Quantities whose relative band counts for a target error."""
@@ -59,15 +56,12 @@ def solve(
     solve_series(problem, target, RESOLUTIONS[resolution], comm, options, progress)
 
 
-def _write_history(path: Path, scene: SeatScene, meshes: list[MeshResult]) -> tuple[int, float]:
+def _write_history(path: Path, meshes: list[MeshResult]) -> tuple[int, float]:
     """Curves and their bands; number of samples and their distance, s."""
     at = sampling(meshes[0].times)
     tables = np.stack([history(mesh.times, mesh.rows, at) for mesh in meshes])
     sizes = np.array([1.0 / mesh.factor for mesh in meshes])
-    reach = max(1, round(BAND_REACH * contact_duration(scene) / float(at[1])))
-    columns = range(1, len(HISTORY_COLUMNS))
-    bands = np.stack([curve_band(tables[:, :, k], sizes, reach) for k in columns], axis=1)
-    write_history(path, HISTORY_COLUMNS, tables[0], bands, digits=9)
+    write_history(path, HISTORY_COLUMNS, tables[0], bands(tables[:, :, 1:], sizes)[2], digits=9)
     return int(at.size), float(at[1])
 
 
@@ -81,7 +75,7 @@ def _write(
 ) -> None:
     run, model = solution.run, solution.seat.model
     found = versions()
-    samples, interval = _write_history(folder / "history.csv", scene, meshes)
+    samples, interval = _write_history(folder / "history.csv", meshes)
     summary = document.summary(
         scene,
         resolution,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import gmsh
@@ -17,7 +17,7 @@ import numpy as np
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Plate, Sphere
 from ..common.errors import SolverError
-from .mesh import TetMesh, check_elements, tetrahedra
+from .mesh import MINIMUM_QUALITY, TetMesh, check_elements, qualities, tetrahedra
 
 DELAUNAY = 1
 """gmsh's classic algorithm. HXT makes slightly better elements, but other ones at every call."""
@@ -108,6 +108,15 @@ def _snap(points: Floats, planes: Sequence[int], length: float) -> None:
         points[np.abs(points[:, axis]) < 1e-9 * length, axis] = 0.0
 
 
+def _mended(name: str, build: Callable[[], None], size: SizeField) -> tuple[Floats, Ints]:
+    """As `generate`; if that leaves a flat element, once more with slightly smaller ones."""
+    points, corners = generate(name, build, size)
+    if qualities(points, corners).min() > MINIMUM_QUALITY:
+        return points, corners
+    smaller = replace(size, least=0.99 * size.least, largest=0.99 * size.largest)
+    return generate(name, build, smaller)
+
+
 def quarter_sphere(name: str, sphere: Sphere, size: SizeField, order: int, side: float) -> TetMesh:
     """A quarter of a sphere that touches the origin from above (side +1) or below (-1).
 
@@ -119,7 +128,7 @@ def quarter_sphere(name: str, sphere: Sphere, size: SizeField, order: int, side:
         half = 0.5 * math.pi
         gmsh.model.occ.addSphere(0.0, 0.0, side * radius, radius, -1, -half, half, half)
 
-    points, corners = generate(name, build, size)
+    points, corners = _mended(name, build, size)
     _snap(points, (0, 1), radius)
     pole = int(np.argmin(np.linalg.norm(points, axis=1)))
     points[pole] = 0.0
@@ -139,7 +148,7 @@ def quarter_plate(plate: Plate, size: SizeField, order: int) -> TetMesh:
             0.0, 0.0, -0.5 * thickness, 0.0, 0.0, thickness, radius, -1, 0.5 * math.pi
         )
 
-    points, corners = generate("plate", build, size)
+    points, corners = _mended("plate", build, size)
     _snap(points, (0, 1), radius)
     for face in (-0.5, 0.5):
         points[np.abs(points[:, 2] - face * thickness) < 1e-9 * thickness, 2] = face * thickness

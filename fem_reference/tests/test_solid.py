@@ -18,6 +18,7 @@ from fem_reference.explicit.contact import RigidBody, SphereContact, SurfaceCont
 from fem_reference.explicit.loop import Loop
 from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.plate_impact.solid import RADIUS_STEP, rounded
+from fem_reference.solid import meshing
 from fem_reference.solid.elasticity import Assembly, cell_stress, lumped_mass, mass_form, von_mises
 from fem_reference.solid.memory import memory_needed, require_memory
 from fem_reference.solid.mesh import TetMesh, check_elements, surface, tetrahedra
@@ -54,6 +55,26 @@ def matrix(mesh: TetMesh, mass: bool = False) -> scipy.sparse.csr_matrix:
 
 def density_of(mesh: TetMesh) -> Floats:
     return np.full(mesh.cells.shape[0], STEEL.density)
+
+
+def test_a_flat_element_is_avoided_by_slightly_smaller_ones(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = []
+
+    def flat_at_first(name: str, build: object, size: SizeField) -> tuple[Floats, Ints]:
+        asked.append((size.least, size.largest))
+        points = np.vstack([np.zeros(3), np.eye(3)])
+        points[3, 2] = 1e-3 if len(asked) == 1 else 1.0
+        return points, np.array([[0, 1, 2, 3]])
+
+    monkeypatch.setattr(meshing, "generate", flat_at_first)
+    size = SizeField(((0.0, 0.0, 0.0),), 1.0, 0.2, 0.4, 0.5)
+    points, _ = meshing._mended("plate", lambda: None, size)
+    assert points[3, 2] == 1.0
+    assert asked == pytest.approx([(0.2, 0.5), (0.198, 0.495)])
+    meshing._mended("plate", lambda: None, size)
+    assert len(asked) == 3
 
 
 def test_rigid_motions_cost_no_force(mesh: TetMesh) -> None:

@@ -115,11 +115,13 @@ fn samples(dir: &Path, scene: &str, page: &str) -> Value {
     Value::Object(columns)
 }
 
-/// The bands of the page are those of the stored history: each one's widest place is as wide.
+/// The bands of the page are those of the stored history: at each instant between those of the samples around it.
 fn assert_bands(scene: &str, page: &str) {
     let (_, rest) = page.split_once("id=\"curves\">").unwrap();
     let curves: Value = serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap();
-    let end = curves["time"].as_array().unwrap().last().unwrap().as_f64().unwrap() * 1e-6;
+    let numbers =
+        |list: &Value| -> Vec<f64> { list.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect() };
+    let times = numbers(&curves["time"]);
     let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("fem_reference/solutions");
     let mut reader = csv::Reader::from_path(stored.join(scene).join("paper/history.csv")).unwrap();
     let header: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
@@ -127,16 +129,23 @@ fn assert_bands(scene: &str, page: &str) {
         reader.records().map(|r| r.unwrap().iter().map(|x| x.parse().unwrap()).collect()).collect();
     let mut compared = 0;
     for panel in curves["panels"].as_array().unwrap() {
+        // one digit more than the page shows
+        let rounding = 0.5 * 10_f64.powi(-1 - panel["decimals"].as_i64().unwrap() as i32);
         for curve in panel["curves"].as_array().unwrap() {
             let name = format!("{}_band", curve["name"].as_str().unwrap());
             let column = header.iter().position(|h| *h == name).unwrap();
-            let within = rows.iter().filter(|row| row[0] <= end + 1e-7).map(|row| row[column]);
-            let widest = within.fold(0.0, f64::max) * panel["factor"].as_f64().unwrap();
-            let drawn =
-                curve["band"].as_array().unwrap().iter().filter_map(Value::as_f64).fold(0.0, f64::max);
-            // the widest instant may lie between two of the page's, which has one digit more than it shows
-            let rounding = 0.5 * 10_f64.powi(-1 - panel["decimals"].as_i64().unwrap() as i32);
-            assert!(drawn <= widest + rounding && drawn >= 0.95 * widest, "{name}: {drawn} for {widest}");
+            let drawn = numbers(&curve["band"]);
+            assert_eq!(drawn.len(), times.len());
+            for (time, drawn) in times.iter().zip(drawn) {
+                // the page's instants are rounded: one sample more to either side
+                let next = rows.partition_point(|row| row[0] < time * 1e-6);
+                let around = &rows[next.saturating_sub(2)..(next + 2).min(rows.len())];
+                let widths = around.iter().map(|row| row[column] * panel["factor"].as_f64().unwrap());
+                let (least, most) =
+                    widths.fold((f64::MAX, 0.0), |(low, high), w| (f64::min(low, w), f64::max(high, w)));
+                let fits = (least - rounding..=most + rounding).contains(&drawn);
+                assert!(fits, "{name} at {time} us: {drawn}, not between {least} and {most}");
+            }
             compared += 1;
         }
     }
