@@ -102,6 +102,7 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     problem = loop.problem
     energies, in_contact = loop.energies(), loop.touching
     work = sum(record.work for record in motion.records)
+    stored = sum(record.stored for record in motion.records)
     velocities, momenta = motion.velocities(), motion.momenta()
     impulses = [share * impulse for impulse in motion.impulses()]
     start = -share * scene.outer.mass * scene.speed
@@ -135,7 +136,7 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         energies=energies,
         initial_energy=initial_energy / share,
         energy_residual=abs(energies.total - initial_energy - work) / initial_energy,
-        contact_loss=-work / initial_energy,
+        contact_loss=-(work + stored) / initial_energy,
         momentum_residual=max(abs(miss) for miss in misses) / abs(start),
         support_impulse=support / share,
     )

@@ -32,8 +32,8 @@ def test_yield_strength_is_admissible_and_changes_nothing() -> None:
     ("changes", "field"),
     [
         ({"kind": "seal-seat"}, "kind"),
-        ({"outer__kind": "compact"}, "outer.kind"),
-        ({"inner__kind": "compact"}, "inner.kind"),
+        ({"outer__kind": "compact"}, "outer.radius"),
+        ({"inner__kind": "compact"}, "inner.radius"),
         ({"outer__kind": "bender"}, "outer.kind"),
         ({"fluid": {"viscosity": 1e-3}}, "fluid"),
         ({"plate__damping_ratio": 0.01}, "plate.damping_ratio"),
