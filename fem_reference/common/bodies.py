@@ -51,6 +51,8 @@ class Plate:
     edge: str
     """One of `EDGES`."""
     material: Material
+    damping_ratio: float = 0.0
+    """Of critical damping (Lehr), the same for every mode."""
 
     @property
     def bending_stiffness(self) -> float:

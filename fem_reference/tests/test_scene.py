@@ -36,7 +36,7 @@ def test_yield_strength_is_admissible_and_changes_nothing() -> None:
         ({"inner__kind": "compact"}, "inner.radius"),
         ({"outer__kind": "bender"}, "outer.kind"),
         ({"fluid": {"viscosity": 1e-3}}, "fluid"),
-        ({"plate__damping_ratio": 0.01}, "plate.damping_ratio"),
+        ({"plate__damping_ratio": -0.01}, "plate.damping_ratio"),
         ({"plate__edge": "glued"}, "plate.edge"),
         ({"reference__geometry": "shell"}, "reference.geometry"),
         ({"reference__elements_per_contact_radius": 1}, "elements_per_contact_radius"),
