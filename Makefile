@@ -77,6 +77,7 @@ evidence: setup
 	for scene in scenes/validation/*.toml; do \
 	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution paper || exit 1; done
 	$(RUN) --store $(OUT)/evidence gate scenes/validation/*.toml --models B,C --out $(OUT)/evidence-report
+	$(RUN) --store $(OUT)/evidence coverage
 	$(RUN) --store $(OUT)/evidence study auto --out $(OUT)/studies
 	$(PYTHON) -m fem_reference bands --random 50 --out $(OUT)/bands
 	for scene in $(PLATES); do $(PYTHON) -m fem_reference cost --out reports/reference-cost-$$scene.json \

@@ -27,6 +27,7 @@ pub mod bench;
 pub mod ci;
 pub mod cli;
 pub mod comparison;
+pub mod coverage;
 pub mod curves;
 pub mod interrupt;
 pub mod measured;

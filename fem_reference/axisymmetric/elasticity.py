@@ -89,6 +89,13 @@ def assemble(body: BodyMesh, material: Material) -> BodyMatrices:
     return BodyMatrices(scatter(elements.nodes, elements.stiffness, count), mass, elements)
 
 
+def rigid_node(mass: float) -> BodyMatrices:
+    """A body of ``mass`` (kg) that is one node: an element without stiffness lets it step."""
+    nodes, none = np.zeros((1, 4), dtype=np.int64), np.zeros((1, 8, 8))
+    elements = ElementMatrices(nodes, none, np.full((1, 4), 0.25 * mass))
+    return BodyMatrices(scatter(nodes, none, 1), np.array([mass]), elements)
+
+
 def assemble_consistent(
     body: BodyMesh, material: Material, degree: int
 ) -> tuple[scipy.sparse.csr_matrix, scipy.sparse.csr_matrix, Floats]:
@@ -102,13 +109,15 @@ def assemble_consistent(
 
 
 def cell_stress(body: BodyMesh, material: Material, displacement: Floats) -> Floats:
-    """(m, 4) stress `STRESS_COMPONENTS` at the elements' midpoints, Pa.
+    """(m, 4) stress `STRESS_COMPONENTS` at the elements' midpoints, Pa; of a node alone none.
 
     Args:
         body: the mesh.
         material: its material.
         displacement: (n, 2), m.
     """
+    if body.quads.size == 0:
+        return np.zeros((0, len(STRESS_COMPONENTS)))
     domain = Domain(body.points, body.quads)
     u = domain.function(displacement[domain.body_nodes()])
     r = ufl.SpatialCoordinate(domain.mesh)[0]

@@ -47,12 +47,14 @@ class ElementMatrices:
     def critical_time_steps(self) -> Floats:
         """(m,) 2/omega_max of each element alone, s; no system of them has a smaller one.
 
+        Infinite without stiffness.
         (Irons' bound: the largest eigenvalue of assembled matrices is at most that of the worst
         element.)
         """
         root = np.repeat(1.0 / np.sqrt(self.mass), 2, axis=1)
         scaled = root[:, :, None] * self.stiffness * root[:, None, :]
-        return np.asarray(2.0 / np.sqrt(np.linalg.eigvalsh(scaled)[:, -1]))
+        with np.errstate(divide="ignore"):
+            return np.asarray(2.0 / np.sqrt(np.linalg.eigvalsh(scaled)[:, -1]))
 
 
 def _shape_functions() -> tuple[Floats, Floats]:

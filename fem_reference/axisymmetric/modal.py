@@ -12,6 +12,7 @@ import scipy.sparse.linalg
 from ..common.arrays import Floats
 from ..common.bodies import Plate
 from ..common.errors import SolverError
+from ..explicit.damping import Modes
 from .mesh import BodyMesh
 from .system import AxisymmetricSystem, plate_constraints
 
@@ -32,13 +33,8 @@ def first_frequency(system: AxisymmetricSystem) -> float:
     return math.sqrt(float(values.max())) / (2.0 * math.pi)
 
 
-def elastic_modes(system: AxisymmetricSystem, count: int) -> tuple[Floats, Floats]:
-    """Lowest elastic modes of the plate of the time loop, rigid motion left out.
-
-    Returns:
-        (k,) angular frequencies, rad/s, and (2n, k) shapes of unit modal mass, 1/sqrt(kg), rows
-        of the plate's part of the system.
-    """
+def elastic_modes(system: AxisymmetricSystem, count: int) -> Modes:
+    """Lowest elastic modes of the plate of the time loop, rigid motion left out."""
     rows = system.body(1)
     inverse = system.inverse_mass[rows]
     free = np.flatnonzero(inverse > 0.0)
@@ -54,7 +50,18 @@ def elastic_modes(system: AxisymmetricSystem, count: int) -> tuple[Floats, Float
     order = np.argsort(values)[rigid:]
     shapes = np.zeros((inverse.size, order.size))
     shapes[free] = vectors[:, order]
-    return np.sqrt(values[order]), shapes
+    return Modes(np.sqrt(values[order]), shapes)
+
+
+def modes_up_to(system: AxisymmetricSystem, frequency: float) -> Modes:
+    """The same, all up to an angular frequency (rad/s) and one more."""
+    count = 16
+    modes = elastic_modes(system, count)
+    while modes.frequencies[-1] < frequency and modes.frequencies.size == count:
+        count *= 2
+        modes = elastic_modes(system, count)
+    kept = int(np.searchsorted(modes.frequencies, frequency)) + 1
+    return Modes(modes.frequencies[:kept], modes.shapes[:, :kept])
 
 
 @dataclass(frozen=True)

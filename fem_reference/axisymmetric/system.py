@@ -15,6 +15,7 @@ from ..common.bodies import Plate
 from ..explicit.contact import Contact, MatchedContact, RigidBody
 from .elasticity import BodyMatrices, scatter
 from .mesh import BodyMesh
+from .tip import ring_edges
 
 BODIES = ("outer", "plate", "inner")
 OUTER, PLATE, INNER = range(3)
@@ -43,7 +44,7 @@ class AxisymmetricSystem:
     centre: tuple[int, int]
     """The plate's centre nodes on its two faces."""
     matched: tuple[MatchedContact, MatchedContact]
-    """Outer and inner sphere, whose nodes are the candidates, with the plate."""
+    """Outer and inner body, whose nodes are the candidates, with the plate."""
     element_nodes: Ints
     """(m, 4) nodes of all elements."""
     element_stiffness: Floats
@@ -141,7 +142,7 @@ def hertz_weights(radii: Floats) -> Floats:
     Each node gets the pressure sqrt(1 - (r/a)^2) integrated over its ring, whose edges lie midway
     to its neighbours.
     """
-    edges = np.concatenate([[0.0], 0.5 * (radii[1:] + radii[:-1]), radii[-1:]])
+    edges = ring_edges(radii)
     return np.asarray(-np.diff((1.0 - (edges / radii[-1]) ** 2) ** 1.5))
 
 
@@ -166,6 +167,8 @@ def patch_flexibility(system: AxisymmetricSystem, body: int, nodes: Ints, weight
         load[1::2] -= mass / mass.sum()
         # One axial component pinned: the load is in equilibrium, so the pin carries nothing.
         free = free[free != 2 * mass.size - 1]
+    if free.size == 0:
+        return 0.0
     solution = np.zeros_like(load)
     solution[free] = scipy.sparse.linalg.splu(stiffness[free][:, free]).solve(load[free])
     if not supported:

@@ -1,9 +1,10 @@
-"""Materials, plates and spheres: what scenes are made of."""
+"""Materials, plates, spheres and compact bodies: what scenes are made of."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -50,6 +51,8 @@ class Plate:
     edge: str
     """One of `EDGES`."""
     material: Material
+    damping_ratio: float = 0.0
+    """Of critical damping (Lehr), the same for every mode."""
 
     @property
     def bending_stiffness(self) -> float:
@@ -66,6 +69,8 @@ class Plate:
 class Sphere:
     """Solid sphere."""
 
+    RADIUS_KEY: ClassVar[str] = "radius"
+    """Of its tip radius in a scene."""
     radius: float
     material: Material
 
@@ -78,6 +83,27 @@ class Sphere:
     def mass(self) -> float:
         """Mass, kg."""
         return self.material.density * self.volume
+
+    @property
+    def tip_radius(self) -> float:
+        """Radius of curvature at the contact, m."""
+        return self.radius
+
+
+@dataclass(frozen=True)
+class Compact:
+    """Body that is rigid but for its spherical tip, which yields as a half-space does."""
+
+    RADIUS_KEY: ClassVar[str] = "tip_radius"
+    mass: float
+    """kg"""
+    tip_radius: float
+    """m"""
+    material: Material
+    """Of the tip."""
+
+
+Body = Sphere | Compact
 
 
 def sphere_profile(radius: float, r: Floats) -> Floats:

@@ -85,6 +85,9 @@ class MatchedContact:
     """(n,) distances from the axis, ascending, m."""
     gaps: Floats
     """(n,) initial gap of each pair, m."""
+    flexibility: Floats | None = None
+    """(n, n) of a tip without mass that stands between the pairs' two sides, m/N; the candidates
+    are then one and the same node."""
 
 
 Contact = SphereContact | SurfaceContact

@@ -6,7 +6,7 @@ inequality in the norm of K: |p^T u| = |p^T K^-1 K u| <= sqrt(p^T K^-1 p) sqrt(u
 weights are Hertz's pressure: a single node's flexibility grows without bound on finer meshes. Two
 bodies whose rigid motions part, and are further apart than both bounds, stay apart. Where the
 lowest modes of a body are known, they move as known oscillations, and E and C are those of the
-others.
+others. Damped ones shrink on their way.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ NONE = np.zeros(0)
 
 
 def least_clearance(
-    clearance: float, opening_speed: float, amplitudes: Floats, frequencies: Floats
+    clearance: float, opening_speed: float, amplitudes: Floats, exponents: Floats
 ) -> float:
-    """Lower bound of clearance + opening_speed t - Re sum A_k exp(i omega_k t) over t >= 0, m.
+    """Lower bound of clearance + opening_speed t - Re sum A_k exp(s_k t) over t >= 0, m.
 
     Args:
         clearance: m.
         opening_speed: m/s.
         amplitudes: (k,) complex A_k, m.
-        frequencies: (k,) omega_k, rad/s.
+        exponents: (k,) complex s_k, i omega_k of undamped modes, Re s_k <= 0, 1/s.
     """
     reach = float(np.abs(amplitudes).sum())
     if clearance > reach and opening_speed >= 0.0:
@@ -40,12 +40,13 @@ def least_clearance(
         return -math.inf
     # From here on the oscillations cannot follow any more.
     last = (reach - clearance) / opening_speed
+    frequencies = np.abs(exponents)
     step = 2.0 * math.pi / float(frequencies.max()) / 40.0
     count = math.ceil(last / step) + 1
     if count > MOST_INSTANTS:
         return -math.inf
     t = np.linspace(0.0, last, count + 1)
-    plate = (amplitudes[:, None] * np.exp(1j * frequencies[:, None] * t)).real.sum(axis=0)
+    plate = (amplitudes[:, None] * np.exp(exponents[:, None] * t)).real.sum(axis=0)
     # Between two instants a curve lies below its chord by at most its curvature times step^2/8.
     curvature = float((np.abs(amplitudes) * frequencies**2).sum())
     sag = curvature * (t[1] - t[0]) ** 2 / 8.0
@@ -57,7 +58,7 @@ def no_further_contact(
     opening_speed: float,
     vibrating: Iterable[tuple[float, float]],
     amplitudes: Floats = NONE,
-    frequencies: Floats = NONE,
+    exponents: Floats = NONE,
 ) -> bool:
     """Whether two bodies can be proven never to touch again.
 
@@ -67,7 +68,7 @@ def no_further_contact(
         vibrating: elastic energy (J) and flexibility of the patch (m/N), known modes apart, of each
             body.
         amplitudes: see `least_clearance`; of the known modes.
-        frequencies: see `least_clearance`.
+        exponents: see `least_clearance`.
     """
     reach = sum(math.sqrt(2.0 * max(e, 0.0) * flexibility) for e, flexibility in vibrating)
-    return least_clearance(clearance - reach, opening_speed, amplitudes, frequencies) > 0.0
+    return least_clearance(clearance - reach, opening_speed, amplitudes, exponents) > 0.0

@@ -24,8 +24,11 @@
 
 #include "contact.c"
 
+#include "tip.c"
+
 /* Corrects the predicted displacements and velocities of matching nodes. */
 static void correct(const State *s, Pairs *c) {
+    if (c->tip) return correct_with_tip(s, c);
     const double dt = s->problem->dt, n = c->normal;
     double force = 0.0, work = 0.0;
     for (int64_t k = 0; k < c->count; ++k) {
@@ -175,6 +178,6 @@ void triad(double *restrict a, const double *restrict b, const double *restrict 
 
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
-                           sizeof(Level),  sizeof(State), sizeof(Carried)};
+                           sizeof(Level),  sizeof(State), sizeof(Carried), sizeof(Tip)};
     return (int64_t)size[what];
 }

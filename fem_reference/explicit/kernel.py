@@ -43,12 +43,28 @@ class Record(ctypes.Structure):
         ("impulse", ctypes.c_double),
         ("work", ctypes.c_double),
         ("force", ctypes.c_double),
+        ("stored", ctypes.c_double),
         ("last", ctypes.c_int64),
         ("split", ctypes.c_int64),
         ("intervals", ctypes.c_int64),
         ("first_step", ctypes.c_int64 * MAX_INTERVALS),
         ("last_step", ctypes.c_int64 * MAX_INTERVALS),
         ("outermost", ctypes.c_int64),
+    )
+
+
+class Tip(ctypes.Structure):
+    """Mirror of ``Tip`` in kernel.c."""
+
+    _fields_ = (
+        ("flexibility", _DOUBLE),
+        ("matrix", _DOUBLE),
+        ("multipliers", _DOUBLE),
+        ("wanted", _DOUBLE),
+        ("closed", _INT32),
+        ("closings", ctypes.c_int64),
+        ("factor", _DOUBLE),
+        ("factored", ctypes.c_int64),
     )
 
 
@@ -63,6 +79,7 @@ class Pairs(ctypes.Structure):
         ("compliance", _DOUBLE),
         ("before", _DOUBLE),
         ("normal", ctypes.c_double),
+        ("tip", ctypes.POINTER(Tip)),
         ("record", Record),
     )
 
@@ -270,7 +287,7 @@ def load(components: int) -> ctypes.CDLL:
         function.argtypes, function.restype = arguments, None
     kernel.layout.restype = ctypes.c_int64
     for number, mirror in enumerate(
-        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried)
+        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip)
     ):
         if kernel.layout(number) != ctypes.sizeof(mirror):
             raise SolverError(

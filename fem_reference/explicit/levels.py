@@ -31,8 +31,8 @@ def graded_levels(steps: Floats, nodes: Ints, touching: npt.NDArray[np.bool_], m
         touching: (n,) nodes whose elements have level 0.
         most: levels.
     """
-    level = np.floor(np.log2(np.maximum(LEVEL_MARGIN * steps, 1.0))).astype(np.int64)
-    level = np.minimum(level, max(0, most - 1))
+    octaves = np.floor(np.log2(np.maximum(LEVEL_MARGIN * steps, 1.0)))
+    level = np.minimum(octaves, max(0, most - 1)).astype(np.int64)
     level[touching[nodes].any(axis=1)] = 0
     # A level begins only `BUFFER` layers behind the elements two levels faster, and not within
     # `BUFFER` layers of an element that is too fast for it.

@@ -39,6 +39,7 @@ class ContactProblem:
         size = components * self.nodes.size
         self.u, self.predicted, self.before, self.force = (np.zeros(size) for _ in range(4))
         self._arrays = kernel.Arrays()
+        self._tips: list[tuple[kernel.Tip, Floats, Floats, Floats]] = []
         self.contacts = (kernel.Contact * max(1, len(system.contacts)))()
         self.rigids = (kernel.Rigid * max(1, len(system.rigid)))()
         self.matched = (kernel.Pairs * max(1, len(system.matched)))()
@@ -67,6 +68,9 @@ class ContactProblem:
     def set_step(self, time_step: float, split: int) -> None:
         """Set the time step (s) and how many steps of separation divide two contacts."""
         self.state.dt = time_step
+        for tip, matrix, flexibility, mobility in self._tips:
+            matrix[:] = 2.0 * flexibility + time_step**2 * mobility
+            tip.factored = 0
         for record in self.records():
             record.split = split
 
@@ -88,6 +92,22 @@ class ContactProblem:
         structure.before = pointer(np.zeros(contact.radii.size), np.float64)
         structure.normal = contact.normal
         structure.record.last = structure.record.outermost = -1
+        if contact.flexibility is not None:
+            mobility = np.diag(inverse[contact.opposite]) + inverse[contact.candidates[0]]
+            structure.tip = ctypes.pointer(self._tip(contact.flexibility, mobility))
+
+    def _tip(self, flexibility: Floats, mobility: Floats) -> kernel.Tip:
+        """A tip; ``mobility`` (n, n) is of the nodes it stands between, 1/kg."""
+        pointer, count = self._arrays.pointer, flexibility.shape[0]
+        matrix, tip = np.zeros((count, count)), kernel.Tip()
+        self._tips.append((tip, matrix, flexibility, mobility))
+        tip.flexibility = pointer(flexibility, np.float64)
+        tip.matrix = pointer(matrix, np.float64)
+        tip.multipliers = pointer(np.zeros(count), np.float64)
+        tip.wanted = pointer(np.zeros(count), np.float64)
+        tip.closed = pointer(np.zeros(count), np.int32)
+        tip.factor = pointer(np.zeros((count, count)), np.float64)
+        return tip
 
     def _fill(self, structure: kernel.Contact, contact: Any, system: System) -> None:
         pointer, first = self._arrays.pointer, system.first
@@ -149,7 +169,7 @@ class ContactProblem:
         return np.ctypeslib.as_array(contact.multipliers, (contact.count,)).copy()
 
     _RECORD = (
-        *("force", "impulse", "work", "last", "intervals", "outermost"),
+        *("force", "stored", "impulse", "work", "last", "intervals", "outermost"),
         *("first_step", "last_step"),
     )
 

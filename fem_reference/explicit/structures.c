@@ -11,6 +11,7 @@ typedef struct {
     double impulse; /* of the sum of the multipliers so far, N s */
     double work;    /* on all bodies so far, J */
     double force;   /* that sum in the last step, N */
+    double stored;  /* strain energy of a tip in the last step, J */
     int64_t last;   /* last step with a force, -1: none */
     int64_t split;  /* a separation of more steps divides two contacts */
     int64_t intervals;
@@ -18,6 +19,18 @@ typedef struct {
     int64_t last_step[MAX_INTERVALS];
     int64_t outermost; /* last candidate, in the order given, that carried a force; -1: none */
 } Record;
+
+/* A tip without mass that yields between the candidates, all of them the same node, and the nodes opposite. */
+typedef struct {
+    const double *flexibility; /* (count^2) G, m/N */
+    const double *matrix;      /* (count^2) H = 2 G + dt^2 (1/m_opposite + 1/m_candidate), m/N */
+    double *lambda;            /* (count) multipliers of the last step, N */
+    double *wanted;            /* (count) work space: what H lambda has to reach, m */
+    int32_t *closed;           /* (count) nodes that carried a force, the first `closings` */
+    int64_t closings;
+    double *factor;            /* (count^2) Cholesky's of H over the closed ones */
+    int64_t factored;          /* whether it is */
+} Tip;
 
 /* Matching nodes of two bodies, the first above (+1) or below (-1) the second along the last axis. */
 typedef struct {
@@ -28,6 +41,7 @@ typedef struct {
     const double *compliance; /* 1 / (1/m_candidate + 1/m_opposite), kg */
     double *before;           /* (count) work space */
     double normal;
+    Tip *tip;                 /* 0: none */
     Record record;
 } Pairs;
 

@@ -47,9 +47,9 @@ class Resolution:
     """What the mesh resolves, found after the run."""
 
     outer: float
-    """Elements per contact radius at the outer sphere's peak force."""
+    """Elements per contact radius at the outer body's peak force."""
     inner: float
-    """The same for the inner sphere; infinite for a contact of less than `MINOR_FORCE`."""
+    """The same for the inner body; infinite for a contact of less than `MINOR_FORCE`."""
     wavelength: float
     """Shortest wavelength that matters, m."""
     per_wavelength: float
@@ -150,6 +150,7 @@ def elements_per_wavelength(scene: Scene, mesh: ImpactMesh, duration: float) -> 
     return min(
         (wavelength / float(edge_lengths(body.points, body.quads).max()), wavelength)
         for wavelength, body in zip(shortest_wavelengths(scene, duration), mesh.bodies, strict=True)
+        if body.quads.size
     )
 
 
@@ -157,10 +158,10 @@ def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Re
     found = [
         hertz_contact_radius(
             contact.force_peak,
-            effective_modulus(sphere.material, scene.plate.material),
-            sphere.radius,
+            effective_modulus(body.material, scene.plate.material),
+            body.tip_radius,
         )
-        for contact, sphere in zip(run.contacts, (scene.outer, scene.inner), strict=True)
+        for contact, body in zip(run.contacts, (scene.outer, scene.inner), strict=True)
     ]
     edges = np.concatenate([edge_lengths(body.points, body.quads) for body in mesh.bodies])
     per_wavelength, wavelength = elements_per_wavelength(scene, mesh, duration)

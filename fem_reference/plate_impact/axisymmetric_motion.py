@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
-from ..axisymmetric.modal import elastic_modes
+from ..axisymmetric.modal import elastic_modes, modes_up_to
 from ..axisymmetric.system import (
     INNER,
     OUTER,
@@ -19,8 +20,10 @@ from ..axisymmetric.system import (
 from ..common.arrays import Floats
 from ..common.fenicsx import alone
 from ..explicit import kernel
+from ..explicit.damping import ModalDamping
 from ..explicit.loop import Energies, SerialLoop
-from .ending import Ending, Modes, Patch
+from .ending import Ending, Followed, Patch
+from .estimate import WAVE_FREQUENCY
 from .motion import SIDES, State
 from .run import Run, integrate
 from .scene import Scene
@@ -32,6 +35,9 @@ WINDOW = 1.1
 compared. It must not depend on when the end of the run could be proven."""
 FOLLOWED_MODES = 16
 """Modes of the plate that are followed."""
+DAMPED_FREQUENCY = 8.0 * WAVE_FREQUENCY
+"""Up to this frequency times the Hertz contact duration a damped plate's modes are damped. Those
+above follow the force as under static load: next to no velocity, next to no loss."""
 
 
 class AxisymmetricMotion:
@@ -41,6 +47,8 @@ class AxisymmetricMotion:
 
     def __init__(self, system: AxisymmetricSystem) -> None:
         self.system, self.loop = system, SerialLoop(system, alone())
+        self.damping: ModalDamping | None = None
+        self._undamped = 0.0
         first, second = system.matched
         self.radii = (first.radii, second.radii)
         self._masses = [system.body_mass(body) for body in (OUTER, PLATE, INNER)]
@@ -52,6 +60,13 @@ class AxisymmetricMotion:
         self._bodies = bodies
         self._centre = self._arrays.pointer(system.centre, np.int32)
 
+    def damp(self, ratio: float, frequency: float) -> None:
+        """Damp the plate's modes up to an angular frequency (rad/s), from the start on."""
+        modes = modes_up_to(self.system, frequency)
+        self.damping = ModalDamping(self.loop, self.system.body(PLATE), modes, ratio)
+        # What is lost in an interval is lost in its middle.
+        self._undamped = 0.5 * self.damping.interval
+
     @property
     def records(self) -> list[kernel.Record]:
         """Of the two contacts."""
@@ -59,7 +74,19 @@ class AxisymmetricMotion:
 
     def sample(self, samples: int, stride: int) -> Floats:
         """See `Motion.sample`; samples lie close, so that compiled code takes them."""
-        return self.loop.run(self._bodies, self._centre, samples, stride)
+        if self.damping is None:
+            return self.loop.run(self._bodies, self._centre, samples, stride)
+        rows, length = [], stride * self.loop.dt
+        while samples > 0:
+            due = math.ceil((self.damping.interval - self._undamped) / length)
+            count = min(samples, max(1, due))
+            rows.append(self.loop.run(self._bodies, self._centre, count, stride))
+            samples -= count
+            self._undamped += count * length
+            if self._undamped >= self.damping.interval:
+                self.damping.lose(self._undamped)
+                self._undamped = 0.0
+        return np.vstack(rows)
 
     def velocities(self) -> tuple[float, float]:
         """Mean velocity of each sphere, half a step after the displacements, m/s."""
@@ -110,9 +137,10 @@ class AxisymmetricMotion:
         return float(mass @ values[system.body(body)][1::2] / mass.sum())
 
 
-def _ending(motion: AxisymmetricMotion) -> Ending:
+def _ending(motion: AxisymmetricMotion, damping_ratio: float) -> Ending:
     system, loop = motion.system, motion.loop
-    frequencies, shapes = elastic_modes(system, FOLLOWED_MODES)
+    modes = elastic_modes(system, FOLLOWED_MODES)
+    frequencies, shapes = modes.frequencies, modes.shapes
     rows, start = system.body(PLATE), int(system.first[PLATE])
     mass = np.repeat(system.mass, 2)[rows]
 
@@ -129,7 +157,7 @@ def _ending(motion: AxisymmetricMotion) -> Ending:
         return shapes.T @ (mass * loop.u[rows]), shapes.T @ (mass * loop.v[rows])
 
     patches = (patch(0, OUTER), patch(1, INNER))
-    return Ending(motion, patches, WINDOW, Modes(frequencies, coordinates))
+    return Ending(motion, patches, WINDOW, Followed(frequencies, damping_ratio, coordinates))
 
 
 def integrate_axisymmetric(
@@ -140,12 +168,15 @@ def integrate_axisymmetric(
     Raises:
         SolverError: time step above the critical one, divergence, or no end found.
     """
+    damping_ratio = scene.plate.damping_ratio
     motion = AxisymmetricMotion(system)
+    if damping_ratio > 0.0:
+        motion.damp(damping_ratio, 2.0 * math.pi * DAMPED_FREQUENCY / contact_duration)
     run = integrate(
         motion,
         scene,
         contact_duration,
-        lambda: _ending(motion),
+        lambda: _ending(motion, damping_ratio),
         lambda: critical_time_step(system),
         levels_within_samples=False,
         chunk=CHUNK_SAMPLES,

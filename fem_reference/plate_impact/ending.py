@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -30,11 +31,13 @@ class Patch:
 
 
 @dataclass(frozen=True)
-class Modes:
-    """The plate's lowest modes."""
+class Followed:
+    """The plate's lowest modes, as they move."""
 
     frequencies: Floats
     """(k,) angular, rad/s."""
+    damping_ratio: float
+    """Of critical damping, below 1."""
     coordinates: Callable[[], tuple[Floats, Floats]]
     """Displacement and velocity of each mode at present, m sqrt(kg) and m sqrt(kg)/s."""
 
@@ -54,7 +57,7 @@ class Ending:
         motion: Motion,
         patches: tuple[Patch, Patch],
         window: float = 1.0,
-        modes: Modes | None = None,
+        modes: Followed | None = None,
     ) -> None:
         self.motion, self.patches, self.window, self.modes = motion, patches, window, modes
 
@@ -65,13 +68,17 @@ class Ending:
         if now < last * self.window or motion.loop.touching:
             return False
         energy = motion.plate_energy(energies)
-        oscillation = frequencies = NONE
+        oscillation = exponents = NONE
         if self.modes is not None:
             frequencies = self.modes.frequencies
             position, velocity = self.modes.coordinates()
             modal = 0.5 * (velocity**2 + (frequencies * position) ** 2)
-            # Of exp(i omega t) the real part counts: q cos + (dq/dt / omega) sin.
-            oscillation = position - 1j * velocity / frequencies
+            # Of A exp((i omega_d - zeta omega) t) the real part counts: undamped
+            # q cos + (dq/dt / omega) sin.
+            decay = self.modes.damping_ratio * frequencies
+            damped = frequencies * math.sqrt(1.0 - self.modes.damping_ratio**2)
+            exponents = 1j * damped - decay
+            oscillation = position - 1j * (velocity + decay * position) / damped
             energy = max(energy - float(modal.sum()), 0.0) + ENERGY_MARGIN * energy
         return all(
             no_further_contact(
@@ -79,7 +86,7 @@ class Ending:
                 state.opening_speed,
                 ((energy, patch.plate), (state.sphere_energy, patch.sphere)),
                 np.asarray(side * patch.shares * oscillation),
-                frequencies,
+                exponents,
             )
             for state, patch, side in zip(motion.states(energies), self.patches, SIDES, strict=True)
         )

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from ..common.bodies import Material, Sphere
+from ..common.bodies import Body, Material
 from ..common.hertz import (
     effective_modulus,
     hertz_contact_radius,
@@ -43,9 +43,9 @@ class ContactEstimate:
     """What the mesh and the time loop need to know in advance."""
 
     outer_radius: float
-    """Largest contact radius between outer sphere and plate, m."""
+    """Largest contact radius between outer body and plate, m."""
     inner_radius: float
-    """The same for the inner sphere, m."""
+    """The same for the inner body, m."""
     duration: float
     """Shorter of the two Hertz contact durations, s."""
 
@@ -53,9 +53,11 @@ class ContactEstimate:
 def estimate_contact(scene: Scene) -> ContactEstimate:
     """Integrate the two-sided Zener equation over the first contact."""
     plate = scene.plate
-    bodies: tuple[Sphere, Sphere] = (scene.outer, scene.inner)
+    bodies: tuple[Body, Body] = (scene.outer, scene.inner)
     effective = [effective_modulus(body.material, plate.material) for body in bodies]
-    stiffness = [hertz_stiffness(e, body.radius) for e, body in zip(effective, bodies, strict=True)]
+    stiffness = [
+        hertz_stiffness(e, body.tip_radius) for e, body in zip(effective, bodies, strict=True)
+    ]
     mobility = 1.0 / (8.0 * math.sqrt(plate.surface_density * plate.bending_stiffness))
     scale = hertz_time_scale(scene.outer.mass, stiffness[0], scene.speed)
     length = scene.speed * scale
@@ -90,12 +92,12 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
     if peak[1] > 0.0:
         peak = np.maximum(peak, MINOR_FORCE * peak.max())
     radii = [
-        hertz_contact_radius(force, e, body.radius)
+        hertz_contact_radius(force, e, body.tip_radius)
         for force, e, body in zip(peak, effective, bodies, strict=True)
     ]
     if peak[1] == 0.0:
         # Not reached in the first contact: the mesh is made for the other one, and verified.
-        radii[1] = min(radii[0], 0.15 * scene.inner.radius)
+        radii[1] = min(radii[0], 0.15 * scene.inner.tip_radius)
     durations = [
         3.218 * hertz_time_scale(body.mass, k, scene.speed)
         for k, body in zip(stiffness, bodies, strict=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse
 
-from ..axisymmetric.elasticity import assemble
+from ..axisymmetric.elasticity import assemble, rigid_node
 from ..axisymmetric.mesh import BodyMesh, check_elements
 from ..axisymmetric.meshing import mesh_plate, mesh_sphere
 from ..axisymmetric.sizes import MeshSettings
@@ -18,8 +18,9 @@ from ..axisymmetric.system import (
     plate_constraints,
     renumbering,
 )
+from ..axisymmetric.tip import tip_flexibility
 from ..common.arrays import Floats, Ints
-from ..common.bodies import sphere_profile
+from ..common.bodies import Body, Compact, Sphere, sphere_profile
 from ..common.errors import SceneError, SolverError
 from ..explicit.contact import MatchedContact
 from .scene import Scene
@@ -50,8 +51,8 @@ def mesh_settings(
     size = min(per_contact, along / 2.0, through)
     zone = CONTACT_ZONE * max(outer_radius, inner_radius)
     for name, radius in (
-        ("outer.radius", scene.outer.radius),
-        ("inner.radius", scene.inner.radius),
+        (f"outer.{scene.outer.RADIUS_KEY}", scene.outer.tip_radius),
+        (f"inner.{scene.inner.RADIUS_KEY}", scene.inner.tip_radius),
         ("plate.radius", plate.radius),
     ):
         if 4.0 * zone > radius:
@@ -73,10 +74,11 @@ def mesh_settings(
 
 @dataclass(frozen=True)
 class ContactSurface:
-    """Matching surface nodes of a sphere and the plate, by increasing radius."""
+    """Matching surface nodes of a body and the plate, by increasing radius."""
 
     radii: Floats
-    sphere_nodes: Ints
+    body_nodes: Ints
+    """Of a compact body its only node, for every node of the plate."""
     plate_nodes: Ints
 
 
@@ -95,12 +97,12 @@ class ImpactMesh:
 
     @property
     def bodies(self) -> tuple[BodyMesh, BodyMesh, BodyMesh]:
-        """Outer sphere, plate, inner sphere."""
+        """Outer body, plate, inner body."""
         return self.outer, self.plate, self.inner
 
 
 def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
-    """Mesh spheres and plate, each where it stands at t = 0.
+    """Mesh bodies and plate, each where it stands at t = 0; a compact body is a node at its tip.
 
     Raises:
         SolverError: gmsh failed or an element is degenerate.
@@ -108,8 +110,15 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     plate = mesh_plate(scene.plate, settings)
     radii = settings.zone_radii()
     half = scene.plate.thickness / 2.0
-    upper, upper_nodes = mesh_sphere(scene.outer, settings, "outer", radii)
-    lower, lower_nodes = mesh_sphere(scene.inner, settings, "inner", radii)
+
+    def above(body: Body, name: str) -> tuple[BodyMesh, Ints]:
+        if isinstance(body, Sphere):
+            return mesh_sphere(body, settings, name, radii)
+        tip = BodyMesh(name, np.zeros((1, 2)), np.zeros((0, 4), dtype=np.int64))
+        return tip, np.zeros(radii.size, dtype=np.int64)
+
+    upper, upper_nodes = above(scene.outer, "outer")
+    lower, lower_nodes = above(scene.inner, "inner")
     outer = BodyMesh("outer", upper.points + np.array([0.0, half]), upper.quads)
     # Mirrored, hence the elements' sense of rotation reversed.
     inner = BodyMesh(
@@ -117,7 +126,7 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
         lower.points * np.array([1.0, -1.0]) - np.array([0.0, half + scene.gap]),
         lower.quads[:, ::-1].copy(),
     )
-    quality = min(check_elements(body) for body in (outer, plate, inner))
+    quality = min(check_elements(body) for body in (outer, plate, inner) if body.quads.size)
 
     def face(z: float) -> Ints:
         nodes = np.flatnonzero(np.abs(plate.points[:, 1] - z) < 1e-9 * half)
@@ -151,10 +160,12 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
     stiffness, mass, inverse, numbers, points = [], [], [], [], []
     element_nodes, element_stiffness, element_steps = [], [], []
     first = np.zeros(4, dtype=np.int64)
-    for index, (body, material, fixed) in enumerate(
-        zip(mesh.bodies, scene.materials, fixed_of, strict=True)
-    ):
-        matrices = assemble(body, material)
+    of_scene = (scene.outer, scene.plate, scene.inner)
+    for index, (body, made, fixed) in enumerate(zip(mesh.bodies, of_scene, fixed_of, strict=True)):
+        if isinstance(made, Compact):
+            matrices = rigid_node(made.mass)
+        else:
+            matrices = assemble(body, made.material)
         if not matrices.mass.min() > 0.0:
             node = int(np.argmin(matrices.mass))
             r, z = body.points[node]
@@ -184,15 +195,17 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
         ("outer", mesh.outer_contact, 0, 0.0, 1.0),
         ("inner", mesh.inner_contact, 2, scene.gap, -1.0),
     ):
-        sphere = scene.outer if index == 0 else scene.inner
+        made = scene.outer if index == 0 else scene.inner
+        tip = isinstance(made, Compact)
         contacts.append(
             MatchedContact(
                 name,
                 normal,
-                numbers[index][surface.sphere_nodes],
+                numbers[index][surface.body_nodes],
                 numbers[1][surface.plate_nodes],
                 surface.radii,
-                gap + sphere_profile(sphere.radius, surface.radii),
+                gap + sphere_profile(made.tip_radius, surface.radii),
+                tip_flexibility(made.material, surface.radii) if tip else None,
             )
         )
     velocity = np.zeros((int(first[-1]), 2))

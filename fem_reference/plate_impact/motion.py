@@ -7,6 +7,7 @@ from typing import Protocol
 
 from ..common.arrays import Floats
 from ..explicit import kernel
+from ..explicit.damping import ModalDamping
 from ..explicit.loop import Energies, Loop
 
 OUTER, PLATE, INNER = "outer", "plate", "inner"
@@ -33,6 +34,10 @@ class Motion(Protocol):
     @property
     def loop(self) -> Loop:
         """Bodies and contacts."""
+
+    @property
+    def damping(self) -> ModalDamping | None:
+        """Of the plate."""
 
     @property
     def share(self) -> float:

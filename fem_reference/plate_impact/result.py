@@ -174,6 +174,8 @@ def _write(
         stress_times=solution.write_fields(folder, scene),
     )
     summary["uncertainty"].update(curve_uncertainty(bands))
+    if run.plate_damping is not None:
+        summary["losses"] = {"plate_damping": run.plate_damping, "squeeze_film": 0.0, "drag": 0.0}
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(
         scene,

@@ -51,6 +51,8 @@ class Run:
     momentum_residual: float
     """Momentum that the ledger misses over the initial momentum."""
     support_impulse: float
+    plate_damping: float | None
+    """Energy lost to the plate's damping, J; None if it has none."""
 
 
 def integrate(
@@ -102,14 +104,17 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     problem = loop.problem
     energies, in_contact = loop.energies(), loop.touching
     work = sum(record.work for record in motion.records)
+    stored = sum(record.stored for record in motion.records)
     velocities, momenta = motion.velocities(), motion.momenta()
     impulses = [share * impulse for impulse in motion.impulses()]
     start = -share * scene.outer.mass * scene.speed
     initial_energy = 0.5 * share * scene.outer.mass * scene.speed**2
     support = problem.state.reaction[loop.components - 1]
+    damping = motion.damping
+    dissipated, braking = (damping.dissipated, damping.impulse) if damping else (0.0, 0.0)
     # Three independent balances: all bodies against the support, each sphere against its contact.
     misses = [
-        sum(momenta) - start - support,
+        sum(momenta) - start - support - braking,
         momenta[0] - start - impulses[0],
         momenta[2] + impulses[1],
     ]
@@ -134,10 +139,11 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         inner_velocity=velocities[1],
         energies=energies,
         initial_energy=initial_energy / share,
-        energy_residual=abs(energies.total - initial_energy - work) / initial_energy,
-        contact_loss=-work / initial_energy,
+        energy_residual=abs(energies.total + dissipated - initial_energy - work) / initial_energy,
+        contact_loss=-(work + stored) / initial_energy,
         momentum_residual=max(abs(miss) for miss in misses) / abs(start),
         support_impulse=support / share,
+        plate_damping=dissipated / share if damping else None,
     )
 
 

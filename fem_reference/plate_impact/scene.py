@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..common.bodies import EDGES, Material, Plate, Sphere, read_material
+from ..common.bodies import EDGES, Body, Compact, Material, Plate, Sphere, read_material
 from ..common.errors import SceneError
 from ..common.reader import Reader, read_document
 
@@ -21,18 +21,18 @@ RIGID: dict[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class Scene:
-    """A sphere (outer) strikes a plate that a second sphere (inner) touches from below."""
+    """A body (outer) strikes a plate that a second one (inner) touches from below."""
 
     name: str
     scene_hash: str
     settings_hash: str
     plate: Plate
-    outer: Sphere
-    inner: Sphere
+    outer: Body
+    inner: Body
     speed: float
-    """Speed of the outer sphere towards the plate, m/s, positive."""
+    """Speed of the outer body towards the plate, m/s, positive."""
     gap: float
-    """Initial distance of the inner sphere from the plate, m."""
+    """Initial distance of the inner body from the plate, m."""
     end_time: float | None
     """s; None: until no further contact is possible."""
     elements_per_contact_radius: float
@@ -41,38 +41,38 @@ class Scene:
     element_order: int
     """1 linear, 2 quadratic; of solid geometry only."""
     rigid: tuple[str, ...]
-    """Bodies ("outer", "inner") that are rigid; of solid geometry only."""
+    """Bodies ("outer", "inner") that are rigid, tip included; of solid geometry only."""
     raw: dict[str, Any]
     """The document as given, for the provenance."""
 
     @property
     def materials(self) -> tuple[Material, Material, Material]:
-        """Of outer sphere, plate and inner sphere."""
+        """Of outer body, plate and inner body."""
         return self.outer.material, self.plate.material, self.inner.material
 
 
 def _plate(reader: Reader) -> Plate:
     reader.allow("radius", "thickness", "edge", "material", "damping_ratio")
+    damping = 0.0
     if reader.node.get("damping_ratio") is not None:
-        damping = reader.number("damping_ratio", "(no unit)", inclusive=True)
-        if damping > 0.0:
-            raise SceneError(
-                f"plate.damping_ratio is {damping:g}; this solver has no damping, it must be 0"
-            )
+        # From 1 on modes creep instead of oscillating, and the end of the run has no proof.
+        damping = reader.number("damping_ratio", "(no unit)", below=1.0, inclusive=True)
     return Plate(
         radius=reader.number("radius", "m"),
         thickness=reader.number("thickness", "m"),
         edge=reader.choice("edge", EDGES),
         material=read_material(reader.child("material")),
+        damping_ratio=damping,
     )
 
 
-def _sphere(reader: Reader, extra: str) -> Sphere:
-    reader.choice("kind", ("sphere",))
-    reader.allow("kind", "radius", "material", extra)
-    return Sphere(
-        radius=reader.number("radius", "m"), material=read_material(reader.child("material"))
-    )
+def _body(reader: Reader, extra: str) -> Body:
+    material = read_material(reader.child("material"))
+    if reader.choice("kind", ("sphere", "compact")) == "sphere":
+        reader.allow("kind", "radius", "material", extra)
+        return Sphere(reader.number("radius", "m"), material)
+    reader.allow("kind", "mass", "tip_radius", "material", extra)
+    return Compact(reader.number("mass", "kg"), reader.number("tip_radius", "m"), material)
 
 
 def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:
@@ -124,14 +124,27 @@ def parse_scene(document: Any) -> Scene:
         run.allow("end_time")
         if run.node.get("end_time") is not None:
             end_time = run.number("end_time", "s")
+    plate = _plate(root.child("plate"))
+    if geometry == "solid" and plate.damping_ratio > 0.0:
+        raise SceneError(
+            f"plate.damping_ratio is {plate.damping_ratio:g}; solid geometry has no damping, it "
+            "must be 0: take reference.geometry 'axisymmetric'"
+        )
     outer, inner = root.child("outer"), root.child("inner")
+    bodies = {"outer": _body(outer, "speed"), "inner": _body(inner, "gap")}
+    for name, body in bodies.items():
+        if geometry == "solid" and isinstance(body, Compact) and name not in rigid:
+            raise SceneError(
+                f"{name}.kind is 'compact', whose tip has to yield; solid geometry has rigid tips "
+                f"only: take reference.geometry 'axisymmetric', or name it in reference.rigid"
+            )
     return Scene(
         name=root.text("name"),
         scene_hash=root.text("scene_hash"),
         settings_hash=root.text("settings_hash"),
-        plate=_plate(root.child("plate")),
-        outer=_sphere(outer, "speed"),
-        inner=_sphere(inner, "gap"),
+        plate=plate,
+        outer=bodies["outer"],
+        inner=bodies["inner"],
         speed=outer.number("speed", "m/s"),
         gap=inner.number("gap", "m", inclusive=True),
         end_time=end_time,

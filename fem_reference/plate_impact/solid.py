@@ -121,13 +121,11 @@ def _per_wavelength(
 def _elements_per_radius(scene: Scene, plate: PlateModel, run: Run) -> tuple[float, float]:
     peaks = [contact.force_peak for contact in run.contacts]
     found = []
-    for peak, sphere, name in zip(
-        peaks, (scene.outer, scene.inner), ("outer", "inner"), strict=True
-    ):
-        effective = effective_modulus(sphere.material, scene.plate.material)
+    for peak, body, name in zip(peaks, (scene.outer, scene.inner), ("outer", "inner"), strict=True):
+        effective = effective_modulus(body.material, scene.plate.material)
         if name in scene.rigid:
             effective = scene.plate.material.plane_strain_modulus
-        radius = hertz_contact_radius(peak, effective, sphere.radius)
+        radius = hertz_contact_radius(peak, effective, body.tip_radius)
         found.append(radius / plate.size if peak >= MINOR_FORCE * max(peaks) else math.inf)
     return found[0], found[1]
 

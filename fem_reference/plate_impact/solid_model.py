@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.arrays import Floats, Ints
-from ..common.bodies import Plate, Sphere, sphere_profile
+from ..common.bodies import Compact, Plate, Sphere, sphere_profile
 from ..common.errors import SceneError
 from ..explicit.contact import Contact, RigidBody, SphereContact, SurfaceContact, guided
 from ..solid.mesh import TetMesh, surface
@@ -85,8 +85,8 @@ def size_fields(
     plate = scene.plate
     least = min(min(radii) / scene.elements_per_contact_radius, plate.thickness / 4.0) / factor
     for name, radius in (
-        ("outer.radius", scene.outer.radius),
-        ("inner.radius", scene.inner.radius),
+        (f"outer.{scene.outer.RADIUS_KEY}", scene.outer.tip_radius),
+        (f"inner.{scene.inner.RADIUS_KEY}", scene.inner.tip_radius),
         ("plate.radius", plate.radius),
     ):
         if 3.0 * CANDIDATE_ZONE * zone > radius:
@@ -107,12 +107,12 @@ def size_fields(
     # Above and below, a sphere is meshed with its pole at the origin.
     pole = ((0.0, 0.0, 0.0),)
     return (
-        field(pole, min(0.25 * scene.outer.radius, wavelengths[0] / per_wave)),
+        field(pole, min(0.25 * scene.outer.tip_radius, wavelengths[0] / per_wave)),
         field(
             ((0.0, 0.0, half), (0.0, 0.0, -half)),
             min(through * plate.thickness, plate.radius / 8.0, wavelengths[1] / per_wave),
         ),
-        field(pole, min(0.25 * scene.inner.radius, wavelengths[2] / per_wave)),
+        field(pole, min(0.25 * scene.inner.tip_radius, wavelengths[2] / per_wave)),
     )
 
 
@@ -151,7 +151,7 @@ def plate_model(
     contacts: list[Contact] = []
     patches: dict[tuple[str, str], tuple[Ints, Floats]] = {}
     centre: list[int] = []
-    for name, sphere, size, side, gap, speed in (
+    for name, body, size, side, gap, speed in (
         (OUTER, scene.outer, outer_size, 1.0, 0.0, -scene.speed),
         (INNER, scene.inner, inner_size, -1.0, scene.gap, 0.0),
     ):
@@ -164,18 +164,19 @@ def plate_model(
         near = near[np.argsort(distance[near], kind="stable")]
         patches[PLATE, name] = (near, areas[near])
         centre.append(int(near[0]))
-        if name in scene.rigid:
+        if name in scene.rigid or isinstance(body, Compact):
             rigid_numbers[name] = len(rigid)
             along = guided((0.0, 0.0, 1.0))
-            rigid.append(RigidBody(name, FRACTION * sphere.mass, along, (0.0, 0.0, speed)))
-            place = (0.0, 0.0, height + side * (sphere.radius + gap))
-            contacts.append(SphereContact(name, 0, near, rigid_numbers[name], place, sphere.radius))
+            rigid.append(RigidBody(name, FRACTION * body.mass, along, (0.0, 0.0, speed)))
+            place = (0.0, 0.0, height + side * (body.tip_radius + gap))
+            tip = SphereContact(name, 0, near, rigid_numbers[name], place, body.tip_radius)
+            contacts.append(tip)
             continue
-        mesh = quarter_sphere(name, sphere, size, order, side)
+        mesh = quarter_sphere(name, body, size, order, side)
         numbers[name] = len(elastic)
-        elastic.append(ElasticBody(mesh, sphere.material, _symmetry(mesh), (0.0, 0.0, speed)))
+        elastic.append(ElasticBody(mesh, body.material, _symmetry(mesh), (0.0, 0.0, speed)))
         contact, area = _sphere_on_plate(
-            name, mesh, numbers[name], plate, face, sphere, side, gap, zone
+            name, mesh, numbers[name], plate, face, body, side, gap, zone
         )
         contacts.append(contact)
         patches[name, name] = (contact.nodes, area)

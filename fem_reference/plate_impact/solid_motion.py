@@ -21,6 +21,7 @@ class SolidMotion:
     """See `motion.Motion`."""
 
     share = FRACTION
+    damping = None
 
     def __init__(self, loop: Loop, plate: PlateModel, scene: Scene) -> None:
         self.loop, self.plate = loop, plate

@@ -191,6 +191,7 @@ def test_compiled_product_is_the_matrix_product(system: AxisymmetricSystem) -> N
         {"plate__edge": "free"},
         {"plate__edge": "simply-supported", "outer__radius": 0.006},
         {"inner__gap": 5e-6},
+        {"plate__damping_ratio": 0.03},
     ],
 )
 def test_nothing_touches_after_the_end_of_the_run(changes: dict[str, object]) -> None:

@@ -49,7 +49,7 @@ def test_a_hardly_compressible_sphere_is_hertz() -> None:
     )
     assert_ledgers_close(run)
     stiffness = hertz_stiffness(
-        effective_modulus(scene.outer.material, scene.plate.material), scene.outer.radius
+        effective_modulus(scene.outer.material, scene.plate.material), scene.outer.tip_radius
     )
     scale = hertz_time_scale(scene.outer.mass, stiffness, scene.speed)
     assert run.contacts[0].count == 1

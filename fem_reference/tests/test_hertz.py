@@ -40,7 +40,7 @@ def test_sphere_on_a_rigid_half_space_hertz() -> None:
     system, duration = make_system(scene)
     run = integrate(system, scene, duration, end_time=scene.end_time)
     stiffness = hertz_stiffness(
-        effective_modulus(scene.outer.material, scene.plate.material), scene.outer.radius
+        effective_modulus(scene.outer.material, scene.plate.material), scene.outer.tip_radius
     )
     scale = hertz_time_scale(scene.outer.mass, stiffness, scene.speed)
     contact = run.contacts[0]
@@ -62,7 +62,7 @@ def test_estimate_is_zeners_equation_with_a_light_plate() -> None:
     base = document(inner__gap=1e-2)
     scene = parse_scene(base)
     stiffness = hertz_stiffness(
-        effective_modulus(scene.outer.material, scene.plate.material), scene.outer.radius
+        effective_modulus(scene.outer.material, scene.plate.material), scene.outer.tip_radius
     )
     scale = hertz_time_scale(scene.outer.mass, stiffness, scene.speed)
     # lambda = m / (8 sqrt(rho h D) T) is proportional to h^-2.
@@ -85,7 +85,7 @@ def test_estimate_is_zeners_equation_with_a_light_plate() -> None:
     radius = (
         0.75
         * force
-        * scene.outer.radius
+        * scene.outer.tip_radius
         / effective_modulus(scene.outer.material, scene.plate.material)
     ) ** (1 / 3)
     assert estimate_contact(zener).outer_radius == pytest.approx(radius, rel=1e-3)

@@ -52,14 +52,14 @@ def test_contact_nodes_match_pairwise(mesh: ImpactMesh) -> None:
         (mesh.outer_contact, mesh.outer, 1.0),
         (mesh.inner_contact, mesh.inner, -1.0),
     ):
-        sphere = body.points[surface.sphere_nodes]
+        sphere = body.points[surface.body_nodes]
         plate = mesh.plate.points[surface.plate_nodes]
         assert np.allclose(sphere[:, 0], plate[:, 0], rtol=0.0, atol=1e-15)
         assert np.allclose(plate[:, 1], sign * 0.001, rtol=0.0, atol=1e-15)
         height = sign * (sphere[:, 1] - plate[:, 1])
         exact = 0.01 - np.sqrt(0.01**2 - sphere[:, 0] ** 2)
         assert np.allclose(height, exact, rtol=0.02, atol=1e-12)
-        assert np.unique(surface.sphere_nodes).size == surface.radii.size
+        assert np.unique(surface.body_nodes).size == surface.radii.size
 
 
 def test_inner_sphere_stands_off_by_its_gap() -> None:

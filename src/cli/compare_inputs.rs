@@ -11,8 +11,16 @@ use std::path::{Path, PathBuf};
 
 /// The scenes named, or all shipped ones.
 pub(super) fn scenes(names: &[String]) -> Result<Vec<(PathBuf, Scene)>> {
+    scenes_or(names, scene::shipped)
+}
+
+/// The scenes named, or those of `all`.
+pub(super) fn scenes_or(
+    names: &[String],
+    all: fn() -> Result<Vec<PathBuf>>,
+) -> Result<Vec<(PathBuf, Scene)>> {
     let paths = if names.is_empty() {
-        scene::shipped()?
+        all()?
     } else {
         names.iter().map(|name| scene::resolve(name)).collect::<Result<Vec<_>>>()?
     };

@@ -4,6 +4,7 @@ mod asked_model;
 mod bench;
 mod compare;
 mod compare_inputs;
+mod coverage;
 mod doctor;
 mod gate;
 mod kinds;
@@ -65,6 +66,9 @@ enum Command {
     /// Compare, and let the scene's tolerances decide the exit status
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
     Gate(gate::Arguments),
+    /// Tell which features of scenes are held against an independent solution, and how far models and solutions lie apart
+    #[command(after_help = "Example: impactcheck coverage --json")]
+    Coverage(coverage::Arguments),
     /// Mesh the seat of a seal-seat scene
     #[command(after_help = "Example: impactcheck mesh my-seat.toml --out my-seat.vtu")]
     Mesh(mesh::Arguments),
@@ -155,6 +159,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Reduced(arguments) => reduced::run(&context, &arguments),
         Command::Reference(arguments) => reference::run(&context, &arguments),
         Command::Compare(arguments) => compare::run(&context, &arguments.with_tables_measured()),
+        Command::Coverage(arguments) => coverage::run(&context, &arguments),
         Command::Mesh(arguments) => mesh::run(&context, &arguments),
         Command::Gate(mut arguments) => {
             arguments.compare = arguments.compare.with_tables_measured();

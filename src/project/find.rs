@@ -29,6 +29,22 @@ pub fn shipped() -> Result<Vec<PathBuf>> {
     scenes_in(&project_root()?.join("scenes"))
 }
 
+/// All scene files of the project, those of the folders in `scenes/` too.
+///
+/// # Errors
+/// As [`shipped`].
+pub fn every() -> Result<Vec<PathBuf>> {
+    let folder = project_root()?.join("scenes");
+    let entries = std::fs::read_dir(&folder).map_err(|e| Error::io("reading", &folder, e))?;
+    let mut folders: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(|p| p.is_dir()).collect();
+    folders.sort();
+    let mut scenes = scenes_in(&folder)?;
+    for folder in folders {
+        scenes.extend(scenes_in(&folder)?);
+    }
+    Ok(scenes)
+}
+
 fn resolve_in(folder: &Path, argument: &str, path: PathBuf, beside: PathBuf) -> Result<PathBuf> {
     let is_name = !argument.is_empty() && !argument.contains(['/', '\\']);
     for candidate in [format!("{argument}.toml"), argument.to_owned()] {

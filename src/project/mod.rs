@@ -2,7 +2,7 @@
 
 mod find;
 
-pub use find::{resolve, shipped};
+pub use find::{every, resolve, shipped};
 
 use crate::interrupt::Scratch;
 use crate::{Error, Result};

@@ -1,6 +1,7 @@
 //! Tests of the program as a user calls it.
 
 mod bad_input;
+mod coverage;
 #[cfg(unix)]
 mod elsewhere;
 mod first_day;

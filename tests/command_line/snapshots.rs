@@ -8,11 +8,12 @@ use std::fs;
 use std::path::Path;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 16] = [
     "reduced",
     "reference",
     "compare",
     "gate",
+    "coverage",
     "mesh",
     "study",
     "optimise",

@@ -11,7 +11,7 @@ use crate::kinds;
 use crate::reference::Stored;
 use crate::report::Cost;
 use crate::result::Outcome;
-use crate::scene::{Scene, Setup};
+use crate::scene::{Model, Scene, Setup};
 
 /// Results of the models, and what they have cost if they share a mesh with the reference.
 pub(super) type Compared = (Vec<Outcome>, Vec<Cost>);
@@ -23,6 +23,9 @@ pub(super) trait Models: Sync {
     /// # Errors
     /// Those of the arguments and of the model.
     fn reduced(&self, context: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome>;
+
+    /// Whether `model` takes `scene`.
+    fn takes(&self, scene: &Scene, model: Model) -> bool;
 
     /// Runs those of the models `asked` for that there are, with the tolerance of `auto`, beside a reference.
     ///

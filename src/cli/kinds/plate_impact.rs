@@ -49,6 +49,10 @@ impl Models for Plates {
         reduced.run_with_history(tolerance)
     }
 
+    fn takes(&self, scene: &Scene, model: Model) -> bool {
+        Reduced::new(scene, model, None).is_ok()
+    }
+
     fn beside(
         &self,
         context: &Context,

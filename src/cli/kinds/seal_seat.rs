@@ -52,6 +52,10 @@ impl Models for Seats {
         reduced.run_with_history(tolerance)
     }
 
+    fn takes(&self, _: &Scene, model: Model) -> bool {
+        model == Model::C
+    }
+
     fn beside(
         &self,
         context: &Context,

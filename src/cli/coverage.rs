@@ -1,0 +1,88 @@
+//! `impactcheck coverage`: which features of scenes are held against an independent solution.
+
+use super::asked_model::AskedModel;
+use super::{Context, JsonArgument, compare_inputs, kinds};
+use crate::comparison::{ModelComparison, compare_scene};
+use crate::coverage::{Case, Coverage, coverage};
+use crate::error::{ExitStatus, Result};
+use crate::reference::{Lookup, Store, Stored};
+use crate::scene::{self, Model, Scene};
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene files or names of shipped scenes [default: all scenes of the project, examples and validation too]
+    scenes: Vec<String>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// Compares every model with every stored reference and tells what that covers; nothing is computed but the models.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    let scenes = compare_inputs::scenes_or(&arguments.scenes, scene::every)?;
+    let mut cases = Vec::new();
+    for (file, scene) in &scenes {
+        let stored = finest(&context.store().for_scene_in(file), scene);
+        for &model in crate::kinds::of(scene).models() {
+            let comparison = stored.as_ref().and_then(|stored| compared(context, scene, stored, model));
+            if comparison.is_some() || kinds::of(scene).takes(scene, model) {
+                cases.push(Case { scene, model, comparison });
+            }
+        }
+    }
+    let found = coverage(&cases);
+    if arguments.json.json {
+        super::print_json(&found)?;
+    } else {
+        super::print(&table(&found))?;
+    }
+    Ok(ExitStatus::Pass)
+}
+
+/// The solution of `scene` on the finest mesh that is stored.
+fn finest(store: &Store, scene: &Scene) -> Option<Stored> {
+    let shipped = Store::shipped().ok();
+    [Some(store), shipped.as_ref()].into_iter().flatten().find_map(|store| {
+        match store.find(scene, *store.resolutions(scene).last()?) {
+            Lookup::Found(stored) => Some(*stored),
+            _ => None,
+        }
+    })
+}
+
+/// `model` against a stored reference; `None` if it does not take the scene, which is told.
+fn compared(context: &Context, scene: &Scene, stored: &Stored, model: Model) -> Option<ModelComparison> {
+    match kinds::of(scene).beside(context, scene, stored, (&[AskedModel::Named(model)], None)) {
+        Ok((reduced, _)) => compare_scene(scene, &stored.outcome, &reduced).models.pop(),
+        Err(error) => {
+            context.note(format_args!("{}: model {model}: {error}", scene.name));
+            None
+        }
+    }
+}
+
+fn table(found: &Coverage) -> String {
+    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+    let mut lines = vec![format!(
+        "{:<28} {:<6} {:<14} {:>6}  {}",
+        "feature", "model", "held against", "scenes", "largest difference (95 % band of the partner)"
+    )];
+    for feature in &found.features {
+        let mut name = feature.feature;
+        if feature.partners.is_empty() {
+            lines.push(format!("{name:<28} no scene has it, or no model takes it"));
+        }
+        for row in &feature.partners {
+            let difference = row.worst_relative.map_or(String::new(), |relative| {
+                let band = row.band.map_or("unknown".to_owned(), percent);
+                format!("{} ({band}), {}", percent(relative), row.quantity.as_deref().unwrap_or_default())
+            });
+            let partner = row.partner.unwrap_or("nothing");
+            let scenes = row.scenes.len();
+            let line = format!("{name:<28} {:<6} {partner:<14} {scenes:>6}  {difference}", row.model);
+            lines.push(line.trim_end().to_owned());
+            name = "";
+        }
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,210 @@
+//! Which features of scenes have a partner: what of the reduced models is held against an independent solution, and how
+//! far the two lie apart.
+//!
+//! Nothing is written by hand but the list of features, each a question to a scene. Everything else is found: scenes, models
+//! that take them, stored references and the discrepancies between both.
+
+use crate::comparison::ModelComparison;
+use crate::result::SCHEMA_VERSION;
+use crate::scene::{Edge, Fluid, Geometry, Material, Model, PlateImpact, Scene, Setup, Shape, SphereBody};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Thickness over radius from which a plate counts as thick.
+const THICK: f64 = 0.3;
+/// Thickness over radius up to which a plate counts as thin.
+const THIN: f64 = 0.02;
+
+/// Something a scene can have.
+#[derive(Debug, Clone, Copy)]
+pub struct Feature {
+    /// For people.
+    pub name: &'static str,
+    has: fn(&Scene) -> bool,
+}
+
+impl Feature {
+    /// Whether `scene` has it.
+    pub fn is_in(&self, scene: &Scene) -> bool {
+        (self.has)(scene)
+    }
+}
+
+const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
+    Feature { name, has }
+}
+
+/// The features, of plates first.
+pub static FEATURES: [Feature; 18] = [
+    feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)),
+    feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported)),
+    feature("free edge", |s| plate(s, |p| p.plate.edge == Edge::Free)),
+    feature("thick plate (t >= 0.3 R)", |s| plate(s, |p| p.plate.thickness >= THICK * p.plate.radius)),
+    feature("thin plate (t <= 0.02 R)", |s| plate(s, |p| p.plate.thickness <= THIN * p.plate.radius)),
+    feature("damped plate", |s| plate(s, |p| p.plate.damping_ratio > 0.0)),
+    feature("gap", |s| plate(s, |p| p.inner.gap > 0.0)),
+    feature("unlike materials", |s| plate(s, unlike)),
+    feature("compact outer body", |s| plate(s, |p| matches!(p.outer.shape, Shape::Compact { .. }))),
+    feature("compact inner body", |s| plate(s, |p| matches!(p.inner.shape, Shape::Compact { .. }))),
+    feature("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))),
+    feature("squeeze film", |s| fluid(s, |f| f.squeeze_film)),
+    feature("shear thinning", |s| fluid(s, |f| f.shear_thinning.is_some())),
+    feature("added mass", |s| fluid(s, |f| f.added_mass_frequency_ratio < 1.0)),
+    feature("drag", |s| fluid(s, |f| f.drag_coefficient > 0.0)),
+    feature("run cut by its end time", |s| s.run.end_time.is_some()),
+    feature("seal seat", |s| matches!(s.setup, Setup::SealSeat(_))),
+    feature(
+        "seal seat, elastic sphere",
+        |s| matches!(&s.setup, Setup::SealSeat(seat) if seat.sphere.body == SphereBody::Elastic),
+    ),
+];
+
+fn plate(scene: &Scene, has: fn(&PlateImpact) -> bool) -> bool {
+    matches!(&scene.setup, Setup::PlateImpact(setup) if has(setup))
+}
+
+fn fluid(scene: &Scene, has: fn(&Fluid) -> bool) -> bool {
+    matches!(&scene.setup, Setup::PlateImpact(setup) if setup.fluid.as_ref().is_some_and(has))
+}
+
+fn unlike(setup: &PlateImpact) -> bool {
+    let elastic = |m: &Material| (m.youngs_modulus, m.poisson_ratio, m.density);
+    let plate = elastic(&setup.plate.material);
+    elastic(&setup.outer.material) != plate || elastic(&setup.inner.material) != plate
+}
+
+/// A scene that a model takes, and what it was held against.
+#[derive(Debug)]
+pub struct Case<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The model.
+    pub model: Model,
+    /// Against the stored reference, if there is one.
+    pub comparison: Option<ModelComparison>,
+}
+
+impl Case<'_> {
+    /// Name of the partner.
+    fn partner(&self) -> Option<&'static str> {
+        self.comparison.as_ref().map(|_| match self.scene.reference.geometry {
+            Geometry::Axisymmetric => "axisymmetric",
+            Geometry::Solid => "solid",
+        })
+    }
+}
+
+/// The document of `coverage`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Coverage {
+    /// [`SCHEMA_VERSION`].
+    pub schema_version: u32,
+    /// In the order of [`FEATURES`].
+    pub features: Vec<FeatureCoverage>,
+}
+
+/// Who stands for one feature.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FeatureCoverage {
+    /// The feature.
+    pub feature: &'static str,
+    /// One entry per model that takes a scene with it and partner; empty if no scene has it or no model takes it.
+    pub partners: Vec<Partner>,
+}
+
+/// A model and what it is held against.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Partner {
+    /// The reduced model.
+    pub model: String,
+    /// "axisymmetric" or "solid" finite elements; `None`: the model takes the scenes, but nothing is held against it.
+    pub partner: Option<&'static str>,
+    /// Names of the scenes.
+    pub scenes: Vec<String>,
+    /// Largest relative discrepancy of any quantity in them.
+    pub worst_relative: Option<f64>,
+    /// Half width of the partner's 95 % band of that quantity, relative.
+    pub band: Option<f64>,
+    /// That quantity.
+    pub quantity: Option<String>,
+}
+
+/// What `cases` show.
+pub fn coverage(cases: &[Case]) -> Coverage {
+    let features = FEATURES.iter().map(|feature| {
+        let mut partners: BTreeMap<(Model, Option<&str>), Partner> = BTreeMap::new();
+        for case in cases.iter().filter(|case| feature.is_in(case.scene)) {
+            let new = || Partner::of(case.model, case.partner());
+            partners.entry((case.model, case.partner())).or_insert_with(new).add(case);
+        }
+        // a scene without a partner says nothing new of a model that has one elsewhere
+        let held: Vec<Model> = partners.keys().filter(|key| key.1.is_some()).map(|key| key.0).collect();
+        partners.retain(|(model, partner), _| partner.is_some() || !held.contains(model));
+        FeatureCoverage { feature: feature.name, partners: partners.into_values().collect() }
+    });
+    Coverage { schema_version: SCHEMA_VERSION, features: features.collect() }
+}
+
+impl Partner {
+    fn of(model: Model, partner: Option<&'static str>) -> Self {
+        Partner {
+            model: model.to_string(),
+            partner,
+            scenes: Vec::new(),
+            worst_relative: None,
+            band: None,
+            quantity: None,
+        }
+    }
+
+    fn add(&mut self, case: &Case) {
+        self.scenes.push(case.scene.name.clone());
+        let Some(row) = case.comparison.as_ref().and_then(ModelComparison::largest) else { return };
+        let relative = row.relative.map(f64::abs);
+        if relative > self.worst_relative {
+            self.worst_relative = relative;
+            self.band = row.uncertainty.zip(row.reference).map(|(band, value)| band / value.abs());
+            self.quantity = Some(row.quantity.clone());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLATE: &str = include_str!("../tests/fixtures/plate-impact.toml");
+
+    fn names(scene: &Scene) -> Vec<&'static str> {
+        FEATURES.iter().filter(|feature| feature.is_in(scene)).map(|feature| feature.name).collect()
+    }
+
+    fn scene(text: &str) -> Scene {
+        Scene::parse("plate-impact.toml", text).expect("valid")
+    }
+
+    #[test]
+    fn features_are_read_from_the_scene() {
+        let plain = scene(PLATE);
+        assert_eq!(names(&plain), ["clamped edge"]);
+        let text = PLATE.replace("edge      = \"clamped\"", "edge = \"free\"\ndamping_ratio = 0.1");
+        assert_eq!(names(&scene(&text)), ["free edge", "damped plate"]);
+        let seat = include_str!("../tests/fixtures/seal-seat.toml");
+        assert_eq!(names(&Scene::parse("seal-seat.toml", seat).expect("valid")), ["seal seat"]);
+    }
+
+    #[test]
+    fn a_model_without_partner_is_told_as_such_and_a_feature_no_scene_has_is_empty() {
+        let plain = scene(PLATE);
+        let cases = [Model::B, Model::C].map(|model| Case { scene: &plain, model, comparison: None });
+        let found = coverage(&cases);
+        assert_eq!(found.features.len(), FEATURES.len());
+        for feature in found.features {
+            let alone: Vec<_> =
+                feature.partners.iter().map(|p| (&*p.model, p.partner, p.scenes.len())).collect();
+            let expected: &[_] =
+                if feature.feature == "clamped edge" { &[("B", None, 1), ("C", None, 1)] } else { &[] };
+            assert_eq!(alone, expected, "{}", feature.feature);
+        }
+    }
+}
