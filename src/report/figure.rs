@@ -6,6 +6,7 @@
 
 use super::SceneReport;
 use super::figure_panel::panel;
+use super::presentation;
 use super::format::{model_name, significant};
 use super::ticks::{tick_label, ticks};
 use crate::comparison::{CommonAxis, SampledCurve, sample};
@@ -109,40 +110,39 @@ const STYLE: &str = "\
 .fig-box{fill:#ececec;stroke:#bdbdbd}.fig-band{fill:#d0d0d0}.fig-halo{stroke:#fff}\
 .fig-reference{stroke:#1a1a1a}.fig-A{stroke:#d55e00}.fig-B{stroke:#0072b2}.fig-C{stroke:#009e73}.fig-measured{stroke:#cc79a7}";
 
-/// One of the three panels.
-pub(super) struct Quantity {
-    pub(super) suffix: &'static str,
+/// A panel: curves of one quantity over time.
+pub(super) struct PanelOf {
+    /// Quantity and unit, beside the axis.
     pub(super) label: &'static str,
-    /// From SI to the unit of the label.
+    /// From SI to that unit.
     pub(super) factor: f64,
-    pub(super) bodies: &'static [&'static str],
+    /// What the panel calls each curve, and its name.
+    pub(super) curves: &'static [(&'static str, &'static str)],
+    /// Whether the efficiencies stand in boxes between the curves, where there is room for them.
+    pub(super) boxes: bool,
 }
 
-pub(super) const QUANTITIES: [Quantity; 3] = [
-    Quantity {
-        suffix: "displacement",
-        label: "Displacement in µm",
-        factor: 1e6,
-        bodies: &["outer", "plate", "inner"],
-    },
-    Quantity {
-        suffix: "velocity",
-        label: "Velocity in mm/s",
-        factor: 1e3,
-        bodies: &["outer", "plate", "inner"],
-    },
-    Quantity { suffix: "force", label: "Contact force in N", factor: 1.0, bodies: &["outer", "inner"] },
-];
+impl PanelOf {
+    /// Whether the panel shows this curve.
+    pub(super) fn holds(&self, curve: &SampledCurve) -> bool {
+        self.curves.iter().any(|(_, name)| curve.quantity == *name)
+    }
+}
 
 /// What can be measured: the bodies, by their motion.
-const MEASURED: [Quantity; 2] = [
-    Quantity {
-        suffix: "displacement",
+const MEASURED: [PanelOf; 2] = [
+    PanelOf {
         label: "Displacement in µm",
         factor: 1e6,
-        bodies: &["outer", "inner"],
+        curves: &[("outer", "outer_displacement"), ("inner", "inner_displacement")],
+        boxes: false,
     },
-    Quantity { suffix: "velocity", label: "Velocity in mm/s", factor: 1e3, bodies: &["outer", "inner"] },
+    PanelOf {
+        label: "Velocity in mm/s",
+        factor: 1e3,
+        curves: &[("outer", "outer_velocity"), ("inner", "inner_velocity")],
+        boxes: true,
+    },
 ];
 
 /// Curves of one result, and how they are drawn.
@@ -264,7 +264,7 @@ fn scene_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> Str
         lines.iter_mut().for_each(|line| line.width *= 0.8);
     }
     let title = format!("{}: reduced models and finite-element reference", report.scene.name);
-    drawing(&title, geometry, &QUANTITIES, &lines, axis, theme)
+    drawing(&title, geometry, presentation::of(report.scene).panels(), &lines, axis, theme)
 }
 
 /// The figure of the first measured record beside reference and models (Fig. 12): displacement and velocity of the
@@ -288,16 +288,16 @@ fn measured_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> 
 fn drawing(
     title: &str,
     geometry: &Geometry,
-    quantities: &[Quantity],
+    panels: &[PanelOf],
     lines: &[Line],
     axis: Option<CommonAxis>,
     theme: Theme,
 ) -> String {
-    let panels = quantities.len() as f64;
+    let count = panels.len() as f64;
     let legend = Legend::new(geometry, lines);
     let top = legend.height + 14.0;
     let Geometry { width, panel_height, gap, bottom, .. } = *geometry;
-    let height = top + panels * panel_height + (panels - 1.0) * gap + bottom;
+    let height = top + count * panel_height + (count - 1.0) * gap + bottom;
     let end = axis.map_or(1.0, |a| a.end * 1e6);
     let size = |px: f64| match (theme, geometry.millimetres) {
         (Theme::Inline, _) => None,
@@ -314,8 +314,8 @@ fn drawing(
                 rect width=(width) height=(height) fill="#ffffff" {}
             }
             (legend.drawing)
-            @for (k, quantity) in quantities.iter().enumerate() {
-                (panel(geometry, quantity, top + k as f64 * (panel_height + gap), end, lines, axis))
+            @for (k, shown) in panels.iter().enumerate() {
+                (panel(geometry, shown, top + k as f64 * (panel_height + gap), end, lines, axis))
             }
             (time_labels(geometry, end, height))
             @if lines.is_empty() {

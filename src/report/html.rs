@@ -40,6 +40,8 @@ pub(super) fn model_badge(model: &ModelComparison) -> Markup {
 
 fn worded(verdict: Verdict, words: &str) -> Markup {
     let class = match verdict {
+        // right where it is known to be wrong: no green for that
+        Verdict::Pass if words != verdict.words() => "verdict known",
         Verdict::NotGated => "verdict open",
         Verdict::Pass => "verdict pass",
         Verdict::Undecided => "verdict undecided",
@@ -64,6 +66,11 @@ pub(super) fn named(quantity: &str) -> Markup {
         "efficiency" => html! { abbr title=(EFFICIENCY) { (words(quantity)) } },
         _ => html! { (words(quantity)) },
     }
+}
+
+/// A heading for a quantity under another name.
+pub(super) fn named_as(heading: &str, quantity: &str) -> Markup {
+    if words(quantity) == heading { named(quantity) } else { html! { (heading) } }
 }
 
 /// A drawing as wide as a page, and the same as wide as a phone; the screen decides which is seen.

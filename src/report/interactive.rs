@@ -2,7 +2,8 @@
 
 use super::SceneReport;
 use super::html::drawn;
-use super::page_data::{PanelOf, curves, embedded};
+use super::figure::PanelOf;
+use super::page_data::{curves, embedded};
 use maud::{Markup, PreEscaped, html};
 
 /// uPlot by Leon Sorokin, MIT.

@@ -1,5 +1,6 @@
 //! The section y = 0 of a seal seat: geometry, where it is struck, and the directions of the sphere's flight.
 
+use super::summary_column::degrees;
 use crate::scene::SealSeat;
 use maud::{Markup, html};
 
@@ -88,7 +89,7 @@ fn dashes(arrow: &Arrow) -> &'static str {
 fn label(arrow: &Arrow) -> String {
     let [x, z] = arrow.velocity;
     let speed = x.hypot(z);
-    format!("{}: {:+.2}° against the vertical, {:.3} m/s", arrow.name, x.atan2(z).to_degrees(), speed)
+    format!("{}: {} against the vertical, {speed:.3} m/s", arrow.name, degrees(x.atan2(z)))
 }
 
 /// Membrane and island, with both seats and the notch taken out.
