@@ -164,7 +164,8 @@ impl Discrepancy {
 
     /// What `relative` is relative to; `None` if that is not known.
     pub fn scale(&self) -> Option<f64> {
-        let of_row = self.difference.zip(self.relative).map(|(difference, relative)| (difference / relative).abs());
+        let of_row =
+            self.difference.zip(self.relative).map(|(difference, relative)| (difference / relative).abs());
         of_row.or(self.reference.map(f64::abs)).filter(|scale| scale.is_finite() && *scale > 0.0)
     }
 

@@ -8,20 +8,23 @@ use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
 use maud::{Markup, html};
 
 /// Height of a model's lane in a row, and what a row has above and below the lanes, px.
-const LANE: f64 = 6.0;
-const EDGE: f64 = 5.0;
+const LANE: f64 = 5.5;
+const EDGE: f64 = 2.5;
+/// Least height of a row, px.
+const LEAST: f64 = 20.0;
 
 /// The picture, in two tables: single numbers with their sign, and curves by the distance from the reference's.
 pub(super) fn discrepancy_picture(comparison: &SceneComparison) -> Markup {
     let Some(first) = comparison.models.first() else { return html! {} };
-    let is_number = |row: &Discrepancy| first.summary.quantities.get(&row.quantity).is_some_and(|q| !q.is_count);
+    let is_number =
+        |row: &Discrepancy| first.summary.quantities.get(&row.quantity).is_some_and(|q| !q.is_count);
     let names = |wanted: &dyn Fn(&Discrepancy) -> bool| -> Vec<&str> {
         first.discrepancies.iter().filter(|row| wanted(row)).map(|row| &*row.quantity).collect()
     };
     let (numbers, curves) = (names(&is_number), names(&|row| row.quantity.ends_with("_rms")));
     let shown = |row: &&Discrepancy| numbers.contains(&&*row.quantity) || row.quantity.ends_with("_max");
     let rows = comparison.models.iter().flat_map(|model| &model.discrepancies).filter(shown);
-    let axis = SymmetricLog::over(rows.filter_map(|row| row.relative), true);
+    let axis = SymmetricLog::over(rows.flat_map(reach), true);
     html! {
         div.pictures-of-discrepancy {
             (table("Single numbers", &numbers, comparison, &axis))
@@ -37,7 +40,7 @@ pub(super) fn discrepancy_picture(comparison: &SceneComparison) -> Markup {
 }
 
 fn table(name: &str, quantities: &[&str], comparison: &SceneComparison, axis: &SymmetricLog) -> Markup {
-    let height = 2.0 * EDGE + LANE * comparison.models.len() as f64;
+    let height = height(comparison.models.len());
     let id = if axis.signed { "grid-signed" } else { "grid" };
     html! {
         table.discrepancy-picture data-linear=(axis.linear) data-limit=(axis.limit) {
@@ -47,7 +50,8 @@ fn table(name: &str, quantities: &[&str], comparison: &SceneComparison, axis: &S
                     defs { g id=(id) { @for tick in axis.ticks() {
                         line class=(if tick == 0.0 { "fig-frame" } else { "fig-grid" }) x1=(at(axis, tick)) x2=(at(axis, tick)) y1="0" y2="100%" {}
                     } } }
-                    @for (k, tick) in axis.ticks().iter().enumerate() {
+                    // next to zero there is no room
+                    @for (k, tick) in axis.ticks().iter().enumerate().filter(|(_, t)| **t == 0.0 || t.abs() > 5.0 * axis.linear) {
                         text.fig-text.alternate[k % 2 == 1] x=(at(axis, *tick)) y="15" text-anchor="middle" { (label(*tick)) }
                     }
                 } }
@@ -70,7 +74,7 @@ fn row(quantity: &str, comparison: &SceneComparison, axis: &SymmetricLog, grid: 
         @if let Some(band) = band { (bar("fig-band", axis, [-band, band], (1.0, "100%"))) }
         use href=(format!("#{grid}")) {}
         @for (lane, (model, row)) in rows().enumerate() {
-            @let middle = EDGE + LANE * (lane as f64 + 0.5);
+            @let middle = 0.5 * height(comparison.models.len()) + LANE * (lane as f64 - 0.5 * (comparison.models.len() as f64 - 1.0));
             @if let Some((row, relative)) = row.and_then(|row| Some((row, row.relative?))) {
                 @if let Some((width, scale)) = row.tolerance.zip(row.scale()) {
                     @let about = row.bias.unwrap_or(0.0);
@@ -86,6 +90,17 @@ fn row(quantity: &str, comparison: &SceneComparison, axis: &SymmetricLog, grid: 
             }
         }
     }
+}
+
+fn height(models: usize) -> f64 {
+    (2.0 * EDGE + LANE * models as f64).max(LEAST)
+}
+
+/// What the axis has to show of a row: its discrepancy, its band, its tolerance.
+fn reach(row: &Discrepancy) -> Vec<f64> {
+    let scale = row.scale().unwrap_or(f64::NAN);
+    let tolerance = row.tolerance.map(|width| (width + row.bias.unwrap_or(0.0).abs()) / scale);
+    [row.relative, row.uncertainty.map(|band| band / scale), tolerance].into_iter().flatten().collect()
 }
 
 /// The largest distance of a curve.

@@ -6,8 +6,9 @@
 
 use super::SceneReport;
 use super::figure_panel::panel;
-use super::presentation;
+use super::figure_residuals::residuals;
 use super::format::{model_name, significant};
+use super::presentation;
 use super::ticks::{tick_label, ticks};
 use crate::comparison::{CommonAxis, SampledCurve, sample};
 use crate::measured::Measured;
@@ -31,6 +32,8 @@ pub(super) struct Geometry {
     pub(super) right: f64,
     pub(super) panel_height: f64,
     pub(super) gap: f64,
+    /// Height of the panel of residuals below a panel; 0 = none.
+    pub(super) residual_height: f64,
     bottom: f64,
     /// Whether the efficiencies stand in boxes between the curves; else they stand in the legend.
     pub(super) boxes: bool,
@@ -45,6 +48,7 @@ impl Geometry {
         right: 16.0,
         panel_height: 226.0,
         gap: 16.0,
+        residual_height: 0.0,
         bottom: 50.0,
         boxes: true,
         millimetres: None,
@@ -82,6 +86,16 @@ impl Geometry {
             },
             7.5,
         )
+    }
+
+    /// With a panel of residuals below each panel.
+    fn with_residuals(self) -> Self {
+        Geometry { residual_height: 84.0, panel_height: 0.75 * self.panel_height, ..self }
+    }
+
+    /// Height of a panel with its residuals.
+    fn pair_height(&self) -> f64 {
+        self.panel_height + self.residual_height
     }
 
     /// Abscissa of `time`, if the axis ends at `end`.
@@ -149,8 +163,8 @@ const MEASURED: [PanelOf; 2] = [
 pub(super) struct Line {
     name: String,
     pub(super) short: String,
-    class: String,
-    dash: &'static str,
+    pub(super) class: String,
+    pub(super) dash: &'static str,
     width: f64,
     pub(super) efficiency: f64,
     pub(super) curves: Vec<SampledCurve>,
@@ -240,14 +254,17 @@ pub(super) fn text_width(text: &str) -> f64 {
     0.62 * FONT_SIZE * text.chars().count() as f64
 }
 
-/// The figure as SVG; without curves if the reference's history can't be used.
+/// The figure as SVG, inline with residuals; without curves if the reference's history can't be used.
 pub fn figure(report: &SceneReport, theme: Theme) -> String {
-    scene_drawing(report, &Geometry::PAGE, theme)
+    match theme {
+        Theme::Standalone => scene_drawing(report, &Geometry::PAGE, theme),
+        Theme::Inline => scene_drawing(report, &Geometry::PAGE.with_residuals(), theme),
+    }
 }
 
 /// The figure for a page on a phone: its panels as narrow as the screen, with type of the same size as on a wide page.
 pub(super) fn phone_figure(report: &SceneReport) -> String {
-    scene_drawing(report, &Geometry::PHONE, Theme::Inline)
+    scene_drawing(report, &Geometry::PHONE.with_residuals(), Theme::Inline)
 }
 
 /// The figure for a paper, `width` mm wide (within [`FIGURE_WIDTHS`]), as stand-alone SVG with its size in mm and type of
@@ -297,7 +314,8 @@ fn drawing(
     let legend = Legend::new(geometry, lines);
     let top = legend.height + 14.0;
     let Geometry { width, panel_height, gap, bottom, .. } = *geometry;
-    let height = top + count * panel_height + (count - 1.0) * gap + bottom;
+    let pair_height = geometry.pair_height();
+    let height = top + count * pair_height + (count - 1.0) * gap + bottom;
     let end = axis.map_or(1.0, |a| a.end * 1e6);
     let size = |px: f64| match (theme, geometry.millimetres) {
         (Theme::Inline, _) => None,
@@ -315,7 +333,8 @@ fn drawing(
             }
             (legend.drawing)
             @for (k, shown) in panels.iter().enumerate() {
-                (panel(geometry, shown, top + k as f64 * (panel_height + gap), end, lines, axis))
+                (panel(geometry, shown, top + k as f64 * (pair_height + gap), end, lines, axis))
+                (residuals(geometry, shown, top + k as f64 * (pair_height + gap) + panel_height, end, lines, axis))
             }
             (time_labels(geometry, end, height))
             @if lines.is_empty() {

@@ -51,14 +51,15 @@ impl<'a> Layout<'a> {
         let points = |line: &Line, name: &str| -> Vec<Point> {
             let curve = line.curves.iter().find(|c| c.quantity == name);
             axis.zip(curve).map_or_else(Vec::new, |(axis, curve)| {
-                let at = |(k, v): (usize, &f64)| {
-                    (geometry.x_of(axis.time(k) * 1e6, end), y_of(v * shown.factor))
-                };
+                let at =
+                    |(k, v): (usize, &f64)| (geometry.x_of(axis.time(k) * 1e6, end), y_of(v * shown.factor));
                 curve.values.iter().enumerate().map(at).filter(|p| p.1.is_finite()).collect()
             })
         };
-        let drawn: Vec<(&Line, Vec<Vec<Point>>)> =
-            lines.iter().map(|l| (l, shown.curves.iter().map(|(_, name)| points(l, name)).collect())).collect();
+        let drawn: Vec<(&Line, Vec<Vec<Point>>)> = lines
+            .iter()
+            .map(|l| (l, shown.curves.iter().map(|(_, name)| points(l, name)).collect()))
+            .collect();
         let area = Rect {
             x: geometry.left + 6.0,
             y: top + 5.0,

@@ -1,6 +1,6 @@
 //! The first screen of a scene's page: the scene, how far each model can be trusted in it, and the results in short.
 
-use super::format::{model_name, prose};
+use super::format::prose;
 use super::html::{model_badge, named_as, scrolled};
 use super::summary_column::Column;
 use super::trust::{LARGE, SMALL, accuracy, size_class, validity};
@@ -12,6 +12,11 @@ use maud::{Markup, html};
 pub(super) fn first_screen(report: &SceneReport) -> Markup {
     let shown = presentation::of(report.scene);
     let (comparison, columns) = (&report.comparison, shown.columns());
+    // one model leaves room below its table
+    let below = comparison.models.len() == 1;
+    let measures = html! {
+        dl.measures { @for (what, measures) in shown.measures(report.scene) { div { dt { (what) } dd { (measures) } } } }
+    };
     html! {
         div.first {
             div.answer {
@@ -22,11 +27,9 @@ pub(super) fn first_screen(report: &SceneReport) -> Markup {
                     span.off.small { "up to " (percent(SMALL)) } " " span.off.medium { "up to " (percent(LARGE)) } " "
                     span.off.large { "beyond" } "."
                 }
+                @if below { (measures) }
             }
-            figure.scene {
-                (shown.scene_drawing(report))
-                dl.measures { @for (what, measures) in shown.measures(report.scene) { div { dt { (what) } dd { (measures) } } } }
-            }
+            figure.scene { (shown.scene_drawing(report)) @if !below { (measures) } }
         }
     }
 }
@@ -79,7 +82,7 @@ fn in_short(columns: &[Column], comparison: &SceneComparison) -> Markup {
             tr { th scope="row" { "reference" } @for column in columns { (cell(column, reference, None)) } td.left {} }
             @for model in &comparison.models {
                 tr data-model=(model.model) {
-                    th scope="row" { (model_name(&model.model, model.summary.modes)) }
+                    th scope="row" { (model.model) }
                     @for column in columns { (cell(column, &model.summary, Some(reference))) }
                     td.left { (model_badge(model)) }
                 }
@@ -92,7 +95,7 @@ fn cell(column: &Column, summary: &Summary, reference: Option<&Summary>) -> Mark
     let Some(cell) = column.cell(summary, reference) else { return html! { td { "–" } } };
     html! {
         td data-field=(column.quantity) data-off=[cell.off] {
-            (cell.value)
+            span.value { (cell.value) }
             @if let Some((off, told)) = cell.off.zip(cell.off_in_words) {
                 " " span class=(format!("off {}", size_class(off))) { (told) }
             }

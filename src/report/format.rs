@@ -80,6 +80,16 @@ pub(crate) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
     }
 }
 
+/// A given value in its unit, with as many digits as it was given with.
+pub(super) fn measure(value: f64, unit: &str) -> String {
+    let to = prefixed(unit, value);
+    let number = with_minus(&short(value * to.factor));
+    match to.unit {
+        "" | "°" => number + to.unit,
+        unit => format!("{number} {unit}"),
+    }
+}
+
 /// A relative value in per cent with its sign.
 pub(crate) fn percent(relative: Option<f64>) -> String {
     match relative {
@@ -164,7 +174,10 @@ mod tests {
 
     #[test]
     fn sentences_for_terminals_become_prose() {
-        assert_eq!(with_minus("-0.4 (-1e-3 rad, scene-r10, --np 2, 2026-01-02)"), "−0.4 (−1e−3 rad, scene-r10, --np 2, 2026-01-02)");
+        assert_eq!(
+            with_minus("-0.4 (-1e-3 rad, scene-r10, --np 2, 2026-01-02)"),
+            "−0.4 (−1e−3 rad, scene-r10, --np 2, 2026-01-02)"
+        );
         assert_eq!(prose("set `x --y -1` to -1").into_string(), "set <code>x --y -1</code> to −1");
     }
 

@@ -70,7 +70,11 @@ pub(super) fn named(quantity: &str) -> Markup {
 
 /// A heading for a quantity under another name.
 pub(super) fn named_as(heading: &str, quantity: &str) -> Markup {
-    if words(quantity) == heading { named(quantity) } else { html! { (heading) } }
+    if words(quantity) == heading {
+        named(quantity)
+    } else {
+        html! { (heading) }
+    }
 }
 
 /// A drawing as wide as a page, and the same as wide as a phone; the screen decides which is seen.

@@ -1,8 +1,8 @@
 //! The interactive panels of a scene's page, their data and scripts; the page stays whole without scripts and on paper.
 
 use super::SceneReport;
-use super::html::drawn;
 use super::figure::PanelOf;
+use super::html::drawn;
 use super::page_data::{curves, embedded};
 use maud::{Markup, PreEscaped, html};
 

@@ -48,8 +48,10 @@ type Source = (String, String, Vec<SampledCurve>);
 
 fn of_panel(panel: &PanelOf, sources: &[Source], axis: CommonAxis, bands: Option<&CurveBands>) -> Value {
     let named = |curves: &[SampledCurve], name: &str| curves.iter().find(|c| c.quantity == name).cloned();
-    let values =
-        sources.iter().flat_map(|(_, _, curves)| curves.iter().filter(|c| panel.holds(c))).flat_map(|c| &c.values);
+    let values = sources
+        .iter()
+        .flat_map(|(_, _, curves)| curves.iter().filter(|c| panel.holds(c)))
+        .flat_map(|c| &c.values);
     let peak = values.filter(|v| v.is_finite()).fold(0.0_f64, |p, v| p.max(v.abs())) * panel.factor;
     let decimals = if peak > 0.0 { (DIGITS - 1 - peak.log10().floor() as i32).clamp(0, 12) } else { 0 };
     let shortened = |values: &[f64]| rounded(values, panel.factor, decimals);

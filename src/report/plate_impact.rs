@@ -2,6 +2,7 @@
 
 use super::attachments::instant_of_peak;
 use super::figure::PanelOf;
+use super::plate_impact_picture::{self, plate_picture};
 use super::presentation::{Drawing, Presentation};
 use super::section::Section;
 use super::summary_column::Column;
@@ -78,12 +79,12 @@ impl Presentation for Plate {
         [Some(curves), measured, efficiencies].into_iter().flatten().collect()
     }
 
-    fn scene_drawing(&self, _: &SceneReport) -> Markup {
-        html! {}
+    fn scene_drawing(&self, report: &SceneReport) -> Markup {
+        report.scene.plate_impact().map_or_else(|_| html! {}, plate_picture)
     }
 
-    fn measures(&self, _: &Scene) -> Vec<(String, String)> {
-        Vec::new()
+    fn measures(&self, scene: &Scene) -> Vec<(String, String)> {
+        scene.plate_impact().map_or_else(|_| Vec::new(), plate_impact_picture::measures)
     }
 
     fn sections(&self, report: &SceneReport) -> Vec<Section> {

@@ -15,7 +15,6 @@ pub fn scene_page(report: &SceneReport) -> String {
     let name = &comparison.scene;
     let all = all_sections(report);
     let body = html! {
-        nav { a href="index.html" { "all scenes" } }
         h1 { (name) " " (badge(comparison.verdict)) }
         p.soft { (report.scene.description) }
         (contents(&all))
@@ -32,11 +31,13 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
     let shown = presentation::of(report.scene);
     let mut all = vec![
         Section::new("discrepancies", "Discrepancies", discrepancy_picture::discrepancy_picture(comparison)),
-        Section::new("curves", "Curves", curves(report)),
+        Section::new("over-time", "Curves", curves(report)),
     ];
     all.extend(comparison.models.iter().map(|model| {
         let title = format!("Model {}", model_name(&model.model, model.summary.modes));
-        Section::new(&format!("model-{}", model.model), &title, model_section(model)).marked(model_badge(model))
+        Section::new(&format!("model-{}", model.model), &title, model_section(model))
+            .linked_as(format!("Model {}", model.model))
+            .marked(model_badge(model))
     }));
     all.extend(shown.sections(report));
     let accepted = super::acceptance_section::acceptances_html(attachments, &comparison.changed_tolerances);

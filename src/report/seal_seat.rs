@@ -3,10 +3,10 @@
 use super::attachments::instant_of_peak;
 use super::figure::PanelOf;
 use super::format::{model_name, prefixed, significant, with_unit};
-use super::html::{detailed, named, scrolled};
+use super::html::{named, scrolled};
 use super::presentation::{Drawing, Presentation};
 use super::run_times::marked;
-use super::seal_seat_picture::{Arrow, seat_picture};
+use super::seal_seat_picture::{self, Arrow, arrow_legend, seat_picture};
 use super::section::Section;
 use super::summary_column::{Column, degrees};
 use super::{Attachments, SceneReport, Theme, figure};
@@ -88,10 +88,10 @@ impl Presentation for Seat {
     }
 
     fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
-        let section = section(report).map(|svg| Drawing {
+        let section = report.scene.seal_seat().ok().map(|setup| Drawing {
             ending: "-section",
             caption: Some("Section with the directions of flight"),
-            svg,
+            svg: seat_picture(setup, &arrows(report), Theme::Standalone),
         });
         let svg = figure(report, Theme::Standalone);
         let curves = Drawing { ending: "", caption: Some("Displacement, velocity and contact force"), svg };
@@ -99,15 +99,20 @@ impl Presentation for Seat {
     }
 
     fn scene_drawing(&self, report: &SceneReport) -> Markup {
-        html! { @if let Some(section) = section(report) { (detailed("Section of the seat", &html! { (PreEscaped(section)) })) } }
+        let Ok(setup) = report.scene.seal_seat() else { return html! {} };
+        let arrows = arrows(report);
+        html! { (PreEscaped(seat_picture(setup, &arrows, Theme::Inline))) (arrow_legend(&arrows)) }
     }
 
-    fn measures(&self, _: &Scene) -> Vec<(String, String)> {
-        Vec::new()
+    fn measures(&self, scene: &Scene) -> Vec<(String, String)> {
+        scene.seal_seat().map_or_else(|_| Vec::new(), seal_seat_picture::measures)
     }
 
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
-        vec![Section::new("flight", "Flight of the sphere", flight(report)), Section::new("cost", "Cost", cost(report))]
+        vec![
+            Section::new("flight", "Flight of the sphere", flight(report)),
+            Section::new("cost", "Cost", cost(report)),
+        ]
     }
 
     fn mesh(&self, report: &SceneReport) -> Markup {
@@ -124,10 +129,10 @@ impl Presentation for Seat {
 /// Directions found and intended.
 fn arrows(report: &SceneReport) -> Vec<Arrow> {
     let found = |summary: &Summary| SeatQuantities::of_table(&summary.quantities);
-    let arrow = |name: String, q: SeatQuantities, colour, dashes| Arrow {
+    let arrow = |name: String, q: SeatQuantities, class, dashes| Arrow {
         name,
         velocity: [q.sphere_velocity_x, q.sphere_velocity_z],
-        colour,
+        class,
         dashes,
     };
     let mut arrows = Vec::new();
@@ -135,25 +140,19 @@ fn arrows(report: &SceneReport) -> Vec<Arrow> {
         if let Setup::SealSeat(setup) = &report.scene.setup {
             let (sin, cos) = setup.intended_angle.sin_cos();
             arrows.push(Arrow {
-                name: "intended, drawn with the reference's speed".into(),
+                name: "intended, with the reference's speed".into(),
                 velocity: [sin, cos].map(|c| c * reference.sphere_speed),
-                colour: "#777777",
+                class: "fig-intended",
                 dashes: "3 4",
             });
         }
-        arrows.push(arrow("reference".into(), reference, "#1a1a1a", ""));
+        arrows.push(arrow("reference".into(), reference, "fig-reference", ""));
     }
     arrows.extend(report.comparison.models.iter().filter_map(|model| {
         let name = format!("model {}", model_name(&model.model, model.summary.modes));
-        Some(arrow(name, found(&model.summary)?, "#009e73", "9 4"))
+        Some(arrow(name, found(&model.summary)?, "fig-C", "9 4"))
     }));
     arrows
-}
-
-/// The section with all arrows, as a stand-alone SVG; `None` for a scene of another kind.
-fn section(report: &SceneReport) -> Option<String> {
-    let Setup::SealSeat(setup) = &report.scene.setup else { return None };
-    Some(seat_picture(setup, &arrows(report)))
 }
 
 /// Size and direction of the velocity, and how far it is from the intended direction.

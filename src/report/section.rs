@@ -6,6 +6,8 @@ use maud::{Markup, html};
 pub(super) struct Section {
     id: String,
     title: String,
+    /// What the list of contents calls it.
+    link: String,
     /// What stands beside the title.
     mark: Markup,
     body: Markup,
@@ -13,7 +15,11 @@ pub(super) struct Section {
 
 impl Section {
     pub(super) fn new(id: &str, title: &str, body: Markup) -> Self {
-        Section { id: id.to_owned(), title: title.to_owned(), mark: html! {}, body }
+        Section { id: id.to_owned(), title: title.to_owned(), link: title.to_owned(), mark: html! {}, body }
+    }
+
+    pub(super) fn linked_as(self, link: String) -> Self {
+        Section { link, ..self }
     }
 
     pub(super) fn marked(self, mark: Markup) -> Self {
@@ -21,11 +27,11 @@ impl Section {
     }
 }
 
-/// Links to the sections.
+/// Links to the other scenes and to the sections.
 pub(super) fn contents(sections: &[Section]) -> Markup {
     html! {
         nav.contents aria-label="Contents" {
-            ul { @for section in shown(sections) { li { a href=(format!("#{}", section.id)) { (section.title) } } } }
+            ul { li { a href="index.html" { "all scenes" } } @for section in shown(sections) { li { a href=(format!("#{}", section.id)) { (section.link) } } } }
         }
     }
 }

@@ -24,16 +24,17 @@ pub(super) fn accuracy(columns: &[Column], model: &ModelComparison) -> String {
     let groups = columns.chunk_by(|one, other| one.group == other.group);
     let mut phrases: Vec<String> = groups.filter_map(|group| of_group(group, model)).collect();
     phrases.extend(worst_curve(model));
-    let counted = |row: &&Discrepancy| model.summary.quantities.get(&row.quantity).is_some_and(|q| q.is_count);
+    let counted =
+        |row: &&Discrepancy| model.summary.quantities.get(&row.quantity).is_some_and(|q| q.is_count);
     for row in model.discrepancies.iter().filter(counted).filter(|row| row.difference != Some(0.0)) {
         if let Some((own, reference)) = row.reduced.zip(row.reference) {
             phrases.push(format!("{own} {} instead of {reference}", words(&row.quantity)));
         }
     }
-    if let Some(error) = model.summary.truncation_error.filter(|error| *error > SMALL) {
-        phrases.push(format!("of which the modes left out make an estimated {}", percent_above(error)));
-    }
-    phrases.join(", ")
+    let truncation = model.summary.truncation_error.filter(|error| *error > SMALL);
+    let truncation =
+        truncation.map(|error| format!("the modes left out make an estimated {}", percent_above(error)));
+    std::iter::once(phrases.join(", ")).chain(truncation).collect::<Vec<_>>().join("; ")
 }
 
 /// The worst of some quantities, with the reference's band where that is wider.
@@ -60,8 +61,8 @@ fn phrase(what: &str, several: bool, worst: f64, band: f64, is_angle: bool) -> S
         (false, true) => "off by up to",
         (false, false) => "off by",
     };
-    let known = if band > worst { format!(" (known to {})", told(band)) } else { String::new() };
-    format!("{what} {how} {}{known}", told(worst))
+    let band = if band > worst { format!(" (band ±{})", told(band)) } else { String::new() };
+    format!("{what} {how} {}{band}", told(worst))
 }
 
 /// The curve with the largest root mean square distance.
@@ -100,10 +101,10 @@ mod tests {
     use super::{phrase, size_class};
 
     #[test]
-    fn sizes_are_rounded_up_and_told_as_known_no_better_than_the_reference() {
+    fn sizes_are_rounded_up_and_told_with_the_band_of_the_reference_where_that_is_wider() {
         assert_eq!(phrase("efficiency", false, 0.000_186, 0.000_1, false), "efficiency within 0.019 %");
         assert_eq!(phrase("force peaks", true, 0.0101, 0.0, false), "force peaks off by up to 1.1 %");
-        assert_eq!(phrase("speed", false, 0.0009, 0.021, false), "speed within 0.090 % (known to 2.1 %)");
+        assert_eq!(phrase("speed", false, 0.0009, 0.021, false), "speed within 0.090 % (band ±2.1 %)");
         assert_eq!(phrase("direction", false, 0.2, 0.0, true), "direction off by 11.46°");
     }
 
