@@ -1,6 +1,7 @@
 //! The panel of residuals below a panel of the figure: model minus reference on a symmetric logarithmic axis, over the band.
 
-use super::figure::{FONT_SIZE, Geometry, Line, PanelOf, x2};
+use super::figure::{FONT_SIZE, Geometry, PanelOf, x2};
+use super::figure_lines::Line;
 use super::polyline::{Point, path};
 use super::symmetric_log::SymmetricLog;
 use crate::comparison::CommonAxis;

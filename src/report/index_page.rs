@@ -60,10 +60,10 @@ const HEADINGS: [(&str, bool); 8] = [
     ("scene", true),
     ("model", true),
     ("verdict", true),
-    ("efficiency", false),
     ("largest discrepancy of the summary", false),
     ("95 % band", false),
     ("tolerance used", false),
+    ("efficiency", false),
     ("drift", false),
 ];
 
@@ -116,9 +116,8 @@ fn row(scene: &Standing, model: &ModelOverview) -> Markup {
         tr data-scene=(overview.scene) data-model=(model.model) {
             td.left { (thumbnail::drawn(&model.thumbnail, &model.model)) }
             th.left scope="row" { (link(overview)) }
-            td.left { (model.name) }
+            td.left title=(model.name) { (model.model) }
             td.left data-sort=[severity] { (worded(model.verdict, &model.verdict_in_words)) }
-            (number("reduced", own, prefixed("1", 1.0), 4))
             td data-sort=[size] {
                 @match &model.largest {
                     Some(d) => { (words(&d.quantity)) " " span class=(format!("off {}", size_class(d.relative.unwrap_or(f64::NAN)))) { (percent(d.relative)) } },
@@ -131,6 +130,7 @@ fn row(scene: &Standing, model: &ModelOverview) -> Markup {
             td data-sort=[used.map(|(_, used)| used)] {
                 @match used { Some((d, used)) => { (significant(100.0 * used, 2)) " % " span.soft { (words(&d.quantity)) } }, None => "–" }
             }
+            (number("reduced", own, prefixed("1", 1.0), 4))
             td data-sort=(drifting) { @if recorded > 0 { (drifting) " of " (recorded) } @else { "–" } }
             td.left.soft { (marked(&scene.when())) }
         }

@@ -16,6 +16,7 @@ mod facts;
 mod field_raster;
 mod figure;
 mod figure_file;
+mod figure_lines;
 mod figure_panel;
 mod figure_residuals;
 mod first_screen;

@@ -1,7 +1,8 @@
 //! What a scene's page carries for its script: the curves on the common axis, and the comparison document of the scene.
 
 use super::SceneReport;
-use super::figure::{PanelOf, dash};
+use super::figure::PanelOf;
+use super::figure_lines::dash;
 use super::format::model_name;
 use crate::comparison::{CommonAxis, SampledCurve, sample};
 use crate::reference::CurveBands;
