@@ -173,7 +173,7 @@ pub fn figure(report: &SceneReport, theme: Theme) -> String {
 
 /// The figure for a page on a phone: its panels as narrow as the screen, with type of the same size as on a wide page.
 pub(super) fn phone_figure(report: &SceneReport) -> String {
-    scene_drawing(report, &Geometry::PHONE.with_residuals(), Theme::Inline)
+    scene_drawing(report, &Geometry::PHONE, Theme::Inline)
 }
 
 /// The figure for a paper, `width` mm wide (within [`FIGURE_WIDTHS`]), as stand-alone SVG with its size in mm and type of

@@ -2,7 +2,7 @@
 
 use super::figure::{FONT_SIZE, Geometry, PanelOf, x2};
 use super::figure_lines::Line;
-use super::polyline::{Point, path};
+use super::polyline::{Point, path_within};
 use super::symmetric_log::SymmetricLog;
 use crate::comparison::CommonAxis;
 use maud::{Markup, html};
@@ -10,6 +10,8 @@ use maud::{Markup, html};
 /// Share of the largest residual about which the axis is linear; the page's script has the same.
 const LINEAR: f64 = 1e-3;
 
+/// What lines may be off by, px: many are noise, which costs most of a page otherwise.
+const TOLERANCE: f64 = 0.6;
 /// Between a panel and its residuals, px.
 const GAP: f64 = 8.0;
 
@@ -57,7 +59,7 @@ pub(super) fn residuals(
     };
     let outline = |band: &[f64]| {
         let lower = points(band, -1.0).into_iter().rev();
-        path(&points(band, 1.0).into_iter().chain(lower).collect::<Vec<_>>()) + "Z"
+        path_within(&points(band, 1.0).into_iter().chain(lower).collect::<Vec<_>>(), TOLERANCE) + "Z"
     };
     let decade = 10_f64.powf(largest.log10().floor());
     let marks = [-decade, 0.0, decade];
@@ -66,7 +68,7 @@ pub(super) fn residuals(
         g stroke-width="1" { @for v in marks { line.fig-grid x1=(left) x2=(right) y1=(x2(y_of(v))) y2=(x2(y_of(v))) {} } }
         @for band in &bands { path.fig-band d=(outline(band)) {} }
         @for (line, values) in &differences {
-            path class=(format!("residual {}", line.class)) d=(path(&points(values, 1.0))) fill="none" stroke-width="1.2"
+            path class=(format!("residual {}", line.class)) d=(path_within(&points(values, 1.0), TOLERANCE)) fill="none" stroke-width="1.2"
                 stroke-dasharray=(line.dash) stroke-linejoin="round" {}
         }
         @for v in marks {
