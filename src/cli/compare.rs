@@ -193,6 +193,7 @@ impl<'a> Job<'a> {
                 command: self.command(scene),
                 attachments: Attachments {
                     acceptances,
+                    folder: compare_inputs::folder(file),
                     cost: cost.clone(),
                     ..Attachments::of(scene, stored)
                 },

@@ -5,6 +5,7 @@ use crate::ci::tolerance_watch;
 use crate::comparison::ChangedTolerance;
 use crate::error::{Error, Result};
 use crate::measured::Record;
+use crate::project::project_root;
 use crate::report::{FIGURE_WIDTHS, FigureFormat};
 use crate::scene::{self, Scene};
 use std::path::{Path, PathBuf};
@@ -44,12 +45,6 @@ pub(super) fn figures(
 ) -> Result<Vec<(PathBuf, FigureFormat)>> {
     let Some(file) = file else { return Ok(Vec::new()) };
     let format = FigureFormat::of(file)?;
-    if let Some((_, seat)) = scenes.iter().find(|(_, scene)| scene.plate_impact().is_err()) {
-        return Err(Error::Usage(format!(
-            "--figure draws plate impacts, and scene `{0}` is a seal seat; its drawings {0}.svg and {0}-section.svg are in the folder of the report",
-            seat.name
-        )));
-    }
     if scenes.len() == 1 {
         return Ok(vec![(file.clone(), format)]);
     }
@@ -59,6 +54,15 @@ pub(super) fn figures(
         (file.with_file_name(format!("{stem}-{}.{ending}", scene.name)), format)
     };
     Ok(scenes.iter().map(named).collect())
+}
+
+/// The folder of a scene `file` within the project or the folder of the run; by its own name if it is elsewhere.
+pub(super) fn folder(file: &Path) -> String {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let roots = [project_root().ok(), std::env::current_dir().ok()];
+    let inside = roots.iter().flatten().find_map(|root| folder.strip_prefix(root).ok());
+    let elsewhere = || if folder.is_absolute() { folder.file_name().map(Path::new) } else { Some(folder) };
+    inside.or_else(elsewhere).unwrap_or(folder).display().to_string()
 }
 
 /// Parses the width of a figure, in mm.

@@ -162,6 +162,13 @@ impl Discrepancy {
         [self.reference, self.reduced].into_iter().flatten().map(f64::abs).fold(0.0, f64::max)
     }
 
+    /// What `relative` is relative to; `None` if that is not known.
+    pub fn scale(&self) -> Option<f64> {
+        let of_row =
+            self.difference.zip(self.relative).map(|(difference, relative)| (difference / relative).abs());
+        of_row.or(self.reference.map(f64::abs)).filter(|scale| scale.is_finite() && *scale > 0.0)
+    }
+
     /// Whether a side has not determined its value.
     pub fn is_undetermined(&self) -> bool {
         self.difference.is_none()

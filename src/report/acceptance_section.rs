@@ -13,7 +13,6 @@ pub(super) fn acceptances_html(attachments: &Attachments, changed: &[ChangedTole
         return html! {};
     }
     html! {
-        h2 { "Accepted changes" }
         @if !changed.is_empty() {
             p { "Tolerances changed since, without a reason:" }
             ul { @for c in changed { li {

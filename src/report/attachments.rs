@@ -25,6 +25,8 @@ pub struct Attachments {
     pub animation: Option<PathBuf>,
     /// What the reduced models have cost, in their order; of models that share a mesh with the reference.
     pub cost: Vec<Cost>,
+    /// Folder of the scene's file, for people; empty = not known.
+    pub folder: String,
     /// When the scene was compared (UTC).
     pub compared: Option<String>,
     /// The gated numbers over the commits recorded.

@@ -1,7 +1,7 @@
 //! The discrepancy budget of a scene as a section of its page and of the Markdown report.
 
 use super::budget_figure::{budget_figure, cause_name};
-use super::format::{Prefixed, prefixed, with_unit, words};
+use super::format::{Prefixed, prefixed, prose, with_unit, words};
 use super::html::{detailed, scrolled};
 use crate::comparison::budget::{Part, QuantityBudget};
 use maud::{Markup, html};
@@ -16,7 +16,6 @@ const EXPLANATION: &str = "What each simplification of model B adds to its diffe
 pub(super) fn budget_html(rows: &[QuantityBudget]) -> Markup {
     let Some(first) = rows.first() else { return html! {} };
     html! {
-        h2 { "Discrepancy budget" }
         p.soft { (EXPLANATION) }
         figure.budget {
             (detailed("Discrepancy budget, drawn", &html! { (budget_figure(rows)) }))
@@ -48,7 +47,7 @@ pub(super) fn budget_html(rows: &[QuantityBudget]) -> Markup {
                     @for row in rows { td { span class=(format!("verdict {}", row.explained)) { (row.explained) } } } }
             }
         } }))
-        ul.soft { @for part in &first.parts { li { (cause_name(&part.cause)) ": " (part.switch) } } }
+        ul.soft { @for part in &first.parts { li { (cause_name(&part.cause)) ": " (prose(&part.switch)) } } }
     }
 }
 

@@ -1,20 +1,21 @@
 //! Discrepancies, curve metrics and checks of one reduced model as tables of the page.
 
-use super::format::{model_name, percent, prefixed, significant, with_unit, words};
-use super::html::{badge, model_badge, named, number, scrolled};
+use super::format::{percent, prefixed, prose, significant, with_unit, words};
+use super::html::{badge, named, number, scrolled};
 use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison, Verdict};
 use crate::curves::CurveMetrics;
 use crate::result::ContactPatch;
 use crate::result::ContactPressure;
 use maud::{Markup, html};
 
-/// Section of one model.
+/// What there is to say of one model; its tables fold.
 pub(super) fn model_section(model: &ModelComparison) -> Markup {
     html! {
-        h2 { "Model " (model_name(&model.model, model.summary.modes)) " " (model_badge(model)) }
-        @for warning in &model.summary.warnings { p { strong { "Warning: " } (warning) } }
+        @for warning in &model.summary.warnings { p { strong { "Warning: " } (prose(warning)) } }
         (contradictions(&model.model, &model.integrity))
-        h3 { "Discrepancies" }
+        (undecided(&model.discrepancies))
+        @if let Some(pressure) = &model.summary.contact_pressure { (pressures("Model", pressure)) }
+        details { summary { "Discrepancies (" (model.discrepancies.len()) ")" }
         (scrolled(&format!("Discrepancies of model {}", model.model), &html! { table.discrepancies data-model=(model.model) {
             thead { tr {
                 th scope="col" { "quantity" } th.left scope="col" { "verdict" }
@@ -24,12 +25,11 @@ pub(super) fn model_section(model: &ModelComparison) -> Markup {
             } }
             tbody { @for row in &model.discrepancies { (discrepancy_row(row)) } }
         } }))
-        (undecided(&model.discrepancies))
         p.soft { "Difference is reduced minus reference. A row without tolerance is not gated. Bias is the known "
             "discrepancy about which the tolerance lies. A distance of curves is relative to the reference's peak. "
             "|E| against u (ASME V&V 20): a difference within the reference's 95 % band proves no error of the model." }
-        @if let Some(pressure) = &model.summary.contact_pressure { (pressures("Model", pressure)) }
-        h3 { "Curve metrics" }
+        }
+        details { summary { "Curve metrics (" (model.curves.len()) ")" }
         (scrolled(&format!("Curve metrics of model {}", model.model), &html! { table.curves data-model=(model.model) {
             thead { tr {
                 @for heading in ["curve", "Sprague-Geers C", "M", "P", "Russell C", "M", "P", "ISO/TS 18571 R", "Z", "EP", "EM", "ES"] {
@@ -41,6 +41,7 @@ pub(super) fn model_section(model: &ModelComparison) -> Markup {
         } }))
         p.soft { "Sprague-Geers and Russell: comprehensive, magnitude and phase error, 0 is best. ISO/TS 18571: rating, "
             "corridor, phase, magnitude and slope score, 1 is best. Reported, not gated." }
+        }
         details {
             summary { "Checks of the result against itself (" (model.integrity.len()) ")" }
             (checks(&model.integrity))
@@ -54,7 +55,7 @@ fn undecided(rows: &[Discrepancy]) -> Markup {
     html! {
         @if open().next().is_some() {
             p { (badge(Verdict::Undecided)) " The reference's band reaches across the bound:" }
-            ul { @for (row, how) in open() { li { (words(&row.quantity)) ": " (how) } } }
+            ul { @for (row, how) in open() { li { (words(&row.quantity)) ": " (prose(how)) } } }
         }
     }
 }
@@ -126,7 +127,7 @@ pub(super) fn contradictions(source: &str, checks: &[Check]) -> Markup {
     html! {
         @if !failed.is_empty() {
             p { (badge(Verdict::Fail)) " The result of " (source) " contradicts itself or its scene:" }
-            ul { @for check in failed { li { (super::junit::integrity_failure(check)) } } }
+            ul { @for check in failed { li { (prose(&super::junit::integrity_failure(check))) } } }
         }
     }
 }

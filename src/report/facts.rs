@@ -1,6 +1,6 @@
 //! Nested JSON as a table of the page.
 
-use super::format::short;
+use super::format::{short, with_minus};
 use super::html::scrolled;
 use maud::{Markup, html};
 use serde_json::Value;
@@ -34,8 +34,8 @@ fn flatten(name: &str, value: &Value, rows: &mut Vec<(String, String)>) {
         Value::String(text) => rows.push((name.to_owned(), text.clone())),
         Value::Number(number) if number.is_f64() => {
             // as many digits as anyone reads; the files beside the report have all of them
-            rows.push((name.to_owned(), short(number.as_f64().unwrap_or(f64::NAN))));
+            rows.push((name.to_owned(), with_minus(&short(number.as_f64().unwrap_or(f64::NAN)))));
         }
-        other => rows.push((name.to_owned(), other.to_string())),
+        other => rows.push((name.to_owned(), with_minus(&other.to_string()))),
     }
 }

@@ -48,23 +48,29 @@ impl Raster {
         Raster { width, height, pixels: vec![0; width * height] }
     }
 
-    /// The elements, their lines the darker the larger they are, so that fine parts don't turn black.
+    /// The elements, their lines the darker the farther apart they are, so that fine parts don't turn black.
     pub(super) fn mesh(mesh: &FieldMesh, view: View, width: usize) -> Self {
         let mut raster = Raster::new(view, width);
         let place = raster.placed(mesh, view);
+        let mut pixels = std::mem::take(&mut raster.pixels);
+        let first = |body: usize| (1 + (body % BODIES.len()) * SHADES) as u8;
+        let corners = |quad: &[usize; 4]| quad.map(|n| place[n]);
         for (quad, body) in mesh.quads.iter().zip(&mesh.bodies) {
-            let first = (1 + (body % BODIES.len()) * SHADES) as u8;
-            let corners = quad.map(|n| place[n]);
-            let mut pixels = std::mem::take(&mut raster.pixels);
-            raster.fill(corners, [0.0; 4], |pixel, _| pixels[pixel] = first);
-            raster.pixels = pixels;
-            let edges = (0..4).map(|k| distance(corners[k], corners[(k + 1) % 4]));
-            let shortest = edges.fold(f64::INFINITY, f64::min);
-            let shade = (shortest / 2.0).min((SHADES - 1) as f64) as u8;
-            if shade > 0 {
-                (0..4).for_each(|k| raster.line(corners[k], corners[(k + 1) % 4], first + shade));
-            }
+            raster.fill(corners(quad), [0.0; 4], |pixel, _| pixels[pixel] = first(*body));
         }
+        raster.pixels = pixels;
+        // lines on all fills, the darkest last, each the lighter the nearer the next one: all parts have the same tone
+        let mut lines: Vec<(u8, [[f64; 2]; 2], u8)> = Vec::new();
+        for (quad, body) in mesh.quads.iter().zip(&mesh.bodies) {
+            let corners = corners(quad);
+            let edge = |k: usize| distance(corners[k % 4], corners[(k + 1) % 4]);
+            lines.extend((0..4).map(|k| {
+                let shade = (0.5 * edge(k + 1).min(edge(k + 3))).clamp(1.0, (SHADES - 1) as f64) as u8;
+                (shade, [corners[k], corners[(k + 1) % 4]], first(*body) + shade)
+            }));
+        }
+        lines.sort_by_key(|(shade, ..)| *shade);
+        lines.iter().for_each(|(_, [from, to], colour)| raster.line(*from, *to, *colour));
         raster.outlined(mesh, &place).mirrored()
     }
 

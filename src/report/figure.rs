@@ -5,12 +5,13 @@
 //! are those of Okabe and Ito, which colour-blind readers can tell apart.
 
 use super::SceneReport;
+use super::figure_lines::{Line, lines, measured_lines};
 use super::figure_panel::panel;
-use super::format::{model_name, significant};
+use super::figure_residuals::residuals;
+use super::format::significant;
+use super::presentation;
 use super::ticks::{tick_label, ticks};
-use crate::curves::{CommonAxis, SampledCurve, sample};
-use crate::measured::Measured;
-use crate::result::Outcome;
+use crate::curves::{CommonAxis, SampledCurve};
 use maud::{Markup, PreEscaped, html};
 
 /// Font size in px of the drawing.
@@ -30,6 +31,8 @@ pub(super) struct Geometry {
     pub(super) right: f64,
     pub(super) panel_height: f64,
     pub(super) gap: f64,
+    /// Height of the panel of residuals below a panel; 0 = none.
+    pub(super) residual_height: f64,
     bottom: f64,
     /// Whether the efficiencies stand in boxes between the curves; else they stand in the legend.
     pub(super) boxes: bool,
@@ -44,6 +47,7 @@ impl Geometry {
         right: 16.0,
         panel_height: 226.0,
         gap: 16.0,
+        residual_height: 0.0,
         bottom: 50.0,
         boxes: true,
         millimetres: None,
@@ -83,6 +87,16 @@ impl Geometry {
         )
     }
 
+    /// With a panel of residuals below each panel.
+    fn with_residuals(self) -> Self {
+        Geometry { residual_height: 84.0, panel_height: 0.75 * self.panel_height, ..self }
+    }
+
+    /// Height of a panel with its residuals.
+    fn pair_height(&self) -> f64 {
+        self.panel_height + self.residual_height
+    }
+
     /// Abscissa of `time`, if the axis ends at `end`.
     pub(super) fn x_of(&self, time: f64, end: f64) -> f64 {
         self.left + self.inner_width() * time / end
@@ -109,140 +123,52 @@ const STYLE: &str = "\
 .fig-box{fill:#ececec;stroke:#bdbdbd}.fig-band{fill:#d0d0d0}.fig-halo{stroke:#fff}\
 .fig-reference{stroke:#1a1a1a}.fig-A{stroke:#d55e00}.fig-B{stroke:#0072b2}.fig-C{stroke:#009e73}.fig-measured{stroke:#cc79a7}";
 
-/// One of the three panels.
-pub(super) struct Quantity {
-    pub(super) suffix: &'static str,
+/// A panel: curves of one quantity over time.
+pub(super) struct PanelOf {
+    /// Quantity and unit, beside the axis.
     pub(super) label: &'static str,
-    /// From SI to the unit of the label.
+    /// From SI to that unit.
     pub(super) factor: f64,
-    pub(super) bodies: &'static [&'static str],
+    /// What the panel calls each curve, and its name.
+    pub(super) curves: &'static [(&'static str, &'static str)],
+    /// Whether the efficiencies stand in boxes between the curves, where there is room for them.
+    pub(super) boxes: bool,
 }
 
-pub(super) const QUANTITIES: [Quantity; 3] = [
-    Quantity {
-        suffix: "displacement",
-        label: "Displacement in µm",
-        factor: 1e6,
-        bodies: &["outer", "plate", "inner"],
-    },
-    Quantity {
-        suffix: "velocity",
-        label: "Velocity in mm/s",
-        factor: 1e3,
-        bodies: &["outer", "plate", "inner"],
-    },
-    Quantity { suffix: "force", label: "Contact force in N", factor: 1.0, bodies: &["outer", "inner"] },
-];
-
-/// What can be measured: the bodies, by their motion.
-const MEASURED: [Quantity; 2] = [
-    Quantity {
-        suffix: "displacement",
-        label: "Displacement in µm",
-        factor: 1e6,
-        bodies: &["outer", "inner"],
-    },
-    Quantity { suffix: "velocity", label: "Velocity in mm/s", factor: 1e3, bodies: &["outer", "inner"] },
-];
-
-/// Curves of one result, and how they are drawn.
-pub(super) struct Line {
-    name: String,
-    pub(super) short: String,
-    class: String,
-    dash: &'static str,
-    width: f64,
-    pub(super) efficiency: f64,
-    pub(super) curves: Vec<SampledCurve>,
-    /// Half widths of the curves' bands, if they are known.
-    pub(super) bands: Vec<SampledCurve>,
-}
-
-pub(super) fn dash(model: &str) -> &'static str {
-    match model {
-        "A" => "2 2.6",
-        "B" => "7 3",
-        _ => "9 2.5 2 2.5",
+impl PanelOf {
+    /// Whether the panel shows this curve.
+    pub(super) fn holds(&self, curve: &SampledCurve) -> bool {
+        self.curves.iter().any(|(_, name)| curve.quantity == *name)
     }
 }
 
-fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
-    let reference = Line {
-        name: "FE reference".into(),
-        short: "FE".into(),
-        class: "fig-reference".into(),
-        dash: "none",
-        width: 2.1,
-        efficiency: efficiency(report.reference),
-        curves: sample(axis, &report.reference.history),
-        bands: bands(report, axis),
-    };
-    let reduced = report.reduced.iter().map(|outcome| {
-        let model = outcome.summary.model.clone().unwrap_or_default();
-        Line {
-            name: format!("model {}", model_name(&model, outcome.summary.modes)),
-            dash: dash(&model),
-            class: format!("fig-{model}"),
-            width: 1.7,
-            efficiency: efficiency(outcome),
-            curves: sample(axis, &outcome.history),
-            bands: Vec::new(),
-            short: model,
-        }
-    });
-    std::iter::once(reference).chain(reduced).collect()
-}
-
-/// Half widths of the 95 % bands of the reference's curves; empty if they are not known.
-fn bands(report: &SceneReport, axis: CommonAxis) -> Vec<SampledCurve> {
-    let Some(bands) = &report.attachments.bands else { return Vec::new() };
-    let curves = report.reference.history.curves.iter();
-    let band = |quantity| Some(SampledCurve { quantity, values: bands.sampled(quantity, &axis)? });
-    curves.filter_map(|curve| band(curve.name)).collect()
-}
-
-/// NaN, which is shown as a dash, if it is not determined.
-fn efficiency(outcome: &Outcome) -> f64 {
-    outcome.summary.value("efficiency").unwrap_or(f64::NAN)
-}
-
-/// The first measured record and everything it is compared with, as the instrument shows it.
-fn measured_lines(measured: &Measured) -> Vec<Line> {
-    let record = Line {
-        name: "measured".into(),
-        short: "LDV".into(),
-        class: "fig-measured".into(),
-        dash: "none",
-        width: 1.4,
-        efficiency: measured.records.first().and_then(|record| record.efficiency).unwrap_or(f64::NAN),
-        curves: measured.curves.clone(),
-        bands: Vec::new(),
-    };
-    let partners = measured.partners.iter().map(|partner| {
-        let reference = partner.partner == "reference";
-        let name = if reference { "FE reference".into() } else { format!("model {}", partner.partner) };
-        Line {
-            name,
-            short: if reference { "FE".into() } else { partner.partner.clone() },
-            class: format!("fig-{}", partner.partner),
-            dash: if reference { "none" } else { dash(&partner.partner) },
-            width: if reference { 2.1 } else { 1.7 },
-            efficiency: partner.efficiency.unwrap_or(f64::NAN),
-            curves: partner.filtered.clone(),
-            bands: Vec::new(),
-        }
-    });
-    std::iter::once(record).chain(partners).collect()
-}
+/// What can be measured: the bodies, by their motion.
+const MEASURED: [PanelOf; 2] = [
+    PanelOf {
+        label: "Displacement in µm",
+        factor: 1e6,
+        curves: &[("outer", "outer_displacement"), ("inner", "inner_displacement")],
+        boxes: false,
+    },
+    PanelOf {
+        label: "Velocity in mm/s",
+        factor: 1e3,
+        curves: &[("outer", "outer_velocity"), ("inner", "inner_velocity")],
+        boxes: true,
+    },
+];
 
 /// Width in px of `text` in DejaVu Sans, estimated from above.
 pub(super) fn text_width(text: &str) -> f64 {
     0.62 * FONT_SIZE * text.chars().count() as f64
 }
 
-/// The figure as SVG; without curves if the reference's history can't be used.
+/// The figure as SVG, inline with residuals; without curves if the reference's history can't be used.
 pub fn figure(report: &SceneReport, theme: Theme) -> String {
-    scene_drawing(report, &Geometry::PAGE, theme)
+    match theme {
+        Theme::Standalone => scene_drawing(report, &Geometry::PAGE, theme),
+        Theme::Inline => scene_drawing(report, &Geometry::PAGE.with_residuals(), theme),
+    }
 }
 
 /// The figure for a page on a phone: its panels as narrow as the screen, with type of the same size as on a wide page.
@@ -264,7 +190,7 @@ fn scene_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> Str
         lines.iter_mut().for_each(|line| line.width *= 0.8);
     }
     let title = format!("{}: reduced models and finite-element reference", report.scene.name);
-    drawing(&title, geometry, &QUANTITIES, &lines, axis, theme)
+    drawing(&title, geometry, presentation::of(report.scene).panels(), &lines, axis, theme)
 }
 
 /// The figure of the first measured record beside reference and models (Fig. 12): displacement and velocity of the
@@ -288,16 +214,17 @@ fn measured_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> 
 fn drawing(
     title: &str,
     geometry: &Geometry,
-    quantities: &[Quantity],
+    panels: &[PanelOf],
     lines: &[Line],
     axis: Option<CommonAxis>,
     theme: Theme,
 ) -> String {
-    let panels = quantities.len() as f64;
+    let count = panels.len() as f64;
     let legend = Legend::new(geometry, lines);
     let top = legend.height + 14.0;
     let Geometry { width, panel_height, gap, bottom, .. } = *geometry;
-    let height = top + panels * panel_height + (panels - 1.0) * gap + bottom;
+    let pair_height = geometry.pair_height();
+    let height = top + count * pair_height + (count - 1.0) * gap + bottom;
     let end = axis.map_or(1.0, |a| a.end * 1e6);
     let size = |px: f64| match (theme, geometry.millimetres) {
         (Theme::Inline, _) => None,
@@ -314,8 +241,9 @@ fn drawing(
                 rect width=(width) height=(height) fill="#ffffff" {}
             }
             (legend.drawing)
-            @for (k, quantity) in quantities.iter().enumerate() {
-                (panel(geometry, quantity, top + k as f64 * (panel_height + gap), end, lines, axis))
+            @for (k, shown) in panels.iter().enumerate() {
+                (panel(geometry, shown, top + k as f64 * (pair_height + gap), end, lines, axis))
+                (residuals(geometry, shown, top + k as f64 * (pair_height + gap) + panel_height, end, lines, axis))
             }
             (time_labels(geometry, end, height))
             @if lines.is_empty() {

@@ -1,7 +1,8 @@
 //! One panel of the figure: a quantity of all bodies and results over time.
 
 use super::efficiency_boxes::EfficiencyBoxes;
-use super::figure::{FONT_SIZE, Geometry, Line, Quantity, stroke, text_width, x2};
+use super::figure::{FONT_SIZE, Geometry, PanelOf, stroke, text_width, x2};
+use super::figure_lines::Line;
 use super::label_placement::{Panel, Rect};
 use super::polyline::{Point, path, thinned};
 use super::ticks::{tick_label, ticks};
@@ -9,8 +10,8 @@ use crate::curves::{CommonAxis, SampledCurve};
 use maud::{Markup, html};
 
 /// Lowest and highest value over all lines and bands, with room on both sides.
-fn range(quantity: &Quantity, lines: &[Line]) -> (f64, f64) {
-    let belongs = |c: &&SampledCurve| c.quantity.ends_with(quantity.suffix);
+fn range(shown: &PanelOf, lines: &[Line]) -> (f64, f64) {
+    let belongs = |c: &&SampledCurve| shown.holds(c);
     let curves = lines.iter().flat_map(|l| &l.curves).filter(belongs).flat_map(|c| c.values.iter().copied());
     let edges = lines.iter().flat_map(|line| {
         let curve = |band: &SampledCurve| line.curves.iter().find(|c| c.quantity == band.quantity);
@@ -18,7 +19,7 @@ fn range(quantity: &Quantity, lines: &[Line]) -> (f64, f64) {
         pairs
             .flat_map(|(curve, band)| curve.values.iter().zip(&band.values).flat_map(|(v, w)| [v - w, v + w]))
     });
-    let values = curves.chain(edges).filter(|v| v.is_finite()).map(|v| v * quantity.factor);
+    let values = curves.chain(edges).filter(|v| v.is_finite()).map(|v| v * shown.factor);
     let (low, high) = values.fold((0.0_f64, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
     let room = if high > low { 0.07 * (high - low) } else { 1.0 };
     (if low < 0.0 { low - room } else { -0.5 * room }, high + room)
@@ -40,26 +41,26 @@ impl<'a> Layout<'a> {
     /// `headroom` px are kept free at the top.
     fn new(
         geometry: &'a Geometry,
-        quantity: &Quantity,
+        shown: &PanelOf,
         (top, end, headroom): (f64, f64, f64),
         lines: &'a [Line],
         axis: Option<CommonAxis>,
     ) -> Self {
-        let (low, high) = range(quantity, lines);
+        let (low, high) = range(shown, lines);
         let high = low + (high - low) * geometry.panel_height / (geometry.panel_height - headroom);
         let y_of = |v: f64| top + geometry.panel_height * (high - v) / (high - low);
-        let points = |line: &Line, body: &str| -> Vec<Point> {
-            let name = format!("{body}_{}", quantity.suffix);
+        let points = |line: &Line, name: &str| -> Vec<Point> {
             let curve = line.curves.iter().find(|c| c.quantity == name);
             axis.zip(curve).map_or_else(Vec::new, |(axis, curve)| {
-                let at = |(k, v): (usize, &f64)| {
-                    (geometry.x_of(axis.time(k) * 1e6, end), y_of(v * quantity.factor))
-                };
+                let at =
+                    |(k, v): (usize, &f64)| (geometry.x_of(axis.time(k) * 1e6, end), y_of(v * shown.factor));
                 curve.values.iter().enumerate().map(at).filter(|p| p.1.is_finite()).collect()
             })
         };
-        let drawn: Vec<(&Line, Vec<Vec<Point>>)> =
-            lines.iter().map(|l| (l, quantity.bodies.iter().map(|b| points(l, b)).collect())).collect();
+        let drawn: Vec<(&Line, Vec<Vec<Point>>)> = lines
+            .iter()
+            .map(|l| (l, shown.curves.iter().map(|(_, name)| points(l, name)).collect()))
+            .collect();
         let area = Rect {
             x: geometry.left + 6.0,
             y: top + 5.0,
@@ -69,7 +70,7 @@ impl<'a> Layout<'a> {
         let curves = drawn.iter().flat_map(|(_, bodies)| bodies).map(|line| thinned(line, 2.0)).collect();
         let outline = |curve: &SampledCurve, widths: &SampledCurve| {
             let side = |sign: f64| {
-                let at = move |(k, v): (usize, &f64)| (k, (v + sign * widths.values[k]) * quantity.factor);
+                let at = move |(k, v): (usize, &f64)| (k, (v + sign * widths.values[k]) * shown.factor);
                 curve.values.iter().enumerate().map(at)
             };
             let time = |k: usize| axis.map_or(0.0, |axis| geometry.x_of(axis.time(k) * 1e6, end));
@@ -77,7 +78,7 @@ impl<'a> Layout<'a> {
             edge.filter(|(_, v)| v.is_finite()).map(|(k, v)| (time(k), y_of(v))).collect()
         };
         let bands = lines.iter().flat_map(|line| {
-            line.bands.iter().filter(|band| band.quantity.ends_with(quantity.suffix)).filter_map(|band| {
+            line.bands.iter().filter(|band| shown.holds(band)).filter_map(|band| {
                 Some(outline(line.curves.iter().find(|curve| curve.quantity == band.quantity)?, band))
             })
         });
@@ -93,13 +94,13 @@ impl<'a> Layout<'a> {
 /// The boxes fit between the curves in one of their two arrangements, or room is made at the top.
 fn layout_with_boxes<'a>(
     geometry: &'a Geometry,
-    quantity: &Quantity,
+    shown: &PanelOf,
     top: f64,
     end: f64,
     lines: &'a [Line],
     axis: Option<CommonAxis>,
 ) -> (Layout<'a>, EfficiencyBoxes) {
-    let mut layout = Layout::new(geometry, quantity, (top, end, 0.0), lines, axis);
+    let mut layout = Layout::new(geometry, shown, (top, end, 0.0), lines, axis);
     for arrangement in [EfficiencyBoxes::column(lines.len()), EfficiencyBoxes::row(lines.len())] {
         let (free, place) = layout.room.find_box(arrangement.width(), arrangement.height());
         if free >= 5.0 {
@@ -108,7 +109,7 @@ fn layout_with_boxes<'a>(
         }
     }
     let row = EfficiencyBoxes::row(lines.len());
-    let mut layout = Layout::new(geometry, quantity, (top, end, row.height() + 12.0), lines, axis);
+    let mut layout = Layout::new(geometry, shown, (top, end, row.height() + 12.0), lines, axis);
     let (_, place) = layout.room.find_box(row.width(), row.height());
     layout.room.taken.push(place);
     (layout, row.at(place))
@@ -117,20 +118,20 @@ fn layout_with_boxes<'a>(
 /// The panel whose upper edge is at `top`; the time axis ends at `end` (us).
 pub(super) fn panel(
     geometry: &Geometry,
-    quantity: &Quantity,
+    shown: &PanelOf,
     top: f64,
     end: f64,
     lines: &[Line],
     axis: Option<CommonAxis>,
 ) -> Markup {
-    let (mut layout, boxes) = if geometry.boxes && quantity.suffix == "velocity" {
-        let (layout, boxes) = layout_with_boxes(geometry, quantity, top, end, lines, axis);
+    let (mut layout, boxes) = if geometry.boxes && shown.boxes {
+        let (layout, boxes) = layout_with_boxes(geometry, shown, top, end, lines, axis);
         (layout, Some(boxes))
     } else {
-        (Layout::new(geometry, quantity, (top, end, 0.0), lines, axis), None)
+        (Layout::new(geometry, shown, (top, end, 0.0), lines, axis), None)
     };
     let labels: Vec<_> =
-        quantity.bodies.iter().enumerate().map(|(k, body)| body_label(&mut layout, body, k)).collect();
+        shown.curves.iter().enumerate().map(|(k, (body, _))| body_label(&mut layout, body, k)).collect();
     let (low, high) = (layout.low, layout.high);
     let Geometry { left, panel_height, .. } = *geometry;
     let width = geometry.inner_width();
@@ -151,7 +152,7 @@ pub(super) fn panel(
             }
         }
         text.fig-text transform=(format!("translate(17 {:.2}) rotate(-90)", top + panel_height / 2.0))
-            text-anchor="middle" { (quantity.label) }
+            text-anchor="middle" { (shown.label) }
         @for band in &layout.bands { path.fig-band d=(path(band) + "Z") {} }
         @for (line, bodies) in &layout.drawn {
             @for body in bodies { (stroke(line, &path(body))) }

@@ -1,8 +1,9 @@
 //! The interactive panels of a scene's page, their data and scripts; the page stays whole without scripts and on paper.
 
 use super::SceneReport;
+use super::figure::PanelOf;
 use super::html::drawn;
-use super::page_data::{PanelOf, curves, embedded};
+use super::page_data::{curves, embedded};
 use maud::{Markup, PreEscaped, html};
 
 /// uPlot by Leon Sorokin, MIT.

@@ -19,7 +19,6 @@ pub(super) fn limits_html(comparison: &SceneComparison) -> Markup {
     }
     html! {
         @if !measures.is_empty() {
-            h2 { "Range of validity" }
             (scrolled("Range of validity", &html! { table.limits {
                 thead { tr {
                     th scope="col" { "measure" } th scope="col" { "holds up to" } th scope="col" { "reference" }

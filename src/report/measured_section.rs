@@ -1,7 +1,7 @@
 //! The measured records in the report: alignment, efficiencies, curve metrics.
 
 use super::figure::phone_measured_figure;
-use super::format::{prefixed, significant, with_unit, words};
+use super::format::{prefixed, prose, significant, with_unit, words};
 use super::html::{drawn, scrolled};
 use super::{ChartPanel, SceneReport, Series, Theme, chart, measured_figure};
 use crate::kinds::plate_impact::CURVES;
@@ -138,7 +138,6 @@ pub(super) fn measured_html(report: &SceneReport) -> Markup {
         }
     };
     html! {
-        h2 { "Measurement" }
         p { (sentence(measured)) }
         figure {
             @if let Some((wide, narrow)) = measured_figure(report, Theme::Inline).zip(phone_measured_figure(report)) {
@@ -155,7 +154,7 @@ pub(super) fn measured_html(report: &SceneReport) -> Markup {
         }
         (table(alignment(measured)))
         (table(metrics(measured)))
-        p.soft { (measured.rule) }
+        p.soft { (prose(measured.rule)) }
     }
 }
 

@@ -40,7 +40,7 @@ pub(super) fn mesh_html(report: &SceneReport) -> Result<Markup> {
         figure.pictures {
             div.pair { @for picture in meshes { (picture) } }
             figcaption { "Mesh of the reference in section: contact, and the whole scene. r and z in mm; outer body above "
-                "the plate, inner body below it. Lines are lighter where elements are smaller than a few pixels." }
+                "the plate, inner body below it. Lines are the lighter the nearer they are to each other." }
         }
         @if let Some((time, _)) = &report.attachments.stress {
             figure.pictures {

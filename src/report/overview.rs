@@ -2,7 +2,9 @@
 
 use super::SceneReport;
 use super::format::model_name;
-use crate::comparison::{Discrepancy, ModelComparison, SceneComparison, Verdict};
+use super::thumbnail::thumbnail;
+use crate::comparison::{Discrepancy, ModelComparison, Verdict};
+use crate::result::Outcome;
 use serde::{Deserialize, Serialize};
 
 /// A scene in short.
@@ -10,6 +12,9 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Overview {
     pub(super) scene: String,
     pub(super) description: String,
+    /// Folder of its file, as far as it is known.
+    #[serde(default)]
+    pub(super) folder: String,
     pub(super) verdict: Verdict,
     /// When it was compared (UTC), and the command line that compares it again.
     pub(super) compared: Option<String>,
@@ -33,8 +38,9 @@ pub(super) struct ModelOverview {
     pub(super) largest: Option<RowOverview>,
     /// The gated row nearest to its bound.
     pub(super) tightest: Option<RowOverview>,
-    /// Number of all rows.
-    pub(super) rows: usize,
+    /// Paths of a curve of the reference and of the model.
+    #[serde(default)]
+    pub(super) thumbnail: [String; 2],
     /// Verdicts of the gated rows.
     pub(super) gated: Vec<Verdict>,
 }
@@ -54,29 +60,32 @@ pub(super) struct RowOverview {
 impl Overview {
     pub(super) fn of(report: &SceneReport) -> Self {
         let (comparison, trends) = (&report.comparison, &report.attachments.trends);
+        let models = comparison.models.iter().zip(report.reduced);
         Overview {
             scene: comparison.scene.clone(),
             description: report.scene.description.clone(),
+            folder: report.attachments.folder.clone(),
             verdict: comparison.verdict,
             compared: report.attachments.compared.clone(),
             command: report.command.clone(),
-            models: comparison.models.iter().map(|model| ModelOverview::of(comparison, model)).collect(),
+            models: models.map(|(model, outcome)| ModelOverview::of(report, model, outcome)).collect(),
             drift: [trends.iter().filter(|trend| trend.drifts_since.is_some()).count(), trends.len()],
         }
     }
 }
 
 impl ModelOverview {
-    pub(super) fn of(comparison: &SceneComparison, model: &ModelComparison) -> Self {
+    fn of(report: &SceneReport, model: &ModelComparison, outcome: &Outcome) -> Self {
+        let reference = &report.comparison.reference;
         ModelOverview {
             model: model.model.clone(),
             name: model_name(&model.model, model.summary.modes),
             verdict: model.verdict,
             verdict_in_words: model.verdict_in_words().to_owned(),
-            efficiency: [&model.summary, &comparison.reference].map(|summary| summary.value("efficiency")),
+            efficiency: [&model.summary, reference].map(|summary| summary.value("efficiency")),
             largest: model.largest().map(RowOverview::of),
             tightest: model.tightest().map(RowOverview::of),
-            rows: model.discrepancies.len(),
+            thumbnail: thumbnail(report, outcome),
             gated: model.gated_verdicts().collect(),
         }
     }

@@ -1,7 +1,8 @@
 //! What a scene's page carries for its script: the curves on the common axis, and the comparison document of the scene.
 
 use super::SceneReport;
-use super::figure::{QUANTITIES, Quantity, dash};
+use super::figure::PanelOf;
+use super::figure_lines::dash;
 use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::reference::CurveBands;
@@ -9,26 +10,6 @@ use serde_json::{Value, json};
 
 /// Significant digits of a curve's peak that are kept.
 const DIGITS: i32 = 5;
-
-/// A panel of a page: curves of one quantity over time.
-pub(super) struct PanelOf {
-    /// Quantity and unit, beside the axis.
-    pub(super) label: &'static str,
-    /// From SI to that unit.
-    pub(super) factor: f64,
-    /// What the panel calls each curve, and its name.
-    pub(super) curves: Vec<(&'static str, String)>,
-}
-
-/// The panels of a plate impact.
-pub(super) fn plate_panels() -> Vec<PanelOf> {
-    let panel = |quantity: &Quantity| PanelOf {
-        label: quantity.label,
-        factor: quantity.factor,
-        curves: quantity.bodies.iter().map(|body| (*body, format!("{body}_{}", quantity.suffix))).collect(),
-    };
-    QUANTITIES.iter().map(panel).collect()
-}
 
 /// JSON of the curves, values in the units of the panels; without times if the reference's history can't be used.
 pub(super) fn curves(report: &SceneReport, panels: &[PanelOf]) -> Value {
@@ -68,9 +49,10 @@ type Source = (String, String, Vec<SampledCurve>);
 
 fn of_panel(panel: &PanelOf, sources: &[Source], axis: CommonAxis, bands: Option<&CurveBands>) -> Value {
     let named = |curves: &[SampledCurve], name: &str| curves.iter().find(|c| c.quantity == name).cloned();
-    let belongs = |c: &&SampledCurve| panel.curves.iter().any(|(_, name)| c.quantity == *name);
-    let values =
-        sources.iter().flat_map(|(_, _, curves)| curves.iter().filter(belongs)).flat_map(|c| &c.values);
+    let values = sources
+        .iter()
+        .flat_map(|(_, _, curves)| curves.iter().filter(|c| panel.holds(c)))
+        .flat_map(|c| &c.values);
     let peak = values.filter(|v| v.is_finite()).fold(0.0_f64, |p, v| p.max(v.abs())) * panel.factor;
     let decimals = if peak > 0.0 { (DIGITS - 1 - peak.log10().floor() as i32).clamp(0, 12) } else { 0 };
     let shortened = |values: &[f64]| rounded(values, panel.factor, decimals);

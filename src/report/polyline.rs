@@ -35,9 +35,14 @@ fn distance(p: Point, a: Point, b: Point) -> f64 {
 
 /// SVG path of the line; points that are not finite are left out.
 pub(super) fn path(line: &[Point]) -> String {
+    path_within(line, 0.08)
+}
+
+/// As [`path`], within `tolerance` px of the line.
+pub(super) fn path_within(line: &[Point], tolerance: f64) -> String {
     let finite: Vec<Point> = line.iter().copied().filter(|p| p.0.is_finite() && p.1.is_finite()).collect();
     let mut data = String::new();
-    for (k, (x, y)) in simplified(&finite, 0.08).into_iter().enumerate() {
+    for (k, (x, y)) in simplified(&finite, tolerance).into_iter().enumerate() {
         data.push_str(&format!("{}{x:.2} {y:.2}", if k == 0 { 'M' } else { 'L' }));
     }
     data

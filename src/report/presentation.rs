@@ -1,22 +1,12 @@
 //! How the results of a kind of scene are shown, where that differs from kind to kind.
 
-use super::{Attachments, SceneReport, scene_page as plate_impact, seal_seat};
+use super::figure::PanelOf;
+use super::section::Section;
+use super::summary_column::Column;
+use super::{Attachments, SceneReport, plate_impact, seal_seat};
 use crate::reference::Stored;
 use crate::scene::{Scene, Setup};
-
-/// A column of the table for the terminal.
-pub(super) struct Column {
-    pub(super) heading: &'static str,
-    pub(super) quantity: &'static str,
-    /// Whether it is shown in degrees, with differences in degrees, rather than with its unit and differences in per cent.
-    pub(super) is_angle: bool,
-}
-
-impl Column {
-    pub(super) const fn new(heading: &'static str, quantity: &'static str) -> Self {
-        Column { heading, quantity, is_angle: false }
-    }
-}
+use maud::Markup;
 
 /// A drawing of a scene, a file of its own.
 pub(super) struct Drawing {
@@ -30,8 +20,14 @@ pub(super) struct Drawing {
 
 /// What a kind of scene shows.
 pub(super) trait Presentation: Sync {
-    /// The quantities in the terminal's table.
+    /// The quantities that tell a result in short.
     fn columns(&self) -> &'static [Column];
+
+    /// The curves, panel by panel.
+    fn panels(&self) -> &'static [PanelOf];
+
+    /// What the curves are, in a sentence.
+    fn curves_told(&self) -> &'static str;
 
     /// What a stored solution has to be drawn.
     fn attachments(&self, stored: &Stored) -> Attachments;
@@ -39,8 +35,17 @@ pub(super) trait Presentation: Sync {
     /// The drawings beside the page.
     fn drawings(&self, report: &SceneReport) -> Vec<Drawing>;
 
-    /// The page.
-    fn page(&self, report: &SceneReport) -> String;
+    /// The scene drawn to scale, and what there is to say of the drawing.
+    fn scene_drawing(&self, report: &SceneReport) -> Markup;
+
+    /// The scene in numbers: what, and what it measures.
+    fn measures(&self, scene: &Scene) -> Vec<(String, String)>;
+
+    /// What only this kind shows, behind the models' sections.
+    fn sections(&self, report: &SceneReport) -> Vec<Section>;
+
+    /// Pictures of mesh and stress of the reference; empty if there are none.
+    fn mesh(&self, report: &SceneReport) -> Markup;
 }
 
 /// How results of `scene` are shown.
@@ -49,9 +54,4 @@ pub(super) fn of(scene: &Scene) -> &'static dyn Presentation {
         Setup::PlateImpact(_) => &plate_impact::Plate,
         Setup::SealSeat(_) => &seal_seat::Seat,
     }
-}
-
-/// The page of one scene.
-pub fn scene_page(report: &SceneReport) -> String {
-    of(report.scene).page(report)
 }

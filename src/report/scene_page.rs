@@ -1,92 +1,102 @@
-//! The page of one plate impact: verdict, interactive panels, discrepancies, budget, mesh and stress, provenance.
+//! The page of one scene, whatever its kind: what to trust first, then the curves, then everything that backs it.
 
-use super::attachments::instant_of_peak;
-use super::discrepancy_section::model_section;
+use super::discrepancy_section::{checks, contradictions, model_section};
+use super::facts::facts;
 use super::figure::phone_figure;
-use super::format::{prefixed, with_unit};
-use super::html::page;
-use super::page_data::plate_panels;
-use super::presentation::{Column, Drawing, Presentation};
-use super::{Attachments, SceneReport, Theme, figure, interactive, page_end};
-use crate::reference::Stored;
+use super::format::{model_name, prefixed, with_unit};
+use super::html::{badge, model_badge, page};
+use super::section::{Section, contents, sections};
+use super::{SceneReport, Theme, discrepancy_picture, figure, first_screen, interactive, presentation};
 use maud::{Markup, html};
 
-/// How a plate impact is shown.
-pub(super) struct Plate;
-
-impl Presentation for Plate {
-    fn columns(&self) -> &'static [Column] {
-        const COLUMNS: [Column; 5] = [
-            Column::new("efficiency", "efficiency"),
-            Column::new("outer peak", "outer_force_peak"),
-            Column::new("inner peak", "inner_force_peak"),
-            Column::new("outer end", "outer_contact_end"),
-            Column::new("inner end", "inner_contact_end"),
-        ];
-        &COLUMNS
-    }
-
-    fn attachments(&self, stored: &Stored) -> Attachments {
-        let peak = instant_of_peak(&stored.outcome.history, "outer_force");
-        Attachments {
-            mesh: stored.mesh().ok(),
-            stress: stored.stress_near(peak).ok().flatten(),
-            ..Attachments::default()
-        }
-    }
-
-    fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
-        let drawing = |ending, caption, svg| Drawing { ending, caption, svg };
-        let curves = figure(report, Theme::Standalone);
-        let measured = super::measured_figure(report, Theme::Standalone);
-        let efficiencies = super::efficiency_figure(report);
-        let curves = drawing("", Some("Displacement, velocity and contact force"), curves);
-        let measured = measured.map(|svg| drawing("-measured", None, svg));
-        let efficiencies = efficiencies.map(|svg| drawing("-efficiencies", None, svg));
-        [Some(curves), measured, efficiencies].into_iter().flatten().collect()
-    }
-
-    fn page(&self, report: &SceneReport) -> String {
-        page_of(report)
-    }
+/// The page of one scene.
+pub fn scene_page(report: &SceneReport) -> String {
+    let comparison = &report.comparison;
+    let name = &comparison.scene;
+    let all = all_sections(report);
+    let body = html! {
+        h1 { (name) " " (badge(comparison.verdict)) }
+        p.soft { (report.scene.description) }
+        (contents(&all))
+        (contradictions("reference", &comparison.integrity))
+        (first_screen::first_screen(report))
+        (sections(&all))
+    };
+    let scripts = interactive::scripts(report, presentation::of(report.scene).panels());
+    page(&format!("{name} · impactcheck"), &[interactive::STYLE], &body, &scripts)
 }
 
-fn page_of(report: &SceneReport) -> String {
-    let comparison = &report.comparison;
-    let reference = &comparison.reference;
-    let body = html! {
-        (page_end::head(report))
-        (curves(report))
-        @for model in &comparison.models { (model_section(model)) }
-        (super::budget_section::budget_html(&comparison.budget))
-        (super::measured_section::measured_html(report))
-        h2 { "Mesh and solver" }
-        @match super::mesh_section::mesh_html(report) {
-            Ok(pictures) => (pictures),
-            Err(error) => p { (error) },
-        }
-        (page_end::numbers(comparison))
-        p { "Samples of the reference's history: " (reference.samples.map_or("–".into(), |n| n.to_string())) ", every "
-            (with_unit(
-                reference.sample_interval.unwrap_or(f64::NAN),
-                prefixed("s", reference.sample_interval.unwrap_or(1.0)), 4)) "." }
-        (page_end::end(report))
-    };
-    let scripts = interactive::scripts(report, &plate_panels());
-    page(&format!("{} · impactcheck", comparison.scene), &[interactive::STYLE], &body, &scripts)
+fn all_sections(report: &SceneReport) -> Vec<Section> {
+    let (comparison, attachments) = (&report.comparison, &report.attachments);
+    let shown = presentation::of(report.scene);
+    let mut all = vec![
+        Section::new("discrepancies", "Discrepancies", discrepancy_picture::discrepancy_picture(comparison)),
+        Section::new("over-time", "Curves", curves(report)),
+    ];
+    all.extend(comparison.models.iter().map(|model| {
+        let title = format!("Model {}", model_name(&model.model, model.summary.modes));
+        Section::new(&format!("model-{}", model.model), &title, model_section(model))
+            .linked_as(format!("Model {}", model.model))
+            .marked(model_badge(model))
+    }));
+    all.extend(shown.sections(report));
+    let accepted = super::acceptance_section::acceptances_html(attachments, &comparison.changed_tolerances);
+    all.extend([
+        Section::new("validity", "Range of validity", super::limits_section::limits_html(comparison)),
+        Section::new("trends", "Trends", super::trend_section::trends_html(attachments)),
+        Section::new("accepted", "Accepted changes", accepted),
+        Section::new("mesh", "Mesh and solver", mesh(report, &shown.mesh(report))),
+        Section::new("provenance", "Provenance", provenance(report)),
+    ]);
+    all
 }
 
 fn curves(report: &SceneReport) -> Markup {
     let scene = &report.comparison.scene;
     html! {
-        h2 { "Curves" }
         (interactive::panels(&figure(report, Theme::Inline), &phone_figure(report)))
         p.soft {
-            "Displacement, velocity and contact force of outer body, plate and inner body, signed along z "
-            "(from the inner to the outer side; forces positive in compression). Shaded: the 95 % band of the reference. "
+            (presentation::of(report.scene).curves_told()) " Shaded: the 95 % band of the reference. "
             a href=(format!("{scene}.svg")) { "SVG" } " · "
             a href=(format!("{scene}.png")) { "PNG" } " · "
             a href=(format!("{scene}.csv")) { "curves as CSV" }
+        }
+    }
+}
+
+fn mesh(report: &SceneReport, pictures: &Markup) -> Markup {
+    let reference = &report.comparison.reference;
+    let interval = reference.sample_interval.unwrap_or(f64::NAN);
+    html! {
+        (pictures)
+        details {
+            summary { "Mesh and solver in numbers (SI units)" }
+            (facts(&[("mesh", reference.mesh.as_ref()), ("solver", reference.solver.as_ref())]))
+            p { "Samples of the reference's history: " (reference.samples.map_or("–".into(), |n| n.to_string())) ", every "
+                (with_unit(interval, prefixed("s", interval), 4)) "." }
+        }
+    }
+}
+
+/// What goes in, where the reference comes from, and how to make the page again.
+fn provenance(report: &SceneReport) -> Markup {
+    let comparison = &report.comparison;
+    let scene = serde_json::to_value(report.scene).ok();
+    html! {
+        p { "Make it again: " }
+        pre tabindex="0" { (report.command) }
+        p { "Scene hash " code { (comparison.reference.scene_hash) } }
+        details {
+            summary { "The scene (SI units)" }
+            (facts(&[("", scene.as_ref())]))
+        }
+        details {
+            summary { "How the reference was made" }
+            (facts(&[("", Some(&report.provenance))]))
+        }
+        details {
+            summary { "Checks of the reference against itself (" (comparison.integrity.len()) ")" }
+            (checks(&comparison.integrity))
         }
     }
 }

@@ -1,39 +1,76 @@
 //! How a seal seat is shown: flight of the sphere, curves, what model and reference have cost.
 
 use super::attachments::instant_of_peak;
-use super::chart::{CHART_WIDTH, ChartPanel, Series, chart_of_width};
-use super::discrepancy_section::model_section;
-use super::figure::PHONE_WIDTH;
+use super::figure::PanelOf;
 use super::format::{model_name, prefixed, significant, with_unit};
-use super::html::{detailed, named, page};
-use super::page_data::PanelOf;
-use super::presentation::{Column, Drawing, Presentation};
+use super::html::{named, scrolled};
+use super::presentation::{Drawing, Presentation};
 use super::run_times::marked;
-use super::seal_seat_picture::{Arrow, seat_picture};
-use super::{Attachments, SceneReport, interactive, page_end};
+use super::seal_seat_picture::{self, Arrow, arrow_legend, seat_picture};
+use super::section::Section;
+use super::summary_column::{Column, degrees};
+use super::{Attachments, SceneReport, Theme, figure};
 use crate::kinds::seal_seat::SeatQuantities;
 use crate::project::project_root;
 use crate::reference::Stored;
-use crate::result::{Outcome, Summary};
-use crate::scene::Setup;
+use crate::result::Summary;
+use crate::scene::{Scene, Setup};
 use maud::{Markup, PreEscaped, html};
 use std::path::{Path, PathBuf};
 
 /// Name of the series of fields in the folder of a reference.
 const ANIMATION: &str = "stress.pvd";
 
-/// How a seal seat is shown.
 pub(super) struct Seat;
+
+const PANELS: [PanelOf; 3] = [
+    PanelOf {
+        label: "Displacement in µm",
+        factor: 1e6,
+        curves: &[
+            ("sphere x", "sphere_displacement_x"),
+            ("sphere z", "sphere_displacement_z"),
+            ("actuator", "actuator_displacement"),
+        ],
+        boxes: false,
+    },
+    PanelOf {
+        label: "Velocity in mm/s",
+        factor: 1e3,
+        curves: &[
+            ("sphere x", "sphere_velocity_x"),
+            ("sphere z", "sphere_velocity_z"),
+            ("actuator", "actuator_velocity"),
+        ],
+        boxes: false,
+    },
+    PanelOf {
+        label: "Contact force in N",
+        factor: 1.0,
+        curves: &[("actuator", "actuator_force"), ("sphere", "sphere_force")],
+        boxes: false,
+    },
+];
 
 impl Presentation for Seat {
     fn columns(&self) -> &'static [Column] {
-        const COLUMNS: [Column; 4] = [
-            Column { is_angle: true, ..Column::new("direction", "sphere_angle") },
-            Column::new("speed", "sphere_speed"),
-            Column::new("sphere peak", "sphere_force_peak"),
-            Column::new("actuator peak", "actuator_force_peak"),
+        const COLUMNS: [Column; 5] = [
+            Column { is_angle: true, ..Column::new("direction", "direction", "sphere_angle") },
+            Column::new("speed", "speed", "sphere_speed"),
+            Column::new("efficiency", "efficiency", "efficiency"),
+            Column::new("sphere peak", "force peaks", "sphere_force_peak"),
+            Column::new("actuator peak", "force peaks", "actuator_force_peak"),
         ];
         &COLUMNS
+    }
+
+    fn panels(&self) -> &'static [PanelOf] {
+        &PANELS
+    }
+
+    fn curves_told(&self) -> &'static str {
+        "Displacement and velocity along x and z, and contact forces, of sphere and actuator; z points away from the \
+         actuator, forces are magnitudes."
     }
 
     fn attachments(&self, stored: &Stored) -> Attachments {
@@ -51,28 +88,51 @@ impl Presentation for Seat {
     }
 
     fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
-        let section = section(report).map(|svg| Drawing {
+        let section = report.scene.seal_seat().ok().map(|setup| Drawing {
             ending: "-section",
             caption: Some("Section with the directions of flight"),
-            svg,
+            svg: seat_picture(setup, &arrows(report), Theme::Standalone),
         });
-        let svg = curves(report, CHART_WIDTH);
-        let curves = Drawing { ending: "", caption: Some("Forces and velocities"), svg };
+        let svg = figure(report, Theme::Standalone);
+        let curves = Drawing { ending: "", caption: Some("Displacement, velocity and contact force"), svg };
         section.into_iter().chain([curves]).collect()
     }
 
-    fn page(&self, report: &SceneReport) -> String {
-        page_of(report)
+    fn scene_drawing(&self, report: &SceneReport) -> Markup {
+        let Ok(setup) = report.scene.seal_seat() else { return html! {} };
+        let arrows = arrows(report);
+        html! { (PreEscaped(seat_picture(setup, &arrows, Theme::Inline))) (arrow_legend(&arrows)) }
+    }
+
+    fn measures(&self, scene: &Scene) -> Vec<(String, String)> {
+        scene.seal_seat().map_or_else(|_| Vec::new(), seal_seat_picture::measures)
+    }
+
+    fn sections(&self, report: &SceneReport) -> Vec<Section> {
+        vec![
+            Section::new("flight", "Flight of the sphere", flight(report)),
+            Section::new("cost", "Cost", cost(report)),
+        ]
+    }
+
+    fn mesh(&self, report: &SceneReport) -> Markup {
+        html! {
+            (super::seal_seat_mesh::mesh_html(report))
+            @if let Some(animation) = &report.attachments.animation {
+                p { "Fields of the stored solution, for ParaView (" code { "impactcheck reference SCENE --fields 40" }
+                    " makes a series): " code { (animation.display()) } }
+            }
+        }
     }
 }
 
 /// Directions found and intended.
 fn arrows(report: &SceneReport) -> Vec<Arrow> {
     let found = |summary: &Summary| SeatQuantities::of_table(&summary.quantities);
-    let arrow = |name: String, q: SeatQuantities, colour, dashes| Arrow {
+    let arrow = |name: String, q: SeatQuantities, class, dashes| Arrow {
         name,
         velocity: [q.sphere_velocity_x, q.sphere_velocity_z],
-        colour,
+        class,
         dashes,
     };
     let mut arrows = Vec::new();
@@ -80,117 +140,23 @@ fn arrows(report: &SceneReport) -> Vec<Arrow> {
         if let Setup::SealSeat(setup) = &report.scene.setup {
             let (sin, cos) = setup.intended_angle.sin_cos();
             arrows.push(Arrow {
-                name: "intended, drawn with the reference's speed".into(),
+                name: "intended, with the reference's speed".into(),
                 velocity: [sin, cos].map(|c| c * reference.sphere_speed),
-                colour: "#777777",
+                class: "fig-intended",
                 dashes: "3 4",
             });
         }
-        arrows.push(arrow("reference".into(), reference, "#1a1a1a", ""));
+        arrows.push(arrow("reference".into(), reference, "fig-reference", ""));
     }
     arrows.extend(report.comparison.models.iter().filter_map(|model| {
         let name = format!("model {}", model_name(&model.model, model.summary.modes));
-        Some(arrow(name, found(&model.summary)?, "#009e73", "9 4"))
+        Some(arrow(name, found(&model.summary)?, "fig-C", "9 4"))
     }));
     arrows
 }
 
-/// The section with all arrows, as a stand-alone SVG; `None` for a scene of another kind.
-fn section(report: &SceneReport) -> Option<String> {
-    let Setup::SealSeat(setup) = &report.scene.setup else { return None };
-    Some(seat_picture(setup, &arrows(report)))
-}
-
-/// Forces and velocities over time, as a stand-alone SVG.
-fn curves(report: &SceneReport, width: f64) -> String {
-    let panel = |quantity: &str, label: &str| {
-        let series = |name: String, outcome: &Outcome| {
-            let values = outcome.history.curve(quantity).unwrap_or_default();
-            let points = outcome.history.time.iter().zip(values).map(|(t, v)| (1e6 * t, *v)).collect();
-            Series { name, points, marks: false }
-        };
-        let models = report.comparison.models.iter().zip(report.reduced);
-        let reduced = models.map(|(model, outcome)| series(format!("model {}", model.model), outcome));
-        ChartPanel {
-            x_label: "time, µs".into(),
-            y_label: label.into(),
-            series: std::iter::once(series("reference".into(), report.reference)).chain(reduced).collect(),
-            ..ChartPanel::default()
-        }
-    };
-    chart_of_width(
-        width,
-        "Forces and velocities of sphere and actuator",
-        &[
-            panel("sphere_force", "force on the sphere, N"),
-            panel("actuator_force", "force of the actuator, N"),
-            panel("sphere_velocity_x", "velocity of the sphere along x, m/s"),
-            panel("sphere_velocity_z", "velocity of the sphere along z, m/s"),
-        ],
-    )
-}
-
-/// The panels of a seal seat's page.
-fn panels() -> Vec<PanelOf> {
-    let panel = |label, factor, curves: &[(&'static str, &str)]| PanelOf {
-        label,
-        factor,
-        curves: curves.iter().map(|(body, name)| (*body, (*name).to_owned())).collect(),
-    };
-    vec![
-        panel(
-            "Displacement in µm",
-            1e6,
-            &[
-                ("sphere x", "sphere_displacement_x"),
-                ("sphere z", "sphere_displacement_z"),
-                ("actuator", "actuator_displacement"),
-            ],
-        ),
-        panel(
-            "Velocity in mm/s",
-            1e3,
-            &[
-                ("sphere x", "sphere_velocity_x"),
-                ("sphere z", "sphere_velocity_z"),
-                ("actuator", "actuator_velocity"),
-            ],
-        ),
-        panel("Contact force in N", 1.0, &[("actuator", "actuator_force"), ("sphere", "sphere_force")]),
-    ]
-}
-
-fn page_of(report: &SceneReport) -> String {
-    let comparison = &report.comparison;
-    let name = &comparison.scene;
-    let body = html! {
-        (page_end::head(report))
-        h2 { "Flight of the sphere" }
-        @if let Some(section) = section(report) { figure { (detailed("Section of the seat", &html! { (PreEscaped(section)) })) } }
-        (directions(report))
-        h2 { "Curves" }
-        (interactive::panels(&curves(report, CHART_WIDTH), &curves(report, PHONE_WIDTH)))
-        p.soft { "Displacement and velocity along x and z, and contact forces, of sphere and actuator; z points away from the "
-            "actuator, forces are magnitudes. Shaded: the 95 % band of the reference. "
-            a href=(format!("{name}.svg")) { "curves as SVG" } " · " a href=(format!("{name}.csv")) { "curves as CSV" } " · "
-            a href=(format!("{name}-section.svg")) { "section as SVG" } }
-        @if let Some(animation) = &report.attachments.animation {
-            p { "Fields of the stored solution, for ParaView (`impactcheck reference SCENE --fields 40` makes a series): " code { (animation.display()) } }
-        }
-        @for model in &comparison.models { (model_section(model)) }
-        h2 { "Cost" }
-        (cost(report))
-        h2 { "Mesh and solver" }
-        (super::seal_seat_mesh::mesh_html(report))
-        (page_end::numbers(comparison))
-        (page_end::end(report))
-    };
-    let scripts = interactive::scripts(report, &panels());
-    page(&format!("{name} · impactcheck"), &[interactive::STYLE], &body, &scripts)
-}
-
 /// Size and direction of the velocity, and how far it is from the intended direction.
-fn directions(report: &SceneReport) -> Markup {
+fn flight(report: &SceneReport) -> Markup {
     let intended = match &report.scene.setup {
         Setup::SealSeat(setup) => setup.intended_angle,
         Setup::PlateImpact(_) => f64::NAN,
@@ -202,14 +168,14 @@ fn directions(report: &SceneReport) -> Markup {
         html! { tr {
             th scope="row" { (name) }
             td { (with_unit(q.sphere_speed, prefixed("m/s", q.sphere_speed), 4)) }
-            td data-si=(q.sphere_angle) { (format!("{:+.2}°", q.sphere_angle.to_degrees())) }
-            td { (format!("{:+.2}°", (q.sphere_angle - intended).to_degrees())) }
+            td data-si=(q.sphere_angle) { (degrees(q.sphere_angle)) }
+            td { (degrees(q.sphere_angle - intended)) }
             td { (significant(100.0 * q.efficiency, 4)) " %" }
             td { (significant(1e6 * q.left_flank_impulse, 4)) } td { (significant(1e6 * q.right_flank_impulse, 4)) }
         } }
     };
     html! {
-        div.scroll role="region" tabindex="0" aria-label="Flight of the sphere" { table {
+        (scrolled("Flight of the sphere", &html! { table {
             thead { tr {
                 @for heading in ["", "speed", "direction", "from the intended", "efficiency", "left flank, µN·s", "right flank, µN·s"] {
                     th scope="col" { (named(heading)) }
@@ -221,9 +187,9 @@ fn directions(report: &SceneReport) -> Markup {
                     (row(&model_name(&model.model, model.summary.modes), &model.summary))
                 }
             }
-        } }
+        } }))
         p.soft { "Directions against the vertical, positive towards the intended side; impulses of the normal forces on either "
-            "side of the seat's axis." }
+            "side of the seat's axis. " a href=(format!("{}-section.svg", report.comparison.scene)) { "Section as SVG" } }
     }
 }
 

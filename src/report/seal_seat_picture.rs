@@ -1,9 +1,16 @@
 //! The section y = 0 of a seal seat: geometry, where it is struck, and the directions of the sphere's flight.
 
-use crate::scene::SealSeat;
-use maud::{Markup, html};
+use super::Theme;
+use super::figure::x2;
+use super::format::{measure, short};
+use super::scene_drawing::{Scale, materials};
+use super::summary_column::degrees;
+use crate::scene::{SealSeat, SphereBody};
+use maud::{Markup, PreEscaped, html};
 
 const WIDTH: f64 = 760.0;
+/// Width in px where the page decides on the rest.
+const INLINE_WIDTH: f64 = 340.0;
 const MARGIN: f64 = 12.0;
 /// Length of the longest arrow over the sphere's radius.
 const ARROW: f64 = 2.2;
@@ -15,70 +22,67 @@ pub struct Arrow {
     pub name: String,
     /// Velocity (x, z) in m/s.
     pub velocity: [f64; 2],
-    /// Stroke colour.
-    pub colour: &'static str,
+    /// Class of the stroke.
+    pub class: &'static str,
     /// Dashes of the stroke; empty = none.
     pub dashes: &'static str,
 }
 
-/// From places in m to the drawing.
-struct Scale {
-    factor: f64,
-    left: f64,
-    top: f64,
-}
+/// Colours of the stand-alone drawing; the page's style sheet has the same classes.
+const STYLE: &str = "\
+.fig-text{fill:#1a1a1a}.fig-frame{stroke:#444;fill:none}.fig-body{fill:#dfe5ea;stroke:#444}.fig-seat{fill:#f0dfb8;stroke:#9a7f3c}\
+.fig-hollow{fill:#fff}.fig-intended{stroke:#777}.fig-reference{stroke:#1a1a1a}.fig-C{stroke:#009e73}";
 
-impl Scale {
-    fn point(&self, [x, z]: [f64; 2]) -> String {
-        format!("{:.2},{:.2}", MARGIN + (x - self.left) * self.factor, MARGIN + (self.top - z) * self.factor)
-    }
-
-    fn points(&self, points: &[[f64; 2]]) -> String {
-        points.iter().map(|p| self.point(*p)).collect::<Vec<_>>().join(" ")
-    }
-
-    fn x(&self, x: f64) -> String {
-        format!("{:.2}", MARGIN + (x - self.left) * self.factor)
-    }
-
-    fn z(&self, z: f64) -> String {
-        format!("{:.2}", MARGIN + (self.top - z) * self.factor)
-    }
-}
-
-/// The section as a stand-alone SVG.
-pub fn seat_picture(scene: &SealSeat, arrows: &[Arrow]) -> String {
+/// The section with names and directions of flight: a file of its own, with a legend, or as a page shows it.
+pub fn seat_picture(scene: &SealSeat, arrows: &[Arrow], theme: Theme) -> String {
     let (seat, sphere, actuator) = (&scene.seat, &scene.sphere, &scene.actuator);
+    let alone = theme == Theme::Standalone;
+    let width = if alone { WIDTH } else { INLINE_WIDTH };
     let [cx, cz] = scene.ring().sphere_centre;
     let reach = ARROW * sphere.radius;
     let top = cz + reach + 0.4 * sphere.radius;
     let bottom = -0.5 * actuator.tip_radius;
     let left = -1.02 * seat.membrane_radius;
-    let factor = (WIDTH - 2.0 * MARGIN) / (-2.0 * left);
-    let scale = Scale { factor, left, top };
-    let legend = 24.0 * arrows.len() as f64 + 8.0;
+    let factor = (width - 2.0 * MARGIN) / (-2.0 * left);
+    let scale = Scale { factor, left, top, margin: MARGIN };
+    let legend = if alone { 24.0 * arrows.len() as f64 + 8.0 } else { 0.0 };
     let section_height = 2.0 * MARGIN + (top - bottom) * factor;
     let height = section_height + legend;
     let fastest = arrows.iter().map(|a| a.velocity[0].hypot(a.velocity[1])).fold(f64::MIN_POSITIVE, f64::max);
+    let name = |name: &str, anchor: &str, x: f64, z: f64| html! { text.fig-text x=(x2(scale.x(x))) y=(x2(scale.z(z) + 4.5)) text-anchor=(anchor) { (name) } };
+    let stroke = if alone { 3.0 } else { 2.0 };
     html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width=(WIDTH) height=(format!("{height:.1}"))
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {width} {height:.1}")) width=[alone.then_some(width)]
+            height=[alone.then(|| format!("{height:.1}"))] data-scale=(factor)
             font-family="DejaVu Sans, Verdana, sans-serif" font-size="13" role="img" {
             title { "Section of the seal seat with the directions of the sphere's flight" }
-            rect width=(WIDTH) height=(format!("{height:.1}")) fill="#ffffff" {}
+            @if alone { style { (PreEscaped(STYLE)) } rect width=(width) height=(format!("{height:.1}")) fill="#ffffff" {} }
             (seat_body(scene, &scale))
             @for &x in &actuator.tip_positions {
-                path d=(tip(x, actuator.tip_radius, bottom, &scale)) fill="#b9c4cf" stroke="#444" {}
+                path.fig-body d=(tip(x, actuator.tip_radius, bottom, &scale)) {}
+                (name("actuator", "middle", x, 0.5 * bottom))
             }
-            circle cx=(scale.x(cx)) cy=(scale.z(cz)) r=(format!("{:.2}", sphere.radius * factor)) fill="#dfe5ea" stroke="#444" {}
-            @for arrow in arrows { (draw_arrow(arrow, [cx, cz], reach / fastest, &scale)) }
-            @for (k, arrow) in arrows.iter().enumerate() {
+            circle.fig-body.sphere cx=(x2(scale.x(cx))) cy=(x2(scale.z(cz))) r=(x2(sphere.radius * factor)) {}
+            (name("sphere ", "end", cx - 1.1 * sphere.radius, cz))
+            (name("seat", "middle", 0.5 * seat.island_length - 0.6 * sphere.radius, 0.5 * seat.membrane_thickness + 0.25 * seat.island_height))
+            @for arrow in arrows { (draw_arrow(arrow, [cx, cz], reach / fastest, stroke, &scale)) }
+            (scale.bar(width - 120.0, 24.0))
+            @if alone { @for (k, arrow) in arrows.iter().enumerate() {
                 @let y = section_height + 24.0 * k as f64 + 4.0;
-                line x1="20" x2="60" y1=(y) y2=(y) stroke=(arrow.colour) stroke-width="3" stroke-dasharray=(dashes(arrow)) {}
-                text x="70" y=(y + 4.5) fill="#1a1a1a" { (label(arrow)) }
-            }
+                line class=(arrow.class) x1="20" x2="60" y1=(y) y2=(y) stroke-width="3" stroke-dasharray=(dashes(arrow)) {}
+                text.fig-text x="70" y=(y + 4.5) { (label(arrow)) }
+            } }
         }
     }
     .into_string()
+}
+
+/// The legend of the section on a page.
+pub(super) fn arrow_legend(arrows: &[Arrow]) -> Markup {
+    html! { ul.legend { @for arrow in arrows { li {
+        svg viewBox="0 0 30 10" aria-hidden="true" { path class=(arrow.class) d="M0 5H30" stroke-width="2" stroke-dasharray=(dashes(arrow)) {} }
+        " " (label(arrow))
+    } } } }
 }
 
 fn dashes(arrow: &Arrow) -> &'static str {
@@ -88,7 +92,7 @@ fn dashes(arrow: &Arrow) -> &'static str {
 fn label(arrow: &Arrow) -> String {
     let [x, z] = arrow.velocity;
     let speed = x.hypot(z);
-    format!("{}: {:+.2}° against the vertical, {:.3} m/s", arrow.name, x.atan2(z).to_degrees(), speed)
+    format!("{}: {}, {speed:.3} m/s", arrow.name, degrees(x.atan2(z)))
 }
 
 /// Membrane and island, with both seats and the notch taken out.
@@ -106,11 +110,12 @@ fn seat_body(scene: &SealSeat, scale: &Scale) -> Markup {
     html! {
         clipPath id="seat" { polygon points=(scale.points(&outline)) {} }
         g clip-path="url(#seat)" {
-            polygon points=(scale.points(&outline)) fill="#f0dfb8" stroke="#9a7f3c" stroke-width="3" {}
+            polygon.fig-seat points=(scale.points(&outline)) stroke-width="3" {}
             // the edges first: where one hollow runs into another there is none
-            @for hollow in hollows() { polygon points=(scale.points(&hollow)) fill="none" stroke="#9a7f3c" stroke-width="3" {} }
-            @for hollow in hollows() { polygon points=(scale.points(&hollow)) fill="#ffffff" stroke="none" {} }
+            @for hollow in hollows() { polygon.fig-seat points=(scale.points(&hollow)) stroke-width="3" {} }
         }
+        // not clipped: nothing is above, and no edge shines through
+        @for hollow in hollows() { polygon.fig-hollow points=(scale.points(&hollow)) {} }
     }
 }
 
@@ -147,7 +152,7 @@ fn tip(x: f64, radius: f64, bottom: f64, scale: &Scale) -> String {
     )
 }
 
-fn draw_arrow(arrow: &Arrow, from: [f64; 2], length_per_speed: f64, scale: &Scale) -> Markup {
+fn draw_arrow(arrow: &Arrow, from: [f64; 2], length_per_speed: f64, width: f64, scale: &Scale) -> Markup {
     let speed = arrow.velocity[0].hypot(arrow.velocity[1]);
     // at rest, or not a number
     if speed.is_nan() || speed == 0.0 {
@@ -161,13 +166,72 @@ fn draw_arrow(arrow: &Arrow, from: [f64; 2], length_per_speed: f64, scale: &Scal
             from[1] + along * direction[1] - across * direction[0],
         ]
     };
-    let head = 0.08 * length;
+    let head = 0.12 * length;
     html! {
-        polyline points=(scale.points(&[from, at(length - head, 0.0)])) fill="none" stroke=(arrow.colour) stroke-width="3"
+        polyline class=(arrow.class) points=(scale.points(&[from, at(length, 0.0)])) fill="none" stroke-width=(width)
             stroke-dasharray=(dashes(arrow)) {}
-        polygon points=(scale.points(&[at(length, 0.0), at(length - 2.0 * head, 0.8 * head), at(length - 2.0 * head, -0.8 * head)]))
-            fill=(arrow.colour) {}
+        polyline class=(arrow.class) points=(scale.points(&[at(length - head, 0.5 * head), at(length, 0.0), at(length - head, -0.5 * head)]))
+            fill="none" stroke-width=(width) {}
     }
+}
+
+/// The scene in numbers.
+pub(super) fn measures(scene: &SealSeat) -> Vec<(String, String)> {
+    let (seat, sphere, actuator) = (&scene.seat, &scene.sphere, &scene.actuator);
+    let length = |value: f64| measure(value, "m");
+    let grams = |mass: f64| format!("{} g", short(format!("{:.3e}", 1e3 * mass).parse().unwrap_or(f64::NAN)));
+    let angle = |value: f64| measure(value, "rad");
+    let body = if sphere.body == SphereBody::Rigid { "rigid" } else { "elastic" };
+    let tips: Vec<String> = actuator.tip_positions.iter().map(|x| length(*x)).collect();
+    let notch =
+        seat.notch.map(|n| format!("; notch {} wide, floor at z = {}", length(n.width), length(n.floor)));
+    let mut told = vec![
+        (
+            "sphere".to_owned(),
+            format!(
+                "radius {}, {}, {}, {body}",
+                length(sphere.radius),
+                grams(sphere.mass),
+                sphere.material.name
+            ),
+        ),
+        (
+            "seat".to_owned(),
+            format!(
+                "membrane of radius {}, {} thick, clamped; island {} long, {} wide, {} high{}; {}",
+                length(seat.membrane_radius),
+                length(seat.membrane_thickness),
+                length(seat.island_length),
+                length(seat.island_width),
+                length(seat.island_height),
+                notch.unwrap_or_default(),
+                seat.material.name
+            ),
+        ),
+        (
+            "cones".to_owned(),
+            format!(
+                "centres {} apart at z = {}, tilt {}, aperture {}, bore radius {}",
+                length(seat.seat_distance),
+                length(seat.seated_height),
+                angle(seat.tilt),
+                angle(seat.aperture_angle),
+                length(seat.bore_radius)
+            ),
+        ),
+        (
+            "actuator".to_owned(),
+            format!(
+                "{}, {}, tip radius {}, at x = {}",
+                grams(actuator.mass),
+                measure(actuator.speed, "m/s"),
+                length(actuator.tip_radius),
+                tips.join(" and ")
+            ),
+        ),
+    ];
+    told.extend(materials([&seat.material, &sphere.material]));
+    told
 }
 
 #[cfg(test)]
@@ -178,12 +242,12 @@ mod tests {
 
     #[test]
     fn an_arrow_points_where_the_sphere_flies_and_is_as_long_as_it_is_fast() {
-        let arrow = |velocity| Arrow { name: "a".into(), velocity, colour: "#000", dashes: "" };
-        let scale = Scale { factor: 1.0, left: 0.0, top: 0.0 };
+        let arrow = |velocity| Arrow { name: "a".into(), velocity, class: "fig-C", dashes: "" };
+        let scale = Scale { factor: 1.0, left: 0.0, top: 0.0, margin: MARGIN };
         let head = |velocity| {
-            let svg = draw_arrow(&arrow(velocity), [0.0, 0.0], 10.0, &scale).into_string();
-            let from = svg.find("polygon points=\"").expect("head") + 16;
-            let first = svg[from..].split(' ').next().expect("point").to_owned();
+            let svg = draw_arrow(&arrow(velocity), [0.0, 0.0], 10.0, 3.0, &scale).into_string();
+            let shaft = svg.split("points=\"").nth(1).expect("shaft").split('"').next().expect("end");
+            let first = shaft.split(' ').nth(1).expect("point").to_owned();
             let (x, y) = first.split_once(',').expect("pair");
             [x.parse::<f64>().expect("x") - MARGIN, MARGIN - y.parse::<f64>().expect("y")]
         };

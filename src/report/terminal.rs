@@ -1,8 +1,8 @@
 //! A short table for the terminal.
 
 use super::Report;
-use super::format::{percent, prefixed, with_unit};
-use super::presentation::{self, Column};
+use super::presentation;
+use super::summary_column::Column;
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
 use crate::result::Summary;
 use anstyle::{AnsiColor, Style};
@@ -91,16 +91,8 @@ pub fn terminal(report: &Report) -> String {
 
 fn cells(columns: &[Column], summary: &Summary, reference: Option<&Summary>) -> String {
     let cell = |column: &Column| {
-        let Some(quantity) = summary.quantities.get(column.quantity) else { return String::new() };
-        let Some(own) = quantity.value else { return "not determined".into() };
-        let other = reference.and_then(|reference| reference.value(column.quantity));
-        if column.is_angle {
-            let difference = other.map(|other| format!(" ({:+.2}°)", (own - other).to_degrees()));
-            return format!("{:+.2}°{}", own.to_degrees(), difference.unwrap_or_default());
-        }
-        let relative = other.filter(|other| *other != 0.0).map(|other| (own - other) / other.abs());
-        let relative = relative.map_or(String::new(), |r| format!(" ({})", percent(Some(r))));
-        with_unit(own, prefixed(quantity.unit, own), 4) + &relative
+        let Some(cell) = column.cell(summary, reference) else { return String::new() };
+        cell.value + &cell.off_in_words.map_or(String::new(), |off| format!(" ({off})"))
     };
     columns.iter().map(|column| format!("{:>22}", cell(column))).collect()
 }

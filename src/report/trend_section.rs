@@ -23,7 +23,6 @@ pub(super) fn trends_html(attachments: &Attachments) -> Markup {
     }
     let drifting = trends.iter().filter(|t| t.drifts_since.is_some()).count();
     html! {
-        h2 { "Trends" }
         p.soft {
             "Gated numbers over the commits recorded, oldest first; shaded is what does not fail the gate now (darker: what passes, between them it is undecided), and for the reference its 95 % band. A number drifts "
             "since the commit from which on it is farther than a tenth of its tolerance from its first value. "

@@ -89,7 +89,7 @@ pub fn check_writable(dir: &Path) -> Result<()> {
 fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)>> {
     let mut names = BTreeSet::new();
     let mut files = vec![
-        ("index.html".to_owned(), super::html::index_of(standing).into_bytes()),
+        ("index.html".to_owned(), super::index_page::index_of(standing).into_bytes()),
         (DOCUMENT.to_owned(), standing::document(report, standing)?.into_bytes()),
         ("comparison.md".to_owned(), super::markdown::of(report, standing).into_bytes()),
         ("junit.xml".to_owned(), super::junit(report)?.into_bytes()),

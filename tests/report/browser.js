@@ -57,15 +57,49 @@
     same(plots.map((plot) => plot.bands.length).join(), "3,3,2", "bands");
   }
 
+  // below each panel, model minus reference
+  function residuals() {
+    const data = json("curves"), { residuals } = window.impactcheck;
+    same(residuals.length, 3, "panels of residuals");
+    const [reference, ...models] = data.sources.map(({ id }) => id);
+    residuals.forEach((plot, p) => data.panels[p].curves.forEach((curve) => models.forEach((model) => {
+      const k = plot.roles.findIndex((roles) => roles.includes(model) && roles.includes(curve.body));
+      const off = curve.values[model].map((v, i) => v - curve.values[reference][i]);
+      check(off.every((v, i) => Math.abs(v - plot.data[k][i]) < 1e-9), `residual of ${model}, ${curve.name}`);
+      const [low, high] = [Math.min(...off), Math.max(...off)].map((v) => plot.valToPos(v, "y"));
+      check(high >= 0 && low <= plot.over.clientHeight, `residual of ${model}, ${curve.name} leaves its panel: ${high} to ${low}`);
+    })));
+  }
+
+  // the name of a body stands on no curve of another one
+  function names() {
+    const data = json("curves"), { plots } = window.impactcheck;
+    plots.forEach((plot, p) => {
+      const { curves } = data.panels[p];
+      same(plot.names.length, curves.length, `names in panel ${p}`);
+      plot.names.forEach(([x, y, half], n) => curves.filter((_, k) => k !== n).forEach((curve) => data.sources.forEach(({ id }) => {
+        const crossed = curve.values[id].some((v, k) => Math.abs(plot.valToPos(data.time[k], "x", true) - x) < half && Math.abs(plot.valToPos(v, "y", true) - y) < 4 * devicePixelRatio);
+        check(!crossed, `the name of ${curves[n].body} stands on ${id} ${curve.name}`);
+      })));
+    });
+  }
+
   async function toggles() {
-    const { plots } = window.impactcheck;
-    for (const source of [json("curves").sources.at(-1).id, "reference", "band"]) {
+    const { plots, residuals } = window.impactcheck;
+    const body = json("curves").panels[0].curves[0].body;
+    for (const source of [json("curves").sources.at(-1).id, "reference", "band", body]) {
       const box = document.querySelector(`#controls input[data-source="${source}"]`);
-      const shown = () => plots.flatMap((plot) => plot.roles.map((role, k) => [role, plot.series[k].show]).slice(1));
+      const all = [...plots, ...residuals];
+      const shown = () => all.flatMap((plot) => plot.roles.map((roles, k) => [roles.includes(source), plot.series[k].show]).slice(1));
       check(shown().every(([, show]) => show), `all curves are shown before ${source} is switched off`);
       box.click();
       await settled();
-      check(shown().every(([role, show]) => show === (role !== source)), `${source} switched off`);
+      check(shown().every(([own, show]) => show !== own), `${source} switched off`);
+      // no marker stays where its curve is gone
+      for (const plot of plots) for (const [k, point] of [...plot.over.querySelectorAll(".u-cursor-pt")].entries()) {
+        const gone = !plot.series[k + 1].show, at = new DOMMatrix(getComputedStyle(point).transform);
+        if (gone) check(at.e < 0 || at.f < 0, `${source} is off, the marker of ${plot.series[k + 1].label} is not: ${at.e}, ${at.f}`);
+      }
       box.click();
       await settled();
       check(shown().every(([, show]) => show), `${source} switched on again`);
@@ -130,6 +164,11 @@
     const index = Number(slider.value);
     check(Math.abs(index / (data.time.length - 1) - 0.3) < 0.02, `the slider follows the mouse: ${index}`);
     told(index, "mouse");
+    mouse(plots[2].over, "mouseleave", 0, 0);
+    mouse(document.getElementById("panels"), "mouseleave", 0, 0);
+    await settled();
+    same(Number(slider.value), index, "the slider when the pointer has left");
+    told(index, "left");
   }
 
   function layout() {
@@ -139,12 +178,47 @@
     check(!shown("#panels") && shown(".drawn"), "without scripts the drawing is shown, the panels are not");
     document.documentElement.classList.add("interactive");
     const wide = document.documentElement.scrollWidth, window = document.documentElement.clientWidth;
+    const [first, last] = ["#controls", "#time"].map((selector) => document.querySelector(selector).getBoundingClientRect());
+    check(window < 960 || last.bottom - first.top <= 900, `panels and residuals are ${last.bottom - first.top} px high`);
     check(wide <= window, `the page is ${wide} px wide in a window of ${window} px`);
     check(document.querySelectorAll("th:not([scope])").length === 0, "headers of tables without scope");
     const named = (element) => element.hasAttribute("aria-label") || element.querySelector(":scope > title");
     for (const element of document.querySelectorAll('[role="img"], [role="region"], [role="group"]')) {
       check(named(element), `without a name: ${element.outerHTML.slice(0, 120)}`);
     }
+  }
+
+  // text made for terminals does not stand on a page as it is
+  function prose() {
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    for (let node; (node = walker.nextNode()); ) {
+      if (node.parentElement.closest("script, style, pre, code, .run-time")) continue;
+      check(!/`|(^|[\s(±])-\d|\de-\d/.test(node.data), `not prose: ${node.data}`);
+    }
+  }
+
+  // the index sorts, returns to its order, and finds
+  async function index() {
+    const rows = () => [...document.querySelectorAll("table.verdicts tbody tr:not(.folder)")];
+    const before = rows().map((row) => row.textContent);
+    const column = 4, button = document.querySelectorAll("table.verdicts thead th")[column].querySelector("button");
+    const sizes = () => rows().map((row) => Number(row.cells[column].dataset.sort));
+    const isSorted = (sign) => sizes().every((v, k, all) => !k || sign * (v - all[k - 1]) >= 0);
+    check(!isSorted(1), "the index is sorted before anyone asks");
+    button.click();
+    check(isSorted(1), `ascending: ${sizes()}`);
+    button.click();
+    check(isSorted(-1), `descending: ${sizes()}`);
+    button.click();
+    same(rows().map((row) => row.textContent).join(), before.join(), "the first order");
+    const field = document.querySelector("#search input");
+    const search = (text) => {
+      field.value = text;
+      field.dispatchEvent(new Event("input"));
+      return rows().filter((row) => row.getClientRects().length).length;
+    };
+    same(search("seal-seat"), rows().filter((row) => row.dataset.scene.startsWith("seal-seat")).length, "rows found");
+    same(search(""), before.length, "rows without a search");
   }
 
   async function accessibility() {
@@ -156,7 +230,11 @@
 
   try {
     await settled();
-    if (document.getElementById("curves")) for (const test of [numbers, curves, toggles, zooming, cursor, layout]) await test();
+    if (document.getElementById("curves")) for (const test of [numbers, curves, residuals, names, toggles, zooming, cursor, layout]) await test();
+    else await index();
+    prose();
+    const root = document.documentElement;
+    check(root.scrollWidth <= root.clientWidth, `the page is ${root.scrollWidth} px wide in a window of ${root.clientWidth} px`);
     await accessibility();
   } catch (error) {
     problems.push(`the test itself: ${error.stack}`);
@@ -165,4 +243,5 @@
   result.id = "test-result";
   result.textContent = JSON.stringify(problems);
   document.body.append(result);
+  parent.postMessage(result.textContent, "*");
 })();

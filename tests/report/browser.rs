@@ -49,7 +49,9 @@ fn report(out: &Path) {
 }
 
 /// Opens `page` with the test inside it and gives what the test, the page and the console complain about.
-fn problems(dir: &Path, page: &str, arguments: &[&str]) -> Vec<String> {
+///
+/// On a `phone` in a frame: a window of Chromium's is not as narrow.
+fn problems(dir: &Path, page: &str, phone: bool, arguments: &[&str]) -> Vec<String> {
     let text = fs::read_to_string(dir.join(page)).unwrap();
     let comparison: Value =
         serde_json::from_str(&fs::read_to_string(dir.join("comparison.json")).unwrap()).unwrap();
@@ -77,13 +79,21 @@ fn problems(dir: &Path, page: &str, arguments: &[&str]) -> Vec<String> {
     let tested = dir.join(format!("tested-{page}"));
     fs::write(&tested, format!("{before}{last}{after}")).unwrap();
 
+    let opened = if phone { dir.join(format!("phone-{page}")) } else { tested.clone() };
+    if phone {
+        let name = tested.file_name().unwrap().to_string_lossy();
+        let frame = format!("<iframe src=\"{name}\" width=\"400\" height=\"850\"></iframe>");
+        let script = "addEventListener('message', (told) => { const result = document.createElement('pre'); result.id = 'test-result';
+            result.textContent = told.data; document.body.append(result); });";
+        fs::write(&opened, format!("<!DOCTYPE html><script>{script}</script>{frame}")).unwrap();
+    }
     let profile = tempfile::tempdir().unwrap();
     let output = Process::new(chromium())
         .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--dump-dom"])
-        .args(["--virtual-time-budget=20000", "--window-size=1100,900"])
+        .args(["--virtual-time-budget=20000", "--window-size=1280,900"])
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .args(arguments)
-        .arg(format!("file://{}", tested.display()))
+        .arg(format!("file://{}", opened.display()))
         .stdin(Stdio::null())
         .output()
         .unwrap();
@@ -162,16 +172,16 @@ fn pages_work_in_a_browser_in_light_dark_and_on_a_phone() {
         page
     });
     const DARK: &str = "--blink-settings=preferredColorScheme=0";
-    const PHONE: &str = "--window-size=500,900";
-    let views: [(&str, &[&str]); 5] = [
-        (&plate, &[]),
-        (&plate, &[DARK, PHONE]),
-        (&seat, &[DARK]),
-        (&seat, &[PHONE]),
-        ("index.html", &[DARK]),
+    let views: [(&str, bool, &[&str]); 6] = [
+        (&plate, false, &[]),
+        (&plate, true, &[DARK]),
+        (&seat, false, &[DARK]),
+        (&seat, true, &[]),
+        ("index.html", false, &[DARK]),
+        ("index.html", true, &[]),
     ];
-    for (page, arguments) in views {
-        let problems = problems(dir.path(), page, arguments);
-        assert!(problems.is_empty(), "{page} {arguments:?}:\n{}", problems.join("\n"));
+    for (page, phone, arguments) in views {
+        let problems = problems(dir.path(), page, phone, arguments);
+        assert!(problems.is_empty(), "{page} {phone} {arguments:?}:\n{}", problems.join("\n"));
     }
 }

@@ -20,6 +20,11 @@ fn figure_is_well_formed_without_nan_and_holds_every_curve() {
             let drawn = lines.filter(|n| n.attribute("d").is_some_and(|d| d.starts_with('M'))).count();
             // Legend, eight curves, efficiency box.
             assert_eq!(drawn, 1 + CURVES.len() + 1, "{class}");
+            // below the panels of the page what the models are off by, and nothing in a file of its own
+            let residuals = svg.matches(&format!("class=\"residual {class}\"")).count();
+            let is_model = class != "fig-reference";
+            let expected = if theme == Theme::Inline && is_model { CURVES.len() } else { 0 };
+            assert_eq!(residuals, expected, "{class}");
         }
         let texts: Vec<_> = xml.descendants().filter_map(|n| n.text()).collect();
         for text in

@@ -4,6 +4,7 @@ mod browser;
 mod exports;
 mod figures;
 mod files;
+mod first_screen;
 
 #[path = "../support/report_data.rs"]
 mod report_data;

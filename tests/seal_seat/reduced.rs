@@ -413,7 +413,7 @@ fn report_shows_the_seat_among_the_scenes() {
     }
     let page = std::fs::read_to_string(folder.path().join("seal-seat-improved.html")).expect("page");
     assert!(
-        page.contains("intended, drawn with the reference's speed: +15.00°")
+        page.contains("intended, with the reference's speed: +15.00°")
             && page.contains(&format!("reference: {angle:+.2}°"))
     );
     let index = std::fs::read_to_string(folder.path().join("index.html")).expect("page");

@@ -1,0 +1,97 @@
+//! The curves of a figure, result by result, and how they are drawn.
+
+use super::SceneReport;
+use super::format::model_name;
+use crate::curves::{CommonAxis, SampledCurve, sample};
+use crate::measured::Measured;
+use crate::result::Outcome;
+
+/// Curves of one result, and how they are drawn.
+pub(super) struct Line {
+    pub(super) name: String,
+    pub(super) short: String,
+    pub(super) class: String,
+    pub(super) dash: &'static str,
+    pub(super) width: f64,
+    pub(super) efficiency: f64,
+    pub(super) curves: Vec<SampledCurve>,
+    /// Half widths of the curves' bands, if they are known.
+    pub(super) bands: Vec<SampledCurve>,
+}
+
+pub(super) fn dash(model: &str) -> &'static str {
+    match model {
+        "A" => "2 2.6",
+        "B" => "7 3",
+        _ => "9 2.5 2 2.5",
+    }
+}
+
+pub(super) fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
+    let reference = Line {
+        name: "FE reference".into(),
+        short: "FE".into(),
+        class: "fig-reference".into(),
+        dash: "none",
+        width: 2.1,
+        efficiency: efficiency(report.reference),
+        curves: sample(axis, &report.reference.history),
+        bands: bands(report, axis),
+    };
+    let reduced = report.reduced.iter().map(|outcome| {
+        let model = outcome.summary.model.clone().unwrap_or_default();
+        Line {
+            name: format!("model {}", model_name(&model, outcome.summary.modes)),
+            dash: dash(&model),
+            class: format!("fig-{model}"),
+            width: 1.7,
+            efficiency: efficiency(outcome),
+            curves: sample(axis, &outcome.history),
+            bands: Vec::new(),
+            short: model,
+        }
+    });
+    std::iter::once(reference).chain(reduced).collect()
+}
+
+/// Half widths of the 95 % bands of the reference's curves; empty if they are not known.
+fn bands(report: &SceneReport, axis: CommonAxis) -> Vec<SampledCurve> {
+    let Some(bands) = &report.attachments.bands else { return Vec::new() };
+    let curves = report.reference.history.curves.iter();
+    let band = |quantity| Some(SampledCurve { quantity, values: bands.sampled(quantity, &axis)? });
+    curves.filter_map(|curve| band(curve.name)).collect()
+}
+
+/// NaN, which is shown as a dash, if it is not determined.
+fn efficiency(outcome: &Outcome) -> f64 {
+    outcome.summary.value("efficiency").unwrap_or(f64::NAN)
+}
+
+/// The first measured record and everything it is compared with, as the instrument shows it.
+pub(super) fn measured_lines(measured: &Measured) -> Vec<Line> {
+    let record = Line {
+        name: "measured".into(),
+        short: "LDV".into(),
+        class: "fig-measured".into(),
+        dash: "none",
+        width: 1.4,
+        efficiency: measured.records.first().and_then(|record| record.efficiency).unwrap_or(f64::NAN),
+        curves: measured.curves.clone(),
+        bands: Vec::new(),
+    };
+    let partners = measured.partners.iter().map(|partner| {
+        let reference = partner.partner == "reference";
+        let name = if reference { "FE reference".into() } else { format!("model {}", partner.partner) };
+        Line {
+            name,
+            short: if reference { "FE".into() } else { partner.partner.clone() },
+            class: format!("fig-{}", partner.partner),
+            dash: if reference { "none" } else { dash(&partner.partner) },
+            width: if reference { 2.1 } else { 1.7 },
+            efficiency: partner.efficiency.unwrap_or(f64::NAN),
+            curves: partner.filtered.clone(),
+            bands: Vec::new(),
+        }
+    });
+    std::iter::once(record).chain(partners).collect()
+}

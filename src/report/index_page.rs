@@ -1,0 +1,143 @@
+//! The page of all scenes: a row per scene and model, by folder, which sorts and can be searched.
+
+use super::Report;
+use super::format::{percent, prefixed, significant, words};
+use super::html::{EFFICIENCY, badge, named, number, page, scrolled, worded};
+use super::overview::{ModelOverview, Overview, RowOverview};
+use super::run_times::marked;
+use super::standing::{self, Standing};
+use super::thumbnail;
+use super::trust::size_class;
+use crate::comparison::{AMONG, Verdict};
+use maud::{Markup, PreEscaped, html};
+
+/// Sorting and searching; without it the table is what it is.
+const SCRIPT: &str = include_str!("assets/index.js");
+
+/// The page with the verdict of every scene and model.
+pub fn index_page(report: &Report) -> String {
+    index_of(&standing::of_run(report))
+}
+
+/// The index of all scenes whose results stand in a folder.
+pub(super) fn index_of(scenes: &[Standing]) -> String {
+    let body = html! {
+        h1 { "impactcheck " (badge(standing::verdict(scenes))) }
+        p.soft { "Reduced models of an impact against explicit finite elements. " (counts(scenes)) }
+        p #search hidden { label { "Search " input type="search" autocomplete="off"; } " " output role="status" {} }
+        (scrolled("Scenes", &table(scenes)))
+        p.soft.note { "Curves: the first contact force, the reference in black under the models. Largest discrepancy: shaded by size, whatever the "
+            "gate says. Tolerance used: how much of its tolerance the gated quantity nearest to its bound takes; where the reference's 95 % "
+            "band reaches across the bound the verdict is undecided, and the scene's page says what would decide it. Drift: numbers that "
+            "drift over the commits recorded." }
+        p.soft.note { (EFFICIENCY) } p.soft.note { (AMONG) }
+        p { "As data: " a href="comparison.json" { "JSON" } " · " a href="comparison.md" { "Markdown" } " · "
+            a href="junit.xml" { "JUnit" } }
+    };
+    page("impactcheck", &[], &body, &html! { script type="text/javascript" { (PreEscaped(SCRIPT)) } })
+}
+
+/// How much was gated and what came of it, in a sentence.
+fn counts(scenes: &[Standing]) -> String {
+    let models = scenes.iter().flat_map(|scene| &scene.overview.models);
+    let verdicts: Vec<Verdict> = models.flat_map(|model| model.gated.iter().copied()).collect();
+    if verdicts.is_empty() {
+        return "Nothing is gated: no scene has tolerances.".into();
+    }
+    let count = |verdict| verdicts.iter().filter(|v| **v == verdict).count();
+    format!(
+        "{} scene{}, {} gated quantities: {} within their tolerances, {} undecided, {} not within.",
+        scenes.len(),
+        if scenes.len() == 1 { "" } else { "s" },
+        verdicts.len(),
+        count(Verdict::Pass),
+        count(Verdict::Undecided),
+        count(Verdict::Fail)
+    )
+}
+
+const HEADINGS: [(&str, bool); 8] = [
+    ("scene", true),
+    ("model", true),
+    ("verdict", true),
+    ("largest discrepancy of the summary", false),
+    ("95 % band", false),
+    ("tolerance used", false),
+    ("efficiency", false),
+    ("drift", false),
+];
+
+fn table(scenes: &[Standing]) -> Markup {
+    let mut folders: Vec<&str> = Vec::new();
+    for scene in scenes {
+        if !folders.contains(&&*scene.overview.folder) {
+            folders.push(&scene.overview.folder);
+        }
+    }
+    html! { table.verdicts {
+        thead { tr {
+            th.left scope="col" { "curves" }
+            @for (heading, is_left) in HEADINGS { th.sorts.left[is_left] scope="col" { (named(heading)) } }
+            th.left scope="col" { "compared" }
+        } }
+        @for folder in &folders {
+            tbody {
+                @if folders.len() > 1 { tr.folder { th.left scope="colgroup" colspan="10" { @if folder.is_empty() { "–" } @else { (folder) } } } }
+                @for scene in scenes.iter().filter(|scene| scene.overview.folder == *folder) { (scene_rows(scene)) }
+            }
+        }
+    } }
+}
+
+fn scene_rows(scene: &Standing) -> Markup {
+    let overview = &scene.overview;
+    html! {
+        @for model in &overview.models { (row(scene, model)) }
+        @if overview.models.is_empty() {
+            tr { td {} th.left scope="row" { (link(overview)) } td.left { "–" } td.left { (badge(overview.verdict)) } td colspan="6" {} }
+        }
+    }
+}
+
+fn link(overview: &Overview) -> Markup {
+    html! { a href=(format!("{}.html", overview.scene)) title=(overview.description) { (overview.scene) } }
+}
+
+/// A row; cells sort by `data-sort` where it is not their text that counts.
+fn row(scene: &Standing, model: &ModelOverview) -> Markup {
+    let overview = &scene.overview;
+    let [own, _] = model.efficiency;
+    let severity = [Verdict::NotGated, Verdict::Pass, Verdict::Undecided, Verdict::Fail];
+    let severity = severity.iter().position(|v| *v == model.verdict);
+    let size = model.largest.as_ref().and_then(|d| d.relative).map(f64::abs);
+    let used = model.tightest.as_ref().and_then(|d| Some((d, d.used?)));
+    let [drifting, recorded] = overview.drift;
+    html! {
+        tr data-scene=(overview.scene) data-model=(model.model) {
+            td.left { (thumbnail::drawn(&model.thumbnail, &model.model)) }
+            th.left scope="row" { (link(overview)) }
+            td.left title=(model.name) { (model.model) }
+            td.left data-sort=[severity] { (worded(model.verdict, &model.verdict_in_words)) }
+            td data-sort=[size] {
+                @match &model.largest {
+                    Some(d) => { (words(&d.quantity)) " " span class=(format!("off {}", size_class(d.relative.unwrap_or(f64::NAN)))) { (percent(d.relative)) } },
+                    None => "–",
+                }
+            }
+            td data-sort=[model.largest.as_ref().and_then(relative_band)] {
+                @match model.largest.as_ref().and_then(relative_band) { Some(band) => { "±" (significant(100.0 * band, 2)) " %" }, None => "–" }
+            }
+            td data-sort=[used.map(|(_, used)| used)] {
+                @match used { Some((d, used)) => { (significant(100.0 * used, 2)) " % " span.soft { (words(&d.quantity)) } }, None => "–" }
+            }
+            (number("reduced", own, prefixed("1", 1.0), 4))
+            td data-sort=(drifting) { @if recorded > 0 { (drifting) " of " (recorded) } @else { "–" } }
+            td.left.soft { (marked(&scene.when())) }
+        }
+    }
+}
+
+/// The reference's band over its value.
+fn relative_band(row: &RowOverview) -> Option<f64> {
+    row.uncertainty.zip(row.reference).map(|(u, m)| u / m.abs()).filter(|u| u.is_finite())
+}

@@ -1,0 +1,102 @@
+//! How a plate impact is shown.
+
+use super::attachments::instant_of_peak;
+use super::figure::PanelOf;
+use super::plate_impact_picture::{self, plate_picture};
+use super::presentation::{Drawing, Presentation};
+use super::section::Section;
+use super::summary_column::Column;
+use super::{Attachments, SceneReport, Theme, figure};
+use crate::reference::Stored;
+use crate::scene::Scene;
+use maud::{Markup, html};
+
+pub(super) struct Plate;
+
+const PANELS: [PanelOf; 3] = [
+    PanelOf {
+        label: "Displacement in µm",
+        factor: 1e6,
+        curves: &[
+            ("outer", "outer_displacement"),
+            ("plate", "plate_displacement"),
+            ("inner", "inner_displacement"),
+        ],
+        boxes: false,
+    },
+    PanelOf {
+        label: "Velocity in mm/s",
+        factor: 1e3,
+        curves: &[("outer", "outer_velocity"), ("plate", "plate_velocity"), ("inner", "inner_velocity")],
+        boxes: true,
+    },
+    PanelOf {
+        label: "Contact force in N",
+        factor: 1.0,
+        curves: &[("outer", "outer_force"), ("inner", "inner_force")],
+        boxes: false,
+    },
+];
+
+impl Presentation for Plate {
+    fn columns(&self) -> &'static [Column] {
+        const COLUMNS: [Column; 5] = [
+            Column::new("efficiency", "efficiency", "efficiency"),
+            Column::new("outer peak", "force peaks", "outer_force_peak"),
+            Column::new("inner peak", "force peaks", "inner_force_peak"),
+            Column::new("outer end", "ends of contact", "outer_contact_end"),
+            Column::new("inner end", "ends of contact", "inner_contact_end"),
+        ];
+        &COLUMNS
+    }
+
+    fn panels(&self) -> &'static [PanelOf] {
+        &PANELS
+    }
+
+    fn curves_told(&self) -> &'static str {
+        "Displacement, velocity and contact force of outer body, plate and inner body, signed along z (from the inner to the \
+         outer side; forces positive in compression)."
+    }
+
+    fn attachments(&self, stored: &Stored) -> Attachments {
+        let peak = instant_of_peak(&stored.outcome.history, "outer_force");
+        Attachments {
+            mesh: stored.mesh().ok(),
+            stress: stored.stress_near(peak).ok().flatten(),
+            ..Attachments::default()
+        }
+    }
+
+    fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
+        let drawing = |ending, caption, svg| Drawing { ending, caption, svg };
+        let curves = figure(report, Theme::Standalone);
+        let measured = super::measured_figure(report, Theme::Standalone);
+        let efficiencies = super::efficiency_figure(report);
+        let curves = drawing("", Some("Displacement, velocity and contact force"), curves);
+        let measured = measured.map(|svg| drawing("-measured", None, svg));
+        let efficiencies = efficiencies.map(|svg| drawing("-efficiencies", None, svg));
+        [Some(curves), measured, efficiencies].into_iter().flatten().collect()
+    }
+
+    fn scene_drawing(&self, report: &SceneReport) -> Markup {
+        report.scene.plate_impact().map_or_else(|_| html! {}, plate_picture)
+    }
+
+    fn measures(&self, scene: &Scene) -> Vec<(String, String)> {
+        scene.plate_impact().map_or_else(|_| Vec::new(), plate_impact_picture::measures)
+    }
+
+    fn sections(&self, report: &SceneReport) -> Vec<Section> {
+        let budget = super::budget_section::budget_html(&report.comparison.budget);
+        let measured = super::measured_section::measured_html(report);
+        vec![
+            Section::new("budget", "Discrepancy budget", budget),
+            Section::new("measurement", "Measurement", measured),
+        ]
+    }
+
+    fn mesh(&self, report: &SceneReport) -> Markup {
+        super::mesh_section::mesh_html(report).unwrap_or_else(|error| html! { p { (error) } })
+    }
+}

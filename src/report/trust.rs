@@ -1,0 +1,116 @@
+//! How far a model can be trusted in its scene, in a sentence: what it hits, how well, and whether its theory holds there.
+
+use super::format::{percent_above, words};
+use super::summary_column::Column;
+use crate::comparison::{Discrepancy, ModelComparison};
+use crate::result::Summary;
+
+/// Discrepancy, relative or in rad, up to which a model is said to be right within it rather than off by it.
+pub(super) const SMALL: f64 = 0.01;
+/// Discrepancy from which on it counts as large.
+pub(super) const LARGE: f64 = 0.05;
+
+/// The class of a discrepancy of this size.
+pub(super) fn size_class(off: f64) -> &'static str {
+    match off.abs() {
+        size if size <= SMALL => "small",
+        size if size <= LARGE => "medium",
+        _ => "large",
+    }
+}
+
+/// What the model hits, and how well: the quantities of `columns`, the curves, the numbers of contacts.
+pub(super) fn accuracy(columns: &[Column], model: &ModelComparison) -> String {
+    let groups = columns.chunk_by(|one, other| one.group == other.group);
+    let mut phrases: Vec<String> = groups.filter_map(|group| of_group(group, model)).collect();
+    phrases.extend(worst_curve(model));
+    let counted =
+        |row: &&Discrepancy| model.summary.quantities.get(&row.quantity).is_some_and(|q| q.is_count);
+    for row in model.discrepancies.iter().filter(counted).filter(|row| row.difference != Some(0.0)) {
+        if let Some((own, reference)) = row.reduced.zip(row.reference) {
+            phrases.push(format!("{own} {} instead of {reference}", words(&row.quantity)));
+        }
+    }
+    let truncation = model.summary.truncation_error.filter(|error| *error > SMALL);
+    let truncation =
+        truncation.map(|error| format!("the modes left out make an estimated {}", percent_above(error)));
+    std::iter::once(phrases.join(", ")).chain(truncation).collect::<Vec<_>>().join("; ")
+}
+
+/// The worst of some quantities, with the reference's band where that is wider.
+fn of_group(group: &[Column], model: &ModelComparison) -> Option<String> {
+    let rows: Vec<(&Column, &Discrepancy)> =
+        group.iter().filter_map(|c| Some((c, model.discrepancy(c.quantity)?))).collect();
+    let first = group.first().filter(|_| !rows.is_empty())?;
+    let size = |is_angle: bool, row: &Discrepancy, of: Option<f64>| {
+        let scale = if is_angle { Some(1.0) } else { row.reference.map(f64::abs).filter(|r| *r != 0.0) };
+        of.zip(scale).map(|(value, scale)| value.abs() / scale).filter(|v| v.is_finite())
+    };
+    let sizes: Option<Vec<f64>> = rows.iter().map(|(c, row)| size(c.is_angle, row, row.difference)).collect();
+    let Some(worst) = sizes.map(|sizes| sizes.into_iter().fold(0.0, f64::max)) else {
+        return Some(format!("{} not determined", first.group));
+    };
+    let band = rows.iter().filter_map(|(c, row)| size(c.is_angle, row, row.uncertainty)).fold(0.0, f64::max);
+    Some(phrase(first.group, rows.len() > 1, worst, band, first.is_angle))
+}
+
+fn phrase(what: &str, several: bool, worst: f64, band: f64, is_angle: bool) -> String {
+    let told = |size: f64| if is_angle { format!("{:.2}°", size.to_degrees()) } else { percent_above(size) };
+    let how = match (worst <= SMALL, several) {
+        (true, _) => "within",
+        (false, true) => "off by up to",
+        (false, false) => "off by",
+    };
+    let band = if band > worst { format!(" (band ±{})", told(band)) } else { String::new() };
+    format!("{what} {how} {}{band}", told(worst))
+}
+
+/// The curve with the largest root mean square distance.
+fn worst_curve(model: &ModelComparison) -> Option<String> {
+    let rows = model.discrepancies.iter().filter(|row| row.quantity.ends_with("_rms"));
+    let measured = rows.filter_map(|row| Some((row, row.relative?)));
+    let (row, relative) = measured.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let peak = row.scale()?;
+    let curve = words(row.quantity.trim_end_matches("_rms"));
+    let band = row.uncertainty.map_or(0.0, |band| band / peak);
+    Some(phrase(&format!("worst curve ({curve}, rms)"), false, relative, band, false))
+}
+
+/// Whether the theories hold that the model shares with the reference, as far as that was computed.
+pub(super) fn validity(summary: &Summary) -> Vec<String> {
+    let limits = &summary.limits;
+    if limits.is_empty() {
+        return Vec::new();
+    }
+    let exceeded: Vec<String> = limits
+        .iter()
+        .filter(|limit| limit.is_exceeded())
+        .map(|limit| format!("{} is {:.1} times its bound", words(&limit.measure), limit.value / limit.bound))
+        .collect();
+    let range = match exceeded.is_empty() {
+        true => "inside the range of validity".to_owned(),
+        false => format!("outside the range of validity: {}", exceeded.join(", ")),
+    };
+    let yielding = limits.iter().any(|limit| limit.is_of_yield());
+    let unchecked = "elastic limit not checked: no yield strength given".to_owned();
+    std::iter::once(range).chain((!yielding).then_some(unchecked)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{phrase, size_class};
+
+    #[test]
+    fn sizes_are_rounded_up_and_told_with_the_band_of_the_reference_where_that_is_wider() {
+        assert_eq!(phrase("efficiency", false, 0.000_186, 0.000_1, false), "efficiency within 0.019 %");
+        assert_eq!(phrase("force peaks", true, 0.0101, 0.0, false), "force peaks off by up to 1.1 %");
+        assert_eq!(phrase("speed", false, 0.0009, 0.021, false), "speed within 0.090 % (band ±2.1 %)");
+        assert_eq!(phrase("direction", false, 0.2, 0.0, true), "direction off by 11.46°");
+    }
+
+    #[test]
+    fn the_class_is_of_the_size_whatever_the_sign() {
+        assert_eq!([0.01, -0.011, 0.05, -0.4].map(size_class), ["small", "medium", "medium", "large"]);
+        assert_eq!(size_class(f64::NAN), "large");
+    }
+}
