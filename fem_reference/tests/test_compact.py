@@ -189,3 +189,21 @@ def test_multipliers_are_complementary_wherever_the_plate_bulges() -> None:
         last = force
     assert loop.problem.state.unconverged == 0
     assert any(np.any(np.diff(np.array(closed, dtype=int)) > 0) for closed in seen)
+
+
+def test_extrapolated_force_is_stable_and_gives_back_what_it_takes() -> None:
+    """A mass on tip and element: m u'' = lambda - k u, u + G (2 lambda_n - lambda_n-1) = 0.
+
+    No root of the step's polynomial lies outside the unit circle, however stiff the tip; without
+    the element the loss per radian falls with the third power of the step.
+    """
+
+    def growth(stiffness: float, element: float) -> float:
+        # Both over m/dt^2, central differences stable up to an element of 4.
+        c = 2.0 - element
+        return float(np.abs(np.roots([stiffness + 2.0, -2.0 * c - 1.0, 2.0 + c, -1.0])).max())
+
+    for stiffness in np.logspace(-8.0, 8.0, 33):
+        assert max(growth(stiffness, element) for element in np.linspace(0.0, 3.99, 20)) < 1 + 1e-12
+    losses = [(1.0 - growth(angle**2, 0.0)) / angle for angle in (0.02, 0.01)]
+    assert losses[0] / losses[1] == pytest.approx(8.0, rel=0.01)

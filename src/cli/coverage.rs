@@ -42,11 +42,15 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 /// The solution of `scene` on the finest mesh that is stored.
 fn finest(store: &Store, scene: &Scene) -> Option<Stored> {
     let shipped = Store::shipped().ok();
+    let dofs = |stored: &Stored| stored.outcome.summary.mesh.as_ref().and_then(|mesh| mesh["dofs"].as_u64());
     [Some(store), shipped.as_ref()].into_iter().flatten().find_map(|store| {
-        match store.find(scene, *store.resolutions(scene).last()?) {
-            Lookup::Found(stored) => Some(*stored),
-            _ => None,
-        }
+        let found = store.resolutions(scene).into_iter().filter_map(|resolution| {
+            match store.find(scene, resolution) {
+                Lookup::Found(stored) => Some(*stored),
+                _ => None,
+            }
+        });
+        found.max_by_key(dofs)
     })
 }
 
