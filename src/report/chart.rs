@@ -4,8 +4,8 @@ use super::polyline::{Point, path};
 use super::ticks::{tick_label, ticks};
 use maud::{Markup, PreEscaped, html};
 
-/// Width in px, if no other is asked for.
-pub(super) const CHART_WIDTH: f64 = 760.0;
+/// Width in px.
+const CHART_WIDTH: f64 = 760.0;
 const LEFT: f64 = 74.0;
 const RIGHT: f64 = 16.0;
 const PANEL_HEIGHT: f64 = 300.0;
@@ -53,11 +53,7 @@ pub struct ChartPanel {
 
 /// The chart as a stand-alone SVG; values that are not finite are left out.
 pub fn chart(title: &str, panels: &[ChartPanel]) -> String {
-    chart_of_width(CHART_WIDTH, title, panels)
-}
-
-/// As [`chart`], `width` px wide, with type of the same size.
-pub(super) fn chart_of_width(width: f64, title: &str, panels: &[ChartPanel]) -> String {
+    let width = CHART_WIDTH;
     let names: Vec<&Series> = panels.first().map_or_else(Vec::new, |panel| panel.series.iter().collect());
     let legend = legend(&names, width);
     let top = 14.0 + LEGEND_ROW * legend.rows as f64;

@@ -82,6 +82,9 @@ pub(crate) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
 
 /// A given value in its unit, with as many digits as it was given with.
 pub(super) fn measure(value: f64, unit: &str) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
     let to = prefixed(unit, value);
     let number = with_minus(&short(value * to.factor));
     match to.unit {
@@ -113,7 +116,8 @@ pub(super) fn percent_above(relative: f64) -> String {
     }
     let unit = 10_f64.powi(value.log10().floor() as i32 - 1);
     let above = (value / unit - 1e-9).ceil() * unit;
-    format!("{above:.*} %", (-unit.log10().round()).max(0.0) as usize)
+    let decimals = 1.0 - (above * (1.0 + 1e-9)).log10().floor();
+    format!("{above:.*} %", decimals.max(0.0) as usize)
 }
 
 /// A sentence made for a terminal as a page shows it: what stands in backticks as code, minus signs as such.

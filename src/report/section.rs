@@ -40,7 +40,7 @@ pub(super) fn contents(sections: &[Section]) -> Markup {
 pub(super) fn sections(sections: &[Section]) -> Markup {
     html! {
         @for section in shown(sections) {
-            section id=(section.id) { h2 { (section.title) " " (section.mark) } (section.body) }
+            section id=(section.id) { h2 { (section.title) @if !section.mark.0.is_empty() { " " (section.mark) } } (section.body) }
         }
     }
 }

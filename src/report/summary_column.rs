@@ -49,5 +49,7 @@ impl Column {
 
 /// An angle with its sign, in degrees.
 pub(super) fn degrees(angle: f64) -> String {
-    format!("{:+.2}°", angle.to_degrees()).replace('-', "−")
+    // no minus sign before what rounds to zero
+    let rounded = (100.0 * angle.to_degrees()).round() / 100.0 + 0.0;
+    format!("{rounded:+.2}°").replace('-', "−")
 }

@@ -55,7 +55,13 @@ fn of_group(group: &[Column], model: &ModelComparison) -> Option<String> {
 }
 
 fn phrase(what: &str, several: bool, worst: f64, band: f64, is_angle: bool) -> String {
-    let told = |size: f64| if is_angle { format!("{:.2}°", size.to_degrees()) } else { percent_above(size) };
+    let told = |size: f64| {
+        if is_angle {
+            format!("{:.2}°", (100.0 * size.to_degrees() - 1e-9).ceil() / 100.0)
+        } else {
+            percent_above(size)
+        }
+    };
     let how = match (worst <= SMALL, several) {
         (true, _) => "within",
         (false, true) => "off by up to",

@@ -94,6 +94,7 @@ fn scenes_of_earlier_runs_stay_in_index_and_document_with_their_date() {
         let mut report = report(&scene, &reference, &reduced);
         report.scenes[0].comparison.scene = name.into();
         report.scenes[0].attachments.compared = Some(compared.into());
+        report.scenes[0].attachments.folder = format!("scenes/{name}-folder");
         write(&report, root.path()).unwrap();
     };
     let names = || -> Vec<String> {
@@ -112,6 +113,10 @@ fn scenes_of_earlier_runs_stay_in_index_and_document_with_their_date() {
     assert_eq!(entry("first"), first, "what was not compared again is what it was");
     let index = read("index.html");
     assert!(index.contains("href=\"first.html\"") && index.contains("href=\"second.html\""));
+    let folders: Vec<usize> = ["scenes/first-folder<", "first.html", "scenes/second-folder<", "second.html"]
+        .map(|f| index.find(f).unwrap())
+        .into();
+    assert!(folders.is_sorted(), "every scene below its folder");
     assert!(index.contains("Kept from an earlier run, not compared again: compared on Monday."));
     assert!(index.contains("Compared on Tuesday."));
     assert!(read("comparison.md").contains("[its page](first.html)"));
