@@ -159,7 +159,7 @@ fn arrows(report: &SceneReport) -> Vec<Arrow> {
 fn flight(report: &SceneReport) -> Markup {
     let intended = match &report.scene.setup {
         Setup::SealSeat(setup) => setup.intended_angle,
-        Setup::PlateImpact(_) => f64::NAN,
+        _ => f64::NAN,
     };
     let row = |name: &str, summary: &Summary| {
         let Some(q) = SeatQuantities::of_table(&summary.quantities) else {

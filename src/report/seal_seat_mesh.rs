@@ -56,7 +56,7 @@ fn views(mesh: &MeshSection, report: &SceneReport) -> Vec<Bounds> {
             let ([x, _], half) = (setup.ring().sphere_centre, AROUND * setup.sphere.radius);
             Some(Bounds { across: [x - half, x + half], up: [low - 0.1 * half, high + 0.1 * half] })
         }
-        Setup::PlateImpact(_) => None,
+        _ => None,
     };
     near.into_iter().chain([whole]).collect()
 }
