@@ -416,6 +416,20 @@ fn report_shows_the_seat_among_the_scenes() {
         page.contains("intended, with the reference's speed: +15.00°")
             && page.contains(&format!("reference: {angle:+.2}°"))
     );
+    // drawn to scale on the page, and with its curves in a figure of its own
+    let number = |start: &str| -> f64 {
+        let text = page.split(start).nth(1).expect("drawn").split('"').next().expect("end");
+        text.parse().expect("number")
+    };
+    let sphere = page.split("class=\"fig-body sphere\"").nth(1).expect("sphere");
+    let radius: f64 =
+        sphere.split("r=\"").nth(1).and_then(|r| r.split('"').next()?.parse().ok()).expect("radius");
+    let setup = scene.seal_seat().expect("seal seat");
+    assert!((radius / number("data-scale=\"") / setup.sphere.radius - 1.0).abs() < 1e-3, "{radius} px");
+    let figure = report::printed_figure(&report.scenes[0], 85.0);
+    for name in ["sphere x", "sphere z", "actuator", "Contact force in N"] {
+        assert!(figure.contains(&format!(">{name}<")), "{name}");
+    }
     let index = std::fs::read_to_string(folder.path().join("index.html")).expect("page");
     assert!(index.contains("seal-seat-improved.html"));
     let curves = std::fs::read_to_string(folder.path().join("seal-seat-improved.csv")).expect("curves");
