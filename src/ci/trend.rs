@@ -122,7 +122,7 @@ pub fn trends(entries: &[Entry], scene: &SceneComparison) -> Vec<Trend> {
     for model in &scene.models {
         for row in &model.discrepancies {
             let (Some(tolerance), Some(reference)) = (row.tolerance, row.reference) else { continue };
-            let (middle, band) = (reference + row.bias.unwrap_or(0.0), row.uncertainty.unwrap_or(0.0));
+            let (middle, band) = (reference + row.bias.unwrap_or(0.0), row.band().unwrap_or(0.0));
             let about = |width: f64| match row.is_residual() {
                 true => Some((0.0, width)),
                 false => (width >= 0.0).then_some((middle - width, middle + width)),

@@ -10,7 +10,7 @@ use crate::comparison::{Comparison, GateRules, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
-use crate::reference::{Resolution, Stored};
+use crate::reference::{COARSER, Lookup, Resolution, Stored};
 use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport};
 use crate::result::Outcome;
 use crate::scene::Scene;
@@ -88,6 +88,8 @@ pub(super) struct Results {
     reduced: Vec<Outcome>,
     /// What the models have cost, if they share a mesh with the reference.
     cost: Vec<Cost>,
+    /// Reference and models on the next coarser mesh, if they share their mesh and the reference is stored.
+    coarser: Option<(Stored, Vec<Outcome>)>,
 }
 
 /// What is written besides the report.
@@ -167,20 +169,34 @@ impl<'a> Job<'a> {
         for stored in &references {
             tell_reused(context, stored);
         }
-        let result = |(scene, stored): (&Scene, Stored)| {
+        let result = |((file, scene), stored): (&(PathBuf, Scene), Stored)| {
             let asked = (&self.arguments.models[..], self.arguments.tolerance);
-            let (reduced, cost) = kinds::of(scene).beside(context, scene, &stored, asked)?;
-            Ok(Results { stored, reduced, cost })
+            let models = kinds::of(scene);
+            let (reduced, cost) = models.beside(context, scene, &stored, asked)?;
+            let resolution = self.resolution().coarser().filter(|_| models.shares_mesh());
+            let store = context.store().for_scene_in(file);
+            let coarser = match resolution.map(|coarser| store.find_here_or_shipped(scene, coarser)) {
+                Some(Lookup::Found(stored)) => {
+                    let (reduced, _) = models.beside(context, scene, &stored, asked)?;
+                    Some((*stored, reduced))
+                }
+                _ => None,
+            };
+            Ok(Results { stored, reduced, cost, coarser })
         };
-        self.scenes.iter().map(|(_, scene)| scene).zip(references).map(result).collect()
+        self.scenes.iter().zip(references).map(result).collect()
     }
 
     /// The comparison of all scenes, and what is shown with it.
     pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
         let mut scenes = Vec::new();
-        for ((file, scene), Results { stored, reduced, cost }) in self.scenes.iter().zip(results) {
+        for ((file, scene), Results { stored, reduced, cost, coarser }) in self.scenes.iter().zip(results) {
             let acceptances = acceptance::read(file)?;
             let mut comparison = compared(context, scene, &stored.outcome, reduced);
+            if let Some((stored, reduced)) = coarser {
+                let coarser = compare_scene(scene, &stored.outcome, reduced);
+                comparison.judge_on_common_mesh(&coarser, COARSER);
+            }
             let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;

@@ -26,6 +26,10 @@ pub struct Discrepancy {
     pub relative: Option<f64>,
     /// Half width of the reference's 95 % band, absolute, if known.
     pub uncertainty: Option<f64>,
+    /// Half width of the 95 % band of the difference itself, absolute, where model and reference are solutions on the same mesh
+    /// and have its error in common; the verdicts then rest on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub difference_uncertainty: Option<f64>,
     /// Whether the difference can be told from the reference's numerical error; `None` if its band is unknown.
     pub band_verdict: Option<BandVerdict>,
     /// Bound on `|difference - bias|`, absolute; `None` = not gated.
@@ -127,6 +131,7 @@ impl Discrepancy {
             difference,
             relative: difference.map(|difference| difference / scales.value).filter(|r| r.is_finite()),
             uncertainty,
+            difference_uncertainty: None,
             band_verdict: difference.zip(uncertainty).and_then(|(error, band)| BandVerdict::of(error, band)),
             tolerance: bound.map(|b| b.width),
             bias,
@@ -150,6 +155,20 @@ impl Discrepancy {
             Verdict::worst([reduced, reference].map(|residual| Verdict::within(residual.abs(), 0.0, width)))
         });
         Discrepancy { tolerance: width, verdict, ..row }
+    }
+
+    /// Judges the row by the 95 % band of the difference itself, of half width `band`.
+    pub(super) fn judge_by(&mut self, band: f64) {
+        self.difference_uncertainty = Some(band);
+        self.band_verdict = self.difference.and_then(|error| BandVerdict::of(error, band));
+        if let Some(tolerance) = self.tolerance {
+            self.verdict = Verdict::within(self.checked(), band, tolerance);
+        }
+    }
+
+    /// Half width of the band that the verdicts rest on, absolute, if it is known.
+    pub fn band(&self) -> Option<f64> {
+        self.difference_uncertainty.or(self.uncertainty)
     }
 
     /// Magnitude that is held against the tolerance: of the difference without the known bias; NaN if it is not determined.

@@ -10,8 +10,8 @@ const SMALLEST_TARGET: f64 = 1e-4;
 /// Says of every undecided row what would decide it.
 pub(super) fn tell(rows: &mut [Discrepancy], reference: &Summary) {
     let reached = targeted_band(reference);
-    for row in rows.iter_mut().filter(|row| row.verdict == Verdict::Undecided) {
-        row.would_decide = sentence(row, reached);
+    for row in rows {
+        row.would_decide = (row.verdict == Verdict::Undecided).then(|| sentence(row, reached)).flatten();
     }
 }
 
@@ -25,10 +25,12 @@ fn targeted_band(reference: &Summary) -> Option<f64> {
 
 /// With the band narrowed to the distance from the bound, the row is decided. All bands shrink alike with the mesh.
 fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
-    let (tolerance, band) = (row.tolerance?, row.uncertainty?);
+    let (tolerance, band) = (row.tolerance?, row.band()?);
     let needed = (tolerance - row.checked()).abs();
     let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
     let wish = format!("a band of at most {needed:.1e}{unit} instead of {band:.1e}{unit}");
+    // what a target is about is the reference's own band
+    let reached = reached.filter(|_| row.difference_uncertainty.is_none());
     let target = reached.map(|reached| reached * needed / band);
     Some(match target {
         Some(target) if target >= SMALLEST_TARGET => {

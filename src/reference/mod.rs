@@ -30,6 +30,9 @@ pub use section::MeshSection;
 pub use solve::{Wish, solve, solve_with};
 pub use store::{Lookup, Store};
 
+/// Size of the elements over that of the next finer fixed resolution.
+pub const COARSER: f64 = 1.5;
+
 /// Fineness of the reference's mesh, relative to `reference.elements_per_contact_radius`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Resolution {
@@ -67,6 +70,15 @@ impl Resolution {
                 Some(Resolution::Within(TargetError { parts_per_million }))
             }
             None => Resolution::ALL.into_iter().find(|r| r.first() == name),
+        }
+    }
+
+    /// The next coarser fixed resolution, whose elements are [`COARSER`] times as large.
+    pub fn coarser(self) -> Option<Self> {
+        match self {
+            Resolution::Paper => Some(Resolution::Coarse),
+            Resolution::Fine => Some(Resolution::Paper),
+            Resolution::Coarse | Resolution::Within(_) => None,
         }
     }
 

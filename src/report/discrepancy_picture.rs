@@ -34,7 +34,8 @@ pub(super) fn discrepancy_picture(comparison: &SceneComparison) -> Markup {
             "Reduced minus reference over the reference, in %. "
             @for model in &comparison.models { (key(&model.model)) " " (model_name(&model.model, model.summary.modes)) ", " }
             "each over its tolerance (bar in its colour; about the known discrepancy, where one is stated). Grey: 95 % band of the "
-            "reference. Curves: root mean square of the distance over the reference's peak, with a line to the largest distance."
+            @if first.is_on_common_mesh() { "difference, as both are solutions on the same mesh. " } @else { "reference. " }
+            "Curves: root mean square of the distance over the reference's peak, with a line to the largest distance."
         }
     }
 }
@@ -69,7 +70,7 @@ fn table(name: &str, quantities: &[&str], comparison: &SceneComparison, axis: &S
 /// One row: grid, band, and in a lane per model its tolerance and its mark.
 fn row(quantity: &str, comparison: &SceneComparison, axis: &SymmetricLog, grid: &str) -> Markup {
     let rows = || comparison.models.iter().map(|model| (model, model.discrepancy(quantity)));
-    let band = rows().find_map(|(_, row)| row.and_then(|row| Some(row.uncertainty? / row.scale()?)));
+    let band = rows().find_map(|(_, row)| row.and_then(|row| Some(row.band()? / row.scale()?)));
     html! {
         @if let Some(band) = band { (bar("fig-band", axis, [-band, band], (1.0, "100%"))) }
         use href=(format!("#{grid}")) {}
@@ -100,7 +101,7 @@ fn height(models: usize) -> f64 {
 fn reach(row: &Discrepancy) -> Vec<f64> {
     let scale = row.scale().unwrap_or(f64::NAN);
     let tolerance = row.tolerance.map(|width| (width + row.bias.unwrap_or(0.0).abs()) / scale);
-    [row.relative, row.uncertainty.map(|band| band / scale), tolerance].into_iter().flatten().collect()
+    [row.relative, row.band().map(|band| band / scale), tolerance].into_iter().flatten().collect()
 }
 
 /// The largest distance of a curve.

@@ -83,6 +83,7 @@ fn case(scene: &str, model: &str, row: &Discrepancy, undecided: Undecided) -> Te
         ("difference", row.difference),
         ("relative", row.relative),
         ("uncertainty", row.uncertainty),
+        ("difference_uncertainty", row.difference_uncertainty),
         ("tolerance", row.tolerance),
         ("bias", row.bias),
         ("tolerance_used", row.used()),
@@ -135,9 +136,10 @@ pub(crate) fn told(row: &Discrepancy) -> String {
             bound(width)
         ),
     };
-    match (&row.would_decide, row.uncertainty) {
+    let whose = row.difference_uncertainty.map_or("the reference", |_| "the difference on the common mesh");
+    match (&row.would_decide, row.band()) {
         (Some(how), Some(band)) => {
-            format!("{bounded}, 95 % band of the reference {}: undecided; {how}", bound(band))
+            format!("{bounded}, 95 % band of {whose} {}: undecided; {how}", bound(band))
         }
         _ => bounded,
     }

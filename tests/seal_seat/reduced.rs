@@ -378,6 +378,36 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
     }
 }
 
+/// The error of a mesh that both sides have leaves with the difference; what it does to the difference itself counts.
+#[test]
+fn on_a_common_mesh_the_band_of_the_difference_decides() {
+    let scene = gated_scene();
+    let mut reference = stand_in();
+    let speed = reference.summary.value("sphere_speed").expect("a speed");
+    reference.summary.uncertainty.insert("sphere_speed".into(), 0.1 * speed);
+    let good = sixteen().run_with_history(1e-3).expect("run");
+    let compared = || compare_scene(&scene, &reference, std::slice::from_ref(&good));
+    assert_eq!(compared().verdict, Verdict::Undecided);
+    let judged = |of_reference: fn(f64) -> f64, of_model: fn(f64) -> f64| {
+        let (mut other, mut model) = (reference.clone(), good.clone());
+        alter(&mut other, "sphere_speed", of_reference);
+        alter(&mut model, "sphere_speed", of_model);
+        let mut compared = compared();
+        compared.judge_on_common_mesh(&compare_scene(&scene, &other, &[model]), 1.5);
+        let row = compared.models[0].discrepancy("sphere_speed").expect("a row").clone();
+        assert_eq!(row.verdict, compared.verdict);
+        assert_eq!(row.would_decide.is_some(), row.verdict == Verdict::Undecided);
+        (row.verdict, row.difference_uncertainty.expect("a band") / speed)
+    };
+    assert_eq!(judged(|v| 1.05 * v, |v| 1.05 * v).0, Verdict::Pass);
+    // against a tolerance of 1 % a change by 0.2 % of what the mesh does not do to both is little, one of 0.4 % too much
+    let (verdict, band) = judged(|v| v, |v| 1.002 * v);
+    assert_eq!(verdict, Verdict::Pass);
+    assert!((band / (3.0 * 0.002 / (1.5_f64.powf(1.5) - 1.0)) - 1.0).abs() < 1e-2, "{band}");
+    assert_eq!(judged(|v| v, |v| 1.004 * v).0, Verdict::Undecided);
+    assert_eq!(judged(|v| 1.004 * v, |v| v).0, Verdict::Undecided);
+}
+
 #[test]
 fn report_shows_the_seat_among_the_scenes() {
     let scene = gated_scene();

@@ -24,6 +24,11 @@ pub(super) trait Models: Sync {
     /// Those of the arguments and of the model.
     fn reduced(&self, context: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome>;
 
+    /// Whether [`Models::beside`] solves on the very mesh of the reference.
+    fn shares_mesh(&self) -> bool {
+        false
+    }
+
     /// Whether `model` takes `scene`.
     fn takes(&self, scene: &Scene, model: Model) -> bool;
 

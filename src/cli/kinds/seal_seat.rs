@@ -52,6 +52,10 @@ impl Models for Seats {
         reduced.run_with_history(tolerance)
     }
 
+    fn shares_mesh(&self) -> bool {
+        true
+    }
+
     fn takes(&self, _: &Scene, model: Model) -> bool {
         model == Model::C
     }

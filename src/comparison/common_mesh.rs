@@ -1,0 +1,45 @@
+//! Bands of differences between a model and a reference on the same mesh.
+//!
+//! Both sides have the mesh's error, and it leaves with the difference: the reference is a control variate. What the mesh
+//! does to the difference itself is seen by comparing the same two on a coarser mesh.
+
+use super::verdict::Verdict;
+use super::{ModelComparison, SceneComparison, undecided};
+
+/// Safety factor of the grid convergence index of two meshes (Roache 1994, J. Fluids Eng. 116, 405).
+const SAFETY_FACTOR: f64 = 3.0;
+/// Order of the differences in the element size, that of the references' bands.
+const ORDER: f64 = 1.5;
+
+impl ModelComparison {
+    /// Whether it was judged by the bands of the differences, see [`SceneComparison::judge_on_common_mesh`].
+    pub fn is_on_common_mesh(&self) -> bool {
+        self.discrepancies.iter().any(|row| row.difference_uncertainty.is_some())
+    }
+}
+
+impl SceneComparison {
+    /// Judges by the bands of the differences themselves, from the comparison of the same scene on a `coarser` mesh whose
+    /// elements are `ratio` > 1 times as large; on either mesh model and reference are solutions on the very same one.
+    pub fn judge_on_common_mesh(&mut self, coarser: &SceneComparison, ratio: f64) {
+        let share = SAFETY_FACTOR / (ratio.powf(ORDER) - 1.0);
+        for model in &mut self.models {
+            let Some(other) = coarser.models.iter().find(|other| other.model == model.model) else {
+                continue;
+            };
+            for row in model.discrepancies.iter_mut().filter(|row| !row.is_residual()) {
+                let before = other.discrepancy(&row.quantity).and_then(|before| before.difference);
+                let change = before.zip(row.difference).map(|(before, now)| share * (now - before).abs());
+                if let Some(band) = change.filter(|band| band.is_finite()) {
+                    row.judge_by(band);
+                }
+            }
+            undecided::tell(&mut model.discrepancies, &self.reference);
+            let checks = model.integrity.iter().chain(&self.integrity).map(|check| check.verdict);
+            let sound = Verdict::of_soundness(checks);
+            model.verdict = Verdict::worst(model.discrepancies.iter().map(|d| d.verdict).chain([sound]));
+        }
+        let sound = Verdict::of_soundness(self.integrity.iter().map(|check| check.verdict));
+        self.verdict = Verdict::worst(self.models.iter().map(|model| model.verdict).chain([sound]));
+    }
+}
