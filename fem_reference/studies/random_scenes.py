@@ -63,6 +63,6 @@ def _approach(scene: Scene) -> float:
     """Of the outer sphere and a half-space of the plate's material, at most, m."""
     outer = scene.outer
     stiffness = hertz_stiffness(
-        effective_modulus(outer.material, scene.plate.material), outer.radius
+        effective_modulus(outer.material, scene.plate.material), outer.tip_radius
     )
     return 1.0932 * scene.speed * hertz_time_scale(outer.mass, stiffness, scene.speed)
