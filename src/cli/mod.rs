@@ -5,6 +5,7 @@ mod bench;
 mod compare;
 mod compare_inputs;
 mod coverage;
+mod diff;
 mod doctor;
 mod gate;
 mod kinds;
@@ -69,6 +70,9 @@ enum Command {
     /// Tell which features of scenes are held against an independent solution, and how far models and solutions lie apart
     #[command(after_help = "Example: impactcheck coverage --json")]
     Coverage(coverage::Arguments),
+    /// Tell what moved between two comparisons: of two commits, versions or machines
+    #[command(after_help = "Example: impactcheck diff old-report new-report --above 0.1%")]
+    Diff(diff::Arguments),
     /// Mesh the seat of a seal-seat scene
     #[command(after_help = "Example: impactcheck mesh my-seat.toml --out my-seat.vtu")]
     Mesh(mesh::Arguments),
@@ -168,6 +172,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Study(arguments) => study::run(&context, &arguments),
         Command::Optimise(arguments) => optimise::run(&context, &arguments),
         Command::Bench(arguments) => bench::run(&context, &arguments),
+        Command::Diff(arguments) => diff::run(&arguments),
         Command::Stress(arguments) => stress::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),

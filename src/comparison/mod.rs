@@ -11,12 +11,14 @@ mod changed_tolerance;
 mod common_mesh;
 mod discrepancy;
 mod integrity;
+mod moved;
 mod undecided;
 mod verdict;
 
 pub use changed_tolerance::ChangedTolerance;
 pub use discrepancy::{BandVerdict, Discrepancy};
 pub use integrity::Check;
+pub use moved::{Compared, Moved, MovedVerdict, Moves, moved};
 pub use verdict::{GateRules, Undecided, Verdict};
 
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, align, peak};

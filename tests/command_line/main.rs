@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod coverage;
+mod diff;
 #[cfg(unix)]
 mod elsewhere;
 mod first_day;

@@ -8,12 +8,13 @@ use std::fs;
 use std::path::Path;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "reduced",
     "reference",
     "compare",
     "gate",
     "coverage",
+    "diff",
     "mesh",
     "study",
     "optimise",

@@ -1,0 +1,64 @@
+//! `impactcheck diff`: what moved between two comparisons.
+
+use super::JsonArgument;
+use crate::comparison::{Compared, Moves, moved};
+use crate::error::{ExitStatus, Result};
+use crate::reference::TargetError;
+use crate::report::format::{percent, prefixed, with_unit};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// A document of `compare` or `gate`, or the folder of a report
+    a: PathBuf,
+    /// Another
+    b: PathBuf,
+    /// Leave out numbers that moved by less than this share, such as 0.1%
+    #[arg(long, value_name = "SHARE")]
+    above: Option<TargetError>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// Tells what moved, as a table in Markdown.
+pub fn run(arguments: &Arguments) -> Result<ExitStatus> {
+    let above = arguments.above.map_or(0.0, TargetError::share);
+    let moves = moved(&Compared::read(&arguments.a)?, &Compared::read(&arguments.b)?, above);
+    if arguments.json.json {
+        super::print_json(&moves)?;
+    } else {
+        super::print(&markdown(&moves))?;
+    }
+    Ok(ExitStatus::Pass)
+}
+
+fn markdown(moves: &Moves) -> String {
+    let mut rows: Vec<[String; 6]> = Vec::new();
+    for verdict in &moves.verdicts {
+        let [a, b] = [&verdict.a, &verdict.b].map(|v| v.clone().unwrap_or_else(|| "absent".into()));
+        rows.push([verdict.scene.clone(), verdict.model.clone(), "verdict".into(), a, b, String::new()]);
+    }
+    for row in &moves.moved {
+        let size = [row.a, row.b].into_iter().flatten().map(f64::abs).fold(0.0, f64::max);
+        let value = |value: Option<f64>| {
+            value.map_or("absent".into(), |value| with_unit(value, prefixed(&row.unit, size), 6))
+        };
+        let (a, b) = (value(row.a), value(row.b));
+        rows.push([row.scene.clone(), row.model.clone(), row.quantity.clone(), a, b, percent(row.relative)]);
+    }
+    if rows.is_empty() {
+        return "nothing moved".into();
+    }
+    let heads = ["scene", "model", "quantity", "A", "B", "moved"].map(String::from);
+    let widths: [usize; 6] = std::array::from_fn(|k| {
+        rows.iter().chain([&heads]).map(|row| row[k].chars().count()).max().unwrap_or(0)
+    });
+    let line = |row: &[String; 6]| {
+        let cells: Vec<String> =
+            row.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}")).collect();
+        format!("| {} |", cells.join(" | "))
+    };
+    let rule = widths.map(|width| "-".repeat(width));
+    [&heads, &rule].into_iter().chain(&rows).map(line).collect::<Vec<_>>().join("\n")
+}
