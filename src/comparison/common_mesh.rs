@@ -20,17 +20,19 @@ impl ModelComparison {
 
 impl SceneComparison {
     /// Judges by the bands of the differences themselves, from the comparison of the same scene on a `coarser` mesh whose
-    /// elements are `ratio` > 1 times as large; on either mesh model and reference are solutions on the very same one.
+    /// elements are `ratio` > 1 times as large; on either mesh model and reference are solutions on the very same one. A band
+    /// that is not narrower than the reference's own changes nothing.
     pub fn judge_on_common_mesh(&mut self, coarser: &SceneComparison, ratio: f64) {
         let share = SAFETY_FACTOR / (ratio.powf(ORDER) - 1.0);
         for model in &mut self.models {
             let Some(other) = coarser.models.iter().find(|other| other.model == model.model) else {
                 continue;
             };
-            for row in model.discrepancies.iter_mut().filter(|row| !row.is_residual()) {
+            for row in &mut model.discrepancies {
                 let before = other.discrepancy(&row.quantity).and_then(|before| before.difference);
                 let change = before.zip(row.difference).map(|(before, now)| share * (now - before).abs());
-                if let Some(band) = change.filter(|band| band.is_finite()) {
+                // a difference that the mesh changes more than the reference has no band of its own
+                if let Some((band, _)) = change.zip(row.uncertainty).filter(|(band, own)| band < own) {
                     row.judge_by(band);
                 }
             }

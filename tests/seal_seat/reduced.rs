@@ -406,6 +406,12 @@ fn on_a_common_mesh_the_band_of_the_difference_decides() {
     assert!((band / (3.0 * 0.002 / (1.5_f64.powf(1.5) - 1.0)) - 1.0).abs() < 1e-2, "{band}");
     assert_eq!(judged(|v| v, |v| 1.004 * v).0, Verdict::Undecided);
     assert_eq!(judged(|v| 1.004 * v, |v| v).0, Verdict::Undecided);
+    // what is no narrower than the reference's own band does not count
+    let mut far = compared();
+    let mut other = reference.clone();
+    alter(&mut other, "sphere_speed", |v| 1.5 * v);
+    far.judge_on_common_mesh(&compare_scene(&scene, &other, std::slice::from_ref(&good)), 1.5);
+    assert_eq!(far, compared());
 }
 
 #[test]
