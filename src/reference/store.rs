@@ -194,7 +194,7 @@ impl Store {
         let lock = File::create(folder.path().join(LOCK)).map_err(failed)?;
         // Where locks don't work, leftovers go by their age.
         let _ = lock.lock();
-        Ok(WorkFolder { folder, _lock: lock })
+        Ok(WorkFolder { folder, _lock: lock, _parent: Parent(parent) })
     }
 
     /// Puts the complete folder `made` in the place of the entry of `scene` at `resolution`.
@@ -320,6 +320,19 @@ fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
 pub(super) struct WorkFolder {
     folder: Scratch,
     _lock: File,
+    // goes last
+    _parent: Parent,
+}
+
+/// The folder of a scene, which goes with its last entry.
+#[derive(Debug)]
+struct Parent(PathBuf);
+
+impl Drop for Parent {
+    fn drop(&mut self) {
+        // one that is not empty stays
+        let _ = fs::remove_dir(&self.0);
+    }
 }
 
 impl WorkFolder {
