@@ -33,7 +33,7 @@ pub use seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, 
 pub use specification::unit_of;
 pub use template::{Field, Rejected, Template};
 
-use crate::{Error, kinds};
+use crate::Error;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -91,6 +91,9 @@ impl Setup {
 
 /// What is looked at in the bodies of any kind once they are read.
 trait Part {
+    /// Its kind's name in scene files.
+    fn kind(&self) -> &'static str;
+
     /// Geometry that can't be.
     fn collisions(&self) -> Vec<collision::Collision>;
 
@@ -255,7 +258,7 @@ impl Scene {
             help = help,
             "scene `{}` is of kind `{}`, but this runs scenes of kind `{needed}` only",
             self.name,
-            kinds::of(self).name()
+            self.setup.part().kind()
         ))
     }
 }

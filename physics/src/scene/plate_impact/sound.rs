@@ -11,6 +11,10 @@ const SLENDERNESS: [f64; 2] = [1e-6, 100.0];
 const LENGTH: [f64; 2] = [1e-6, 1.0];
 
 impl Part for PlateImpact {
+    fn kind(&self) -> &'static str {
+        "plate-impact"
+    }
+
     /// A plate that is no plate: its waves and its contacts live on scales that no run brings together.
     fn collisions(&self) -> Vec<Collision> {
         let plate = &self.plate;

@@ -166,6 +166,10 @@ impl SealSeat {
 }
 
 impl Part for SealSeat {
+    fn kind(&self) -> &'static str {
+        "seal-seat"
+    }
+
     fn collisions(&self) -> Vec<Collision> {
         collision::collisions(self)
     }
