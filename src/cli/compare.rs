@@ -173,18 +173,22 @@ impl<'a> Job<'a> {
             let asked = (&self.arguments.models[..], self.arguments.tolerance);
             let models = kinds::of(scene);
             let (reduced, cost) = models.beside(context, scene, &stored, asked)?;
-            let resolution = self.resolution().coarser().filter(|_| models.shares_mesh());
-            let store = context.store().for_scene_in(file);
-            let coarser = match resolution.map(|coarser| store.find_here_or_shipped(scene, coarser)) {
-                Some(Lookup::Found(stored)) => {
-                    let (reduced, _) = models.beside(context, scene, &stored, asked)?;
-                    Some((*stored, reduced))
-                }
-                _ => None,
-            };
-            Ok(Results { stored, reduced, cost, coarser })
+            let coarser = self.coarser(context, file, scene).map(|stored| -> Result<_> {
+                let (reduced, _) = models.beside(context, scene, &stored, asked)?;
+                Ok((stored, reduced))
+            });
+            Ok(Results { stored, reduced, cost, coarser: coarser.transpose()? })
         };
         self.scenes.iter().zip(references).map(result).collect()
+    }
+
+    /// The reference on the next coarser mesh, if it is stored and the models solve on the reference's mesh.
+    fn coarser(&self, context: &Context, file: &Path, scene: &Scene) -> Option<Stored> {
+        let resolution = self.resolution().coarser().filter(|_| kinds::of(scene).shares_mesh())?;
+        match context.store().for_scene_in(file).find_here_or_shipped(scene, resolution) {
+            Lookup::Found(stored) => Some(*stored),
+            _ => None,
+        }
     }
 
     /// The comparison of all scenes, and what is shown with it.

@@ -1,7 +1,7 @@
 //! `impactcheck diff`: what moved between two comparisons.
 
 use super::JsonArgument;
-use crate::comparison::{Compared, Moves, moved};
+use crate::comparison::{ComparisonDocument, Moves, moved};
 use crate::error::{ExitStatus, Result};
 use crate::reference::TargetError;
 use crate::report::format::{percent, prefixed, with_unit};
@@ -24,7 +24,8 @@ pub struct Arguments {
 /// Tells what moved, as a table in Markdown.
 pub fn run(arguments: &Arguments) -> Result<ExitStatus> {
     let above = arguments.above.map_or(0.0, TargetError::share);
-    let moves = moved(&Compared::read(&arguments.a)?, &Compared::read(&arguments.b)?, above);
+    let moves =
+        moved(&ComparisonDocument::read(&arguments.a)?, &ComparisonDocument::read(&arguments.b)?, above);
     if arguments.json.json {
         super::print_json(&moves)?;
     } else {

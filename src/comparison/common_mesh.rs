@@ -23,6 +23,7 @@ impl SceneComparison {
     /// elements are `ratio` > 1 times as large; on either mesh model and reference are solutions on the very same one. A band
     /// that is not narrower than the reference's own changes nothing.
     pub fn judge_on_common_mesh(&mut self, coarser: &SceneComparison, ratio: f64) {
+        let sound = Verdict::of_soundness(self.integrity.iter().map(|check| check.verdict));
         let share = SAFETY_FACTOR / (ratio.powf(ORDER) - 1.0);
         for model in &mut self.models {
             let Some(other) = coarser.models.iter().find(|other| other.model == model.model) else {
@@ -37,11 +38,8 @@ impl SceneComparison {
                 }
             }
             undecided::tell(&mut model.discrepancies, &self.reference);
-            let checks = model.integrity.iter().chain(&self.integrity).map(|check| check.verdict);
-            let sound = Verdict::of_soundness(checks);
-            model.verdict = Verdict::worst(model.discrepancies.iter().map(|d| d.verdict).chain([sound]));
+            model.judge(sound);
         }
-        let sound = Verdict::of_soundness(self.integrity.iter().map(|check| check.verdict));
         self.verdict = Verdict::worst(self.models.iter().map(|model| model.verdict).chain([sound]));
     }
 }

@@ -18,7 +18,7 @@ mod verdict;
 pub use changed_tolerance::ChangedTolerance;
 pub use discrepancy::{BandVerdict, Discrepancy};
 pub use integrity::Check;
-pub use moved::{Compared, Moved, MovedVerdict, Moves, moved};
+pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
 pub use verdict::{GateRules, Undecided, Verdict};
 
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, align, peak};
@@ -137,6 +137,13 @@ pub const AMONG: &str = "Largest discrepancy: the largest relative one among the
     one is 100 %, the distances of curves, and the conservation residuals.";
 
 impl ModelComparison {
+    /// The worst of its rows' verdicts and of the soundness of both sides.
+    fn judge(&mut self, reference_sound: Verdict) {
+        let sound = Verdict::of_soundness(self.integrity.iter().map(|check| check.verdict));
+        let rows = self.discrepancies.iter().map(|row| row.verdict);
+        self.verdict = Verdict::worst(rows.chain([sound, reference_sound]));
+    }
+
     /// The row called `quantity`.
     pub fn discrepancy(&self, quantity: &str) -> Option<&Discrepancy> {
         self.discrepancies.iter().find(|d| d.quantity == quantity)
@@ -232,17 +239,17 @@ fn compare_model(
     integrity.push(integrity::same_impact(m, c));
     integrity.push(integrity::tolerances_are_used(tolerances, &discrepancies));
 
-    let sound = Verdict::of_soundness(integrity.iter().map(|c| c.verdict));
-    let verdict = Verdict::worst(discrepancies.iter().map(|d| d.verdict).chain([sound, reference_sound]));
-    ModelComparison {
+    let mut model = ModelComparison {
         model: name,
         summary: reduced.summary.clone(),
-        verdict,
+        verdict: reference_sound,
         discrepancies,
         curves: aligned.iter().map(CurveMetrics::of).collect(),
         integrity,
         aligned,
-    }
+    };
+    model.judge(reference_sound);
+    model
 }
 
 /// The rows of the summary's quantities.

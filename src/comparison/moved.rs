@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::result::SCHEMA_VERSION;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Name of the reference among the models.
@@ -55,19 +56,19 @@ pub struct MovedVerdict {
 
 /// What a document of `compare` or `gate` says of the numbers that it compares.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Compared {
+pub struct ComparisonDocument {
     schema_version: u32,
-    scenes: Vec<ComparedScene>,
+    scenes: Vec<SceneEntry>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-struct ComparedScene {
+struct SceneEntry {
     scene: String,
-    models: Vec<ComparedModel>,
+    models: Vec<ModelEntry>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-struct ComparedModel {
+struct ModelEntry {
     model: String,
     verdict: String,
     discrepancies: Vec<Row>,
@@ -81,7 +82,7 @@ struct Row {
     reference: Option<f64>,
 }
 
-impl Compared {
+impl ComparisonDocument {
     /// The document `path`, or that of the report in the folder `path`.
     ///
     /// # Errors
@@ -101,18 +102,19 @@ impl Compared {
         Ok(document)
     }
 
-    fn models(&self) -> impl Iterator<Item = (&str, &ComparedModel)> {
+    fn models(&self) -> impl Iterator<Item = (&str, &ModelEntry)> {
         self.scenes.iter().flat_map(|scene| scene.models.iter().map(|model| (&*scene.scene, model)))
     }
 
-    fn model(&self, scene: &str, model: &str) -> Option<&ComparedModel> {
+    fn model(&self, scene: &str, model: &str) -> Option<&ModelEntry> {
         self.models().find(|(name, found)| *name == scene && found.model == model).map(|(_, found)| found)
     }
 }
 
 /// What moved from `a` to `b` by more than the share `above` of its magnitude.
-pub fn moved(a: &Compared, b: &Compared, above: f64) -> Moves {
+pub fn moved(a: &ComparisonDocument, b: &ComparisonDocument, above: f64) -> Moves {
     let mut moves = Moves { schema_version: SCHEMA_VERSION, moved: Vec::new(), verdicts: Vec::new() };
+    let mut told = BTreeSet::new();
     let new = b.models().filter(|(scene, model)| a.model(scene, &model.model).is_none());
     for (scene, model) in a.models().chain(new) {
         let [before, after] = [a, b].map(|document| document.model(scene, &model.model));
@@ -133,19 +135,21 @@ pub fn moved(a: &Compared, b: &Compared, above: f64) -> Moves {
                 b,
                 relative,
             };
-            // all models of a scene have the same reference
-            if a != b && relative.is_none_or(|share| share.abs() > above) && !moves.moved.contains(&entry) {
+            if a != b && relative.is_none_or(|share| share.abs() > above) {
                 moves.moved.push(entry);
             }
         };
         let missing = |row: &&Row| !before.discrepancies.iter().any(|other| other.quantity == row.quantity);
         for row in before.discrepancies.iter().chain(after.discrepancies.iter().filter(missing)) {
-            let of = |found: &ComparedModel| {
+            let of = |found: &ModelEntry| {
                 let row = found.discrepancies.iter().find(|other| other.quantity == row.quantity);
                 row.map_or([None; 2], |row| [row.reference, row.reduced])
             };
             let ([reference, reduced], [new_reference, new_reduced]) = (of(before), of(after));
-            add(REFERENCE, row, reference, new_reference);
+            // all models of a scene have the same reference
+            if told.insert((scene, &*row.quantity)) {
+                add(REFERENCE, row, reference, new_reference);
+            }
             add(&before.model, row, reduced, new_reduced);
         }
     }
@@ -157,7 +161,7 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    fn document(models: serde_json::Value) -> Compared {
+    fn document(models: serde_json::Value) -> ComparisonDocument {
         let scenes = json!([{ "scene": "x", "models": models }]);
         serde_json::from_value(json!({ "schema_version": SCHEMA_VERSION, "scenes": scenes }))
             .expect("document")

@@ -1,7 +1,7 @@
 //! The discrepancy budget of a scene as a section of its page and of the Markdown report.
 
 use super::budget_figure::{budget_figure, cause_name};
-use super::format::{Prefixed, prefixed, prose, with_unit, words};
+use super::format::{Prefixed, minus, prefixed, prose, with_unit, words};
 use super::html::{detailed, scrolled};
 use crate::comparison::budget::{Part, QuantityBudget};
 use maud::{Markup, html};
@@ -71,7 +71,7 @@ fn shown(row: &QuantityBudget, value: f64, uncertainty: Option<f64>) -> String {
     let fixed = |value: f64| {
         let text = format!("{:.decimals$}", value * to.factor);
         let zero = text.bytes().all(|b| matches!(b, b'-' | b'.' | b'0'));
-        if zero { text.replace('-', "") } else { text.replace('-', "−") }
+        if zero { text.replace('-', "") } else { minus(&text) }
     };
     let unit = if to.unit.is_empty() { String::new() } else { format!(" {}", to.unit) };
     match uncertainty {

@@ -1,7 +1,7 @@
 //! All discrepancies of a scene in one picture: quantities in rows, a mark per model on a symmetric logarithmic axis, over the
 //! reference's band and the tolerances. Abscissas are per cents of the row's width, so that type keeps its size on any screen.
 
-use super::format::{model_name, percent, words};
+use super::format::{minus, model_name, percent, words};
 use super::html::named;
 use super::symmetric_log::SymmetricLog;
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
@@ -137,7 +137,7 @@ fn at(axis: &SymmetricLog, value: f64) -> String {
 
 fn label(tick: f64) -> String {
     let number = format!("{}", (1e4 * tick).round() / 100.0);
-    number.replace('-', "−")
+    minus(&number)
 }
 
 /// The row in words.

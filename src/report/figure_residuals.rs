@@ -2,6 +2,7 @@
 
 use super::figure::{FONT_SIZE, Geometry, PanelOf, x2};
 use super::figure_lines::Line;
+use super::format::minus;
 use super::polyline::{Point, path_within};
 use super::symmetric_log::SymmetricLog;
 use crate::curves::CommonAxis;
@@ -86,5 +87,5 @@ fn label(mark: f64) -> String {
         size if size == 0.0 || (1e-3..1e4).contains(&size) => format!("{}", (mark * 1e4).round() / 1e4),
         _ => format!("{mark:.0e}"),
     };
-    number.replace('-', "−")
+    minus(&number)
 }

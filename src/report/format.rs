@@ -49,10 +49,10 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     }
     let magnitude = value.abs().log10().floor();
     if !(-4.0..7.0).contains(&magnitude) {
-        return minus(format!("{:.*e}", digits.saturating_sub(1), value));
+        return minus(&format!("{:.*e}", digits.saturating_sub(1), value));
     }
     let decimals = (digits as i32 - 1 - magnitude as i32).max(0) as usize;
-    minus(format!("{value:.decimals$}"))
+    minus(&format!("{value:.decimals$}"))
 }
 
 /// Six significant digits without zeros behind them, for plain text.
@@ -63,7 +63,7 @@ pub(super) fn short(value: f64) -> String {
 }
 
 /// A true minus sign.
-fn minus(text: String) -> String {
+pub(super) fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
@@ -71,7 +71,7 @@ fn minus(text: String) -> String {
 pub(crate) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
     // Numbers of something are shown as such.
     let whole = to.unit.is_empty() && value.fract() == 0.0 && value.abs() < 1e6;
-    let number = if whole { minus(format!("{value}")) } else { significant(value * to.factor, digits) };
+    let number = if whole { minus(&format!("{value}")) } else { significant(value * to.factor, digits) };
     match to.unit {
         _ if !value.is_finite() => number,
         "" => number,
@@ -102,7 +102,7 @@ pub(crate) fn percent(relative: Option<f64>) -> String {
             let number =
                 if r.abs() < 0.1 { format!("{:.2}", 100.0 * r) } else { format!("{:.1}", 100.0 * r) };
             let sign = if r > 0.0 { "+" } else { "" };
-            format!("{sign}{} %", minus(number))
+            format!("{sign}{} %", minus(&number))
         }
         _ => "–".into(),
     }

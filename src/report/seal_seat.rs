@@ -14,7 +14,7 @@ use crate::kinds::seal_seat::SeatQuantities;
 use crate::project::project_root;
 use crate::reference::Stored;
 use crate::result::Summary;
-use crate::scene::{Scene, Setup};
+use crate::scene::Scene;
 use maud::{Markup, PreEscaped, html};
 use std::path::{Path, PathBuf};
 
@@ -137,7 +137,7 @@ fn arrows(report: &SceneReport) -> Vec<Arrow> {
     };
     let mut arrows = Vec::new();
     if let Some(reference) = found(&report.comparison.reference) {
-        if let Setup::SealSeat(setup) = &report.scene.setup {
+        if let Ok(setup) = report.scene.seal_seat() {
             let (sin, cos) = setup.intended_angle.sin_cos();
             arrows.push(Arrow {
                 name: "intended, with the reference's speed".into(),
@@ -157,10 +157,7 @@ fn arrows(report: &SceneReport) -> Vec<Arrow> {
 
 /// Size and direction of the velocity, and how far it is from the intended direction.
 fn flight(report: &SceneReport) -> Markup {
-    let intended = match &report.scene.setup {
-        Setup::SealSeat(setup) => setup.intended_angle,
-        _ => f64::NAN,
-    };
+    let intended = report.scene.seal_seat().map_or(f64::NAN, |setup| setup.intended_angle);
     let row = |name: &str, summary: &Summary| {
         let Some(q) = SeatQuantities::of_table(&summary.quantities) else {
             return html! { tr { th scope="row" { (name) } td.left colspan="6" { "not determined" } } };

@@ -6,7 +6,6 @@ use super::figure::x2;
 use super::format::{prefixed, with_unit};
 use super::section_frame::{Bounds, Frame, Place};
 use crate::reference::MeshSection;
-use crate::scene::Setup;
 use maud::{Markup, html};
 
 /// Colours of stresses between 0 and the end of the scale.
@@ -51,13 +50,10 @@ fn views(mesh: &MeshSection, report: &SceneReport) -> Vec<Bounds> {
     let [low, high] = range(1);
     let margin = 0.02 * (right - left);
     let whole = Bounds { across: [left - margin, right + margin], up: [low - margin, high + margin] };
-    let near = match &report.scene.setup {
-        Setup::SealSeat(setup) => {
-            let ([x, _], half) = (setup.ring().sphere_centre, AROUND * setup.sphere.radius);
-            Some(Bounds { across: [x - half, x + half], up: [low - 0.1 * half, high + 0.1 * half] })
-        }
-        _ => None,
-    };
+    let near = report.scene.seal_seat().ok().map(|setup| {
+        let ([x, _], half) = (setup.ring().sphere_centre, AROUND * setup.sphere.radius);
+        Bounds { across: [x - half, x + half], up: [low - 0.1 * half, high + 0.1 * half] }
+    });
     near.into_iter().chain([whole]).collect()
 }
 

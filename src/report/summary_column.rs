@@ -1,6 +1,6 @@
 //! The few quantities that tell a result in short, and how far a model is from the reference in them.
 
-use super::format::{percent, prefixed, with_unit};
+use super::format::{minus, percent, prefixed, with_unit};
 use crate::result::Summary;
 
 /// A column of the table of a scene's results in short.
@@ -51,5 +51,5 @@ impl Column {
 pub(super) fn degrees(angle: f64) -> String {
     // no minus sign before what rounds to zero
     let rounded = (100.0 * angle.to_degrees()).round() / 100.0 + 0.0;
-    format!("{rounded:+.2}°").replace('-', "−")
+    minus(&format!("{rounded:+.2}°"))
 }

@@ -1,5 +1,7 @@
 //! Round numbers for the marks of an axis.
 
+use super::format::minus;
+
 /// Fewer marks than these don't show a scale.
 const LEAST: usize = 3;
 
@@ -24,7 +26,7 @@ pub(super) fn tick_label(value: f64, ticks: &[f64]) -> String {
     let step = ticks.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
     let decimals = if step.is_finite() { (-step.log10().floor()).max(0.0) as usize } else { 0 };
     let text = format!("{value:.decimals$}");
-    if value == 0.0 { "0".into() } else { text.replace('-', "−") }
+    if value == 0.0 { "0".into() } else { minus(&text) }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Tests of the flexible seal seat's scene, reduced model and stored references.
 
+mod compared;
 mod reduced;
 mod reference;
 mod scaling;

@@ -70,6 +70,10 @@ impl Material {
     }
 }
 
+/// Names of the kinds in scene files.
+pub(crate) const PLATE_IMPACT: &str = "plate-impact";
+pub(crate) const SEAL_SEAT: &str = "seal-seat";
+
 /// What strikes what.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -236,7 +240,7 @@ impl Scene {
     pub fn plate_impact(&self) -> crate::Result<&PlateImpact> {
         match &self.setup {
             Setup::PlateImpact(setup) => Ok(setup),
-            _ => Err(self.not_of("plate-impact")),
+            _ => Err(self.not_of(PLATE_IMPACT)),
         }
     }
 
@@ -247,7 +251,7 @@ impl Scene {
     pub fn seal_seat(&self) -> crate::Result<&SealSeat> {
         match &self.setup {
             Setup::SealSeat(setup) => Ok(setup),
-            _ => Err(self.not_of("seal-seat")),
+            _ => Err(self.not_of(SEAL_SEAT)),
         }
     }
 

@@ -235,10 +235,8 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>)
     let materials = root.table("materials")?;
     let settings = root.optional_table("reference")?;
     let (setup, reference) = match root.text("kind")? {
-        "plate-impact" => {
-            (Setup::PlateImpact(Box::new(plate_impact(root, &materials)?)), reference(settings)?)
-        }
-        "seal-seat" => (Setup::SealSeat(Box::new(seal_seat(root, &materials)?)), seat_reference(settings)?),
+        PLATE_IMPACT => (Setup::PlateImpact(Box::new(plate_impact(root, &materials)?)), reference(settings)?),
+        SEAL_SEAT => (Setup::SealSeat(Box::new(seal_seat(root, &materials)?)), seat_reference(settings)?),
         other => return Err(unknown("kind", other)),
     };
     let end_time = root.optional_table("run")?.filter(|r| r.0.contains_key("end_time"));

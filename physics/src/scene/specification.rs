@@ -3,6 +3,7 @@
 use super::plate_impact::{FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE};
 use super::quantity::Dimension;
 use super::seal_seat::{ACTUATOR, INTENDED, SEAT, SEAT_REDUCED, SEAT_REFERENCE, SEATED_SPHERE};
+use super::{PLATE_IMPACT, SEAL_SEAT};
 
 /// Valid range of a number, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -157,45 +158,48 @@ const POISSON: Bound = Bound { low: Some((-1.0, false)), high: Some((0.5, false)
 /// The names of the reduced models.
 pub(super) const MODELS: [Choice; 3] = [choice("A"), choice("B"), choice("C")];
 
-const PLATE_IMPACT: &[&str] = &["plate-impact"];
-const SEAL_SEAT: &[&str] = &["seal-seat"];
+const OF_PLATE_IMPACT: &[&str] = &[PLATE_IMPACT];
+const OF_SEAL_SEAT: &[&str] = &[SEAL_SEAT];
 
 /// The keys of a scene file. A key whose table depends on the scene's kind stands here once per kind.
 pub(super) static SCENE: [Field; 17] = [
     required("name", Kind::Name, "Name of the scene in the store and in reports"),
     optional("description", Kind::Text, "One line for people"),
-    required("kind", Kind::Choice(&[choice("plate-impact"), choice("seal-seat")]), "What strikes what"),
+    required("kind", Kind::Choice(&[choice(PLATE_IMPACT), choice(SEAL_SEAT)]), "What strikes what"),
     required("materials", Kind::TableOf(&MATERIAL), "Materials by name"),
-    only(PLATE_IMPACT, required("plate", Kind::Table(&PLATE), "Circular plate of constant thickness")),
-    only(PLATE_IMPACT, required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above")),
-    only(PLATE_IMPACT, required("inner", Kind::Table(&INNER), "The body that rests below the plate")),
-    only(PLATE_IMPACT, optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry")),
+    only(OF_PLATE_IMPACT, required("plate", Kind::Table(&PLATE), "Circular plate of constant thickness")),
     only(
-        SEAL_SEAT,
+        OF_PLATE_IMPACT,
+        required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above"),
+    ),
+    only(OF_PLATE_IMPACT, required("inner", Kind::Table(&INNER), "The body that rests below the plate")),
+    only(OF_PLATE_IMPACT, optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry")),
+    only(
+        OF_SEAL_SEAT,
         required("seat", Kind::Table(&SEAT), "Membrane and island with the two seats, one piece"),
     ),
     only(
-        SEAL_SEAT,
+        OF_SEAL_SEAT,
         required("sphere", Kind::Table(&SEATED_SPHERE), "The sphere, at rest in the seat at x < 0"),
     ),
     only(
-        SEAL_SEAT,
+        OF_SEAL_SEAT,
         required(
             "actuator",
             Kind::Table(&ACTUATOR),
             "Strikes the underside from below; rigid, guided along z",
         ),
     ),
-    only(SEAL_SEAT, required("intended", Kind::Table(&INTENDED), "Where the sphere is meant to fly")),
+    only(OF_SEAL_SEAT, required("intended", Kind::Table(&INTENDED), "Where the sphere is meant to fly")),
     optional("run", Kind::Table(&RUN), "Length of the run"),
-    only(PLATE_IMPACT, optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model")),
-    only(SEAL_SEAT, optional("reduced", Kind::Table(&SEAT_REDUCED), "Settings of the reduced model")),
+    only(OF_PLATE_IMPACT, optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model")),
+    only(OF_SEAL_SEAT, optional("reduced", Kind::Table(&SEAT_REDUCED), "Settings of the reduced model")),
     only(
-        PLATE_IMPACT,
+        OF_PLATE_IMPACT,
         optional("reference", Kind::Table(&REFERENCE), "Settings of the finite-element reference"),
     ),
     only(
-        SEAL_SEAT,
+        OF_SEAL_SEAT,
         optional("reference", Kind::Table(&SEAT_REFERENCE), "Settings of the finite-element reference"),
     ),
 ];

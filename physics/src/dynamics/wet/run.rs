@@ -82,6 +82,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
     Ok(closing.integration(stepper.recorder.map(Recorder::finish)))
 }
 
+/// State of a run.
 struct Stepper<'a> {
     wet: Wet<'a>,
     collocation: &'a Collocation<RADAU_POINTS>,

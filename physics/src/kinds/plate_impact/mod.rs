@@ -14,7 +14,7 @@ mod validity;
 pub mod variants;
 
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
-use crate::scene::{Model, Scene, Setup};
+use crate::scene::{Model, PLATE_IMPACT, Scene, Setup};
 
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
 
@@ -23,7 +23,7 @@ pub struct Kind;
 
 impl super::Kind for Kind {
     fn name(&self) -> &'static str {
-        "plate-impact"
+        PLATE_IMPACT
     }
 
     fn models(&self) -> &'static [Model] {

@@ -24,7 +24,7 @@ mod truncation;
 mod watch;
 
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
-use crate::scene::{Model, Scene, Setup};
+use crate::scene::{Model, SEAL_SEAT, Scene, Setup};
 
 pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
@@ -37,7 +37,7 @@ pub struct Kind;
 
 impl super::Kind for Kind {
     fn name(&self) -> &'static str {
-        "seal-seat"
+        SEAL_SEAT
     }
 
     fn models(&self) -> &'static [Model] {

@@ -2,7 +2,7 @@
 
 mod keys;
 mod read;
-mod sound;
+mod soundness;
 
 pub use keys::MAX_MODES;
 pub(super) use keys::{DEFAULT_GEOMETRY, FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE};

@@ -5,17 +5,15 @@
 //! seats at x = -+ half their distance; the sphere rests in the one at x < 0. Each seat is a cone about an axis that
 //! leans inwards by the tilt, widening upwards, and a bore below it. The cone touches the sphere along the ring.
 
-mod collision;
 mod keys;
 mod read;
+mod soundness;
 
 pub(super) use keys::{ACTUATOR, INTENDED, SEAT, SEAT_REDUCED, SEAT_REFERENCE, SEATED_SPHERE};
 pub(super) use read::{seal_seat, seat_reference};
 
-use super::collision::Collision;
+use super::Material;
 use super::hash::{canonical, drop_inelastic, sha256_hex};
-use super::plausibility::material;
-use super::{Material, Part};
 use serde::Serialize;
 use serde_json::json;
 
@@ -162,19 +160,5 @@ impl SealSeat {
             seat.remove("material");
         }
         sha256_hex(canonical(&geometry).as_bytes())
-    }
-}
-
-impl Part for SealSeat {
-    fn kind(&self) -> &'static str {
-        "seal-seat"
-    }
-
-    fn collisions(&self) -> Vec<Collision> {
-        collision::collisions(self)
-    }
-
-    fn doubts(&self) -> Vec<String> {
-        [&self.seat.material, &self.sphere.material].into_iter().flat_map(material).collect()
     }
 }

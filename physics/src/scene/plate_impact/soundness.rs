@@ -1,9 +1,9 @@
 //! Plate impacts that can't be, and numbers that are hardly meant.
 
 use super::PlateImpact;
-use crate::scene::Part;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
+use crate::scene::{PLATE_IMPACT, Part};
 
 /// Least and largest thickness of a plate over its radius.
 const SLENDERNESS: [f64; 2] = [1e-6, 100.0];
@@ -12,7 +12,7 @@ const LENGTH: [f64; 2] = [1e-6, 1.0];
 
 impl Part for PlateImpact {
     fn kind(&self) -> &'static str {
-        "plate-impact"
+        PLATE_IMPACT
     }
 
     /// A plate that is no plate: its waves and its contacts live on scales that no run brings together.
@@ -31,8 +31,8 @@ impl Part for PlateImpact {
     }
 
     fn doubts(&self) -> Vec<String> {
-        let setup = self;
-        let bodies = [&setup.plate.material, &setup.outer.material, &setup.inner.material];
+        let Self { plate, outer, inner, .. } = self;
+        let bodies = [&plate.material, &outer.material, &inner.material];
         let mut found: Vec<String> = Vec::new();
         for doubt in bodies.into_iter().flat_map(material) {
             if !found.contains(&doubt) {
@@ -40,17 +40,17 @@ impl Part for PlateImpact {
             }
         }
         let lengths = [
-            ("plate.radius", setup.plate.radius),
-            ("plate.thickness", setup.plate.thickness),
-            ("outer's tip radius", setup.outer.shape.tip_radius()),
-            ("inner's tip radius", setup.inner.shape.tip_radius()),
+            ("plate.radius", plate.radius),
+            ("plate.thickness", plate.thickness),
+            ("outer's tip radius", outer.shape.tip_radius()),
+            ("inner's tip radius", inner.shape.tip_radius()),
         ];
         found.extend(lengths.into_iter().filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
-        if setup.plate.thickness > 4.0 * setup.plate.radius {
+        if plate.thickness > 4.0 * plate.radius {
             found.push(format!(
-            "plate.thickness is {:.3} times plate.radius: a rod rather than a plate; is one of them a diameter?",
-            setup.plate.thickness / setup.plate.radius
-        ));
+                "plate.thickness is {:.3} times plate.radius: a rod rather than a plate; is one of them a diameter?",
+                plate.thickness / plate.radius
+            ));
         }
         found
     }

@@ -1,7 +1,9 @@
-//! Features of a seal seat that collide.
+//! Seal seats that can't be, and numbers that are hardly meant.
 
 use super::SealSeat;
 use crate::scene::collision::{Collision, Rule, broken};
+use crate::scene::plausibility::material;
+use crate::scene::{Part, SEAL_SEAT};
 use std::f64::consts::FRAC_PI_2;
 
 /// Least thickness of a wall between two features, over the island's height: what a mesh can follow.
@@ -9,16 +11,25 @@ const LEAST_WALL: f64 = 0.02;
 /// Least distance of two tips over their radius: closer ones make one contact.
 const LEAST_TIP_DISTANCE: f64 = 0.1;
 
-/// The collisions in a seal seat.
-pub(super) fn collisions(setup: &SealSeat) -> Vec<Collision> {
-    let mut found = island(setup);
-    found.extend(cone_and_bore(setup));
-    // Where the ring lies means nothing unless cone and island are sound.
-    if found.is_empty() {
-        found.extend(ring_and_walls(setup));
+impl Part for SealSeat {
+    fn kind(&self) -> &'static str {
+        SEAL_SEAT
     }
-    found.extend(tips(setup));
-    found
+
+    fn collisions(&self) -> Vec<Collision> {
+        let mut found = island(self);
+        found.extend(cone_and_bore(self));
+        // Where the ring lies means nothing unless cone and island are sound.
+        if found.is_empty() {
+            found.extend(ring_and_walls(self));
+        }
+        found.extend(tips(self));
+        found
+    }
+
+    fn doubts(&self) -> Vec<String> {
+        [&self.seat.material, &self.sphere.material].into_iter().flat_map(material).collect()
+    }
 }
 
 /// A length in mm, as people read it; the rounding is far below what a mesh resolves.
