@@ -4,9 +4,9 @@
 //! Nothing is written by hand but the list of features, each a question to a scene. Everything else is found: scenes, models
 //! that take them, stored references and the discrepancies between both.
 
-use crate::comparison::ModelComparison;
 use crate::result::SCHEMA_VERSION;
-use crate::scene::{Edge, Fluid, Geometry, Material, Model, PlateImpact, Scene, Setup, Shape, SphereBody};
+use crate::scene::{Edge, Fluid, Material, Model, PlateImpact, Scene, Setup, Shape, SphereBody};
+use crate::validated::Validation;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -80,17 +80,14 @@ pub struct Case<'a> {
     pub scene: &'a Scene,
     /// The model.
     pub model: Model,
-    /// Against the stored reference, if there is one.
-    pub comparison: Option<ModelComparison>,
+    /// Against a reference, if there is one.
+    pub validation: Option<Validation>,
 }
 
 impl Case<'_> {
     /// Name of the partner.
-    fn partner(&self) -> Option<&'static str> {
-        self.comparison.as_ref().map(|_| match self.scene.reference.geometry {
-            Geometry::Axisymmetric => "axisymmetric",
-            Geometry::Solid => "solid",
-        })
+    fn partner(&self) -> Option<&str> {
+        self.validation.as_ref().map(|validation| &*validation.partner)
     }
 }
 
@@ -118,7 +115,7 @@ pub struct Partner {
     /// The reduced model.
     pub model: String,
     /// "axisymmetric" or "solid" finite elements; `None`: the model takes the scenes, but nothing is held against it.
-    pub partner: Option<&'static str>,
+    pub partner: Option<String>,
     /// Names of the scenes.
     pub scenes: Vec<String>,
     /// Largest relative discrepancy of any quantity in them.
@@ -146,10 +143,10 @@ pub fn coverage(cases: &[Case]) -> Coverage {
 }
 
 impl Partner {
-    fn of(model: Model, partner: Option<&'static str>) -> Self {
+    fn of(model: Model, partner: Option<&str>) -> Self {
         Partner {
             model: model.to_string(),
-            partner,
+            partner: partner.map(str::to_owned),
             scenes: Vec::new(),
             worst_relative: None,
             band: None,
@@ -159,11 +156,11 @@ impl Partner {
 
     fn add(&mut self, case: &Case) {
         self.scenes.push(case.scene.name.clone());
-        let Some(row) = case.comparison.as_ref().and_then(ModelComparison::largest) else { return };
-        let relative = row.relative.map(f64::abs);
+        let Some(row) = case.validation.as_ref().and_then(Validation::largest) else { return };
+        let relative = Some(row.relative().abs());
         if relative > self.worst_relative {
             self.worst_relative = relative;
-            self.band = row.uncertainty.zip(row.reference).map(|(band, value)| band / value.abs());
+            self.band = row.relative_band();
             self.quantity = Some(row.quantity.clone());
         }
     }
@@ -196,12 +193,12 @@ mod tests {
     #[test]
     fn a_model_without_partner_is_told_as_such_and_a_feature_no_scene_has_is_empty() {
         let plain = scene(PLATE);
-        let cases = [Model::B, Model::C].map(|model| Case { scene: &plain, model, comparison: None });
+        let cases = [Model::B, Model::C].map(|model| Case { scene: &plain, model, validation: None });
         let found = coverage(&cases);
         assert_eq!(found.features.len(), FEATURES.len());
         for feature in found.features {
             let alone: Vec<_> =
-                feature.partners.iter().map(|p| (&*p.model, p.partner, p.scenes.len())).collect();
+                feature.partners.iter().map(|p| (&*p.model, p.partner.as_deref(), p.scenes.len())).collect();
             let expected: &[_] =
                 if feature.feature == "clamped edge" { &[("B", None, 1), ("C", None, 1)] } else { &[] };
             assert_eq!(alone, expected, "{}", feature.feature);

@@ -39,6 +39,7 @@ pub mod sampling;
 pub mod scene;
 pub mod stress;
 pub mod study;
+pub mod validated;
 
 pub use impactcheck_physics::{Error, ExitStatus, Result};
 pub use impactcheck_physics::{analytical, body, contact, dynamics, error, file, fluid, kinds, result};

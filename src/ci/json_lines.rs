@@ -11,7 +11,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`Error::Io`] if it can't be read, [`Error::Usage`] naming the line that is not what is expected.
-pub(super) fn read<T: DeserializeOwned>(file: &Path) -> Result<Vec<T>> {
+pub(crate) fn read<T: DeserializeOwned>(file: &Path) -> Result<Vec<T>> {
     let text = match std::fs::read_to_string(file) {
         Ok(text) => text,
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
@@ -34,7 +34,7 @@ pub(super) fn read<T: DeserializeOwned>(file: &Path) -> Result<Vec<T>> {
 ///
 /// # Errors
 /// [`Error::Io`] if it can't be written.
-pub(super) fn write<T: Serialize>(file: &Path, documents: &[T]) -> Result<()> {
+pub(crate) fn write<T: Serialize>(file: &Path, documents: &[T]) -> Result<()> {
     let line = |document: &T| serde_json::to_string(document).map(|line| line + "\n");
     let text: std::result::Result<String, _> = documents.iter().map(line).collect();
     let text = text.map_err(|e| Error::Internal(format!("writing {}: {e}", file.display())))?;

@@ -3,7 +3,7 @@
 
 pub mod acceptance;
 pub mod commit;
-mod json_lines;
+pub(crate) mod json_lines;
 pub mod tolerance_edit;
 pub mod tolerance_watch;
 pub mod trend;

@@ -3,7 +3,7 @@
 use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
 use super::stored_references::{look_up, tell_reused};
-use super::{Context, JsonArgument, kinds};
+use super::{Context, JsonArgument, kinds, validated_scenes};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
 use crate::comparison::{Comparison, GateRules, SceneComparison, compare_scene};
@@ -14,8 +14,10 @@ use crate::reference::{COARSER, Lookup, Resolution, Stored};
 use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport};
 use crate::result::Outcome;
 use crate::scene::Scene;
+use crate::validated::Validation;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Results over commits, beside the report.
@@ -193,7 +195,7 @@ impl<'a> Job<'a> {
 
     /// The comparison of all scenes, and what is shown with it.
     pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
-        let mut scenes = Vec::new();
+        let (mut scenes, mut found) = (Vec::new(), Vec::new());
         for ((file, scene), Results { stored, reduced, cost, coarser }) in self.scenes.iter().zip(results) {
             let acceptances = acceptance::read(file)?;
             let mut comparison = compared(context, scene, &stored.outcome, reduced);
@@ -204,6 +206,7 @@ impl<'a> Job<'a> {
             let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
+            found.push((stored, Validation::of(scene, &comparison)));
             scenes.push(SceneReport {
                 scene,
                 comparison,
@@ -218,6 +221,10 @@ impl<'a> Job<'a> {
                     ..Attachments::of(scene, stored)
                 },
             });
+        }
+        let known: Arc<[Validation]> = validated_scenes::known(context, &found).into();
+        for report in &mut scenes {
+            report.attachments.validated = Arc::clone(&known);
         }
         if let (Some(report), false) = (scenes.first_mut(), self.records.is_empty()) {
             let how = (self.arguments.bandwidth, self.arguments.speed);

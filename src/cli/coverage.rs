@@ -2,11 +2,12 @@
 
 use super::asked_model::AskedModel;
 use super::{Context, JsonArgument, compare_inputs, kinds};
-use crate::comparison::{ModelComparison, compare_scene};
+use crate::comparison::compare_scene;
 use crate::coverage::{Case, Coverage, coverage};
 use crate::error::{ExitStatus, Result};
 use crate::reference::{Lookup, Store, Stored};
 use crate::scene::{self, Model, Scene};
+use crate::validated::{self, Validation};
 use clap::Args;
 
 #[derive(Debug, Args)]
@@ -17,16 +18,20 @@ pub struct Arguments {
     json: JsonArgument,
 }
 
-/// Compares every model with every stored reference and tells what that covers; nothing is computed but the models.
+/// Compares every model with every stored reference and tells what that covers; nothing is computed but the models. Of
+/// references that are not here it tells what was found with them.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let scenes = compare_inputs::scenes_or(&arguments.scenes, scene::every)?;
-    let mut cases = Vec::new();
+    let (known, mut cases) = (validated::shipped()?, Vec::new());
     for (file, scene) in &scenes {
         let stored = finest(&context.store().for_scene_in(file), scene);
         for &model in crate::kinds::of(scene).models() {
-            let comparison = stored.as_ref().and_then(|stored| compared(context, scene, stored, model));
-            if comparison.is_some() || kinds::of(scene).takes(scene, model) {
-                cases.push(Case { scene, model, comparison });
+            let validation = match &stored {
+                Some(stored) => compared(context, scene, stored, model),
+                None => known.iter().find(|v| v.is_of(scene, model)).cloned(),
+            };
+            if validation.is_some() || kinds::of(scene).takes(scene, model) {
+                cases.push(Case { scene, model, validation });
             }
         }
     }
@@ -55,9 +60,9 @@ fn finest(store: &Store, scene: &Scene) -> Option<Stored> {
 }
 
 /// `model` against a stored reference; `None` if it does not take the scene, which is told.
-fn compared(context: &Context, scene: &Scene, stored: &Stored, model: Model) -> Option<ModelComparison> {
+fn compared(context: &Context, scene: &Scene, stored: &Stored, model: Model) -> Option<Validation> {
     match kinds::of(scene).beside(context, scene, stored, (&[AskedModel::Named(model)], None)) {
-        Ok((reduced, _)) => compare_scene(scene, &stored.outcome, &reduced).models.pop(),
+        Ok((reduced, _)) => Validation::of(scene, &compare_scene(scene, &stored.outcome, &reduced)).pop(),
         Err(error) => {
             context.note(format_args!("{}: model {model}: {error}", scene.name));
             None
@@ -81,7 +86,7 @@ fn table(found: &Coverage) -> String {
                 let band = row.band.map_or("unknown".to_owned(), percent);
                 format!("{} ({band}), {}", percent(relative), row.quantity.as_deref().unwrap_or_default())
             });
-            let partner = row.partner.unwrap_or("nothing");
+            let partner = row.partner.as_deref().unwrap_or("nothing");
             let scenes = row.scenes.len();
             let line = format!("{name:<28} {:<6} {partner:<14} {scenes:>6}  {difference}", row.model);
             lines.push(line.trim_end().to_owned());

@@ -3,7 +3,9 @@
 use super::JsonArgument;
 use crate::comparison::{ComparisonDocument, Moves, moved};
 use crate::error::{ExitStatus, Result};
+use crate::file::write_file;
 use crate::reference::TargetError;
+use crate::report;
 use crate::report::format::{percent, prefixed, with_unit};
 use clap::Args;
 use std::path::PathBuf;
@@ -17,15 +19,22 @@ pub struct Arguments {
     /// Leave out numbers that moved by less than this share, such as 0.1%
     #[arg(long, value_name = "SHARE")]
     above: Option<TargetError>,
+    /// Write what moved as a page, the largest move first
+    #[arg(long, value_name = "FILE.html")]
+    out: Option<PathBuf>,
     #[command(flatten)]
     json: JsonArgument,
 }
 
-/// Tells what moved, as a table in Markdown.
+/// Tells what moved, as a table in Markdown and, on request, as a page.
 pub fn run(arguments: &Arguments) -> Result<ExitStatus> {
     let above = arguments.above.map_or(0.0, TargetError::share);
     let moves =
         moved(&ComparisonDocument::read(&arguments.a)?, &ComparisonDocument::read(&arguments.b)?, above);
+    if let Some(file) = &arguments.out {
+        let names = [&arguments.a, &arguments.b].map(|path| path.display().to_string());
+        write_file(file, report::moves_page([&names[0], &names[1]], &moves, above).as_bytes())?;
+    }
     if arguments.json.json {
         super::print_json(&moves)?;
     } else {

@@ -21,6 +21,7 @@ mod stored_references;
 mod stress;
 mod study;
 mod sweep;
+mod validated_scenes;
 
 use crate::error::{Error, ExitStatus, Result};
 use crate::scene::{self, Scene};

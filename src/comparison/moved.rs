@@ -39,6 +39,16 @@ pub struct Moved {
     pub b: Option<f64>,
     /// `(b - a)/|a|`; `None` if that is not known.
     pub relative: Option<f64>,
+    /// Half width of the reference's 95 % band, absolute: of the second comparison, else of the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub band: Option<f64>,
+}
+
+impl Moved {
+    /// Half width of the band over the magnitude of the first value.
+    pub fn relative_band(&self) -> Option<f64> {
+        self.band.zip(self.a).map(|(band, a)| band / a.abs()).filter(|share| share.is_finite())
+    }
 }
 
 /// A verdict that differs.
@@ -80,6 +90,8 @@ struct Row {
     unit: String,
     reduced: Option<f64>,
     reference: Option<f64>,
+    #[serde(default)]
+    uncertainty: Option<f64>,
 }
 
 impl ComparisonDocument {
@@ -112,7 +124,7 @@ impl ComparisonDocument {
 }
 
 /// What moved from `a` to `b` by more than the share `above` of its magnitude.
-pub fn moved(a: &ComparisonDocument, b: &ComparisonDocument, above: f64) -> Moves {
+pub fn moved<'d>(a: &'d ComparisonDocument, b: &'d ComparisonDocument, above: f64) -> Moves {
     let mut moves = Moves { schema_version: SCHEMA_VERSION, moved: Vec::new(), verdicts: Vec::new() };
     let mut told = BTreeSet::new();
     let new = b.models().filter(|(scene, model)| a.model(scene, &model.model).is_none());
@@ -124,7 +136,7 @@ pub fn moved(a: &ComparisonDocument, b: &ComparisonDocument, above: f64) -> Move
             moves.verdicts.push(MovedVerdict { scene: scene.into(), model: model.model.clone(), a, b });
         }
         let (Some(before), Some(after)) = (before, after) else { continue };
-        let mut add = |model: &str, row: &Row, a: Option<f64>, b: Option<f64>| {
+        let mut add = |model: &str, row: &Row, band: Option<f64>, [a, b]: [Option<f64>; 2]| {
             let relative = a.zip(b).map(|(a, b)| (b - a) / a.abs()).filter(|relative| relative.is_finite());
             let entry = Moved {
                 scene: scene.into(),
@@ -134,6 +146,7 @@ pub fn moved(a: &ComparisonDocument, b: &ComparisonDocument, above: f64) -> Move
                 a,
                 b,
                 relative,
+                band,
             };
             if a != b && relative.is_none_or(|share| share.abs() > above) {
                 moves.moved.push(entry);
@@ -141,16 +154,18 @@ pub fn moved(a: &ComparisonDocument, b: &ComparisonDocument, above: f64) -> Move
         };
         let missing = |row: &&Row| !before.discrepancies.iter().any(|other| other.quantity == row.quantity);
         for row in before.discrepancies.iter().chain(after.discrepancies.iter().filter(missing)) {
-            let of = |found: &ModelEntry| {
-                let row = found.discrepancies.iter().find(|other| other.quantity == row.quantity);
-                row.map_or([None; 2], |row| [row.reference, row.reduced])
+            let of = |found: &'d ModelEntry| {
+                found.discrepancies.iter().find(|other| other.quantity == row.quantity)
             };
-            let ([reference, reduced], [new_reference, new_reduced]) = (of(before), of(after));
+            let rows = [of(before), of(after)];
+            let both = |side: fn(&Row) -> Option<f64>| rows.map(|row| row.and_then(side));
+            let [old_band, band] = both(|row| row.uncertainty);
+            let band = band.or(old_band);
             // all models of a scene have the same reference
             if told.insert((scene, &*row.quantity)) {
-                add(REFERENCE, row, reference, new_reference);
+                add(REFERENCE, row, band, both(|row| row.reference));
             }
-            add(&before.model, row, reduced, new_reduced);
+            add(&before.model, row, band, both(|row| row.reduced));
         }
     }
     moves

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 /// Counts changes of `fem_reference` that change its results; raising it makes every stored
 /// solution stale.
-const REFERENCE_REVISION: u32 = 3;
+pub const REFERENCE_REVISION: u32 = 3;
 
 /// SHA-256 (hexadecimal) of how the reference of `scene` is computed: its settings, the
 /// resolution and the revision of the method.

@@ -6,7 +6,9 @@ use crate::ci::trend::Trend;
 use crate::reference::{CurveBands, FieldMesh, MeshSection, Stored};
 use crate::result::History;
 use crate::scene::Scene;
+use crate::validated::Validation;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Nothing of this changes a verdict; all of it may be missing.
 #[derive(Debug, Clone, Default)]
@@ -33,6 +35,8 @@ pub struct Attachments {
     pub trends: Vec<Trend>,
     /// Changes of tolerances and reference accepted so far, oldest first.
     pub acceptances: Vec<Acceptance>,
+    /// Scenes in which models were held against references, this one among them.
+    pub validated: Arc<[Validation]>,
 }
 
 /// What a reduced model has cost.

@@ -47,15 +47,7 @@ fn table(name: &str, quantities: &[&str], comparison: &SceneComparison, axis: &S
         table.discrepancy-picture data-linear=(axis.linear) data-limit=(axis.limit) {
             thead { tr {
                 th scope="col" { (name) }
-                th.left scope="col" { svg height="22" width="100%" role="img" aria-label="Axis in per cent of the reference" {
-                    defs { g id=(id) { @for tick in axis.ticks() {
-                        line class=(if tick == 0.0 { "fig-frame" } else { "fig-grid" }) x1=(at(axis, tick)) x2=(at(axis, tick)) y1="0" y2="100%" {}
-                    } } }
-                    // next to zero there is no room
-                    @for (k, tick) in axis.ticks().iter().enumerate().filter(|(_, t)| **t == 0.0 || t.abs() > 5.0 * axis.linear) {
-                        text.fig-text.alternate[k % 2 == 1] x=(at(axis, *tick)) y="15" text-anchor="middle" { (label(*tick)) }
-                    }
-                } }
+                th.left scope="col" { (scale(axis, id)) }
             } }
             tbody { @for quantity in quantities { tr data-quantity=(quantity) {
                 th scope="row" { (named(quantity.trim_end_matches("_rms"))) }
@@ -63,6 +55,21 @@ fn table(name: &str, quantities: &[&str], comparison: &SceneComparison, axis: &S
                     (row(quantity, comparison, axis, id))
                 } }
             } } }
+        }
+    }
+}
+
+/// The axis above the rows, which use the grid `id` that is defined here.
+pub(super) fn scale(axis: &SymmetricLog, id: &str) -> Markup {
+    html! {
+        svg height="22" width="100%" role="img" aria-label="Axis in per cent" {
+            defs { g id=(id) { @for tick in axis.ticks() {
+                line class=(if tick == 0.0 { "fig-frame" } else { "fig-grid" }) x1=(at(axis, tick)) x2=(at(axis, tick)) y1="0" y2="100%" {}
+            } } }
+            // next to zero there is no room
+            @for (k, tick) in axis.ticks().iter().enumerate().filter(|(_, t)| **t == 0.0 || t.abs() > 5.0 * axis.linear) {
+                text.fig-text.alternate[k % 2 == 1] x=(at(axis, *tick)) y="15" text-anchor="middle" { (label(*tick)) }
+            }
         }
     }
 }
@@ -86,7 +93,7 @@ fn row(quantity: &str, comparison: &SceneComparison, axis: &SymmetricLog, grid: 
                 }
                 svg x=(at(axis, relative)) y=(middle) overflow="visible" data-model=(model.model) data-si=(relative) {
                     title { (model.model) ": " (percent(Some(relative))) }
-                    (mark(&model.model))
+                    (mark_of(&model.model))
                 }
             }
         }
@@ -109,29 +116,40 @@ fn largest(quantity: &str, model: &ModelComparison) -> Option<f64> {
     model.discrepancy(&format!("{}_max", quantity.strip_suffix("_rms")?))?.relative
 }
 
-fn bar(class: &str, axis: &SymmetricLog, [from, to]: [f64; 2], (top, height): (f64, &str)) -> Markup {
+pub(super) fn bar(
+    class: &str,
+    axis: &SymmetricLog,
+    [from, to]: [f64; 2],
+    (top, height): (f64, &str),
+) -> Markup {
     let [left, right] = [from, to].map(|end| 100.0 * axis.place(end));
     // a bar too narrow to be seen is still there
     let width = (right - left).max(0.3);
     html! { rect class=(class) x=(format!("{left:.3}%")) width=(format!("{width:.3}%")) y=(top) height=(height) {} }
 }
 
-/// The mark of a model, about the origin: told apart by shape as well as by colour.
-fn mark(model: &str) -> Markup {
-    let class = format!("mark fig-{model}");
-    match model {
-        "A" => html! { path class=(class) d="M-4.5 3.6H4.5L0-4.4Z" {} },
-        "B" => html! { path class=(class) d="M-3.6-3.6H3.6V3.6H-3.6Z" {} },
+/// The mark of a model: told apart by shape as well as by colour.
+pub(super) fn mark_of(model: &str) -> Markup {
+    let shape = ["A", "B"].iter().position(|name| *name == model);
+    mark(shape.unwrap_or(2), &format!("fig-{model}"))
+}
+
+/// A mark about the origin: triangle, square or circle.
+pub(super) fn mark(shape: usize, class: &str) -> Markup {
+    let class = format!("mark {class}");
+    match shape {
+        0 => html! { path class=(class) d="M-4.5 3.6H4.5L0-4.4Z" {} },
+        1 => html! { path class=(class) d="M-3.6-3.6H3.6V3.6H-3.6Z" {} },
         _ => html! { circle class=(class) r="4" {} },
     }
 }
 
 /// The mark in the key.
 fn key(model: &str) -> Markup {
-    html! { svg.key viewBox="-6 -6 12 12" aria-hidden="true" { (mark(model)) } }
+    html! { svg.key viewBox="-6 -6 12 12" aria-hidden="true" { (mark_of(model)) } }
 }
 
-fn at(axis: &SymmetricLog, value: f64) -> String {
+pub(super) fn at(axis: &SymmetricLog, value: f64) -> String {
     format!("{:.3}%", 100.0 * axis.place(value))
 }
 

@@ -3,7 +3,7 @@
 use super::format::prose;
 use super::html::{model_badge, named_as, scrolled};
 use super::summary_column::Column;
-use super::trust::{LARGE, SMALL, accuracy, size_class, validity};
+use super::trust::{LARGE, SMALL, accuracy, size_class, validated, validity};
 use super::{SceneReport, presentation};
 use crate::comparison::{ModelComparison, SceneComparison};
 use crate::result::Summary;
@@ -20,7 +20,7 @@ pub(super) fn first_screen(report: &SceneReport) -> Markup {
     html! {
         div.first {
             div.answer {
-                (trust(columns, comparison))
+                (trust(columns, report))
                 (scrolled("Results in short", &in_short(columns, comparison)))
                 p.soft.note {
                     "Gate: the tolerances. Shaded by size, whatever the gate says: "
@@ -39,13 +39,15 @@ fn percent(share: f64) -> String {
 }
 
 /// A sentence per model; what holds of all of them is said once.
-fn trust(columns: &[Column], comparison: &SceneComparison) -> Markup {
+fn trust(columns: &[Column], report: &SceneReport) -> Markup {
+    let comparison = &report.comparison;
     let models = &comparison.models;
     let common = models.first().map(|model| validity(&model.summary)).unwrap_or_default();
     let is_common = models.len() > 1 && models.iter().all(|model| validity(&model.summary) == common);
     let sentence = |model: &ModelComparison| {
         let own = if is_common { Vec::new() } else { validity(&model.summary) };
-        std::iter::once(accuracy(columns, model)).chain(own).collect::<Vec<_>>().join("; ")
+        let elsewhere = validated(report.scene, comparison, &model.model, &report.attachments.validated);
+        std::iter::once(accuracy(columns, model)).chain(elsewhere).chain(own).collect::<Vec<_>>().join("; ")
     };
     html! {
         ul.trust {

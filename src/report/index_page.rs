@@ -8,22 +8,26 @@ use super::run_times::marked;
 use super::standing::{self, Standing};
 use super::thumbnail;
 use super::trust::size_class;
+use super::validated_map::ValidatedMap;
 use crate::comparison::{AMONG, Verdict};
 use maud::{Markup, PreEscaped, html};
 
 /// Sorting and searching; without it the table is what it is.
-const SCRIPT: &str = include_str!("assets/index.js");
+pub(super) const SCRIPT: &str = include_str!("assets/index.js");
 
 /// The page with the verdict of every scene and model.
 pub fn index_page(report: &Report) -> String {
-    index_of(&standing::of_run(report))
+    index_of(report, &standing::of_run(report))
 }
 
 /// The index of all scenes whose results stand in a folder.
-pub(super) fn index_of(scenes: &[Standing]) -> String {
+pub(super) fn index_of(report: &Report, scenes: &[Standing]) -> String {
     let body = html! {
         h1 { "impactcheck " (badge(standing::verdict(scenes))) }
         p.soft { "Reduced models of an impact against explicit finite elements. " (counts(scenes)) }
+        @if let Some(map) = ValidatedMap::of(report.validated(), None) {
+            details { summary { "Where the models were held against references" } (map.html()) }
+        }
         p #search hidden { label { "Search " input type="search" autocomplete="off"; } " " output role="status" {} }
         (scrolled("Scenes", &table(scenes)))
         p.soft.note { "Curves: the first contact force, the reference in black under the models. Largest discrepancy: shaded by size, whatever the "

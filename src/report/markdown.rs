@@ -3,6 +3,7 @@
 use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::overview::{ModelOverview, Overview};
 use super::standing::{self, Standing};
+use super::validated_map::{self, ValidatedMap};
 use super::{Report, SceneReport, presentation};
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison};
 
@@ -21,6 +22,9 @@ pub(super) fn of(report: &Report, scenes: &[Standing]) -> String {
         text.extend(scene.overview.models.iter().map(|model| row(&scene.overview.scene, model)));
     }
     text += &format!("\n{AMONG}\n");
+    if ValidatedMap::of(report.validated(), None).is_some() {
+        text += &format!("\n![Where the models were held against references]({})\n", validated_map::FILE);
+    }
     for scene in &report.scenes {
         text += &section(scene);
     }

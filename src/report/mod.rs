@@ -33,6 +33,7 @@ mod limits_section;
 mod markdown;
 mod measured_section;
 mod mesh_section;
+mod moves_page;
 mod overview;
 mod page_data;
 mod pdf;
@@ -58,6 +59,7 @@ mod thumbnail;
 mod ticks;
 mod trend_section;
 mod trust;
+mod validated_map;
 mod write;
 
 pub use attachments::{Attachments, Cost};
@@ -72,6 +74,7 @@ pub use junit::junit;
 pub(crate) use junit::{integrity_failure as check_failure, told as row_told};
 pub use markdown::markdown;
 pub use measured_section::efficiency_figure;
+pub use moves_page::moves_page;
 pub use png::png;
 pub use scene_page::scene_page;
 pub use seal_seat_picture::{Arrow, seat_picture};
@@ -81,6 +84,7 @@ pub use write::{check_writable, write};
 use crate::comparison::{ChangedTolerance, Comparison, GateRules, SceneComparison};
 use crate::result::Outcome;
 use crate::scene::Scene;
+use crate::validated::Validation;
 
 /// Everything the exporters need.
 #[derive(Debug, Clone)]
@@ -114,6 +118,11 @@ impl Report<'_> {
     /// The comparison document of all scenes.
     pub fn comparison(&self) -> Comparison {
         Comparison::new(self.scenes.iter().map(|s| s.comparison.clone()).collect())
+    }
+
+    /// Scenes in which models were held against references, the same for all scenes of the report.
+    pub(crate) fn validated(&self) -> &[Validation] {
+        self.scenes.first().map_or(&[], |scene| &scene.attachments.validated)
     }
 
     /// A sentence per tolerance that was changed since it was accepted.

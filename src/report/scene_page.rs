@@ -6,7 +6,9 @@ use super::figure::phone_figure;
 use super::format::{model_name, prefixed, with_unit};
 use super::html::{badge, model_badge, page};
 use super::section::{Section, contents, sections};
+use super::validated_map::ValidatedMap;
 use super::{SceneReport, Theme, discrepancy_picture, figure, first_screen, interactive, presentation};
+use crate::validated::Place;
 use maud::{Markup, html};
 
 /// The page of one scene.
@@ -42,6 +44,7 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
     all.extend(shown.sections(report));
     let accepted = super::acceptance_section::acceptances_html(attachments, &comparison.changed_tolerances);
     all.extend([
+        Section::new("validated", "Validated scenes", validated(report)),
         Section::new("validity", "Range of validity", super::limits_section::limits_html(comparison)),
         Section::new("trends", "Trends", super::trend_section::trends_html(attachments)),
         Section::new("accepted", "Accepted changes", accepted),
@@ -49,6 +52,13 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
         Section::new("provenance", "Provenance", provenance(report)),
     ]);
     all
+}
+
+/// The scene among those in which the models were held against references; nothing of kinds without a place there.
+fn validated(report: &SceneReport) -> Markup {
+    let here = Place::of(report.scene, &report.comparison.reference);
+    let map = here.and_then(|here| ValidatedMap::of(&report.attachments.validated, Some(here)));
+    map.map_or_else(|| html! {}, |map| map.html())
 }
 
 fn curves(report: &SceneReport) -> Markup {

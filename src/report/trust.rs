@@ -1,9 +1,11 @@
 //! How far a model can be trusted in its scene, in a sentence: what it hits, how well, and whether its theory holds there.
 
-use super::format::{percent_above, words};
+use super::format::{percent_above, significant, words};
 use super::summary_column::Column;
-use crate::comparison::{Discrepancy, ModelComparison};
+use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
 use crate::result::Summary;
+use crate::scene::Scene;
+use crate::validated::{MEASURES, Place, Validation, Vicinity};
 
 /// Discrepancy, relative or in rad, up to which a model is said to be right within it rather than off by it.
 pub(super) const SMALL: f64 = 0.01;
@@ -100,6 +102,47 @@ pub(super) fn validity(summary: &Summary) -> Vec<String> {
     let yielding = limits.iter().any(|limit| limit.is_of_yield());
     let unchecked = "elastic limit not checked: no yield strength given".to_owned();
     std::iter::once(range).chain((!yielding).then_some(unchecked)).collect()
+}
+
+/// Where `model` was held against references in other scenes, seen from the scene that `reference` lies in: whether that was
+/// near by, and how far off the model was there.
+pub(super) fn validated(
+    scene: &Scene,
+    comparison: &SceneComparison,
+    model: &str,
+    known: &[Validation],
+) -> Option<String> {
+    let reference = &comparison.reference;
+    let place = Place::of(scene, reference)?;
+    let vicinity = Vicinity::of(known, model, &reference.scene_hash, &place)?;
+    let worst = |scenes: &[&Validation]| {
+        let rows = scenes.iter().filter_map(|v| v.worst()).map(|row| row.relative().abs());
+        rows.fold(0.0, f64::max)
+    };
+    let nearest = format!(
+        "nearest {}, off by {} there",
+        vicinity.nearest.scene,
+        percent_above(worst(&[vicinity.nearest]))
+    );
+    let beyond = vicinity.beyond.iter().map(|(measure, own, end)| {
+        let side = if own > end { "up to" } else { "down to" };
+        format!("{} {}, validated {side} {}", MEASURES[*measure], significant(*own, 3), significant(*end, 3))
+    });
+    if !vicinity.beyond.is_empty() {
+        return Some(format!(
+            "outside the validated range: {}; {nearest}",
+            beyond.collect::<Vec<_>>().join(", ")
+        ));
+    }
+    let where_ = match vicinity.near.len() {
+        0 => return Some(format!("no validated scene near by: {nearest}")),
+        1 => format!("in {}, a validated scene near by", vicinity.near[0].scene),
+        several => format!("in {several} validated scenes near by"),
+    };
+    Some(match worst(&vicinity.near) {
+        off if off <= SMALL => format!("inside the validated range: within {} {where_}", percent_above(off)),
+        off => format!("off by up to {} {where_}", percent_above(off)),
+    })
 }
 
 #[cfg(test)]

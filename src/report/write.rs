@@ -2,6 +2,7 @@
 
 use super::run_times::same_but_for_run_times;
 use super::standing::{self, DOCUMENT, Standing};
+use super::validated_map::{self, ValidatedMap};
 use super::{Report, presentation};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,8 +13,8 @@ use std::path::{Component, Path, PathBuf};
 /// Pixels of the PNG per unit of the drawing: 760 units are 2280 px, 300 dpi at a width of 19 cm.
 const PNG_SCALE: f32 = 3.0;
 
-/// Writes `index.html`, `comparison.json`, `comparison.md`, `junit.xml` and, per scene, its page,
-/// figure (SVG, PNG) and curves (CSV) into `dir`, which is made if it does not exist.
+/// Writes `index.html`, `comparison.json`, `comparison.md`, `junit.xml`, the map of validated scenes (SVG) and, per scene, its
+/// page, figure (SVG, PNG) and curves (CSV) into `dir`, which is made if it does not exist.
 ///
 /// Index, JSON and Markdown are of all scenes whose results stand in the folder: a scene that an earlier run has compared
 /// and this one has not is kept as long as its page is there, and marked with its date. `junit.xml` is of this run alone.
@@ -89,11 +90,14 @@ pub fn check_writable(dir: &Path) -> Result<()> {
 fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)>> {
     let mut names = BTreeSet::new();
     let mut files = vec![
-        ("index.html".to_owned(), super::index_page::index_of(standing).into_bytes()),
+        ("index.html".to_owned(), super::index_page::index_of(report, standing).into_bytes()),
         (DOCUMENT.to_owned(), standing::document(report, standing)?.into_bytes()),
         ("comparison.md".to_owned(), super::markdown::of(report, standing).into_bytes()),
         ("junit.xml".to_owned(), super::junit(report)?.into_bytes()),
     ];
+    if let Some(map) = ValidatedMap::of(report.validated(), None) {
+        files.push((validated_map::FILE.to_owned(), map.svg().into_bytes()));
+    }
     for scene in &report.scenes {
         let name = &scene.comparison.scene;
         if !is_file_name(name) {

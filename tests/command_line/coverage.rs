@@ -47,3 +47,53 @@ fn features_are_covered_as_far_as_references_are_stored() {
     assert!(wet.iter().all(|entry| entry["partner"].is_null() && entry["worst_relative"].is_null()));
     assert!(partners(&found, "bender").is_empty());
 }
+
+/// What needs references that are not here is told from what was found with them; a scene that has changed since is not.
+#[test]
+fn references_that_are_elsewhere_are_known_by_what_they_showed() {
+    let dir = tempfile::tempdir().unwrap();
+    let changed = dir.path().join("compact-bodies.toml");
+    let text = std::fs::read_to_string(format!("{ROOT}/scenes/validation/compact-bodies.toml")).unwrap();
+    std::fs::write(&changed, text.replacen("10 g", "11 g", 1)).unwrap();
+    let partners = |scene: &str| {
+        let found =
+            document("coverage", &[scene, "--store", &dir.path().join("store").display().to_string()]);
+        let features = found["features"].as_array().unwrap().clone();
+        features.into_iter().find(|f| f["feature"] == "compact outer body").unwrap()["partners"].clone()
+    };
+    let known = partners("scenes/validation/compact-bodies.toml");
+    let model_c = known.as_array().unwrap().iter().find(|entry| entry["model"] == "C").unwrap();
+    assert_eq!(model_c["partner"], "axisymmetric");
+    assert!((1e-4..1e-2).contains(&model_c["worst_relative"].as_f64().unwrap()), "{model_c}");
+    let unknown = partners(&changed.display().to_string());
+    assert!(unknown.as_array().unwrap().iter().all(|entry| entry["partner"].is_null()), "{unknown}");
+}
+
+/// A comparison keeps in the user's store what it found with a reference of that store, once.
+#[test]
+fn comparisons_keep_what_they_find_beside_the_references() {
+    let dir = tempfile::tempdir().unwrap();
+    let (scene, store) = ("scaled-plate-r6.35", dir.path().join("store"));
+    let entry = store.join(scene).join("coarse");
+    std::fs::create_dir_all(&entry).unwrap();
+    for file in std::fs::read_dir(format!("{ROOT}/fem_reference/solutions/{scene}/coarse")).unwrap() {
+        let file = file.unwrap();
+        std::fs::copy(file.path(), entry.join(file.file_name())).unwrap();
+    }
+    let kept = store.join("validated.jsonl");
+    let out = dir.path().join("report").display().to_string();
+    let compare = |resolution: &str, models: &str| {
+        let store = store.display().to_string();
+        let arguments =
+            [scene, "--resolution", resolution, "--models", models, "--out", &out, "--store", &store];
+        document("compare", &arguments);
+        std::fs::read_to_string(&kept).ok()
+    };
+    assert_eq!(compare("paper", "C"), None, "its reference is not of this store");
+    let one = compare("coarse", "C").unwrap();
+    assert_eq!(one.lines().count(), 1);
+    assert!(compare("coarse", "B").unwrap().ends_with(&one));
+    // one that can't be read is told of and left alone
+    std::fs::write(&kept, "no JSON\n").unwrap();
+    assert_eq!(compare("coarse", "C").unwrap(), "no JSON\n");
+}

@@ -11,6 +11,7 @@ mod gate_verdicts;
 mod harness;
 mod measured_signals;
 mod range_of_validity;
+mod validated;
 
 #[path = "../support/synthetic_impact.rs"]
 mod synthetic_impact;

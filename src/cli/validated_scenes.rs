@@ -1,0 +1,32 @@
+//! What is known of the models' errors when a report is written.
+
+use super::Context;
+use crate::error::Result;
+use crate::reference::Stored;
+use crate::validated::{self, Validation};
+
+/// What the project and the user's store know, and what was `found` now, which is kept in that store if its reference lies
+/// there. A file that can't be used is told of: the comparison stands without it.
+pub(super) fn known(context: &Context, found: &[(&Stored, Vec<Validation>)]) -> Vec<Validation> {
+    let store = context.store();
+    let told = |result: Result<Vec<Validation>>| {
+        result.unwrap_or_else(|error| {
+            context.note(format_args!("the map of validated scenes is not complete: {error}"));
+            Vec::new()
+        })
+    };
+    let own: Vec<Validation> = found
+        .iter()
+        .filter(|(stored, _)| stored.folder.starts_with(store.root()))
+        .flat_map(|(_, validations)| validations.clone())
+        .collect();
+    let mut known = told(validated::shipped());
+    validated::merge(
+        &mut known,
+        &told(validated::update(&store, &own).and_then(|()| validated::of_store(&store))),
+    );
+    for (_, validations) in found {
+        validated::merge(&mut known, validations);
+    }
+    known
+}

@@ -1,0 +1,55 @@
+//! The files that validations are kept in: one beside the solutions of each store.
+
+use super::{PROGRAM, Validation};
+use crate::ci::json_lines;
+use crate::error::Result;
+use crate::reference::{REFERENCE_REVISION, Store};
+use std::path::PathBuf;
+
+const FILE: &str = "validated.jsonl";
+
+/// The validations that the project brings along, of its own scenes. What is in the file is held against scenes, models and
+/// stored references by the project's tests.
+///
+/// # Errors
+/// If there is no project, or its file can't be read.
+pub fn shipped() -> Result<Vec<Validation>> {
+    json_lines::read(&file(&Store::shipped()?))
+}
+
+/// The validations kept in `store` by this version of the program with the present method of the reference.
+///
+/// # Errors
+/// If the file can't be read.
+pub fn of_store(store: &Store) -> Result<Vec<Validation>> {
+    let mut kept: Vec<Validation> = json_lines::read(&file(store))?;
+    kept.retain(|v| v.program == PROGRAM && v.revision == REFERENCE_REVISION);
+    Ok(kept)
+}
+
+/// Keeps `new` in `store`.
+///
+/// # Errors
+/// If the file can't be read or written.
+pub fn update(store: &Store, new: &[Validation]) -> Result<()> {
+    let before = of_store(store)?;
+    let mut after = before.clone();
+    merge(&mut after, new);
+    if before == after { Ok(()) } else { json_lines::write(&file(store), &after) }
+}
+
+/// Puts `new` in the places of what is known of the same scenes and models, unless that is of the same scene on a finer mesh.
+pub fn merge(known: &mut Vec<Validation>, new: &[Validation]) {
+    for validation in new {
+        match known.iter_mut().find(|other| other.is_of_same(validation)) {
+            Some(old) if old.scene_hash == validation.scene_hash && old.dofs > validation.dofs => {}
+            Some(old) => *old = validation.clone(),
+            None => known.push(validation.clone()),
+        }
+    }
+    known.sort_by(|a, b| (&a.scene, &a.model).cmp(&(&b.scene, &b.model)));
+}
+
+fn file(store: &Store) -> PathBuf {
+    store.root().join(FILE)
+}

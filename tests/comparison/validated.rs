@@ -1,0 +1,124 @@
+//! The validations that the project brings along are those of its scenes, of its models as they are and of its references;
+//! what is near by is told from what is not.
+
+use impactcheck::comparison::compare_scene;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
+use impactcheck::reference::{Lookup, REFERENCE_REVISION, Resolution, Store};
+use impactcheck::scene::{Model, Scene, every};
+use impactcheck::validated::{NEAR, Place, Validation, Vicinity, merge, of_store, shipped, update};
+
+/// Share of the reference by which what is computed again may differ: a tenth of the smallest discrepancy told.
+const SAME: f64 = 1e-4;
+
+/// All scenes but the examples, some of which are for reduced models alone.
+fn scenes() -> Vec<Scene> {
+    let files = every().unwrap().into_iter().filter(|file| !file.parent().unwrap().ends_with("examples"));
+    files.map(|file| Scene::read(file).unwrap()).collect()
+}
+
+fn recorded(known: &[Validation], scene: &str, model: Model) -> Option<Validation> {
+    known.iter().find(|v| v.scene == scene && v.model == model.to_string()).cloned()
+}
+
+#[test]
+fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
+    let known = shipped().unwrap();
+    let (scenes, mut held, mut stored) = (scenes(), 0, 0);
+    for entry in &known {
+        let is_of = |scene: &Scene| entry.is_of(scene, entry.model.parse().unwrap());
+        assert!(scenes.iter().any(is_of), "{} is no scene any more", entry.scene);
+        assert_eq!(entry.revision, REFERENCE_REVISION, "{}", entry.scene);
+    }
+    for scene in scenes.iter().filter(|scene| scene.plate_impact().is_ok()) {
+        for model in [Model::A, Model::B, Model::C] {
+            let at = format!("{} {model}", scene.name);
+            let entry =
+                recorded(&known, &scene.name, model).unwrap_or_else(|| panic!("{at} is not recorded"));
+            let reduced = Reduced::new(scene, model, None).unwrap().run_with_history(1e-7).unwrap();
+            assert_eq!(reduced.summary.modes, entry.modes, "{at}");
+            assert!(entry.rows.len() >= 3, "{at}");
+            for row in &entry.rows {
+                let now = reduced.summary.value(&row.quantity).unwrap();
+                let moved = (now - row.reduced).abs() / row.reference.abs();
+                assert!(moved < SAME, "{at}, {}: {now}, recorded {}", row.quantity, row.reduced);
+            }
+            // a model that hits the reference lies where the reference lies
+            let place = entry.place.unwrap();
+            let own = Place::of(scene, &reduced.summary).unwrap();
+            assert!(model != Model::C || own.factor(&place) < 1.02, "{at}: {own:?} {place:?}");
+            held += 1;
+            if let Lookup::Found(reference) = Store::shipped().unwrap().find(scene, Resolution::Paper) {
+                let again = Validation::of(scene, &compare_scene(scene, &reference.outcome, &[reduced]));
+                assert_eq!(again[0].place, entry.place, "{at}");
+                for (row, recorded) in again[0].rows.iter().zip(&entry.rows) {
+                    assert_eq!((row.reference, row.band), (recorded.reference, recorded.band), "{at}");
+                }
+                stored += 1;
+            }
+        }
+    }
+    assert_eq!((held, stored), (known.iter().filter(|v| v.place.is_some()).count(), 3 * 3));
+}
+
+fn at(scene: &str, measures: [f64; 3], off: f64) -> Validation {
+    let mut entry = recorded(&shipped().unwrap(), "scaled-plate-r10", Model::C).unwrap();
+    let [patch_over_thickness, contact_over_period, mass_ratio] = measures;
+    entry.place = Some(Place { patch_over_thickness, contact_over_period, mass_ratio });
+    entry.rows.iter_mut().for_each(|row| row.reduced = row.reference * (1.0 + off));
+    Validation { scene: scene.into(), scene_hash: scene.into(), ..entry }
+}
+
+#[test]
+fn near_is_near_in_all_three_numbers() {
+    let own = at("own", [0.1, 1.0, 1.0], 0.5);
+    let near = at("near", [0.19, 0.6, 1.0], 0.002);
+    let far = [
+        at("patch", [0.21, 1.0, 1.0], 0.1),
+        at("contact", [0.1, 0.4, 1.0], 0.1),
+        at("mass", [0.1, 1.0, 3.0], 0.1),
+        Validation { model: "B".into(), ..at("other-model", [0.1, 1.0, 1.0], 0.1) },
+    ];
+    let place = own.place.unwrap();
+    let all: Vec<Validation> = far.iter().chain([&near, &own]).cloned().collect();
+    let of = |known: &[Validation], place: &Place| {
+        let vicinity = Vicinity::of(known, "C", &own.scene_hash, place).unwrap();
+        let names: Vec<String> = vicinity.near.iter().map(|v| v.scene.clone()).collect();
+        (names, vicinity.nearest.scene.clone(), vicinity.factor, vicinity.beyond)
+    };
+    let (names, nearest, factor, beyond) = of(&all, &place);
+    assert_eq!((&names[..], &*nearest, beyond.len()), (&["near".to_owned()][..], "near", 0));
+    assert!((factor - 1.9).abs() < 1e-12 && factor < NEAR);
+    let (names, nearest, factor, _) = of(&far, &place);
+    assert!(names.is_empty() && nearest == "patch" && factor > NEAR, "{nearest} {factor}");
+    // beyond everything that is known, in one number
+    let (_, _, _, beyond) = of(&all, &Place { contact_over_period: 0.3, ..place });
+    assert_eq!(beyond, [(1, 0.3, 0.4)]);
+    assert_eq!(Vicinity::of(std::slice::from_ref(&own), "C", &own.scene_hash, &place), None);
+}
+
+#[test]
+fn a_coarser_mesh_takes_no_finer_ones_place_unless_the_scene_is_another() {
+    let dir = tempfile::tempdir().unwrap();
+    let store = Store::open(Some(dir.path()));
+    let fine = at("one", [0.1, 1.0, 1.0], 0.001);
+    let coarse = Validation { dofs: Some(10), ..at("one", [0.1, 1.0, 1.0], 0.01) };
+    update(&store, std::slice::from_ref(&fine)).unwrap();
+    update(&store, std::slice::from_ref(&coarse)).unwrap();
+    assert_eq!(of_store(&store).unwrap(), [fine.clone()]);
+    let changed = Validation { scene_hash: "changed".into(), ..coarse };
+    update(&store, &[changed.clone(), at("other", [0.1, 1.0, 1.0], 0.0)]).unwrap();
+    let names: Vec<(String, String)> =
+        of_store(&store).unwrap().into_iter().map(|v| (v.scene, v.scene_hash)).collect();
+    assert_eq!(names, [("one", "changed"), ("other", "other")].map(|(a, b)| (a.into(), b.into())));
+    // what other models or another method of the reference gave is not believed
+    for old in [
+        Validation { program: "0.0.9".into(), ..changed.clone() },
+        Validation { revision: REFERENCE_REVISION - 1, ..changed },
+    ] {
+        update(&store, &[old]).unwrap();
+        assert_eq!(of_store(&store).unwrap().len(), 1);
+    }
+    let mut known = vec![at("b", [1.0; 3], 0.0)];
+    merge(&mut known, &[at("a", [1.0; 3], 0.0)]);
+    assert_eq!(known[0].scene, "a");
+}
