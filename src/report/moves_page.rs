@@ -19,7 +19,8 @@ pub fn moves_page(names: [&str; 2], moves: &Moves, above: f64) -> String {
     let size = |row: &Moved| row.relative.map_or(f64::INFINITY, f64::abs);
     let mut rows: Vec<&Moved> = moves.moved.iter().collect();
     rows.sort_by(|a, b| size(b).total_cmp(&size(a)));
-    let left_out = rows.len().saturating_sub(SHOWN);
+    // what is small by itself moves by much and means little
+    let (distances, rows): (Vec<&Moved>, Vec<&Moved>) = rows.into_iter().partition(|row| is_distance(row));
     let title = format!("{} of {} and {}", told(moves), names[0], names[1]);
     let body = html! {
         h1 { "What moved" }
@@ -29,11 +30,16 @@ pub fn moves_page(names: [&str; 2], moves: &Moves, above: f64) -> String {
         @if !rows.is_empty() {
             h2 { "Numbers" }
             p #search hidden { label { "Search " input type="search" autocomplete="off"; } " " output role="status" {} }
-            (scrolled("Numbers", &numbers(&rows[..rows.len() - left_out])))
+            (numbers("verdicts", &rows))
+        }
+        @if !distances.is_empty() {
+            h2 { "Distances of curves, and residuals" }
+            details { summary { (distances.len()) " moved: models against the reference, and conservation" } (numbers("distances", &distances)) }
+        }
+        @if !moves.moved.is_empty() {
             p.soft.note {
                 "B minus A over A, in %, on an axis that is logarithmic beyond its middle. Grey: the reference's 95 % band; what moved less "
-                "than that is no more than the mesh leaves open. "
-                @if left_out > 0 { (left_out) " smaller moves are not shown: " code { "--json" } " has them." }
+                "than that is no more than the mesh leaves open."
             }
         }
     };
@@ -65,19 +71,23 @@ fn verdicts(moved: &[MovedVerdict]) -> Markup {
     } }
 }
 
-fn numbers(rows: &[&Moved]) -> Markup {
+/// Whether it is the size of a difference rather than of something.
+fn is_distance(row: &Moved) -> bool {
+    ["_rms", "_max", "_residual"].iter().any(|ending| row.quantity.ends_with(ending))
+}
+
+/// The first of `rows` in a table of its own `class`, which its grid is called by.
+fn numbers(class: &str, rows: &[&Moved]) -> Markup {
+    let (shown, left_out) = rows.split_at(rows.len().min(SHOWN));
+    html! {
+        (scrolled("Numbers", &table(class, shown)))
+        @if !left_out.is_empty() { p.soft.note { (left_out.len()) " smaller moves are not shown: " code { "--json" } " has them." } }
+    }
+}
+
+fn table(class: &str, rows: &[&Moved]) -> Markup {
     let sizes = rows.iter().flat_map(|row| [row.relative, row.relative_band()]).flatten();
-    // as fine as the smallest move: what rounding moves is 1e-12 of its size
-    let finest = rows
-        .iter()
-        .filter_map(|row| row.relative)
-        .map(f64::abs)
-        .filter(|size| *size > 0.0)
-        .fold(1e-4, f64::min);
-    let axis = SymmetricLog {
-        linear: 10_f64.powf(finest.log10().floor()).max(1e-9),
-        ..SymmetricLog::over(sizes, true)
-    };
+    let axis = SymmetricLog::over(sizes, true);
     let headings = [
         ("scene", true),
         ("model", true),
@@ -87,19 +97,19 @@ fn numbers(rows: &[&Moved]) -> Markup {
         ("moved", false),
         ("band", false),
     ];
-    html! { table.verdicts.moves data-linear=(axis.linear) data-limit=(axis.limit) {
+    html! { table.moves.(class) data-linear=(axis.linear) data-limit=(axis.limit) {
         thead { tr {
             @for (heading, is_left) in headings { th.sorts.left[is_left] scope="col" { (heading) } }
-            th.picture.left scope="col" { (scale(&axis, "grid")) }
+            th.picture.left scope="col" { (scale(&axis, &format!("grid-{class}"))) }
         } }
-        tbody { @for row in rows { (number_row(row, &axis)) } }
+        tbody { @for row in rows { (number_row(row, &axis, class)) } }
     } }
 }
 
-fn number_row(row: &Moved, axis: &SymmetricLog) -> Markup {
+fn number_row(row: &Moved, axis: &SymmetricLog, class: &str) -> Markup {
     let size = [row.a, row.b].into_iter().flatten().map(f64::abs).fold(0.0, f64::max);
     let value = |value: Option<f64>| {
-        value.map_or("absent".into(), |value| with_unit(value, prefixed(&row.unit, size), 6))
+        value.map_or("absent".into(), |value| with_unit(value, prefixed(&row.unit, size), 5))
     };
     let band = row.relative_band();
     html! {
@@ -113,7 +123,7 @@ fn number_row(row: &Moved, axis: &SymmetricLog) -> Markup {
             td data-sort=[band] { @match band { Some(band) => { "±" (percent(Some(band)).trim_start_matches('+')) }, None => "–" } }
             td { svg height=(HEIGHT) width="100%" aria-hidden="true" {
                 @if let Some(band) = band { (bar("fig-band", axis, [-band, band], (1.0, "100%"))) }
-                use href="#grid" {}
+                use href=(format!("#grid-{class}")) {}
                 @if let Some(share) = row.relative {
                     svg x=(at(axis, share)) y=(0.5 * HEIGHT) overflow="visible" data-si=(share) { (mark_of(&row.model)) }
                 }

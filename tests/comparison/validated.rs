@@ -45,7 +45,7 @@ fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
             // a model that hits the reference lies where the reference lies
             let place = entry.place.unwrap();
             let own = Place::of(scene, &reduced.summary).unwrap();
-            assert!(model != Model::C || own.factor(&place) < 1.02, "{at}: {own:?} {place:?}");
+            assert!(model != Model::C || own.factor(&place) < 1.05, "{at}: {own:?} {place:?}");
             held += 1;
             if let Lookup::Found(reference) = Store::shipped().unwrap().find(scene, Resolution::Paper) {
                 let again = Validation::of(scene, &compare_scene(scene, &reference.outcome, &[reduced]));
