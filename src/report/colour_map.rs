@@ -123,14 +123,9 @@ impl Grid {
         html! {
             @for (j, row) in self.points.iter().enumerate() {
                 @let colours: Vec<Option<String>> = row.iter().map(coloured).collect();
-                @let mut i = 0;
-                @for same in colours.chunk_by(|a, b| a == b) {
-                    @let from = i;
-                    @let _ = i += same.len();
-                    @if let Some(colour) = &same[0] {
-                        rect x=(px(x[from])) width=(px(x[i] - x[from])) y=(px(y[j + 1])) height=(px(y[j] - y[j + 1])) fill=(colour)
-                            stroke=(colour) stroke-width="0.4" {}
-                    }
+                @for (from, to, colour) in runs(&colours) {
+                    rect x=(px(x[from])) width=(px(x[to] - x[from])) y=(px(y[j + 1])) height=(px(y[j] - y[j + 1])) fill=(colour)
+                        stroke=(colour) stroke-width="0.4" {}
                 }
             }
         }
@@ -157,10 +152,20 @@ impl Grid {
     }
 }
 
+/// Neighbours of the same colour: from which to before which.
+fn runs(colours: &[Option<String>]) -> impl Iterator<Item = (usize, usize, &String)> {
+    let same = colours.chunk_by(|a, b| a == b);
+    let placed = same.scan(0, |to, same| {
+        let from = std::mem::replace(to, *to + same.len());
+        Some((from, *to, same[0].as_ref()))
+    });
+    placed.filter_map(|(from, to, colour)| Some((from, to, colour?)))
+}
+
 /// Where a function that has these values at two places is zero, if it is between them.
 fn crossing((a, from): (Point, f64), (b, to): (Point, f64)) -> Option<Point> {
     let s = from / (from - to);
-    ((from < 0.0) != (to < 0.0) && s.is_finite()).then(|| (a.0 + s * (b.0 - a.0), a.1 + s * (b.1 - a.1)))
+    ((from < 0.0) != (to < 0.0) && s.is_finite()).then_some((a.0 + s * (b.0 - a.0), a.1 + s * (b.1 - a.1)))
 }
 
 /// The ends of the axis, and the middles between neighbours.
