@@ -98,7 +98,7 @@ fn a_scene_without_reference_has_its_models_run_alone_and_ends_with_that_status(
     watched.waits_for("1 scene compared", 1);
     watched.writes(&SCENE.replacen("\"33 mm\"", "\"30 mm\"", 1));
     watched.waits_for("reduced models alone", 1);
-    assert!(watched.said().contains("the paper reference of `scaled-plate-r10` is"), "{}", watched.said());
+    watched.waits_for("the paper reference of `scaled-plate-r10` is", 1);
     assert_eq!(watched.interrupted(), Some(11));
 }
 
