@@ -13,9 +13,11 @@ use tempfile::TempDir;
 struct Open {
     children: Vec<u32>,
     folders: Vec<PathBuf>,
+    /// The exit status of a program that ends in no other way; `None` = it ends by the signal.
+    status: Option<u8>,
 }
 
-static OPEN: Mutex<Open> = Mutex::new(Open { children: Vec::new(), folders: Vec::new() });
+static OPEN: Mutex<Open> = Mutex::new(Open { children: Vec::new(), folders: Vec::new(), status: None });
 
 fn open() -> MutexGuard<'static, Open> {
     OPEN.lock().unwrap_or_else(PoisonError::into_inner)
@@ -37,10 +39,18 @@ pub fn listen() -> io::Result<()> {
             for folder in &open.folders {
                 let _ = std::fs::remove_dir_all(folder);
             }
+            if let Some(status) = open.status {
+                std::process::exit(status.into());
+            }
             let _ = signal_hook::low_level::emulate_default_handler(signal);
         }
     };
     std::thread::Builder::new().name("signals".into()).spawn(end).map(drop)
+}
+
+/// From now on an interruption is how the program is meant to end, with `status`.
+pub fn ends_with(status: u8) {
+    open().status = Some(status);
 }
 
 /// Other systems end children with their console.

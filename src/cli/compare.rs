@@ -65,8 +65,46 @@ pub struct Arguments {
     json: JsonArgument,
 }
 
+/// What `compare` takes and `gate` does not.
+#[derive(Debug, Args)]
+pub struct OwnArguments {
+    #[command(flatten)]
+    shared: Arguments,
+    /// Compare again whenever a scene's file (or a measured one) changes, until Ctrl-C, which ends with the status of the last
+    /// comparison. A file that is not valid is told of and waited for; of a plate without a reference the models run alone
+    #[arg(long, conflicts_with = "json")]
+    watch: bool,
+}
+
+/// Compares, once or whenever a file changes.
+pub fn run(context: &Context, OwnArguments { shared, watch }: OwnArguments) -> Result<ExitStatus> {
+    let arguments = &shared.with_tables_measured();
+    if !watch {
+        return once(context, arguments);
+    }
+    let files = compare_inputs::files(&arguments.scenes)?.into_iter().chain(arguments.measured.clone());
+    super::watch::watch(&files.collect::<Vec<_>>(), || {
+        once(context, arguments).inspect_err(|error| {
+            if matches!(error, Error::Reference(_)) {
+                tell_alone(context, arguments);
+            }
+        })
+    })
+}
+
+/// What the reduced models say without a reference, as far as they do.
+fn tell_alone(context: &Context, arguments: &Arguments) {
+    for (_, scene) in compare_inputs::scenes(&arguments.scenes).unwrap_or_default() {
+        let told = kinds::of(&scene).alone(&scene, (&arguments.models[..], arguments.tolerance));
+        let told = told.and_then(|outcomes| super::print(&report::alone(&scene, &outcomes)));
+        if let Err(error) = told {
+            context.note(super::describe(&error));
+        }
+    }
+}
+
 /// Compares and writes the report. The verdict is shown; the exit status tells only whether the job was done.
-pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+fn once(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let job = Job::read(context, arguments)?;
     job.check_folders(&[])?;
     let results = job.results(context)?;

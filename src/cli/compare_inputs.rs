@@ -15,16 +15,17 @@ pub(super) fn scenes(names: &[String]) -> Result<Vec<(PathBuf, Scene)>> {
     scenes_or(names, scene::shipped)
 }
 
+/// The files of the scenes named, or of all shipped ones.
+pub(super) fn files(names: &[String]) -> Result<Vec<PathBuf>> {
+    if names.is_empty() { scene::shipped() } else { names.iter().map(|name| scene::resolve(name)).collect() }
+}
+
 /// The scenes named, or those of `all`.
 pub(super) fn scenes_or(
     names: &[String],
     all: fn() -> Result<Vec<PathBuf>>,
 ) -> Result<Vec<(PathBuf, Scene)>> {
-    let paths = if names.is_empty() {
-        all()?
-    } else {
-        names.iter().map(|name| scene::resolve(name)).collect::<Result<Vec<_>>>()?
-    };
+    let paths = if names.is_empty() { all()? } else { files(names)? };
     let read = |path: PathBuf| Scene::read(&path).map(|scene| (path, scene));
     let scenes = paths.into_iter().map(read).collect::<Result<Vec<_>>>()?;
     for (i, (_, scene)) in scenes.iter().enumerate() {

@@ -22,6 +22,7 @@ mod stress;
 mod study;
 mod sweep;
 mod validated_scenes;
+mod watch;
 
 use crate::error::{Error, ExitStatus, Result};
 use crate::scene::{self, Scene};
@@ -63,8 +64,10 @@ enum Command {
     #[command(after_help = "Example: impactcheck reference scaled-plate-r10 --resolution coarse")]
     Reference(reference::Arguments),
     /// Compare reduced models with the reference and write the report; the main job
-    #[command(after_help = "Example: impactcheck compare scaled-plate-r10 --models A,B --out my-report")]
-    Compare(compare::Arguments),
+    #[command(
+        after_help = "Examples: impactcheck compare scaled-plate-r10 --models A,B --out my-report\n          impactcheck compare my-impact.toml --watch"
+    )]
+    Compare(compare::OwnArguments),
     /// Compare, and let the scene's tolerances decide the exit status
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
     Gate(gate::Arguments),
@@ -97,9 +100,12 @@ enum Command {
     #[command(after_help = "Example: impactcheck doctor")]
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
-    #[command(after_help = "Example: impactcheck schema > scene.schema.json")]
+    #[command(after_help = "Example: impactcheck schema > impactcheck.schema.json")]
     Schema,
     /// Write a valid scene file to start from
+    ///
+    /// Beside it stands impactcheck.schema.json, what `impactcheck schema` prints: the scene's first line (#:schema) names it, and an
+    /// editor with a TOML language server (Taplo, Even Better TOML) completes and checks with it.
     #[command(after_help = "Example: impactcheck new my-impact && impactcheck reduced my-impact.toml")]
     New(new::Arguments),
     /// Print the completions of a shell
@@ -163,7 +169,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     let result = match cli.command {
         Command::Reduced(arguments) => reduced::run(&context, &arguments),
         Command::Reference(arguments) => reference::run(&context, &arguments),
-        Command::Compare(arguments) => compare::run(&context, &arguments.with_tables_measured()),
+        Command::Compare(arguments) => compare::run(&context, arguments),
         Command::Coverage(arguments) => coverage::run(&context, &arguments),
         Command::Mesh(arguments) => mesh::run(&context, &arguments),
         Command::Gate(mut arguments) => {

@@ -1,9 +1,10 @@
 //! `impactcheck new`: a scene of one's own to start from.
 
 use super::Context;
+use super::schema::FILE;
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::scene::Scene;
+use crate::scene::{self, Scene};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -38,7 +39,7 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// Writes a valid scene file; one that exists stays as it is.
+/// Writes a valid scene file and, beside it, the schema that its first line names; a scene that exists stays as it is.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let named = arguments.name.to_string_lossy();
     let named = named.strip_suffix(".toml").unwrap_or(&named);
@@ -50,9 +51,10 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             file.display()
         )));
     }
-    let text = arguments.kind.starter().replacen("NAME", name, 1);
+    let text = format!("#:schema ./{FILE}\n{}", arguments.kind.starter().replacen("NAME", name, 1));
     // a name that can't be one is refused as it would be in a file
     Scene::parse(&file.display().to_string(), &text)?;
+    write_file(&file.with_file_name(FILE), scene::schema().to_string().as_bytes())?;
     write_file(&file, text.as_bytes())?;
     context.note(format_args!(
         "{0}: change what you like, then `impactcheck reduced {0}` and, with FEniCSx, `impactcheck compare {0} --compute --out my-report`",

@@ -2,10 +2,11 @@
 
 use super::progress::Counter;
 use super::{Context, JsonArgument};
-use crate::error::{ExitStatus, Result};
+use crate::error::{Error, ExitStatus, Result};
+use crate::file::write_file;
 use crate::report;
-use crate::report::TableFormat;
-use crate::study::sweep::{self, Plan, Shard, Table};
+use crate::report::{FigureFormat, TableFormat};
+use crate::study::sweep::{self, Drawn, Plan, Shard, Table};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -13,7 +14,7 @@ use std::time::Instant;
 /// What a sweep file looks like, for `--help`.
 pub const EXAMPLE: &str = r#"A sweep file (TOML):
   scene     = "scaled-plate-r10"     # a file beside this one, or a shipped scene
-  model     = "B"                    # A, B or C; absent = the scene's, else B
+  model     = "B"                    # A, B, C or several, ["B", "C"]; absent = the scene's, else B
   modes     = 16                     # absent = the scene's, else the model's
   tolerance = 1e-4                   # relative error of the efficiency; absent = 1e-4
   sampling  = "grid"                 # or "latin-hypercube", with samples = 10000 and seed = 1
@@ -28,6 +29,10 @@ pub const EXAMPLE: &str = r#"A sweep file (TOML):
   [[vary]]
   field  = "materials.steel.youngs_modulus"
   values = ["100 GPa", "210 GPa"]
+
+Where one or two parameters vary, the folder gets sweep.svg: curves over one parameter, a line per model; a map in colours over
+two, one per model. It has the stored references (of shipped scenes and of those beside the swept one) that differ from the scene
+in the varied fields alone, with their bands, and where the paper's section 4.1 expects the optimum.
 
 An interrupted sweep goes on where it stopped when it is started again. As the array job of a cluster:
   impactcheck study sweep FILE --out DIR --shard $SLURM_ARRAY_TASK_ID/16
@@ -45,6 +50,12 @@ pub struct Arguments {
     /// Format of the table: csv or parquet
     #[arg(long, default_value = "csv")]
     format: TableFormat,
+    /// Quantities that are drawn
+    #[arg(long = "quantity", value_delimiter = ',', default_value = "efficiency", value_name = "NAME,…")]
+    quantities: Vec<Drawn>,
+    /// Write the drawing to this file as well (.svg, .pdf or .png)
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
     #[command(flatten)]
     json: JsonArgument,
 }
@@ -58,6 +69,41 @@ pub struct SweepArguments {
     shard: Option<Shard>,
 }
 
+impl Arguments {
+    /// The plan, which can be drawn if a figure is asked for.
+    fn plan(&self) -> Result<Plan> {
+        let plan = Plan::read(&self.file)?;
+        if let Some(file) = &self.figure {
+            FigureFormat::of(file)?;
+            let count = plan.parameters().len();
+            if !is_drawn(&plan) {
+                let file = file.display();
+                return Err(Error::Usage(format!(
+                    "--figure {file}: {count} parameters vary; one or two can be drawn"
+                )));
+            }
+        }
+        Ok(plan)
+    }
+}
+
+fn is_drawn(plan: &Plan) -> bool {
+    (1..=2).contains(&plan.parameters().len())
+}
+
+/// Writes the drawing into `dir` and where it is asked for.
+fn draw(context: &Context, arguments: &Arguments, plan: &Plan, dir: &Path, table: &Table) -> Result<()> {
+    let references = sweep::references(plan, &context.store());
+    let svg = sweep::figure(table, &arguments.quantities, &references)?;
+    let path = dir.join("sweep.svg");
+    write_file(&path, svg.as_bytes())?;
+    context.note(format_args!("wrote {}", path.display()));
+    match &arguments.figure {
+        Some(file) => write_file(file, &FigureFormat::of(file)?.of_svg(svg, plan.scene())?),
+        None => Ok(()),
+    }
+}
+
 fn folder(arguments: &Arguments) -> PathBuf {
     arguments.out.clone().unwrap_or_else(|| {
         let stem = arguments.file.file_stem().unwrap_or_default().to_string_lossy();
@@ -68,7 +114,7 @@ fn folder(arguments: &Arguments) -> PathBuf {
 /// Runs what has no record yet, and writes the table when nothing is missing.
 pub fn run(context: &Context, arguments: &SweepArguments) -> Result<ExitStatus> {
     let start = Instant::now();
-    let plan = Plan::read(&arguments.common.file)?;
+    let plan = arguments.common.plan()?;
     let dir = folder(&arguments.common);
     report::check_writable(&dir)?;
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
@@ -81,26 +127,29 @@ pub fn run(context: &Context, arguments: &SweepArguments) -> Result<ExitStatus> 
         "{points} points, {fresh} of them run now, in {seconds:.2} s ({rate:.0} per second)"
     ));
     let table = Table::join(&plan, &dir, shard)?;
-    finish(context, &arguments.common, &dir, &table, arguments.shard.is_none())
+    finish(context, &arguments.common, (&plan, &dir), &table, arguments.shard.is_none())
 }
 
 /// Joins the records of all shards.
 pub fn merge(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let plan = Plan::read(&arguments.file)?;
+    let plan = arguments.plan()?;
     let dir = folder(arguments);
     let table = Table::join(&plan, &dir, Shard::WHOLE)?;
-    finish(context, arguments, &dir, &table, true)
+    finish(context, arguments, (&plan, &dir), &table, true)
 }
 
 fn finish(
     context: &Context,
     arguments: &Arguments,
-    dir: &Path,
+    (plan, dir): (&Plan, &Path),
     table: &Table,
     complete: bool,
 ) -> Result<ExitStatus> {
     if complete {
         context.note(format_args!("wrote {}", table.write(dir, arguments.format)?.display()));
+        if is_drawn(plan) {
+            draw(context, arguments, plan, dir, table)?;
+        }
     }
     if arguments.json.json {
         super::print_json(&table.document())?;
@@ -109,7 +158,11 @@ fn finish(
     let [done, invalid, failed] = table.counts();
     let mut text = format!("{done} impacts, {invalid} scenes that are not valid, {failed} failures");
     if let Some((record, efficiency)) = table.best() {
-        text += &format!("\nhighest efficiency {efficiency:.4} at point {}", record.index);
+        text += &format!(
+            "\nhighest efficiency {efficiency:.4} at point {} (model {})",
+            record.index,
+            plan.model(record.index)
+        );
         for (name, number, unit) in table.place(record) {
             text += &format!("\n  {name} = {number:.6e}{}{unit}", if unit.is_empty() { "" } else { " " });
         }

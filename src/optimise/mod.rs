@@ -254,16 +254,16 @@ impl Optimum {
                 Series {
                     name: "efficiency, other variables at the optimum".into(),
                     points: variable.profile.iter().map(|[x, e]| (*x, 100.0 * e)).collect(),
-                    marks: false,
+                    ..Series::default()
                 },
                 Series {
                     name: "optimum".into(),
                     points: vec![(variable.optimum, 100.0 * self.efficiency)],
                     marks: true,
+                    ..Series::default()
                 },
             ],
-            counted: false,
-            band: None,
+            ..ChartPanel::default()
         };
         chart(&format!("{}: optimum", self.scene), &self.variables.iter().map(panel).collect::<Vec<_>>())
     }

@@ -1,18 +1,18 @@
 //! Curves over one axis, panel above panel: the figures of studies, sweeps and series of measurements.
 
+use super::plot_axis::{Axis, Plot};
 use super::polyline::{Point, path};
-use super::ticks::{tick_label, ticks};
 use maud::{Markup, PreEscaped, html};
 
 /// Width in px.
-const CHART_WIDTH: f64 = 760.0;
-const LEFT: f64 = 74.0;
+pub(super) const CHART_WIDTH: f64 = 760.0;
+pub(super) const LEFT: f64 = 74.0;
 const RIGHT: f64 = 16.0;
 const PANEL_HEIGHT: f64 = 300.0;
-const PANEL_GAP: f64 = 62.0;
-const FONT_SIZE: f64 = 13.0;
+pub(super) const PANEL_GAP: f64 = 62.0;
+pub(super) const FONT_SIZE: f64 = 13.0;
 /// Height of a row of the legend, px.
-const LEGEND_ROW: f64 = 22.0;
+pub(super) const LEGEND_ROW: f64 = 22.0;
 
 /// Okabe and Ito's colours, which colour-blind readers can tell apart, and dashes that do without colours.
 const STYLES: [(&str, &str); 7] = [
@@ -25,6 +25,9 @@ const STYLES: [(&str, &str); 7] = [
     ("#56b4e9", "2 2 7 2"),
 ];
 
+pub(super) const STYLE: &str = "text{fill:#1a1a1a}.frame{stroke:#444;fill:none}.grid{stroke:#e3e3e3}.band{fill:#ececec}\
+.said{stroke:#666;stroke-dasharray:6 4}";
+
 /// Points that belong together.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
@@ -34,6 +37,10 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// Marks at the points instead of a line through them.
     pub marks: bool,
+    /// Half widths of the bands of marks, in the order of the points; empty = they have none.
+    pub half_widths: Vec<f64>,
+    /// Which of the looks it has; `None` = that of its place in the list.
+    pub look: Option<usize>,
 }
 
 /// One coordinate system.
@@ -47,6 +54,10 @@ pub struct ChartPanel {
     pub series: Vec<Series>,
     /// Whether the horizontal axis counts something: marks at whole numbers only.
     pub counted: bool,
+    /// Whether the horizontal axis is logarithmic.
+    pub logarithmic: bool,
+    /// Places on the horizontal axis of which somebody says something, and what.
+    pub statements: Vec<(f64, String)>,
     /// A band of values across the panel (mean and scatter): middle and half width.
     pub band: Option<(f64, f64)>,
 }
@@ -62,7 +73,7 @@ pub fn chart(title: &str, panels: &[ChartPanel]) -> String {
         svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {width} {height}")) width=(width) height=(height)
             font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) role="img" {
             title { (title) }
-            style { (PreEscaped("text{fill:#1a1a1a}.frame{stroke:#444;fill:none}.grid{stroke:#e3e3e3}.band{fill:#ececec}")) }
+            style { (PreEscaped(STYLE)) }
             rect width=(width) height=(height) fill="#ffffff" {}
             (legend.drawing)
             @for (k, panel) in panels.iter().enumerate() {
@@ -91,81 +102,76 @@ fn legend(series: &[&Series], page: f64) -> Legend {
     }
     let drawing = html! {
         @for (k, x, y, series) in &items {
-            @if series.marks { (mark(*k, (x + 15.0, *y))) }
-            @else { (line(*k, &[(*x, *y), (x + 30.0, *y)])) }
+            @if series.marks { (mark(style(*k, series), (x + 15.0, *y))) }
+            @else { (line(style(*k, series), &[(*x, *y), (x + 30.0, *y)])) }
             text x=(format!("{:.2}", x + 37.0)) y=(y + 4.5) { (series.name) }
         }
     };
     Legend { rows: if items.is_empty() { 0 } else { row + 1 }, drawing }
 }
 
-fn line(k: usize, points: &[Point]) -> Markup {
-    let (colour, dash) = STYLES[k % STYLES.len()];
+/// Colour and dashes of series number `k`.
+fn style(k: usize, series: &Series) -> (&'static str, &'static str) {
+    STYLES[series.look.unwrap_or(k) % STYLES.len()]
+}
+
+fn line((colour, dash): (&str, &str), points: &[Point]) -> Markup {
     html! {
         path d=(path(points)) fill="none" stroke=(colour) stroke-width="1.8" stroke-dasharray=(dash) stroke-linejoin="round" {}
     }
 }
 
-fn mark(k: usize, (x, y): Point) -> Markup {
-    let colour = STYLES[k % STYLES.len()].0;
+fn mark((colour, _): (&str, &str), (x, y): Point) -> Markup {
     html! { circle cx=(format!("{x:.2}")) cy=(format!("{y:.2}")) r="3.2" fill=(colour) {} }
-}
-
-/// Lowest and highest of `values`, apart.
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values
-        .filter(|v| v.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-    match (low <= high, high - low > 0.0) {
-        (false, _) => (0.0, 1.0),
-        (true, false) => (low - 0.5, high + 0.5),
-        _ => (low, high),
-    }
 }
 
 fn draw(panel: &ChartPanel, page: f64, top: f64) -> Markup {
     let points = || panel.series.iter().flat_map(|series| &series.points);
+    let ends = |series: &Series| -> Vec<f64> {
+        let ends = series.points.iter().zip(&series.half_widths);
+        ends.flat_map(|(point, half)| [point.1 - half, point.1 + half]).collect()
+    };
     let band = panel.band.map(|(middle, half)| [middle - half, middle + half]);
-    let (left, right) = range(points().map(|p| p.0));
-    let (low, high) = range(points().map(|p| p.1).chain(band.into_iter().flatten()));
-    let room = 0.04 * (high - low);
-    // a range that begins near zero begins at zero
-    let low = if low >= 0.0 && low < 0.3 * high { 0.0 } else { low - room };
-    let high = high + room;
+    let statements = panel.statements.iter().map(|(x, _)| *x);
+    let x = Axis::over(points().map(|p| p.0).chain(statements), panel.logarithmic);
+    let bars = panel.series.iter().flat_map(ends);
+    let y = Axis::over(points().map(|p| p.1).chain(band.into_iter().flatten()).chain(bars), false);
     // marks at the very edge would be cut
-    let side = if panel.series.iter().any(|series| series.marks) { 0.03 * (right - left) } else { 0.0 };
-    let (left, right) = (left - side, right + side);
-    let width = page - LEFT - RIGHT;
-    let x_of = |x: f64| LEFT + width * (x - left) / (right - left);
-    let y_of = |y: f64| top + PANEL_HEIGHT * (high - y) / (high - low);
-    let (mut x_marks, y_marks) = (ticks(left, right, (width / 70.0) as usize), ticks(low, high, 6));
+    let side = if panel.series.iter().any(|series| series.marks) { 0.03 } else { 0.0 };
+    let (width, height) = (page - LEFT - RIGHT, PANEL_HEIGHT);
+    let plot = Plot { left: LEFT, top, width, height, x: x.widened(side), y: y.of_quantity() };
+    let (mut x_marks, y_marks) = (plot.x.marks((width / 70.0) as usize), plot.y.marks(6));
     x_marks.retain(|x| !panel.counted || x.fract() == 0.0);
     let at = |value: f64| format!("{value:.2}");
     html! {
         @if let Some([from, to]) = band {
-            rect.band x=(LEFT) width=(width) y=(at(y_of(to))) height=(at(y_of(from) - y_of(to))) {}
+            rect.band x=(LEFT) width=(width) y=(at(plot.y(to))) height=(at(plot.y(from) - plot.y(to))) {}
         }
-        g stroke-width="1" {
-            @for x in &x_marks { line.grid x1=(at(x_of(*x))) x2=(at(x_of(*x))) y1=(top) y2=(top + PANEL_HEIGHT) {} }
-            @for y in &y_marks { line.grid x1=(LEFT) x2=(LEFT + width) y1=(at(y_of(*y))) y2=(at(y_of(*y))) {} }
-        }
-        @for x in &x_marks {
-            text x=(at(x_of(*x))) y=(top + PANEL_HEIGHT + 19.0) text-anchor="middle" { (tick_label(*x, &x_marks)) }
-        }
-        @for y in &y_marks {
-            text x=(LEFT - 8.0) y=(at(y_of(*y) + 0.36 * FONT_SIZE)) text-anchor="end" { (tick_label(*y, &y_marks)) }
-        }
-        text x=(LEFT + 0.5 * width) y=(top + PANEL_HEIGHT + 41.0) text-anchor="middle" { (panel.x_label) }
-        text transform=(format!("translate(17 {:.2}) rotate(-90)", top + 0.5 * PANEL_HEIGHT)) text-anchor="middle" {
-            (panel.y_label)
+        (plot.grid(&x_marks, &y_marks))
+        @for (x, statement) in &panel.statements {
+            @let right = plot.x.place(*x) > 0.5;
+            line.said x1=(at(plot.x(*x))) x2=(at(plot.x(*x))) y1=(top) y2=(top + height) {}
+            text x=(at(plot.x(*x) + if right { -6.0 } else { 6.0 })) y=(top + height - 10.0) text-anchor=(if right { "end" } else { "start" }) {
+                (statement)
+            }
         }
         @for (k, series) in panel.series.iter().enumerate() {
-            @let drawn: Vec<Point> = series.points.iter().map(|p| (x_of(p.0), y_of(p.1))).collect();
+            @let drawn: Vec<Point> = series.points.iter().map(|p| plot.at(*p)).collect();
             @if series.marks {
-                @for point in drawn.iter().filter(|p| p.0.is_finite() && p.1.is_finite()) { (mark(k, *point)) }
-            } @else { (line(k, &drawn)) }
+                @for (point, half) in series.points.iter().zip(&series.half_widths) {
+                    @let (x, low, high) = (plot.x(point.0), plot.y(point.1 - half), plot.y(point.1 + half));
+                    path d=(format!("M{x:.2} {low:.2}V{high:.2}M{0:.2} {low:.2}H{1:.2}M{0:.2} {high:.2}H{1:.2}", x - 4.0, x + 4.0))
+                        fill="none" stroke=(style(k, series).0) {}
+                }
+                @for point in drawn.iter().filter(|p| p.0.is_finite() && p.1.is_finite()) { (mark(style(k, series), *point)) }
+            } @else {
+                // a value that is missing is a gap
+                @for part in drawn.split(|p| !p.1.is_finite()).filter(|part| !part.is_empty()) {
+                    @if let [alone] = part { (mark(style(k, series), *alone)) } @else { (line(style(k, series), part)) }
+                }
+            }
         }
-        rect.frame x=(LEFT) y=(top) width=(width) height=(PANEL_HEIGHT) {}
+        (plot.frame(&x_marks, &y_marks, [&panel.x_label, &panel.y_label], FONT_SIZE))
     }
 }
 
@@ -177,8 +183,9 @@ mod tests {
     fn every_series_is_drawn_and_named_and_the_picture_can_be_rastered() {
         let series = |name: &str, marks| Series {
             name: name.into(),
-            points: vec![(1.0, 10.0), (2.0, f64::NAN), (3.0, 20.0)],
+            points: vec![(1.0, 10.0), (2.0, f64::NAN), (3.0, 20.0), (4.0, 18.0)],
             marks,
+            ..Series::default()
         };
         let panel = ChartPanel {
             x_label: "Radius in mm".into(),
@@ -186,10 +193,15 @@ mod tests {
             series: vec![series("a < b", false), series("measured", true)],
             counted: true,
             band: Some((15.0, 1.0)),
+            ..ChartPanel::default()
         };
         let svg = chart("example", &[panel.clone(), panel]);
-        assert_eq!(svg.matches("<path").count(), 1 + 2, "legend and both panels");
-        assert_eq!(svg.matches("<circle").count(), 1 + 2 * 2);
+        assert_eq!(
+            svg.matches("<path").count(),
+            1 + 2 * 2,
+            "legend, and in both panels what is beyond the gap"
+        );
+        assert_eq!(svg.matches("<circle").count(), 1 + 2 * (1 + 3), "and what is alone before it");
         assert!(svg.contains("a &lt; b") && svg.contains("Radius in mm") && !svg.contains("NaN"), "{svg}");
         assert!(!svg.contains(">1.5<") && svg.contains(">3<"), "whole numbers only: {svg}");
         assert!(super::super::png(&svg, 1.0).expect("PNG").starts_with(b"\x89PNG"));

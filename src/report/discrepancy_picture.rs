@@ -61,6 +61,7 @@ fn table(name: &str, quantities: &[&str], comparison: &SceneComparison, axis: &S
 
 /// The axis above the rows, which use the grid `id` that is defined here.
 pub(super) fn scale(axis: &SymmetricLog, id: &str) -> Markup {
+    let zero = axis.ticks().iter().position(|tick| *tick == 0.0).unwrap_or(0);
     html! {
         svg height="22" width="100%" role="img" aria-label="Axis in per cent" {
             defs { g id=(id) { @for tick in axis.ticks() {
@@ -68,7 +69,7 @@ pub(super) fn scale(axis: &SymmetricLog, id: &str) -> Markup {
             } } }
             // next to zero there is no room
             @for (k, tick) in axis.ticks().iter().enumerate().filter(|(_, t)| **t == 0.0 || t.abs() > 5.0 * axis.linear) {
-                text.fig-text.alternate[k % 2 == 1] x=(at(axis, *tick)) y="15" text-anchor="middle" { (label(*tick)) }
+                text.fig-text.alternate[k.abs_diff(zero) % 2 == 1] x=(at(axis, *tick)) y="15" text-anchor="middle" { (label(*tick)) }
             }
         }
     }

@@ -19,6 +19,18 @@ pub enum FigureFormat {
 }
 
 impl FigureFormat {
+    /// A stand-alone drawing in this format.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if it can't be drawn.
+    pub fn of_svg(self, svg: String, title: &str) -> Result<Vec<u8>> {
+        match self {
+            FigureFormat::Svg => Ok(svg.into_bytes()),
+            FigureFormat::Pdf => super::pdf::pdf(&svg, title),
+            FigureFormat::Png => super::png::printed_png(&svg, RESOLUTION),
+        }
+    }
+
     /// The format that the ending of `file` stands for.
     ///
     /// # Errors
@@ -42,10 +54,5 @@ impl FigureFormat {
 /// # Errors
 /// [`Error::Internal`] if it can't be drawn.
 pub fn figure_file(report: &SceneReport, width: f64, format: FigureFormat) -> Result<Vec<u8>> {
-    let svg = printed_figure(report, width);
-    match format {
-        FigureFormat::Svg => Ok(svg.into_bytes()),
-        FigureFormat::Pdf => super::pdf::pdf(&svg, &report.scene.name),
-        FigureFormat::Png => super::png::printed_png(&svg, RESOLUTION),
-    }
+    format.of_svg(printed_figure(report, width), &report.scene.name)
 }

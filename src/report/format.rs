@@ -5,8 +5,8 @@ use maud::{Markup, html};
 /// Unit with a prefix: a value in the unit times `factor` is the number to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prefixed {
-    pub(super) unit: &'static str,
-    pub(super) factor: f64,
+    pub(crate) unit: &'static str,
+    pub(crate) factor: f64,
 }
 
 /// Prefix of `unit` that suits a value of magnitude `scale`.

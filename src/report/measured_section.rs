@@ -25,10 +25,14 @@ pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
     let level = |partner: &Partner| Series {
         name: if partner.partner == "reference" { "FE".into() } else { format!("model {}", partner.partner) },
         points: partner.efficiency.map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
-        marks: false,
+        ..Series::default()
     };
-    let series =
-        measured.partners.iter().map(level).chain([Series { name: "measured".into(), points, marks: true }]);
+    let series = measured.partners.iter().map(level).chain([Series {
+        name: "measured".into(),
+        points,
+        marks: true,
+        ..Series::default()
+    }]);
     let band =
         measured.efficiency.as_ref().and_then(|e| Some((100.0 * e.mean, 100.0 * e.standard_deviation?)));
     let panel = ChartPanel {
@@ -37,6 +41,7 @@ pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
         series: series.collect(),
         counted: true,
         band,
+        ..ChartPanel::default()
     };
     Some(chart(&format!("{}: efficiency of repeated impacts", report.scene.name), &[panel]))
 }

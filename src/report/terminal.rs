@@ -4,7 +4,8 @@ use super::Report;
 use super::presentation;
 use super::summary_column::Column;
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
-use crate::result::Summary;
+use crate::result::{Outcome, Summary};
+use crate::scene::Scene;
 use anstyle::{AnsiColor, Style};
 
 /// Styles; whoever prints takes them away where they can't be seen.
@@ -73,8 +74,7 @@ pub fn terminal(report: &Report) -> String {
         let comparison = &scene.comparison;
         let (reference, columns) = (&comparison.reference, presentation::of(scene.scene).columns());
         text += &headline(comparison);
-        let headings: String = columns.iter().map(|column| format!("{:>22}", column.heading)).collect();
-        text += &format!("  {:<10}{headings}  verdict\n", "");
+        text += &format!("{}  verdict\n", headings(columns));
         text += &format!("  {:<10}{}\n", "reference", cells(columns, reference, None));
         for model in &comparison.models {
             let row = cells(columns, &model.summary, Some(reference));
@@ -87,6 +87,25 @@ pub fn terminal(report: &Report) -> String {
         text.push('\n');
     }
     text
+}
+
+/// The same table of reduced models alone; nothing if there are none.
+pub fn alone(scene: &Scene, outcomes: &[Outcome]) -> String {
+    if outcomes.is_empty() {
+        return String::new();
+    }
+    let columns = presentation::of(scene).columns();
+    let mut text = format!("{}: reduced models alone\n{}\n", scene.name, headings(columns));
+    for Outcome { summary, .. } in outcomes {
+        let model = summary.model.as_deref().unwrap_or_default();
+        text += &format!("  {model:<10}{}\n", cells(columns, summary, None));
+    }
+    text
+}
+
+fn headings(columns: &[Column]) -> String {
+    let headings: String = columns.iter().map(|column| format!("{:>22}", column.heading)).collect();
+    format!("  {:<10}{headings}", "")
 }
 
 fn cells(columns: &[Column], summary: &Summary, reference: Option<&Summary>) -> String {

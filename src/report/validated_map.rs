@@ -101,8 +101,8 @@ impl<'a> ValidatedMap<'a> {
                 text.fig-text x=(0.5 * (LEFT + WIDTH - RIGHT)) y=(HEIGHT - 7.0) text-anchor="middle" { (MEASURES[0]) }
                 @if let Some(here) = &self.here {
                     @let [x, y] = place(here);
-                    @let [reach_x, reach_y] = [across.reach(), up.reach()];
-                    rect.fig-frame stroke-dasharray="4 3" x=(x2(x - reach_x)) y=(x2(y - reach_y)) width=(x2(2.0 * reach_x)) height=(x2(2.0 * reach_y)) {}
+                    @let ([left, right], [top, bottom]) = (across.around(x), up.around(y));
+                    rect.fig-frame stroke-dasharray="4 3" x=(x2(left)) y=(x2(top)) width=(x2(right - left)) height=(x2(bottom - top)) {}
                     circle.fig-frame.here cx=(x2(x)) cy=(x2(y)) r="8" stroke-width="2" {}
                 }
                 @for (validation, at) in own {
@@ -195,9 +195,10 @@ impl LogAxis {
         self.from + (self.to - self.from) * (value / self.low).ln() / (self.high / self.low).ln()
     }
 
-    /// Length of a factor of [`NEAR`] in px.
-    fn reach(&self) -> f64 {
-        (self.place(NEAR * self.low) - self.place(self.low)).abs()
+    /// What is within a factor of [`NEAR`] of the value at the place `at`, as far as the axis goes, px.
+    fn around(&self, at: f64) -> [f64; 2] {
+        let reach = (self.place(NEAR * self.low) - self.from).abs();
+        [at - reach, at + reach].map(|end| end.clamp(self.from.min(self.to), self.from.max(self.to)))
     }
 
     /// Powers of ten, and twice and five times them if that is not too many.

@@ -5,6 +5,7 @@ use super::standing::{self, DOCUMENT, Standing};
 use super::validated_map::{self, ValidatedMap};
 use super::{Report, presentation};
 use crate::error::{Error, Result};
+use crate::interrupt::Scratch;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
@@ -46,10 +47,7 @@ pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
     written.sort();
     let files = files.into_iter().filter(|(name, _)| !(keep_old && there.contains_key(name)));
     let files: Vec<_> = files.collect();
-    let partial = tempfile::Builder::new()
-        .prefix(".partial-")
-        .tempdir_in(dir)
-        .map_err(|e| Error::io("writing into", dir, e))?;
+    let partial = Scratch::new_in(dir, ".partial-").map_err(|e| Error::io("writing into", dir, e))?;
     for (name, bytes) in &files {
         fs::write(partial.path().join(name), bytes).map_err(|e| Error::io("writing", dir.join(name), e))?;
     }

@@ -322,6 +322,13 @@ mod tests {
         }
     }
 
+    /// Strong damping lets the inner approach follow the outer force's polynomials, whose defect is not the inner one's; steps of
+    /// one length at two tolerances would agree on the wrong peak.
+    #[test]
+    fn two_tolerances_do_not_take_the_same_steps() {
+        assert_eq!(run(1, 4_100_005_135, &|| ()).unwrap().failures, []);
+    }
+
     /// The light inner body comes to rest on the plate with forces of which the outer one's rounding is a million times larger.
     #[test]
     fn a_force_far_below_the_others_is_solved_for_itself() {

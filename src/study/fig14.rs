@@ -18,6 +18,7 @@ pub const PANELS: [Panel; 1] = [Panel {
     series: Some(Axis { column: "body", label: "", factor: 1.0 }),
     only: None,
     band: None,
+    paper: None,
 }];
 
 fn with_modulus(body: &str, modulus: f64) -> PlateImpact {

@@ -19,6 +19,7 @@ pub const PANELS: [Panel; 1] = [Panel {
     series: Some(Axis { column: "edge", label: "", factor: 1.0 }),
     only: None,
     band: None,
+    paper: None,
 }];
 
 /// The study.

@@ -29,13 +29,15 @@ pub const PANELS: [Panel; 2] = [
         series: Some(Axis { column: "thickness", label: "mm", factor: 1e3 }),
         only: None,
         band: None,
+        paper: Some((PAPER.1 * 1e3, "paper: best radius for 0.3 mm")),
     },
     Panel {
         x: Axis { column: "plate_radius", label: "Radius of the plate in mm", factor: 1e3 },
         y: Axis { column: "contact_over_half_period", label: "Contact over half period", factor: 1.0 },
         series: Some(Axis { column: "thickness", label: "mm", factor: 1e3 }),
         only: None,
-        band: None,
+        band: Some((1.0, APPROXIMATELY)),
+        paper: Some((PAPER.1 * 1e3, "paper: best radius for 0.3 mm")),
     },
 ];
 

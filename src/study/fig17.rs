@@ -19,6 +19,7 @@ pub const PANELS: [Panel; 1] = [Panel {
     series: None,
     only: None,
     band: None,
+    paper: None,
 }];
 
 fn with_tips(tip_radius: f64) -> PlateImpact {

@@ -52,6 +52,7 @@ const fn panel(column: &'static str, label: &'static str) -> Panel {
         series: Some(Axis { column: "effect", label: "", factor: 1.0 }),
         only: None,
         band: None,
+        paper: None,
     }
 }
 

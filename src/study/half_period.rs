@@ -18,6 +18,7 @@ pub const PANELS: [Panel; 1] = [Panel {
     series: Some(Axis { column: "thickness", label: "mm", factor: 1e3 }),
     only: None,
     band: None,
+    paper: Some((1.0, "paper: best at about half the first period")),
 }];
 
 /// The study.

@@ -28,6 +28,8 @@ pub struct Panel {
     pub only: Option<Only>,
     /// A band across the panel, in the units of the axis: middle and half width.
     pub band: Option<(f64, f64)>,
+    /// What the paper says of a place on the horizontal axis, in the axis's units.
+    pub paper: Option<(f64, &'static str)>,
 }
 
 /// Rows with one of some texts in a column.
@@ -70,7 +72,7 @@ fn drawn(study: &Study, panel: &Panel) -> Result<ChartPanel> {
         let point = (number(row[x]) * panel.x.factor, number(row[y]) * panel.y.factor);
         match series.iter_mut().find(|series| series.name == name) {
             Some(series) => series.points.push(point),
-            None => series.push(Series { name, points: vec![point], marks: false }),
+            None => series.push(Series { name, points: vec![point], ..Series::default() }),
         }
     }
     // a row without a place on the axes (an impact without the varied quantity) makes no curve
@@ -79,8 +81,9 @@ fn drawn(study: &Study, panel: &Panel) -> Result<ChartPanel> {
         x_label: panel.x.label.into(),
         y_label: panel.y.label.into(),
         series,
-        counted: false,
         band: panel.band,
+        statements: panel.paper.iter().map(|(x, says)| (*x, (*says).to_owned())).collect(),
+        ..ChartPanel::default()
     })
 }
 

@@ -85,12 +85,19 @@ const fn axis(column: &'static str, label: &'static str, factor: f64) -> Axis {
 
 const fn direction((x, texts): (Axis, &'static [&'static str])) -> Panel {
     let y = axis("deviation", "direction − intended, °", IN_DEGREES);
-    Panel { x, y, series: Some(DESIGN), only: only(texts), band: Some((0.0, IN_DEGREES * INTENDED_WITHIN)) }
+    Panel {
+        x,
+        y,
+        series: Some(DESIGN),
+        only: only(texts),
+        band: Some((0.0, IN_DEGREES * INTENDED_WITHIN)),
+        paper: None,
+    }
 }
 
 const fn efficiency((x, texts): (Axis, &'static [&'static str])) -> Panel {
     let y = axis("efficiency", "efficiency, %", 100.0);
-    Panel { x, y, series: Some(DESIGN), only: only(texts), band: None }
+    Panel { x, y, series: Some(DESIGN), only: only(texts), band: None, paper: None }
 }
 
 const DESIGN: Axis = axis("design", "", 1.0);

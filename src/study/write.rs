@@ -19,15 +19,14 @@ const PNG_SCALE: f32 = 3.0;
 /// # Errors
 /// [`Error::Io`] naming the file.
 pub fn write(study: &Study, figure: Option<String>, dir: &Path) -> Result<Vec<PathBuf>> {
-    let mut files = vec![
-        ("json", json(study)?.into_bytes()),
-        ("csv", csv(study)?.into_bytes()),
-        ("md", markdown(study).into_bytes()),
-    ];
+    let mut files = vec![("json", json(study)?.into_bytes()), ("csv", csv(study)?.into_bytes())];
+    let mut told = markdown(study);
     if let Some(svg) = figure {
+        told += &format!("\n![{0}]({0}.svg)\n", study.study);
         files.push(("png", png(&svg, PNG_SCALE)?));
         files.push(("svg", svg.into_bytes()));
     }
+    files.push(("md", told.into_bytes()));
     let mut written = Vec::new();
     for (extension, bytes) in files {
         let path = dir.join(format!("{}.{extension}", study.study));

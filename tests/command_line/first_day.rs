@@ -122,6 +122,24 @@ fn a_new_scene_may_be_named_by_its_file() {
 }
 
 #[test]
+fn a_new_scene_names_the_schema_that_stands_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, kind) in [("sub/plate", "plate-impact"), ("sub/seat", "seal-seat")] {
+        run(folder.path(), &["new", name, "--kind", kind], 0);
+        let text = fs::read_to_string(folder.path().join(format!("{name}.toml"))).unwrap();
+        let schema = text.lines().next().unwrap().strip_prefix("#:schema ").expect("at the head");
+        let schema = fs::read(folder.path().join("sub").join(schema)).expect("where the line says");
+        let schema: serde_json::Value = serde_json::from_slice(&schema).unwrap();
+        let printed: serde_json::Value =
+            serde_json::from_slice(&run(folder.path(), &["schema"], 0).stdout).unwrap();
+        assert_eq!(schema, printed);
+    }
+    // a name that can't be one leaves nothing behind
+    run(folder.path(), &["new", "other/what ever"], 3);
+    assert!(!folder.path().join("other").exists());
+}
+
+#[test]
 fn a_scene_may_come_from_standard_input() {
     let folder = tempfile::tempdir().unwrap();
     let reduced = |text: &str| {

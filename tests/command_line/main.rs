@@ -14,3 +14,6 @@ mod snapshots;
 #[path = "../support/store_fixture.rs"]
 mod store_fixture;
 mod studies;
+mod sweep_figures;
+#[cfg(unix)]
+mod watch;

@@ -70,3 +70,20 @@ fn wet_impacts_benders_and_auto_have_an_estimate() {
         }
     }
 }
+
+/// What yields under the contacts of a soft plate is damped as its modes are; models with few of these leave that out.
+#[test]
+fn missing_damping_under_the_contacts_is_part_of_the_estimate() {
+    let text = r#"name = "damped"
+kind = "plate-impact"
+materials.soft = { youngs_modulus = "38.3 MPa", poisson_ratio = -0.84, density = "4450 kg/m^3" }
+materials.ball = { youngs_modulus = "31 MPa", poisson_ratio = -0.97, density = "734 kg/m^3" }
+materials.stiff = { youngs_modulus = "575 MPa", poisson_ratio = -0.92, density = "17000 kg/m^3" }
+plate = { radius = "20 mm", thickness = "2.845 mm", edge = "clamped", material = "soft", damping_ratio = 0.91 }
+outer = { kind = "sphere", radius = "15.7 mm", material = "ball", speed = "58 mm/s" }
+inner = { kind = "compact", mass = "7.77 g", tip_radius = "2.8 mm", material = "stiff" }
+"#;
+    let scene = Scene::parse("damped.toml", text).unwrap();
+    let (estimated, _, exact) = estimated_and_true(&scene, Model::C, 10, (Model::C, 128));
+    assert!(exact > 5e-3 && exact < estimated && estimated < 4.0 * exact, "{estimated} for {exact}");
+}

@@ -12,7 +12,7 @@ use super::free_flight::{self, Flight};
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::step_bounds::{Bounds, EnergyAccount, force_scale, momentum_scale};
+use super::step_bounds::{Bounds, EnergyAccount, base_step, force_scale, momentum_scale};
 use super::system::System;
 use crate::error::{Error, Result};
 use std::sync::LazyLock;
@@ -77,7 +77,7 @@ impl<'a> Stepper<'a> {
         Self {
             recorder,
             end_time: options.end_time.unwrap_or(f64::INFINITY),
-            base_step: 0.25 * hit.duration(),
+            base_step: base_step(hit.duration(), options.tolerance),
             energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
             bounds: Bounds::new(options.tolerance),
             tables: Ladder::new(q.len()),

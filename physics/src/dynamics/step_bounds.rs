@@ -15,6 +15,17 @@ const PEAK_SHARE: f64 = 1.0 / 40.0;
 /// Rise of a force between the last points of a step, over itself, below which its maximum is near.
 const FLAT: f64 = 0.02;
 
+/// Tolerance at which the longest lengths of a step are powers of 2 of a Hertz contact.
+const PLAIN_TOLERANCE: f64 = 1e-7;
+/// Power of the tolerance with which steps of the collocation's order shorten.
+const STEP_POWER: f64 = 0.14;
+
+/// Length in s of which steps are a power of 2, in an impact whose contact on a rigid wall lasts `contact_time` s. It follows the
+/// `tolerance`: else two of them could take the same steps, and their results would agree however wrong both are.
+pub(super) fn base_step(contact_time: f64, tolerance: f64) -> f64 {
+    0.25 * contact_time * (tolerance / PLAIN_TOLERANCE).powf(STEP_POWER)
+}
+
 /// Defects that a step may have, as impulses over the momentum.
 pub(super) struct Bounds {
     /// Where the force is smooth.

@@ -178,6 +178,24 @@ impl Template {
         fields
     }
 
+    /// What the scene file has in `field`, in SI; `None` if it says nothing there.
+    pub fn number(&self, field: &Field) -> Option<f64> {
+        let (last, tables) = field.keys.split_last()?;
+        let mut values = &self.values;
+        for key in tables {
+            match values.get(key)? {
+                Checked::Table(inner) => values = inner,
+                Checked::Numbers(list) => return list.get(index(std::slice::from_ref(last))?).copied(),
+                _ => return None,
+            }
+        }
+        match values.get(last)? {
+            Checked::Number(number) => Some(*number),
+            Checked::Count(count) => Some(*count as f64),
+            _ => None,
+        }
+    }
+
     /// The scene with other numbers, in SI; later ones win.
     ///
     /// # Errors

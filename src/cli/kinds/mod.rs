@@ -32,6 +32,14 @@ pub(super) trait Models: Sync {
     /// Whether `model` takes `scene`.
     fn takes(&self, scene: &Scene, model: Model) -> bool;
 
+    /// Runs the models `asked` for, with the tolerance of `auto`, without a reference; none if they need its mesh.
+    ///
+    /// # Errors
+    /// Those of the models.
+    fn alone(&self, _: &Scene, _: (&[AskedModel], Option<f64>)) -> Result<Vec<Outcome>> {
+        Ok(Vec::new())
+    }
+
     /// Runs those of the models `asked` for that there are, with the tolerance of `auto`, beside a reference.
     ///
     /// # Errors

@@ -53,6 +53,15 @@ impl Models for Plates {
         Reduced::new(scene, model, None).is_ok()
     }
 
+    fn alone(
+        &self,
+        scene: &Scene,
+        (models, tolerance): (&[AskedModel], Option<f64>),
+    ) -> Result<Vec<Outcome>> {
+        let models = asked_model::set_up(scene, models, tolerance)?;
+        models.into_iter().map(|(body, _)| body.run_with_history(COMPARISON_TOLERANCE)).collect()
+    }
+
     fn beside(
         &self,
         context: &Context,

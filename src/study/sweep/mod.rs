@@ -2,14 +2,18 @@
 //!
 //! A [`Plan`] numbers the points; every point's result is a line in an append-only log (`record`) as soon as it is
 //! known, so that an interrupted sweep goes on where it stopped, and shards run side by side; a [`Table`] joins what the
-//! logs hold.
+//! logs hold, and [`figure`] draws it.
 
+mod drawing;
 mod plan;
 mod record;
+mod references;
 mod run;
 mod table;
 
+pub use drawing::{Drawn, figure};
 pub use plan::{DEFAULT_TOLERANCE, Plan};
 pub use record::{Outcome, Record};
+pub use references::{Known, references};
 pub use run::{Progress, Shard, run};
 pub use table::Table;

@@ -9,7 +9,8 @@ use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
 use crate::scene::{self, Field, Model, Template};
 use serde::Deserialize;
 use serde_json::json;
-use std::path::Path;
+use std::ops::{Range, RangeInclusive};
+use std::path::{Path, PathBuf};
 
 /// Relative error of the efficiency that the time integration aims at when the file names none. The errors are smaller:
 /// over 4000 scenes around Table 1 at most 1.1e-5, in 95 % of them below 2e-6.
@@ -22,7 +23,7 @@ const MOST_POINTS: usize = 100_000_000;
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 struct File {
     scene: String,
-    model: Option<String>,
+    model: Option<Models>,
     modes: Option<usize>,
     tolerance: Option<f64>,
     #[serde(default)]
@@ -30,6 +31,14 @@ struct File {
     samples: Option<usize>,
     seed: Option<u64>,
     vary: Vec<Vary>,
+}
+
+/// One reduced model, or several at every point.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Models {
+    One(String),
+    Several(Vec<String>),
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
@@ -99,6 +108,19 @@ impl Values {
         }
     }
 
+    /// From the lowest to the highest.
+    fn range(&self) -> RangeInclusive<f64> {
+        let span = |values: &[f64]| {
+            let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
+            values.iter().fold((low, high), |(low, high), v| (low.min(*v), high.max(*v)))
+        };
+        let (low, high) = match self {
+            Values::List(values) => span(values),
+            Values::Range { from, to, .. } => span(&[*from, *to]),
+        };
+        low..=high
+    }
+
     /// The value at `s` in 0..=1 of a range.
     fn between(from: f64, to: f64, scale: Scale, s: f64) -> f64 {
         match scale {
@@ -132,8 +154,10 @@ impl Values {
 /// A sweep: numbered points, each an impact.
 #[derive(Debug)]
 pub struct Plan {
+    scene_file: PathBuf,
     template: Template,
-    model: Model,
+    /// The points are run with one after the other.
+    models: Vec<Model>,
     modes: Option<usize>,
     tolerance: f64,
     axes: Vec<Axis>,
@@ -161,19 +185,27 @@ impl Plan {
             toml::from_str(&text).map_err(|e| invalid(path, &format!("is no sweep file: {e}")))?;
         let beside = path.parent().unwrap_or(Path::new("")).join(&file.scene);
         let scene = if beside.is_file() { beside } else { scene::resolve(&file.scene)? };
-        let template = Template::read(scene)?;
+        let template = Template::read(&scene)?;
         // a seal seat is varied by `study seal-seat`, which meshes every geometry
         template.scene().plate_impact()?;
-        Self::new(path, file, template)
+        Self::new(path, file, scene, template)
     }
 
-    fn new(path: &Path, file: File, template: Template) -> Result<Self> {
+    fn new(path: &Path, file: File, scene_file: PathBuf, template: Template) -> Result<Self> {
         let fault = |message: String| invalid(path, &message);
-        let model = match &file.model {
-            Some(name) => name.parse().map_err(|e| fault(format!("model: {e}")))?,
-            None => template.scene().reduced.model.unwrap_or(Model::B),
+        let named = |names: &[String]| -> Result<Vec<Model>> {
+            names.iter().map(|name| name.parse().map_err(|e| fault(format!("model: {e}")))).collect()
         };
-        if file.modes == Some(0) || (model == Model::A && file.modes.is_some_and(|modes| modes != 1)) {
+        let models = match &file.model {
+            Some(Models::One(name)) => named(std::slice::from_ref(name))?,
+            Some(Models::Several(names)) => named(names)?,
+            None => vec![template.scene().reduced.model.unwrap_or(Model::B)],
+        };
+        if models.is_empty() || (1..models.len()).any(|k| models[..k].contains(&models[k])) {
+            return Err(fault("model is an empty list, or names a model twice".into()));
+        }
+        if file.modes == Some(0) || (models.contains(&Model::A) && file.modes.is_some_and(|modes| modes != 1))
+        {
             return Err(fault(format!(
                 "modes is {:?}: model A has one mode, others at least one",
                 file.modes
@@ -213,13 +245,14 @@ impl Plan {
                 )));
             }
         };
-        let count = axes.iter().try_fold(1_usize, |n, a| n.checked_mul(a.values.len()));
+        let count = axes.iter().try_fold(models.len(), |n, a| n.checked_mul(a.values.len()));
         if samples.is_none() && count.is_none_or(|n| n > MOST_POINTS) {
             return Err(fault(format!("the grid has more than {MOST_POINTS} points")));
         }
         let mut plan = Plan {
+            scene_file,
             template,
-            model,
+            models,
             modes: file.modes,
             tolerance,
             axes,
@@ -240,7 +273,7 @@ impl Plan {
         let mut identity = json!({
             "version": env!("CARGO_PKG_VERSION"), "setup": self.template.scene().setup,
             "run": self.template.scene().run, "reduced": self.template.scene().reduced,
-            "model": self.model, "modes": self.modes, "tolerance": self.tolerance,
+            "model": if let [one] = self.models[..] { json!(one) } else { json!(self.models) }, "modes": self.modes, "tolerance": self.tolerance,
             "samples": file.samples, "seed": file.seed,
             "axes": self.axes.iter().map(axis).collect::<Vec<_>>(),
         });
@@ -248,8 +281,13 @@ impl Plan {
         sha256_hex(canonical(&identity).as_bytes())
     }
 
-    /// Number of points.
+    /// Number of points, each model's counted by itself.
     pub fn len(&self) -> usize {
+        self.places() * self.models.len()
+    }
+
+    /// Number of points of one model.
+    fn places(&self) -> usize {
         let grid = || self.axes.iter().map(|axis| axis.values.len()).product();
         self.samples.as_ref().map_or_else(grid, Vec::len)
     }
@@ -269,9 +307,51 @@ impl Plan {
         &self.template.scene().name
     }
 
-    /// The reduced model that runs.
-    pub fn model(&self) -> Model {
-        self.model
+    /// The file of the scene that is varied.
+    pub fn scene_file(&self) -> &Path {
+        &self.scene_file
+    }
+
+    /// The scene that is varied.
+    pub fn template(&self) -> &Template {
+        &self.template
+    }
+
+    /// The reduced models that run.
+    pub fn models(&self) -> &[Model] {
+        &self.models
+    }
+
+    /// The model of point `index`.
+    pub fn model(&self, index: usize) -> Model {
+        self.models[index / self.places()]
+    }
+
+    /// What is varied by itself, with more than one value: the numbers of its fields among [`Plan::numbers`], and whether its
+    /// values are evenly spread over their logarithm.
+    pub fn parameters(&self) -> Vec<(Range<usize>, bool)> {
+        let mut first = 0;
+        let mut parameters = Vec::new();
+        for axis in &self.axes {
+            let fields = first..first + axis.fields.len();
+            first = fields.end;
+            let logarithmic = matches!(axis.values, Values::Range { scale: Scale::Log, .. });
+            if axis.values.len() > 1 || self.samples.is_some() {
+                parameters.push((fields, logarithmic));
+            }
+        }
+        parameters
+    }
+
+    /// Lowest and highest value of each of the [`Plan::parameters`], SI.
+    pub fn ranges(&self) -> Vec<RangeInclusive<f64>> {
+        let varied = self.axes.iter().filter(|axis| axis.values.len() > 1 || self.samples.is_some());
+        varied.map(|axis| axis.values.range()).collect()
+    }
+
+    /// Whether the points are all of a grid.
+    pub fn is_grid(&self) -> bool {
+        self.samples.is_none()
     }
 
     /// The fields that are varied, in the order of [`Plan::numbers`].
@@ -282,6 +362,7 @@ impl Plan {
     /// The numbers of point `index` in SI, one per field. The last axis of a grid changes fastest.
     pub fn numbers(&self, index: usize) -> Vec<f64> {
         let mut values = vec![0.0; self.axes.len()];
+        let index = index % self.places();
         match &self.samples {
             Some(samples) => {
                 for ((value, axis), s) in values.iter_mut().zip(&self.axes).zip(&samples[index]) {
@@ -306,7 +387,7 @@ impl Plan {
         let outcome = match self.template.with(&numbers) {
             Err(rejected) => Outcome::Invalid(rejected.to_string()),
             Ok(scene) => {
-                let run = Reduced::in_series(scene, self.model, self.modes, &self.plates)
+                let run = Reduced::in_series(scene, self.model(index), self.modes, &self.plates)
                     .and_then(|reduced| reduced.point(self.tolerance));
                 match run {
                     Ok(point) => Outcome::Done(point),

@@ -65,6 +65,16 @@ impl<'a> Table<'a> {
         Ok(Table { plan, records })
     }
 
+    /// The plan whose points these are.
+    pub(super) fn plan(&self) -> &Plan {
+        self.plan
+    }
+
+    /// The points and their results.
+    pub(super) fn records(&self) -> &[Record] {
+        &self.records
+    }
+
     /// Number of points that ended with "ok", "invalid" and "failed".
     pub fn counts(&self) -> [usize; 3] {
         ["ok", "invalid", "failed"]
@@ -88,46 +98,60 @@ impl<'a> Table<'a> {
         self.plan.fields().zip(numbers).map(|(field, n)| (field.path(), n, unit(field.unit()))).collect()
     }
 
-    /// Names and units of all columns.
-    fn columns(&self) -> Vec<(String, &'static str)> {
-        let field = |field: &crate::scene::Field| (field.path().to_owned(), field.unit());
-        let named = |(name, unit): (&str, &'static str)| (name.to_owned(), unit);
-        [named(("index", "1"))]
+    /// What the table has, with names and units.
+    fn columns(&self) -> Vec<(Column, String, &'static str)> {
+        let named = |column, name: &str| (column, name.to_owned(), "1");
+        let model = (self.plan.models().len() > 1).then(|| named(Column::Model, "model"));
+        let fields = self.plan.fields().enumerate();
+        let numbers = NUMBERS.into_iter().enumerate();
+        [named(Column::Index, "index")]
             .into_iter()
-            .chain(self.plan.fields().map(field))
-            .chain([named(("status", "1"))])
-            .chain(NUMBERS.into_iter().map(named))
-            .chain([named(("reason", "1"))])
+            .chain(model)
+            .chain(fields.map(|(k, field)| (Column::Field(k), field.path().to_owned(), field.unit())))
+            .chain([named(Column::Status, "status")])
+            .chain(numbers.map(|(k, (name, unit))| (Column::Number(k), name.to_owned(), unit)))
+            .chain([named(Column::Reason, "reason")])
             .collect()
+    }
+
+    /// The cells of a row under `columns`.
+    fn cells(&self, record: &Record, columns: &[Column]) -> Vec<Cell> {
+        let (fields, numbers) = (self.plan.numbers(record.index), record.outcome.numbers());
+        let cell = |column: &Column| match *column {
+            Column::Index => Cell::Count(record.index),
+            Column::Model => Cell::Text(self.plan.model(record.index).to_string()),
+            Column::Field(k) => Cell::Number(fields[k]),
+            Column::Status => Cell::Text(record.outcome.status().to_owned()),
+            Column::Number(k) => numbers.map_or(Cell::Missing, |numbers| Cell::Number(numbers[k])),
+            Column::Reason => Cell::Text(record.outcome.reason().to_owned()),
+        };
+        columns.iter().map(cell).collect()
     }
 
     /// The table as the JSON document of a study.
     pub fn document(&self) -> Document {
-        let row = |record: &Record| {
-            let mut row = vec![json!(record.index)];
-            row.extend(self.plan.numbers(record.index).into_iter().map(Value::from));
-            row.push(record.outcome.status().into());
-            match record.outcome.numbers() {
-                Some(numbers) => row.extend(numbers.map(Value::from)),
-                None => row.extend(NUMBERS.map(|_| Value::Null)),
-            }
-            let reason = record.outcome.reason();
-            row.push(if reason.is_empty() { Value::Null } else { reason.into() });
-            row
+        let columns = self.columns();
+        let kinds: Vec<Column> = columns.iter().map(|(column, ..)| *column).collect();
+        let value = |cell| match cell {
+            Cell::Count(count) => json!(count),
+            Cell::Number(number) => json!(number),
+            Cell::Text(text) if !text.is_empty() => json!(text),
+            Cell::Text(_) | Cell::Missing => Value::Null,
         };
-        let (columns, units) = self.columns().into_iter().unzip();
+        let row = |record| self.cells(record, &kinds).into_iter().map(value).collect();
+        let models: Vec<String> = self.plan.models().iter().map(ToString::to_string).collect();
         Document {
             schema_version: SCHEMA_VERSION,
             study: "sweep",
             description: format!(
                 "Sweep of scene {} with model {}, {} points; identity {}",
                 self.plan.scene(),
-                self.plan.model(),
+                models.join(", "),
                 self.plan.len(),
                 self.plan.hash()
             ),
-            columns,
-            units,
+            columns: columns.iter().map(|(_, name, _)| name.clone()).collect(),
+            units: columns.iter().map(|(.., unit)| *unit).collect(),
             rows: self.records.iter().map(row).collect(),
             claims: [],
         }
@@ -151,45 +175,47 @@ impl<'a> Table<'a> {
 
     fn csv(&self) -> Result<Vec<u8>> {
         let failed = |e: csv::Error| Error::Internal(format!("writing CSV: {e}"));
+        let columns = self.columns();
+        let kinds: Vec<Column> = columns.iter().map(|(column, ..)| *column).collect();
+        let heading = |(_, name, unit): &(_, String, &str)| match *unit {
+            "1" => name.clone(),
+            unit => format!("{name} [{unit}]"),
+        };
+        let text = |cell| match cell {
+            Cell::Count(count) => count.to_string(),
+            Cell::Number(number) => number.to_string(),
+            Cell::Text(text) => text,
+            Cell::Missing => String::new(),
+        };
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let heading =
-            |(name, unit): (String, &str)| if unit == "1" { name } else { format!("{name} [{unit}]") };
-        writer.write_record(self.columns().into_iter().map(heading)).map_err(failed)?;
+        writer.write_record(columns.iter().map(heading)).map_err(failed)?;
         for record in &self.records {
-            let mut cells = vec![record.index.to_string()];
-            cells.extend(self.plan.numbers(record.index).iter().map(f64::to_string));
-            cells.push(record.outcome.status().into());
-            match record.outcome.numbers() {
-                Some(numbers) => cells.extend(numbers.map(|number| number.to_string())),
-                None => cells.extend(NUMBERS.map(|_| String::new())),
-            }
-            cells.push(record.outcome.reason().into());
-            writer.write_record(cells).map_err(failed)?;
+            writer.write_record(self.cells(record, &kinds).into_iter().map(text)).map_err(failed)?;
         }
         writer.into_inner().map_err(|e| Error::Internal(format!("writing CSV: {e}")))
     }
 
     fn parquet(&self) -> parquet::errors::Result<Vec<u8>> {
         let columns = self.columns();
-        let kind = |name: &str| match name {
-            "index" => Physical::INT64,
-            "status" | "reason" => Physical::BYTE_ARRAY,
-            _ => Physical::DOUBLE,
-        };
-        let result = |name: &str| NUMBERS.iter().any(|(number, _)| *number == name);
-        let field = |(name, _): &(String, &str)| {
-            let text = kind(name) == Physical::BYTE_ARRAY;
-            Type::primitive_type_builder(name, kind(name))
-                .with_logical_type(text.then_some(LogicalType::String))
-                // a point without result has none of its numbers
-                .with_repetition(if result(name) { Repetition::OPTIONAL } else { Repetition::REQUIRED })
+        let kinds: Vec<Column> = columns.iter().map(|(column, ..)| *column).collect();
+        let field = |(column, name, _): &(Column, String, &str)| {
+            let (kind, text) = match column {
+                Column::Index => (Physical::INT64, None),
+                Column::Field(_) | Column::Number(_) => (Physical::DOUBLE, None),
+                _ => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+            };
+            // a point without result has none of its numbers
+            let optional = matches!(column, Column::Number(_));
+            Type::primitive_type_builder(name, kind)
+                .with_logical_type(text)
+                .with_repetition(if optional { Repetition::OPTIONAL } else { Repetition::REQUIRED })
                 .build()
                 .map(Arc::new)
         };
         let fields = columns.iter().map(field).collect::<parquet::errors::Result<_>>()?;
         let schema = Arc::new(Type::group_type_builder("sweep").with_fields(fields).build()?);
         let units =
-            columns.iter().map(|(name, unit)| KeyValue::new(format!("unit:{name}"), (*unit).to_owned()));
+            columns.iter().map(|(_, name, unit)| KeyValue::new(format!("unit:{name}"), (*unit).to_owned()));
         let identity = KeyValue::new("sweep".to_owned(), self.plan.hash().to_owned());
         let properties = WriterProperties::builder()
             .set_key_value_metadata(Some(units.chain([identity]).collect()))
@@ -197,38 +223,70 @@ impl<'a> Table<'a> {
         let mut bytes = Vec::new();
         let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties))?;
         for rows in self.records.chunks(ROW_GROUP) {
-            let numbers: Vec<Vec<f64>> = rows.iter().map(|record| self.plan.numbers(record.index)).collect();
-            let results: Vec<Option<[f64; NUMBERS.len()]>> =
-                rows.iter().map(|r| r.outcome.numbers()).collect();
-            let present: Vec<i16> = results.iter().map(|result| i16::from(result.is_some())).collect();
             let mut group = writer.next_row_group()?;
-            let mut column = 0;
-            while let Some(mut to) = group.next_column()? {
-                let fields = columns.len() - NUMBERS.len() - 3;
-                let texts = |text: fn(&Outcome) -> &str| -> Vec<ByteArray> {
-                    rows.iter().map(|record| ByteArray::from(text(&record.outcome))).collect()
+            let rows: Vec<Vec<Cell>> = rows.iter().map(|record| self.cells(record, &kinds)).collect();
+            for (k, column) in kinds.iter().enumerate() {
+                let Some(mut to) = group.next_column()? else { break };
+                let cells = || rows.iter().map(|row| &row[k]);
+                let present: Vec<i16> = cells().map(|cell| i16::from(*cell != Cell::Missing)).collect();
+                let present = matches!(column, Column::Number(_)).then_some(&present[..]);
+                match column {
+                    Column::Index => to.typed::<Int64Type>().write_batch(
+                        &cells().filter_map(Cell::count).collect::<Vec<_>>(),
+                        None,
+                        None,
+                    )?,
+                    Column::Field(_) | Column::Number(_) => to.typed::<DoubleType>().write_batch(
+                        &cells().filter_map(Cell::number).collect::<Vec<_>>(),
+                        present,
+                        None,
+                    )?,
+                    _ => to.typed::<ByteArrayType>().write_batch(
+                        &cells().filter_map(Cell::text).collect::<Vec<_>>(),
+                        None,
+                        None,
+                    )?,
                 };
-                if column == 0 {
-                    let values: Vec<i64> = rows.iter().map(|record| record.index as i64).collect();
-                    to.typed::<Int64Type>().write_batch(&values, None, None)?;
-                } else if column <= fields {
-                    let values: Vec<f64> = numbers.iter().map(|numbers| numbers[column - 1]).collect();
-                    to.typed::<DoubleType>().write_batch(&values, None, None)?;
-                } else if column == fields + 1 {
-                    to.typed::<ByteArrayType>().write_batch(&texts(|o| o.status()), None, None)?;
-                } else if column < columns.len() - 1 {
-                    let values: Vec<f64> =
-                        results.iter().flatten().map(|result| result[column - fields - 2]).collect();
-                    to.typed::<DoubleType>().write_batch(&values, Some(&present), None)?;
-                } else {
-                    to.typed::<ByteArrayType>().write_batch(&texts(Outcome::reason), None, None)?;
-                }
                 to.close()?;
-                column += 1;
             }
             group.close()?;
         }
         writer.close()?;
         Ok(bytes)
+    }
+}
+
+/// What a column of the table has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Column {
+    Index,
+    Model,
+    /// The varied field of this number.
+    Field(usize),
+    Status,
+    /// The number of [`NUMBERS`] at this place.
+    Number(usize),
+    Reason,
+}
+
+#[derive(Debug, PartialEq)]
+enum Cell {
+    Count(usize),
+    Number(f64),
+    Text(String),
+    Missing,
+}
+
+impl Cell {
+    fn count(&self) -> Option<i64> {
+        if let Cell::Count(count) = self { Some(*count as i64) } else { None }
+    }
+
+    fn number(&self) -> Option<f64> {
+        if let Cell::Number(number) = self { Some(*number) } else { None }
+    }
+
+    fn text(&self) -> Option<ByteArray> {
+        if let Cell::Text(text) = self { Some(ByteArray::from(text.as_str())) } else { None }
     }
 }

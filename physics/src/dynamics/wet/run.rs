@@ -14,7 +14,7 @@ use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
 use crate::dynamics::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::step_bounds::{Bounds, EnergyAccount, momentum_scale};
+use crate::dynamics::step_bounds::{Bounds, EnergyAccount, base_step, momentum_scale};
 use crate::dynamics::system::{System, dot};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::error::{Error, Result};
@@ -52,7 +52,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         end_time: options.end_time.unwrap_or(f64::INFINITY),
         defect_bound: defect_bound(options.tolerance),
         bounds: Bounds::new(options.tolerance),
-        base_step: 0.25 * hit.duration(),
+        base_step: base_step(hit.duration(), options.tolerance),
         tables: BTreeMap::new(),
         level: 8,
         time: 0.0,

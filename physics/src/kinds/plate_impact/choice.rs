@@ -3,10 +3,10 @@
 //! What models A and B lack is estimated by solving the impact once more with the plate as an elastic layer (`trials`). Their
 //! estimated error is
 //!
-//!   sqrt((safety |candidate - layer| + share |all Kirchhoff modes - layer|)^2 + floor^2)
+//!   sqrt((safety |candidate - layer| + share |all Kirchhoff modes - layer| + undamped)^2 + floor^2)
 //!
-//! with the share of what the layer corrects that it may itself be off by, and the error that model C was found to have against
-//! the finite-element reference as the floor. The same layer with fewer modes tells how many model C needs; built, model C
+//! with the share of what the layer corrects that it may itself be off by, the damping under the contacts that every model lacks,
+//! and the error that model C was found to have against the finite-element reference as the floor. The same layer with fewer modes tells how many model C needs; built, model C
 //! is held against itself with fewer modes (`truncation`), and has more of them where that finds too large an error.
 
 use super::errors::COVERED;
@@ -188,8 +188,8 @@ impl<'a> Plan<'a> {
         self.error = self.total(self.by_thickness(BUILT_SAFETY) * lack.error);
         self.note(Model::C, self.modes, self.error, lack.quantity);
         let more = 2 * built.modes;
-        let helps =
-            !self.met() && more <= MOST_BUILT && self.floor.is_some_and(|floor| floor < self.tolerance);
+        let possible = self.total(0.0).is_some_and(|least| least < self.tolerance);
+        let helps = !self.met() && more <= MOST_BUILT && possible;
         self.cut = helps.then_some(Cut { omega: f64::INFINITY, modes: more });
     }
 
@@ -210,9 +210,10 @@ impl<'a> Plan<'a> {
         thin + more * plate.thickness / plate.radius
     }
 
-    /// An error with the floor; `None` where there is none.
+    /// An error with what every model lacks; `None` where that is not known.
     fn total(&self, error: f64) -> Option<f64> {
-        self.floor.map(|floor| error.hypot(floor)).filter(|error| error.is_finite())
+        let floor = self.floor?;
+        Some((error + self.trials.undamped()).hypot(floor)).filter(|error| error.is_finite())
     }
 
     fn met(&self) -> bool {

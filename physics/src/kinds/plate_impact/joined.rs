@@ -86,8 +86,9 @@ pub(super) fn continuum(
     let (plate, omega_next) = continuum_plate(setup, wanted, predictor, cache)?;
     let elastic = plate.omega.len() - rigid;
     let mesh = MeshOptions::default();
+    let patches = predictor.meshed_patches(&setup.plate);
     let shapes = |radii: &[f64]| {
-        let mut shapes = cached::face_shapes(&setup.plate, predictor.patch_radius, elastic, &mesh, radii)?;
+        let mut shapes = cached::face_shapes(&setup.plate, patches, elastic, &mesh, radii)?;
         for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
             let sign = (shape[0] * phi[1]).signum();
             shape.iter_mut().for_each(|value| *value *= sign);
@@ -124,7 +125,8 @@ fn continuum_plate(
     cache: &Cache,
 ) -> Result<(ModalBody, f64)> {
     let mesh = MeshOptions::default();
-    let build = |modes| cached::plate_in(cache, &setup.plate, predictor.patch_radius, modes, &mesh);
+    let patches = predictor.meshed_patches(&setup.plate);
+    let build = |modes| cached::plate_in(cache, &setup.plate, patches, modes, &mesh);
     let lowest = |plate: &ContinuumPlate, modes| {
         Ok((plate.modal_body(modes, predictor.slow()), plate.omega_next(modes)))
     };

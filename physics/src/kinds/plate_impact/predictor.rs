@@ -4,6 +4,12 @@ use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
 use crate::error::Result;
+use crate::scene::Plate;
+
+/// Smallest patch, over the plate's thickness or radius, that model C meshes its plate for. What the plate lacks to two half-spaces
+/// depends on a smaller one by less than the square of this, and elements as flat as that make the stiffness of a thin plate
+/// a matter of rounding.
+const SMALLEST_PATCH: f64 = 0.05;
 
 /// What model C has to know of the impact before it is solved, from a model without residual.
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +37,12 @@ impl Predictor {
             force_peak: [outer.2, inner.2],
             contact_frequency: outer.1.max(inner.1),
         })
+    }
+
+    /// Radii in m of the patches that model C meshes `plate` for.
+    pub(super) fn meshed_patches(&self, plate: &Plate) -> [f64; 2] {
+        let smallest = SMALLEST_PATCH * plate.thickness.min(plate.radius);
+        self.patch_radius.map(|a| a.max(smallest))
     }
 
     /// Angular frequency in rad/s below which a mode does not follow the contacts' forces.

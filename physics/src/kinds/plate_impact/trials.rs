@@ -128,6 +128,15 @@ impl<'a> Trials<'a> {
         slowed(self.setup, &self.predictor, self.layer.omega_next(modes))
     }
 
+    /// Relative error of a force for want of the damping of what yields under the contacts: local waves, about as long as the
+    /// patches are wide, of which a model takes few and leaves the rest to static flexibilities.
+    pub(super) fn undamped(&self) -> f64 {
+        let plate = &self.setup.plate;
+        let shear = (plate.material.shear_modulus() / plate.material.density).sqrt();
+        let [outer, inner] = self.predictor.patch_radius;
+        2.0 * plate.damping_ratio * self.predictor.slow() * outer.max(inner) / shear
+    }
+
     /// Largest estimated error of the quantities covered that model C has with `modes` bending modes for want of more, and the
     /// quantity; `converged` is the layer with all its modes.
     pub(super) fn truncated(&self, modes: usize, converged: Option<&PlateQuantities>) -> Lack {

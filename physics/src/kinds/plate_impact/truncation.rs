@@ -66,11 +66,14 @@ pub(super) fn estimate(
     };
     let modes = system.bending_modes();
     let mut lack = of(modes);
+    // Kirchhoff's modes are no waves under a contact
+    let undamped = if model == Model::C { trials.undamped() } else { 0.0 };
     if model == Model::C && setup.plate.thickness > THIN * setup.plate.radius {
         lack = lack.or(of_continuum(system, omega_next, &options));
     }
+    lack.error += undamped;
     let warning = (lack.error > LARGEST).then(|| {
-        let enough = RUNGS.into_iter().find(|n| *n > modes && of(*n).error <= LARGEST);
+        let enough = RUNGS.into_iter().find(|n| *n > modes && of(*n).error + undamped <= LARGEST);
         // of a continuum some modes are no bending modes
         let enough = enough.map(|bending| bending + system.modes - modes);
         warning(model, system.modes, lack, enough)

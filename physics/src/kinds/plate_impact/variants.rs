@@ -94,7 +94,12 @@ impl<'a> Variants<'a> {
         Ok(Self {
             setup,
             end_time: scene.run.end_time,
-            plate: cached::plate(&setup.plate, patch, modes[1], &continuum.mesh)?,
+            plate: cached::plate(
+                &setup.plate,
+                predictor.meshed_patches(&setup.plate),
+                modes[1],
+                &continuum.mesh,
+            )?,
             tips: tip_residuals(setup, patch, &continuum.mesh, &Cache::from_environment())?,
             kirchhoff,
             predictor,
