@@ -48,6 +48,27 @@ fn report(out: &Path) {
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
 }
 
+/// Documents of a comparison and of one in which every tenth number is another.
+fn two_documents(dir: &Path) -> [PathBuf; 2] {
+    let text = fs::read_to_string(dir.join("comparison.json")).unwrap();
+    let mut count = 0;
+    let moved = text.lines().map(|line| match line.split_once("\"reduced\": 0.") {
+        Some((before, digits)) => {
+            count += 1;
+            format!("{before}\"reduced\": 0.{}{digits}", if count % 10 == 0 { "1" } else { "" })
+        }
+        None => line.to_owned(),
+    });
+    let [one, other] = ["one.json", "other.json"].map(|name| dir.join(name));
+    fs::write(
+        &other,
+        moved.collect::<Vec<_>>().join("\n").replace("\"verdict\": \"pass\"", "\"verdict\": \"fail\""),
+    )
+    .unwrap();
+    fs::write(&one, text).unwrap();
+    [one, other]
+}
+
 /// Opens `page` with the test inside it and gives what the test, the page and the console complain about.
 ///
 /// On a `phone` in a frame: a window of Chromium's is not as narrow.
@@ -171,14 +192,25 @@ fn pages_work_in_a_browser_in_light_dark_and_on_a_phone() {
         assert_bands(scene, &fs::read_to_string(dir.path().join(&page)).unwrap());
         page
     });
+    let moved = dir.path().join("moved.html");
+    let diff = Command::cargo_bin("impactcheck")
+        .unwrap()
+        .arg("diff")
+        .args(two_documents(dir.path()))
+        .arg("--out")
+        .arg(&moved)
+        .output();
+    assert!(diff.unwrap().status.success());
     const DARK: &str = "--blink-settings=preferredColorScheme=0";
-    let views: [(&str, bool, &[&str]); 6] = [
+    let views: [(&str, bool, &[&str]); 8] = [
         (&plate, false, &[]),
         (&plate, true, &[DARK]),
         (&seat, false, &[DARK]),
         (&seat, true, &[]),
         ("index.html", false, &[DARK]),
         ("index.html", true, &[]),
+        ("moved.html", false, &[DARK]),
+        ("moved.html", true, &[]),
     ];
     for (page, phone, arguments) in views {
         let problems = problems(dir.path(), page, phone, arguments);
