@@ -14,12 +14,16 @@ use clap::Args;
 pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all scenes of the project, examples and validation too]
     scenes: Vec<String>,
+    /// Write what was found to the project's record of validated scenes; where the reference is elsewhere, the models as they
+    /// are now beside what is recorded of it
+    #[arg(long)]
+    record: bool,
     #[command(flatten)]
     json: JsonArgument,
 }
 
 /// Compares every model with every stored reference and tells what that covers; nothing is computed but the models. Of
-/// references that are not here it tells what was found with them.
+/// references that are not here it knows the numbers that are recorded.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let scenes = compare_inputs::scenes_or(&arguments.scenes, scene::every)?;
     let (known, mut cases) = (validated::shipped()?, Vec::new());
@@ -28,12 +32,18 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         for &model in crate::kinds::of(scene).models() {
             let validation = match &stored {
                 Some(stored) => compared(context, scene, stored, model),
-                None => known.iter().find(|v| v.is_of(scene, model)).cloned(),
+                None => {
+                    known.iter().find(|v| v.is_of(scene, model)).map(|v| renewed(context, v, scene, model))
+                }
             };
             if validation.is_some() || kinds::of(scene).takes(scene, model) {
                 cases.push(Case { scene, model, validation });
             }
         }
+    }
+    if arguments.record {
+        let found: Vec<Validation> = cases.iter().filter_map(|case| case.validation.clone()).collect();
+        validated::record(&found)?;
     }
     let found = coverage(&cases);
     if arguments.json.json {
@@ -66,6 +76,17 @@ fn compared(context: &Context, scene: &Scene, stored: &Stored, model: Model) -> 
         Err(error) => {
             context.note(format_args!("{}: model {model}: {error}", scene.name));
             None
+        }
+    }
+}
+
+/// What `recorded` says of the reference beside the model as it is now, if that can be run without the reference.
+fn renewed(context: &Context, recorded: &Validation, scene: &Scene, model: Model) -> Validation {
+    match kinds::of(scene).alone(scene, (&[AskedModel::Named(model)], None)) {
+        Ok(now) => now.first().map_or_else(|| recorded.clone(), |now| recorded.renewed(&now.summary)),
+        Err(error) => {
+            context.note(format_args!("{}: model {model}: {error}", scene.name));
+            recorded.clone()
         }
     }
 }

@@ -8,11 +8,12 @@ mod record;
 mod vicinity;
 
 pub use place::{MEASURES, Place};
-pub use record::{merge, of_store, shipped, update};
+pub use record::{merge, of_store, record, shipped, update};
 pub use vicinity::{NEAR, Vicinity};
 
 use crate::comparison::{Check, Discrepancy, ModelComparison, SceneComparison};
 use crate::reference::REFERENCE_REVISION;
+use crate::result::Summary;
 use crate::scene::{Geometry, Model, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -111,6 +112,13 @@ impl Validation {
             place: Place::of(scene, reference),
             rows: model.discrepancies.iter().filter(is_kept).filter_map(Row::of).collect(),
         }
+    }
+
+    /// The same reference beside a model that now gives `summary`.
+    pub fn renewed(&self, summary: &Summary) -> Self {
+        let now = |row: &Row| summary.value(&row.quantity).map_or(row.reduced, rounded);
+        let rows = self.rows.iter().map(|row| Row { reduced: now(row), ..row.clone() }).collect();
+        Validation { modes: summary.modes, program: PROGRAM.into(), rows, ..self.clone() }
     }
 
     /// What is furthest off among efficiency and force peaks.

@@ -17,6 +17,16 @@ pub fn shipped() -> Result<Vec<Validation>> {
     json_lines::read(&file(&Store::shipped()?))
 }
 
+/// Keeps `new` among the validations that the project brings along.
+///
+/// # Errors
+/// If there is no project, or its file can't be read or written.
+pub fn record(new: &[Validation]) -> Result<()> {
+    let mut known = shipped()?;
+    merge(&mut known, new);
+    json_lines::write(&file(&Store::shipped()?), &known)
+}
+
 /// The validations kept in `store` by this version of the program with the present method of the reference.
 ///
 /// # Errors

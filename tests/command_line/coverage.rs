@@ -97,3 +97,40 @@ fn comparisons_keep_what_they_find_beside_the_references() {
     std::fs::write(&kept, "no JSON\n").unwrap();
     assert_eq!(compare("coarse", "C").unwrap(), "no JSON\n");
 }
+
+/// Models that have changed are renewed in the record beside the references as they are recorded.
+#[test]
+fn the_record_is_renewed_from_its_own_references() {
+    let home = tempfile::tempdir().unwrap();
+    let solutions = home.path().join("fem_reference/solutions");
+    for folder in [&solutions, &home.path().join("scenes/validation")] {
+        std::fs::create_dir_all(folder).unwrap();
+    }
+    std::fs::write(home.path().join("fem_reference/__main__.py"), "").unwrap();
+    let scene = "scenes/validation/rod.toml";
+    std::fs::copy(format!("{ROOT}/{scene}"), home.path().join(scene)).unwrap();
+    let record = solutions.join("validated.jsonl");
+    let right = std::fs::read_to_string(format!("{ROOT}/fem_reference/solutions/validated.jsonl")).unwrap();
+    // another model gave other numbers once
+    let is_of_rod = |line: &&str| line.contains("\"scene\":\"rod\"") && line.contains("\"model\":\"B\"");
+    let line = right.lines().find(is_of_rod).unwrap();
+    let (before, after) = line.split_once("\"reduced\":").unwrap();
+    std::fs::write(&record, right.replace(line, &format!("{before}\"reduced\":1{after}"))).unwrap();
+    let run = Command::cargo_bin("impactcheck")
+        .unwrap()
+        .args(["coverage", "--record", "--quiet", "--store"])
+        .arg(home.path().join("store"))
+        .env("IMPACTCHECK_HOME", home.path())
+        .output()
+        .unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let entries =
+        |text: &str| -> Vec<Value> { text.lines().map(|l| serde_json::from_str(l).unwrap()).collect() };
+    for (found, right) in entries(&std::fs::read_to_string(&record).unwrap()).iter().zip(entries(&right)) {
+        for (row, right) in found["rows"].as_array().unwrap().iter().zip(right["rows"].as_array().unwrap()) {
+            assert_eq!((&row["reference"], &row["band"]), (&right["reference"], &right["band"]));
+            let [now, right] = [row, right].map(|row| row["reduced"].as_f64().unwrap());
+            assert!((now / right - 1.0).abs() < 1e-3, "{found}: {now} {right}");
+        }
+    }
+}
