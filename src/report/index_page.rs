@@ -28,6 +28,7 @@ pub(super) fn index_of(report: &Report, scenes: &[Standing]) -> String {
         @if let Some(map) = ValidatedMap::of(report.validated(), None) {
             details { summary { "Where the models were held against references" } (map.html()) }
         }
+        (contents(scenes))
         p #search hidden { label { "Search " input type="search" autocomplete="off"; } " " output role="status" {} }
         (scrolled("Scenes", &table(scenes)))
         p.soft.note { "Curves: the first contact force, the reference in black under the models. Largest discrepancy: shaded by size, whatever the "
@@ -71,23 +72,50 @@ const HEADINGS: [(&str, bool); 8] = [
     ("drift", false),
 ];
 
-fn table(scenes: &[Standing]) -> Markup {
+/// The folders in the order in which the scenes name them.
+fn folders(scenes: &[Standing]) -> Vec<&str> {
     let mut folders: Vec<&str> = Vec::new();
     for scene in scenes {
         if !folders.contains(&&*scene.overview.folder) {
             folders.push(&scene.overview.folder);
         }
     }
+    folders
+}
+
+fn of_folder<'s>(scenes: &'s [Standing], folder: &str) -> impl Iterator<Item = &'s Standing> {
+    scenes.iter().filter(move |scene| scene.overview.folder == folder)
+}
+
+/// Links to the folders, with the worst verdict in each.
+fn contents(scenes: &[Standing]) -> Markup {
+    let folders = folders(scenes);
+    html! {
+        @if folders.len() > 1 {
+            nav.contents aria-label="Folders" { ul { @for (k, folder) in folders.iter().enumerate() { li {
+                a href=(format!("#folder-{k}")) { (title(folder)) } " (" (of_folder(scenes, folder).count()) ") "
+                (badge(Verdict::worst(of_folder(scenes, folder).map(|scene| scene.overview.verdict))))
+            } } } }
+        }
+    }
+}
+
+fn title(folder: &str) -> &str {
+    if folder.is_empty() { "–" } else { folder }
+}
+
+fn table(scenes: &[Standing]) -> Markup {
+    let folders = folders(scenes);
     html! { table.verdicts {
         thead { tr {
             th.left scope="col" { "curves" }
             @for (heading, is_left) in HEADINGS { th.sorts.left[is_left] scope="col" { (named(heading)) } }
             th.left scope="col" { "compared" }
         } }
-        @for folder in &folders {
-            tbody {
-                @if folders.len() > 1 { tr.folder { th.left scope="colgroup" colspan="10" { @if folder.is_empty() { "–" } @else { (folder) } } } }
-                @for scene in scenes.iter().filter(|scene| scene.overview.folder == *folder) { (scene_rows(scene)) }
+        @for (k, folder) in folders.iter().enumerate() {
+            tbody id=(format!("folder-{k}")) {
+                @if folders.len() > 1 { tr.folder { th.left scope="colgroup" colspan="10" { (title(folder)) } } }
+                @for scene in of_folder(scenes, folder) { (scene_rows(scene)) }
             }
         }
     } }
