@@ -22,7 +22,7 @@ pub use curve_bands::CurveBands;
 pub use doctor::{Check, doctor};
 pub use entry::Stored;
 pub use fields::FieldMesh;
-pub use identity::{REFERENCE_REVISION, settings_hash};
+pub use identity::{revision, settings_hash};
 pub use modes::{plate_modes, seat_frequencies};
 pub use python::python;
 pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_mesh_with, seat_meshes};

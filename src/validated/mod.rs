@@ -12,13 +12,16 @@ pub use record::{merge, of_store, record, shipped, update};
 pub use vicinity::{NEAR, Vicinity};
 
 use crate::comparison::{Check, Discrepancy, ModelComparison, SceneComparison};
-use crate::reference::REFERENCE_REVISION;
+use crate::reference::revision;
 use crate::result::Summary;
 use crate::scene::{Geometry, Model, Scene};
 use serde::{Deserialize, Serialize};
 
 /// Version of the program, whose models an entry of a user's store is of.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
+/// Revision of the reference's method since which what is kept of it is the same: the fourth changed what is recorded of the
+/// plate's motion, which is not kept.
+pub const SAME_SINCE: u32 = 3;
 /// Significant digits kept: more than any band leaves sure, and the same on every machine.
 const DIGITS: usize = 7;
 
@@ -107,7 +110,7 @@ impl Validation {
                 Geometry::Solid => "solid".into(),
             },
             dofs: reference.mesh.as_ref().and_then(|mesh| mesh["dofs"].as_u64()),
-            revision: REFERENCE_REVISION,
+            revision: revision(scene),
             program: PROGRAM.into(),
             place: Place::of(scene, reference),
             rows: model.discrepancies.iter().filter(is_kept).filter_map(Row::of).collect(),

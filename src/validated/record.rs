@@ -1,9 +1,9 @@
 //! The files that validations are kept in: one beside the solutions of each store.
 
-use super::{PROGRAM, Validation};
+use super::{PROGRAM, SAME_SINCE, Validation};
 use crate::ci::json_lines;
 use crate::error::Result;
-use crate::reference::{REFERENCE_REVISION, Store};
+use crate::reference::Store;
 use std::path::PathBuf;
 
 const FILE: &str = "validated.jsonl";
@@ -27,13 +27,13 @@ pub fn record(new: &[Validation]) -> Result<()> {
     json_lines::write(&file(&Store::shipped()?), &known)
 }
 
-/// The validations kept in `store` by this version of the program with the present method of the reference.
+/// The validations kept in `store` by this version of the program with a method of the reference that gives the same.
 ///
 /// # Errors
 /// If the file can't be read.
 pub fn of_store(store: &Store) -> Result<Vec<Validation>> {
     let mut kept: Vec<Validation> = json_lines::read(&file(store))?;
-    kept.retain(|v| v.program == PROGRAM && v.revision == REFERENCE_REVISION);
+    kept.retain(|v| v.program == PROGRAM && v.revision >= SAME_SINCE);
     Ok(kept)
 }
 
