@@ -113,8 +113,13 @@ fn scenes_of_earlier_runs_stay_in_index_and_document_with_their_date() {
     assert_eq!(entry("first"), first, "what was not compared again is what it was");
     let index = read("index.html");
     assert!(index.contains("href=\"first.html\"") && index.contains("href=\"second.html\""));
+    let (links, rows) = index.split_once("<table").unwrap();
+    assert!(
+        links.contains("<a href=\"#folder-1\">scenes/second-folder</a> (1) ")
+            && rows.contains("id=\"folder-1\"")
+    );
     let folders: Vec<usize> = ["scenes/first-folder<", "first.html", "scenes/second-folder<", "second.html"]
-        .map(|f| index.find(f).unwrap())
+        .map(|f| rows.find(f).unwrap())
         .into();
     assert!(folders.is_sorted(), "every scene below its folder");
     assert!(index.contains("Kept from an earlier run, not compared again: compared on Monday."));
