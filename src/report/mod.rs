@@ -4,6 +4,8 @@
 //! the same files.
 
 mod acceptance_section;
+mod animation;
+mod animation_section;
 mod attachments;
 mod budget_figure;
 mod budget_section;
@@ -62,6 +64,7 @@ mod trend_section;
 mod trust;
 mod write;
 
+pub use animation::{Film, film};
 pub use attachments::{Attachments, Cost};
 pub use chart::{ChartPanel, Series, chart};
 pub use colour_map::{ColourMap, colour_maps};
