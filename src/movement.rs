@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::kinds::plate_impact::deflection::deflection;
 use crate::reference::{FieldMesh, Stored};
 use crate::result::Outcome;
-use crate::scene::Scene;
+use crate::scene::{Geometry, Scene};
 
 /// Instants, as far as the reference's fields don't give them.
 const INSTANTS: usize = 40;
@@ -32,9 +32,10 @@ pub struct Movement {
 }
 
 impl Movement {
-    /// Whether enough fields are stored to show a movement.
-    pub fn has_fields(stored: &Stored) -> bool {
-        stored.fields_over_time().is_ok_and(|series| series.len() >= *FIELDS.start())
+    /// Whether enough fields are stored to show a movement; those of solid references are not drawn.
+    pub fn has_fields(scene: &Scene, stored: &Stored) -> bool {
+        scene.reference.geometry == Geometry::Axisymmetric
+            && stored.fields_over_time().is_ok_and(|series| series.len() >= *FIELDS.start())
     }
 
     /// Of the `reduced` outcomes of `scene` the most exact beside the reference in the store.
@@ -50,8 +51,9 @@ impl Movement {
             ranked.and_then(|(k, outcome)| Some((k, outcome, named(outcome)?))).ok_or_else(|| {
                 Error::Usage("an animation needs a reduced model, of which there is none".into())
             })?;
+        let fields = if Self::has_fields(scene, stored) { fields(stored) } else { Ok(Vec::new()) };
         let (mut times, fields): (Vec<f64>, Vec<FieldMesh>) =
-            fields(stored).map_err(Error::Reference)?.into_iter().unzip();
+            fields.map_err(Error::Reference)?.into_iter().unzip();
         if fields.is_empty() {
             times = evenly(&stored.outcome);
         }
@@ -69,12 +71,9 @@ fn evenly(reference: &Outcome) -> Vec<f64> {
     (0..INSTANTS).map(|k| end * k as f64 / (INSTANTS - 1) as f64).collect()
 }
 
-/// The stored fields with displacement and stress, if there are enough of them.
+/// The stored fields, if all have displacement and stress.
 fn fields(stored: &Stored) -> std::result::Result<Vec<(f64, FieldMesh)>, String> {
     let series = stored.fields_over_time()?;
-    if series.len() < *FIELDS.start() {
-        return Ok(Vec::new());
-    }
     let every = series.len().div_ceil(*FIELDS.end());
     let read =
         series.into_iter().step_by(every).map(|(instant, file)| Ok((instant, FieldMesh::read(&file)?)));
@@ -131,7 +130,7 @@ mod tests {
             folder: folder.path().to_owned(),
             earlier: None,
         };
-        assert_eq!(Movement::has_fields(&stored), count >= 8);
+        assert_eq!(Movement::has_fields(&scene, &stored), count >= 8);
         (Movement::of(&scene, &stored, &reduced).expect("movement"), reduced)
     }
 

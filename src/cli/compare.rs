@@ -14,7 +14,7 @@ use crate::movement::Movement;
 use crate::reference::{COARSER, Lookup, Resolution, Stored};
 use crate::report::{self, Attachments, Cost, FigureFormat, Film, Report, SceneReport};
 use crate::result::Outcome;
-use crate::scene::Scene;
+use crate::scene::{Geometry, Scene};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -282,15 +282,18 @@ impl<'a> Job<'a> {
         reduced: &[Outcome],
     ) -> Result<Option<Film>> {
         let asked = self.figures.iter().any(|(_, format)| *format == FigureFormat::Gif);
-        if !asked && !Movement::has_fields(stored) {
+        if !asked && !Movement::has_fields(scene, stored) {
             return Ok(None);
         }
         let film = Movement::of(scene, stored, reduced).and_then(|movement| {
             if movement.fields.is_empty() {
-                context.note(format_args!(
-                    "{0}: the reference has no fields over time, the animation shows the reduced model alone; `impactcheck reference {0} --fields 40` stores some",
-                    scene.name
-                ));
+                let alone = format!("{}: the animation shows the reduced model alone", scene.name);
+                context.note(match scene.reference.geometry {
+                    Geometry::Axisymmetric => {
+                        format!("{alone}; `{}` stores fields of the reference", report::fields_command(scene))
+                    }
+                    Geometry::Solid => format!("{alone}; fields of a solid reference are not drawn"),
+                });
             }
             report::film(scene, &stored.outcome, reduced, &movement)
         });

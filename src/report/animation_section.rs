@@ -2,6 +2,7 @@
 
 use super::SceneReport;
 use super::format::{prefixed, with_unit};
+use crate::scene::Scene;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use maud::{Markup, html};
@@ -9,6 +10,11 @@ use maud::{Markup, html};
 /// The animation's file beside the page.
 pub(super) fn file(scene: &str) -> String {
     format!("{scene}-impact.gif")
+}
+
+/// The command that stores the fields which an animation of `scene` shows.
+pub fn fields_command(scene: &Scene) -> String {
+    format!("impactcheck reference {} --fields 40", scene.name)
 }
 
 /// Section of the page; nothing if there is no animation. It plays when it is asked for, and is loaded then.

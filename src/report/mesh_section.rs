@@ -52,6 +52,10 @@ pub(super) fn mesh_html(report: &SceneReport) -> Result<Markup> {
                     "law for half-spaces would have it." }
             }
         }
+        @if report.attachments.film.is_none() {
+            p.soft { "The impact moving, with the stress over time: " code { (super::fields_command(report.scene)) }
+                " stores the fields, and the next comparison shows it." }
+        }
     })
 }
 

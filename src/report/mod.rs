@@ -65,6 +65,7 @@ mod trust;
 mod write;
 
 pub use animation::{Film, film};
+pub use animation_section::fields_command;
 pub use attachments::{Attachments, Cost};
 pub use chart::{ChartPanel, Series, chart};
 pub use colour_map::{ColourMap, colour_maps};

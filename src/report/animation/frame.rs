@@ -51,7 +51,8 @@ impl Forces {
 /// Height of a frame, px.
 pub(super) fn height(stage: &Stage) -> f64 {
     let [_, top, _, height] = stage.picture();
-    (top + height + SCALES + FORCES + AXIS).round()
+    // of which a whole number of pixels is made
+    (0.25 * (top + height + SCALES + FORCES + AXIS)).ceil() / 0.25
 }
 
 pub(super) fn svg(stage: &Stage, k: usize) -> String {
@@ -158,7 +159,7 @@ fn scales(stage: &Stage) -> Markup {
                     (tick_label(*mark, &marks))
                 }
             }
-            text x=(left + bar + 28.0) y=(bottom + 38.0) { "von Mises stress in MPa, and above" }
+            text x=(left + bar + 28.0) y=(bottom + 38.0) { "von Mises stress in MPa (contacts: more)" }
         }
     }
 }

@@ -130,8 +130,8 @@ impl<'a> Stage<'a> {
             return format!("The impact in {}, {scale}.", self.model);
         }
         format!(
-            "The impact in section: on the left the reference with its von Mises stress, on the right {} with its plate's \
-             deflection and rigid bodies, {scale} in both.",
+            "The impact in section: on the left the reference with its von Mises stress, on the right the deflection and the rigid \
+             bodies of {}; {scale} in both.",
             self.model
         )
     }
