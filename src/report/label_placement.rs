@@ -48,6 +48,9 @@ const DISTANCES: [f64; 7] = [4.0, 8.0, 13.0, 22.0, 34.0, 50.0, 70.0];
 /// Distance from which on a line leads from the label to its curve, px.
 const LEADER_FROM: f64 = 10.0;
 
+/// By how much nearer to its own curve than to others a label counts at least and at most, px.
+const APART: (f64, f64) = (-20.0, 30.0);
+
 /// Where a label stands.
 pub(super) struct Label {
     pub(super) rect: Rect,
@@ -108,10 +111,19 @@ impl Panel {
                 if !self.area.contains(&rect) {
                     continue;
                 }
-                let free = rect.clearance(self.curves.iter().flatten()).min(self.room_between(&rect));
-                let apart = rect.clearance(others.iter().flatten());
+                let score = |free: f64, apart: f64| 10.0 * free.min(2.5) + apart / 5.0 - 0.15 * distance;
+                // most places can't be the best, whatever the curves
+                let between = self.room_between(&rect);
+                if score(between, APART.1) <= best.0 {
+                    continue;
+                }
+                let free = rect.clearance(self.curves.iter().flatten()).min(between);
+                if score(free, APART.1) <= best.0 {
+                    continue;
+                }
                 let near = rect.clearance(own);
-                let score = 10.0 * free.min(2.5) + (apart - near).clamp(-20.0, 30.0) / 5.0 - 0.15 * distance;
+                let apart = rect.clearance(others.iter().flatten()) - near;
+                let score = score(free, apart.clamp(APART.0, APART.1));
                 if score > best.0 {
                     let edge = (point.0, at.1 - side * 0.5 * height);
                     let leader = (near > LEADER_FROM).then_some((edge, point));
