@@ -41,8 +41,8 @@ class AxisymmetricSystem:
     """For each body the system's number of each of its nodes."""
     supports: Ints
     """Nodes whose axial displacement is fixed."""
-    centre: tuple[int, int]
-    """The plate's centre nodes on its two faces."""
+    watched: tuple[Ints, Floats]
+    """Nodes (k,) of the plate's faces and their shares (k,) in its observed motion."""
     matched: tuple[MatchedContact, MatchedContact]
     """Outer and inner body, whose nodes are the candidates, with the plate."""
     element_nodes: Ints
@@ -136,14 +136,18 @@ def critical_time_step(system: AxisymmetricSystem) -> float:
     return 2.0 / math.sqrt(float(values[0]) + residual)
 
 
-def hertz_weights(radii: Floats) -> Floats:
-    """Nodal shares (n,) of a unit Hertz pressure over the zone of the nodes at ``radii`` (m).
+def hertz_weights(radii: Floats, circle: float | None = None) -> Floats:
+    """Nodal shares (n,) of a unit Hertz pressure over the nodes at ``radii`` (m).
 
     Each node gets the pressure sqrt(1 - (r/a)^2) integrated over its ring, whose edges lie midway
     to its neighbours.
+
+    Args:
+        radii: of the nodes, ascending from 0, m.
+        circle: the contact radius a, at most the largest of them, which it is by default, m.
     """
-    edges = ring_edges(radii)
-    return np.asarray(-np.diff((1.0 - (edges / radii[-1]) ** 2) ** 1.5))
+    inside = np.minimum(ring_edges(radii) / (circle or radii[-1]), 1.0)
+    return np.asarray(-np.diff((1.0 - inside**2) ** 1.5))
 
 
 def patch_flexibility(system: AxisymmetricSystem, body: int, nodes: Ints, weights: Floats) -> float:

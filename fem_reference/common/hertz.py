@@ -22,6 +22,11 @@ def hertz_contact_radius(force: float, effective: float, radius: float) -> float
     return math.pow(3.0 * force * radius / (4.0 * effective), 1.0 / 3.0)
 
 
+def hertz_approach(mass: float, speed: float, stiffness: float) -> float:
+    """Largest approach (5 m v^2 / (4 k))^(2/5) in an impact on a rigid wall, m."""
+    return float((1.25 * mass * speed**2 / stiffness) ** 0.4)
+
+
 def hertz_time_scale(mass: float, stiffness: float, speed: float) -> float:
     """T = (m / (k sqrt v))^(2/5), s; a contact lasts 3.218 T, the force peaks at 1.1433 m v/T."""
     return float((mass / (stiffness * math.sqrt(speed))) ** 0.4)

@@ -135,15 +135,25 @@ typedef struct {
     double displacement; /* m */
 } Carried;
 
-static double mean(const double *x, const int32_t *node) {
-    return 0.5 * (x[C * (int64_t)node[0] + AXIAL] + x[C * (int64_t)node[1] + AXIAL]);
+/* Nodes of which a weighted mean along the last axis is watched. */
+typedef struct {
+    int64_t count;
+    const int32_t *node;
+    const double *share; /* their sum is 1 */
+} Watched;
+
+static double mean(const double *x, const Watched *watched) {
+    double sum = 0.0;
+    for (int64_t i = 0; i < watched->count; ++i)
+        sum += watched->share[i] * x[C * (int64_t)watched->node[i] + AXIAL];
+    return sum;
 }
 
 /* Advances by samples * stride steps with two contacts of matching nodes and writes a row of SAMPLED
  * numbers at the first step of each stride, all at t_n: displacement, velocity and impulse so far of
- * the first carried body, mean displacement and velocity of two watched nodes, and the second body's
+ * the first carried body, mean displacement and velocity of the watched nodes, and the second body's
  * three. Velocities are the mean of both half steps. */
-void run(State *s, Carried *body, const int32_t *watched, int64_t samples, int64_t stride, double *row) {
+void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64_t stride, double *row) {
     const Pairs *pairs = s->problem->pairs;
     for (int64_t j = 0; j < samples; ++j, row += SAMPLED) {
         const double last[2] = {pairs[0].record.impulse, pairs[1].record.impulse};
@@ -178,6 +188,7 @@ void triad(double *restrict a, const double *restrict b, const double *restrict 
 
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
-                           sizeof(Level),  sizeof(State), sizeof(Carried), sizeof(Tip)};
+                           sizeof(Level),  sizeof(State), sizeof(Carried), sizeof(Tip),
+                           sizeof(Watched)};
     return (int64_t)size[what];
 }

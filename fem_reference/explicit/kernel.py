@@ -267,6 +267,16 @@ def _compiled(components: int) -> ctypes.CDLL:
     return ctypes.CDLL(str(library))
 
 
+class Watched(ctypes.Structure):
+    """Mirror of ``Watched`` in kernel.c."""
+
+    _fields_ = (
+        ("count", ctypes.c_int64),
+        ("node", _INT32),
+        ("share", _DOUBLE),
+    )
+
+
 def load(components: int) -> ctypes.CDLL:
     """The compiled kernel for 2 or 3 components of displacement per node.
 
@@ -279,7 +289,7 @@ def load(components: int) -> ctypes.CDLL:
         "advance": (state, count),
         "drift": (state, count),
         "contact_step": (ctypes.POINTER(Problem),),
-        "run": (state, ctypes.POINTER(Carried), _INT32, count, count, _DOUBLE),
+        "run": (state, ctypes.POINTER(Carried), ctypes.POINTER(Watched), count, count, _DOUBLE),
         "stiffness_product": (state, count, count, _DOUBLE, _DOUBLE),
         "triad": (_DOUBLE, _DOUBLE, _DOUBLE, count, count),
     }.items():
@@ -287,7 +297,7 @@ def load(components: int) -> ctypes.CDLL:
         function.argtypes, function.restype = arguments, None
     kernel.layout.restype = ctypes.c_int64
     for number, mirror in enumerate(
-        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip)
+        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip, Watched)
     ):
         if kernel.layout(number) != ctypes.sizeof(mirror):
             raise SolverError(

@@ -34,7 +34,7 @@ from .meshing import ImpactMesh, build_system, mesh_impact, mesh_settings
 from .run import Run
 from .scene import Scene
 
-REVISION = 1
+REVISION = 2
 """Counts changes of the method that make kept results useless."""
 
 LEAST_ELEMENTS_PER_WAVELENGTH = 12.0

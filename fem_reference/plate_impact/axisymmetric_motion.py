@@ -17,7 +17,7 @@ from ..axisymmetric.system import (
     hertz_weights,
     patch_flexibility,
 )
-from ..common.arrays import Floats
+from ..common.arrays import Floats, Ints
 from ..common.fenicsx import alone
 from ..explicit import kernel
 from ..explicit.damping import ModalDamping
@@ -58,7 +58,14 @@ class AxisymmetricMotion:
             carried.start = float(system.velocity[system.first[body], 1])
         self._arrays = kernel.Arrays()
         self._bodies = bodies
-        self._centre = self._arrays.pointer(system.centre, np.int32)
+        self._watched = self._watch(*system.watched)
+
+    def _watch(self, nodes: Ints, shares: Floats) -> kernel.Watched:
+        watched = kernel.Watched()
+        watched.count = nodes.size
+        watched.node = self._arrays.pointer(nodes, np.int32)
+        watched.share = self._arrays.pointer(shares, np.float64)
+        return watched
 
     def damp(self, ratio: float, frequency: float) -> None:
         """Damp the plate's modes up to an angular frequency (rad/s), from the start on."""
@@ -75,12 +82,12 @@ class AxisymmetricMotion:
     def sample(self, samples: int, stride: int) -> Floats:
         """See `Motion.sample`; samples lie close, so that compiled code takes them."""
         if self.damping is None:
-            return self.loop.run(self._bodies, self._centre, samples, stride)
+            return self.loop.run(self._bodies, self._watched, samples, stride)
         rows, length = [], stride * self.loop.dt
         while samples > 0:
             due = math.ceil((self.damping.interval - self._undamped) / length)
             count = min(samples, max(1, due))
-            rows.append(self.loop.run(self._bodies, self._centre, count, stride))
+            rows.append(self.loop.run(self._bodies, self._watched, count, stride))
             samples -= count
             self._undamped += count * length
             if self._undamped >= self.damping.interval:

@@ -15,6 +15,7 @@ from ..axisymmetric.sizes import MeshSettings
 from ..axisymmetric.system import (
     AxisymmetricSystem,
     axis_constraints,
+    hertz_weights,
     plate_constraints,
     renumbering,
 )
@@ -23,6 +24,7 @@ from ..common.arrays import Floats, Ints
 from ..common.bodies import Body, Compact, Sphere, sphere_profile
 from ..common.errors import SceneError, SolverError
 from ..explicit.contact import MatchedContact
+from .motion import observed_circle
 from .scene import Scene
 
 CONTACT_ZONE = 1.3
@@ -146,6 +148,19 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     )
 
 
+def _watched(scene: Scene, plate: BodyMesh) -> tuple[Ints, Floats]:
+    """Nodes of the plate's faces within `observed_circle`, and their shares in the mean of both."""
+    half, circle = scene.plate.thickness / 2.0, observed_circle(scene)
+    nodes, shares = [], []
+    for z in (half, -half):
+        face = np.flatnonzero(np.abs(plate.points[:, 1] - z) < 1e-9 * half)
+        face = face[np.argsort(plate.points[face, 0])]
+        share = hertz_weights(plate.points[face, 0], circle)
+        nodes.append(face[share > 0.0])
+        shares.append(0.5 * share[share > 0.0])
+    return np.concatenate(nodes), np.concatenate(shares)
+
+
 def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
     """Assemble with dolfinx, constrain and renumber.
 
@@ -208,6 +223,7 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
                 tip_flexibility(made.material, surface.radii) if tip else None,
             )
         )
+    faces, shares = _watched(scene, mesh.plate)
     velocity = np.zeros((int(first[-1]), 2))
     velocity[: first[1], 1] = -scene.speed
     return AxisymmetricSystem(
@@ -219,7 +235,7 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
         first=first,
         numbers=(numbers[0], numbers[1], numbers[2]),
         supports=np.sort(supports),
-        centre=(int(contacts[0].opposite[0]), int(contacts[1].opposite[0])),
+        watched=(numbers[1][faces], shares),
         matched=(contacts[0], contacts[1]),
         element_nodes=np.concatenate(element_nodes),
         element_stiffness=np.concatenate(element_stiffness),

@@ -2,18 +2,36 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
 from ..common.arrays import Floats
+from ..common.hertz import effective_modulus, hertz_approach, hertz_stiffness
 from ..explicit import kernel
 from ..explicit.damping import ModalDamping
 from ..explicit.loop import Energies, Loop
+from .scene import Scene
 
 OUTER, PLATE, INNER = "outer", "plate", "inner"
 SPHERES = (OUTER, INNER)
+CIRCLE = 0.5
+"""Radius over which the plate's motion is observed, over the contact radius of the outer body's
+impact on a rigid plate."""
 SIDES = (1.0, -1.0)
 """Where the spheres lie along z, seen from the plate."""
+
+
+def observed_circle(scene: Scene) -> float:
+    """Radius over which the plate's motion is observed, with Hertz's weight sqrt(1 - (r/b)^2), m.
+
+    A node would follow every wave of the mesh. As `LocalCentre` of the reduced models has it.
+    """
+    outer = scene.outer
+    effective = effective_modulus(outer.material, scene.plate.material)
+    stiffness = hertz_stiffness(effective, outer.tip_radius)
+    approach = hertz_approach(outer.mass, scene.speed, stiffness)
+    return min(CIRCLE * math.sqrt(outer.tip_radius * approach), scene.plate.radius)
 
 
 @dataclass(frozen=True)
@@ -54,8 +72,8 @@ class Motion(Protocol):
     def sample(self, samples: int, stride: int) -> Floats:
         """Advance by samples * stride steps; (samples, 8) rows of the strides' first steps.
 
-        Outer displacement, velocity, impulse so far; displacement and velocity of the plate's
-        centre; inner displacement, velocity, impulse so far.
+        Outer displacement, velocity, impulse so far; displacement and velocity of the plate (mean
+        of both faces over `observed_circle`); inner displacement, velocity, impulse so far.
         """
 
     def velocities(self) -> tuple[float, float]:

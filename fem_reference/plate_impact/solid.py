@@ -36,7 +36,7 @@ from .scene import Scene
 from .solid_model import PlateModel, plate_model
 from .solid_motion import integrate_solid
 
-REVISION = 5
+REVISION = 6
 """Counts changes of the method that make older checkpoints useless."""
 
 RADIUS_STEP = 1.04

@@ -15,7 +15,7 @@ from ..solid.mesh import TetMesh, surface
 from ..solid.meshing import SizeField, quarter_plate, quarter_sphere
 from ..solid.model import ElasticBody, Model, nodal_areas, project, symmetry_plane
 from .estimate import ContactEstimate
-from .motion import INNER, OUTER, PLATE
+from .motion import INNER, OUTER, PLATE, observed_circle
 from .scene import Scene
 
 FRACTION = 0.25
@@ -40,8 +40,9 @@ class PlateModel:
     elastic: dict[str, int]
     """Number of each elastic body by name."""
     rigid: dict[str, int]
-    centre: tuple[int, int]
-    """The plate's nodes at its centre, upper and lower face, in the numbering of its mesh."""
+    watched: tuple[Ints, Floats]
+    """Nodes (k,) of the plate's faces in the numbering of its mesh, and their shares (k,) in the
+    mean of both over `observed_circle`."""
     patches: dict[tuple[str, str], tuple[Ints, Floats]]
     """Nodes and areas (m^2) of a body in the zone of a contact, by body and contact."""
 
@@ -150,7 +151,7 @@ def plate_model(
     rigid: list[RigidBody] = []
     contacts: list[Contact] = []
     patches: dict[tuple[str, str], tuple[Ints, Floats]] = {}
-    centre: list[int] = []
+    watched: list[tuple[Ints, Floats]] = []
     for name, body, size, side, gap, speed in (
         (OUTER, scene.outer, outer_size, 1.0, 0.0, -scene.speed),
         (INNER, scene.inner, inner_size, -1.0, scene.gap, 0.0),
@@ -163,7 +164,7 @@ def plate_model(
         # By increasing radius: the record of the outermost contact goes by it.
         near = near[np.argsort(distance[near], kind="stable")]
         patches[PLATE, name] = (near, areas[near])
-        centre.append(int(near[0]))
+        watched.append(_watched(near, distance[near], areas[near], observed_circle(scene)))
         if name in scene.rigid or isinstance(body, Compact):
             rigid_numbers[name] = len(rigid)
             along = guided((0.0, 0.0, 1.0))
@@ -186,9 +187,20 @@ def plate_model(
         zone=zone,
         elastic=numbers,
         rigid=rigid_numbers,
-        centre=(centre[0], centre[1]),
+        watched=(
+            np.concatenate([nodes for nodes, _ in watched]),
+            np.concatenate([0.5 * shares for _, shares in watched]),
+        ),
         patches=patches,
     )
+
+
+def _watched(nodes: Ints, radii: Floats, areas: Floats, circle: float) -> tuple[Ints, Floats]:
+    """The nodes of a face within a circle (m) and their shares of a unit Hertz pressure on it."""
+    shares = areas * np.sqrt(np.maximum(1.0 - (radii / circle) ** 2, 0.0))
+    if not shares.any():
+        shares[0] = 1.0
+    return nodes[shares > 0.0], shares[shares > 0.0] / shares.sum()
 
 
 def _sphere_on_plate(

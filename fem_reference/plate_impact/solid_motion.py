@@ -39,7 +39,9 @@ class SolidMotion:
             if name in plate.elastic:
                 self._weights[row] = mean(name)
         first = int(loop.system.first[plate.elastic[PLATE]])
-        self._weights[2] = 0.5 * np.isin(owned, first + np.array(plate.centre))
+        shares = np.zeros(int(loop.system.first[-1]))
+        shares[first + plate.watched[0]] = plate.watched[1]
+        self._weights[2] = shares[owned]
         outer, inner = (self._candidate_radii(number) for number in (0, 1))
         self.radii = (outer, inner)
 

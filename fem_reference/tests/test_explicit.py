@@ -26,6 +26,7 @@ from fem_reference.plate_impact.axisymmetric_motion import (
     AxisymmetricMotion,
     integrate_axisymmetric,
 )
+from fem_reference.plate_impact.motion import observed_circle
 from fem_reference.plate_impact.run import Run
 from fem_reference.plate_impact.scene import Scene, parse_scene
 
@@ -234,6 +235,12 @@ def test_field_is_the_state_at_its_time(
     rows = slice(int(system.first[OUTER]), int(system.first[OUTER + 1]))
     mean = system.mass[rows] @ moved[rows, 1] / system.mass[rows].sum()
     assert mean == pytest.approx(cut.rows[index, 0], rel=1e-12)
+    nodes, shares = system.watched
+    assert shares.sum() == pytest.approx(1.0, rel=1e-12)
+    assert nodes.size > 4
+    assert np.all(system.points[nodes, 0] < 1.2 * observed_circle(scene))
+    assert np.all(np.abs(system.points[nodes, 1]) == pytest.approx(0.5 * scene.plate.thickness))
+    assert shares @ moved[nodes, 1] == pytest.approx(cut.rows[index, 3], rel=1e-12)
 
 
 def test_flexibility_of_a_free_sphere(scene: Scene) -> None:

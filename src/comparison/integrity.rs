@@ -4,6 +4,7 @@
 //! the summary says is therefore found again in the history, as closely as its sampling permits.
 
 use super::discrepancy::Discrepancy;
+use super::series;
 use super::verdict::Verdict;
 use crate::kinds::{self, Kind};
 use crate::result::{History, Outcome, Source, Statement, Summary};
@@ -51,6 +52,7 @@ pub(super) fn check(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
     let (summary, history) = (&outcome.summary, &outcome.history);
     let kind = kinds::of(scene);
     let mut checks = form(kind, summary, history);
+    checks.extend(series::contradictions(summary).map(|n| Check::count("contradictions_of_mesh_series", n)));
     if history.can_be_sampled() {
         checks.extend(sampling(summary, history));
         checks.extend(kind.checks(scene, outcome).into_iter().map(Check::from));

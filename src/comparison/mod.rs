@@ -12,6 +12,7 @@ mod common_mesh;
 mod discrepancy;
 mod integrity;
 mod moved;
+mod series;
 mod undecided;
 mod verdict;
 

@@ -40,7 +40,10 @@ const CHECKSUMS: &str = "checksums.sha256";
 const SUMMARY: &str = "summary.json";
 const HISTORY: &str = "history.csv";
 const PROVENANCE: &str = "provenance.json";
-const REQUIRED: [&str; 4] = [SUMMARY, HISTORY, "mesh.vtu", PROVENANCE];
+const MESH: &str = "mesh.vtu";
+const REQUIRED: [&str; 4] = [SUMMARY, HISTORY, MESH, PROVENANCE];
+/// Bytes of a mesh file within which its number of points stands.
+const MESH_HEAD: u64 = 4096;
 
 /// Whether the files with values on the mesh (`.vtu`) must be there. They are large, show pictures only, and are made again by
 /// a computation: a repository may leave them out. What is there must be intact.
@@ -74,6 +77,7 @@ pub(super) fn load(scene: &Scene, folder: &Path, mesh_files: MeshFiles) -> Resul
             format!("scene_hash is {}, but {} in {SUMMARY}", provenance["scene_hash"], summary.scene_hash);
         return Err(damage(PROVENANCE, reason));
     }
+    check_mesh(folder, &summary).map_err(|reason| damage(MESH, reason))?;
     kind.judge(scene, &mut summary, Some(&history));
     Ok(Stored {
         outcome: Outcome { summary, history },
@@ -82,6 +86,23 @@ pub(super) fn load(scene: &Scene, folder: &Path, mesh_files: MeshFiles) -> Resul
         folder: folder.to_path_buf(),
         earlier: None,
     })
+}
+
+/// That the mesh, if it is there, has as many nodes as the finest one of the series, with two or three displacements each.
+fn check_mesh(folder: &Path, summary: &Summary) -> Result<(), String> {
+    let dofs = summary.convergence.as_ref().and_then(|series| series["meshes"][0]["dofs"].as_u64());
+    let (Some(dofs), Ok(file)) = (dofs, std::fs::File::open(folder.join(MESH))) else { return Ok(()) };
+    let mut head = Vec::new();
+    std::io::Read::read_to_end(&mut std::io::Read::take(file, MESH_HEAD), &mut head)
+        .map_err(|e| format!("can't be read: {e}"))?;
+    let head = String::from_utf8_lossy(&head);
+    let nodes = head.split_once("NumberOfPoints=\"").and_then(|(_, rest)| rest.split_once('"'));
+    let nodes: Option<u64> = nodes.and_then(|(number, _)| number.parse().ok());
+    match nodes {
+        Some(nodes) if [2 * nodes, 3 * nodes].contains(&dofs) => Ok(()),
+        Some(nodes) => Err(format!("has {nodes} nodes; the solution is of a mesh with {dofs} displacements")),
+        None => Err("does not say how many nodes it has".to_owned()),
+    }
 }
 
 /// Text of the checksum file; what tells one version of an entry from the next.

@@ -7,15 +7,20 @@ use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Counts changes of `fem_reference` that change its results; raising it makes every stored
-/// solution stale.
-const REFERENCE_REVISION: u32 = 3;
+/// Counts changes of `fem_reference` that change the results of a kind of scene; raising it makes their stored solutions
+/// stale.
+fn revision(scene: &Scene) -> u32 {
+    match scene.setup {
+        Setup::PlateImpact(_) => 4,
+        Setup::SealSeat(_) => 3,
+    }
+}
 
 /// SHA-256 (hexadecimal) of how the reference of `scene` is computed: its settings, the
 /// resolution and the revision of the method.
 pub fn settings_hash(scene: &Scene, resolution: Resolution) -> String {
     let settings = json!({
-        "reference": scene.reference, "resolution": resolution, "revision": REFERENCE_REVISION,
+        "reference": scene.reference, "resolution": resolution, "revision": revision(scene),
     });
     sha256_hex(canonical(&settings).as_bytes())
 }
@@ -66,7 +71,7 @@ pub(super) fn staleness(provenance: &Value, scene: &Scene, resolution: Resolutio
         differences("reference", &stored["reference"], &present["reference"], &mut changes);
         differences("resolution", &provenance["settings"]["resolution"], &json!(resolution), &mut changes);
         if changes.is_empty() {
-            changes.push(format!("the method of the reference (its revision is now {REFERENCE_REVISION})"));
+            changes.push(format!("the method of the reference (its revision is now {})", revision(scene)));
         }
         reasons.push(sentence("the settings have changed", &changes, "settings_hash", provenance, &present));
     }

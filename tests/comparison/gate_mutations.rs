@@ -2,9 +2,10 @@
 //! the gate has to fail with exit status 10; with the untouched one it has to pass.
 
 use assert_cmd::Command;
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const SCENES: [&str; 2] = ["scaled-plate-r10", "scaled-plate-r6.35"];
 
@@ -54,23 +55,43 @@ impl Table {
     }
 }
 
-/// A store that holds `scene` only, its history changed by `change` and its checksums made again.
-fn store(scene: &str, change: impl Fn(&mut Table)) -> tempfile::TempDir {
+/// A store that holds `scene` only, its solution changed by `change` and its checksums made again.
+fn changed(scene: &str, change: impl Fn(&Path)) -> tempfile::TempDir {
     let store = tempfile::tempdir().unwrap();
-    let from =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("fem_reference/solutions").join(scene).join("paper");
+    let from = solution(scene);
     let to = store.path().join(scene).join("paper");
     fs::create_dir_all(&to).unwrap();
     for entry in fs::read_dir(&from).unwrap() {
         let entry = entry.unwrap();
         fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
     }
-    let history = to.join("history.csv");
-    let mut table = Table::read(&history);
-    change(&mut table);
-    table.write(&history);
+    change(&to);
     seal(&to);
     store
+}
+
+fn solution(scene: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fem_reference/solutions").join(scene).join("paper")
+}
+
+/// As [`changed`], of the history alone.
+fn store(scene: &str, change: impl Fn(&mut Table)) -> tempfile::TempDir {
+    changed(scene, |folder| {
+        let history = folder.join("history.csv");
+        let mut table = Table::read(&history);
+        change(&mut table);
+        table.write(&history);
+    })
+}
+
+/// As [`changed`], of the summary alone.
+fn summary(scene: &str, change: impl Fn(&mut Value)) -> tempfile::TempDir {
+    changed(scene, |folder| {
+        let file = folder.join("summary.json");
+        let mut summary = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+        change(&mut summary);
+        fs::write(&file, summary.to_string()).unwrap();
+    })
 }
 
 /// Writes checksums.sha256 of a solution again.
@@ -165,4 +186,31 @@ fn changed_file_without_new_checksum_is_damage() {
     text = text.replacen('7', "8", 1);
     fs::write(&file, text).unwrap();
     assert_eq!(gate(scene, store.path()), 11);
+}
+
+/// Bands follow from the values on all meshes, the energy's residual is that of the finest one.
+#[test]
+fn a_summary_that_its_own_mesh_series_contradicts_fails() {
+    let scene = SCENES[0];
+    assert_eq!(gate(scene, summary(scene, |_| ()).path()), 0);
+    let narrow = |summary: &mut Value| {
+        let band = summary["uncertainty"]["efficiency"].as_f64().unwrap() / 1000.0;
+        summary["uncertainty"]["efficiency"] = json!(band);
+        summary["convergence"]["quantities"]["efficiency"]["band"] = json!(band);
+    };
+    assert_eq!(gate(scene, summary(scene, narrow).path()), 10);
+    let residual = |summary: &mut Value| summary["energy_residual"] = json!(0.5);
+    assert_eq!(gate(scene, summary(scene, residual).path()), 10);
+    let dropped = |summary: &mut Value| {
+        summary["convergence"]["quantities"]["efficiency"]["values"].as_array_mut().unwrap().pop();
+    };
+    assert_eq!(gate(scene, summary(scene, dropped).path()), 10);
+}
+
+#[test]
+fn the_mesh_of_another_solution_is_damage() {
+    let foreign = changed(SCENES[0], |folder| {
+        fs::copy(solution(SCENES[1]).join("mesh.vtu"), folder.join("mesh.vtu")).unwrap();
+    });
+    assert_eq!(gate(SCENES[0], foreign.path()), 11);
 }

@@ -109,7 +109,7 @@ fn nothing_happens_after_the_end() {
 fn a_recorded_history_agrees_with_the_account() {
     for (name, setup) in cases() {
         let system = system(&setup, 16);
-        let options = Options { sample_interval: Some(1e-7), ..Options::default() };
+        let options = Options { sample_interval: Some(2e-8), ..Options::default() };
         let result = integrate(&system, &options).unwrap();
         let history = result.history.as_ref().unwrap();
         assert!(history.time.windows(2).all(|t| t[0] < t[1]), "{name}: time increases");

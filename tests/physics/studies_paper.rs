@@ -104,5 +104,5 @@ fn every_study_is_drawn_from_columns_it_has() {
     let written = write(&study, entry.figure(&study).unwrap(), folder.path()).unwrap();
     let names: Vec<String> =
         written.iter().map(|path| path.extension().unwrap().to_string_lossy().into_owned()).collect();
-    assert_eq!(names, ["json", "csv", "md", "png", "svg"]);
+    assert_eq!(names, ["json", "csv", "png", "svg", "md"]);
 }

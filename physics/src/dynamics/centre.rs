@@ -1,12 +1,18 @@
-//! What the contacts' local deformation adds to the motion of the plate's centre.
+//! What the contacts' local deformation adds to the motion of the plate under them.
 //!
-//! The modes alone move the plate's mean plane. The centre that a finite-element program reports is the mean of the
-//! points on the axis of both faces, and each of these sinks under its own contact. On the axis, a face moves by the
-//! residual flexibility, weighted by a patch of no extent on its own side, and by the half-space: 0.75 (1 - nu^2)/(E a)
-//! per unit force (Johnson, Contact Mechanics, 1985, section 3.4) with the patch radius a, a^2 = r p.
+//! The modes alone move the plate as a whole. What is observed, here and of the finite elements, is the mean of both faces, each
+//! averaged with Hertz's weight sqrt(1 - (r/b)^2) over a circle of half the contact radius that the outer body would have on a
+//! rigid plate: a point would follow every wave of a mesh. A face sinks under its own contact by the residual flexibility and by
+//! that of a half-space, where pressures over concentric circles of the radii a <= b displace each other by
+//! 0.75 (1 - nu^2)/(E b) (1 - a^2/(5 b^2)) per unit force (the mean of Hertz's displacement, Johnson, Contact Mechanics, 1985,
+//! section 3.4, over the other pressure).
 
 use super::system::System;
-use crate::contact::{Hertz, PatchFlexibility};
+use crate::analytical::hertz::HertzImpact;
+use crate::contact::{Hertz, PatchFlexibility, RADII, TABULATED};
+
+/// Radius of the circle over the contact radius of the impact on a rigid plate.
+const SHARE: f64 = 0.5;
 
 /// Displacement of the plate's centre by the contacts' local deformation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,25 +21,33 @@ pub struct LocalCentre {
     flexibility: PatchFlexibility,
     /// Tip radii in m.
     tip_radius: [f64; 2],
-    /// Per contact: the half-space's share, m per N and per m^(-1/2) of the square root of p.
-    half_space: [f64; 2],
+    /// E/(1 - nu^2) of the plate in Pa.
+    modulus: f64,
+    /// Square of the radius of the circle, m^2.
+    circle: f64,
 }
 
 impl LocalCentre {
-    /// For a plate of the residual `flexibility` with the contacts `laws`; `modulus` is the plate's E/(1 - nu^2) in Pa.
-    pub fn new(flexibility: PatchFlexibility, laws: &[Hertz; 2], modulus: f64) -> Self {
+    /// For a plate of the residual `flexibility` with the contacts `laws`; `modulus` is the plate's E/(1 - nu^2) in Pa, `hit` the
+    /// outer body's impact on a rigid plate.
+    pub fn new(flexibility: PatchFlexibility, laws: &[Hertz; 2], modulus: f64, hit: &HertzImpact) -> Self {
         let tip_radius = laws.map(|law| law.tip_radius);
-        Self { flexibility, tip_radius, half_space: tip_radius.map(|r| 0.5 * 0.75 / (modulus * r.sqrt())) }
+        let circle = SHARE * SHARE * tip_radius[0] * hit.approach_peak();
+        Self { flexibility, tip_radius, modulus, circle }
     }
 
-    /// Displacement of the centre per force of contact `j` with the patch `p` in m, in m/N: the mean of both faces. On the
-    /// contact's own face the patch counts once, as that of the force, and not as that of a displacement.
+    /// Displacement of the centre per force of contact `j` with the patch `p` in m, in m/N: the mean of both faces.
     fn per_force(&self, j: usize, p: f64) -> f64 {
-        let mut square = [0.0; 2];
-        let none = self.flexibility.at(square);
-        square[j] = self.tip_radius[j] * p;
-        let under = self.flexibility.at(square);
-        0.5 * (0.5 * (none[2 * j] + under[2 * j]) + under[1])
+        let patch = self.tip_radius[j] * p;
+        // the table goes no further; beyond it faces are averaged over a narrower circle
+        let widest = self.flexibility.per_square.map(|per| RADII[TABULATED - 1].powi(2) / per);
+        // on its own face the flexibility grows evenly with the squares of both circles
+        let own = [0.5 * (self.circle.min(widest[j]) + patch); 2];
+        let mut between = widest.map(|widest| self.circle.min(widest));
+        between[j] = patch;
+        let (small, large) = (patch.min(self.circle), patch.max(self.circle));
+        let half_space = 0.75 / (self.modulus * large.sqrt()) * (1.0 - 0.2 * small / large);
+        0.5 * (self.flexibility.at(own)[2 * j] + self.flexibility.at(between)[1] + half_space)
     }
 
     /// Displacement in m and velocity in m/s along z in addition to the modes', with the patches `p` in m, the rates of the modal
@@ -50,13 +64,48 @@ impl LocalCentre {
                 let per_force = self.per_force(j, p[j]);
                 let step = 1e-4 * p[j];
                 let growth = (self.per_force(j, p[j] + step) - self.per_force(j, p[j] - step)) / (2.0 * step);
-                // half-space: 0.75/(modulus a) per force with the patch of the force that acts
-                let sunk = self.half_space[j] * f[j] / p[j].sqrt();
-                let sunk_rate = sunk * (f_rate[j] / f[j] - 0.5 * p_rate[j] / p[j]);
-                motion[0] += sign * (f[j] * per_force + sunk);
-                motion[1] += sign * (f_rate[j] * per_force + f[j] * growth * p_rate[j] + sunk_rate);
+                motion[0] += sign * f[j] * per_force;
+                motion[1] += sign * (f_rate[j] * per_force + f[j] * growth * p_rate[j]);
             }
         }
         motion
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use std::f64::consts::PI;
+
+    /// Hertz's displacement per unit force at `r` outside and inside his circle of the radius `a`, over (1 - nu^2)/E (Johnson,
+    /// eqs. 3.41a and 3.42a).
+    fn displacement(a: f64, r: f64) -> f64 {
+        let pressure = 1.5 / (PI * a * a);
+        if r <= a {
+            return PI * pressure / (4.0 * a) * (2.0 * a * a - r * r);
+        }
+        let ratio = a / r;
+        pressure / (2.0 * a)
+            * ((2.0 * a * a - r * r) * ratio.asin() + r * r * ratio * (1.0 - ratio * ratio).sqrt())
+    }
+
+    #[test]
+    fn a_half_space_sinks_under_its_circle_by_the_mean_of_hertzs_displacement() {
+        let laws = [Hertz { tip_radius: 0.01, stiffness: 1e10 }; 2];
+        let hit = HertzImpact { mass: 0.03, speed: 0.5, stiffness: laws[0].stiffness };
+        let centre = LocalCentre::new(PatchFlexibility::constant([[0.0; 2]; 2]), &laws, 2e11, &hit);
+        let circle = centre.circle.sqrt();
+        for ratio in [0.3, 0.9, 1.0, 1.2, 2.5] {
+            let patch = ratio * circle;
+            // r = b sqrt(1 - s^2) takes the end of the weight away
+            let n = 4000;
+            let mean = (0..n).map(|k| {
+                let s = (f64::from(k) + 0.5) / f64::from(n);
+                3.0 * s * s / f64::from(n) * displacement(patch, circle * (1.0 - s * s).sqrt())
+            });
+            let exact = 0.5 * mean.sum::<f64>() / 2e11;
+            assert_relative_eq!(centre.per_force(0, patch * patch / 0.01), exact, max_relative = 1e-5);
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::system::{INNER, System, dot};
 use crate::error::Result;
 use crate::result::{Curve, History};
 
-/// The curves of outer body (mass average), plate (at its centre, mean of both faces) and inner body (mass average), signed
+/// The curves of outer body (mass average), plate (around its centre, mean of both faces, see [`super::centre`]) and inner body (mass average), signed
 /// along z; contact forces are positive in compression.
 pub static CURVES: [Curve; 8] = [
     Curve::new("outer_displacement", "m"),
@@ -91,7 +91,7 @@ impl<'a, const P: usize> Recorder<'a, P> {
         let approach = system.modal_approach(q);
         let (patch, forces) = system.contact(approach, approach).unwrap_or(([f64::NAN; 2], [f64::NAN; 2]));
         let rate = [0, 1].map(|i| dot(&system.approach[i], v));
-        let local = system.local_centre.map_or([0.0; 2], |centre| centre.motion(system, patch, rate, forces));
+        let local = system.local_centre.motion(system, patch, rate, forces);
         let inner = system.masses[1].sqrt();
         let sample = [
             dot(&system.outer, q),

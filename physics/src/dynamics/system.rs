@@ -37,8 +37,8 @@ pub struct System {
     pub approach: [Vec<f64>; 2],
     /// Displacement along z of the plate's centre (mean of both faces) per unit of each coordinate. Shape (n).
     pub centre: Vec<f64>,
-    /// What the local deformation adds to it; `None` for a plate theory, which knows none.
-    pub local_centre: Option<LocalCentre>,
+    /// What the local deformation adds to it.
+    pub local_centre: LocalCentre,
     /// Initial gap of each contact in m.
     pub gap: [f64; 2],
     /// Contact laws.
@@ -105,6 +105,9 @@ impl System {
         let law = |shape: &Shape, material| Hertz::new(shape.tip_radius(), material, &setup.plate.material);
         let laws = [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)];
         let mut flexibility = plate.residual.unwrap_or(PatchFlexibility::constant([[0.0; 2]; 2]));
+        let hit = HertzImpact { mass: masses[0], speed: outer.speed, stiffness: laws[0].stiffness };
+        let modulus = setup.plate.material.plane_strain_modulus();
+        let local_centre = LocalCentre::new(flexibility, &laws, modulus, &hit);
         for (own, tip) in flexibility.own.iter_mut().zip(tip_residual) {
             own[0] += tip;
         }
@@ -119,9 +122,7 @@ impl System {
             centre,
             gap: [0.0, inner.gap],
             laws,
-            local_centre: plate
-                .residual
-                .map(|r| LocalCentre::new(r, &laws, setup.plate.material.plane_strain_modulus())),
+            local_centre,
             residual: (!residual.is_zero()).then_some(residual),
             masses,
             drive: outer_body.drive,

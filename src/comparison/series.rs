@@ -1,0 +1,93 @@
+//! Whether the bands that a reference states follow from the series of meshes that it states too.
+//!
+//! The rule is that of `fem_reference/common/uncertainty.py`: values on meshes of the size h over the finest one's are fitted by
+//! v + c h^1.5 (least squares, weighted with h^-2); the band is the distance to v and 2.5 of its standard errors.
+
+use crate::result::Summary;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// Power of the element size with which errors fall.
+const ORDER: f64 = 1.5;
+/// Power with which the values scatter.
+const SCATTER_ORDER: f64 = 2.0;
+/// Standard errors in a band, beside the error fitted.
+const STANDARD_ERRORS: f64 = 2.5;
+/// Relative difference of two computations of one band.
+const ROUNDING: f64 = 1e-6;
+
+/// A summary's `convergence`, as far as it is looked at.
+#[derive(Deserialize)]
+struct Series {
+    meshes: Vec<Mesh>,
+    quantities: BTreeMap<String, Values>,
+}
+
+#[derive(Deserialize)]
+struct Mesh {
+    /// On the number of elements along a length; the finest first.
+    factor: f64,
+    energy_residual: f64,
+}
+
+#[derive(Deserialize)]
+struct Values {
+    values: Vec<f64>,
+}
+
+/// Number of values, bands and residuals of `summary` that its series contradicts; `None` without a series. One that can't be
+/// read contradicts itself.
+pub(super) fn contradictions(summary: &Summary) -> Option<usize> {
+    let stated = summary.convergence.as_ref()?;
+    let Ok(Series { meshes, quantities }) = Series::deserialize(stated) else { return Some(1) };
+    let sizes: Vec<f64> = meshes.iter().map(|mesh| meshes[0].factor / mesh.factor).collect();
+    let contradicts = |(name, series): &(&String, &Values)| {
+        let values = &series.values;
+        values.len() != sizes.len()
+            || summary.value(name).is_some_and(|value| value != values[0])
+            || !summary.band(name).is_some_and(|stated| agree(stated, band(values, &sizes)))
+    };
+    let residual = meshes.first().is_none_or(|finest| finest.energy_residual != summary.energy_residual);
+    Some(quantities.iter().filter(contradicts).count() + usize::from(residual))
+}
+
+fn agree(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDING * a.abs().max(b.abs())
+}
+
+/// Half width of the 95 % band about `values[0]` from the `values` on meshes of the `sizes`.
+fn band(values: &[f64], sizes: &[f64]) -> f64 {
+    // rows (w, w h^1.5) of the fit to w (value - finest)
+    let rows: Vec<[f64; 3]> = values
+        .iter()
+        .zip(sizes)
+        .map(|(value, h)| {
+            let weight = h.powf(-SCATTER_ORDER);
+            [weight, weight * h.powf(ORDER), weight * (value - values[0])]
+        })
+        .collect();
+    let sum = |i: usize, j: usize| rows.iter().map(|row| row[i] * row[j]).sum::<f64>();
+    let (aa, ab, bb, ay, by) = (sum(0, 0), sum(0, 1), sum(1, 1), sum(0, 2), sum(1, 2));
+    let determinant = aa * bb - ab * ab;
+    let (limit, slope) = ((ay * bb - by * ab) / determinant, (aa * by - ab * ay) / determinant);
+    let misses = rows.iter().map(|[a, b, y]| (y - limit * a - slope * b).powi(2)).sum::<f64>();
+    let variance = misses / (rows.len() as f64 - 2.0) * bb / determinant;
+    limit.abs() + STANDARD_ERRORS * variance.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// As the finite-element side computes them: of `scaled-plate-r10` at `coarse`, its efficiency.
+    #[test]
+    fn a_line_has_its_end_and_no_scatter() {
+        let sizes: Vec<f64> = (0..5).map(|k| 1.19_f64.powi(k)).collect();
+        let values: Vec<f64> = sizes.iter().map(|h| 2.0 + 0.01 * h.powf(ORDER)).collect();
+        assert_relative_eq!(band(&values, &sizes), 0.01, max_relative = 1e-9);
+        let mut scattered = values.clone();
+        scattered[2] += 1e-3;
+        assert!(band(&scattered, &sizes) > 0.011);
+    }
+}
