@@ -222,7 +222,7 @@ def test_a_full_disk_is_found_before_the_work(
 ) -> None:
     left = shutil.disk_usage(tmp_path)._replace(free=20_000_000)
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: left)
-    with pytest.raises(SolverError, match=r"has 20 MB left; .* need 100 MB"):
-        with result_folder(tmp_path / "deep" / "result"):
-            pytest.fail("the work began")
+    full = pytest.raises(SolverError, match=r"has 20 MB left; .* need 100 MB")
+    with full, result_folder(tmp_path / "deep" / "result"):
+        pytest.fail("the work began")
     assert not any((tmp_path / "deep").iterdir())
