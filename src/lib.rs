@@ -31,6 +31,7 @@ pub mod coverage;
 pub mod curves;
 pub mod interrupt;
 pub mod measured;
+pub mod movement;
 pub mod optimise;
 pub mod project;
 pub mod reference;

@@ -21,6 +21,9 @@ from .errors import SolverError
 CHECKSUMS = "checksums.sha256"
 PROVENANCE = "provenance.json"
 PARTIAL_PREFIX = ".partial-"
+LEAST_SPACE = 100e6
+"""Bytes that must be free before a run begins: a result without fields over time takes 1 to 30 MB,
+its kept states up to twice that."""
 SAMPLES = 2000
 """About how many samples a history has."""
 
@@ -106,10 +109,19 @@ def result_folder(target: Path) -> Iterator[Path]:
 
     Whatever is at ``target`` already is replaced then. If the process dies, at most a folder
     ``.partial-*`` is left.
+
+    Raises:
+        SolverError: the folder cannot be made or written, or the disk is nearly full.
     """
     parent = target.absolute().parent
     try:
         parent.mkdir(parents=True, exist_ok=True)
+        free = shutil.disk_usage(parent).free
+        if free < LEAST_SPACE:
+            raise SolverError(
+                f"the disk of {parent} has {free / 1e6:.3g} MB left; a result and the states on "
+                f"the way to it need {LEAST_SPACE / 1e6:.3g} MB, fields over time more"
+            )
         partial = Path(tempfile.mkdtemp(prefix=f"{PARTIAL_PREFIX}{target.name}-", dir=parent))
         partial.chmod(0o755)
     except OSError as error:

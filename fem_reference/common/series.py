@@ -245,7 +245,11 @@ class Series(Generic[S]):
 
         options = self.options
         settings = Settings(
-            options.courant, self.folder, options.checkpoint_interval, self._label(number)
+            options.courant,
+            self.folder,
+            options.checkpoint_interval,
+            self._label(number),
+            refinement=self._factor(finest) / self._factor(number),
         )
         if number == finest:
             settings = replace(settings, frames=options.frames, frame_times=options.stress_times)

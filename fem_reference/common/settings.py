@@ -88,3 +88,5 @@ class Settings:
     """Of this mesh, for the names of its files."""
     frames: int = 0
     frame_times: tuple[float, ...] = ()
+    refinement: float = 1.0
+    """Of the finest mesh of the series over this one, in every direction."""

@@ -196,7 +196,11 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         made = plate_model(scene, expected, wavelengths, factor) if comm.rank == 0 else None
         plate: PlateModel = comm.bcast(made)
         nodes = int(plate.model.first[-1])
-        report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
+        report(
+            "assembly",
+            0.0,
+            require_memory(nodes, scene.element_order, comm, refinement=settings.refinement),
+        )
         loop, run, recorder = _stepped(
             scene, plate, estimate.duration, settings, f"-{attempt}", comm, report
         )

@@ -99,7 +99,11 @@ def compute(
         made = seat_model(scene, seat_mesh(scene, factor), sphere)
     seat: SeatModel = comm.bcast(made)
     nodes = int(seat.model.first[-1])
-    report("assembly", 0.0, require_memory(nodes, scene.element_order, comm))
+    report(
+        "assembly",
+        0.0,
+        require_memory(nodes, scene.element_order, comm, refinement=settings.refinement),
+    )
 
     def attempt(most_levels: int) -> tuple[Loop, SeatRun, Recorder]:
         loop = make_loop(seat.model, comm)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import resource
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 from ..common.errors import SolverError
@@ -28,19 +28,77 @@ def memory_needed(nodes: int, order: int, processes: int) -> float:
     return BASE * processes + PER_NODE[order] * nodes
 
 
-def memory_free() -> float | None:
-    """Bytes that a new program can use; None where the system does not say."""
-    try:
-        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
+def memory_free(system: Path = Path("/")) -> float | None:
+    """Bytes that a run can still use; None where the system does not say.
+
+    The least that the machine, the control groups (containers, batch systems) and the limit of
+    the shell leave.
+
+    Args:
+        system: root of the file system that is asked.
+    """
+    free = [_available(system / "proc/meminfo"), *_left_in_groups(system)]
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if limit != resource.RLIM_INFINITY:
+        free.append(max(float(limit) - _mapped(system), 0.0))
+    known = [bytes_free for bytes_free in free if bytes_free is not None]
+    return min(known, default=None)
+
+
+def _available(meminfo: Path) -> float | None:
+    with contextlib.suppress(OSError, ValueError, IndexError):
+        for line in meminfo.read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):
                 return float(line.split()[1]) * 1024.0
-    except (OSError, ValueError, IndexError):
-        pass
     return None
 
 
-def require_memory(nodes: int, order: int, comm: Any, free: float | None = None) -> str:
+def _mapped(system: Path) -> float:
+    """Address space that this process has taken already, bytes."""
+    with contextlib.suppress(OSError, ValueError, IndexError):
+        pages = (system / "proc/self/statm").read_text(encoding="ascii").split()[0]
+        return float(pages) * resource.getpagesize()
+    return 0.0
+
+
+def _left_in_groups(system: Path) -> list[float]:
+    """What every control group that this process is in, or one above, leaves of its memory."""
+    try:
+        lines = (system / "proc/self/cgroup").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return []
+    left = []
+    for line in lines:
+        _, controllers, path = line.split(":", 2)
+        if controllers == "":
+            mount, limit, used = "sys/fs/cgroup", "memory.max", "memory.current"
+        elif "memory" in controllers.split(","):
+            mount = "sys/fs/cgroup/memory"
+            limit, used = "memory.limit_in_bytes", "memory.usage_in_bytes"
+        else:
+            continue
+        own = PurePosixPath(path.strip("/"))
+        for group in (own, *own.parents):
+            # a group without a limit says "max"
+            with contextlib.suppress(OSError, ValueError):
+                place = system / mount / group
+                most, now = (int((place / name).read_text()) for name in (limit, used))
+                left.append(float(max(most - now, 0)))
+    return left
+
+
+def require_memory(
+    nodes: int, order: int, comm: Any, free: float | None = None, refinement: float = 1.0
+) -> str:
     """State the memory needed; all processes are taken to share one machine's.
+
+    Args:
+        nodes: of the mesh at hand.
+        order: of its elements.
+        comm: of the processes.
+        free: bytes, by default what `memory_free` finds.
+        refinement: of the finest mesh of the series over this one, in every direction: memory that
+            it will not have is told before hours are spent on the others.
 
     Returns:
         A sentence for the progress.
@@ -48,14 +106,16 @@ def require_memory(nodes: int, order: int, comm: Any, free: float | None = None)
     Raises:
         SolverError: more than is free.
     """
-    needed = memory_needed(nodes, order, comm.size)
+    finest = round(nodes * refinement**3)
+    needed = memory_needed(finest, order, comm.size)
     free = free if free is not None else memory_free()
-    text = f"{nodes} nodes, {3 * nodes} dofs: about {needed / 1e9:.2g} GB"
+    which = "the run has" if refinement == 1.0 else "the finest mesh of the series has about"
+    text = f"{nodes} nodes, {3 * nodes} dofs: at most about {needed / 1e9:.2g} GB"
     if free is None:
         return text
     if needed > SHARE * free:
         raise SolverError(
-            f"the run has {3 * nodes} dofs and needs about {needed / 1e9:.3g} GB of memory, "
+            f"{which} {3 * finest} dofs and needs about {needed / 1e9:.3g} GB of memory, "
             f"{SHARE * free / 1e9:.3g} GB are free for it; lower "
             "reference.elements_per_contact_radius or use a machine with more memory"
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,6 +15,7 @@ import pytest
 
 from fem_reference.common import series
 from fem_reference.common.errors import SceneError, SolverError
+from fem_reference.common.output import result_folder
 from fem_reference.common.progress import MeshOfSeries, Progress
 from fem_reference.common.series import MeshResult, Problem, solve_series
 from fem_reference.common.settings import Options, Settings
@@ -213,3 +215,14 @@ def test_a_mesh_made_again_does_not_turn_the_series_back() -> None:
         mesh.report(phase, done, "")
     shares = [json.loads(line)["series"] for line in stream.getvalue().splitlines()]
     assert shares == [0.25, 1.0, 1.0, 1.0]
+
+
+def test_a_full_disk_is_found_before_the_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left = shutil.disk_usage(tmp_path)._replace(free=20_000_000)
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: left)
+    full = pytest.raises(SolverError, match=r"has 20 MB left; .* need 100 MB")
+    with full, result_folder(tmp_path / "deep" / "result"):
+        pytest.fail("the work began")
+    assert not any((tmp_path / "deep").iterdir())

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import resource
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,7 +22,7 @@ from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.plate_impact.solid import RADIUS_STEP, rounded
 from fem_reference.solid import meshing
 from fem_reference.solid.elasticity import Assembly, cell_stress, lumped_mass, mass_form, von_mises
-from fem_reference.solid.memory import memory_needed, require_memory
+from fem_reference.solid.memory import memory_free, memory_needed, require_memory
 from fem_reference.solid.mesh import TetMesh, check_elements, surface, tetrahedra
 from fem_reference.solid.meshing import SizeField, quarter_sphere
 from fem_reference.solid.model import ElasticBody, Model, nodal_areas, project, symmetry_plane
@@ -320,6 +322,36 @@ def test_too_little_memory_is_refused() -> None:
     assert "3000000 dofs" in require_memory(1_000_000, 2, alone(), 2.0 * needed)
     with pytest.raises(SolverError, match=r"3000000 dofs and needs about .* GB of memory"):
         require_memory(1_000_000, 2, alone(), needed)
+    # the finest mesh of the series is known before the first is solved
+    with pytest.raises(SolverError, match=r"finest mesh of the series has about 24000000 dofs"):
+        require_memory(1_000_000, 2, alone(), 2.0 * needed, refinement=2.0)
+
+
+def test_memory_left_is_that_of_the_tightest_limit(tmp_path: Path) -> None:
+    def write(name: str, text: str) -> None:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+
+    assert memory_free(tmp_path / "nothing") is None
+    write("proc/meminfo", "MemTotal: 16000000 kB\nMemAvailable: 8000000 kB\n")
+    assert memory_free(tmp_path) == 8e6 * 1024.0
+    write("proc/self/cgroup", "0::/jobs/one\n")
+    write("sys/fs/cgroup/jobs/one/memory.max", "max\n")
+    write("sys/fs/cgroup/jobs/one/memory.current", "1000\n")
+    write("sys/fs/cgroup/jobs/memory.max", "3000000000\n")
+    write("sys/fs/cgroup/jobs/memory.current", "1000000000\n")
+    assert memory_free(tmp_path) == 2e9
+    write("proc/self/cgroup", "4:cpu,cpuacct:/\n3:memory:/old\n")
+    write("sys/fs/cgroup/memory/old/memory.limit_in_bytes", "1500000000\n")
+    write("sys/fs/cgroup/memory/old/memory.usage_in_bytes", "1600000000\n")
+    assert memory_free(tmp_path) == 0.0
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    write("proc/self/cgroup", "")
+    try:
+        resource.setrlimit(resource.RLIMIT_AS, (5 * 10**9, hard))
+        assert memory_free(tmp_path) == 5e9
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def test_radii_found_that_differ_by_round_off_make_the_same_mesh() -> None:

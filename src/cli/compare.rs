@@ -10,10 +10,11 @@ use crate::comparison::{Comparison, GateRules, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
+use crate::movement::Movement;
 use crate::reference::{COARSER, Lookup, Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport};
+use crate::report::{self, Attachments, Cost, FigureFormat, Film, Report, SceneReport};
 use crate::result::Outcome;
-use crate::scene::Scene;
+use crate::scene::{Geometry, Scene};
 use crate::validated::Validation;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -49,7 +50,9 @@ pub struct Arguments {
     /// Where the outer body's measured speed comes from: scene (the signal may have an offset) or measured (it has none)
     #[arg(long, default_value = "scene", value_name = "SOURCE")]
     speed: Speed,
-    /// Write the figure for a paper to this file (.svg, .pdf or .png); of several scenes, the scene's name is added
+    /// Write the figure for a paper to this file (.svg, .pdf or .png), or an animation of a plate impact (.gif): the reference's
+    /// stress, as `reference SCENE --fields 40` stores it, beside a reduced model's deflection; of several scenes, the scene's name
+    /// is added
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
     /// Width of that figure: 85 mm is one column, 175 mm a page
@@ -245,6 +248,7 @@ impl<'a> Job<'a> {
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
             found.push((stored, Validation::of(scene, &comparison)));
+            let film = self.film(context, scene, stored, reduced)?;
             scenes.push(SceneReport {
                 scene,
                 comparison,
@@ -256,6 +260,7 @@ impl<'a> Job<'a> {
                     acceptances,
                     folder: compare_inputs::folder(file),
                     cost: cost.clone(),
+                    film,
                     ..Attachments::of(scene, stored)
                 },
             });
@@ -273,6 +278,39 @@ impl<'a> Job<'a> {
             report.command += &files.collect::<String>();
         }
         Ok(Report { scenes, rules: GateRules::default() })
+    }
+
+    /// The impact moving, if the reference has fields over time or an animation is asked for.
+    fn film(
+        &self,
+        context: &Context,
+        scene: &Scene,
+        stored: &Stored,
+        reduced: &[Outcome],
+    ) -> Result<Option<Film>> {
+        let asked = self.figures.iter().any(|(_, format)| *format == FigureFormat::Gif);
+        if !asked && !Movement::has_fields(scene, stored) {
+            return Ok(None);
+        }
+        let film = Movement::of(scene, stored, reduced).and_then(|movement| {
+            if movement.fields.is_empty() {
+                let alone = format!("{}: the animation shows the reduced model alone", scene.name);
+                context.note(match scene.reference.geometry {
+                    Geometry::Axisymmetric => {
+                        format!("{alone}; `{}` stores fields of the reference", report::fields_command(scene))
+                    }
+                    Geometry::Solid => format!("{alone}; fields of a solid reference are not drawn"),
+                });
+            }
+            report::film(scene, &stored.outcome, reduced, &movement)
+        });
+        match film {
+            Err(error) if !asked => {
+                context.note(format_args!("scene `{}` has no animation: {error}", scene.name));
+                Ok(None)
+            }
+            film => film.map(Some),
+        }
     }
 
     /// The command line that compares `scene` in the same way.

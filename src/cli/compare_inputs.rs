@@ -46,6 +46,15 @@ pub(super) fn figures(
 ) -> Result<Vec<(PathBuf, FigureFormat)>> {
     let Some(file) = file else { return Ok(Vec::new()) };
     let format = FigureFormat::of(file)?;
+    if let (FigureFormat::Gif, Some((_, scene))) =
+        (format, scenes.iter().find(|(_, scene)| scene.plate_impact().is_err()))
+    {
+        return Err(Error::Usage(format!(
+            "--figure {}: scene `{}` is no plate impact, the only kind that is animated",
+            file.display(),
+            scene.name
+        )));
+    }
     if scenes.len() == 1 {
         return Ok(vec![(file.clone(), format)]);
     }

@@ -2,6 +2,7 @@
 
 use super::progress::Bar;
 use super::{Context, JsonArgument};
+use crate::comparison::{self, Verdict};
 use crate::error::{Error, ExitStatus, Result};
 use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
 use crate::scene::{Geometry, Scene};
@@ -71,6 +72,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             compute(context, scene, resolution, store, &wish)?
         }
     };
+    require_sound(scene, &stored)?;
     let convergence = stored.outcome.summary.convergence.as_ref();
     if let Some(reached) = convergence.and_then(|c| c["relative_error"].as_f64()) {
         context.note(format_args!("95 % band of efficiency and force peaks: {:.2} %", 100.0 * reached));
@@ -84,6 +86,31 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         super::print(&super::reduced::table(&stored.outcome.summary))?;
     }
     Ok(ExitStatus::Pass)
+}
+
+/// That a solution is consistent with itself and its scene, as every comparison asks.
+///
+/// # Errors
+/// [`Error::Reference`] that names what is not.
+fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
+    let checks = comparison::integrity(scene, &stored.outcome);
+    let broken = checks.iter().filter(|check| check.verdict == Verdict::Fail);
+    let broken: Vec<String> = broken
+        .map(|c| {
+            format!(
+                "{}: {:.6e} instead of {:.6e} {} (± {:.1e})",
+                c.check, c.found, c.expected, c.unit, c.bound
+            )
+        })
+        .collect();
+    if broken.is_empty() {
+        return Ok(());
+    }
+    Err(Error::Reference(format!(
+        "{} contradicts itself or its scene; `--fresh` computes it again\n  {}",
+        stored.folder.display(),
+        broken.join("\n  ")
+    )))
 }
 
 /// What is wrong with what the store has.

@@ -74,7 +74,7 @@ impl Arguments {
     fn plan(&self) -> Result<Plan> {
         let plan = Plan::read(&self.file)?;
         if let Some(file) = &self.figure {
-            FigureFormat::of(file)?;
+            FigureFormat::of_still(file)?;
             let count = plan.parameters().len();
             if !is_drawn(&plan) {
                 let file = file.display();
@@ -99,7 +99,7 @@ fn draw(context: &Context, arguments: &Arguments, plan: &Plan, dir: &Path, table
     write_file(&path, svg.as_bytes())?;
     context.note(format_args!("wrote {}", path.display()));
     match &arguments.figure {
-        Some(file) => write_file(file, &FigureFormat::of(file)?.of_svg(svg, plan.scene())?),
+        Some(file) => write_file(file, &FigureFormat::of_still(file)?.of_svg(svg, plan.scene())?),
         None => Ok(()),
     }
 }

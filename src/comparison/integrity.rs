@@ -47,8 +47,8 @@ impl Check {
     }
 }
 
-/// All checks of one result.
-pub(super) fn check(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
+/// All checks of one result of `scene`.
+pub fn check(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
     let (summary, history) = (&outcome.summary, &outcome.history);
     let kind = kinds::of(scene);
     let mut checks = form(kind, summary, history);

@@ -18,7 +18,7 @@ mod verdict;
 
 pub use changed_tolerance::ChangedTolerance;
 pub use discrepancy::{BandVerdict, Discrepancy};
-pub use integrity::Check;
+pub use integrity::{Check, check as integrity};
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
 pub use verdict::{GateRules, Undecided, Verdict};
 

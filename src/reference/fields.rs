@@ -21,6 +21,20 @@ pub struct FieldMesh {
     pub bodies: Vec<usize>,
     /// Von Mises stress at each element's midpoint in Pa, if the file has it. Shape (quads.len()).
     pub von_mises: Option<Vec<f64>>,
+    /// Displacement along r and z of the nodes in m, if the file has it. Shape (points.len()).
+    pub displacement: Option<Vec<[f64; 2]>>,
+}
+
+impl FieldMesh {
+    /// Reads a .vtu file as `fem_reference` writes it: one piece of quadrilaterals, data in base64 or as text.
+    ///
+    /// # Errors
+    /// One sentence that says what is wrong with the file.
+    pub(crate) fn read(path: &Path) -> Result<Self, String> {
+        let fail = |what: &str| format!("{}: {what}", path.display());
+        let text = fs::read_to_string(path).map_err(|e| fail(&e.to_string()))?;
+        parse(&text).map_err(|what| fail(&what))
+    }
 }
 
 impl Stored {
@@ -29,7 +43,7 @@ impl Stored {
     /// # Errors
     /// One sentence that says what is wrong with the file.
     pub fn mesh(&self) -> Result<FieldMesh, String> {
-        read(&self.folder.join("mesh.vtu"))
+        FieldMesh::read(&self.folder.join("mesh.vtu"))
     }
 
     /// The stress field nearest to `time` (s) and its instant; `None` if the solution has none.
@@ -38,16 +52,32 @@ impl Stored {
     /// One sentence that says what is wrong with a file.
     pub fn stress_near(&self, time: f64) -> Result<Option<(f64, FieldMesh)>, String> {
         let nearest = series_nearest(&self.folder, time)?;
-        nearest.map(|(instant, file)| Ok((instant, read(&file)?))).transpose()
+        nearest.map(|(instant, file)| Ok((instant, FieldMesh::read(&file)?))).transpose()
+    }
+
+    /// Instants in s, rising, and files of the fields that are there.
+    ///
+    /// # Errors
+    /// One sentence that says what is wrong with the file that lists them.
+    pub(crate) fn fields_over_time(&self) -> Result<Vec<(f64, PathBuf)>, String> {
+        let mut series = series(&self.folder)?;
+        series.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(series)
     }
 }
 
 /// Instant in s and file of the field in the series of `folder` that is nearest to `time` (s); `None` if
 /// none is there.
 pub(super) fn series_nearest(folder: &Path, time: f64) -> Result<Option<(f64, PathBuf)>, String> {
+    let series = series(folder)?.into_iter();
+    Ok(series.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs())))
+}
+
+/// Instants in s and files of the fields in the series of `folder` that are there.
+fn series(folder: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
     let series = folder.join("stress.pvd");
     if !series.is_file() {
-        return Ok(None);
+        return Ok(Vec::new());
     }
     let text = fs::read_to_string(&series).map_err(|e| format!("{}: {e}", series.display()))?;
     let document = Document::parse(&text).map_err(|e| format!("{}: {e}", series.display()))?;
@@ -57,14 +87,7 @@ pub(super) fn series_nearest(folder: &Path, time: f64) -> Result<Option<(f64, Pa
         let name = node.attribute("file").filter(|name| !name.contains(['/', '\\']))?;
         Some((instant, folder.join(name))).filter(|(_, field)| field.is_file())
     });
-    Ok(entries.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs())))
-}
-
-/// Reads a .vtu file as `fem_reference` writes it: one piece of quadrilaterals, data in base64 or as text.
-fn read(path: &Path) -> Result<FieldMesh, String> {
-    let fail = |what: &str| format!("{}: {what}", path.display());
-    let text = fs::read_to_string(path).map_err(|e| fail(&e.to_string()))?;
-    parse(&text).map_err(|what| fail(&what))
+    Ok(entries.collect())
 }
 
 /// The data arrays of a .vtu file of one piece.
@@ -119,11 +142,17 @@ fn parse(text: &str) -> Result<FieldMesh, String> {
     let quads: Vec<[usize; 4]> = nodes.chunks_exact(4).map(|q| [q[0], q[1], q[2], q[3]]).collect();
     let bodies: Vec<usize> = arrays.needed("CellData", "body")?.iter().map(|b| *b as usize).collect();
     let von_mises = arrays.get("CellData", "von_mises")?;
+    let displacement = arrays.get("PointData", "displacement")?;
+    let displacement: Option<Vec<[f64; 2]>> =
+        displacement.map(|vectors| vectors.chunks_exact(3).map(|v| [v[0], v[1]]).collect());
     let lengths = [Some(bodies.len()), von_mises.as_ref().map(Vec::len)];
     if quads.is_empty() || lengths.into_iter().flatten().any(|n| n != quads.len()) {
         return Err("the numbers of cells and of their data differ".into());
     }
-    Ok(FieldMesh { points, quads, bodies, von_mises })
+    if displacement.as_ref().is_some_and(|vectors| vectors.len() != points.len()) {
+        return Err("the numbers of points and of their displacements differ".into());
+    }
+    Ok(FieldMesh { points, quads, bodies, von_mises, displacement })
 }
 
 /// Values of a `DataArray`.
@@ -158,6 +187,15 @@ fn read_as<const N: usize>(data: &[u8], number: impl Fn([u8; N]) -> f64) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::parse;
+
+    #[test]
+    fn displacements_along_r_and_z_belong_to_the_points() {
+        let data = r#"<PointData><DataArray type="Float64" Name="displacement" NumberOfComponents="3" format="ascii">1 2 0 3 4 0 5 6 0 7 8 0</DataArray></PointData><Cells>"#;
+        let mesh = parse(&ONE_ELEMENT.replace("<Cells>", data)).expect("valid");
+        assert_eq!(mesh.displacement, Some(vec![[1.0, 2.0], [3.0, 4.0], [5.0, 6.0], [7.0, 8.0]]));
+        let error = parse(&ONE_ELEMENT.replace("<Cells>", &data.replace(" 7 8 0", ""))).expect_err("too few");
+        assert!(error.contains("displacements differ"), "{error}");
+    }
 
     const ONE_ELEMENT: &str = r#"<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>
 <Piece NumberOfPoints="4" NumberOfCells="1">

@@ -16,6 +16,7 @@ mod seat_mesh;
 mod section;
 mod solve;
 mod store;
+mod turn;
 
 pub use child::Progress;
 pub use curve_bands::CurveBands;

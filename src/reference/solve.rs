@@ -3,7 +3,7 @@
 use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::store::Installed;
-use super::{Resolution, Store, identity, python};
+use super::{Lookup, Resolution, Store, identity, python};
 use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use std::ffi::OsStr;
@@ -24,7 +24,8 @@ pub struct Wish {
 ///
 /// The result is verified first: checksums, format, and that it is one of this scene with these
 /// settings. Until then an older entry stays, and a failed run leaves the store as it was. A solution of another scene of
-/// the same name, or with other settings, is kept beside the new one ([`Stored::earlier`]).
+/// the same name, or with other settings, is kept beside the new one ([`Stored::earlier`]). Where another run computes
+/// the same, its result is waited for and taken, unless fields are wished for.
 /// The states of a solid run are kept beside its place in the store, and a run that was killed
 /// goes on from there.
 ///
@@ -53,6 +54,18 @@ pub fn solve_with(
     wish: &Wish,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
+    let mut waiting = || {
+        let message = "another run of this solution is under way".to_owned();
+        progress(&Progress { phase: "waiting".to_owned(), done: 0.0, message, series: None });
+    };
+    let turn = store.turn(scene, resolution, &mut waiting)?;
+    if turn.waited
+        && wish.stress_at.is_empty()
+        && wish.fields == 0
+        && let Lookup::Found(stored) = store.find_here(scene, resolution)
+    {
+        return Ok(*stored);
+    }
     let work = store.work_folder(scene)?;
     let input = work.path().join("scene.json");
     let output = work.path().join("result");

@@ -6,6 +6,7 @@
 //! is named after its hashes (`paper.0123abcd-4567ef89`), where it is found when its scene is asked for again.
 
 use super::entry::{self, Damage, Stored};
+use super::turn::Turn;
 use super::{Resolution, identity};
 use crate::interrupt::Scratch;
 use crate::project;
@@ -135,7 +136,7 @@ impl Store {
         }
     }
 
-    fn find_here(&self, scene: &Scene, resolution: Resolution) -> Lookup {
+    pub(super) fn find_here(&self, scene: &Scene, resolution: Resolution) -> Lookup {
         let lookup = settled(&self.folder(scene, resolution), scene, resolution);
         if matches!(lookup, Lookup::Found(_)) {
             return lookup;
@@ -165,6 +166,22 @@ impl Store {
         let name =
             earlier_name(resolution, scene.hash().as_ref(), &identity::settings_hash(scene, resolution));
         self.folder(scene, resolution).with_file_name(name)
+    }
+
+    /// The turn to compute the entry of `scene` at `resolution`; `waiting` is called while another run computes it.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the store can't be written.
+    pub(super) fn turn(
+        &self,
+        scene: &Scene,
+        resolution: Resolution,
+        waiting: &mut dyn FnMut(),
+    ) -> Result<Turn> {
+        let entry = self.earlier_folder(scene, resolution);
+        let name = entry.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let file = entry.with_file_name(format!(".computing-{name}"));
+        Turn::take(file.clone(), waiting).map_err(|e| Error::io("creating", &file, e))
     }
 
     /// Resolutions at which there is a solution of exactly this scene, coarse to fine.
@@ -326,7 +343,7 @@ pub(super) struct WorkFolder {
 
 /// The folder of a scene, which goes with its last entry.
 #[derive(Debug)]
-struct Parent(PathBuf);
+pub(super) struct Parent(pub(super) PathBuf);
 
 impl Drop for Parent {
     fn drop(&mut self) {

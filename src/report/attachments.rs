@@ -1,6 +1,6 @@
 //! What a report shows besides the comparison, where there is any of it.
 
-use super::presentation;
+use super::{Film, presentation};
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
 use crate::reference::{CurveBands, FieldMesh, MeshSection, Stored};
@@ -25,6 +25,8 @@ pub struct Attachments {
     pub section_stress: Option<(f64, MeshSection)>,
     /// The series of deformed states that ParaView plays.
     pub animation: Option<PathBuf>,
+    /// The impact moving.
+    pub film: Option<Film>,
     /// What the reduced models have cost, in their order; of models that share a mesh with the reference.
     pub cost: Vec<Cost>,
     /// Folder of the scene's file, for people; empty = not known.

@@ -14,6 +14,7 @@ const BODIES: [([f64; 3], [f64; 3]); 3] = [
     ([244.0, 217.0, 178.0], [120.0, 62.0, 0.0]),
 ];
 const OUTLINE: u8 = 255;
+const OUTLINE_COLOUR: [u8; 3] = [90; 3];
 
 /// What part of the section is shown: -r to r, and z from below to above, in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,31 +75,50 @@ impl Raster {
         raster.outlined(mesh, &place).mirrored()
     }
 
-    /// Nodal means of `values` (one per element, none negative), in colours from 0 to what a `share` of the section in view
-    /// does not exceed (1 = to the largest); that value is returned.
-    pub(super) fn field(
-        mesh: &FieldMesh,
-        values: &[f64],
-        share: f64,
-        view: View,
-        width: usize,
-    ) -> (Self, f64) {
+    /// Nodal means of `values` (one per element, none negative), in colours from 0 to `top`.
+    pub(super) fn field(mesh: &FieldMesh, values: &[f64], top: f64, view: View, width: usize) -> Self {
         let mut raster = Raster::new(view, width);
         let place = raster.placed(mesh, view);
-        let nodal = nodal_means(mesh, values);
-        let mut shown = vec![f64::NAN; raster.pixels.len()];
-        for quad in &mesh.quads {
-            raster.fill(quad.map(|n| place[n]), quad.map(|n| nodal[n]), |pixel, value| shown[pixel] = value);
-        }
-        let mut sorted: Vec<f64> = shown.iter().copied().filter(|v| v.is_finite()).collect();
-        sorted.sort_by(f64::total_cmp);
-        let last = sorted.len().saturating_sub(1) as f64;
-        let top = sorted.get((share * last).round() as usize).copied().unwrap_or(0.0);
+        let shown = raster.shown(mesh, values, &place);
         let scale = if top > 0.0 { (LEVELS - 1) as f64 / top } else { 0.0 };
         for (pixel, value) in raster.pixels.iter_mut().zip(&shown).filter(|(_, value)| value.is_finite()) {
             *pixel = 1 + (value.max(0.0) * scale).round().min((LEVELS - 1) as f64) as u8;
         }
-        (raster.outlined(mesh, &place).mirrored(), top)
+        raster.outlined(mesh, &place).mirrored()
+    }
+
+    /// What the nodal means of `values` do not exceed in a `share` of the section in view (1 = the largest of them).
+    pub(super) fn within(mesh: &FieldMesh, values: &[f64], share: f64, view: View, width: usize) -> f64 {
+        let raster = Raster::new(view, width);
+        let mut sorted = raster.shown(mesh, values, &raster.placed(mesh, view));
+        sorted.retain(|value| value.is_finite());
+        sorted.sort_by(f64::total_cmp);
+        let last = sorted.len().saturating_sub(1) as f64;
+        sorted.get((share * last).round() as usize).copied().unwrap_or(0.0)
+    }
+
+    /// The nodal means at the pixels of the right half, NaN where no element is.
+    fn shown(&self, mesh: &FieldMesh, values: &[f64], place: &[[f64; 2]]) -> Vec<f64> {
+        let nodal = nodal_means(mesh, values);
+        let mut shown = vec![f64::NAN; self.pixels.len()];
+        for quad in &mesh.quads {
+            self.fill(quad.map(|n| place[n]), quad.map(|n| nodal[n]), |pixel, value| shown[pixel] = value);
+        }
+        shown
+    }
+
+    /// Size in pixels.
+    pub(super) fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// Colour of the pixel of a field in column `x` and row `y`; `None` where nothing is.
+    pub(super) fn colour(&self, x: usize, y: usize) -> Option<[u8; 3]> {
+        match self.pixels[y * self.width + x] {
+            0 => None,
+            OUTLINE => Some(OUTLINE_COLOUR),
+            level => Some(cividis(f64::from(level - 1) / (LEVELS - 1) as f64)),
+        }
     }
 
     /// Nodes in pixels of the right half, z upwards.
@@ -193,7 +213,7 @@ impl Raster {
                 }
             }
         }
-        palette[OUTLINE as usize] = [90, 90, 90];
+        palette[OUTLINE as usize] = OUTLINE_COLOUR;
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Indexed);
@@ -239,6 +259,7 @@ mod tests {
             quads: vec![[0, 1, 2, 3]],
             bodies: vec![1],
             von_mises: None,
+            displacement: None,
         }
     }
 
@@ -261,7 +282,8 @@ mod tests {
         mesh.points.extend([[2.0, 0.0], [2.0, 1.0]]);
         mesh.quads.push([1, 4, 5, 2]);
         mesh.bodies.push(1);
-        let (raster, largest) = Raster::field(&mesh, &[0.0, 10.0], 1.0, VIEW, 80);
+        let largest = Raster::within(&mesh, &[0.0, 10.0], 1.0, VIEW, 80);
+        let raster = Raster::field(&mesh, &[0.0, 10.0], largest, VIEW, 80);
         assert!((9.8..=10.0).contains(&largest), "{largest}");
         // 0 at the axis, the mean of both elements between them, 10 at the rim: 5 per unit of length
         for x in [41, 50, 60, 70, 78] {
@@ -272,14 +294,14 @@ mod tests {
         assert_eq!(raster.pixels[30 * 80 + 2], raster.pixels[30 * 80 + 77]);
         // the field rises from 0 to 5 over the first element
         let near = View { radius: 0.5, ..VIEW };
-        assert!((2.3..=2.5).contains(&Raster::field(&mesh, &[0.0, 10.0], 1.0, near, 80).1));
-        let half = Raster::field(&mesh, &[0.0, 10.0], 0.5, VIEW, 80).1;
+        assert!((2.3..=2.5).contains(&Raster::within(&mesh, &[0.0, 10.0], 1.0, near, 80)));
+        let half = Raster::within(&mesh, &[0.0, 10.0], 0.5, VIEW, 80);
         assert!((4.7..=5.3).contains(&half), "{half}");
     }
 
     #[test]
     fn pictures_can_be_decoded_and_the_colours_are_those_of_the_map() {
-        let png = Raster::field(&unit_square(), &[1.0], 1.0, VIEW, 40).0.png(true).expect("PNG");
+        let png = Raster::field(&unit_square(), &[1.0], 1.0, VIEW, 40).png(true).expect("PNG");
         let image = resvg::tiny_skia::Pixmap::decode_png(&png).expect("valid");
         let centre = image.pixel(20, 15).expect("inside").demultiply();
         assert_eq!([centre.red(), centre.green(), centre.blue()], cividis(1.0));

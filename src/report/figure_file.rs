@@ -16,6 +16,8 @@ pub enum FigureFormat {
     Pdf,
     /// 600 dots per inch.
     Png,
+    /// The impact moving: no figure of curves.
+    Gif,
 }
 
 impl FigureFormat {
@@ -28,6 +30,7 @@ impl FigureFormat {
             FigureFormat::Svg => Ok(svg.into_bytes()),
             FigureFormat::Pdf => super::pdf::pdf(&svg, title),
             FigureFormat::Png => super::png::printed_png(&svg, RESOLUTION),
+            FigureFormat::Gif => Err(Error::Internal("a drawing that stands still is no animation".into())),
         }
     }
 
@@ -41,6 +44,21 @@ impl FigureFormat {
             "svg" => Ok(FigureFormat::Svg),
             "pdf" => Ok(FigureFormat::Pdf),
             "png" => Ok(FigureFormat::Png),
+            "gif" => Ok(FigureFormat::Gif),
+            _ => Err(Error::Usage(format!(
+                "--figure {}: the name has to end in .svg, .pdf or .png, of a plate impact that moves in .gif",
+                file.display()
+            ))),
+        }
+    }
+
+    /// As [`FigureFormat::of`], of a drawing that does not move.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if it is none of them.
+    pub fn of_still(file: &Path) -> Result<Self> {
+        match Self::of(file) {
+            Ok(format) if format != FigureFormat::Gif => Ok(format),
             _ => Err(Error::Usage(format!(
                 "--figure {}: the name has to end in .svg, .pdf or .png",
                 file.display()
@@ -49,10 +67,15 @@ impl FigureFormat {
     }
 }
 
-/// The figure of a scene, `width` mm wide (within [`super::FIGURE_WIDTHS`]), as a file's bytes.
+/// The figure of a scene, `width` mm wide (within [`super::FIGURE_WIDTHS`]), or its animation as a file's bytes.
 ///
 /// # Errors
 /// [`Error::Internal`] if it can't be drawn.
 pub fn figure_file(report: &SceneReport, width: f64, format: FigureFormat) -> Result<Vec<u8>> {
+    match (format, &report.attachments.film) {
+        (FigureFormat::Gif, Some(film)) => return Ok(film.gif.clone()),
+        (FigureFormat::Gif, None) => return Err(Error::Internal("there is no animation".into())),
+        _ => {}
+    }
     format.of_svg(printed_figure(report, width), &report.scene.name)
 }

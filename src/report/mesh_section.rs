@@ -32,7 +32,8 @@ pub(super) fn mesh_html(report: &SceneReport) -> Result<Markup> {
             && let Some(values) = &stress.von_mises
         {
             let share = if k == 0 { 1.0 } else { SHARE_IN_SCALE };
-            let (raster, largest) = Raster::field(stress, values, share, view, PIXELS);
+            let largest = Raster::within(stress, values, share, view, PIXELS);
+            let raster = Raster::field(stress, values, largest, view, PIXELS);
             stresses.push(picture(&raster, view, Some(largest), &format!("stress-{k}"))?);
         }
     }
@@ -50,6 +51,10 @@ pub(super) fn mesh_html(report: &SceneReport) -> Result<Markup> {
                     "have its last colour. Between the contacts the plate is not free of stress, as Hertz's "
                     "law for half-spaces would have it." }
             }
+        }
+        @if report.attachments.film.is_none() {
+            p.soft { "The impact moving, with the stress over time: " code { (super::fields_command(report.scene)) }
+                " stores the fields, and the next comparison shows it." }
         }
     })
 }

@@ -4,6 +4,8 @@
 //! the same files.
 
 mod acceptance_section;
+mod animation;
+mod animation_section;
 mod attachments;
 mod budget_figure;
 mod budget_section;
@@ -64,6 +66,8 @@ mod trust;
 mod validated_map;
 mod write;
 
+pub use animation::{Film, film};
+pub use animation_section::fields_command;
 pub use attachments::{Attachments, Cost};
 pub use chart::{ChartPanel, Series, chart};
 pub use colour_map::{ColourMap, colour_maps};

@@ -91,6 +91,7 @@ impl Presentation for Plate {
         let budget = super::budget_section::budget_html(&report.comparison.budget);
         let measured = super::measured_section::measured_html(report);
         vec![
+            Section::new("movement", "The impact moving", super::animation_section::animation_html(report)),
             Section::new("budget", "Discrepancy budget", budget),
             Section::new("measurement", "Measurement", measured),
         ]

@@ -25,7 +25,11 @@ pub(super) fn tree(svg: &str) -> Result<usvg::Tree> {
     usvg::Tree::from_str(svg, &options).map_err(|e| internal(&e.to_string()))
 }
 
-fn raster(svg: &str, scale: f32) -> Result<tiny_skia::Pixmap> {
+/// The drawing as pixels, `scale` px per unit of it.
+///
+/// # Errors
+/// As [`png`].
+pub(super) fn raster(svg: &str, scale: f32) -> Result<tiny_skia::Pixmap> {
     let tree = tree(svg)?;
     let size = tree.size().to_int_size().scale_by(scale).ok_or_else(|| internal("no size"))?;
     let mut pixmap =

@@ -3,7 +3,7 @@
 use super::run_times::same_but_for_run_times;
 use super::standing::{self, DOCUMENT, Standing};
 use super::validated_map::{self, ValidatedMap};
-use super::{Report, presentation};
+use super::{Report, animation_section, presentation};
 use crate::error::{Error, Result};
 use crate::interrupt::Scratch;
 use std::collections::{BTreeMap, BTreeSet};
@@ -108,6 +108,9 @@ fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)
             let stem = format!("{name}{}", drawing.ending);
             files.push((format!("{stem}.png"), super::png(&drawing.svg, PNG_SCALE)?));
             files.push((format!("{stem}.svg"), drawing.svg.into_bytes()));
+        }
+        if let Some(film) = &scene.attachments.film {
+            files.push((animation_section::file(name), film.gif.clone()));
         }
         files.push((format!("{name}.csv"), super::curves_csv(scene)?.into_bytes()));
         files.push((format!("{name}.html"), super::scene_page(scene).into_bytes()));

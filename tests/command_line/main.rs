@@ -1,5 +1,6 @@
 //! Tests of the program as a user calls it.
 
+mod animations;
 mod bad_input;
 mod coverage;
 mod diff;

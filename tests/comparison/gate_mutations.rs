@@ -200,7 +200,14 @@ fn a_summary_that_its_own_mesh_series_contradicts_fails() {
     };
     assert_eq!(gate(scene, summary(scene, narrow).path()), 10);
     let residual = |summary: &mut Value| summary["energy_residual"] = json!(0.5);
-    assert_eq!(gate(scene, summary(scene, residual).path()), 10);
+    let edited = summary(scene, residual);
+    assert_eq!(gate(scene, edited.path()), 10);
+    // what only looks it up is told as well
+    let program = || Command::cargo_bin("impactcheck").unwrap();
+    let told = program().args(["reference", scene, "--store"]).arg(edited.path()).output().unwrap();
+    let said = String::from_utf8_lossy(&told.stderr);
+    assert_eq!(told.status.code(), Some(11), "{said}");
+    assert!(said.contains("contradictions_of_mesh_series"), "{said}");
     let dropped = |summary: &mut Value| {
         summary["convergence"]["quantities"]["efficiency"]["values"].as_array_mut().unwrap().pop();
     };

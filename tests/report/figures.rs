@@ -339,7 +339,13 @@ fn mesh_and_stress_are_shown_where_there_are_any() {
     let data = Data::new();
     let mut report = data.report();
     assert!(!scene_page(&report.scenes[0]).contains("<image"));
-    let mut mesh = FieldMesh { points: Vec::new(), quads: Vec::new(), bodies: Vec::new(), von_mises: None };
+    let mut mesh = FieldMesh {
+        points: Vec::new(),
+        quads: Vec::new(),
+        bodies: Vec::new(),
+        von_mises: None,
+        displacement: None,
+    };
     for (body, (z, radius, height)) in
         [(1e-3, 1e-2, 2e-2), (-1e-3, 3e-2, 2e-3), (-2.1e-2, 1e-2, 2e-2)].into_iter().enumerate()
     {

@@ -295,6 +295,33 @@ fn scenes_of_one_name_solved_at_once_are_all_kept() {
 }
 
 #[test]
+fn who_asks_for_what_is_being_computed_waits_and_takes_it() {
+    let bench = Bench::new();
+    let python = bench.solver(&format!("echo run >> \"$here/runs\"; sleep 1; {COPY}"));
+    let runs = || fs::read_to_string(bench.path("runs")).unwrap_or_default().lines().count();
+    let solve = |wish: &Wish| {
+        let mut told = Vec::new();
+        solve_with(&python, &scene(), PAPER, &bench.store, wish, &mut |p| told.push(p.phase.clone()))
+            .expect("success");
+        told.contains(&"waiting".to_owned())
+    };
+    let plain = Wish::default();
+    let waited: usize = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..3).map(|_| scope.spawn(|| usize::from(solve(&plain)))).collect();
+        workers.into_iter().map(|worker| worker.join().expect("thread")).sum()
+    });
+    assert_eq!((runs(), waited, bench.contents()), (1, 2, vec!["paper".to_owned()]));
+    // what nobody computes is not waited for, and fields are everyone's own
+    assert!(!solve(&plain));
+    std::thread::scope(|scope| {
+        scope.spawn(|| solve(&plain));
+        std::thread::sleep(Duration::from_millis(300));
+        solve(&Wish { fields: 4, ..Wish::default() });
+    });
+    assert_eq!(runs(), 4);
+}
+
+#[test]
 fn runs_at_once_leave_one_complete_entry() {
     let bench = Bench::new();
     let python = bench.solver(COPY);

@@ -86,21 +86,31 @@ pub(super) fn continuum(
     let (plate, omega_next) = continuum_plate(setup, wanted, predictor, cache)?;
     let elastic = plate.omega.len() - rigid;
     let mesh = MeshOptions::default();
-    let patches = predictor.meshed_patches(&setup.plate);
-    let shapes = |radii: &[f64]| {
-        let mut shapes = cached::face_shapes(&setup.plate, patches, elastic, &mesh, radii)?;
-        for (shape, phi) in shapes.iter_mut().zip(&plate.participation) {
-            let sign = (shape[0] * phi[1]).signum();
-            shape.iter_mut().for_each(|value| *value *= sign);
-        }
-        Ok(shapes)
-    };
-    let fluid = fluid_forces(setup, shapes)?;
+    let inner: Vec<f64> = plate.participation.iter().map(|phi| phi[1]).collect();
+    let fluid = fluid_forces(setup, |radii| continuum_shapes(setup, predictor, elastic, &inner, radii))?;
     let tips = tip_residuals(setup, predictor.patch_radius, &mesh, cache)?;
     let system = join(setup, plate, tips)?;
     let warnings = validity::warnings(setup, predictor, &system);
     let slower = setup.fluid.as_ref().map_or(1.0, |fluid| mass_factor(fluid.added_mass_frequency_ratio));
     Ok(Joined { system, omega_next: omega_next / slower.sqrt(), fluid, warnings })
+}
+
+/// Mass-normalised displacements of the inner face at `radii` in m (the first 0) in model C's modes, of which `elastic` are elastic,
+/// with the signs of their participations at the `inner` contact. Shape (modes, radii).
+pub(super) fn continuum_shapes(
+    setup: &PlateImpact,
+    predictor: &Predictor,
+    elastic: usize,
+    inner: &[f64],
+    radii: &[f64],
+) -> Result<Vec<Vec<f64>>> {
+    let patches = predictor.meshed_patches(&setup.plate);
+    let mut shapes = cached::face_shapes(&setup.plate, patches, elastic, &MeshOptions::default(), radii)?;
+    for (shape, participation) in shapes.iter_mut().zip(inner) {
+        let sign = (shape[0] * participation).signum();
+        shape.iter_mut().for_each(|value| *value *= sign);
+    }
+    Ok(shapes)
 }
 
 /// Film and drag of the scene, if there are any. `shapes` gives the mass-normalised shapes of the dry plate's inner

@@ -2,6 +2,7 @@
 
 mod checks;
 pub mod choice;
+pub mod deflection;
 pub mod errors;
 mod joined;
 mod limits;
