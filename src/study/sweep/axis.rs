@@ -28,7 +28,7 @@ pub(super) struct Vary {
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum Scale {
+pub(super) enum Scale {
     #[default]
     Linear,
     Log,
