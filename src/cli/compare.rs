@@ -2,6 +2,7 @@
 
 use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
+use super::film::film;
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument, kinds, validated_scenes};
 use crate::ci::commit::Commit;
@@ -10,11 +11,10 @@ use crate::comparison::{Comparison, GateRules, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
-use crate::movement::Movement;
 use crate::reference::{COARSER, Lookup, Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFormat, Film, Report, SceneReport};
+use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport};
 use crate::result::Outcome;
-use crate::scene::{Geometry, Scene};
+use crate::scene::Scene;
 use crate::validated::Validation;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -247,8 +247,13 @@ impl<'a> Job<'a> {
             let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
+<<<<<<< HEAD
             found.push((stored, Validation::of(scene, &comparison)));
             let film = self.film(context, scene, stored, reduced)?;
+=======
+            let asked = self.figures.iter().any(|(_, format)| *format == FigureFormat::Gif);
+            let film = film(context, scene, (stored, reduced), asked)?;
+>>>>>>> main
             scenes.push(SceneReport {
                 scene,
                 comparison,
@@ -278,39 +283,6 @@ impl<'a> Job<'a> {
             report.command += &files.collect::<String>();
         }
         Ok(Report { scenes, rules: GateRules::default() })
-    }
-
-    /// The impact moving, if the reference has fields over time or an animation is asked for.
-    fn film(
-        &self,
-        context: &Context,
-        scene: &Scene,
-        stored: &Stored,
-        reduced: &[Outcome],
-    ) -> Result<Option<Film>> {
-        let asked = self.figures.iter().any(|(_, format)| *format == FigureFormat::Gif);
-        if !asked && !Movement::has_fields(scene, stored) {
-            return Ok(None);
-        }
-        let film = Movement::of(scene, stored, reduced).and_then(|movement| {
-            if movement.fields.is_empty() {
-                let alone = format!("{}: the animation shows the reduced model alone", scene.name);
-                context.note(match scene.reference.geometry {
-                    Geometry::Axisymmetric => {
-                        format!("{alone}; `{}` stores fields of the reference", report::fields_command(scene))
-                    }
-                    Geometry::Solid => format!("{alone}; fields of a solid reference are not drawn"),
-                });
-            }
-            report::film(scene, &stored.outcome, reduced, &movement)
-        });
-        match film {
-            Err(error) if !asked => {
-                context.note(format_args!("scene `{}` has no animation: {error}", scene.name));
-                Ok(None)
-            }
-            film => film.map(Some),
-        }
     }
 
     /// The command line that compares `scene` in the same way.

@@ -30,15 +30,16 @@ pub const EXAMPLE: &str = r#"A sweep file (TOML):
   field  = "materials.steel.youngs_modulus"
   values = ["100 GPa", "210 GPa"]
 
-Where one or two parameters vary, the folder gets sweep.svg: curves over one parameter, a line per model; a map in colours over
-two, one per model. It has the stored references (of shipped scenes and of those beside the swept one) that differ from the scene
-in the varied fields alone, with their bands, and where the paper's section 4.1 expects the optimum.
+Where one or two parameters vary, the folder gets sweep.svg: curves over one parameter, a line
+per model; a map in colours over two, one per model. It has the stored references (of shipped
+scenes and of those beside the swept one) that differ from the scene in the varied fields alone,
+with their bands, and where the paper's section 4.1 expects the optimum.
 
 An interrupted sweep goes on where it stopped when it is started again. As the array job of a cluster:
   impactcheck study sweep FILE --out DIR --shard $SLURM_ARRAY_TASK_ID/16
   impactcheck study merge FILE --out DIR
-RAYON_NUM_THREADS sets the number of threads. With model C every point meshes its plate (some 0.1 s) and leaves 4 kB in
-the cache; IMPACTCHECK_CACHE= (empty) keeps them out."#;
+RAYON_NUM_THREADS sets the number of threads. With model C every point meshes its plate (some
+0.1 s) and leaves 4 kB in the cache; IMPACTCHECK_CACHE= (empty) keeps them out."#;
 
 #[derive(Debug, Args)]
 pub struct Arguments {

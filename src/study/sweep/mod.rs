@@ -4,6 +4,7 @@
 //! known, so that an interrupted sweep goes on where it stopped, and shards run side by side; a [`Table`] joins what the
 //! logs hold, and [`figure`] draws it.
 
+mod axis;
 mod drawing;
 mod plan;
 mod record;
