@@ -247,13 +247,9 @@ impl<'a> Job<'a> {
             let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
-<<<<<<< HEAD
             found.push((stored, Validation::of(scene, &comparison)));
-            let film = self.film(context, scene, stored, reduced)?;
-=======
             let asked = self.figures.iter().any(|(_, format)| *format == FigureFormat::Gif);
             let film = film(context, scene, (stored, reduced), asked)?;
->>>>>>> main
             scenes.push(SceneReport {
                 scene,
                 comparison,
