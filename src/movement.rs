@@ -143,12 +143,13 @@ mod tests {
             assert!((time - 2e-6 * k as f64).abs() < 1e-15, "{time}");
             assert_eq!(field.displacement, Some(vec![[0.0, *time]; 4]));
         }
+        // the curve has the dents under the contacts as well, a twentieth of it at most
         let history = &reduced[0].history;
         let expected = at("plate_displacement", history, movement.times.iter().copied());
         let largest = expected.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         assert!(largest > 1e-6);
         for (row, expected) in movement.deflection.iter().zip(expected) {
-            assert!((row[0] - expected).abs() < 1e-3 * largest, "{} is not {expected}", row[0]);
+            assert!((row[0] - expected).abs() < 0.06 * largest, "{} is not {expected}", row[0]);
         }
         assert!(movement.bodies[0].last() < movement.bodies[0].first());
     }

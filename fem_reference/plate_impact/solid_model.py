@@ -164,7 +164,7 @@ def plate_model(
         # By increasing radius: the record of the outermost contact goes by it.
         near = near[np.argsort(distance[near], kind="stable")]
         patches[PLATE, name] = (near, areas[near])
-        watched.append(_watched(near, distance[near], areas[near], observed_circle(scene)))
+        watched.append(_watched(areas, distance, observed_circle(scene)))
         if name in scene.rigid or isinstance(body, Compact):
             rigid_numbers[name] = len(rigid)
             along = guided((0.0, 0.0, 1.0))
@@ -195,12 +195,19 @@ def plate_model(
     )
 
 
-def _watched(nodes: Ints, radii: Floats, areas: Floats, circle: float) -> tuple[Ints, Floats]:
-    """The nodes of a face within a circle (m) and their shares of a unit Hertz pressure on it."""
-    shares = areas * np.sqrt(np.maximum(1.0 - (radii / circle) ** 2, 0.0))
+def _watched(areas: Floats, distance: Floats, circle: float) -> tuple[Ints, Floats]:
+    """The nodes of a face within a circle and their shares of a unit Hertz pressure on it.
+
+    Args:
+        areas: of the nodes on the face, 0 of all others, m^2.
+        distance: of the nodes from the axis, m.
+        circle: its radius, m.
+    """
+    shares = areas * np.sqrt(np.maximum(1.0 - (distance / circle) ** 2, 0.0))
     if not shares.any():
-        shares[0] = 1.0
-    return nodes[shares > 0.0], shares[shares > 0.0] / shares.sum()
+        shares[np.argmin(np.where(areas > 0.0, distance, np.inf))] = 1.0
+    nodes = np.flatnonzero(shares)
+    return nodes, shares[nodes] / shares.sum()
 
 
 def _sphere_on_plate(

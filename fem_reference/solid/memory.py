@@ -28,19 +28,21 @@ def memory_needed(nodes: int, order: int, processes: int) -> float:
     return BASE * processes + PER_NODE[order] * nodes
 
 
-def memory_free(system: Path = Path("/")) -> float | None:
-    """Bytes that a run can still use; None where the system does not say.
+def memory_free(processes: int = 1, system: Path = Path("/")) -> float | None:
+    """Bytes that a run can still use, all processes together; None where the system does not say.
 
     The least that the machine, the control groups (containers, batch systems) and the limit of
     the shell leave.
 
     Args:
+        processes: of the run.
         system: root of the file system that is asked.
     """
     free = [_available(system / "proc/meminfo"), *_left_in_groups(system)]
     limit, _ = resource.getrlimit(resource.RLIMIT_AS)
     if limit != resource.RLIM_INFINITY:
-        free.append(max(float(limit) - _mapped(system), 0.0))
+        # the limit is of each process
+        free.append(processes * max(float(limit) - _mapped(system), 0.0))
     known = [bytes_free for bytes_free in free if bytes_free is not None]
     return min(known, default=None)
 
@@ -65,10 +67,10 @@ def _left_in_groups(system: Path) -> list[float]:
     """What every control group that this process is in, or one above, leaves of its memory."""
     try:
         lines = (system / "proc/self/cgroup").read_text(encoding="utf-8").splitlines()
-    except OSError:
+    except (OSError, ValueError):
         return []
     left = []
-    for line in lines:
+    for line in (line for line in lines if line.count(":") >= 2):
         _, controllers, path = line.split(":", 2)
         if controllers == "":
             mount, limit, used = "sys/fs/cgroup", "memory.max", "memory.current"
@@ -83,8 +85,17 @@ def _left_in_groups(system: Path) -> list[float]:
             with contextlib.suppress(OSError, ValueError):
                 place = system / mount / group
                 most, now = (int((place / name).read_text()) for name in (limit, used))
-                left.append(float(max(most - now, 0)))
+                left.append(float(max(most - now + _file_cache(place), 0)))
     return left
+
+
+def _file_cache(group: Path) -> int:
+    """Bytes of a control group's use that the system gives back when they are needed."""
+    with contextlib.suppress(OSError, ValueError, KeyError):
+        lines = (group / "memory.stat").read_text(encoding="ascii").splitlines()
+        numbers = dict(line.split() for line in lines)
+        return int(numbers.get("total_inactive_file") or numbers["inactive_file"])
+    return 0
 
 
 def require_memory(
@@ -108,9 +119,14 @@ def require_memory(
     """
     finest = round(nodes * refinement**3)
     needed = memory_needed(finest, order, comm.size)
-    free = free if free is not None else memory_free()
+    # one answer for all: a process that goes on alone would wait for the others
+    if free is None:
+        free = comm.bcast(memory_free(comm.size) if comm.rank == 0 else None)
     which = "the run has" if refinement == 1.0 else "the finest mesh of the series has about"
-    text = f"{nodes} nodes, {3 * nodes} dofs: at most about {needed / 1e9:.2g} GB"
+    text = f"{nodes} nodes, {3 * nodes} dofs"
+    if refinement > 1.0:
+        text += f", about {3 * finest} on the finest mesh"
+    text += f": about {needed / 1e9:.2g} GB"
     if free is None:
         return text
     if needed > SHARE * free:

@@ -327,31 +327,32 @@ def test_too_little_memory_is_refused() -> None:
         require_memory(1_000_000, 2, alone(), 2.0 * needed, refinement=2.0)
 
 
-def test_memory_left_is_that_of_the_tightest_limit(tmp_path: Path) -> None:
+def test_memory_left_is_that_of_the_tightest_limit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def write(name: str, text: str) -> None:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text)
 
-    assert memory_free(tmp_path / "nothing") is None
+    assert memory_free(1, tmp_path / "nothing") is None
     write("proc/meminfo", "MemTotal: 16000000 kB\nMemAvailable: 8000000 kB\n")
-    assert memory_free(tmp_path) == 8e6 * 1024.0
+    assert memory_free(1, tmp_path) == 8e6 * 1024.0
     write("proc/self/cgroup", "0::/jobs/one\n")
     write("sys/fs/cgroup/jobs/one/memory.max", "max\n")
     write("sys/fs/cgroup/jobs/one/memory.current", "1000\n")
     write("sys/fs/cgroup/jobs/memory.max", "3000000000\n")
     write("sys/fs/cgroup/jobs/memory.current", "1000000000\n")
-    assert memory_free(tmp_path) == 2e9
+    assert memory_free(1, tmp_path) == 2e9
     write("proc/self/cgroup", "4:cpu,cpuacct:/\n3:memory:/old\n")
     write("sys/fs/cgroup/memory/old/memory.limit_in_bytes", "1500000000\n")
     write("sys/fs/cgroup/memory/old/memory.usage_in_bytes", "1600000000\n")
-    assert memory_free(tmp_path) == 0.0
-    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    assert memory_free(1, tmp_path) == 0.0
+    write("sys/fs/cgroup/memory/old/memory.stat", "cache 7\ntotal_inactive_file 300000000\n")
+    assert memory_free(1, tmp_path) == 2e8
     write("proc/self/cgroup", "")
-    try:
-        resource.setrlimit(resource.RLIMIT_AS, (5 * 10**9, hard))
-        assert memory_free(tmp_path) == 5e9
-    finally:
-        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (3 * 10**9, 3 * 10**9))
+    assert memory_free(1, tmp_path) == 3e9
+    assert memory_free(2, tmp_path) == 6e9
 
 
 def test_radii_found_that_differ_by_round_off_make_the_same_mesh() -> None:

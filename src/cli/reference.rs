@@ -49,6 +49,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let stored = match wanted.then(|| store.find(scene, resolution)) {
         Some(Lookup::Found(stored)) => {
             context.note(format_args!("found {}", stored.folder.display()));
+            require_sound(scene, &stored)?;
             *stored
         }
         other => {
@@ -72,7 +73,6 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             compute(context, scene, resolution, store, &wish)?
         }
     };
-    require_sound(scene, &stored)?;
     let convergence = stored.outcome.summary.convergence.as_ref();
     if let Some(reached) = convergence.and_then(|c| c["relative_error"].as_f64()) {
         context.note(format_args!("95 % band of efficiency and force peaks: {:.2} %", 100.0 * reached));

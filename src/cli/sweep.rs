@@ -30,16 +30,20 @@ pub const EXAMPLE: &str = r#"A sweep file (TOML):
   field  = "materials.steel.youngs_modulus"
   values = ["100 GPa", "210 GPa"]
 
-Where one or two parameters vary, the folder gets sweep.svg: curves over one parameter, a line
-per model; a map in colours over two, one per model. It has the stored references (of shipped
-scenes and of those beside the swept one) that differ from the scene in the varied fields alone,
-with their bands, and where the paper's section 4.1 expects the optimum.
+Where one or two parameters vary, over 100 000 points at most, the folder gets sweep.svg: curves
+over one parameter, a line per model; a map in colours over two, one per model. It has the
+stored references (of shipped scenes and of those beside the swept one) that differ from the
+scene in the varied fields alone, with their bands, and where the paper's section 4.1 expects
+the optimum. Several models number the points model after model and have a column `model`.
 
 An interrupted sweep goes on where it stopped when it is started again. As the array job of a cluster:
   impactcheck study sweep FILE --out DIR --shard $SLURM_ARRAY_TASK_ID/16
   impactcheck study merge FILE --out DIR
 RAYON_NUM_THREADS sets the number of threads. With model C every point meshes its plate (some
 0.1 s) and leaves 4 kB in the cache; IMPACTCHECK_CACHE= (empty) keeps them out."#;
+
+/// Points up to which a sweep is drawn: each is a mark of its own.
+const MOST_DRAWN: usize = 100_000;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -66,7 +70,7 @@ pub struct SweepArguments {
     #[command(flatten)]
     common: Arguments,
     /// Run only part i of n; `study merge` joins the parts
-    #[arg(long, value_name = "i/n")]
+    #[arg(long, value_name = "i/n", conflicts_with = "figure")]
     shard: Option<Shard>,
 }
 
@@ -76,11 +80,12 @@ impl Arguments {
         let plan = Plan::read(&self.file)?;
         if let Some(file) = &self.figure {
             FigureFormat::of_still(file)?;
-            let count = plan.parameters().len();
             if !is_drawn(&plan) {
-                let file = file.display();
                 return Err(Error::Usage(format!(
-                    "--figure {file}: {count} parameters vary; one or two can be drawn"
+                    "--figure {}: {} parameters vary over {} points; one or two can be drawn, over {MOST_DRAWN} points at most",
+                    file.display(),
+                    plan.parameters().len(),
+                    plan.len()
                 )));
             }
         }
@@ -89,7 +94,7 @@ impl Arguments {
 }
 
 fn is_drawn(plan: &Plan) -> bool {
-    (1..=2).contains(&plan.parameters().len())
+    (1..=2).contains(&plan.parameters().len()) && plan.len() <= MOST_DRAWN
 }
 
 /// Writes the drawing into `dir` and where it is asked for.

@@ -99,7 +99,7 @@ fn check_mesh(folder: &Path, summary: &Summary) -> Result<(), String> {
     let nodes = head.split_once("NumberOfPoints=\"").and_then(|(_, rest)| rest.split_once('"'));
     let nodes: Option<u64> = nodes.and_then(|(number, _)| number.parse().ok());
     match nodes {
-        Some(nodes) if [2 * nodes, 3 * nodes].contains(&dofs) => Ok(()),
+        Some(nodes) if [2, 3].map(|d| nodes.checked_mul(d)).contains(&Some(dofs)) => Ok(()),
         Some(nodes) => Err(format!("has {nodes} nodes; the solution is of a mesh with {dofs} displacements")),
         None => Err("does not say how many nodes it has".to_owned()),
     }

@@ -58,8 +58,12 @@ pub fn solve_with(
         let message = "another run of this solution is under way".to_owned();
         progress(&Progress { phase: "waiting".to_owned(), done: 0.0, message, series: None });
     };
-    let turn = store.turn(scene, resolution, &mut waiting)?;
+    let there = || entry::fingerprint(&store.folder(scene, resolution));
+    let before = there();
+    let turn = store.turn(scene, resolution, &mut waiting);
+    // a run that failed leaves what was there
     if turn.waited
+        && there() != before
         && wish.stress_at.is_empty()
         && wish.fields == 0
         && let Lookup::Found(stored) = store.find_here(scene, resolution)

@@ -169,19 +169,8 @@ impl Store {
     }
 
     /// The turn to compute the entry of `scene` at `resolution`; `waiting` is called while another run computes it.
-    ///
-    /// # Errors
-    /// [`Error::Io`] if the store can't be written.
-    pub(super) fn turn(
-        &self,
-        scene: &Scene,
-        resolution: Resolution,
-        waiting: &mut dyn FnMut(),
-    ) -> Result<Turn> {
-        let entry = self.earlier_folder(scene, resolution);
-        let name = entry.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let file = entry.with_file_name(format!(".computing-{name}"));
-        Turn::take(file.clone(), waiting).map_err(|e| Error::io("creating", &file, e))
+    pub(super) fn turn(&self, scene: &Scene, resolution: Resolution, waiting: &mut dyn FnMut()) -> Turn {
+        Turn::take(&self.earlier_folder(scene, resolution), waiting)
     }
 
     /// Resolutions at which there is a solution of exactly this scene, coarse to fine.
@@ -343,7 +332,7 @@ pub(super) struct WorkFolder {
 
 /// The folder of a scene, which goes with its last entry.
 #[derive(Debug)]
-pub(super) struct Parent(pub(super) PathBuf);
+struct Parent(PathBuf);
 
 impl Drop for Parent {
     fn drop(&mut self) {

@@ -208,6 +208,11 @@ fn a_summary_that_its_own_mesh_series_contradicts_fails() {
     let said = String::from_utf8_lossy(&told.stderr);
     assert_eq!(told.status.code(), Some(11), "{said}");
     assert!(said.contains("contradictions_of_mesh_series"), "{said}");
+    let unfounded = |summary: &mut Value| {
+        summary["uncertainty"]["efficiency"] = json!(1e-9);
+        summary["convergence"]["quantities"].as_object_mut().unwrap().remove("efficiency");
+    };
+    assert_eq!(gate(scene, summary(scene, unfounded).path()), 10);
     let dropped = |summary: &mut Value| {
         summary["convergence"]["quantities"]["efficiency"]["values"].as_array_mut().unwrap().pop();
     };

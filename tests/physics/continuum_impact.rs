@@ -107,7 +107,6 @@ inner = { kind = "sphere", radius = "0.1673457 mm", material = "tip", gap = "2.8
         reduced.system().oscillators.iter().map(|o| o.omega).find(|omega| *omega > 0.0).unwrap()
     };
     let all = [16, 24, 35, 53].map(first);
-    println!("{all:?}");
     for omega in all {
         assert_relative_eq!(omega, all[0], max_relative = 5e-5);
     }

@@ -30,7 +30,7 @@ const START_LEVEL: i32 = 4;
 /// Integrates the impact.
 ///
 /// # Errors
-/// [`Error::Solver`] if the contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does not end.
+/// [`Error::Solver`] if the contact has no equilibrium, the step falls below 2^-44 of its base length, or the run does not end.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
     let recorder = options.sample_interval.map(|interval| Recorder::new(system, &COLLOCATION, interval));

@@ -32,7 +32,7 @@ use integration::{Integration, Options};
 /// Integrates the impact of `system`, in a fluid that acts by forces or without.
 ///
 /// # Errors
-/// [`crate::Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does not end;
+/// [`crate::Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of its base length, or the run does not end;
 /// [`crate::Error::BeyondModel`] if the plate bends around the inner body in a film.
 pub fn integrate(
     system: &system::System,

@@ -21,7 +21,7 @@ const PLAIN_TOLERANCE: f64 = 1e-7;
 const STEP_POWER: f64 = 0.14;
 
 /// Length in s of which steps are a power of 2, in an impact whose contact on a rigid wall lasts `contact_time` s. It follows the
-/// `tolerance`: else two of them could take the same steps, and their results would agree however wrong both are.
+/// `tolerance`: else neighbouring ones could take the same steps, and their results would agree however wrong both are.
 pub(super) fn base_step(contact_time: f64, tolerance: f64) -> f64 {
     0.25 * contact_time * (tolerance / PLAIN_TOLERANCE).powf(STEP_POWER)
 }

@@ -31,7 +31,7 @@ const LONGEST: i32 = -8;
 /// Integrates the impact of `system` in a `fluid`.
 ///
 /// # Errors
-/// [`Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of a Hertz contact, or the run does
+/// [`Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of its base length, or the run does
 /// not end.
 pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Result<Integration> {
     let collocation = Collocation::radau();
@@ -117,8 +117,9 @@ impl Stepper<'_> {
         while self.time < self.end_time {
             let open = !touching && is_open(self.approach);
             let longest = if open {
-                // a step that passes no touch
-                free_flight::safe_step(system, &self.q, &self.v).max(0.5 * self.base_step)
+                // a step that passes no touch, or so short that one in it is found
+                let short = 0.5 * self.base_step.min(0.25 * self.energy.contact_time);
+                free_flight::safe_step(system, &self.q, &self.v).max(short)
             } else {
                 self.base_step
             };

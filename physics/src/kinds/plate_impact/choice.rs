@@ -5,9 +5,10 @@
 //!
 //!   sqrt((safety |candidate - layer| + share |all Kirchhoff modes - layer| + undamped)^2 + floor^2)
 //!
-//! with the share of what the layer corrects that it may itself be off by, the damping under the contacts that every model lacks,
-//! and the error that model C was found to have against the finite-element reference as the floor. The same layer with fewer modes tells how many model C needs; built, model C
-//! is held against itself with fewer modes (`truncation`), and has more of them where that finds too large an error.
+//! with the share of what the layer corrects that it may itself be off by, the damping under the contacts that models with few
+//! modes lack, and the error that model C was found to have against the finite-element reference as the floor. The same layer
+//! with fewer modes tells how many model C needs; built, model C is held against itself with fewer modes (`truncation`), and
+//! has more of them where that finds too large an error.
 
 use super::errors::COVERED;
 use super::results::PlateQuantities;
@@ -210,10 +211,10 @@ impl<'a> Plan<'a> {
         thin + more * plate.thickness / plate.radius
     }
 
-    /// An error with what every model lacks; `None` where that is not known.
+    /// An error with what models with few modes lack and with the floor; `None` where that is not known.
     fn total(&self, error: f64) -> Option<f64> {
         let floor = self.floor?;
-        Some((error + self.trials.undamped()).hypot(floor)).filter(|error| error.is_finite())
+        Some((error + self.trials.undamped(0.0)).hypot(floor)).filter(|error| error.is_finite())
     }
 
     fn met(&self) -> bool {

@@ -129,12 +129,13 @@ impl<'a> Trials<'a> {
     }
 
     /// Relative error of a force for want of the damping of what yields under the contacts: local waves, about as long as the
-    /// patches are wide, of which a model takes few and leaves the rest to static flexibilities.
-    pub(super) fn undamped(&self) -> f64 {
+    /// patches are wide, of which a model takes few and leaves those from `omega_next` rad/s on to static flexibilities.
+    pub(super) fn undamped(&self, omega_next: f64) -> f64 {
         let plate = &self.setup.plate;
         let shear = (plate.material.shear_modulus() / plate.material.density).sqrt();
         let [outer, inner] = self.predictor.patch_radius;
-        2.0 * plate.damping_ratio * self.predictor.slow() * outer.max(inner) / shear
+        let local = shear / outer.max(inner);
+        2.0 * plate.damping_ratio * self.predictor.slow() / local.max(omega_next)
     }
 
     /// Largest estimated error of the quantities covered that model C has with `modes` bending modes for want of more, and the
