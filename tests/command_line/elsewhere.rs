@@ -93,12 +93,12 @@ fn the_program_alone_brings_scenes_solutions_and_solver_along() {
         assert_eq!(bytes(&package), bytes(&source), "{file}");
     }
     assert!(!package.join("tests").exists());
-    // another time they lie ready, and the solution is found
-    elsewhere.does(
-        "here",
-        &["reference", "mine.toml", "--json"],
-        &[("IMPACTCHECK_PYTHON", Path::new("/none"))],
-    );
+    // another time they lie ready, and the solution is found; this solver's contradicts itself
+    let none = [("IMPACTCHECK_PYTHON", Path::new("/none"))];
+    let output = elsewhere.run("here", &["reference", "mine.toml"], &none);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(11), "{said}");
+    assert!(said.contains("found ") && said.contains("contradicts itself"), "{said}");
     let names = fs::read_dir(&data)
         .expect("data")
         .map(|e| e.expect("entry").file_name().into_string().expect("name"));
