@@ -40,6 +40,9 @@ const RIM: f64 = 0.03;
 const REFERENCE_SHARE: f64 = 0.05;
 /// Share of the contacts' flexibility, relative to the tolerance, below which more Kirchhoff modes don't help.
 const LEFT_OUT_SHARE: f64 = 0.25;
+/// Patch radius over the plate's thickness up to which the estimate is a promise: of 1400 random scenes 3 of 32 promises were
+/// broken beyond, 6 of 3027 up to there.
+const PROMISED: f64 = 0.9;
 /// Fewest bending modes that model C is built with: with fewer it can't be held against itself.
 const LEAST_BUILT: usize = 4;
 /// Most modes that model C is built with when its first ones turn out to be too few.
@@ -92,9 +95,11 @@ impl<'a> Plan<'a> {
             sample_interval: None,
         };
         let trials = Trials::new(setup, REFERENCE_SHARE * tolerance, options)?;
+        let (patch, thickness) = (trials.predictor.patch_radius, setup.plate.thickness);
+        let wide = patch[0].max(patch[1]) > PROMISED * thickness;
         let mut plan = Self {
             tolerance,
-            floor: validity::measured_error(trials.predictor.patch_radius, setup.plate.thickness),
+            floor: validity::measured_error(patch, thickness).filter(|_| !wide),
             layer: trials.continuum(trials.waves.modes()).ok(),
             trials,
             tried: Vec::new(),
@@ -269,7 +274,7 @@ impl<'a> Plan<'a> {
                 "model {model} is taken without an estimate: with fewer modes its contacts have no solution"
             ),
             _ => format!(
-                "model {model} is taken without an estimate: the contact patches are wider, over the plate's thickness, than any that were compared with the reference"
+                "model {model} is taken without an estimate: the contact patches are wider, over the plate's thickness, than those up to which estimates were found true ({PROMISED})"
             ),
         }
     }
