@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,9 @@ import meshio
 import numpy as np
 
 from .arrays import Floats, Ints
+
+STATE = Path(__file__).parent / "paraview/paraview_state.py"
+"""What ParaView loads to show a series: no module of this package, ParaView runs it."""
 
 
 @dataclass(frozen=True)
@@ -43,13 +47,14 @@ class Fields:
         meshio.vtu.write(path, grid, binary=True, compression=None)
 
     def write_frames(self, folder: Path, frames: list[tuple[float, list[Floats]]]) -> list[float]:
-        """A .vtu for each instant (s) and `stress.pvd`; the instants."""
+        """A .vtu for each instant (s), `stress.pvd`, and ParaView's state for it; the instants."""
         names = [f"stress_{number:03d}.vtu" for number in range(len(frames))]
         for name, (_, displacements) in zip(names, frames, strict=True):
             self.write_frame(folder / name, displacements)
         times = [instant for instant, _ in frames]
         if names:
             _write_series(folder / "stress.pvd", times, names)
+            shutil.copyfile(STATE, folder / STATE.name)
         return times
 
     def _grid(self, point_data: dict[str, Any], cell_data: dict[str, Any]) -> meshio.Mesh:

@@ -86,6 +86,7 @@ def test_folder_is_complete_and_checksums_hold(solved: tuple[Path, str, str]) ->
         "mesh.vtu",
         "stress_000.vtu",
         "stress_001.vtu",
+        "paraview_state.py",
         "stress.pvd",
         "provenance.json",
         "checksums.sha256",
