@@ -13,7 +13,7 @@ from paraview import simple
 DRAWN = 0.05
 """Largest displacement over the size of the bodies, as drawn."""
 COLOURED = 0.1
-"""Share of the highest stress, which is under the contacts, at which the colours end: waves show."""
+"""Share of the highest stress, that under the contacts, at which the colours end: waves show."""
 
 # ParaView runs a state without __file__
 here = Path((lambda: 0).__code__.co_filename).resolve().parent
