@@ -5,7 +5,7 @@ use super::system::{INNER, System, dot};
 use crate::error::Result;
 use crate::result::{Curve, History};
 
-/// The curves of outer body (mass average), plate (around its centre, mean of both faces, see [`super::centre`]) and inner body
+/// The curves of outer body (mass average), plate (around its centre, mean of both faces) and inner body
 /// (mass average), signed along z; contact forces are positive in compression.
 pub static CURVES: [Curve; 8] = [
     Curve::new("outer_displacement", "m"),
