@@ -34,7 +34,7 @@ impl Shown {
     }
 }
 
-/// A result that is drawn, by its place among [`NUMBERS`].
+/// A result that is drawn, by its place among the numbers of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Drawn(usize);
 
