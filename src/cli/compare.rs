@@ -12,7 +12,7 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
 use crate::reference::{COARSER, Lookup, Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport};
+use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
 use crate::result::Outcome;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -122,7 +122,7 @@ pub(super) struct Job<'a> {
     /// Scene files, and what they say.
     pub(super) scenes: Vec<(PathBuf, Scene)>,
     records: Vec<Record>,
-    figures: Vec<(PathBuf, FigureFormat)>,
+    figures: Vec<(PathBuf, FigureFile)>,
 }
 
 /// Reference and reduced models of one scene.
@@ -248,7 +248,7 @@ impl<'a> Job<'a> {
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
             found.push((stored, Validation::of(scene, &comparison)));
-            let asked = self.figures.iter().any(|(_, format)| *format == FigureFormat::Gif);
+            let asked = self.figures.iter().any(|(_, format)| *format == FigureFile::Animation);
             let film = film(context, scene, (stored, reduced), asked)?;
             scenes.push(SceneReport {
                 scene,

@@ -6,7 +6,7 @@ use crate::comparison::ChangedTolerance;
 use crate::error::{Error, Result};
 use crate::measured::Record;
 use crate::project::project_root;
-use crate::report::{FIGURE_WIDTHS, FigureFormat};
+use crate::report::{FIGURE_WIDTHS, FigureFile};
 use crate::scene::{self, Scene};
 use std::path::{Path, PathBuf};
 
@@ -43,10 +43,10 @@ pub(super) fn scenes_or(
 pub(super) fn figures(
     file: Option<&PathBuf>,
     scenes: &[(PathBuf, Scene)],
-) -> Result<Vec<(PathBuf, FigureFormat)>> {
+) -> Result<Vec<(PathBuf, FigureFile)>> {
     let Some(file) = file else { return Ok(Vec::new()) };
-    let format = FigureFormat::of(file)?;
-    if let (FigureFormat::Gif, Some((_, scene))) =
+    let format = FigureFile::of(file)?;
+    if let (FigureFile::Animation, Some((_, scene))) =
         (format, scenes.iter().find(|(_, scene)| scene.plate_impact().is_err()))
     {
         return Err(Error::Usage(format!(

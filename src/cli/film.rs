@@ -23,16 +23,20 @@ pub(super) fn film(
     }
     let film = Movement::of(scene, stored, reduced).and_then(|movement| {
         if movement.fields.is_empty() {
+            // fields without displacement are no reason for a film of the model alone
+            if !asked {
+                return Ok(None);
+            }
             context.note(alone(scene));
         }
-        report::film(scene, &stored.outcome, reduced, &movement)
+        report::film(scene, &stored.outcome, reduced, &movement).map(Some)
     });
     match film {
         Err(error) if !asked => {
             context.note(format_args!("scene `{}` has no animation: {error}", scene.name));
             Ok(None)
         }
-        film => film.map(Some),
+        film => film,
     }
 }
 

@@ -79,7 +79,7 @@ impl Arguments {
     fn plan(&self) -> Result<Plan> {
         let plan = Plan::read(&self.file)?;
         if let Some(file) = &self.figure {
-            FigureFormat::of_still(file)?;
+            FigureFormat::of(file)?;
             if !is_drawn(&plan) {
                 return Err(Error::Usage(format!(
                     "--figure {}: {} parameters vary over {} points; one or two can be drawn, over {MOST_DRAWN} points at most",
@@ -105,7 +105,7 @@ fn draw(context: &Context, arguments: &Arguments, plan: &Plan, dir: &Path, table
     write_file(&path, svg.as_bytes())?;
     context.note(format_args!("wrote {}", path.display()));
     match &arguments.figure {
-        Some(file) => write_file(file, &FigureFormat::of_still(file)?.of_svg(svg, plan.scene())?),
+        Some(file) => write_file(file, &FigureFormat::of(file)?.of_svg(svg, plan.scene())?),
         None => Ok(()),
     }
 }

@@ -1,5 +1,6 @@
 //! Curves over one axis, panel above panel: the figures of studies, sweeps and series of measurements.
 
+use super::figure::x2;
 use super::plot_axis::{Axis, Plot};
 use super::polyline::{Point, path};
 use maud::{Markup, PreEscaped, html};
@@ -25,7 +26,7 @@ const STYLES: [(&str, &str); 7] = [
     ("#56b4e9", "2 2 7 2"),
 ];
 
-pub(super) const STYLE: &str = "text{fill:#1a1a1a}.frame{stroke:#444;fill:none}.grid{stroke:#e3e3e3}.band{fill:#ececec}\
+const STYLE: &str = "text{fill:#1a1a1a}.frame{stroke:#444;fill:none}.grid{stroke:#e3e3e3}.band{fill:#ececec}\
 .said{stroke:#666;stroke-dasharray:6 4}";
 
 /// Points that belong together.
@@ -69,16 +70,24 @@ pub fn chart(title: &str, panels: &[ChartPanel]) -> String {
     let legend = legend(&names, width);
     let top = 14.0 + LEGEND_ROW * legend.rows as f64;
     let height = top + panels.len() as f64 * (PANEL_HEIGHT + PANEL_GAP);
+    let content = html! {
+        (legend.drawing)
+        @for (k, panel) in panels.iter().enumerate() {
+            (draw(panel, width, top + k as f64 * (PANEL_HEIGHT + PANEL_GAP)))
+        }
+    };
+    sheet(title, height, &content)
+}
+
+/// A stand-alone SVG of a chart's width and `height` px with its `content`.
+pub(super) fn sheet(title: &str, height: f64, content: &Markup) -> String {
     html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {width} {height}")) width=(width) height=(height)
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {CHART_WIDTH} {height}")) width=(CHART_WIDTH) height=(height)
             font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) role="img" {
             title { (title) }
             style { (PreEscaped(STYLE)) }
-            rect width=(width) height=(height) fill="#ffffff" {}
-            (legend.drawing)
-            @for (k, panel) in panels.iter().enumerate() {
-                (draw(panel, width, top + k as f64 * (PANEL_HEIGHT + PANEL_GAP)))
-            }
+            rect width=(CHART_WIDTH) height=(height) fill="#ffffff" {}
+            (content)
         }
     }
     .into_string()
@@ -104,7 +113,7 @@ fn legend(series: &[&Series], page: f64) -> Legend {
         @for (k, x, y, series) in &items {
             @if series.marks { (mark(style(*k, series), (x + 15.0, *y))) }
             @else { (line(style(*k, series), &[(*x, *y), (x + 30.0, *y)])) }
-            text x=(format!("{:.2}", x + 37.0)) y=(y + 4.5) { (series.name) }
+            text x=(x2(x + 37.0)) y=(y + 4.5) { (series.name) }
         }
     };
     Legend { rows: if items.is_empty() { 0 } else { row + 1 }, drawing }
@@ -122,7 +131,7 @@ fn line((colour, dash): (&str, &str), points: &[Point]) -> Markup {
 }
 
 fn mark((colour, _): (&str, &str), (x, y): Point) -> Markup {
-    html! { circle cx=(format!("{x:.2}")) cy=(format!("{y:.2}")) r="3.2" fill=(colour) {} }
+    html! { circle cx=(x2(x)) cy=(x2(y)) r="3.2" fill=(colour) {} }
 }
 
 fn draw(panel: &ChartPanel, page: f64, top: f64) -> Markup {
@@ -142,16 +151,15 @@ fn draw(panel: &ChartPanel, page: f64, top: f64) -> Markup {
     let plot = Plot { left: LEFT, top, width, height, x: x.widened(side), y: y.of_quantity() };
     let (mut x_marks, y_marks) = (plot.x.marks((width / 70.0) as usize), plot.y.marks(6));
     x_marks.retain(|x| !panel.counted || x.fract() == 0.0);
-    let at = |value: f64| format!("{value:.2}");
     html! {
         @if let Some([from, to]) = band {
-            rect.band x=(LEFT) width=(width) y=(at(plot.y(to))) height=(at(plot.y(from) - plot.y(to))) {}
+            rect.band x=(LEFT) width=(width) y=(x2(plot.y(to))) height=(x2(plot.y(from) - plot.y(to))) {}
         }
         (plot.grid(&x_marks, &y_marks))
         @for (x, statement) in &panel.statements {
             @let right = plot.x.place(*x) > 0.5;
-            line.said x1=(at(plot.x(*x))) x2=(at(plot.x(*x))) y1=(top) y2=(top + height) {}
-            text x=(at(plot.x(*x) + if right { -6.0 } else { 6.0 })) y=(top + height - 10.0) text-anchor=(if right { "end" } else { "start" }) {
+            line.said x1=(x2(plot.x(*x))) x2=(x2(plot.x(*x))) y1=(top) y2=(top + height) {}
+            text x=(x2(plot.x(*x) + if right { -6.0 } else { 6.0 })) y=(top + height - 10.0) text-anchor=(if right { "end" } else { "start" }) {
                 (statement)
             }
         }

@@ -1,10 +1,12 @@
 //! A quantity over two parameters, in colours: cells of a grid, or dots where points are scattered.
 
-use super::chart::{CHART_WIDTH, FONT_SIZE, LEFT, LEGEND_ROW, PANEL_GAP, STYLE};
+use super::chart::{CHART_WIDTH, FONT_SIZE, LEFT, LEGEND_ROW, PANEL_GAP, sheet};
+use super::colours::hex;
 use super::field_raster::cividis;
+use super::figure::x2;
 use super::plot_axis::{Axis, Plot};
 use super::polyline::Point;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// Room on the right for the scale of colours, px.
 const RIGHT: f64 = 112.0;
@@ -37,17 +39,11 @@ pub fn colour_maps(title: &str, maps: &[ColourMap]) -> String {
     let line = maps.iter().find_map(|map| map.line.as_ref()).map(|(name, _)| name);
     let top = 14.0 + LEGEND_ROW * [marks, line].iter().flatten().count() as f64;
     let height = top + maps.len() as f64 * (HEIGHT + PANEL_GAP);
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {CHART_WIDTH} {height}")) width=(CHART_WIDTH) height=(height)
-            font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) role="img" {
-            title { (title) }
-            style { (PreEscaped(STYLE)) }
-            rect width=(CHART_WIDTH) height=(height) fill="#ffffff" {}
-            (legend(marks, line))
-            @for (k, map) in maps.iter().enumerate() { (draw(map, top + k as f64 * (HEIGHT + PANEL_GAP))) }
-        }
-    }
-    .into_string()
+    let content = html! {
+        (legend(marks, line))
+        @for (k, map) in maps.iter().enumerate() { (draw(map, top + k as f64 * (HEIGHT + PANEL_GAP))) }
+    };
+    sheet(title, height, &content)
 }
 
 fn legend(marks: Option<&String>, line: Option<&String>) -> Markup {
@@ -124,7 +120,7 @@ impl Grid {
             @for (j, row) in self.points.iter().enumerate() {
                 @let colours: Vec<Option<String>> = row.iter().map(coloured).collect();
                 @for (from, to, colour) in runs(&colours) {
-                    rect x=(px(x[from])) width=(px(x[to] - x[from])) y=(px(y[j + 1])) height=(px(y[j] - y[j + 1])) fill=(colour)
+                    rect x=(x2(x[from])) width=(x2(x[to] - x[from])) y=(x2(y[j + 1])) height=(x2(y[j] - y[j + 1])) fill=(colour)
                         stroke=(colour) stroke-width="0.4" {}
                 }
             }
@@ -176,20 +172,18 @@ fn edges(values: &[f64], axis: &Axis) -> Vec<f64> {
 }
 
 fn colour(value: f64, scale: &Axis) -> String {
-    let [r, g, b] = cividis(
-        (scale.place(value) * COLOURS as f64).floor().min(COLOURS as f64 - 1.0) / (COLOURS - 1) as f64,
-    );
-    format!("#{r:02x}{g:02x}{b:02x}")
+    let step = (scale.place(value) * COLOURS as f64).floor().min(COLOURS as f64 - 1.0);
+    hex(cividis(step / (COLOURS - 1) as f64))
 }
 
 fn dot((x, y): Point, fill: &str) -> Markup {
-    html! { circle cx=(px(x)) cy=(px(y)) r="3.5" fill=(fill) {} }
+    html! { circle cx=(x2(x)) cy=(x2(y)) r="3.5" fill=(fill) {} }
 }
 
 fn ring((x, y): Point, fill: &str) -> Markup {
     html! {
-        circle cx=(px(x)) cy=(px(y)) r="7" fill="#ffffff" stroke="#1a1a1a" stroke-width="1.4" {}
-        circle cx=(px(x)) cy=(px(y)) r="4.6" fill=(fill) {}
+        circle cx=(x2(x)) cy=(x2(y)) r="7" fill="#ffffff" stroke="#1a1a1a" stroke-width="1.4" {}
+        circle cx=(x2(x)) cy=(x2(y)) r="4.6" fill=(fill) {}
     }
 }
 
@@ -208,21 +202,15 @@ fn colour_bar(label: &str, scale: &Axis, top: f64) -> Markup {
     let [low, _] = scale.ends();
     html! {
         @for k in 0..COLOURS {
-            @let [r, g, b] = cividis(k as f64 / (COLOURS - 1) as f64);
-            @let fill = format!("#{r:02x}{g:02x}{b:02x}");
-            rect x=(x) width="14" y=(px(top + HEIGHT - step * (k + 1) as f64)) height=(px(step)) fill=(fill) stroke=(fill) stroke-width="0.4" {}
+            @let fill = hex(cividis(k as f64 / (COLOURS - 1) as f64));
+            rect x=(x) width="14" y=(x2(top + HEIGHT - step * (k + 1) as f64)) height=(x2(step)) fill=(fill) stroke=(fill) stroke-width="0.4" {}
         }
         rect.frame x=(x) y=(top) width="14" height=(HEIGHT) {}
         @for mark in marks.iter().filter(|mark| **mark >= low) {
-            text x=(x + 19.0) y=(px(top + HEIGHT * (1.0 - scale.place(*mark)) + 4.7)) { (scale.label(*mark, &marks)) }
+            text x=(x + 19.0) y=(x2(top + HEIGHT * (1.0 - scale.place(*mark)) + 4.7)) { (scale.label(*mark, &marks)) }
         }
         text transform=(format!("translate({} {:.2}) rotate(-90)", CHART_WIDTH - 10.0, top + 0.5 * HEIGHT)) text-anchor="middle" { (label) }
     }
-}
-
-/// Coordinate with two decimals.
-fn px(value: f64) -> String {
-    format!("{value:.2}")
 }
 
 #[cfg(test)]
@@ -248,8 +236,7 @@ mod tests {
     #[test]
     fn cells_have_the_colours_of_their_values_and_the_contour_lies_where_the_function_is_one() {
         let svg = colour_maps("plane", &[plane()]);
-        let [dark, light] =
-            [0.0, 1.0].map(cividis).map(|[r, g, b]| format!("fill=\"#{r:02x}{g:02x}{b:02x}\""));
+        let [dark, light] = [0.0, 1.0].map(cividis).map(|colour| format!("fill=\"{}\"", hex(colour)));
         // 4 rows, and the scale's own end
         assert_eq!(svg.matches(&dark).count(), 4 + 1, "{svg}");
         assert_eq!(svg.matches(&light).count(), 4 + 1);

@@ -16,8 +16,6 @@ pub enum FigureFormat {
     Pdf,
     /// 600 dots per inch.
     Png,
-    /// The impact moving: no figure of curves.
-    Gif,
 }
 
 impl FigureFormat {
@@ -30,7 +28,6 @@ impl FigureFormat {
             FigureFormat::Svg => Ok(svg.into_bytes()),
             FigureFormat::Pdf => super::pdf::pdf(&svg, title),
             FigureFormat::Png => super::png::printed_png(&svg, RESOLUTION),
-            FigureFormat::Gif => Err(Error::Internal("a drawing that stands still is no animation".into())),
         }
     }
 
@@ -39,43 +36,60 @@ impl FigureFormat {
     /// # Errors
     /// [`Error::Usage`] if it is none of them.
     pub fn of(file: &Path) -> Result<Self> {
-        let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        match ending.as_str() {
-            "svg" => Ok(FigureFormat::Svg),
-            "pdf" => Ok(FigureFormat::Pdf),
-            "png" => Ok(FigureFormat::Png),
-            "gif" => Ok(FigureFormat::Gif),
-            _ => Err(Error::Usage(format!(
-                "--figure {}: the name has to end in .svg, .pdf or .png, of a plate impact that moves in .gif",
-                file.display()
-            ))),
-        }
+        Self::of_ending(file).ok_or_else(|| unknown(file, ""))
     }
 
-    /// As [`FigureFormat::of`], of a drawing that does not move.
+    fn of_ending(file: &Path) -> Option<Self> {
+        match ending(file).as_str() {
+            "svg" => Some(FigureFormat::Svg),
+            "pdf" => Some(FigureFormat::Pdf),
+            "png" => Some(FigureFormat::Png),
+            _ => None,
+        }
+    }
+}
+
+/// What a scene is drawn as in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FigureFile {
+    /// The figure of its curves.
+    Curves(FigureFormat),
+    /// The impact moving, a GIF.
+    Animation,
+}
+
+impl FigureFile {
+    /// What the ending of `file` stands for.
     ///
     /// # Errors
     /// [`Error::Usage`] if it is none of them.
-    pub fn of_still(file: &Path) -> Result<Self> {
-        match Self::of(file) {
-            Ok(format) if format != FigureFormat::Gif => Ok(format),
-            _ => Err(Error::Usage(format!(
-                "--figure {}: the name has to end in .svg, .pdf or .png",
-                file.display()
-            ))),
+    pub fn of(file: &Path) -> Result<Self> {
+        if ending(file) == "gif" {
+            return Ok(FigureFile::Animation);
         }
+        let format = FigureFormat::of_ending(file).map(FigureFile::Curves);
+        format.ok_or_else(|| unknown(file, ", of a plate impact that moves in .gif"))
     }
+}
+
+fn ending(file: &Path) -> String {
+    file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+fn unknown(file: &Path, more: &str) -> Error {
+    Error::Usage(format!("--figure {}: the name has to end in .svg, .pdf or .png{more}", file.display()))
 }
 
 /// The figure of a scene, `width` mm wide (within [`super::FIGURE_WIDTHS`]), or its animation as a file's bytes.
 ///
 /// # Errors
-/// [`Error::Internal`] if it can't be drawn.
-pub fn figure_file(report: &SceneReport, width: f64, format: FigureFormat) -> Result<Vec<u8>> {
-    match (format, &report.attachments.film) {
-        (FigureFormat::Gif, Some(film)) => return Ok(film.gif.clone()),
-        (FigureFormat::Gif, None) => return Err(Error::Internal("there is no animation".into())),
-        _ => {}
+/// [`Error::Internal`] if it can't be drawn, or the report has no animation.
+pub fn figure_file(report: &SceneReport, width: f64, file: FigureFile) -> Result<Vec<u8>> {
+    match file {
+        FigureFile::Curves(format) => format.of_svg(printed_figure(report, width), &report.scene.name),
+        FigureFile::Animation => {
+            let film = report.attachments.film.as_ref();
+            film.map(|film| film.gif.clone()).ok_or_else(|| Error::Internal("there is no animation".into()))
+        }
     }
-    format.of_svg(printed_figure(report, width), &report.scene.name)
 }

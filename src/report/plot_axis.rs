@@ -1,5 +1,6 @@
 //! Axes of charts: a range, linear or logarithmic, its marks, and the frame that two of them make.
 
+use super::figure::x2;
 use super::format::{short, with_minus};
 use super::polyline::Point;
 use super::ticks::{tick_label, ticks};
@@ -114,8 +115,8 @@ impl Plot {
     pub(super) fn grid(&self, x_marks: &[f64], y_marks: &[f64]) -> Markup {
         html! {
             g stroke-width="1" {
-                @for x in x_marks { line.grid x1=(at(self.x(*x))) x2=(at(self.x(*x))) y1=(self.top) y2=(self.top + self.height) {} }
-                @for y in y_marks { line.grid x1=(self.left) x2=(self.left + self.width) y1=(at(self.y(*y))) y2=(at(self.y(*y))) {} }
+                @for x in x_marks { line.grid x1=(x2(self.x(*x))) x2=(x2(self.x(*x))) y1=(self.top) y2=(self.top + self.height) {} }
+                @for y in y_marks { line.grid x1=(self.left) x2=(self.left + self.width) y1=(x2(self.y(*y))) y2=(x2(self.y(*y))) {} }
             }
         }
     }
@@ -131,10 +132,10 @@ impl Plot {
         let bottom = self.top + self.height;
         html! {
             @for x in x_marks {
-                text x=(at(self.x(*x))) y=(bottom + 19.0) text-anchor="middle" { (self.x.label(*x, x_marks)) }
+                text x=(x2(self.x(*x))) y=(bottom + 19.0) text-anchor="middle" { (self.x.label(*x, x_marks)) }
             }
             @for y in y_marks {
-                text x=(self.left - 8.0) y=(at(self.y(*y) + 0.36 * font_size)) text-anchor="end" { (self.y.label(*y, y_marks)) }
+                text x=(self.left - 8.0) y=(x2(self.y(*y) + 0.36 * font_size)) text-anchor="end" { (self.y.label(*y, y_marks)) }
             }
             text x=(self.left + 0.5 * self.width) y=(bottom + 41.0) text-anchor="middle" { (labels[0]) }
             text transform=(format!("translate(17 {:.2}) rotate(-90)", self.top + 0.5 * self.height)) text-anchor="middle" {
@@ -143,11 +144,6 @@ impl Plot {
             rect.frame x=(self.left) y=(self.top) width=(self.width) height=(self.height) {}
         }
     }
-}
-
-/// Coordinate with two decimals.
-fn at(value: f64) -> String {
-    format!("{value:.2}")
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::figure::x2;
 use super::format::{measure, short};
+use super::ticks::round_below;
 use crate::scene::Material;
 use maud::{Markup, html};
 
@@ -35,9 +36,7 @@ impl Scale {
     /// A bar of a round length beside which lengths can be read, from (`x`, `y`) px on.
     pub(super) fn bar(&self, x: f64, y: f64) -> Markup {
         const WANTED: f64 = 70.0;
-        let longest = WANTED / self.factor;
-        let power = 10_f64.powf(longest.log10().floor());
-        let length = [5.0, 2.0].map(|m| m * power).into_iter().find(|l| *l <= longest).unwrap_or(power);
+        let length = round_below(WANTED / self.factor);
         let end = x + length * self.factor;
         html! {
             path.fig-frame d=(format!("M{0} {1}V{2}H{3}V{1}", x2(x), x2(y - 5.0), x2(y), x2(end))) {}

@@ -5,6 +5,12 @@ use super::format::minus;
 /// Fewer marks than these don't show a scale.
 const LEAST: usize = 3;
 
+/// The largest of 1, 2 and 5 times a power of ten that is not larger than `value`.
+pub(super) fn round_below(value: f64) -> f64 {
+    let power = 10_f64.powf(value.log10().floor());
+    [5.0, 2.0].map(|m| m * power).into_iter().find(|m| *m <= value).unwrap_or(power)
+}
+
 /// Marks at multiples of 1, 2 or 5 times a power of ten within `low..=high`, about `wanted` of them, but at least three.
 pub(super) fn ticks(low: f64, high: f64, wanted: usize) -> Vec<f64> {
     let span = high - low;

@@ -5,6 +5,7 @@ use super::discrepancy_picture::mark;
 use super::figure::{FONT_SIZE, x2};
 use super::format::{percent, percent_above, significant, words};
 use super::html::scrolled;
+use super::plot_axis::{Axis, Plot};
 use super::trust::size_class;
 use crate::validated::{MEASURES, NEAR, Place, Row, Validation};
 use maud::{Markup, PreEscaped, html};
@@ -20,6 +21,8 @@ const LEFT: f64 = 52.0;
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 26.0;
 const BOTTOM: f64 = 42.0;
+/// Most marks on an axis.
+const MARKS: usize = 10;
 /// What the axes reach beyond the outermost scene, as a factor.
 const ROOM: f64 = 1.7;
 
@@ -76,8 +79,16 @@ impl<'a> ValidatedMap<'a> {
 
     /// One view: `measure` over the first one, of `model`.
     fn view(&self, model: &str, measure: usize, at: Option<(f64, f64)>) -> Markup {
-        let (across, up) = (self.axis(0, LEFT, WIDTH - RIGHT), self.axis(measure, HEIGHT - BOTTOM, TOP));
-        let place = |place: &Place| [across.place(place.measures()[0]), up.place(place.measures()[measure])];
+        let plot = Plot {
+            left: LEFT,
+            top: TOP,
+            width: WIDTH - LEFT - RIGHT,
+            height: HEIGHT - TOP - BOTTOM,
+            x: self.axis(0),
+            y: self.axis(measure),
+        };
+        let measures = |place: &Place| (place.measures()[0], place.measures()[measure]);
+        let (x_marks, y_marks) = (plot.x.marks(MARKS), plot.y.marks(MARKS));
         let own = self.placed.iter().filter(|(v, _)| v.model == model);
         let told = format!(
             "Model {model}: {} over {} of {} scenes",
@@ -88,26 +99,27 @@ impl<'a> ValidatedMap<'a> {
         html! {
             svg viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) x=[at.map(|at| at.0)] y=[at.map(|at| at.1)] width=[at.map(|_| WIDTH)]
                 height=[at.map(|_| HEIGHT)] font-size=(FONT_SIZE) role="img" aria-label=(told) {
-                @for tick in across.ticks() { @let x = across.place(tick);
+                @for mark in &x_marks { @let x = plot.x(*mark);
                     line.fig-grid x1=(x2(x)) x2=(x2(x)) y1=(TOP) y2=(HEIGHT - BOTTOM) {}
-                    text.fig-text x=(x2(x)) y=(HEIGHT - BOTTOM + 17.0) text-anchor="middle" { (tick) }
+                    text.fig-text x=(x2(x)) y=(HEIGHT - BOTTOM + 17.0) text-anchor="middle" { (plot.x.label(*mark, &x_marks)) }
                 }
-                @for tick in up.ticks() { @let y = up.place(tick);
+                @for mark in &y_marks { @let y = plot.y(*mark);
                     line.fig-grid x1=(LEFT) x2=(WIDTH - RIGHT) y1=(x2(y)) y2=(x2(y)) {}
-                    text.fig-text x=(LEFT - 6.0) y=(x2(y + 4.5)) text-anchor="end" { (tick) }
+                    text.fig-text x=(LEFT - 6.0) y=(x2(y + 4.5)) text-anchor="end" { (plot.y.label(*mark, &y_marks)) }
                 }
-                rect.fig-frame x=(LEFT) y=(TOP) width=(WIDTH - LEFT - RIGHT) height=(HEIGHT - TOP - BOTTOM) {}
+                rect.fig-frame x=(plot.left) y=(plot.top) width=(plot.width) height=(plot.height) {}
                 text.fig-text x=(LEFT) y="17" { tspan font-weight="600" { (model) } ": " (MEASURES[measure]) }
                 text.fig-text x=(0.5 * (LEFT + WIDTH - RIGHT)) y=(HEIGHT - 7.0) text-anchor="middle" { (MEASURES[0]) }
                 @if let Some(here) = &self.here {
-                    @let [x, y] = place(here);
-                    @let ([left, right], [top, bottom]) = (across.around(x), up.around(y));
+                    @let (x, y) = plot.at(measures(here));
+                    @let [left, right] = [1.0 / NEAR, NEAR].map(|f| plot.x(f * measures(here).0).clamp(LEFT, WIDTH - RIGHT));
+                    @let [bottom, top] = [1.0 / NEAR, NEAR].map(|f| plot.y(f * measures(here).1).clamp(TOP, HEIGHT - BOTTOM));
                     rect.fig-frame stroke-dasharray="4 3" x=(x2(left)) y=(x2(top)) width=(x2(right - left)) height=(x2(bottom - top)) {}
                     circle.fig-frame.here cx=(x2(x)) cy=(x2(y)) r="8" stroke-width="2" {}
                 }
                 @for (validation, at) in own {
                     @if let Some(worst) = validation.worst() {
-                        @let [x, y] = place(at);
+                        @let (x, y) = plot.at(measures(at));
                         g transform=(format!("translate({} {})", x2(x), x2(y))) data-scene=(validation.scene) data-off=(worst.relative()) {
                             title { (validation.scene) ": " (words(&worst.quantity)) " " (percent(Some(worst.relative()))) (band(worst)) }
                             (mark(shape(worst), &format!("size-{}", size_class(worst.relative()))))
@@ -118,12 +130,11 @@ impl<'a> ValidatedMap<'a> {
         }
     }
 
-    /// The axis of a measure, the same in all views, between two ends in px.
-    fn axis(&self, measure: usize, from: f64, to: f64) -> LogAxis {
+    /// The axis of a measure, the same in all views.
+    fn axis(&self, measure: usize) -> Axis {
         let places = self.placed.iter().map(|(_, place)| place).chain(&self.here);
         let values = places.map(|place| place.measures()[measure]);
-        let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
-        LogAxis { low: low / ROOM, high: high * ROOM, from, to }
+        Axis::over(values.flat_map(|value| [value / ROOM, value * ROOM]), true)
     }
 
     /// The scenes with their validations, the nearest first, or by the first measure.
@@ -178,35 +189,5 @@ fn shape(row: &Row) -> usize {
         "large" => 0,
         "medium" => 1,
         _ => 2,
-    }
-}
-
-/// A logarithmic axis.
-struct LogAxis {
-    low: f64,
-    high: f64,
-    /// Places of both in px.
-    from: f64,
-    to: f64,
-}
-
-impl LogAxis {
-    fn place(&self, value: f64) -> f64 {
-        self.from + (self.to - self.from) * (value / self.low).ln() / (self.high / self.low).ln()
-    }
-
-    /// What is within a factor of [`NEAR`] of the value at the place `at`, as far as the axis goes, px.
-    fn around(&self, at: f64) -> [f64; 2] {
-        let reach = (self.place(NEAR * self.low) - self.from).abs();
-        [at - reach, at + reach].map(|end| end.clamp(self.from.min(self.to), self.from.max(self.to)))
-    }
-
-    /// Powers of ten, and twice and five times them if that is not too many.
-    fn ticks(&self) -> Vec<f64> {
-        let steps: &[i32] = if self.high / self.low < 1e3 { &[1, 2, 5] } else { &[1] };
-        let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
-        let ticks = decades
-            .flat_map(|k| steps.iter().map(move |step| format!("{step}e{k}").parse().unwrap_or(f64::NAN)));
-        ticks.filter(|tick| (self.low..=self.high).contains(tick)).collect()
     }
 }

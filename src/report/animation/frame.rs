@@ -3,6 +3,7 @@
 use super::stage::{Stage, WIDTH};
 use crate::curves::at;
 use crate::movement::Movement;
+use crate::report::colours::{BODIES, hex};
 use crate::report::field_raster::cividis;
 use crate::report::figure::x2;
 use crate::report::plot_axis::{Axis, Plot};
@@ -22,7 +23,6 @@ const AXIS: f64 = 48.0;
 const SAMPLES: usize = 600;
 const STYLE: &str = "text{fill:#1a1a1a}.frame,.fig-frame{stroke:#444;fill:none}.grid{stroke:#e3e3e3}\
 .body{stroke:#5a5a5a;stroke-width:1}";
-const FILLS: [&str; 3] = ["#bfd8ec", "#e2e2dc", "#f4d9b2"];
 
 /// The contact forces over time: outer and inner one, of reference and model. Times in µs, forces in N.
 pub(super) struct Forces {
@@ -124,9 +124,9 @@ fn bodies(stage: &Stage, k: usize, scale: &Scale) -> Markup {
     let outer = half + setup.outer.shape.tip_radius() + by * movement.bodies[0][k];
     let inner = -half - setup.inner.gap - setup.inner.shape.tip_radius() + by * movement.bodies[1][k];
     html! {
-        polygon.body points=(scale.points(&plate)) fill=(FILLS[1]) {}
-        (body(&setup.outer.shape, outer, FILLS[0], scale))
-        (body(&setup.inner.shape, inner, FILLS[2], scale))
+        polygon.body points=(scale.points(&plate)) fill=(&hex(BODIES[1])) {}
+        (body(&setup.outer.shape, outer, &hex(BODIES[0]), scale))
+        (body(&setup.inner.shape, inner, &hex(BODIES[2]), scale))
     }
 }
 
@@ -191,7 +191,7 @@ fn forces(stage: &Stage, time: f64) -> Markup {
             text x=(x2(x + aside)) y=(x2(y + below)) text-anchor="middle" { (name) }
         }
         line x1=(x) x2=(x) y1=(plot.top) y2=(plot.top + plot.height) stroke="#1a1a1a" stroke-width="1" {}
-        @for (curves, colour) in [(reference, "#1a1a1a"), (model, stage.colour)] {
+        @for (curves, colour) in [(reference, "#1a1a1a"), (model, &*stage.colour)] {
             @for curve in curves {
                 @let (x, y) = plot.at(stage.forces.at(curve, time));
                 circle cx=(x2(x)) cy=(x2(y)) r="3.5" fill=(colour) {}

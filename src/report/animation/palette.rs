@@ -2,6 +2,7 @@
 
 use super::Frame;
 use crate::error::{Error, Result};
+use crate::report::colours::{BODIES, MODELS};
 use crate::report::field_raster::cividis;
 use std::collections::HashMap;
 
@@ -9,9 +10,7 @@ use std::collections::HashMap;
 const LEVELS: usize = 96;
 /// Greys from black to white.
 const GREYS: usize = 16;
-/// Colours of bodies and models, each with what lies between it and white and between it and an outline.
-const BASES: [[u8; 3]; 6] =
-    [[191, 216, 236], [226, 226, 220], [244, 217, 178], [213, 94, 0], [0, 114, 178], [0, 158, 115]];
+/// Colours between one of a body or a model and white, and between it and an outline.
 const STEPS: usize = 4;
 
 /// At most 255 colours, and one index for a pixel that stays as it was.
@@ -29,7 +28,7 @@ impl Palette {
             from.map(|c| (f64::from(c) + share * (f64::from(to) - f64::from(c))).round() as u8)
         };
         let mut colours: Vec<[u8; 3]> = (0..GREYS).map(|k| [(k * 255 / (GREYS - 1)) as u8; 3]).collect();
-        for base in BASES {
+        for base in BODIES.into_iter().chain(MODELS.map(|(_, colour)| colour)) {
             let steps = (0..STEPS).map(|k| k as f64 / STEPS as f64);
             colours.extend(steps.clone().map(|share| between(base, 255, share)));
             colours.extend(steps.skip(1).map(|share| between(base, 60, share)));

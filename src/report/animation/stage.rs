@@ -5,8 +5,10 @@ use crate::curves::peak;
 use crate::error::Result;
 use crate::movement::Movement;
 use crate::reference::FieldMesh;
+use crate::report::colours::{hex, of_model};
 use crate::report::field_raster::{Raster, View};
 use crate::report::format::{minus, model_name};
+use crate::report::ticks::round_below;
 use crate::result::Outcome;
 use crate::scene::{PlateImpact, Scene};
 
@@ -32,7 +34,7 @@ pub(super) struct Stage<'a> {
     pub(super) setup: &'a PlateImpact,
     pub(super) movement: &'a Movement,
     pub(super) model: String,
-    pub(super) colour: &'static str,
+    pub(super) colour: String,
     pub(super) forces: Forces,
     pub(super) view: View,
     /// By which displacements are drawn too large.
@@ -85,11 +87,7 @@ impl<'a> Stage<'a> {
             setup,
             movement,
             model: format!("model {}", model_name(model, reduced.summary.modes)),
-            colour: match model {
-                "A" => "#d55e00",
-                "B" => "#0072b2",
-                _ => "#009e73",
-            },
+            colour: hex(of_model(model)),
             forces: Forces::new(reference, reduced, movement),
             view,
             exaggeration: if largest > 0.0 { round_below(room / largest).max(1.0) } else { 1.0 },
@@ -144,10 +142,4 @@ fn view(setup: &PlateImpact) -> View {
     let half =
         (0.55 * plate.thickness + 2.0 * body).min(HALF_HEIGHT * plate.radius).max(2.0 * plate.thickness);
     View { radius: 1.03 * plate.radius, low: -half, high: half }
-}
-
-/// The largest of 1, 2 and 5 times a power of ten that is not larger.
-fn round_below(value: f64) -> f64 {
-    let power = 10_f64.powf(value.log10().floor());
-    [5.0, 2.0].map(|m| m * power).into_iter().find(|m| *m <= value).unwrap_or(power)
 }

@@ -1,6 +1,7 @@
 //! Estimated against true error, both logarithmic: a panel per tolerance.
 
 use super::{TOLERANCES, number};
+use crate::report::colours::{MODELS, hex};
 use crate::study::{Cell, Study};
 use maud::{Markup, html};
 
@@ -9,8 +10,6 @@ const MARGIN: (f64, f64, f64, f64) = (62.0, 36.0, 12.0, 52.0);
 const LEGEND: f64 = 34.0;
 /// Decades of both axes.
 const DECADES: (i32, i32) = (-5, 0);
-/// Okabe and Ito's colours, which colour-blind readers can tell apart, for models A, B and C.
-const MODELS: [(&str, &str); 3] = [("A", "#d55e00"), ("B", "#0072b2"), ("C", "#009e73")];
 
 /// The study as SVG. A mark above the diagonal is a true error larger than its estimate.
 pub fn figure(study: &Study) -> String {
@@ -25,7 +24,7 @@ pub fn figure(study: &Study) -> String {
                 g transform=(format!("translate({} 0)", k as f64 * PANEL)) { (panel(study, *tolerance)) }
             }
             @for (k, (model, colour)) in MODELS.iter().enumerate() {
-                circle cx=(70.0 + 110.0 * k as f64) cy=(height - 14.0) r="4" fill=(colour) {}
+                circle cx=(70.0 + 110.0 * k as f64) cy=(height - 14.0) r="4" fill=(hex(*colour)) {}
                 text x=(80.0 + 110.0 * k as f64) y=(height - 10.0) fill="#1a1a1a" { "model " (model) }
             }
             circle cx="400" cy=(height - 14.0) r="4" fill="none" stroke="#1a1a1a" {}
@@ -50,7 +49,7 @@ fn panel(study: &Study, tolerance: f64) -> Markup {
             Cell::Text(text) => MODELS.iter().find(|(name, _)| name == text),
             _ => None,
         });
-        model.map_or("#1a1a1a", |(_, colour)| *colour)
+        model.map_or("#1a1a1a".to_owned(), |(_, colour)| hex(*colour))
     };
     let marks = rows.iter().filter_map(|row| {
         let (estimated, exact) = (number(row, "estimated_error"), number(row, "true_error"));
@@ -76,7 +75,7 @@ fn panel(study: &Study, tolerance: f64) -> Markup {
             "true relative error"
         }
         @for (x, y, colour, promised) in marks {
-            circle cx=(format!("{x:.1}")) cy=(format!("{y:.1}")) r="3" stroke=(colour) fill=(if promised { colour } else { "none" }) {}
+            circle cx=(format!("{x:.1}")) cy=(format!("{y:.1}")) r="3" stroke=(colour) fill=(if promised { &*colour } else { "none" }) {}
         }
     }
 }

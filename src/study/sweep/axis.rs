@@ -162,7 +162,10 @@ impl Axis {
                 let count = match (sampling, vary.count) {
                     (Sampling::Grid, Some(count)) if count >= 1 => count,
                     (Sampling::Grid, _) => {
-                        return Err(fault("a range of a grid needs a `count` of 1 or more".into()));
+                        return Err(fault(format!(
+                            "count is {}: a range of a grid needs 1 or more",
+                            vary.count.map_or("missing".into(), |n| n.to_string())
+                        )));
                     }
                     (Sampling::LatinHypercube, None) => 1,
                     (Sampling::LatinHypercube, Some(_)) => {

@@ -84,17 +84,7 @@ impl Plan {
 
     fn new(path: &Path, file: File, scene_file: PathBuf, template: Template) -> Result<Self> {
         let fault = |message: String| invalid(path, &message);
-        let named = |names: &[String]| -> Result<Vec<Model>> {
-            names.iter().map(|name| name.parse().map_err(|e| fault(format!("model: {e}")))).collect()
-        };
-        let models = match &file.model {
-            Some(Models::One(name)) => named(std::slice::from_ref(name))?,
-            Some(Models::Several(names)) => named(names)?,
-            None => vec![template.scene().reduced.model.unwrap_or(Model::B)],
-        };
-        if models.is_empty() || (1..models.len()).any(|k| models[..k].contains(&models[k])) {
-            return Err(fault("model is an empty list, or names a model twice".into()));
-        }
+        let models = models(&file, template.scene().reduced.model, &fault)?;
         if file.modes == Some(0) || (models.contains(&Model::A) && file.modes.is_some_and(|modes| modes != 1))
         {
             return Err(fault(format!(
@@ -122,22 +112,7 @@ impl Plan {
         if let Some(twice) = taken.windows(2).find(|w| w[0] == w[1]) {
             return Err(fault(format!("`{}` is varied twice", twice[0])));
         }
-        let samples = match (file.sampling, file.samples) {
-            (Sampling::Grid, None) if file.seed.is_none() => None,
-            (Sampling::Grid, _) => {
-                return Err(fault("samples and seed belong to sampling = \"latin-hypercube\"".into()));
-            }
-            (Sampling::LatinHypercube, Some(samples)) if (1..=MOST_POINTS / 10).contains(&samples) => {
-                Some(latin_hypercube(samples, axes.len(), file.seed.unwrap_or(1)))
-            }
-            (Sampling::LatinHypercube, samples) => {
-                let found = samples.map_or("missing".into(), |n| n.to_string());
-                return Err(fault(format!(
-                    "samples is {found}: a Latin hypercube needs 1 to {}",
-                    MOST_POINTS / 10
-                )));
-            }
-        };
+        let samples = samples(&file, axes.len(), &fault)?;
         let count = axes.iter().try_fold(models.len(), |n, a| n.checked_mul(a.values.len()));
         if samples.is_none() && count.is_none_or(|n| n > MOST_POINTS) {
             return Err(fault(format!("the grid has more than {MOST_POINTS} points")));
@@ -224,22 +199,23 @@ impl Plan {
     /// values are evenly spread over their logarithm.
     pub fn parameters(&self) -> Vec<(Range<usize>, bool)> {
         let mut first = 0;
-        let mut parameters = Vec::new();
-        for axis in &self.axes {
+        let placed = self.axes.iter().map(|axis| {
             let fields = first..first + axis.fields.len();
             first = fields.end;
-            let logarithmic = axis.values.is_logarithmic();
-            if axis.values.len() > 1 || self.samples.is_some() {
-                parameters.push((fields, logarithmic));
-            }
-        }
-        parameters
+            (axis, fields)
+        });
+        let varied = placed.filter(|(axis, _)| self.is_varied(axis));
+        varied.map(|(axis, fields)| (fields, axis.values.is_logarithmic())).collect()
+    }
+
+    /// Whether an axis has more than one value.
+    fn is_varied(&self, axis: &Axis) -> bool {
+        axis.values.len() > 1 || self.samples.is_some()
     }
 
     /// Lowest and highest value of each of the [`Plan::parameters`], SI.
     pub fn ranges(&self) -> Vec<RangeInclusive<f64>> {
-        let varied = self.axes.iter().filter(|axis| axis.values.len() > 1 || self.samples.is_some());
-        varied.map(|axis| axis.values.range()).collect()
+        self.axes.iter().filter(|axis| self.is_varied(axis)).map(|axis| axis.values.range()).collect()
     }
 
     /// Whether the points are all of a grid.
@@ -289,6 +265,37 @@ impl Plan {
             }
         };
         Record { index, outcome }
+    }
+}
+
+/// The models that `file` names, else that `of_scene`, else B.
+fn models(file: &File, of_scene: Option<Model>, fault: &dyn Fn(String) -> Error) -> Result<Vec<Model>> {
+    let names = match &file.model {
+        Some(Models::One(name)) => std::slice::from_ref(name),
+        Some(Models::Several(names)) => names,
+        None => return Ok(vec![of_scene.unwrap_or(Model::B)]),
+    };
+    let parsed = names.iter().map(|name| name.parse().map_err(|e| fault(format!("model: {e}"))));
+    let models: Vec<Model> = parsed.collect::<Result<_>>()?;
+    if models.is_empty() || (1..models.len()).any(|k| models[..k].contains(&models[k])) {
+        return Err(fault(format!("model is {names:?}: name each model once, at least one")));
+    }
+    Ok(models)
+}
+
+/// The points of the unit cube that `file` asks for; `None` of a grid.
+fn samples(file: &File, axes: usize, fault: &dyn Fn(String) -> Error) -> Result<Option<Vec<Vec<f64>>>> {
+    const MOST: usize = MOST_POINTS / 10;
+    match (file.sampling, file.samples) {
+        (Sampling::Grid, None) if file.seed.is_none() => Ok(None),
+        (Sampling::Grid, _) => Err(fault("samples and seed belong to sampling = \"latin-hypercube\"".into())),
+        (Sampling::LatinHypercube, Some(samples)) if (1..=MOST).contains(&samples) => {
+            Ok(Some(latin_hypercube(samples, axes, file.seed.unwrap_or(1))))
+        }
+        (Sampling::LatinHypercube, samples) => {
+            let found = samples.map_or("missing".into(), |n| n.to_string());
+            Err(fault(format!("samples is {found}: a Latin hypercube needs 1 to {MOST}")))
+        }
     }
 }
 
