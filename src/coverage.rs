@@ -35,7 +35,7 @@ const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
 }
 
 /// The features, of plates first.
-pub static FEATURES: [Feature; 18] = [
+pub static FEATURES: [Feature; 19] = [
     feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)),
     feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported)),
     feature("free edge", |s| plate(s, |p| p.plate.edge == Edge::Free)),
@@ -43,6 +43,7 @@ pub static FEATURES: [Feature; 18] = [
     feature("thin plate (t <= 0.02 R)", |s| plate(s, |p| p.plate.thickness <= THIN * p.plate.radius)),
     feature("damped plate", |s| plate(s, |p| p.plate.damping_ratio > 0.0)),
     feature("gap", |s| plate(s, |p| p.inner.gap > 0.0)),
+    feature("inner body with a speed", |s| plate(s, |p| p.inner.speed != 0.0)),
     feature("unlike materials", |s| plate(s, unlike)),
     feature("compact outer body", |s| plate(s, |p| matches!(p.outer.shape, Shape::Compact { .. }))),
     feature("compact inner body", |s| plate(s, |p| matches!(p.inner.shape, Shape::Compact { .. }))),

@@ -57,6 +57,10 @@ class Reader:
             )
         return value
 
+    def number_or(self, key: str, default: float, unit: str, **bounds: Any) -> float:
+        """As `number`, or ``default`` where the key is absent."""
+        return self.number(key, unit, **bounds) if key in self.node else default
+
     def number(
         self,
         key: str,

@@ -82,7 +82,7 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
     path = solve_ivp(
         rate,
         (0.0, 13.0),
-        [0.0, -1.0, 0.0, -scene.gap / length, 0.0],
+        [0.0, -1.0, 0.0, -scene.gap / length, scene.inner_speed / scene.speed],
         rtol=1e-6,
         atol=1e-9,
         max_step=0.05,
@@ -98,9 +98,10 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
     if peak[1] == 0.0:
         # Not reached in the first contact: the mesh is made for the other one, and verified.
         radii[1] = min(radii[0], 0.15 * scene.inner.tip_radius)
+    speeds = (scene.speed, max(scene.speed, scene.inner_speed))
     durations = [
-        3.218 * hertz_time_scale(body.mass, k, scene.speed)
-        for k, body in zip(stiffness, bodies, strict=True)
+        3.218 * hertz_time_scale(body.mass, k, speed)
+        for k, body, speed in zip(stiffness, bodies, speeds, strict=True)
     ]
     return ContactEstimate(radii[0], radii[1], min(durations))
 

@@ -226,6 +226,7 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
     faces, shares = _watched(scene, mesh.plate)
     velocity = np.zeros((int(first[-1]), 2))
     velocity[: first[1], 1] = -scene.speed
+    velocity[first[2] :, 1] = scene.inner_speed
     return AxisymmetricSystem(
         stiffness=scipy.sparse.block_diag(stiffness, format="csr"),
         points=np.concatenate(points),

@@ -90,7 +90,7 @@ def integrate(
         longest=LONGEST_RUN,
         window_samples=PEAK_WINDOW_SAMPLES,
         end_time=end_time,
-        initial_energy=0.5 * motion.share * scene.outer.mass * scene.speed**2,
+        initial_energy=motion.share * scene.initial_energy,
         most_levels=most_levels,
         levels_within_samples=levels_within_samples,
         chunk=chunk,
@@ -107,16 +107,16 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     stored = sum(record.stored for record in motion.records)
     velocities, momenta = motion.velocities(), motion.momenta()
     impulses = [share * impulse for impulse in motion.impulses()]
-    start = -share * scene.outer.mass * scene.speed
-    initial_energy = 0.5 * share * scene.outer.mass * scene.speed**2
+    outer_start, inner_start = (share * momentum for momentum in scene.initial_momenta)
+    initial_energy = share * scene.initial_energy
     support = problem.state.reaction[loop.components - 1]
     damping = motion.damping
     dissipated, braking = (damping.dissipated, damping.impulse) if damping else (0.0, 0.0)
     # Three independent balances: all bodies against the support, each sphere against its contact.
     misses = [
-        sum(momenta) - start - support - braking,
-        momenta[0] - start - impulses[0],
-        momenta[2] + impulses[1],
+        sum(momenta) - outer_start - inner_start - support - braking,
+        momenta[0] - outer_start - impulses[0],
+        momenta[2] - inner_start + impulses[1],
     ]
     # The last sample needs one more step, which leaves the levels at different times.
     rows = np.vstack([course.rows, motion.sample(1, 1)])
@@ -141,7 +141,7 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         initial_energy=initial_energy / share,
         energy_residual=abs(energies.total + dissipated - initial_energy - work) / initial_energy,
         contact_loss=-(work + stored) / initial_energy,
-        momentum_residual=max(abs(miss) for miss in misses) / abs(start),
+        momentum_residual=max(abs(miss) for miss in misses) / abs(outer_start),
         support_impulse=support / share,
         plate_damping=dissipated / share if damping else None,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,8 @@ class Scene:
     """Speed of the outer body towards the plate, m/s, positive."""
     gap: float
     """Initial distance of the inner body from the plate, m."""
+    inner_speed: float
+    """Speed of the inner body towards the plate at the start, m/s; negative: away from it."""
     end_time: float | None
     """s; None: until no further contact is possible."""
     elements_per_contact_radius: float
@@ -44,6 +47,16 @@ class Scene:
     """Bodies ("outer", "inner") that are rigid, tip included; of solid geometry only."""
     raw: dict[str, Any]
     """The document as given, for the provenance."""
+
+    @property
+    def initial_energy(self) -> float:
+        """Kinetic energy of both bodies at the start, J."""
+        return 0.5 * (self.outer.mass * self.speed**2 + self.inner.mass * self.inner_speed**2)
+
+    @property
+    def initial_momenta(self) -> tuple[float, float]:
+        """Of outer and inner body along z, kg m/s."""
+        return -self.outer.mass * self.speed, self.inner.mass * self.inner_speed
 
     @property
     def materials(self) -> tuple[Material, Material, Material]:
@@ -66,12 +79,12 @@ def _plate(reader: Reader) -> Plate:
     )
 
 
-def _body(reader: Reader, extra: str) -> Body:
+def _body(reader: Reader, *extra: str) -> Body:
     material = read_material(reader.child("material"))
     if reader.choice("kind", ("sphere", "compact")) == "sphere":
-        reader.allow("kind", "radius", "material", extra)
+        reader.allow("kind", "radius", "material", *extra)
         return Sphere(reader.number("radius", "m"), material)
-    reader.allow("kind", "mass", "tip_radius", "material", extra)
+    reader.allow("kind", "mass", "tip_radius", "material", *extra)
     return Compact(reader.number("mass", "kg"), reader.number("tip_radius", "m"), material)
 
 
@@ -131,7 +144,7 @@ def parse_scene(document: Any) -> Scene:
             "must be 0: take reference.geometry 'axisymmetric'"
         )
     outer, inner = root.child("outer"), root.child("inner")
-    bodies = {"outer": _body(outer, "speed"), "inner": _body(inner, "gap")}
+    bodies = {"outer": _body(outer, "speed"), "inner": _body(inner, "gap", "speed")}
     for name, body in bodies.items():
         if geometry == "solid" and isinstance(body, Compact) and name not in rigid:
             raise SceneError(
@@ -147,6 +160,7 @@ def parse_scene(document: Any) -> Scene:
         inner=bodies["inner"],
         speed=outer.number("speed", "m/s"),
         gap=inner.number("gap", "m", inclusive=True),
+        inner_speed=inner.number_or("speed", 0.0, "m/s", above=-math.inf),
         end_time=end_time,
         elements_per_contact_radius=reference.number(
             "elements_per_contact_radius", "(no unit)", above=2.0, below=65.0, inclusive=True

@@ -154,7 +154,7 @@ def plate_model(
     watched: list[tuple[Ints, Floats]] = []
     for name, body, size, side, gap, speed in (
         (OUTER, scene.outer, outer_size, 1.0, 0.0, -scene.speed),
-        (INNER, scene.inner, inner_size, -1.0, scene.gap, 0.0),
+        (INNER, scene.inner, inner_size, -1.0, scene.gap, scene.inner_speed),
     ):
         height = side * 0.5 * scene.plate.thickness
         face = _face(plate, plate_facets, height)

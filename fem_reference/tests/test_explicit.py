@@ -57,6 +57,29 @@ def test_impulse_is_the_change_of_momentum(run: Run, scene: Scene) -> None:
     assert run.rows[-1, 2] == pytest.approx(outer, rel=1e-9)
 
 
+def test_spheres_from_both_sides_rebound_as_mirror_images() -> None:
+    """Both strike at once: the plate stays where it is, and each has its energy back but for waves."""
+    scene = parse_scene(document(inner__speed=0.55, reference__elements_per_contact_radius=3))
+    system, duration = make_system(scene)
+    run = integrate(system, scene, duration)
+    assert run.initial_energy == pytest.approx(scene.outer.mass * scene.speed**2, rel=1e-12)
+    assert run.energy_residual < 1e-5
+    assert run.momentum_residual < 1e-9
+    assert run.inner_velocity == pytest.approx(-run.outer_velocity, rel=1e-9)
+    assert 0.98 < run.outer_velocity / scene.speed <= 1.0
+    assert np.abs(run.rows[:, 3]).max() < 1e-9 * np.abs(run.rows[:, 0]).max()
+    assert run.rows[0, 6] == pytest.approx(0.55, rel=1e-2)
+
+
+def test_body_that_recedes_is_not_touched() -> None:
+    scene = parse_scene(document(inner__speed=-2.0, reference__elements_per_contact_radius=3))
+    system, duration = make_system(scene)
+    run = integrate(system, scene, duration)
+    assert run.contacts[1].count == 0
+    assert run.inner_velocity == pytest.approx(-2.0, rel=1e-9)
+    assert run.momentum_residual < 1e-9
+
+
 def test_displacement_is_the_integral_of_velocity(run: Run) -> None:
     for displacement, velocity in ((0, 1), (3, 4), (5, 6)):
         mean = 0.5 * (run.rows[1:, velocity] + run.rows[:-1, velocity])

@@ -274,7 +274,7 @@ impl Alignment<'_> {
             )));
         }
         let outer = channel.quantity.starts_with("outer");
-        let known = if outer { -self.setup.outer.speed } else { 0.0 };
+        let known = if outer { -self.setup.outer.speed } else { self.setup.inner.speed };
         let trusted = outer && self.speed == Speed::Measured;
         let singular = || {
             Error::Scene(miette::miette!(

@@ -110,6 +110,7 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
         String::new()
     };
     let gap = if inner.gap > 0.0 { format!(", gap {}", length(inner.gap)) } else { String::new() };
+    let own = if inner.speed == 0.0 { String::new() } else { format!(", {}", measure(inner.speed, "m/s")) };
     let mut told = vec![
         (
             "outer".to_owned(),
@@ -124,7 +125,7 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
                 plate.material.name
             ),
         ),
-        ("inner".to_owned(), of_body(&inner.shape, &inner.material) + &gap),
+        ("inner".to_owned(), of_body(&inner.shape, &inner.material) + &gap + &own),
     ];
     if let Some(fluid) = &scene.fluid {
         let viscosity = short(1e3 * fluid.viscosity);

@@ -158,7 +158,7 @@ impl Case {
         let mut setup = PlateImpact {
             plate,
             outer,
-            inner: Inner { shape: inner_shape, material: inner_material, gap: 0.0 },
+            inner: Inner { shape: inner_shape, material: inner_material, gap: 0.0, speed: 0.0 },
             fluid: None,
         };
         let tier = TIERS.iter().position(|tier| *tier >= modes).unwrap_or(TIERS.len() - 1);

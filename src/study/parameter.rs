@@ -49,7 +49,7 @@ pub fn impact(radius: f64, thickness: f64, edge: Edge, material: Material, spher
     PlateImpact {
         plate: Plate { radius, thickness, edge, material, damping_ratio: 0.0 },
         outer: Outer { shape: shape.clone(), material: steel(), speed: SPEED },
-        inner: Inner { shape, material: steel(), gap: 0.0 },
+        inner: Inner { shape, material: steel(), gap: 0.0, speed: 0.0 },
         fluid: None,
     }
 }

@@ -72,7 +72,7 @@ pub fn setup(shape: Shape, speed: f64) -> PlateImpact {
     PlateImpact {
         plate: Plate { radius, thickness, edge: Edge::Clamped, material: titanium(), damping_ratio: 0.0 },
         outer: Outer { shape, material: sapphire(), speed },
-        inner: Inner { shape: Shape::Sphere { radius: SPHERE }, material: sapphire(), gap: 0.0 },
+        inner: Inner { shape: Shape::Sphere { radius: SPHERE }, material: sapphire(), gap: 0.0, speed: 0.0 },
         fluid: None,
     }
 }

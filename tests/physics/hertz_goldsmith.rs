@@ -3,7 +3,7 @@
 use crate::common;
 use approx::assert_relative_eq;
 use impactcheck::analytical::hertz::HertzImpact;
-use impactcheck::body::ModalBody;
+use impactcheck::body::{ModalBody, kirchhoff};
 use impactcheck::dynamics::integration::Options;
 use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
@@ -50,4 +50,28 @@ fn pressure_at_the_force_peak_is_hertzs() {
     }
     let document = serde_json::to_value(&summary).unwrap();
     assert_eq!(document["contact_pressure"]["outer"]["maximum_pressure"], pressure.outer.maximum_pressure);
+}
+
+/// Two equal spheres that strike a plate from both sides at once push its faces alike: the plate bends to neither side and each
+/// rebounds as from a rigid half-space. One that recedes as fast as it could be thrown is never reached.
+#[test]
+fn a_plate_struck_from_both_sides_is_a_rigid_wall() {
+    let (radius, speed) = (0.01, 0.55);
+    let mut setup = common::scaled_plate(radius, speed);
+    let plate = kirchhoff::modes(&setup.plate, 16).unwrap();
+    setup.inner.speed = speed;
+    let system = System::new(&setup, &plate, [0.0; 2]);
+    let result = integrate(&system, &Options { tolerance: 1e-9, ..Options::default() }).unwrap();
+    let closed = HertzImpact { mass: system.masses[0], speed, stiffness: system.laws[0].stiffness };
+    for (contact, (velocity, rebound)) in
+        result.contacts.iter().zip(result.velocity.into_iter().zip([speed, -speed]))
+    {
+        assert_relative_eq!(contact.force_peak, closed.force_peak(), max_relative = 1e-6);
+        assert_relative_eq!(contact.end, closed.duration(), max_relative = 1e-6);
+        assert_relative_eq!(velocity, rebound, max_relative = 1e-8);
+    }
+    assert!(result.energy_residual < 1e-9 && result.momentum_residual < 1e-9, "{result:?}");
+    setup.inner.speed = -10.0 * speed;
+    let receding = integrate(&System::new(&setup, &plate, [0.0; 2]), &Options::default()).unwrap();
+    assert_eq!((receding.contacts[1].contacts, receding.velocity[1]), (0, -10.0 * speed));
 }

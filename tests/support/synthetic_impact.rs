@@ -89,7 +89,7 @@ pub fn scene() -> Scene {
                 damping_ratio: 0.0,
             },
             outer: Outer { shape: sphere.clone(), material: steel.clone(), speed: SPEED },
-            inner: Inner { shape: sphere, material: steel, gap: 0.0 },
+            inner: Inner { shape: sphere, material: steel, gap: 0.0, speed: 0.0 },
             fluid: None,
         })),
         run: Run { end_time: None },

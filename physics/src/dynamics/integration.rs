@@ -129,7 +129,8 @@ impl Closing<'_> {
     fn unexplained_momentum(&self, velocity: [f64; 2]) -> f64 {
         let Self { system, fluid, contacts: [outer, inner], .. } = self;
         let fluid_impulse = fluid.film_impulse + fluid.drag_impulse;
-        let mut largest = (system.masses[1] * velocity[1] + inner.impulse - fluid_impulse).abs();
+        let gained = system.masses[1] * velocity[1] - system.inner_momentum();
+        let mut largest = (gained + inner.impulse - fluid_impulse).abs();
         if !system.outer_returns() {
             let momentum = system.masses[0] * (velocity[0] + system.speed);
             largest = largest.max((momentum - outer.impulse).abs());

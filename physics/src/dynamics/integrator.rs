@@ -78,7 +78,7 @@ impl<'a> Stepper<'a> {
             recorder,
             end_time: options.end_time.unwrap_or(f64::INFINITY),
             base_step: base_step(hit.duration(), options.tolerance),
-            energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
+            energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
             bounds: Bounds::new(options.tolerance),
             tables: Ladder::new(q.len()),
             level: START_LEVEL,

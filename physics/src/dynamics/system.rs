@@ -93,6 +93,7 @@ impl System {
         motion[OUTER] = outer_body.tip[0];
         start[0][OUTER] = outer_body.displacement[0];
         start[1][OUTER] = outer_body.velocity[0];
+        start[1][INNER] = inner.speed * masses[1].sqrt();
         for k in 1..outer_body.oscillators.len() {
             oscillators.push(outer_body.oscillators[k]);
             approach[0].push(-outer_body.tip[k]);
@@ -213,6 +214,16 @@ impl System {
     /// Kinetic energy of the outer body before the impact in J, to which eq. (1) relates the efficiency.
     pub fn initial_energy(&self) -> f64 {
         0.5 * self.masses[0] * self.speed.powi(2)
+    }
+
+    /// Kinetic energy of outer and inner body before the impact in J: the measure of rounding and of the ledger.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.initial_energy() + 0.5 * self.start[1][INNER].powi(2)
+    }
+
+    /// Momentum of the inner body before the impact in N s, signed along z.
+    pub fn inner_momentum(&self) -> f64 {
+        self.start[1][INNER] * self.masses[1].sqrt()
     }
 
     /// The outer body's impact if the plate were a half-space at rest: the measure of duration and force.

@@ -57,7 +57,7 @@ pub(super) fn draw(name: &str, x: &[f64]) -> Option<Scene> {
         let setup = PlateImpact {
             plate,
             outer: Outer { shape: outer_shape, material: outer_material, speed },
-            inner: Inner { shape: inner_shape, material: inner_material, gap },
+            inner: Inner { shape: inner_shape, material: inner_material, gap, speed: 0.0 },
             fluid: None,
         };
         scene(name, setup)

@@ -66,7 +66,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         before: StepForces::default(),
         contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
         booked: FluidAccount::default(),
-        energy: EnergyAccount::new(&hit, system.initial_energy(), options.tolerance),
+        energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
         steps: 0,
     };
     stepper.go()?;

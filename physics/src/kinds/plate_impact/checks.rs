@@ -43,7 +43,7 @@ fn start(setup: &PlateImpact, history: &PlateCurves) -> Vec<Statement> {
     let touch = force.iter().position(|&f| f > floor).map_or(f64::NAN, |k| history.time[k]);
     vec![
         velocity("outer_velocity_start", history.outer.velocity, -speed),
-        velocity("inner_velocity_start", history.inner.velocity, 0.0),
+        velocity("inner_velocity_start", history.inner.velocity, setup.inner.speed),
         displacement("outer_displacement_start", history.outer.displacement),
         displacement("plate_displacement_start", history.plate.displacement),
         displacement("inner_displacement_start", history.inner.displacement),

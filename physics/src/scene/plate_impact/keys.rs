@@ -85,7 +85,7 @@ pub(in crate::scene) static OUTER: [Field; 15] = [
     ),
 ];
 
-pub(in crate::scene) static INNER: [Field; 6] = [
+pub(in crate::scene) static INNER: [Field; 7] = [
     required("kind", Kind::Choice(&[choice("sphere"), choice("compact")]), SHAPE_KIND),
     SPHERE_RADIUS,
     COMPACT_MASS,
@@ -95,6 +95,11 @@ pub(in crate::scene) static INNER: [Field; 6] = [
         "gap",
         Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
         "Initial distance to the plate; absent = 0",
+    ),
+    optional(
+        "speed",
+        Kind::Quantity(Dimension::SPEED, Bound::ANY),
+        "Speed towards the plate at the outer body's first touch; negative = away from it, absent = 0",
     ),
 ];
 

@@ -125,7 +125,7 @@ pub struct Outer {
     pub speed: f64,
 }
 
-/// The inner body: rests below the plate.
+/// The inner body: rests below the plate, or has a speed of its own.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Inner {
     /// Shape.
@@ -135,6 +135,15 @@ pub struct Inner {
     pub material: Material,
     /// Initial distance to the plate in m, not negative.
     pub gap: f64,
+    /// Speed towards the plate in m/s at t = 0, when the outer body touches; negative = away from it.
+    #[serde(skip_serializing_if = "is_at_rest")]
+    pub speed: f64,
+}
+
+/// A body at rest is written as before there were moving ones, so that the hash of its scene stays.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
+fn is_at_rest(speed: &f64) -> bool {
+    *speed == 0.0
 }
 
 /// Fluid on the inner side (section 3.5); absent = dry.

@@ -31,6 +31,7 @@ pub(in crate::scene) fn plate_impact(root: &Node, materials: &Node) -> Result<Pl
             shape: shape(&inner)?,
             material: material(materials, inner.text("material")?)?,
             gap: inner.number_or("gap", 0.0)?,
+            speed: inner.number_or("speed", 0.0)?,
         },
         plate,
     })
