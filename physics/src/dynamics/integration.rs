@@ -2,7 +2,7 @@
 //! unexplained.
 
 use super::contact_ledger::ContactLedger;
-use super::system::{INNER, PLATE, System, dot};
+use super::system::{PLATE, System};
 use crate::result::{History, Losses};
 
 /// What the user may choose about the integration.
@@ -95,7 +95,7 @@ impl Closing<'_> {
     /// The results of the run with the `history` that was kept.
     pub(super) fn integration(self, history: Option<History>) -> Integration {
         let Self { system, v, ref contacts, fluid, .. } = self;
-        let velocity = [dot(&system.outer, v), v[INNER] / system.masses[1].sqrt()];
+        let velocity = system.of_bodies(v);
         let [start_q, start_v] = &system.start;
         let initial = system.energy(start_q, start_v);
         let end = system.energy(self.q, v);
@@ -129,7 +129,7 @@ impl Closing<'_> {
     fn unexplained_momentum(&self, velocity: [f64; 2]) -> f64 {
         let Self { system, fluid, contacts: [outer, inner], .. } = self;
         let fluid_impulse = fluid.film_impulse + fluid.drag_impulse;
-        let gained = system.masses[1] * velocity[1] - system.inner_momentum();
+        let gained = system.masses[1] * (velocity[1] - system.inner_velocity());
         let mut largest = (gained + inner.impulse - fluid_impulse).abs();
         if !system.outer_returns() {
             let momentum = system.masses[0] * (velocity[0] + system.speed);
