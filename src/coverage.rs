@@ -4,12 +4,17 @@
 //! Nothing is written by hand but the list of features, each a question to a scene. Everything else is found: scenes, models
 //! that take them, stored references and the discrepancies between both.
 
+use crate::error::Result;
+use crate::kinds;
+use crate::kinds::plate_impact::closed_forms::{ClosedForm, Form, closed_forms};
 use crate::result::SCHEMA_VERSION;
 use crate::scene::{Edge, Fluid, Material, Model, PlateImpact, Scene, Setup, Shape, SphereBody};
 use crate::validated::Validation;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+/// Name of a partner that is a formula.
+pub const CLOSED_FORM: &str = "closed form";
 /// Thickness over radius from which a plate counts as thick.
 const THICK: f64 = 0.3;
 /// Thickness over radius up to which a plate counts as thin.
@@ -21,6 +26,8 @@ pub struct Feature {
     /// For people.
     pub name: &'static str,
     has: fn(&Scene) -> bool,
+    /// The closed form that is about it, if there is one.
+    form: Option<Form>,
 }
 
 impl Feature {
@@ -28,27 +35,39 @@ impl Feature {
     pub fn is_in(&self, scene: &Scene) -> bool {
         (self.has)(scene)
     }
+
+    /// Whether `case` says something about it.
+    fn is_shown_by(&self, case: &Case) -> bool {
+        let form = case.finding.as_ref().and_then(|finding| finding.form);
+        self.is_in(case.scene) && (form.is_none() || form == self.form)
+    }
+
+    const fn by(self, form: Form) -> Self {
+        Self { form: Some(form), ..self }
+    }
 }
 
 const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
-    Feature { name, has }
+    Feature { name, has, form: None }
 }
 
 /// The features, of plates first.
 pub static FEATURES: [Feature; 19] = [
-    feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)),
-    feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported)),
-    feature("free edge", |s| plate(s, |p| p.plate.edge == Edge::Free)),
+    feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)).by(Form::CircularPlate),
+    feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported))
+        .by(Form::CircularPlate),
+    feature("free edge", |s| plate(s, |p| p.plate.edge == Edge::Free)).by(Form::CircularPlate),
     feature("thick plate (t >= 0.3 R)", |s| plate(s, |p| p.plate.thickness >= THICK * p.plate.radius)),
     feature("thin plate (t <= 0.02 R)", |s| plate(s, |p| p.plate.thickness <= THIN * p.plate.radius)),
     feature("damped plate", |s| plate(s, |p| p.plate.damping_ratio > 0.0)),
     feature("gap", |s| plate(s, |p| p.inner.gap > 0.0)),
     feature("inner body with a speed", |s| plate(s, |p| p.inner.speed != 0.0)),
-    feature("unlike materials", |s| plate(s, unlike)),
-    feature("compact outer body", |s| plate(s, |p| matches!(p.outer.shape, Shape::Compact { .. }))),
+    feature("unlike materials", |s| plate(s, unlike)).by(Form::Hertz),
+    feature("compact outer body", |s| plate(s, |p| matches!(p.outer.shape, Shape::Compact { .. })))
+        .by(Form::Hertz),
     feature("compact inner body", |s| plate(s, |p| matches!(p.inner.shape, Shape::Compact { .. }))),
-    feature("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))),
-    feature("squeeze film", |s| fluid(s, |f| f.squeeze_film)),
+    feature("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))).by(Form::Cantilever),
+    feature("squeeze film", |s| fluid(s, |f| f.squeeze_film)).by(Form::Film),
     feature("shear thinning", |s| fluid(s, |f| f.shear_thinning.is_some())),
     feature("added mass", |s| fluid(s, |f| f.added_mass_frequency_ratio < 1.0)),
     feature("drag", |s| fluid(s, |f| f.drag_coefficient > 0.0)),
@@ -81,15 +100,58 @@ pub struct Case<'a> {
     pub scene: &'a Scene,
     /// The model.
     pub model: Model,
-    /// Against a reference, if there is one.
-    pub validation: Option<Validation>,
+    /// What came of it; `None`: nothing is held against it.
+    pub finding: Option<Finding>,
 }
 
-impl Case<'_> {
+/// A model beside an independent solution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
     /// Name of the partner.
-    fn partner(&self) -> Option<&str> {
-        self.validation.as_ref().map(|validation| &*validation.partner)
+    partner: String,
+    /// The closed form, if it is one; then it is about some features only.
+    form: Option<Form>,
+    /// Largest relative discrepancy, half width of the partner's band, and the quantity.
+    largest: Option<(f64, Option<f64>, String)>,
+}
+
+impl From<&Validation> for Finding {
+    fn from(validation: &Validation) -> Self {
+        let largest =
+            validation.largest().map(|row| (row.relative().abs(), row.relative_band(), row.quantity.clone()));
+        Finding { partner: validation.partner.clone(), form: None, largest }
     }
+}
+
+/// The parts of the models beside the closed forms that there are for `scene`.
+///
+/// # Errors
+/// As [`closed_forms`].
+pub fn exact(scene: &Scene) -> Result<Vec<Case<'_>>> {
+    let Setup::PlateImpact(setup) = &scene.setup else { return Ok(Vec::new()) };
+    let of = |found: &ClosedForm, &model: &Model| {
+        let largest = Some((found.relative, Some(0.0), found.quantity.to_owned()));
+        let finding = Finding { partner: CLOSED_FORM.into(), form: Some(found.form), largest };
+        Case { scene, model, finding: Some(finding) }
+    };
+    let found = closed_forms(setup)?;
+    Ok(found.iter().flat_map(|found| found.models.iter().map(move |model| of(found, model))).collect())
+}
+
+/// What is known of `scenes` without running a model of theirs: by the record `known` and by closed forms.
+///
+/// # Errors
+/// As [`exact`].
+pub fn recorded(scenes: &[Scene], known: &[Validation]) -> Result<Coverage> {
+    let mut cases = Vec::new();
+    for scene in scenes {
+        for &model in kinds::of(scene).models() {
+            let finding = known.iter().find(|v| v.is_of(scene, model)).map(Finding::from);
+            cases.push(Case { scene, model, finding });
+        }
+        cases.extend(exact(scene)?);
+    }
+    Ok(coverage(&cases))
 }
 
 /// The document of `coverage`.
@@ -115,7 +177,8 @@ pub struct FeatureCoverage {
 pub struct Partner {
     /// The reduced model.
     pub model: String,
-    /// "axisymmetric" or "solid" finite elements; `None`: the model takes the scenes, but nothing is held against it.
+    /// "axisymmetric" or "solid" finite elements, [`CLOSED_FORM`], or the name of another program; `None`: the model takes the
+    /// scenes, but nothing is held against it.
     pub partner: Option<String>,
     /// Names of the scenes.
     pub scenes: Vec<String>,
@@ -131,9 +194,10 @@ pub struct Partner {
 pub fn coverage(cases: &[Case]) -> Coverage {
     let features = FEATURES.iter().map(|feature| {
         let mut partners: BTreeMap<(Model, Option<&str>), Partner> = BTreeMap::new();
-        for case in cases.iter().filter(|case| feature.is_in(case.scene)) {
-            let new = || Partner::of(case.model, case.partner());
-            partners.entry((case.model, case.partner())).or_insert_with(new).add(case);
+        for case in cases.iter().filter(|case| feature.is_shown_by(case)) {
+            let partner = case.finding.as_ref().map(|finding| &*finding.partner);
+            let new = || Partner::of(case.model, partner);
+            partners.entry((case.model, partner)).or_insert_with(new).add(case);
         }
         // a scene without a partner says nothing new of a model that has one elsewhere
         let held: Vec<Model> = partners.keys().filter(|key| key.1.is_some()).map(|key| key.0).collect();
@@ -157,12 +221,13 @@ impl Partner {
 
     fn add(&mut self, case: &Case) {
         self.scenes.push(case.scene.name.clone());
-        let Some(row) = case.validation.as_ref().and_then(Validation::largest) else { return };
-        let relative = Some(row.relative().abs());
-        if relative > self.worst_relative {
-            self.worst_relative = relative;
-            self.band = row.relative_band();
-            self.quantity = Some(row.quantity.clone());
+        let Some((relative, band, quantity)) = case.finding.as_ref().and_then(|f| f.largest.as_ref()) else {
+            return;
+        };
+        if Some(*relative) > self.worst_relative {
+            self.worst_relative = Some(*relative);
+            self.band = *band;
+            self.quantity = Some(quantity.clone());
         }
     }
 }
@@ -191,10 +256,29 @@ mod tests {
         assert_eq!(names(&Scene::parse("seal-seat.toml", seat).expect("valid")), ["seal seat"]);
     }
 
+    /// Closed forms are about a part, and shown where the feature is of that part.
+    #[test]
+    fn closed_forms_stand_beside_the_features_they_are_about() {
+        let text = PLATE.replace("radius   = \"10 mm\"", "radius = \"9 mm\"");
+        let free = scene(&text.replace("edge      = \"clamped\"", "edge = \"free\"\ndamping_ratio = 0.1"));
+        let found = recorded(std::slice::from_ref(&free), &[]).expect("closed forms");
+        let of = |name: &str| found.features.iter().find(|f| f.feature == name).expect("a feature");
+        let partners = |name: &str| -> Vec<_> {
+            of(name).partners.iter().map(|p| (&*p.model, p.partner.as_deref())).collect()
+        };
+        let form = Some(CLOSED_FORM);
+        assert_eq!(partners("free edge"), [("A", form), ("B", form), ("C", None)]);
+        assert_eq!(partners("damped plate"), [("A", None), ("B", None), ("C", None)]);
+        assert!(partners("clamped edge").is_empty());
+        let exact = &of("free edge").partners[1];
+        assert!(exact.worst_relative.is_some_and(|off| off > 0.0 && off < 1e-8), "{exact:?}");
+        assert_eq!((exact.band, exact.quantity.as_deref()), (Some(0.0), Some("frequencies")));
+    }
+
     #[test]
     fn a_model_without_partner_is_told_as_such_and_a_feature_no_scene_has_is_empty() {
         let plain = scene(PLATE);
-        let cases = [Model::B, Model::C].map(|model| Case { scene: &plain, model, validation: None });
+        let cases = [Model::B, Model::C].map(|model| Case { scene: &plain, model, finding: None });
         let found = coverage(&cases);
         assert_eq!(found.features.len(), FEATURES.len());
         for feature in found.features {

@@ -17,6 +17,7 @@ import scipy.sparse
 import ufl
 
 from ..common.arrays import Floats, Ints
+from ..common.beam import Beam
 from ..common.bodies import Material
 from ..common.fenicsx import Domain
 from ..common.fields import Fields
@@ -94,6 +95,18 @@ def rigid_node(mass: float) -> BodyMatrices:
     nodes, none = np.zeros((1, 4), dtype=np.int64), np.zeros((1, 8, 8))
     elements = ElementMatrices(nodes, none, np.full((1, 4), 0.25 * mass))
     return BodyMatrices(scatter(nodes, none, 1), np.array([mass]), elements)
+
+
+def beam_body(beam: Beam) -> BodyMatrices:
+    """A beam as a body whose nodes have a scaled rotation in the place of the radial component."""
+    ends = np.arange(beam.elements)[:, None] + np.array([0, 1, 1, 1])
+    # Two ends in an element of four corners: the others have no stiffness.
+    stiffness = np.zeros((beam.elements, 8, 8))
+    stiffness[:, :4, :4] = beam.element_stiffness
+    mass = np.full((beam.elements, 4), 0.5 * beam.line_mass * beam.element_length)
+    mass[-1, 1:] += beam.tip_mass
+    elements = ElementMatrices(ends, stiffness, mass)
+    return BodyMatrices(scatter(ends, stiffness, beam.elements + 1), beam.mass, elements)
 
 
 def assemble_consistent(

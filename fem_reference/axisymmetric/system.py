@@ -54,6 +54,10 @@ class AxisymmetricSystem:
     rigid: tuple[RigidBody, ...] = ()
     contacts: tuple[Contact, ...] = ()
     free_axes: tuple[int, ...] = (1,)
+    displacement: Floats | None = None
+    """(n, 2) at the start, m; None: none."""
+    tip: int | None = None
+    """Node whose motion is the outer body's, if that is a beam."""
 
     @property
     def owned(self) -> Ints:

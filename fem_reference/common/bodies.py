@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 from .arrays import Floats
+from .beam import Beam, Strike
 from .reader import Reader
 
 EDGES = ("clamped", "simply-supported", "free")
@@ -103,7 +105,33 @@ class Compact:
     """Of the tip."""
 
 
-Body = Sphere | Compact
+@dataclass(frozen=True)
+class Bender:
+    """Beam with a tip mass that is bent and released; its tip is that of a compact body."""
+
+    RADIUS_KEY: ClassVar[str] = "tip_radius"
+    beam: Beam
+    tip_radius: float
+    """m"""
+    material: Material
+    """Of the tip."""
+    speed: float
+    """Of the tip at the strike, m/s."""
+    discharge_time: float = 0.0
+    """With which its moment decays after the release, s."""
+
+    @cached_property
+    def strike(self) -> Strike:
+        """The state in which it strikes."""
+        return self.beam.strike(self.speed, self.discharge_time)
+
+    @property
+    def mass(self) -> float:
+        """That has its kinetic energy at the speed of its tip, kg."""
+        return 2.0 * self.strike.kinetic_energy / self.speed**2
+
+
+Body = Sphere | Compact | Bender
 
 
 def sphere_profile(radius: float, r: Floats) -> Floats:

@@ -133,6 +133,7 @@ typedef struct {
     double mass;         /* kg */
     double start;        /* velocity at the start, m/s */
     double displacement; /* m */
+    int64_t node;        /* of a body that something else acts on: node whose motion is told; -1: none */
 } Carried;
 
 /* Nodes of which a weighted mean along the last axis is watched. */
@@ -149,6 +150,15 @@ static double mean(const double *x, const Watched *watched) {
     return sum;
 }
 
+static double place(const State *s, const Carried *body) {
+    return body->node < 0 ? body->displacement : s->u[C * body->node + AXIAL];
+}
+
+/* Half a step late. */
+static double speed(const State *s, const Carried *body) {
+    return body->node < 0 ? 0.0 : s->v[C * body->node + AXIAL];
+}
+
 /* Advances by samples * stride steps with two contacts of matching nodes and writes a row of SAMPLED
  * numbers at the first step of each stride, all at t_n: displacement, velocity and impulse so far of
  * the first carried body, mean displacement and velocity of the watched nodes, and the second body's
@@ -157,9 +167,10 @@ void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64
     const Pairs *pairs = s->problem->pairs;
     for (int64_t j = 0; j < samples; ++j, row += SAMPLED) {
         const double last[2] = {pairs[0].record.impulse, pairs[1].record.impulse};
-        row[0] = body[0].displacement;
+        const double before[2] = {speed(s, &body[0]), speed(s, &body[1])};
+        row[0] = place(s, &body[0]);
         row[3] = mean(s->u, watched);
-        row[5] = body[1].displacement;
+        row[5] = place(s, &body[1]);
         row[4] = mean(s->v, watched);
         for (int64_t n = 0; n < stride; ++n) {
             one_step(s);
@@ -171,7 +182,9 @@ void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64
             for (int c = 0; c < 2; ++c) {
                 const double impulse = 0.5 * (last[c] + pairs[c].record.impulse);
                 row[c == 0 ? 2 : 7] = impulse;
-                row[c == 0 ? 1 : 6] = body[c].start + pairs[c].normal * impulse / body[c].mass;
+                row[c == 0 ? 1 : 6] = body[c].node < 0
+                                          ? body[c].start + pairs[c].normal * impulse / body[c].mass
+                                          : 0.5 * (before[c] + speed(s, &body[c]));
             }
         }
     }

@@ -184,6 +184,7 @@ class Carried(ctypes.Structure):
         ("mass", ctypes.c_double),
         ("start", ctypes.c_double),
         ("displacement", ctypes.c_double),
+        ("node", ctypes.c_int64),
     )
 
 

@@ -47,6 +47,9 @@ class AxisymmetricMotion:
 
     def __init__(self, system: AxisymmetricSystem) -> None:
         self.system, self.loop = system, SerialLoop(system, alone())
+        self._bent = system.displacement is not None
+        if system.displacement is not None:
+            self.loop.u[:] = self.loop.own(system.displacement)
         self.damping: ModalDamping | None = None
         self._undamped = 0.0
         first, second = system.matched
@@ -56,6 +59,9 @@ class AxisymmetricMotion:
         for carried, body in zip(bodies, (OUTER, INNER), strict=True):
             carried.mass = self._masses[body]
             carried.start = float(system.velocity[system.first[body], 1])
+            carried.node = -1
+        if system.tip is not None:
+            bodies[0].node = system.tip
         self._arrays = kernel.Arrays()
         self._bodies = bodies
         self._watched = self._watch(*system.watched)
@@ -81,6 +87,9 @@ class AxisymmetricMotion:
 
     def sample(self, samples: int, stride: int) -> Floats:
         """See `Motion.sample`; samples lie close, so that compiled code takes them."""
+        if self._bent:
+            self._fall_behind()
+            self._bent = False
         if self.damping is None:
             return self.loop.run(self._bodies, self._watched, samples, stride)
         rows, length = [], stride * self.loop.dt
@@ -95,9 +104,20 @@ class AxisymmetricMotion:
                 self._undamped = 0.0
         return np.vstack(rows)
 
+    def _fall_behind(self) -> None:
+        """Take the velocities half a step back from the start, at which a bent body has forces."""
+        loop, system = self.loop, self.system
+        for level in range(len(loop.levels)):
+            impulse = 0.5 * 2**level * loop.dt * loop.level_product(level, loop.u)
+            loop.v += loop.inverse * impulse
+            held = impulse[1::2][system.supports]
+            loop.problem.state.reaction[1] -= float(held.sum())
+
     def velocities(self) -> tuple[float, float]:
-        """Mean velocity of each sphere, half a step after the displacements, m/s."""
-        return self.mean_axial(self.loop.v, OUTER), self.mean_axial(self.loop.v, INNER)
+        """Mean velocity of each body, of a bender its tip's, half a step late, m/s."""
+        tip, v = self.system.tip, self.loop.v
+        outer = self.mean_axial(v, OUTER) if tip is None else float(v[2 * tip + 1])
+        return outer, self.mean_axial(v, INNER)
 
     def momenta(self) -> tuple[float, float, float]:
         """Of outer sphere, plate and inner sphere, kg m/s."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse
 
-from ..axisymmetric.elasticity import assemble, rigid_node
+from ..axisymmetric.elasticity import BodyMatrices, assemble, beam_body, rigid_node
 from ..axisymmetric.mesh import BodyMesh, check_elements
 from ..axisymmetric.meshing import mesh_plate, mesh_sphere
 from ..axisymmetric.sizes import MeshSettings
@@ -21,7 +21,7 @@ from ..axisymmetric.system import (
 )
 from ..axisymmetric.tip import tip_flexibility
 from ..common.arrays import Floats, Ints
-from ..common.bodies import Body, Compact, Sphere, sphere_profile
+from ..common.bodies import Bender, Body, Compact, Plate, Sphere, sphere_profile
 from ..common.errors import SceneError, SolverError
 from ..explicit.contact import MatchedContact
 from .motion import observed_circle
@@ -80,7 +80,7 @@ class ContactSurface:
 
     radii: Floats
     body_nodes: Ints
-    """Of a compact body its only node, for every node of the plate."""
+    """Of a compact body or a bender its tip, for every node of the plate."""
     plate_nodes: Ints
 
 
@@ -104,7 +104,7 @@ class ImpactMesh:
 
 
 def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
-    """Mesh bodies and plate, each where it stands at t = 0; a compact body is a node at its tip.
+    """Mesh bodies and plate, each where it stands at t = 0; one that is no sphere is a node at its tip.
 
     Raises:
         SolverError: gmsh failed or an element is degenerate.
@@ -116,8 +116,10 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     def above(body: Body, name: str) -> tuple[BodyMesh, Ints]:
         if isinstance(body, Sphere):
             return mesh_sphere(body, settings, name, radii)
-        tip = BodyMesh(name, np.zeros((1, 2)), np.zeros((0, 4), dtype=np.int64))
-        return tip, np.zeros(radii.size, dtype=np.int64)
+        # All nodes of a beam at its tip, which is the last.
+        count = body.beam.mass.size if isinstance(body, Bender) else 1
+        tip = BodyMesh(name, np.zeros((count, 2)), np.zeros((0, 4), dtype=np.int64))
+        return tip, np.full(radii.size, count - 1)
 
     upper, upper_nodes = above(scene.outer, "outer")
     lower, lower_nodes = above(scene.inner, "inner")
@@ -161,26 +163,28 @@ def _watched(scene: Scene, plate: BodyMesh) -> tuple[Ints, Floats]:
     return np.concatenate(nodes), np.concatenate(shares)
 
 
+def _discretised(body: BodyMesh, made: Body | Plate) -> tuple[BodyMatrices, Ints]:
+    """Matrices of a body and its fixed components (2 * node + component)."""
+    if isinstance(made, Bender):
+        return beam_body(made.beam), np.arange(2)
+    if isinstance(made, Compact):
+        return rigid_node(made.mass), axis_constraints(body)
+    fixed = plate_constraints(made, body) if isinstance(made, Plate) else axis_constraints(body)
+    return assemble(body, made.material), fixed
+
+
 def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
     """Assemble with dolfinx, constrain and renumber.
 
     Raises:
         SolverError: a lumped mass is not positive.
     """
-    fixed_of = (
-        axis_constraints(mesh.outer),
-        plate_constraints(scene.plate, mesh.plate),
-        axis_constraints(mesh.inner),
-    )
-    stiffness, mass, inverse, numbers, points = [], [], [], [], []
+    stiffness, mass, inverse, numbers, points, supports = [], [], [], [], [], []
     element_nodes, element_stiffness, element_steps = [], [], []
     first = np.zeros(4, dtype=np.int64)
     of_scene = (scene.outer, scene.plate, scene.inner)
-    for index, (body, made, fixed) in enumerate(zip(mesh.bodies, of_scene, fixed_of, strict=True)):
-        if isinstance(made, Compact):
-            matrices = rigid_node(made.mass)
-        else:
-            matrices = assemble(body, made.material)
+    for index, (body, made) in enumerate(zip(mesh.bodies, of_scene, strict=True)):
+        matrices, fixed = _discretised(body, made)
         if not matrices.mass.min() > 0.0:
             node = int(np.argmin(matrices.mass))
             r, z = body.points[node]
@@ -198,20 +202,19 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
         inverse.append(body_inverse[rows])
         points.append(body.points[order])
         numbers.append(number + first[index])
+        supports.append(numbers[index][fixed[fixed % 2 == 1] // 2])
         elements = matrices.elements
         element_nodes.append(numbers[index][elements.nodes])
         element_stiffness.append(elements.stiffness)
         element_steps.append(elements.critical_time_steps())
         first[index + 1] = first[index] + order.size
-    plate_fixed = fixed_of[1]
-    supports = numbers[1][plate_fixed[plate_fixed % 2 == 1] // 2]
     contacts = []
     for name, surface, index, gap, normal in (
         ("outer", mesh.outer_contact, 0, 0.0, 1.0),
         ("inner", mesh.inner_contact, 2, scene.gap, -1.0),
     ):
         made = scene.outer if index == 0 else scene.inner
-        tip = isinstance(made, Compact)
+        yields = not isinstance(made, Sphere)
         contacts.append(
             MatchedContact(
                 name,
@@ -220,13 +223,17 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
                 numbers[1][surface.plate_nodes],
                 surface.radii,
                 gap + sphere_profile(made.tip_radius, surface.radii),
-                tip_flexibility(made.material, surface.radii) if tip else None,
+                tip_flexibility(made.material, surface.radii) if yields else None,
             )
         )
     faces, shares = _watched(scene, mesh.plate)
     velocity = np.zeros((int(first[-1]), 2))
     velocity[: first[1], 1] = -scene.speed
     velocity[first[2] :, 1] = scene.inner_speed
+    displacement = tip = None
+    if isinstance(scene.outer, Bender):
+        displacement, strike, beam = np.zeros_like(velocity), scene.outer.strike, numbers[0]
+        displacement[beam], velocity[beam], tip = strike.displacement, strike.velocity, beam[-1]
     return AxisymmetricSystem(
         stiffness=scipy.sparse.block_diag(stiffness, format="csr"),
         points=np.concatenate(points),
@@ -235,10 +242,12 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
         velocity=velocity,
         first=first,
         numbers=(numbers[0], numbers[1], numbers[2]),
-        supports=np.sort(supports),
+        supports=np.sort(np.concatenate(supports)),
         watched=(numbers[1][faces], shares),
         matched=(contacts[0], contacts[1]),
         element_nodes=np.concatenate(element_nodes),
         element_stiffness=np.concatenate(element_stiffness),
         element_steps=np.concatenate(element_steps),
+        displacement=displacement,
+        tip=tip,
     )

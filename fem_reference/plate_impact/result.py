@@ -10,6 +10,7 @@ import numpy as np
 
 from ..common import document
 from ..common.arrays import Floats
+from ..common.bodies import Bender
 from ..common.output import write_history, write_json
 from ..common.progress import Progress
 from ..common.series import MeshResult, Problem, Report, Solved, solve_series
@@ -146,6 +147,22 @@ def solve(
     solve_series(posed, target, RESOLUTIONS[resolution], comm, options, progress)
 
 
+def _bender(bender: Bender, summary: dict[str, Any]) -> dict[str, Any]:
+    """How a bender was driven, and its strain energy's efficiency."""
+    strike, beam = bender.strike, bender.beam
+    efficiency = summary["efficiency"]
+    return {
+        "strain_energy_efficiency": None
+        if efficiency is None
+        else efficiency * strike.kinetic_energy / strike.strain_energy,
+        "torque": strike.moment,
+        "tip_deflection": strike.moment * beam.tip_deflection,
+        "strain_energy": strike.strain_energy,
+        "kinetic_energy": strike.kinetic_energy,
+        "strike_delay": strike.time,
+    }
+
+
 def _write(
     folder: Path,
     scene: Scene,
@@ -176,6 +193,8 @@ def _write(
     summary["uncertainty"].update(curve_uncertainty(bands))
     if run.plate_damping is not None:
         summary["losses"] = {"plate_damping": run.plate_damping, "squeeze_film": 0.0, "drag": 0.0}
+    if isinstance(scene.outer, Bender):
+        summary["bender"] = _bender(scene.outer, summary)
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(
         scene,

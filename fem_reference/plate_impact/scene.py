@@ -7,10 +7,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..common.bodies import EDGES, Body, Compact, Material, Plate, Sphere, read_material
+from ..common.beam import Beam
+from ..common.bodies import (
+    EDGES,
+    Bender,
+    Body,
+    Compact,
+    Material,
+    Plate,
+    Sphere,
+    read_material,
+)
 from ..common.errors import SceneError
 from ..common.reader import Reader, read_document
 
+MOMENT_LEFT = 1e-3
+"""Largest share of a bender's moment at the strike."""
 GEOMETRIES = ("axisymmetric", "solid")
 RIGID: dict[str, tuple[str, ...]] = {
     "none": (),
@@ -50,12 +62,16 @@ class Scene:
 
     @property
     def initial_energy(self) -> float:
-        """Kinetic energy of both bodies at the start, J."""
+        """Of both bodies at the start: kinetic, and the strain energy of a bender, J."""
+        if isinstance(self.outer, Bender):
+            return self.outer.strike.energy + 0.5 * self.inner.mass * self.inner_speed**2
         return 0.5 * (self.outer.mass * self.speed**2 + self.inner.mass * self.inner_speed**2)
 
     @property
     def initial_momenta(self) -> tuple[float, float]:
         """Of outer and inner body along z, kg m/s."""
+        if isinstance(self.outer, Bender):
+            return self.outer.strike.momentum, self.inner.mass * self.inner_speed
         return -self.outer.mass * self.speed, self.inner.mass * self.inner_speed
 
     @property
@@ -86,6 +102,37 @@ def _body(reader: Reader, *extra: str) -> Body:
         return Sphere(reader.number("radius", "m"), material)
     reader.allow("kind", "mass", "tip_radius", "material", *extra)
     return Compact(reader.number("mass", "kg"), reader.number("tip_radius", "m"), material)
+
+
+def _bender(reader: Reader) -> Bender:
+    reader.allow(
+        *("kind", "length", "bending_stiffness", "line_mass", "tip_mass"),
+        *("tip_radius", "discharge_time", "material", "speed"),
+    )
+    beam = Beam(
+        length=reader.number("length", "m"),
+        bending_stiffness=reader.number("bending_stiffness", "N m^2"),
+        line_mass=reader.number("line_mass", "kg/m"),
+        tip_mass=reader.number("tip_mass", "kg"),
+    )
+    bender = Bender(
+        beam,
+        tip_radius=reader.number("tip_radius", "m"),
+        material=read_material(reader.child("material")),
+        speed=reader.number("speed", "m/s"),
+        discharge_time=reader.number("discharge_time", "s", inclusive=True),
+    )
+    if bender.strike.moment_left > MOMENT_LEFT:
+        raise SceneError(
+            f"outer.discharge_time is {bender.discharge_time:g} s: at the strike "
+            f"{100.0 * bender.strike.moment_left:.2g} % of the drive's moment is left, which this "
+            f"solver takes as gone; at most {100.0 * MOMENT_LEFT:g} % may be"
+        )
+    return bender
+
+
+def _outer(reader: Reader) -> Body:
+    return _bender(reader) if reader.node.get("kind") == "bender" else _body(reader, "speed")
 
 
 def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:
@@ -144,7 +191,17 @@ def parse_scene(document: Any) -> Scene:
             "must be 0: take reference.geometry 'axisymmetric'"
         )
     outer, inner = root.child("outer"), root.child("inner")
-    bodies = {"outer": _body(outer, "speed"), "inner": _body(inner, "gap", "speed")}
+    bodies = {"outer": _outer(outer), "inner": _body(inner, "gap", "speed")}
+    if isinstance(bodies["outer"], Bender):
+        if geometry == "solid":
+            raise SceneError(
+                "outer.kind is 'bender': take reference.geometry 'axisymmetric'"
+            )
+        if end_time is None:
+            raise SceneError(
+                "run.end_time is missing; a bender swings back to the plate for ever, so that it "
+                "has to be given"
+            )
     for name, body in bodies.items():
         if geometry == "solid" and isinstance(body, Compact) and name not in rigid:
             raise SceneError(

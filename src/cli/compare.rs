@@ -267,8 +267,10 @@ impl<'a> Job<'a> {
             });
         }
         let known: Arc<[Validation]> = validated_scenes::known(context, &found).into();
+        let coverage = validated_scenes::coverage(context, &known).map(Arc::new);
         for report in &mut scenes {
             report.attachments.validated = Arc::clone(&known);
+            report.attachments.coverage.clone_from(&coverage);
         }
         if let (Some(report), false) = (scenes.first_mut(), self.records.is_empty()) {
             let how = (self.arguments.bandwidth, self.arguments.speed);

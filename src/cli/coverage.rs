@@ -3,7 +3,7 @@
 use super::asked_model::AskedModel;
 use super::{Context, JsonArgument, compare_inputs, kinds};
 use crate::comparison::compare_scene;
-use crate::coverage::{Case, Coverage, coverage};
+use crate::coverage::{CLOSED_FORM, Case, Coverage, Finding, coverage, exact};
 use crate::error::{ExitStatus, Result};
 use crate::reference::{Lookup, Store, Stored};
 use crate::scene::{self, Model, Scene};
@@ -26,7 +26,7 @@ pub struct Arguments {
 /// references that are not here it knows the numbers that are recorded.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let scenes = compare_inputs::scenes_or(&arguments.scenes, scene::every)?;
-    let (known, mut cases) = (validated::shipped()?, Vec::new());
+    let (known, mut cases, mut found) = (validated::shipped()?, Vec::new(), Vec::new());
     for (file, scene) in &scenes {
         let stored = finest(&context.store().for_scene_in(file), scene);
         for &model in crate::kinds::of(scene).models() {
@@ -37,12 +37,13 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
                 }
             };
             if validation.is_some() || kinds::of(scene).takes(scene, model) {
-                cases.push(Case { scene, model, validation });
+                cases.push(Case { scene, model, finding: validation.as_ref().map(Finding::from) });
             }
+            found.extend(validation);
         }
+        cases.extend(exact(scene)?);
     }
     if arguments.record {
-        let found: Vec<Validation> = cases.iter().filter_map(|case| case.validation.clone()).collect();
         validated::record(&found)?;
     }
     let found = coverage(&cases);
@@ -104,8 +105,12 @@ fn table(found: &Coverage) -> String {
         }
         for row in &feature.partners {
             let difference = row.worst_relative.map_or(String::new(), |relative| {
+                let quantity = row.quantity.as_deref().unwrap_or_default();
+                if row.partner.as_deref() == Some(CLOSED_FORM) {
+                    return format!("{relative:.0e}, {quantity}");
+                }
                 let band = row.band.map_or("unknown".to_owned(), percent);
-                format!("{} ({band}), {}", percent(relative), row.quantity.as_deref().unwrap_or_default())
+                format!("{} ({band}), {quantity}", percent(relative))
             });
             let partner = row.partner.as_deref().unwrap_or("nothing");
             let scenes = row.scenes.len();

@@ -3,6 +3,7 @@
 use super::{Film, presentation};
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
+use crate::coverage::Coverage;
 use crate::reference::{CurveBands, FieldMesh, MeshSection, Stored};
 use crate::result::History;
 use crate::scene::Scene;
@@ -39,6 +40,8 @@ pub struct Attachments {
     pub acceptances: Vec<Acceptance>,
     /// Scenes in which models were held against references, this one among them.
     pub validated: Arc<[Validation]>,
+    /// Which features of scenes are held against what.
+    pub coverage: Option<Arc<Coverage>>,
 }
 
 /// What a reduced model has cost.

@@ -1,6 +1,7 @@
 //! The page of all scenes: a row per scene and model, by folder, which sorts and can be searched.
 
 use super::Report;
+use super::coverage_page;
 use super::format::{percent, prefixed, significant, words};
 use super::html::{EFFICIENCY, badge, named, number, page, scrolled, worded};
 use super::overview::{ModelOverview, Overview, RowOverview};
@@ -36,6 +37,9 @@ pub(super) fn index_of(report: &Report, scenes: &[Standing]) -> String {
             "band reaches across the bound the verdict is undecided, and the scene's page says what would decide it. Drift: numbers that "
             "drift over the commits recorded." }
         p.soft.note { (EFFICIENCY) } p.soft.note { (AMONG) }
+        @if report.coverage().is_some() {
+            p { a href=(coverage_page::FILE) { "Coverage" } ": which features of scenes are held against what, and how far models and partners lie apart there." }
+        }
         p { "As data: " a href="comparison.json" { "JSON" } " · " a href="comparison.md" { "Markdown" } " · "
             a href="junit.xml" { "JUnit" } }
     };

@@ -12,6 +12,7 @@ mod budget_section;
 mod chart;
 mod colour_map;
 pub mod colours;
+mod coverage_page;
 mod curves_csv;
 mod discrepancy_picture;
 mod discrepancy_section;
@@ -90,6 +91,7 @@ pub use terminal::{alone, terminal};
 pub use write::{check_writable, write};
 
 use crate::comparison::{ChangedTolerance, Comparison, GateRules, SceneComparison};
+use crate::coverage::Coverage;
 use crate::result::Outcome;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -131,6 +133,11 @@ impl Report<'_> {
     /// Scenes in which models were held against references, the same for all scenes of the report.
     pub(crate) fn validated(&self) -> &[Validation] {
         self.scenes.first().map_or(&[], |scene| &scene.attachments.validated)
+    }
+
+    /// Which features of scenes are held against what, if that is known.
+    fn coverage(&self) -> Option<&Coverage> {
+        self.scenes.first().and_then(|scene| scene.attachments.coverage.as_deref())
     }
 
     /// A sentence per tolerance that was changed since it was accepted.

@@ -3,7 +3,7 @@
 use super::run_times::same_but_for_run_times;
 use super::standing::{self, DOCUMENT, Standing};
 use super::validated_map::{self, ValidatedMap};
-use super::{Report, animation_section, presentation};
+use super::{Report, animation_section, coverage_page, presentation};
 use crate::error::{Error, Result};
 use crate::interrupt::Scratch;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,7 +14,7 @@ use std::path::{Component, Path, PathBuf};
 /// Pixels of the PNG per unit of the drawing: 760 units are 2280 px, 300 dpi at a width of 19 cm.
 const PNG_SCALE: f32 = 3.0;
 
-/// Writes `index.html`, `comparison.json`, `comparison.md`, `junit.xml`, the map of validated scenes (SVG) and, per scene, its
+/// Writes `index.html`, `coverage.html`, `comparison.json`, `comparison.md`, `junit.xml`, the map of validated scenes (SVG) and, per scene, its
 /// page, figure (SVG, PNG) and curves (CSV) into `dir`, which is made if it does not exist.
 ///
 /// Index, JSON and Markdown are of all scenes whose results stand in the folder: a scene that an earlier run has compared
@@ -96,12 +96,15 @@ fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)
     if let Some(map) = ValidatedMap::of(report.validated(), None) {
         files.push((validated_map::FILE.to_owned(), map.svg().into_bytes()));
     }
+    if let Some(coverage) = report.coverage() {
+        files.push((coverage_page::FILE.to_owned(), coverage_page::of(coverage, standing).into_bytes()));
+    }
     for scene in &report.scenes {
         let name = &scene.comparison.scene;
         if !is_file_name(name) {
             return Err(Error::Usage(format!("scene name `{name}` can't be used as a file name")));
         }
-        if !names.insert(name) || name == "index" {
+        if !names.insert(name) || ["index", coverage_page::NAME].contains(&&**name) {
             return Err(Error::Usage(format!("scene name `{name}` stands for two pages of the report")));
         }
         for drawing in presentation::of(scene.scene).drawings(scene) {

@@ -25,7 +25,8 @@ fn features_are_covered_as_far_as_references_are_stored() {
     let partners = |found: &Value, feature: &str| -> Vec<Value> {
         let features = found["features"].as_array().unwrap();
         let entry = features.iter().find(|entry| entry["feature"] == feature).unwrap();
-        entry["partners"].as_array().unwrap().clone()
+        let partners = entry["partners"].as_array().unwrap().iter();
+        partners.filter(|partner| partner["partner"] != "closed form").cloned().collect()
     };
     let scenes = ["scaled-plate-r10", "scaled-plate-r6.35", "scenes/examples/wet-valve-plate.toml"];
     let found = document("coverage", &scenes);

@@ -243,3 +243,21 @@ fn torque_deflection_and_speed_are_three_ways_to_say_one_thing() {
         assert!(scene(drive, beam).is_err(), "{drive}, {beam}");
     }
 }
+
+/// A run ends where the inner body is out of reach, unless its end is given: then the bender strikes as often as it swings back
+/// until then, and never passes through the plate.
+#[test]
+fn a_bender_strikes_again_until_the_given_end() {
+    let system = system(&rocker(measured()), 16);
+    let short = integrate(&system, &Options::default()).unwrap();
+    let options = Options { end_time: Some(2.5e-3), sample_interval: Some(1e-6), ..Options::default() };
+    let long = integrate(&system, &options).unwrap();
+    let [of_short, of_long] = [&short, &long].map(|run| run.contacts[0]);
+    assert!(of_long.contacts > of_short.contacts && of_long.end > 1e-3, "{of_short:?} {of_long:?}");
+    assert_eq!(short.contacts[1].contacts, long.contacts[1].contacts);
+    assert_relative_eq!(short.velocity[1], long.velocity[1], max_relative = 1e-9);
+    assert!(long.energy_residual < 1e-6, "{}", long.energy_residual);
+    let force = long.history.as_ref().unwrap().curve("outer_force").unwrap();
+    let peak = force.iter().copied().fold(0.0, f64::max);
+    assert!(peak <= of_long.force_peak * (1.0 + 1e-6), "{peak} {}", of_long.force_peak);
+}

@@ -28,7 +28,9 @@ const RENEWAL: usize = 500;
 /// # Errors
 /// [`Error::Solver`] if the bodies neither touch nor recede within [`MAX_EVALUATIONS`] evaluations.
 pub fn next_touch(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<Flight> {
-    if system.outer_returns() && inner_is_out_of_reach(system, &GapBounds::new(system, 1, q, v), q, v) {
+    // a run whose end is given is about the bender's later strikes too
+    let endless = limit.is_infinite() && system.outer_returns();
+    if endless && inner_is_out_of_reach(system, &GapBounds::new(system, 1, q, v), q, v) {
         return Ok(Flight::Over);
     }
     let (mut q, mut v, mut start) = (q.to_vec(), v.to_vec(), 0.0);

@@ -2,6 +2,7 @@
 
 mod checks;
 pub mod choice;
+pub mod closed_forms;
 pub mod deflection;
 pub mod errors;
 mod joined;
