@@ -52,13 +52,13 @@ const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
 }
 
 /// The features, of plates first.
-pub static FEATURES: [Feature; 19] = [
+pub static FEATURES: [Feature; 20] = [
     feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)).by(Form::CircularPlate),
     feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported))
         .by(Form::CircularPlate),
     feature("free edge", |s| plate(s, |p| p.plate.edge == Edge::Free)).by(Form::CircularPlate),
-    feature("thick plate (t >= 0.3 R)", |s| plate(s, |p| p.plate.thickness >= THICK * p.plate.radius)),
-    feature("thin plate (t <= 0.02 R)", |s| plate(s, |p| p.plate.thickness <= THIN * p.plate.radius)),
+    feature("thick plate (t ≥ 0.3 R)", |s| plate(s, |p| p.plate.thickness >= THICK * p.plate.radius)),
+    feature("thin plate (t ≤ 0.02 R)", |s| plate(s, |p| p.plate.thickness <= THIN * p.plate.radius)),
     feature("damped plate", |s| plate(s, |p| p.plate.damping_ratio > 0.0)),
     feature("gap", |s| plate(s, |p| p.inner.gap > 0.0)),
     feature("inner body with a speed", |s| plate(s, |p| p.inner.speed != 0.0)),
@@ -67,6 +67,7 @@ pub static FEATURES: [Feature; 19] = [
         .by(Form::Hertz),
     feature("compact inner body", |s| plate(s, |p| matches!(p.inner.shape, Shape::Compact { .. }))),
     feature("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))).by(Form::Cantilever),
+    feature("friction", |s| plate(s, |p| p.friction > 0.0)),
     feature("squeeze film", |s| fluid(s, |f| f.squeeze_film)).by(Form::Film),
     feature("shear thinning", |s| fluid(s, |f| f.shear_thinning.is_some())),
     feature("added mass", |s| fluid(s, |f| f.added_mass_frequency_ratio < 1.0)),

@@ -2,10 +2,10 @@
 
 Euler-Bernoulli, clamped at its first node, a point mass at its last. A piezo layer's uniform
 bending moment is a moment at the tip, which the cubics bear exactly. Masses are lumped after
-Hinton, Rock & Zienkiewicz (1976, Earthquake Eng. Struct. Dyn. 4, 245): half an element's mass and
-1/78 of it times its length squared as rotary inertia at each end. Rotations are scaled by the radius
-of gyration of their node, so that both components of a node have one mass: the beam steps like
-any other body.
+Hinton, Rock & Zienkiewicz (1976, Earthquake Eng. Struct. Dyn. 4, 245): at each end half of an
+element's mass, and 1/78 of it times its length squared as rotary inertia. Rotations are scaled by
+the radius of gyration of their node, so that both components of a node have one mass: the beam
+steps like any other body.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Beam:
 
     @property
     def element_length(self) -> float:
-        """m"""
+        """Between two nodes, m."""
         return self.length / self.elements
 
     @cached_property

@@ -88,6 +88,8 @@ class MatchedContact:
     flexibility: Floats | None = None
     """(n, n) of a tip without mass that stands between the pairs' two sides, m/N; the candidates
     are then one and the same node."""
+    friction: float = 0.0
+    """Coulomb's coefficient; only without such a tip."""
 
 
 Contact = SphereContact | SurfaceContact

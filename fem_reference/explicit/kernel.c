@@ -26,6 +26,22 @@
 
 #include "tip.c"
 
+/* Friction on a closed pair of matching nodes, along the radius: the multiplier that leaves the two no relative
+ * velocity at the step's end, as far as Coulomb's law lets it grow. */
+static void rub(const State *s, Pairs *c, int64_t k, double lambda) {
+    const int64_t i = C * (int64_t)c->candidate[k] + RADIAL, j = C * (int64_t)c->opposite[k] + RADIAL;
+    const double dt = s->problem->dt, bound = c->friction * lambda, mobility = s->inverse[i] + s->inverse[j];
+    if (mobility == 0.0) return; /* on the axis */
+    const double stick = -(s->v[i] - s->v[j]) / (dt * mobility);
+    const double force = fmax(-bound, fmin(bound, stick));
+    const double candidate = dt * force * s->inverse[i], opposite = -dt * force * s->inverse[j];
+    s->v[i] += candidate;
+    s->v[j] += opposite;
+    s->u[i] += dt * candidate;
+    s->u[j] += dt * opposite;
+    c->rubbed += 0.5 * dt * force * (s->v[i] - s->v[j] + c->sliding[k]);
+}
+
 /* Corrects the predicted displacements and velocities of matching nodes. */
 static void correct(const State *s, Pairs *c) {
     if (c->tip) return correct_with_tip(s, c);
@@ -46,6 +62,7 @@ static void correct(const State *s, Pairs *c) {
         /* The discrete energy changes by exactly dt lambda times the mean relative velocity. */
         work += 0.5 * dt * lambda * (n * (s->v[i] - s->v[j]) + c->before[k]);
         if (k > c->record.outermost) c->record.outermost = k;
+        if (c->friction > 0.0) rub(s, c, k, lambda);
     }
     c->record.impulse += dt * force;
     c->record.work += work;
@@ -101,6 +118,9 @@ static void one_step(State *s) {
         for (int64_t k = 0; k < q->count; ++k)
             q->before[k] = q->normal * (v[C * (int64_t)q->candidate[k] + AXIAL]
                                         - v[C * (int64_t)q->opposite[k] + AXIAL]);
+        for (int64_t k = 0; q->friction > 0.0 && k < q->count; ++k)
+            q->sliding[k] =
+                v[C * (int64_t)q->candidate[k] + RADIAL] - v[C * (int64_t)q->opposite[k] + RADIAL];
     }
     for (int64_t i = 0; i < p->nodes; ++i)
         memcpy(p->before + C * i, v + C * (int64_t)p->global[i], C * sizeof *v);

@@ -79,6 +79,9 @@ class Pairs(ctypes.Structure):
         ("compliance", _DOUBLE),
         ("before", _DOUBLE),
         ("normal", ctypes.c_double),
+        ("friction", ctypes.c_double),
+        ("sliding", _DOUBLE),
+        ("rubbed", ctypes.c_double),
         ("tip", ctypes.POINTER(Tip)),
         ("record", Record),
     )

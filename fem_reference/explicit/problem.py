@@ -90,7 +90,8 @@ class ContactProblem:
         both = inverse[contact.candidates] + inverse[contact.opposite]
         structure.compliance = pointer(1.0 / both, np.float64)
         structure.before = pointer(np.zeros(contact.radii.size), np.float64)
-        structure.normal = contact.normal
+        structure.normal, structure.friction = contact.normal, contact.friction
+        structure.sliding = pointer(np.zeros(contact.radii.size), np.float64)
         structure.record.last = structure.record.outermost = -1
         if contact.flexibility is not None:
             mobility = np.diag(inverse[contact.opposite]) + inverse[contact.candidates[0]]

@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { C = COMPONENTS, AXIAL = C - 1, MAX_INTERVALS = 256, FACET_NODES = 6, SAMPLED = 8 };
+enum { C = COMPONENTS, RADIAL = 0, AXIAL = C - 1, MAX_INTERVALS = 256, FACET_NODES = 6, SAMPLED = 8 };
 enum { AGAINST_SURFACE = 0, AGAINST_SPHERE = 1 };
 
 /* What a contact has done so far. */
@@ -41,6 +41,9 @@ typedef struct {
     const double *compliance; /* 1 / (1/m_candidate + 1/m_opposite), kg */
     double *before;           /* (count) work space */
     double normal;
+    double friction;          /* Coulomb's coefficient */
+    double *sliding;          /* (count) work space */
+    double rubbed;            /* work of friction on both bodies so far, J */
     Tip *tip;                 /* 0: none */
     Record record;
 } Pairs;

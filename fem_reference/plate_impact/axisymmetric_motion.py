@@ -81,6 +81,12 @@ class AxisymmetricMotion:
         self._undamped = 0.5 * self.damping.interval
 
     @property
+    def rubbed(self) -> tuple[float, float]:
+        """Work of friction in each contact so far, J."""
+        outer, inner = self.loop.problem.matched[:2]
+        return outer.rubbed, inner.rubbed
+
+    @property
     def records(self) -> list[kernel.Record]:
         """Of the two contacts."""
         return self.loop.problem.records()

@@ -104,7 +104,7 @@ class ImpactMesh:
 
 
 def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
-    """Mesh bodies and plate, each where it stands at t = 0; one that is no sphere is a node at its tip.
+    """Mesh bodies and plate, each where it stands at t = 0; what is no sphere has its tip's node.
 
     Raises:
         SolverError: gmsh failed or an element is degenerate.
@@ -224,6 +224,7 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
                 surface.radii,
                 gap + sphere_profile(made.tip_radius, surface.radii),
                 tip_flexibility(made.material, surface.radii) if yields else None,
+                scene.friction,
             )
         )
     faces, shares = _watched(scene, mesh.plate)

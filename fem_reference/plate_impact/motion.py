@@ -58,6 +58,10 @@ class Motion(Protocol):
         """Of the plate."""
 
     @property
+    def rubbed(self) -> tuple[float, float]:
+        """Work of friction in each contact so far, negative, of the part modelled, J."""
+
+    @property
     def share(self) -> float:
         """Of the bodies that is modelled."""
 

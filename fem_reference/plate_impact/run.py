@@ -54,6 +54,8 @@ class Run:
     support_impulse: float
     plate_damping: float | None
     """Energy lost to the plate's damping, J; None if it has none."""
+    friction: tuple[float, float] | None
+    """Energy lost to friction in outer and inner contact, J; None if there is none."""
 
 
 def integrate(
@@ -113,6 +115,7 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     support = problem.state.reaction[loop.components - 1]
     damping = motion.damping
     dissipated, braking = (damping.dissipated, damping.impulse) if damping else (0.0, 0.0)
+    rubbed = motion.rubbed
     # Independent balances: all bodies against the supports, each free one against its contact.
     misses = [
         sum(momenta) - outer_start - inner_start - support - braking,
@@ -141,11 +144,13 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         inner_velocity=velocities[1],
         energies=energies,
         initial_energy=initial_energy / share,
-        energy_residual=abs(energies.total + dissipated - initial_energy - work) / initial_energy,
+        energy_residual=abs(energies.total + dissipated - initial_energy - work - sum(rubbed))
+        / initial_energy,
         contact_loss=-(work + stored) / initial_energy,
         momentum_residual=max(abs(miss) for miss in misses) / abs(outer_start),
         support_impulse=support / share,
         plate_damping=dissipated / share if damping else None,
+        friction=(-rubbed[0] / share, -rubbed[1] / share) if scene.friction > 0.0 else None,
     )
 
 

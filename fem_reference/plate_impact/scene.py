@@ -48,6 +48,8 @@ class Scene:
     """Initial distance of the inner body from the plate, m."""
     inner_speed: float
     """Speed of the inner body towards the plate at the start, m/s; negative: away from it."""
+    friction: float
+    """Coulomb's coefficient of both contacts."""
     end_time: float | None
     """s; None: until no further contact is possible."""
     elements_per_contact_radius: float
@@ -153,6 +155,10 @@ def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:
     return geometry, order, RIGID[rigid]
 
 
+def _are_spheres(bodies: dict[str, Body]) -> bool:
+    return all(isinstance(body, Sphere) for body in bodies.values())
+
+
 def parse_scene(document: Any) -> Scene:
     """Check a decoded ``scene.json``.
 
@@ -170,6 +176,7 @@ def parse_scene(document: Any) -> Scene:
         "plate",
         "outer",
         "inner",
+        "friction",
         "fluid",
         "run",
         "reference",
@@ -194,14 +201,18 @@ def parse_scene(document: Any) -> Scene:
     bodies = {"outer": _outer(outer), "inner": _body(inner, "gap", "speed")}
     if isinstance(bodies["outer"], Bender):
         if geometry == "solid":
-            raise SceneError(
-                "outer.kind is 'bender': take reference.geometry 'axisymmetric'"
-            )
+            raise SceneError("outer.kind is 'bender': take reference.geometry 'axisymmetric'")
         if end_time is None:
             raise SceneError(
                 "run.end_time is missing; a bender swings back to the plate for ever, so that it "
                 "has to be given"
             )
+    friction = root.number_or("friction", 0.0, "(no unit)", inclusive=True)
+    if friction > 0.0 and (geometry == "solid" or not _are_spheres(bodies)):
+        raise SceneError(
+            f"friction is {friction:g}; this solver has it between spheres and plate in "
+            "axisymmetric geometry, elsewhere it must be 0"
+        )
     for name, body in bodies.items():
         if geometry == "solid" and isinstance(body, Compact) and name not in rigid:
             raise SceneError(
@@ -218,6 +229,7 @@ def parse_scene(document: Any) -> Scene:
         speed=outer.number("speed", "m/s"),
         gap=inner.number("gap", "m", inclusive=True),
         inner_speed=inner.number_or("speed", 0.0, "m/s", above=-math.inf),
+        friction=friction,
         end_time=end_time,
         elements_per_contact_radius=reference.number(
             "elements_per_contact_radius", "(no unit)", above=2.0, below=65.0, inclusive=True

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.arrays import Floats, Ints
-from ..common.bodies import Compact, Plate, Sphere, sphere_profile
+from ..common.bodies import Plate, Sphere, sphere_profile
 from ..common.errors import SceneError
 from ..explicit.contact import Contact, RigidBody, SphereContact, SurfaceContact, guided
 from ..solid.mesh import TetMesh, surface
@@ -165,7 +165,7 @@ def plate_model(
         near = near[np.argsort(distance[near], kind="stable")]
         patches[PLATE, name] = (near, areas[near])
         watched.append(_watched(areas, distance, observed_circle(scene)))
-        if name in scene.rigid or isinstance(body, Compact):
+        if name in scene.rigid or not isinstance(body, Sphere):
             rigid_numbers[name] = len(rigid)
             along = guided((0.0, 0.0, 1.0))
             rigid.append(RigidBody(name, FRACTION * body.mass, along, (0.0, 0.0, speed)))

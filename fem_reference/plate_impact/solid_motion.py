@@ -22,6 +22,7 @@ class SolidMotion:
 
     share = FRACTION
     damping = None
+    rubbed = (0.0, 0.0)
 
     def __init__(self, loop: Loop, plate: PlateModel, scene: Scene) -> None:
         self.loop, self.plate = loop, plate

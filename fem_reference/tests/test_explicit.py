@@ -58,7 +58,7 @@ def test_impulse_is_the_change_of_momentum(run: Run, scene: Scene) -> None:
 
 
 def test_spheres_from_both_sides_rebound_as_mirror_images() -> None:
-    """Both strike at once: the plate stays where it is, and each has its energy back but for waves."""
+    """Both strike at once: the plate stays, and each has its energy back but for waves."""
     scene = parse_scene(document(inner__speed=0.55, reference__elements_per_contact_radius=3))
     system, duration = make_system(scene)
     run = integrate(system, scene, duration)

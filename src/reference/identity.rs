@@ -53,6 +53,7 @@ pub(super) fn staleness(provenance: &Value, scene: &Scene, resolution: Resolutio
             "plate",
             "outer",
             "inner",
+            "friction",
             "fluid",
             "seat",
             "sphere",

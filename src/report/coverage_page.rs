@@ -12,6 +12,8 @@ pub(super) const NAME: &str = "coverage";
 /// Its file.
 pub(super) const FILE: &str = "coverage.html";
 
+/// Difference that is told as such: nobody needs its digits.
+const NEGLIGIBLE: f64 = 1e-6;
 const MODELS: [&str; 3] = ["A", "B", "C"];
 /// The partners that have a column of their own; all others are other programs.
 const PARTNERS: [&str; 3] = ["axisymmetric", "solid", CLOSED_FORM];
@@ -98,9 +100,11 @@ fn of_partner(entries: &[&Partner], pages: &[&str]) -> Markup {
     let Some(nearest) = entries.iter().min_by(|a, b| size(a).total_cmp(&size(b))) else {
         return html! { span.soft { "–" } };
     };
+    let as_near = entries.iter().filter(|entry| entry.worst_relative == nearest.worst_relative);
+    let models: Vec<&str> = as_near.map(|entry| &*entry.model).collect();
     let count = nearest.scenes.len();
     html! {
-        (nearest.model) ": " (difference(nearest))
+        (models.join(", ")) ": " (difference(nearest))
         details {
             summary { (count) " scene" @if count != 1 { "s" } }
             ul.plain { @for scene in &nearest.scenes { li {
@@ -116,10 +120,15 @@ fn difference(entry: &Partner) -> Markup {
     let quantity = entry.quantity.as_deref().map(words).unwrap_or_default();
     let is_exact = entry.partner.as_deref() == Some(CLOSED_FORM);
     html! {
-        span class=(format!("off {}", size_class(relative))) data-si=(relative) { (percent_above(relative)) }
-        @if !is_exact { " ± " @match entry.band { Some(band) => (percent_above(band)), None => "unknown" } }
+        span class=(format!("off {}", size_class(relative))) data-si=(relative) { (size(relative)) }
+        @if !is_exact { " " span.value { "± " @match entry.band { Some(band) => (percent_above(band)), None => "unknown" } } }
         " " span.soft { (quantity) }
     }
+}
+
+/// A relative size, of which nothing below [`NEGLIGIBLE`] matters.
+fn size(relative: f64) -> String {
+    if relative < NEGLIGIBLE { format!("< {}", percent_above(NEGLIGIBLE)) } else { percent_above(relative) }
 }
 
 #[cfg(test)]
@@ -162,6 +171,8 @@ mod tests {
             axisymmetric.contains("<a href=\"here.html\">here</a>")
                 && axisymmetric.contains("<li>elsewhere</li>")
         );
+        let exact = of_partner(&with(&held, |name| name == CLOSED_FORM), &[]).into_string();
+        assert!(exact.contains("&lt; 0.00010 %") && !exact.contains('±'), "{exact}");
         let alone = FeatureCoverage { feature: "drag", partners: vec![entry("B", None, 0.0)] };
         assert!(of_model(&alone, "A").into_string().contains("not for it"));
         let coverage = Coverage { schema_version: 1, features: vec![held, alone] };

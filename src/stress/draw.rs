@@ -156,6 +156,7 @@ impl Case {
         let outer = Outer { shape: outer_shape, material: outer_material, speed };
         let modes = (random.log(1.0, 257.0) as usize).clamp(1, TIERS[2]);
         let mut setup = PlateImpact {
+            friction: 0.0,
             plate,
             outer,
             inner: Inner { shape: inner_shape, material: inner_material, gap: 0.0, speed: 0.0 },

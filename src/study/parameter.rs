@@ -47,6 +47,7 @@ pub fn titanium() -> Material {
 pub fn impact(radius: f64, thickness: f64, edge: Edge, material: Material, sphere: f64) -> PlateImpact {
     let shape = Shape::Sphere { radius: sphere };
     PlateImpact {
+        friction: 0.0,
         plate: Plate { radius, thickness, edge, material, damping_ratio: 0.0 },
         outer: Outer { shape: shape.clone(), material: steel(), speed: SPEED },
         inner: Inner { shape, material: steel(), gap: 0.0, speed: 0.0 },

@@ -70,6 +70,7 @@ fn sapphire() -> Material {
 pub fn setup(shape: Shape, speed: f64) -> PlateImpact {
     let [radius, thickness] = MEMBRANE;
     PlateImpact {
+        friction: 0.0,
         plate: Plate { radius, thickness, edge: Edge::Clamped, material: titanium(), damping_ratio: 0.0 },
         outer: Outer { shape, material: sapphire(), speed },
         inner: Inner { shape: Shape::Sphere { radius: SPHERE }, material: sapphire(), gap: 0.0, speed: 0.0 },

@@ -18,6 +18,7 @@ pub fn steel() -> Material {
 pub fn scaled_plate(radius: f64, speed: f64) -> PlateImpact {
     let steel = steel();
     PlateImpact {
+        friction: 0.0,
         plate: Plate {
             radius: 0.033,
             thickness: 0.002,

@@ -81,6 +81,7 @@ pub fn scene() -> Scene {
         name: "synthetic".into(),
         description: "Half-sine forces on two spheres".into(),
         setup: Setup::PlateImpact(Box::new(PlateImpact {
+            friction: 0.0,
             plate: Plate {
                 radius: 0.033,
                 thickness: 0.002,

@@ -162,7 +162,7 @@ const OF_PLATE_IMPACT: &[&str] = &[PLATE_IMPACT];
 const OF_SEAL_SEAT: &[&str] = &[SEAL_SEAT];
 
 /// The keys of a scene file. A key whose table depends on the scene's kind stands here once per kind.
-pub(super) static SCENE: [Field; 17] = [
+pub(super) static SCENE: [Field; 18] = [
     required("name", Kind::Name, "Name of the scene in the store and in reports"),
     optional("description", Kind::Text, "One line for people"),
     required("kind", Kind::Choice(&[choice(PLATE_IMPACT), choice(SEAL_SEAT)]), "What strikes what"),
@@ -173,6 +173,14 @@ pub(super) static SCENE: [Field; 17] = [
         required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above"),
     ),
     only(OF_PLATE_IMPACT, required("inner", Kind::Table(&INNER), "The body that rests below the plate")),
+    only(
+        OF_PLATE_IMPACT,
+        optional(
+            "friction",
+            pure(Bound::NOT_NEGATIVE),
+            "Coulomb's coefficient of friction between plate and bodies, which the reference has; absent = 0",
+        ),
+    ),
     only(OF_PLATE_IMPACT, optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry")),
     only(
         OF_SEAL_SEAT,

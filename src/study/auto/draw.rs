@@ -55,6 +55,7 @@ pub(super) fn draw(name: &str, x: &[f64]) -> Option<Scene> {
     let gap = if x[19] < 0.3 { approach * logarithmic_at(1e-3, 10.0, x[19] / 0.3) } else { 0.0 };
     SPEEDS.contains(&speed).then(|| {
         let setup = PlateImpact {
+            friction: 0.0,
             plate,
             outer: Outer { shape: outer_shape, material: outer_material, speed },
             inner: Inner { shape: inner_shape, material: inner_material, gap, speed: 0.0 },

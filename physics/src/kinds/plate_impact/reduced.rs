@@ -247,6 +247,9 @@ impl Reduced {
         let mut warnings = scene::doubts(&self.scene);
         warnings.extend(self.warnings.iter().cloned());
         warnings.extend(truncation.warning);
+        if setup.friction > 0.0 {
+            warnings.push("friction is left out: Hertz's contact is smooth; the reference has it".into());
+        }
         warnings.extend(unsure.map(|error| {
             format!(
                 "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"

@@ -136,14 +136,14 @@ pub struct Inner {
     /// Initial distance to the plate in m, not negative.
     pub gap: f64,
     /// Speed towards the plate in m/s at t = 0, when the outer body touches; negative = away from it.
-    #[serde(skip_serializing_if = "is_at_rest")]
+    #[serde(skip_serializing_if = "is_zero")]
     pub speed: f64,
 }
 
-/// A body at rest is written as before there were moving ones, so that the hash of its scene stays.
+/// What is zero is written as before it could be anything else, so that the hash of the scene stays.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
-fn is_at_rest(speed: &f64) -> bool {
-    *speed == 0.0
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// Fluid on the inner side (section 3.5); absent = dry.
@@ -190,6 +190,9 @@ pub struct PlateImpact {
     pub outer: Outer,
     /// The struck body.
     pub inner: Inner,
+    /// Coulomb's coefficient of friction between plate and bodies.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub friction: f64,
     /// The fluid, if any.
     pub fluid: Option<Fluid>,
 }

@@ -26,6 +26,7 @@ pub(in crate::scene) fn plate_impact(root: &Node, materials: &Node) -> Result<Pl
     };
     Ok(PlateImpact {
         fluid: root.optional_table("fluid")?.map(|f| fluid(&f, &plate)).transpose()?,
+        friction: root.number_or("friction", 0.0)?,
         outer: striker(&outer, material(materials, outer.text("material")?)?)?,
         inner: Inner {
             shape: shape(&inner)?,

@@ -1,0 +1,117 @@
+"""Coulomb friction between matching nodes: its law, its balance, and what it does to an impact."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fem_reference.common.errors import SceneError
+from fem_reference.plate_impact.run import Run
+from fem_reference.plate_impact.scene import parse_scene
+
+from .conftest import STEEL, document, integrate, make_loop, make_system
+
+POLYMER = {"name": "polymer", "youngs_modulus": 2.6e9, "poisson_ratio": 0.38, "density": 1320.0}
+CORK = {"name": "cork", "youngs_modulus": 20e9, "poisson_ratio": 0.0, "density": 7780.0}
+RIGID = {"name": "rigid", "youngs_modulus": 2e12, "poisson_ratio": 0.3, "density": 77800.0}
+"""A hundred times as stiff as cork."""
+
+
+def test_friction_is_for_spheres_in_axisymmetric_geometry() -> None:
+    assert parse_scene(document()).friction == 0.0
+    assert parse_scene(document(friction=0.3)).friction == 0.3
+    compact = {"kind": "compact", "mass": 1e-3, "tip_radius": 1e-2, "material": STEEL, "gap": 0.0}
+    for change in ({"reference__geometry": "solid"}, {"inner": compact}):
+        with pytest.raises(SceneError, match=r"friction is 0\.3"):
+            parse_scene(document(friction=0.3, **change))
+    with pytest.raises(SceneError, match="friction is -1"):
+        parse_scene(document(friction=-1.0))
+
+
+def test_every_pair_obeys_coulombs_law() -> None:
+    """It sticks with less than the bound, or slides against it with exactly the bound."""
+    friction = 0.3
+    system, _ = make_system(parse_scene(document(friction=friction)))
+    pairs = system.matched[0]
+    loop = make_loop(system, 1e-9)
+    seen = set()
+    for seed in range(5):
+        random = np.random.default_rng(seed)
+        loop.u[:] = 0.0
+        loop.u[2 * pairs.candidates + 1] = -2e-5 * random.random(pairs.radii.size)
+        loop.v[:] = 2e3 * random.standard_normal(loop.v.size) * (loop.inverse > 0.0)
+        velocity = loop.v - loop.dt * loop.inverse * loop.product(loop.u)
+        loop.advance(1)
+        change = (loop.v - velocity).reshape(-1, 2)[pairs.candidates]
+        held = loop.inverse.reshape(-1, 2)[pairs.candidates]
+        normal = change[:, 1] / (loop.dt * held[:, 1])
+        off_axis = held[:, 0] > 0.0
+        shear = np.zeros_like(normal)
+        shear[off_axis] = change[off_axis, 0] / (loop.dt * held[off_axis, 0])
+        bound = friction * normal
+        sliding = loop.v[2 * pairs.candidates] - loop.v[2 * pairs.opposite]
+        assert normal.min() >= -1e-9 * normal.max()
+        assert np.abs(shear).max() > 0.0
+        assert np.all(np.abs(shear) <= bound + 1e-9 * normal.max())
+        slides = (np.abs(sliding) > 1e-12) & (normal > 1e-9 * normal.max()) & off_axis
+        np.testing.assert_allclose(
+            shear[slides], -np.sign(sliding[slides]) * bound[slides], rtol=1e-6
+        )
+        sticks = (normal > 1e-9 * normal.max()) & off_axis & ~slides
+        seen |= {name for name, any_ in (("slides", slides), ("sticks", sticks)) if any_.any()}
+    assert seen == {"slides", "sticks"}
+    assert loop.problem.matched[0].rubbed < 0.0
+
+
+def peak(friction: float, **changes: Any) -> Run:
+    scene = parse_scene(document(friction=friction, **changes))
+    system, duration = make_system(scene)
+    run = integrate(system, scene, duration, end_time=scene.end_time, most_levels=1)
+    assert run.energy_residual < 1e-5
+    assert run.momentum_residual < 1e-9
+    return run
+
+
+def test_friction_hardly_matters_between_equals_and_little_between_others() -> None:
+    """Equal half-spaces displace their faces alike (Johnson 1985, ch. 4.2): nothing slides."""
+
+    def change(**scene: Any) -> tuple[float, float]:
+        smooth, rough = peak(0.0, **scene), peak(0.3, **scene)
+        assert smooth.friction is None
+        assert rough.friction is not None
+        assert rough.friction[0] > 0.0
+        force = rough.contacts[0].force_peak / smooth.contacts[0].force_peak
+        return abs(force - 1.0), rough.friction[0] / rough.initial_energy
+
+    thick = {"plate__radius": 0.02, "plate__thickness": 0.012, "run__end_time": 6e-5}
+    equal, rubbed_equal = change(**thick)
+    unlike, rubbed_unlike = change(**{**thick, "run__end_time": 2e-4}, plate__material=POLYMER)
+    assert equal < 5e-4
+    assert rubbed_equal < 1e-5
+    assert 3.0 * equal < unlike < 0.02
+    assert rubbed_unlike > 10.0 * rubbed_equal
+
+
+def test_rough_contact_is_stiffer_as_much_as_a_punch_that_sticks() -> None:
+    """A rigid sphere on a plate without lateral contraction: rough beyond sliding.
+
+    A flat punch that sticks is stiffer by (1 - nu) ln(3 - 4 nu) / (1 - 2 nu) than a smooth one
+    (Johnson 1985, eq. 3.40), by ln 3 here; a sphere, whose patch grows, by somewhat less. The peak
+    of an impact goes with the power 2/5.
+    """
+    scene = {
+        "outer__material": RIGID,
+        "plate__material": CORK,
+        "plate__radius": 0.03,
+        "plate__thickness": 0.024,
+        "plate__edge": "free",
+        "inner__gap": 1e-3,
+        "outer__speed": 0.02,
+        "run__end_time": 4e-4,
+        "reference__elements_per_contact_radius": 8,
+    }
+    ratio = peak(100.0, **scene).contacts[0].force_peak / peak(0.0, **scene).contacts[0].force_peak
+    assert 1.0 + 0.5 * (math.log(3.0) ** 0.4 - 1.0) < ratio < math.log(3.0) ** 0.4
