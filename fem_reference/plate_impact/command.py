@@ -20,7 +20,8 @@ def _modes(document: Any, arguments: argparse.Namespace) -> None:
     scene = parse_scene(document)
     if arguments.count < 1:
         raise SolverError(f"--count is {arguments.count}; it must be at least 1")
-    found = plate_modes(scene.plate, modal_plate_mesh(scene.plate), arguments.count)
+    plate = scene.dry_plate
+    found = plate_modes(plate, modal_plate_mesh(plate), arguments.count)
     modes = [{"frequency": mode.frequency, "longitudinal": mode.longitudinal} for mode in found]
     print(json.dumps({"schema_version": 1, "scene": scene.name, "modes": modes}, indent=2))
 

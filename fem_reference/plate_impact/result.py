@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -174,8 +175,8 @@ def _write(
         stress_times=solution.write_fields(folder, scene),
     )
     summary["uncertainty"].update(curve_uncertainty(bands))
-    if run.plate_damping is not None:
-        summary["losses"] = {"plate_damping": run.plate_damping, "squeeze_film": 0.0, "drag": 0.0}
+    if run.losses is not None:
+        summary["losses"] = asdict(run.losses)
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(
         scene,

@@ -14,7 +14,7 @@ from ..explicit.levels import MOST_LEVELS
 from ..explicit.loop import Energies
 from ..explicit.records import ContactRecord, intervals, peak_force
 from ..explicit.supervision import Course, Ended, Plan, supervise
-from .motion import Motion
+from .motion import Losses, Motion
 from .scene import Scene
 
 PEAK_WINDOW_SAMPLES = 4
@@ -51,8 +51,8 @@ class Run:
     momentum_residual: float
     """Momentum that the ledger misses over the initial momentum."""
     support_impulse: float
-    plate_damping: float | None
-    """Energy lost to the plate's damping, J; None if it has none."""
+    losses: Losses | None
+    """Of the whole bodies; None if nothing loses."""
 
 
 def integrate(
@@ -110,13 +110,13 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     start = -share * scene.outer.mass * scene.speed
     initial_energy = 0.5 * share * scene.outer.mass * scene.speed**2
     support = problem.state.reaction[loop.components - 1]
-    damping = motion.damping
-    dissipated, braking = (damping.dissipated, damping.impulse) if damping else (0.0, 0.0)
-    # Three independent balances: all bodies against the support, each sphere against its contact.
+    further = motion.further
+    losses = further.losses or Losses()
+    # Three independent balances: all bodies against the support, each body against what acts on it.
     misses = [
-        sum(momenta) - start - support - braking,
+        sum(momenta) - start - support - further.on_all,
         momenta[0] - start - impulses[0],
-        momenta[2] + impulses[1],
+        momenta[2] + impulses[1] - further.on_inner,
     ]
     # The last sample needs one more step, which leaves the levels at different times.
     rows = np.vstack([course.rows, motion.sample(1, 1)])
@@ -139,11 +139,11 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         inner_velocity=velocities[1],
         energies=energies,
         initial_energy=initial_energy / share,
-        energy_residual=abs(energies.total + dissipated - initial_energy - work) / initial_energy,
+        energy_residual=abs(energies.total + losses.total - initial_energy - work) / initial_energy,
         contact_loss=-(work + stored) / initial_energy,
         momentum_residual=max(abs(miss) for miss in misses) / abs(start),
         support_impulse=support / share,
-        plate_damping=dissipated / share if damping else None,
+        losses=further.losses and further.losses.of_whole(share),
     )
 
 
