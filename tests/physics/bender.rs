@@ -5,7 +5,7 @@ use approx::assert_relative_eq;
 use impactcheck::analytical::cantilever;
 use impactcheck::body::beam::{Beam, Release};
 use impactcheck::body::kirchhoff;
-use impactcheck::dynamics::OuterBody;
+use impactcheck::dynamics::MovingBody;
 use impactcheck::dynamics::integration::{Integration, Options};
 use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
@@ -41,7 +41,7 @@ fn rocker(bender: Bender) -> PlateImpact {
 
 fn system(setup: &PlateImpact, modes: usize) -> System {
     let plate = kirchhoff::modes(&setup.plate, modes).unwrap();
-    System::with_outer(setup, OuterBody::new(&setup.outer).unwrap(), &plate, [0.0; 2])
+    System::of(setup, &MovingBody::both(setup).unwrap(), &plate, [0.0; 2])
 }
 
 fn run(setup: &PlateImpact) -> (System, Integration) {
@@ -229,7 +229,7 @@ fn torque_deflection_and_speed_are_three_ways_to_say_one_thing() {
     let deflection = 4e-3 * bender.length.powi(2) / (2.0 * bender.bending_stiffness);
     let by_deflection = outer(&format!("tip_deflection = {deflection:e}"), &section);
     assert_relative_eq!(by_deflection.speed, by_torque.speed, max_relative = 1e-12);
-    let drive = OuterBody::new(&outer(&format!("speed = {:e}", by_torque.speed), &section)).unwrap().drive;
+    let drive = MovingBody::outer(&outer(&format!("speed = {:e}", by_torque.speed), &section)).unwrap().drive;
     assert_relative_eq!(drive.expect("a bender").torque, 4e-3, max_relative = 1e-12);
     for (drive, beam) in [
         ("", measured_beam),

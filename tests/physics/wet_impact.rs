@@ -6,7 +6,7 @@ use crate::runge_kutta::final_velocities;
 use approx::assert_relative_eq;
 use impactcheck::body::continuum::{self, MeshOptions};
 use impactcheck::body::kirchhoff;
-use impactcheck::dynamics::OuterBody;
+use impactcheck::dynamics::MovingBody;
 use impactcheck::dynamics::integration::{Integration, Options};
 use impactcheck::dynamics::integrator;
 use impactcheck::dynamics::system::System;
@@ -52,11 +52,11 @@ impl Wet {
         let fluid = setup.fluid.as_ref().expect("fluid");
         assert_eq!(fluid.added_mass_frequency_ratio, 1.0, "the shapes below are those of the dry plate");
         let plate = immersed(kirchhoff::modes(&setup.plate, modes).unwrap(), fluid);
-        let outer = OuterBody::new(&setup.outer).unwrap();
+        let bodies = MovingBody::both(setup).unwrap();
         let shapes = |radii: &[f64]| kirchhoff::shapes(&setup.plate, modes, radii);
         let forces = FluidForces::with_cells(fluid, &setup.plate, &setup.inner, cells, shapes);
         Self {
-            system: System::with_outer(setup, outer, &plate, [0.0; 2]),
+            system: System::of(setup, &bodies, &plate, [0.0; 2]),
             fluid: forces.unwrap().expect("film or drag"),
         }
     }

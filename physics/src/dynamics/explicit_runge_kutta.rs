@@ -215,8 +215,7 @@ impl<'a> Equations<'a> {
 
     /// Velocities of outer and inner body in m/s in the state `y`.
     pub fn velocity(&self, y: &[f64]) -> [f64; 2] {
-        let n = self.system.size();
-        [0, 1].map(|i| y[n + i] / self.system.masses[i].sqrt())
+        self.system.of_bodies(&y[self.system.size()..])
     }
 }
 

@@ -2,7 +2,7 @@
 //! unexplained.
 
 use super::contact_ledger::ContactLedger;
-use super::system::{INNER, PLATE, System, dot};
+use super::system::{PLATE, System};
 use crate::result::{History, Losses};
 
 /// What the user may choose about the integration.
@@ -95,7 +95,7 @@ impl Closing<'_> {
     /// The results of the run with the `history` that was kept.
     pub(super) fn integration(self, history: Option<History>) -> Integration {
         let Self { system, v, ref contacts, fluid, .. } = self;
-        let velocity = [dot(&system.outer, v), v[INNER] / system.masses[1].sqrt()];
+        let velocity = system.of_bodies(v);
         let [start_q, start_v] = &system.start;
         let initial = system.energy(start_q, start_v);
         let end = system.energy(self.q, v);

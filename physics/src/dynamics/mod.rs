@@ -15,7 +15,7 @@ pub mod integration;
 pub mod integrator;
 mod ladder;
 mod ledger_check;
-mod outer_body;
+mod moving_body;
 mod point_laws;
 pub(crate) mod recorder;
 mod step_bounds;
@@ -24,7 +24,7 @@ pub mod wet;
 
 pub use contact_ledger::ContactLedger;
 pub use ledger_check::ledger_check;
-pub use outer_body::OuterBody;
+pub use moving_body::MovingBody;
 
 use crate::error::Result;
 use integration::{Integration, Options};

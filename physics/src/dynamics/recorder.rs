@@ -1,7 +1,7 @@
 //! Sampling of the course over time; a run that is not asked for its history has no recorder.
 
 use super::collocation::{Collocation, POINTS, Stages};
-use super::system::{INNER, System, dot};
+use super::system::{System, dot};
 use crate::error::Result;
 use crate::result::{Curve, History};
 
@@ -92,14 +92,14 @@ impl<'a, const P: usize> Recorder<'a, P> {
         let (patch, forces) = system.contact(approach, approach).unwrap_or(([f64::NAN; 2], [f64::NAN; 2]));
         let rate = [0, 1].map(|i| dot(&system.approach[i], v));
         let local = system.local_centre.motion(system, patch, rate, forces);
-        let inner = system.masses[1].sqrt();
+        let (displacement, velocity) = (system.of_bodies(q), system.of_bodies(v));
         let sample = [
-            dot(&system.outer, q),
+            displacement[0],
             dot(&system.centre, q) + local[0],
-            q[INNER] / inner,
-            dot(&system.outer, v),
+            displacement[1],
+            velocity[0],
             dot(&system.centre, v) + local[1],
-            v[INNER] / inner,
+            velocity[1],
             forces[0],
             forces[1],
         ];

@@ -8,7 +8,7 @@
 
 use super::centre::LocalCentre;
 use super::duhamel::Oscillator;
-use super::outer_body::OuterBody;
+use super::moving_body::MovingBody;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::contact::{Hertz, PatchFlexibility, Residual};
@@ -16,21 +16,57 @@ use crate::result::Drive;
 use crate::scene::{PlateImpact, Shape};
 use std::ops::Range;
 
-/// Index of the outer body's first coordinate among the oscillators: the rigid motion, or a bender's first mode. A
-/// bender's further modes stand behind those of the plate.
+/// Index of the outer body's first coordinate among the oscillators: the rigid motion, or a bender's first mode. Further
+/// ones stand behind those of the plate.
 pub const OUTER: usize = 0;
-/// Index of the inner body's rigid motion.
+/// Index of the inner body's first coordinate, as the outer one's.
 pub const INNER: usize = 1;
 /// Index of the first coordinate of the plate.
 pub const PLATE: usize = 2;
 
+/// One coordinate of a system: what [`System`] has a row each of.
+struct Coordinate {
+    oscillator: Oscillator,
+    approach: [f64; 2],
+    centre: f64,
+    bodies: [f64; 2],
+    start: [f64; 2],
+}
+
+impl Coordinate {
+    /// Coordinate `k` of body `i`: the outer one closes its contact as it moves down, the inner one as it moves up.
+    fn of_body(bodies: &[MovingBody; 2], i: usize, k: usize) -> Self {
+        let body = &bodies[i];
+        let alone = |value: f64| std::array::from_fn(|j| if i == j { value } else { 0.0 });
+        Self {
+            oscillator: body.oscillators[k],
+            approach: alone([-body.tip[k], body.tip[k]][i]),
+            centre: 0.0,
+            bodies: alone(body.tip[k]),
+            start: [body.displacement[k], body.velocity[k]],
+        }
+    }
+
+    /// Mode `k` of the plate.
+    fn of_plate(plate: &ModalBody, k: usize) -> Self {
+        let (omega, [top, bottom]) = (plate.omega[k], plate.participation[k]);
+        Self {
+            oscillator: Oscillator { omega, alpha: plate.damping_ratio[k] * omega },
+            approach: [top, -bottom],
+            centre: 0.5 * (top + bottom),
+            bodies: [0.0; 2],
+            start: [0.0; 2],
+        }
+    }
+}
+
 /// Oscillators and contacts of a plate impact.
 #[derive(Debug, Clone)]
 pub struct System {
-    /// The oscillators: outer body, inner body, plate, further modes of the outer body. Shape (n).
+    /// The oscillators: outer body, inner body, plate, further modes of both bodies. Shape (n).
     pub oscillators: Vec<Oscillator>,
-    /// Displacement along z of the outer body (of a bender: of its tip) per unit of each coordinate. Shape (n).
-    pub outer: Vec<f64>,
+    /// Displacement along z of outer and inner body (of a bender: of its tip) per unit of each coordinate. Shape (2, n).
+    pub bodies: [Vec<f64>; 2],
     /// Coordinates and their rates at t = 0. Each of shape (n).
     pub start: [Vec<f64>; 2],
     /// Approach of each contact per unit of each coordinate, kg^(-1/2). Shape (2, n).
@@ -61,47 +97,26 @@ impl System {
     /// Joins the plate, reduced to `plate`, with rigid outer and inner bodies; `tip_residual` is the residual
     /// flexibility in m/N of the outer and the inner body at their contact points (zero for models A and B).
     ///
-    /// A bender is no rigid body: [`System::with_outer`].
+    /// A bender is no rigid body: [`System::of`].
     pub fn new(setup: &PlateImpact, plate: &ModalBody, tip_residual: [f64; 2]) -> Self {
-        debug_assert!(!matches!(setup.outer.shape, Shape::Bender(_)), "a bender is no rigid body");
-        Self::with_outer(setup, OuterBody::rigid(&setup.outer), plate, tip_residual)
+        Self::of(setup, &MovingBody::both_rigid(setup), plate, tip_residual)
     }
 
-    /// As [`System::new`], with any outer body.
-    pub fn with_outer(
+    /// As [`System::new`], with any outer and inner body.
+    pub fn of(
         setup: &PlateImpact,
-        outer_body: OuterBody,
+        bodies: &[MovingBody; 2],
         plate: &ModalBody,
         tip_residual: [f64; 2],
     ) -> Self {
         let (outer, inner) = (&setup.outer, &setup.inner);
-        let masses = [outer_body.mass, inner.shape.mass(&inner.material)];
-        let rigid = Oscillator { omega: 0.0, alpha: 0.0 };
-        let mut oscillators = vec![outer_body.oscillators[0], rigid];
-        let mut approach = [vec![-outer_body.tip[0], 0.0], vec![0.0, 1.0 / masses[1].sqrt()]];
-        let mut centre = vec![0.0, 0.0];
-        for ((&omega, &damping), &[top, bottom]) in
-            plate.omega.iter().zip(&plate.damping_ratio).zip(&plate.participation)
-        {
-            oscillators.push(Oscillator { omega, alpha: damping * omega });
-            approach[0].push(top);
-            approach[1].push(-bottom);
-            centre.push(0.5 * (top + bottom));
+        let masses = [bodies[0].mass, bodies[1].mass];
+        let mut coordinates: Vec<Coordinate> = [0, 1].map(|i| Coordinate::of_body(bodies, i, 0)).into();
+        coordinates.extend((0..plate.omega.len()).map(|k| Coordinate::of_plate(plate, k)));
+        for (i, body) in bodies.iter().enumerate() {
+            coordinates.extend((1..body.oscillators.len()).map(|k| Coordinate::of_body(bodies, i, k)));
         }
-        let mut motion = vec![0.0; oscillators.len()];
-        let mut start = [motion.clone(), motion.clone()];
-        motion[OUTER] = outer_body.tip[0];
-        start[0][OUTER] = outer_body.displacement[0];
-        start[1][OUTER] = outer_body.velocity[0];
-        for k in 1..outer_body.oscillators.len() {
-            oscillators.push(outer_body.oscillators[k]);
-            approach[0].push(-outer_body.tip[k]);
-            approach[1].push(0.0);
-            centre.push(0.0);
-            motion.push(outer_body.tip[k]);
-            start[0].push(outer_body.displacement[k]);
-            start[1].push(outer_body.velocity[k]);
-        }
+        let each = |value: fn(&Coordinate) -> f64| coordinates.iter().map(value).collect::<Vec<f64>>();
         let law = |shape: &Shape, material| Hertz::new(shape.tip_radius(), material, &setup.plate.material);
         let laws = [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)];
         let mut flexibility = plate.residual.unwrap_or(PatchFlexibility::constant([[0.0; 2]; 2]));
@@ -116,20 +131,20 @@ impl System {
         let residual = Residual::new(&flexibility, &laws);
         let elastic = plate.omega.iter().copied().filter(|w| *w > 0.0);
         Self {
-            approach,
-            outer: motion,
-            start,
-            centre,
+            approach: [each(|c| c.approach[0]), each(|c| c.approach[1])],
+            bodies: [each(|c| c.bodies[0]), each(|c| c.bodies[1])],
+            start: [each(|c| c.start[0]), each(|c| c.start[1])],
+            centre: each(|c| c.centre),
             gap: [0.0, inner.gap],
             laws,
             local_centre,
             residual: (!residual.is_zero()).then_some(residual),
             masses,
-            drive: outer_body.drive,
+            drive: bodies[0].drive,
             speed: outer.speed,
             first_frequency: elastic.clone().fold(f64::INFINITY, f64::min) / (2.0 * std::f64::consts::PI),
             modes: elastic.count(),
-            oscillators,
+            oscillators: coordinates.iter().map(|c| c.oscillator).collect(),
         }
     }
 
@@ -179,9 +194,8 @@ impl System {
         let mut system = self.softer([flexibility(0, 0), flexibility(0, 1), flexibility(1, 1)]);
         system.modes -= gone.len();
         system.oscillators.drain(gone.clone());
-        let [q, v] = &mut system.start;
-        let [outer, inner] = &mut system.approach;
-        for coordinates in [q, v, outer, inner, &mut system.outer, &mut system.centre] {
+        let pairs = [&mut system.start, &mut system.approach, &mut system.bodies];
+        for coordinates in pairs.into_iter().flatten().chain([&mut system.centre]) {
             coordinates.drain(gone.clone());
         }
         system
@@ -202,6 +216,11 @@ impl System {
     /// Number of oscillators.
     pub fn size(&self) -> usize {
         self.oscillators.len()
+    }
+
+    /// Displacements in m, or from the rates velocities in m/s, of outer and inner body.
+    pub fn of_bodies(&self, coordinates: &[f64]) -> [f64; 2] {
+        [0, 1].map(|i| dot(&self.bodies[i], coordinates))
     }
 
     /// Coordinates and their rates at t = 0, when the outer body touches. Shapes (n).

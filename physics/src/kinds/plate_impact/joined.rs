@@ -8,7 +8,7 @@ use crate::body::ModalBody;
 use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
-use crate::dynamics::OuterBody;
+use crate::dynamics::MovingBody;
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::Result;
@@ -48,7 +48,7 @@ fn join(setup: &PlateImpact, plate: ModalBody, tips: [f64; 2]) -> Result<System>
         Some(fluid) => immersed(plate, fluid),
         None => plate,
     };
-    Ok(System::with_outer(setup, OuterBody::new(&setup.outer)?, &plate, tips))
+    Ok(System::of(setup, &MovingBody::both(setup)?, &plate, tips))
 }
 
 pub(super) fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<System> {

@@ -13,7 +13,7 @@ use crate::analytical::circular_plate::rigidity;
 use crate::body::continuum::ContinuumPlate;
 use crate::body::layer::Waves;
 use crate::body::{ModalBody, free_sphere};
-use crate::dynamics::OuterBody;
+use crate::dynamics::MovingBody;
 use crate::dynamics::integrate;
 use crate::dynamics::integration::Options;
 use crate::dynamics::system::System;
@@ -65,7 +65,7 @@ impl Lack {
 /// The bodies of a scene in closed form.
 pub(super) struct Trials<'a> {
     pub(super) setup: &'a PlateImpact,
-    outer: OuterBody,
+    bodies: [MovingBody; 2],
     /// Kirchhoff's plate.
     pub(super) waves: Waves,
     layer: ContinuumPlate,
@@ -81,14 +81,14 @@ impl<'a> Trials<'a> {
     /// # Errors
     /// As [`super::reduced::Reduced::new`].
     pub(super) fn new(setup: &'a PlateImpact, resolution: f64, options: Options) -> Result<Self> {
-        let outer = OuterBody::new(&setup.outer)?;
+        let bodies = MovingBody::both(setup)?;
         let few = Waves::new(&setup.plate, DEFAULT_MODES);
-        let predictor = Predictor::of(&system(setup, &outer, few.kirchhoff(DEFAULT_MODES), [0.0; 2]))?;
+        let predictor = Predictor::of(&system(setup, &bodies, few.kirchhoff(DEFAULT_MODES), [0.0; 2]))?;
         let enough = |n: &usize| slowed(setup, &predictor, few.frequency(*n + 1)) <= resolution;
         let most = RUNGS.into_iter().find(enough).unwrap_or(RUNGS[RUNGS.len() - 1]);
         let waves = if most > DEFAULT_MODES { Waves::new(&setup.plate, most) } else { few };
         let layer = waves.layer(predictor.patch_radius);
-        Ok(Self { setup, outer, waves, layer, predictor, options, tips: tips(setup, &predictor) })
+        Ok(Self { setup, bodies, waves, layer, predictor, options, tips: tips(setup, &predictor) })
     }
 
     /// Models A and B.
@@ -103,7 +103,7 @@ impl<'a> Trials<'a> {
         let plate = &self.setup.plate;
         let bending = rigidity(plate.material.youngs_modulus, plate.material.poisson_ratio, plate.thickness);
         let rest = plate.radius.powi(2) / (4.0 * PI * self.waves.cut().powi(2) * bending);
-        let system = system(self.setup, &self.outer, self.waves.kirchhoff(modes), [0.0; 2]);
+        let system = system(self.setup, &self.bodies, self.waves.kirchhoff(modes), [0.0; 2]);
         // the inner contact closes when the plate moves down
         self.integrate(&system.softer([rest, -rest, rest]), modes)
     }
@@ -114,7 +114,7 @@ impl<'a> Trials<'a> {
     }
 
     fn run(&self, plate: ModalBody, modes: usize, tips: [f64; 2]) -> Result<PlateQuantities> {
-        self.integrate(&system(self.setup, &self.outer, plate, tips), modes)
+        self.integrate(&system(self.setup, &self.bodies, plate, tips), modes)
     }
 
     fn integrate(&self, system: &System, modes: usize) -> Result<PlateQuantities> {
@@ -158,7 +158,7 @@ impl<'a> Trials<'a> {
         let rigid = plate.omega.iter().filter(|omega| **omega == 0.0).count();
         let modal = plate.omega.iter().zip(&plate.participation).skip(rigid + modes);
         let flexibility: f64 = modal.map(|(omega, phi)| (phi[0] / omega).powi(2)).sum();
-        let system = system(self.setup, &self.outer, plate.clone(), [0.0; 2]);
+        let system = system(self.setup, &self.bodies, plate.clone(), [0.0; 2]);
         let of = |i: usize| {
             let force = self.predictor.force_peak[i];
             flexibility * force / system.laws[i].approach(force)
@@ -183,12 +183,12 @@ fn slowed(setup: &PlateImpact, predictor: &Predictor, omega_next: f64) -> f64 {
 }
 
 /// Joins plate and bodies.
-fn system(setup: &PlateImpact, outer: &OuterBody, plate: ModalBody, tips: [f64; 2]) -> System {
+fn system(setup: &PlateImpact, bodies: &[MovingBody; 2], plate: ModalBody, tips: [f64; 2]) -> System {
     let plate = match &setup.fluid {
         Some(fluid) => immersed(plate, fluid),
         None => plate,
     };
-    System::with_outer(setup, outer.clone(), &plate, tips)
+    System::of(setup, bodies, &plate, tips)
 }
 
 /// Residual flexibilities in m/N of both bodies in closed form.

@@ -1,15 +1,15 @@
-//! The outer body as oscillators, in the state in which it strikes.
+//! A body beside the plate as oscillators, in the state in which the impact begins.
 
 use super::duhamel::Oscillator;
 use crate::analytical::cantilever;
 use crate::body::beam::Release;
 use crate::error::Result;
 use crate::result::Drive;
-use crate::scene::{Outer, Shape};
+use crate::scene::{Material, Outer, PlateImpact, Shape};
 
-/// Outer body: mass-normalised coordinates that move its contact point, and their state at t = 0.
+/// Outer or inner body: mass-normalised coordinates that move its contact point, and their state at t = 0.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OuterBody {
+pub struct MovingBody {
     /// The oscillators. Shape (n).
     pub oscillators: Vec<Oscillator>,
     /// Displacement of the contact point along +z per unit of each coordinate, kg^(-1/2). Shape (n).
@@ -24,14 +24,28 @@ pub struct OuterBody {
     pub drive: Option<Drive>,
 }
 
-impl OuterBody {
+impl MovingBody {
+    /// The outer and the inner body of a scene.
+    ///
+    /// # Errors
+    /// As [`MovingBody::outer`].
+    pub fn both(setup: &PlateImpact) -> Result<[Self; 2]> {
+        Ok([Self::outer(&setup.outer)?, Self::rigid_inner(setup)])
+    }
+
+    /// Both as rigid bodies; a bender is none.
+    pub(super) fn both_rigid(setup: &PlateImpact) -> [Self; 2] {
+        debug_assert!(!matches!(setup.outer.shape, Shape::Bender(_)), "a bender is no rigid body");
+        [Self::rigid_outer(&setup.outer), Self::rigid_inner(setup)]
+    }
+
     /// The outer body of a scene: rigid, or a bender with the modes of its beam.
     ///
     /// # Errors
     /// As [`Release::new`].
-    pub fn new(outer: &Outer) -> Result<Self> {
+    pub fn outer(outer: &Outer) -> Result<Self> {
         let Shape::Bender(bender) = &outer.shape else {
-            return Ok(Self::rigid(outer));
+            return Ok(Self::rigid_outer(outer));
         };
         let release = Release::new(bender)?;
         let torque = outer.speed / release.speed_per_moment;
@@ -55,14 +69,22 @@ impl OuterBody {
         })
     }
 
-    /// A rigid body with the mass of the scene's.
-    pub(super) fn rigid(outer: &Outer) -> Self {
-        let mass = outer.shape.mass(&outer.material);
+    fn rigid_outer(outer: &Outer) -> Self {
+        Self::rigid(&outer.shape, &outer.material, -outer.speed)
+    }
+
+    fn rigid_inner(setup: &PlateImpact) -> Self {
+        Self::rigid(&setup.inner.shape, &setup.inner.material, 0.0)
+    }
+
+    /// A rigid body that begins with `velocity` m/s along z.
+    fn rigid(shape: &Shape, material: &Material, velocity: f64) -> Self {
+        let mass = shape.mass(material);
         Self {
             oscillators: vec![Oscillator { omega: 0.0, alpha: 0.0 }],
             tip: vec![1.0 / mass.sqrt()],
             displacement: vec![0.0],
-            velocity: vec![-outer.speed * mass.sqrt()],
+            velocity: vec![velocity * mass.sqrt()],
             mass,
             drive: None,
         }
