@@ -66,6 +66,9 @@ def _parser() -> argparse.ArgumentParser:
     modes.add_argument("--scene", type=Path, required=True)
     modes.add_argument("--count", type=int, default=8)
     modes.add_argument("--mesh", type=Path, metavar="FILE", help=".vtu, of a seal seat only")
+    modes.add_argument(
+        "--wet", action="store_true", help="also in the scene's fluid, by potential flow (plates)"
+    )
     bands = commands.add_parser("bands", help="bands of middling meshes against a finer one")
     bands.add_argument("--scene", type=Path, nargs="+", default=[], help="or provenance.json")
     bands.add_argument("--random", type=_count, default=0, metavar="N", help="or N random scenes")

@@ -72,6 +72,9 @@ class PlateMode:
     """Hz"""
     longitudinal: bool
     """Axial displacement antisymmetric about the midplane."""
+    face: tuple[Floats, Floats]
+    """Radii (m) of the inner face's nodes, and their axial displacement with unit modal mass,
+    1/sqrt(kg)."""
 
 
 def plate_modes(
@@ -114,18 +117,21 @@ def plate_modes(
             f"SLEPc found {solver.getConverged()} of {count + extra} plate modes requested"
         )
     mirror = _mirror_nodes(points)
+    face = np.flatnonzero(points[:, 1] < -0.5 * plate.thickness * (1.0 - 1e-9))
+    face = face[np.argsort(points[face, 0])]
     vector = solver.getOperators()[0].createVecRight()
     modes = []
     for index in range(extra, count + extra):
         eigenvalue = solver.getEigenpair(index, vector).real
         shape = np.zeros(2 * points.shape[0])
         shape[keep] = vector.array.real
+        shape /= math.sqrt(shape @ (mass @ shape))
         axial = shape[1::2]
         weight = np.asarray(mass.sum(axis=1)).ravel()[1::2]
         # Parity: +1 symmetric (bending), -1 antisymmetric, weighted by the nodes' mass.
         parity = float(np.sum(weight * axial * axial[mirror]))
         frequency = math.sqrt(max(eigenvalue, 0.0)) / (2.0 * math.pi)
-        modes.append(PlateMode(frequency, parity < 0.0))
+        modes.append(PlateMode(frequency, parity < 0.0, (points[face, 0], axial[face])))
     solver.destroy()
     return modes
 

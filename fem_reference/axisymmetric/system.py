@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 from ..common.arrays import Floats, Ints, Mask
 from ..common.bodies import Plate
 from ..explicit.contact import Contact, MatchedContact, RigidBody
+from ..explicit.film import Film
 from .elasticity import BodyMatrices, scatter
 from .mesh import BodyMesh
 from .tip import ring_edges
@@ -51,6 +52,8 @@ class AxisymmetricSystem:
     """(m, 8, 8) their matrices, whose sum is ``stiffness``, N/m."""
     element_steps: Floats
     """(m,) critical time step of each element alone, s."""
+    film: Film | None = None
+    """Between the plate and the inner body."""
     rigid: tuple[RigidBody, ...] = ()
     contacts: tuple[Contact, ...] = ()
     free_axes: tuple[int, ...] = (1,)

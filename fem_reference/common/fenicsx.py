@@ -63,15 +63,22 @@ def _interpolation_points(space: Any) -> Any:
 
 
 class Domain:
-    """A body's mesh as dolfinx sees it, with its vector space of the given degree."""
+    """A body's mesh as dolfinx sees it, with its space of the given degree and components."""
 
     def __init__(
-        self, points: Floats, quads: Ints, degree: int = 1, *, discontinuous: bool = False
+        self,
+        points: Floats,
+        quads: Ints,
+        degree: int = 1,
+        *,
+        discontinuous: bool = False,
+        components: int = 2,
     ) -> None:
         # dolfinx numbers the corners of a quadrilateral row by row.
         self.mesh = _mesh(MPI.COMM_SELF, points, quads[:, [0, 1, 3, 2]], "quadrilateral")
         family = "DQ" if discontinuous else "Lagrange"
-        self.space = _function_space(self.mesh, family, degree, (2,))
+        shape = (components,) if components > 1 else ()
+        self.space = _function_space(self.mesh, family, degree, shape)
         self.degree = degree
 
     def points_of_nodes(self) -> Floats:
@@ -110,7 +117,7 @@ class Domain:
         return fem.Constant(self.mesh, PETSc.ScalarType(value))
 
     def matrix(self, form: Any) -> scipy.sparse.csr_matrix:
-        """Assemble a bilinear form; row and column 2 * node + component."""
+        """Assemble a bilinear form; row and column components * node + component."""
         matrix = fem_petsc.assemble_matrix(fem.form(form))
         matrix.assemble()
         indptr, indices, values = matrix.getValuesCSR()

@@ -47,6 +47,13 @@ class Reader:
             raise SceneError(f"{self._name(key)} must be a text, not {_show(value)}")
         return value
 
+    def flag(self, key: str) -> bool:
+        """The truth value under a key."""
+        value = self.get(key)
+        if not isinstance(value, bool):
+            raise SceneError(f"{self._name(key)} must be true or false, not {_show(value)}")
+        return value
+
     def choice(self, key: str, allowed: tuple[str, ...]) -> str:
         """A text that is one of ``allowed``."""
         value = self.text(key)

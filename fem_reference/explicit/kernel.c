@@ -26,6 +26,8 @@
 
 #include "tip.c"
 
+#include "film.c"
+
 /* Friction on a closed pair of matching nodes, along the radius: the multiplier that leaves the two no relative
  * velocity at the step's end, as far as Coulomb's law lets it grow. */
 static void rub(const State *s, Pairs *c, int64_t k, double lambda) {
@@ -124,8 +126,11 @@ static void one_step(State *s) {
     }
     for (int64_t i = 0; i < p->nodes; ++i)
         memcpy(p->before + C * i, v + C * (int64_t)p->global[i], C * sizeof *v);
+    if (p->film) openings(p->film, v, p->film->before);
     predict(s, p->step, p->reaction);
+    if (p->film) correct_with_film(s, p->film);
     for (int64_t c = 0; c < p->matched; ++c) correct(s, &p->pairs[c]);
+    if (p->film) book_film(s, p->film);
     for (int64_t i = 0; i < p->nodes; ++i) {
         const int64_t g = C * (int64_t)p->global[i];
         memcpy(p->u + C * i, u + g, C * sizeof *u);
@@ -147,11 +152,11 @@ void advance(State *s, int64_t steps) {
     for (int64_t n = 0; n < steps; ++n) one_step(s);
 }
 
-/* A body that nothing acts on but one contact of matching nodes: its mean motion along the last axis
- * follows from the impulse alone, which the ledger checks. */
+/* A body that nothing acts on but one contact of matching nodes and, the last one, the film: its mean motion along
+ * the last axis follows from the impulses alone, which the ledger checks. */
 typedef struct {
     double mass;         /* kg */
-    double start;        /* velocity at the start, m/s */
+    double start;        /* velocity without these, m/s */
     double displacement; /* m */
     int64_t node;        /* of a body that something else acts on: node whose motion is told; -1: none */
 } Carried;
@@ -179,6 +184,12 @@ static double speed(const State *s, const Carried *body) {
     return body->node < 0 ? 0.0 : s->v[C * body->node + AXIAL];
 }
 
+/* Impulse so far that drives a carried body off. */
+static double driven(const Problem *p, int c) {
+    const double contact = p->pairs[c].record.impulse;
+    return c == 1 && p->film ? contact + p->film->impulse : contact;
+}
+
 /* Advances by samples * stride steps with two contacts of matching nodes and writes a row of SAMPLED
  * numbers at the first step of each stride, all at t_n: displacement, velocity and impulse so far of
  * the first carried body, mean displacement and velocity of the watched nodes, and the second body's
@@ -187,7 +198,8 @@ void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64
     const Pairs *pairs = s->problem->pairs;
     for (int64_t j = 0; j < samples; ++j, row += SAMPLED) {
         const double last[2] = {pairs[0].record.impulse, pairs[1].record.impulse};
-        const double before[2] = {speed(s, &body[0]), speed(s, &body[1])};
+        const double before[2] = {driven(s->problem, 0), driven(s->problem, 1)};
+        const double moved[2] = {speed(s, &body[0]), speed(s, &body[1])};
         row[0] = place(s, &body[0]);
         row[3] = mean(s->u, watched);
         row[5] = place(s, &body[1]);
@@ -196,15 +208,15 @@ void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64
             one_step(s);
             for (int c = 0; c < 2; ++c)
                 body[c].displacement += s->problem->dt * (body[c].start + pairs[c].normal
-                                                          * pairs[c].record.impulse / body[c].mass);
+                                                          * driven(s->problem, c) / body[c].mass);
             if (n > 0) continue;
             row[4] = 0.5 * (row[4] + mean(s->v, watched));
             for (int c = 0; c < 2; ++c) {
-                const double impulse = 0.5 * (last[c] + pairs[c].record.impulse);
-                row[c == 0 ? 2 : 7] = impulse;
+                const double impulse = 0.5 * (before[c] + driven(s->problem, c));
+                row[c == 0 ? 2 : 7] = 0.5 * (last[c] + pairs[c].record.impulse);
                 row[c == 0 ? 1 : 6] = body[c].node < 0
                                           ? body[c].start + pairs[c].normal * impulse / body[c].mass
-                                          : 0.5 * (before[c] + speed(s, &body[c]));
+                                          : 0.5 * (moved[c] + speed(s, &body[c]));
             }
         }
     }
@@ -222,6 +234,6 @@ void triad(double *restrict a, const double *restrict b, const double *restrict 
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
                            sizeof(Level),  sizeof(State), sizeof(Carried), sizeof(Tip),
-                           sizeof(Watched)};
+                           sizeof(Watched), sizeof(Film)};
     return (int64_t)size[what];
 }

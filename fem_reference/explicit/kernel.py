@@ -26,6 +26,7 @@ from ..common.errors import SolverError
 FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=fast", "-fPIC", "-shared")
 MAX_INTERVALS = 256
 FACET_NODES = 6
+CORNERS = 3
 SAMPLED = 8
 """Numbers in a row of ``run``."""
 AGAINST_SURFACE, AGAINST_SPHERE = 0, 1
@@ -87,6 +88,34 @@ class Pairs(ctypes.Structure):
     )
 
 
+class Film(ctypes.Structure):
+    """Mirror of ``Film`` in kernel.c."""
+
+    _fields_ = (
+        ("count", ctypes.c_int64),
+        ("places", ctypes.c_int64),
+        ("node", _INT32),
+        ("corner", _INT32),
+        ("weight", _DOUBLE),
+        ("radius", _DOUBLE),
+        ("area", _DOUBLE),
+        ("gap", ctypes.c_double),
+        ("curvature", ctypes.c_double),
+        ("minimum_gap", ctypes.c_double),
+        ("rates", ctypes.c_int64),
+        ("first_rate", ctypes.c_double),
+        ("log_ratio", ctypes.c_double),
+        ("viscosity", _DOUBLE),
+        ("pressure", _DOUBLE),
+        ("flow", _DOUBLE),
+        ("load", _DOUBLE),
+        ("before", _DOUBLE),
+        ("force", ctypes.c_double),
+        ("impulse", ctypes.c_double),
+        ("work", ctypes.c_double),
+    )
+
+
 class Rigid(ctypes.Structure):
     """Mirror of ``Rigid`` in kernel.c."""
 
@@ -141,6 +170,7 @@ class Problem(ctypes.Structure):
         ("contact", ctypes.POINTER(Contact)),
         ("rigid", ctypes.POINTER(Rigid)),
         ("pairs", ctypes.POINTER(Pairs)),
+        ("film", ctypes.POINTER(Film)),
         ("dt", ctypes.c_double),
         ("tolerance", ctypes.c_double),
         ("step", ctypes.c_int64),
@@ -301,7 +331,7 @@ def load(components: int) -> ctypes.CDLL:
         function.argtypes, function.restype = arguments, None
     kernel.layout.restype = ctypes.c_int64
     for number, mirror in enumerate(
-        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip, Watched)
+        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip, Watched, Film)
     ):
         if kernel.layout(number) != ctypes.sizeof(mirror):
             raise SolverError(

@@ -84,6 +84,8 @@ class Loop(ABC):
         touching[self.problem.nodes] = True
         for contact in system.matched:
             touching[contact.candidates] = touching[contact.opposite] = True
+        if system.film is not None:
+            touching[system.film.nodes] = True
         steps = system.element_time_steps() / time_step
         return graded_levels(steps, system.element_nodes, touching, most)
 

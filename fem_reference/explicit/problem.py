@@ -10,6 +10,7 @@ import numpy as np
 from ..common.arrays import Floats, Ints
 from . import kernel
 from .contact import MatchedContact, SphereContact
+from .film import compiled
 from .system import System
 
 TOLERANCE = 1e-12
@@ -22,7 +23,7 @@ class ContactProblem:
     Attributes:
         nodes: (s,) surface nodes that can touch, the system's numbering, matching ones aside.
         u, predicted, before, force: (C s) work arrays of the kernel.
-        contacts, matched, rigids: the kernel's structures.
+        contacts, matched, rigids, film: the kernel's structures.
     """
 
     def __init__(self, system: System) -> None:
@@ -62,6 +63,10 @@ class ContactProblem:
         state.contact = ctypes.cast(self.contacts, ctypes.POINTER(kernel.Contact))
         state.rigid = ctypes.cast(self.rigids, ctypes.POINTER(kernel.Rigid))
         state.pairs = ctypes.cast(self.matched, ctypes.POINTER(kernel.Pairs))
+        self.film: kernel.Film | None = None
+        if system.film is not None:
+            self.film = compiled(system.film, self._arrays)
+            state.film = ctypes.pointer(self.film)
         state.tolerance = TOLERANCE
         self.state = state
 

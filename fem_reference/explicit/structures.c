@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { C = COMPONENTS, RADIAL = 0, AXIAL = C - 1, MAX_INTERVALS = 256, FACET_NODES = 6, SAMPLED = 8 };
+enum { C = COMPONENTS, RADIAL = 0, AXIAL = C - 1, MAX_INTERVALS = 256, FACET_NODES = 6, SAMPLED = 8, CORNERS = 3 };
 enum { AGAINST_SURFACE = 0, AGAINST_SPHERE = 1 };
 
 /* What a contact has done so far. */
@@ -47,6 +47,31 @@ typedef struct {
     Tip *tip;                 /* 0: none */
     Record record;
 } Pairs;
+
+/* A squeeze film, see film.c. */
+typedef struct {
+    int64_t count;           /* nodes of the film but for the one at its edge, where the pressure is 0 */
+    int64_t places;          /* nodes of the bodies that move it */
+    const int32_t *node;     /* (places) */
+    const int32_t *corner;   /* (CORNERS count) among the places: what each node of the film moves with */
+    const double *weight;    /* (CORNERS count) of their motion along the last axis in its opening */
+    const double *radius;    /* (count + 1) m */
+    const double *area;      /* (count) of the ring of each node, m^2 */
+    double gap;              /* on the axis at the start, m */
+    double curvature;        /* of the gap there, in r^2, 1/m */
+    double minimum_gap;      /* that resists, m */
+    int64_t rates;           /* entries of the viscosity's table; 1: Newtonian */
+    double first_rate;       /* of shear, apparent, of the first one, 1/s */
+    double log_ratio;        /* of neighbouring rates */
+    const double *viscosity; /* (rates) effective, Pa s */
+    double *pressure;        /* (count) of the last step, Pa */
+    double *flow;            /* (count) per width between each node and the next, last step, m^2/s */
+    double *load;            /* (count) of the last step, N */
+    double *before;          /* (count) work space: rate of opening before the step, m/s */
+    double force;            /* that pushes the bodies apart, last step, N */
+    double impulse;          /* of it so far, N s */
+    double work;             /* on both bodies so far, J */
+} Film;
 
 /* A rigid body that moves without turning; vectors have room for three components. */
 typedef struct {
@@ -92,6 +117,7 @@ typedef struct {
     Contact *contact;
     Rigid *rigid;
     Pairs *pairs;           /* (matched), in the numbering of the system */
+    Film *film;             /* 0: none */
     double dt;
     double tolerance;       /* of the multipliers, over the largest one */
     int64_t step;           /* steps done */

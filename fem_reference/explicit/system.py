@@ -8,6 +8,7 @@ import scipy.sparse
 
 from ..common.arrays import Floats, Ints, Mask
 from .contact import Contact, MatchedContact, RigidBody
+from .film import Film
 
 
 class System(Protocol):
@@ -69,3 +70,7 @@ class System(Protocol):
     @property
     def matched(self) -> tuple[MatchedContact, ...]:
         """Of surfaces whose nodes match."""
+
+    @property
+    def film(self) -> Film | None:
+        """Between two of them."""

@@ -21,10 +21,11 @@ from ..common.arrays import Floats, Ints
 from ..common.fenicsx import alone
 from ..explicit import kernel
 from ..explicit.damping import ModalDamping
+from ..explicit.drag import Drag
 from ..explicit.loop import Energies, SerialLoop
 from .ending import Ending, Followed, Patch
 from .estimate import WAVE_FREQUENCY
-from .motion import SIDES, State
+from .motion import SIDES, Further, Losses, State
 from .run import Run, integrate
 from .scene import Scene
 
@@ -38,6 +39,8 @@ FOLLOWED_MODES = 16
 DAMPED_FREQUENCY = 8.0 * WAVE_FREQUENCY
 """Up to this frequency times the Hertz contact duration a damped plate's modes are damped. Those
 above follow the force as under static load: next to no velocity, next to no loss."""
+DRAG_INTERVAL = 1e-2
+"""Longest time between two losses to drag, over the Hertz contact duration."""
 
 
 class AxisymmetricMotion:
@@ -51,7 +54,8 @@ class AxisymmetricMotion:
         if system.displacement is not None:
             self.loop.u[:] = self.loop.own(system.displacement)
         self.damping: ModalDamping | None = None
-        self._undamped = 0.0
+        self.drag: Drag | None = None
+        self._interval, self._undamped = math.inf, 0.0
         first, second = system.matched
         self.radii = (first.radii, second.radii)
         self._masses = [system.body_mass(body) for body in (OUTER, PLATE, INNER)]
@@ -77,14 +81,43 @@ class AxisymmetricMotion:
         """Damp the plate's modes up to an angular frequency (rad/s), from the start on."""
         modes = modes_up_to(self.system, frequency)
         self.damping = ModalDamping(self.loop, self.system.body(PLATE), modes, ratio)
+        self._lose_every(self.damping.interval)
+
+    def drag_inner(self, coefficient: float, interval: float) -> None:
+        """Let the inner body feel F = -coefficient U |U| (N), at least every ``interval`` s."""
+        self.drag = Drag(self.loop, self.system.body(INNER), coefficient)
+        self._lose_every(interval)
+
+    def _lose_every(self, interval: float) -> None:
+        self._interval = min(interval, self._interval)
         # What is lost in an interval is lost in its middle.
-        self._undamped = 0.5 * self.damping.interval
+        self._undamped = 0.5 * self._interval
+
+    def _lose(self) -> None:
+        """What was to be lost since the last time."""
+        if self.damping is not None:
+            self.damping.lose(self._undamped)
+        if self.drag is not None:
+            self._bodies[1].start += self.drag.lose(self._undamped)
+        self._undamped = 0.0
 
     @property
-    def rubbed(self) -> tuple[float, float]:
-        """Work of friction in each contact so far, J."""
+    def further(self) -> Further:
+        """See `Motion.further`."""
+        damping, film, drag = self.damping, self.loop.problem.film, self.drag
         outer, inner = self.loop.problem.matched[:2]
-        return outer.rubbed, inner.rubbed
+        losses = Losses(
+            damping.dissipated if damping else 0.0,
+            -film.work if film else 0.0,
+            drag.dissipated if drag else 0.0,
+            (-outer.rubbed, -inner.rubbed),
+        )
+        slowed = drag.impulse if drag else 0.0
+        return Further(
+            losses if damping or film or drag or outer.friction > 0.0 else None,
+            slowed + (damping.impulse if damping else 0.0),
+            slowed - (film.impulse if film else 0.0),
+        )
 
     @property
     def records(self) -> list[kernel.Record]:
@@ -96,18 +129,17 @@ class AxisymmetricMotion:
         if self._bent:
             self._fall_behind()
             self._bent = False
-        if self.damping is None:
+        if math.isinf(self._interval):
             return self.loop.run(self._bodies, self._watched, samples, stride)
         rows, length = [], stride * self.loop.dt
         while samples > 0:
-            due = math.ceil((self.damping.interval - self._undamped) / length)
+            due = math.ceil((self._interval - self._undamped) / length)
             count = min(samples, max(1, due))
             rows.append(self.loop.run(self._bodies, self._watched, count, stride))
             samples -= count
             self._undamped += count * length
-            if self._undamped >= self.damping.interval:
-                self.damping.lose(self._undamped)
-                self._undamped = 0.0
+            if self._undamped >= self._interval:
+                self._lose()
         return np.vstack(rows)
 
     def _fall_behind(self) -> None:
@@ -205,6 +237,8 @@ def integrate_axisymmetric(
     motion = AxisymmetricMotion(system)
     if damping_ratio > 0.0:
         motion.damp(damping_ratio, 2.0 * math.pi * DAMPED_FREQUENCY / contact_duration)
+    if scene.drag > 0.0:
+        motion.drag_inner(scene.drag, DRAG_INTERVAL * contact_duration)
     run = integrate(
         motion,
         scene,

@@ -14,15 +14,29 @@ from .scene import parse_scene
 
 
 def _modes(document: Any, arguments: argparse.Namespace) -> None:
+    from ..axisymmetric.added_mass import wet_frequencies
     from ..axisymmetric.meshing import modal_plate_mesh
     from ..axisymmetric.modal import plate_modes
 
     scene = parse_scene(document)
     if arguments.count < 1:
         raise SolverError(f"--count is {arguments.count}; it must be at least 1")
-    found = plate_modes(scene.plate, modal_plate_mesh(scene.plate), arguments.count)
+    plate = scene.dry_plate
+    mesh = modal_plate_mesh(plate)
+    found = plate_modes(plate, mesh, arguments.count)
     modes = [{"frequency": mode.frequency, "longitudinal": mode.longitudinal} for mode in found]
-    print(json.dumps({"schema_version": 1, "scene": scene.name, "modes": modes}, indent=2))
+    answer: dict[str, Any] = {"schema_version": 1, "scene": scene.name, "modes": modes}
+    if arguments.wet:
+        if scene.fluid is None:
+            raise SolverError(
+                "--wet asks for a plate in a fluid, but the scene has none: add [fluid]"
+            )
+        wet = wet_frequencies(plate, mesh, arguments.count, scene.fluid.density)
+        answer["wet"] = {
+            "frequencies": wet.tolist(),
+            "added_mass_frequency_ratio": wet[0] / found[0].frequency,
+        }
+    print(json.dumps(answer, indent=2))
 
 
 def _solve(document: Any, arguments: argparse.Namespace) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse
 
 from ..axisymmetric.elasticity import BodyMatrices, assemble, beam_body, rigid_node
+from ..axisymmetric.film import facing_nodes, squeeze_film
 from ..axisymmetric.mesh import BodyMesh, check_elements
 from ..axisymmetric.meshing import mesh_plate, mesh_sphere
 from ..axisymmetric.sizes import MeshSettings
@@ -24,6 +25,7 @@ from ..common.arrays import Floats, Ints
 from ..common.bodies import Bender, Body, Compact, Plate, Sphere, sphere_profile
 from ..common.errors import SceneError, SolverError
 from ..explicit.contact import MatchedContact
+from ..explicit.film import Film
 from .motion import observed_circle
 from .scene import Scene
 
@@ -133,8 +135,7 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     quality = min(check_elements(body) for body in (outer, plate, inner) if body.quads.size)
 
     def face(z: float) -> Ints:
-        nodes = np.flatnonzero(np.abs(plate.points[:, 1] - z) < 1e-9 * half)
-        nodes = nodes[np.argsort(plate.points[nodes, 0])][: radii.size]
+        nodes = plate_face(plate, z)[: radii.size]
         if not np.allclose(plate.points[nodes, 0], radii, rtol=0.0, atol=1e-9 * radii[-1]):
             raise SolverError("the plate's surface nodes do not match the spheres' contact nodes")
         return nodes
@@ -150,13 +151,37 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     )
 
 
+def plate_face(plate: BodyMesh, z: float) -> Ints:
+    """Nodes of the plate's face at z (m), by radius."""
+    face = np.flatnonzero(np.abs(plate.points[:, 1] - z) < 1e-9 * abs(z))
+    return np.asarray(face[np.argsort(plate.points[face, 0])])
+
+
+def _film(scene: Scene, mesh: ImpactMesh, numbers: list[Ints]) -> Film | None:
+    """The squeeze film of a scene; ``numbers`` are the system's, of each body's nodes."""
+    fluid, inner = scene.fluid, scene.inner
+    if fluid is None or not fluid.squeeze_film:
+        return None
+    pole = -0.5 * scene.plate.thickness - scene.gap
+    surface = np.zeros(1, dtype=np.int64)
+    if isinstance(inner, Sphere):
+        surface = facing_nodes(mesh.inner, pole, inner.radius)
+    face = plate_face(mesh.plate, -0.5 * scene.plate.thickness)
+    return squeeze_film(
+        fluid,
+        (numbers[1][face], mesh.plate.points[face, 0]),
+        (numbers[2][surface], mesh.inner.points[surface, 0]),
+        inner.tip_radius,
+        scene.gap,
+    )
+
+
 def _watched(scene: Scene, plate: BodyMesh) -> tuple[Ints, Floats]:
     """Nodes of the plate's faces within `observed_circle`, and their shares in the mean of both."""
     half, circle = scene.plate.thickness / 2.0, observed_circle(scene)
     nodes, shares = [], []
     for z in (half, -half):
-        face = np.flatnonzero(np.abs(plate.points[:, 1] - z) < 1e-9 * half)
-        face = face[np.argsort(plate.points[face, 0])]
+        face = plate_face(plate, z)
         share = hertz_weights(plate.points[face, 0], circle)
         nodes.append(face[share > 0.0])
         shares.append(0.5 * share[share > 0.0])
@@ -251,4 +276,5 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
         element_steps=np.concatenate(element_steps),
         displacement=displacement,
         tip=tip,
+        film=_film(scene, mesh, numbers),
     )

@@ -9,7 +9,6 @@ from typing import Protocol
 from ..common.arrays import Floats
 from ..common.hertz import effective_modulus, hertz_approach, hertz_stiffness
 from ..explicit import kernel
-from ..explicit.damping import ModalDamping
 from ..explicit.loop import Energies, Loop
 from .scene import Scene
 
@@ -46,6 +45,44 @@ class State:
     """Elastic energy of the sphere, rigid motion apart, J."""
 
 
+@dataclass(frozen=True)
+class Losses:
+    """Energy lost so far in the part modelled, J."""
+
+    plate_damping: float = 0.0
+    squeeze_film: float = 0.0
+    drag: float = 0.0
+    contacts: tuple[float, float] = (0.0, 0.0)
+    """To friction, of outer and inner body."""
+
+    @property
+    def total(self) -> float:
+        """All of it, J."""
+        return self.plate_damping + self.squeeze_film + self.drag + sum(self.contacts)
+
+    def of_whole(self, share: float) -> Losses:
+        """That of the whole bodies, if this is that of a ``share``."""
+        outer, inner = self.contacts
+        return Losses(
+            self.plate_damping / share,
+            self.squeeze_film / share,
+            self.drag / share,
+            (outer / share, inner / share),
+        )
+
+
+@dataclass(frozen=True)
+class Further:
+    """What acts besides contacts and supports."""
+
+    losses: Losses | None = None
+    """None: nothing that could lose."""
+    on_all: float = 0.0
+    """Impulse on the bodies together so far, along z, N s."""
+    on_inner: float = 0.0
+    """On the inner one, N s."""
+
+
 class Motion(Protocol):
     """Positions, velocities and momenta along z; outer and inner sphere in this order."""
 
@@ -54,12 +91,8 @@ class Motion(Protocol):
         """Bodies and contacts."""
 
     @property
-    def damping(self) -> ModalDamping | None:
-        """Of the plate."""
-
-    @property
-    def rubbed(self) -> tuple[float, float]:
-        """Work of friction in each contact so far, negative, of the part modelled, J."""
+    def further(self) -> Further:
+        """What has acted besides contacts and supports, on the part modelled."""
 
     @property
     def share(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -191,11 +192,8 @@ def _write(
         stress_times=solution.write_fields(folder, scene),
     )
     summary["uncertainty"].update(curve_uncertainty(bands))
-    if run.plate_damping is not None or run.friction is not None:
-        damped = run.plate_damping or 0.0
-        summary["losses"] = {"plate_damping": damped, "squeeze_film": 0.0, "drag": 0.0}
-        if run.friction is not None:
-            summary["losses"]["contacts"] = run.friction
+    if run.losses is not None:
+        summary["losses"] = asdict(run.losses)
     if isinstance(scene.outer, Bender):
         summary["bender"] = _bender(scene.outer, summary)
     write_json(folder / "summary.json", summary)

@@ -15,7 +15,7 @@ from ..explicit.levels import MOST_LEVELS
 from ..explicit.loop import Energies
 from ..explicit.records import ContactRecord, intervals, peak_force
 from ..explicit.supervision import Course, Ended, Plan, supervise
-from .motion import Motion
+from .motion import Losses, Motion
 from .scene import Scene
 
 PEAK_WINDOW_SAMPLES = 4
@@ -52,10 +52,8 @@ class Run:
     momentum_residual: float
     """Momentum that the ledger misses over the initial momentum."""
     support_impulse: float
-    plate_damping: float | None
-    """Energy lost to the plate's damping, J; None if it has none."""
-    friction: tuple[float, float] | None
-    """Energy lost to friction in outer and inner contact, J; None if there is none."""
+    losses: Losses | None
+    """Of the whole bodies; None if nothing loses."""
 
 
 def integrate(
@@ -113,13 +111,12 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     outer_start, inner_start = (share * momentum for momentum in scene.initial_momenta)
     initial_energy = share * scene.initial_energy
     support = problem.state.reaction[loop.components - 1]
-    damping = motion.damping
-    dissipated, braking = (damping.dissipated, damping.impulse) if damping else (0.0, 0.0)
-    rubbed = motion.rubbed
-    # Independent balances: all bodies against the supports, each free one against its contact.
+    further = motion.further
+    losses = further.losses or Losses()
+    # Independent balances: all bodies against the supports, each free one against what acts on it.
     misses = [
-        sum(momenta) - outer_start - inner_start - support - braking,
-        momenta[2] - inner_start + impulses[1],
+        sum(momenta) - outer_start - inner_start - support - further.on_all,
+        momenta[2] - inner_start + impulses[1] - further.on_inner,
     ]
     if not isinstance(scene.outer, Bender):
         misses.append(momenta[0] - outer_start - impulses[0])
@@ -144,13 +141,11 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         inner_velocity=velocities[1],
         energies=energies,
         initial_energy=initial_energy / share,
-        energy_residual=abs(energies.total + dissipated - initial_energy - work - sum(rubbed))
-        / initial_energy,
+        energy_residual=abs(energies.total + losses.total - initial_energy - work) / initial_energy,
         contact_loss=-(work + stored) / initial_energy,
         momentum_residual=max(abs(miss) for miss in misses) / abs(outer_start),
         support_impulse=support / share,
-        plate_damping=dissipated / share if damping else None,
-        friction=(-rubbed[0] / share, -rubbed[1] / share) if scene.friction > 0.0 else None,
+        losses=further.losses and further.losses.of_whole(share),
     )
 
 

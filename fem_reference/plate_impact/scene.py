@@ -19,6 +19,7 @@ from ..common.bodies import (
     read_material,
 )
 from ..common.errors import SceneError
+from ..common.fluid import Fluid, read_fluid
 from ..common.reader import Reader, read_document
 
 MOMENT_LEFT = 1e-3
@@ -40,6 +41,10 @@ class Scene:
     scene_hash: str
     settings_hash: str
     plate: Plate
+    """As it moves: in a fluid with its added mass and damping."""
+    dry_plate: Plate
+    fluid: Fluid | None
+    """Behind the plate."""
     outer: Body
     inner: Body
     speed: float
@@ -80,6 +85,17 @@ class Scene:
     def materials(self) -> tuple[Material, Material, Material]:
         """Of outer body, plate and inner body."""
         return self.outer.material, self.plate.material, self.inner.material
+
+    @property
+    def drag(self) -> float:
+        """Resistance of the inner body over the square of its velocity, N s^2/m^2.
+
+        c_W rho/2 pi R^2; eq. (2) of the paper, as printed, is a force per length.
+        """
+        fluid, radius = self.fluid, self.inner.tip_radius
+        if fluid is None:
+            return 0.0
+        return 0.5 * fluid.drag_coefficient * fluid.density * math.pi * radius**2
 
 
 def _plate(reader: Reader) -> Plate:
@@ -181,10 +197,14 @@ def parse_scene(document: Any) -> Scene:
         "run",
         "reference",
     )
-    if root.node.get("fluid") is not None:
-        raise SceneError("fluid is given; this solver is for dry impacts, it must be null")
+    fluid = read_fluid(root.child("fluid")) if root.node.get("fluid") is not None else None
     reference = root.child("reference")
     geometry, element_order, rigid = _geometry(reference)
+    if geometry == "solid" and fluid is not None:
+        raise SceneError(
+            "fluid is given; solid geometry is for dry impacts, it must be null: take "
+            "reference.geometry 'axisymmetric'"
+        )
     end_time = None
     if root.node.get("run") is not None:
         run = root.child("run")
@@ -223,7 +243,9 @@ def parse_scene(document: Any) -> Scene:
         name=root.text("name"),
         scene_hash=root.text("scene_hash"),
         settings_hash=root.text("settings_hash"),
-        plate=plate,
+        plate=plate if fluid is None else fluid.wet(plate),
+        dry_plate=plate,
+        fluid=fluid,
         outer=bodies["outer"],
         inner=bodies["inner"],
         speed=outer.number("speed", "m/s"),

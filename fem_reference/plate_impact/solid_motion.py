@@ -11,7 +11,7 @@ from ..explicit import kernel
 from ..explicit.loop import Energies, Loop
 from ..explicit.spectrum import critical_time_step, patch_flexibility
 from .ending import Ending, Patch
-from .motion import INNER, OUTER, PLATE, SIDES, SPHERES, State
+from .motion import INNER, OUTER, PLATE, SIDES, SPHERES, Further, State
 from .run import Run, integrate
 from .scene import Scene
 from .solid_model import FRACTION, PlateModel
@@ -21,8 +21,7 @@ class SolidMotion:
     """See `motion.Motion`."""
 
     share = FRACTION
-    damping = None
-    rubbed = (0.0, 0.0)
+    further = Further()
 
     def __init__(self, loop: Loop, plate: PlateModel, scene: Scene) -> None:
         self.loop, self.plate = loop, plate

@@ -93,9 +93,10 @@ def test_ledgers_close(edge: str) -> None:
     for run in (many, one):
         assert run.momentum_residual < 1e-9
         assert abs(run.contact_loss) < 1e-5
-        assert run.plate_damping is not None
-        assert 0.01 < run.plate_damping / run.initial_energy < 0.2
-    assert many.plate_damping == pytest.approx(one.plate_damping, rel=1e-3)
+        assert run.losses is not None
+        assert 0.01 < run.losses.plate_damping / run.initial_energy < 0.2
+    assert many.losses is not None and one.losses is not None
+    assert many.losses.plate_damping == pytest.approx(one.losses.plate_damping, rel=1e-3)
 
 
 def test_modes_of_a_free_plate_take_no_momentum() -> None:

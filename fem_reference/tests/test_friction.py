@@ -80,11 +80,11 @@ def test_friction_hardly_matters_between_equals_and_little_between_others() -> N
 
     def change(**scene: Any) -> tuple[float, float]:
         smooth, rough = peak(0.0, **scene), peak(0.3, **scene)
-        assert smooth.friction is None
-        assert rough.friction is not None
-        assert rough.friction[0] > 0.0
+        assert smooth.losses is None
+        assert rough.losses is not None
+        assert rough.losses.contacts[0] > 0.0
         force = rough.contacts[0].force_peak / smooth.contacts[0].force_peak
-        return abs(force - 1.0), rough.friction[0] / rough.initial_energy
+        return abs(force - 1.0), rough.losses.contacts[0] / rough.initial_energy
 
     thick = {"plate__radius": 0.02, "plate__thickness": 0.012, "run__end_time": 6e-5}
     equal, rubbed_equal = change(**thick)

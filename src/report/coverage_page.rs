@@ -161,7 +161,7 @@ mod tests {
         };
         let of_c = of_model(&held, "C").into_string();
         assert!(
-            of_c.contains("3.0 %") && of_c.contains("± 0.20 %") && of_c.contains("inner force peak"),
+            of_c.contains("3.0 %") && of_c.contains("± 0.20 %") && of_c.contains("inner force, peak"),
             "{of_c}"
         );
         assert!(of_model(&held, "B").into_string().contains("no partner"));

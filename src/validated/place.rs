@@ -1,9 +1,10 @@
-//! Where a plate impact lies among others: three numbers that decide how well a reduced model does.
+//! Where a plate impact lies among others: three numbers that decide how well a reduced model does, and a fourth of a squeeze film.
 
 use super::rounded;
 use crate::result::Summary;
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// What the numbers of a [`Place`] are, in their order.
 pub const MEASURES: [&str; 3] = ["patch/thickness", "contact/period", "mass ratio"];
@@ -17,6 +18,9 @@ pub struct Place {
     pub contact_over_period: f64,
     /// Mass of the inner body over that of the outer one.
     pub mass_ratio: f64,
+    /// Stokes number of the squeeze film, m v/(6 pi mu R^2) of the inner body at the outer one's speed; `None`: no film.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stokes_number: Option<f64>,
 }
 
 impl Place {
@@ -29,10 +33,15 @@ impl Place {
         let [inner, outer] =
             [(&setup.inner.shape, &setup.inner.material), (&setup.outer.shape, &setup.outer.material)]
                 .map(|(shape, material)| shape.mass(material));
+        let film = setup.fluid.as_ref().filter(|fluid| fluid.squeeze_film);
+        let stokes_number = film.map(|fluid| {
+            let tip = setup.inner.shape.tip_radius();
+            rounded(inner * setup.outer.speed / (6.0 * PI * fluid.viscosity * tip * tip))
+        });
         let measures = [patch / setup.plate.thickness, contact, inner / outer];
         let [patch_over_thickness, contact_over_period, mass_ratio] = measures.map(rounded);
         let is_known = measures.iter().all(|measure| measure.is_finite() && *measure > 0.0);
-        is_known.then_some(Place { patch_over_thickness, contact_over_period, mass_ratio })
+        is_known.then_some(Place { patch_over_thickness, contact_over_period, mass_ratio, stokes_number })
     }
 
     /// The numbers in the order of [`MEASURES`].
@@ -40,9 +49,15 @@ impl Place {
         [self.patch_over_thickness, self.contact_over_period, self.mass_ratio]
     }
 
-    /// Factor, at least 1, by which the number that differs most differs from that of `other`.
+    /// Factor, at least 1, by which the number that differs most differs from that of `other`; infinite if only one of them has
+    /// a film, which no other scene tells anything of.
     pub fn factor(&self, other: &Place) -> f64 {
         let ratios = self.measures().into_iter().zip(other.measures()).map(|(own, other)| own / other);
-        ratios.map(|ratio| ratio.max(1.0 / ratio)).fold(1.0, f64::max)
+        let film = match (self.stokes_number, other.stokes_number) {
+            (None, None) => 1.0,
+            (Some(own), Some(other)) => own / other,
+            _ => f64::INFINITY,
+        };
+        ratios.chain([film]).map(|ratio| ratio.max(1.0 / ratio)).fold(1.0, f64::max)
     }
 }

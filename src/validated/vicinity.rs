@@ -2,7 +2,7 @@
 
 use super::{Place, Validation};
 
-/// Factor up to which each of the three numbers may differ of scenes that are near by.
+/// Factor up to which each of the numbers may differ of scenes that are near by.
 pub const NEAR: f64 = 2.0;
 
 /// The validations of one model seen from one scene.
@@ -19,11 +19,13 @@ pub struct Vicinity<'a> {
 }
 
 impl<'a> Vicinity<'a> {
-    /// Of the scene with `scene_hash` at `place`, for `model`; a scene is no evidence of itself. `None` if there are no others.
+    /// Of the scene with `scene_hash` at `place`, for `model`; a scene is no evidence of itself, nor of a film if it has none.
+    /// `None` if there are no others.
     pub fn of(validations: &'a [Validation], model: &str, scene_hash: &str, place: &Place) -> Option<Self> {
         let others = validations.iter().filter(|v| v.model == model && v.scene_hash != scene_hash);
         let mut others: Vec<(f64, Place, &Validation)> =
             others.filter_map(|v| v.place.map(|other| (place.factor(&other), other, v))).collect();
+        others.retain(|(factor, ..)| factor.is_finite());
         others.sort_by(|a, b| a.0.total_cmp(&b.0));
         let &(factor, _, nearest) = others.first()?;
         let near = others.iter().take_while(|(factor, ..)| *factor <= NEAR).map(|(.., v)| *v).collect();

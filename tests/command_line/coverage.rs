@@ -60,7 +60,10 @@ fn references_that_are_elsewhere_are_known_by_what_they_showed() {
         let found =
             document("coverage", &[scene, "--store", &dir.path().join("store").display().to_string()]);
         let features = found["features"].as_array().unwrap().clone();
-        features.into_iter().find(|f| f["feature"] == "compact outer body").unwrap()["partners"].clone()
+        let feature = features.into_iter().find(|f| f["feature"] == "compact outer body").unwrap();
+        let partners = feature["partners"].as_array().unwrap().iter();
+        // the contact has its closed form whatever is stored
+        Value::Array(partners.filter(|partner| partner["partner"] != "closed form").cloned().collect())
     };
     let known = partners("scenes/validation/compact-bodies.toml");
     let model_c = known.as_array().unwrap().iter().find(|entry| entry["model"] == "C").unwrap();

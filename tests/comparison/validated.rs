@@ -76,7 +76,7 @@ fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
 fn at(scene: &str, measures: [f64; 3], off: f64) -> Validation {
     let mut entry = recorded(&shipped().unwrap(), "scaled-plate-r10", Model::C).unwrap();
     let [patch_over_thickness, contact_over_period, mass_ratio] = measures;
-    entry.place = Some(Place { patch_over_thickness, contact_over_period, mass_ratio });
+    entry.place = Some(Place { patch_over_thickness, contact_over_period, mass_ratio, stokes_number: None });
     entry.rows.iter_mut().for_each(|row| row.reduced = row.reference * (1.0 + off));
     Validation { scene: scene.into(), scene_hash: scene.into(), ..entry }
 }
@@ -106,6 +106,16 @@ fn near_is_near_in_all_three_numbers() {
     // beyond everything that is known, in one number
     let (_, _, _, beyond) = of(&all, &Place { contact_over_period: 0.3, ..place });
     assert_eq!(beyond, [(1, 0.3, 0.4)]);
+    // a film tells of films that are as strong
+    let in_film = |scene, stokes_number| {
+        let entry = at(scene, [0.1, 1.0, 1.0], 0.1);
+        let place = entry.place.map(|place| Place { stokes_number: Some(stokes_number), ..place });
+        Validation { place, ..entry }
+    };
+    let films = [near.clone(), in_film("film", 100.0), in_film("viscous", 10.0)];
+    assert_eq!(of(&films, &place).0, ["near"]);
+    let (names, nearest, ..) = of(&films, &in_film("own", 150.0).place.unwrap());
+    assert_eq!((&names[..], &*nearest), (&["film".to_owned()][..], "film"));
     assert_eq!(Vicinity::of(std::slice::from_ref(&own), "C", &own.scene_hash, &place), None);
 }
 
