@@ -6,6 +6,7 @@ use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate, kirch
 use super::predictor::Predictor;
 use super::results::{PlateQuantities, quantities, values};
 use super::truncation;
+use super::validity::film_warning;
 use crate::body::cache::Cache;
 use crate::body::kirchhoff::UnitPlates;
 use crate::dynamics::assured::{self, assured};
@@ -247,6 +248,7 @@ impl Reduced {
         let mut warnings = scene::doubts(&self.scene);
         warnings.extend(self.warnings.iter().cloned());
         warnings.extend(truncation.warning);
+        warnings.extend(film_warning(result.losses.squeeze_film / system.initial_energy()));
         warnings.extend(unsure.map(|error| {
             format!(
                 "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
@@ -287,6 +289,18 @@ impl Reduced {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// As the references found it: 6 % too low with 10 mPa s, half a percent in water.
+    #[test]
+    fn a_film_that_is_too_strong_for_bodies_without_dents_is_told() {
+        let viscous = include_str!("../../../../scenes/validation/viscous-film.toml");
+        let water = include_str!("../../../../scenes/validation/squeeze-film.toml");
+        for (text, told) in [(viscous, true), (water, false)] {
+            let scene = Scene::parse("film.toml", text).unwrap();
+            let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-4).unwrap();
+            assert_eq!(summary.warnings.iter().any(|w| w.contains("squeeze film takes")), told, "{summary:?}");
+        }
+    }
 
     /// A result whose ledger is off says so, and is none if it is far off.
     #[test]
