@@ -35,7 +35,7 @@ def test_yield_strength_is_admissible_and_changes_nothing() -> None:
         ({"outer__kind": "compact"}, "outer.radius"),
         ({"inner__kind": "compact"}, "inner.radius"),
         ({"outer__kind": "bender"}, "outer.kind"),
-        ({"fluid": {"viscosity": 1e-3}}, "fluid.density"),
+        ({"fluid": {"viscosity": 1e-3}}, "fluid"),
         ({"plate__damping_ratio": -0.01}, "plate.damping_ratio"),
         ({"plate__edge": "glued"}, "plate.edge"),
         ({"reference__geometry": "shell"}, "reference.geometry"),
