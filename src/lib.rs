@@ -43,4 +43,6 @@ pub mod study;
 pub mod validated;
 
 pub use impactcheck_physics::{Error, ExitStatus, Result};
-pub use impactcheck_physics::{analytical, body, contact, dynamics, error, file, fluid, kinds, result};
+pub use impactcheck_physics::{
+    analytical, body, contact, dynamics, error, file, fluid, kinds, material, result,
+};

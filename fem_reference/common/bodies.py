@@ -9,6 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from .arrays import Floats
+from .errors import SceneError
 from .reader import Reader
 
 EDGES = ("clamped", "simply-supported", "free")
@@ -116,7 +117,12 @@ def sphere_profile(radius: float, r: Floats) -> Floats:
 
 def read_material(reader: Reader) -> Material:
     """The material an object describes."""
-    # the yield strength changes no elastic result
+    for key, verb in (("hardening", "yields"), ("relaxation", "relaxes")):
+        if key in reader.node:
+            raise SceneError(
+                f"{reader.path}: a material that {verb} ({key!r}) is not supported; elastic ones are"
+            )
+    # without hardening the yield strength changes no result
     reader.allow("name", "youngs_modulus", "poisson_ratio", "density", "yield_strength")
     return Material(
         name=reader.text("name"),

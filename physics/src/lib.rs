@@ -12,6 +12,7 @@ pub mod error;
 pub mod file;
 pub mod fluid;
 pub mod kinds;
+pub mod material;
 pub mod result;
 pub mod scene;
 

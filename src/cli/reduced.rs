@@ -6,7 +6,7 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::report::format::{prefixed, with_unit};
 use crate::report::{self, TableFormat};
-use crate::result::{ContactPressure, Outcome, Quantity, Summary};
+use crate::result::{ContactPressure, Impact, Outcome, Quantity, Summary};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -116,12 +116,17 @@ pub fn table(summary: &Summary) -> String {
             ("lost to plate damping", losses.plate_damping, "J"),
             ("lost in squeeze film", losses.squeeze_film, "J"),
             ("lost to drag", losses.drag, "J"),
+            ("lost in outer contact", losses.contacts[0], "J"),
+            ("lost in inner contact", losses.contacts[1], "J"),
         ]
+        .into_iter()
+        .filter(|(_, loss, _)| *loss != 0.0)
     });
     let patches = summary.contact_pressure.iter().flat_map(ContactPressure::rows);
     for (name, value, unit) in patches.chain(bender).chain(losses) {
         lines.push(format!("  {name:<24} {:>14}", with_unit(value, prefixed(unit, value), 6)));
     }
+    lines.extend(series(&summary.impacts));
     lines.push(format!("  {:<24} {:>14.1e}", "energy_residual", summary.energy_residual));
     lines.push(format!("  {:<24} {:>14.1e}", "momentum_residual", summary.momentum_residual));
     lines
@@ -130,4 +135,25 @@ pub fn table(summary: &Summary) -> String {
     lines.push(format!("  {} steps in {seconds}, set-up apart", summary.steps));
     lines.extend(summary.choice.as_ref().map(asked_model::told));
     lines.join("\n")
+}
+
+/// The impacts of a series, one line each.
+fn series(impacts: &[Impact]) -> Vec<String> {
+    if impacts.is_empty() {
+        return Vec::new();
+    }
+    let mut lines = vec![format!(
+        "  {:<8}{:>12}{:>14}{:>14}{:>14}",
+        "impact", "efficiency", "outer peak", "inner peak", "lost"
+    )];
+    for impact in impacts {
+        let told = |value: Option<f64>, unit| {
+            value.map_or_else(|| "-".to_owned(), |value| with_unit(value, prefixed(unit, value), 4))
+        };
+        let of = |name: &str, unit| told(impact.quantities.value(name), unit);
+        let [outer, inner] = ["outer_force_peak", "inner_force_peak"].map(|name| of(name, "N"));
+        let (efficiency, lost) = (of("efficiency", "1"), told(impact.plastic_work, "J"));
+        lines.push(format!("  {:<8}{efficiency:>12}{outer:>14}{inner:>14}{lost:>14}", impact.number));
+    }
+    lines
 }

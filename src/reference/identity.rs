@@ -1,7 +1,7 @@
 //! What a reference solution was made from, and how that differs from what is asked for.
 
 use super::Resolution;
-use crate::scene::hash::{canonical, sha256_hex};
+use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
 use crate::scene::{Scene, Setup, unit_of};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
@@ -57,12 +57,16 @@ pub(super) fn staleness(provenance: &Value, scene: &Scene, resolution: Resolutio
             "seat",
             "sphere",
             "actuator",
+            "series",
             "intended_angle",
             "run",
         ];
         let mut changes = Vec::new();
+        // what is no part of the hash made no difference
+        let [mut old, mut new] = [stored.clone(), present.clone()];
+        [&mut old, &mut new].into_iter().for_each(drop_inelastic);
         for key in physical {
-            differences(key, &stored[key], &present[key], &mut changes);
+            differences(key, &old[key], &new[key], &mut changes);
         }
         reasons.push(sentence("the scene has changed", &changes, "scene_hash", provenance, &present));
     }
@@ -92,10 +96,7 @@ fn differences(path: &str, old: &Value, new: &Value, changes: &mut Vec<String>) 
     if let (Value::Object(old), Value::Object(new)) = (old, new) {
         let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
         for key in keys {
-            // What is no part of the hash made no difference.
-            if !(["name", "yield_strength"].contains(&key.as_str()) && path.ends_with("material")) {
-                differences(&format!("{path}.{key}"), member(old, key), member(new, key), changes);
-            }
+            differences(&format!("{path}.{key}"), member(old, key), member(new, key), changes);
         }
         return;
     }

@@ -116,12 +116,8 @@ impl Case {
     /// If the plate's eigenproblem can't be solved.
     pub fn draw(seed: u64, plates: &UnitPlates) -> Result<Self> {
         let mut random = Random(fastrand::Rng::with_seed(seed));
-        let mut material = |name: &str, poisson_ratio: f64| Material {
-            name: name.into(),
-            youngs_modulus: random.log(1e6, 1e12),
-            poisson_ratio,
-            density: random.log(500.0, 2e4),
-            yield_strength: None,
+        let mut material = |name: &str, poisson_ratio: f64| {
+            Material::elastic(name, random.log(1e6, 1e12), poisson_ratio, random.log(500.0, 2e4))
         };
         let (plate_material, outer_material, inner_material) =
             (material("plate", 0.0), material("outer", 0.3), material("inner", 0.3));
@@ -160,6 +156,7 @@ impl Case {
             outer,
             inner: Inner { shape: inner_shape, material: inner_material, gap: 0.0 },
             fluid: None,
+            series: None,
         };
         let tier = TIERS.iter().position(|tier| *tier >= modes).unwrap_or(TIERS.len() - 1);
         let unit = plates.get(edge, poisson, tier)?;

@@ -23,24 +23,12 @@ const SPEED: f64 = 0.5;
 
 /// Steel of the paper's scaled model (section 3.3).
 pub fn steel() -> Material {
-    Material {
-        name: "steel".into(),
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7780.0,
-        yield_strength: None,
-    }
+    Material::elastic("steel", 210e9, 0.3, 7780.0)
 }
 
 /// Titanium alloy of the paper (Table 3).
 pub fn titanium() -> Material {
-    Material {
-        name: "titanium".into(),
-        youngs_modulus: 115e9,
-        poisson_ratio: 0.37,
-        density: 4430.0,
-        yield_strength: None,
-    }
+    Material::elastic("titanium", 115e9, 0.37, 4430.0)
 }
 
 /// Steel spheres of `sphere` m radius on both sides of a plate of `radius` and `thickness` m.
@@ -51,6 +39,7 @@ pub fn impact(radius: f64, thickness: f64, edge: Edge, material: Material, spher
         outer: Outer { shape: shape.clone(), material: steel(), speed: SPEED },
         inner: Inner { shape, material: steel(), gap: 0.0 },
         fluid: None,
+        series: None,
     }
 }
 

@@ -57,13 +57,7 @@ const fn panel(column: &'static str, label: &'static str) -> Panel {
 }
 
 fn sapphire() -> Material {
-    Material {
-        name: "sapphire".into(),
-        youngs_modulus: 350e9,
-        poisson_ratio: 0.27,
-        density: 3980.0,
-        yield_strength: None,
-    }
+    Material::elastic("sapphire", 350e9, 0.27, 3980.0)
 }
 
 /// The membrane with its inner sphere, struck by `shape` at `speed` m/s.
@@ -74,6 +68,7 @@ pub fn setup(shape: Shape, speed: f64) -> PlateImpact {
         outer: Outer { shape, material: sapphire(), speed },
         inner: Inner { shape: Shape::Sphere { radius: SPHERE }, material: sapphire(), gap: 0.0 },
         fluid: None,
+        series: None,
     }
 }
 

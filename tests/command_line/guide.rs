@@ -34,11 +34,10 @@ fn every_chapter_is_in_the_summary() {
 fn every_command_runs() {
     let live = std::env::var_os("IMPACTCHECK_LIVE").is_some();
     let folder = tempfile::tempdir().unwrap();
-    fs::copy(
-        Path::new(ROOT).join("scenes/examples/wet-valve-plate.toml"),
-        folder.path().join("wet-valve-plate.toml"),
-    )
-    .unwrap();
+    for scene in fs::read_dir(Path::new(ROOT).join("scenes/examples")).unwrap() {
+        let scene = scene.unwrap();
+        fs::copy(scene.path(), folder.path().join(scene.file_name())).unwrap();
+    }
     let mut commands = 0;
     for chapter in chapters() {
         let text = fs::read_to_string(Path::new(ROOT).join("guide/src").join(&chapter)).unwrap();

@@ -18,7 +18,7 @@ use serde_json::Value;
 const EDGES: [Edge; 3] = [Edge::Clamped, Edge::SimplySupported, Edge::Free];
 
 fn material(poisson_ratio: f64) -> Material {
-    Material { name: "m".into(), youngs_modulus: 210e9, poisson_ratio, density: 7780.0, yield_strength: None }
+    Material::elastic("m", 210e9, poisson_ratio, 7780.0)
 }
 
 fn plate(edge: Edge, thickness_over_radius: f64) -> Plate {

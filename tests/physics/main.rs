@@ -10,6 +10,7 @@ mod continuum_plate_frequencies;
 mod continuum_sphere;
 mod hertz_goldsmith;
 mod integrator_runge_kutta;
+mod materials_memory;
 mod plate_frequencies_leissa;
 mod squeeze_film;
 mod studies_paper;

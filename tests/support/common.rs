@@ -5,13 +5,7 @@ use impactcheck::scene::*;
 
 /// Steel of Table 1.
 pub fn steel() -> Material {
-    Material {
-        name: "steel".into(),
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7780.0,
-        yield_strength: None,
-    }
+    Material::elastic("steel", 210e9, 0.3, 7780.0)
 }
 
 /// Clamped steel plate of Table 1 between two steel spheres of `radius` m, struck at `speed` m/s.
@@ -28,5 +22,6 @@ pub fn scaled_plate(radius: f64, speed: f64) -> PlateImpact {
         outer: Outer { shape: Shape::Sphere { radius }, material: steel.clone(), speed },
         inner: Inner { shape: Shape::Sphere { radius }, material: steel, gap: 0.0 },
         fluid: None,
+        series: None,
     }
 }

@@ -4,7 +4,7 @@
 use impactcheck::scene::{Edge, Material, Plate};
 
 pub fn material(youngs_modulus: f64, poisson_ratio: f64, density: f64) -> Material {
-    Material { name: "material".into(), youngs_modulus, poisson_ratio, density, yield_strength: None }
+    Material::elastic("material", youngs_modulus, poisson_ratio, density)
 }
 
 pub fn steel() -> Material {

@@ -69,13 +69,7 @@ pub const REDUCED: Impact = Impact {
 
 /// Scene with two equal steel spheres.
 pub fn scene() -> Scene {
-    let steel = Material {
-        name: "steel".into(),
-        youngs_modulus: 210e9,
-        poisson_ratio: 0.3,
-        density: 7780.0,
-        yield_strength: None,
-    };
+    let steel = Material::elastic("steel", 210e9, 0.3, 7780.0);
     let sphere = Shape::Sphere { radius: 0.01 };
     Scene {
         name: "synthetic".into(),
@@ -91,6 +85,7 @@ pub fn scene() -> Scene {
             outer: Outer { shape: sphere.clone(), material: steel.clone(), speed: SPEED },
             inner: Inner { shape: sphere, material: steel, gap: 0.0 },
             fluid: None,
+            series: None,
         })),
         run: Run { end_time: None },
         reduced: ReducedSettings { model: Some(Model::B), modes: Some(16) },
@@ -165,6 +160,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
     let (outer, inner) = (impact.outer, impact.inner);
     let inner_velocity = -inner.impulse(inner.end) / mass();
     Summary {
+        impacts: Vec::new(),
         schema_version: SCHEMA_VERSION,
         scene: "synthetic".into(),
         scene_hash: "5ce4e".into(),

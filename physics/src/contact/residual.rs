@@ -110,6 +110,35 @@ impl Residual {
         (p_rate, [0, 1].map(|i| slopes.force[i][0] * p_rate[0] + slopes.force[i][1] * p_rate[1]))
     }
 
+    /// What the bodies yield beyond Hertz's half-spaces under the forces `f` in N, in m, from the patches `p` in m of a nearby state
+    /// on; then the patches.
+    pub fn displacement(&self, laws: &[Hertz; 2], f: [f64; 2], mut p: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        for _ in 0..MAX_ITERATIONS {
+            let next = self.patches_under(laws, f, p);
+            let change =
+                (0..2).map(|i| (next[i] - p[i]).abs() / next[i].max(f64::MIN_POSITIVE)).fold(0.0, f64::max);
+            p = next;
+            if change <= 1e-13 {
+                break;
+            }
+        }
+        let approach = self.state(laws, p).error([0.0; 3], [0.0; 2], p);
+        ([0, 1].map(|i| approach[i] - laws[i].approach(f[i])), p)
+    }
+
+    /// The patches under the forces `f` if the curvatures were those with the patches `p`.
+    fn patches_under(&self, laws: &[Hertz; 2], f: [f64; 2], p: [f64; 2]) -> [f64; 2] {
+        let curvature = self.state(laws, p).curvature(f);
+        [0, 1].map(|i| {
+            let free = (f[i].max(0.0) / (laws[i].stiffness * curvature[i])).powi(2).cbrt();
+            if free <= self.largest[i] {
+                return free;
+            }
+            let widest = self.largest[i];
+            widest + (f[i] - laws[i].force(widest) * curvature[i]) / laws[i].tangent(widest)
+        })
+    }
+
     /// Patches p in m, negative where a contact is open, and forces in N of both contacts at `y` in m; `guess` are the
     /// patches of a nearby state. Where it is not near enough the solution is followed from small approaches on.
     pub fn solve(&self, laws: &[Hertz; 2], y: [f64; 2], guess: [f64; 2]) -> Option<([f64; 2], [f64; 2])> {

@@ -50,6 +50,16 @@ impl LocalCentre {
         0.5 * (self.flexibility.at(own)[2 * j] + self.flexibility.at(between)[1] + half_space)
     }
 
+    /// Displacement in m along z in addition to the modes', with the patches `p` in m and the forces `f` in N.
+    pub fn displacement(&self, p: [f64; 2], f: [f64; 2]) -> f64 {
+        // the outer body presses the plate down, the inner one up
+        [(0, -1.0), (1, 1.0)]
+            .iter()
+            .filter(|(j, _)| f[*j] > 0.0)
+            .map(|&(j, sign)| sign * f[j] * self.per_force(j, p[j]))
+            .sum()
+    }
+
     /// Displacement in m and velocity in m/s along z in addition to the modes', with the patches `p` in m, the rates of the modal
     /// approaches in m/s and the forces `f` in N.
     pub fn motion(&self, system: &System, p: [f64; 2], rate: [f64; 2], f: [f64; 2]) -> [f64; 2] {

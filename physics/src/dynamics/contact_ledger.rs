@@ -48,6 +48,17 @@ impl ContactLedger {
         Self { negligible, ..Self::default() }
     }
 
+    /// Books a step from `time` s of `h` s in which force in N and local approach in m change evenly between their `values` at start and
+    /// end.
+    pub fn book_even(&mut self, time: f64, h: f64, force: [f64; 2], local_approach: [f64; 2], work: f64) {
+        let before = self.impulse;
+        self.impulse += 0.5 * h * (force[0] + force[1]);
+        self.work += work;
+        self.force_peak = self.force_peak.max(force[1]);
+        let [start, end] = local_approach;
+        self.pass(end > 0.0, before, || time + h * start / (start - end));
+    }
+
     /// Books a step.
     pub fn book<const P: usize>(&mut self, collocation: &Collocation<P>, course: &StepCourse<P>) {
         let stages: &Stages = course.force[1..=STAGES].try_into().expect("STAGES values");
@@ -55,19 +66,25 @@ impl ContactLedger {
         self.impulse += course.h * stages.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
         self.work += course.work;
         for point in 1..P {
-            let closed = course.local_approach[point] > 0.0;
-            if closed && !self.closed {
-                self.contacts += 1;
-                self.impulse_at_touch = before;
-            } else if !closed && self.closed {
-                if self.impulse - self.impulse_at_touch <= self.negligible {
-                    self.contacts -= 1;
-                } else {
-                    self.end = course.time + course.h * release(collocation, course, point);
-                }
-            }
-            self.closed = closed;
+            let released = || course.time + course.h * release(collocation, course, point);
+            self.pass(course.local_approach[point] > 0.0, before, released);
         }
+    }
+
+    /// Counts touches and releases; `before` is the impulse when the step began in N s, `released` gives the time of a release in s.
+    #[inline(always)]
+    fn pass(&mut self, closed: bool, before: f64, released: impl FnOnce() -> f64) {
+        if closed && !self.closed {
+            self.contacts += 1;
+            self.impulse_at_touch = before;
+        } else if !closed && self.closed {
+            if self.impulse - self.impulse_at_touch <= self.negligible {
+                self.contacts -= 1;
+            } else {
+                self.end = released();
+            }
+        }
+        self.closed = closed;
     }
 }
 

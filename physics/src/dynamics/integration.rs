@@ -113,32 +113,39 @@ impl Closing<'_> {
             contacts: self.contacts,
             energy_residual: unaccounted.abs() / initial,
             energy_gained: unaccounted / initial,
-            momentum_residual: self.unexplained_momentum(velocity) / (system.masses[0] * system.speed),
+            momentum_residual: unexplained_momentum(system, v, contacts, &fluid)
+                / (system.masses[0] * system.speed),
             losses: Losses {
                 plate_damping: if damped { initial - end - contact_work + fluid.work } else { 0.0 },
                 squeeze_film: fluid.dissipated[0],
                 drag: fluid.dissipated[1],
+                ..Losses::default()
             },
             steps: self.steps,
             error_estimate: None,
             history,
         }
     }
+}
 
-    /// Largest momentum of a body in N s that no impulse accounts for; `velocity` of outer and inner body in m/s.
-    fn unexplained_momentum(&self, velocity: [f64; 2]) -> f64 {
-        let Self { system, fluid, contacts: [outer, inner], .. } = self;
-        let fluid_impulse = fluid.film_impulse + fluid.drag_impulse;
-        let mut largest = (system.masses[1] * velocity[1] + inner.impulse - fluid_impulse).abs();
-        if !system.outer_returns() {
-            let momentum = system.masses[0] * (velocity[0] + system.speed);
-            largest = largest.max((momentum - outer.impulse).abs());
-        }
-        if system.oscillators.get(PLATE).is_some_and(|o| o.omega == 0.0) {
-            // rigid motion of a free plate: rate / participation = momentum
-            let plate = self.v[PLATE] / system.centre[PLATE];
-            largest = largest.max((plate + outer.impulse - inner.impulse + fluid.film_impulse).abs());
-        }
-        largest
+/// Largest momentum of a body in N s that no impulse accounts for, with the rates `v` at the end.
+pub(super) fn unexplained_momentum(
+    system: &System,
+    v: &[f64],
+    [outer, inner]: &[ContactLedger; 2],
+    fluid: &FluidAccount,
+) -> f64 {
+    let velocity = system.of_bodies(v);
+    let fluid_impulse = fluid.film_impulse + fluid.drag_impulse;
+    let mut largest = (system.masses[1] * velocity[1] + inner.impulse - fluid_impulse).abs();
+    if !system.outer_returns() {
+        let momentum = system.masses[0] * (velocity[0] + system.speed);
+        largest = largest.max((momentum - outer.impulse).abs());
     }
+    if system.oscillators.get(PLATE).is_some_and(|o| o.omega == 0.0) {
+        // rigid motion of a free plate: rate / participation = momentum
+        let plate = v[PLATE] / system.centre[PLATE];
+        largest = largest.max((plate + outer.impulse - inner.impulse + fluid.film_impulse).abs());
+    }
+    largest
 }

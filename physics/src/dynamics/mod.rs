@@ -15,6 +15,7 @@ pub mod integration;
 pub mod integrator;
 mod ladder;
 mod ledger_check;
+pub mod memory;
 mod moving_body;
 mod point_laws;
 pub(crate) mod recorder;

@@ -18,6 +18,23 @@ pub static CURVES: [Curve; 8] = [
     Curve::new("inner_force", "N"),
 ];
 
+/// The values of [`CURVES`] with the coordinates and rates `motion` under the contact `forces` in N; `local` is what the contacts add
+/// to displacement and velocity of the plate's centre, in m and m/s.
+pub(super) fn sample(system: &System, motion: [&[f64]; 2], local: [f64; 2], forces: [f64; 2]) -> [f64; 8] {
+    let [q, v] = motion;
+    let (displacement, velocity) = (system.of_bodies(q), system.of_bodies(v));
+    [
+        displacement[0],
+        dot(&system.centre, q) + local[0],
+        displacement[1],
+        velocity[0],
+        dot(&system.centre, v) + local[1],
+        velocity[1],
+        forces[0],
+        forces[1],
+    ]
+}
+
 /// Collects a [`History`] with samples at most `interval` s apart and at the end of every step.
 pub struct Recorder<'a, const P: usize = POINTS> {
     system: &'a System,
@@ -92,17 +109,6 @@ impl<'a, const P: usize> Recorder<'a, P> {
         let (patch, forces) = system.contact(approach, approach).unwrap_or(([f64::NAN; 2], [f64::NAN; 2]));
         let rate = [0, 1].map(|i| dot(&system.approach[i], v));
         let local = system.local_centre.motion(system, patch, rate, forces);
-        let (displacement, velocity) = (system.of_bodies(q), system.of_bodies(v));
-        let sample = [
-            displacement[0],
-            dot(&system.centre, q) + local[0],
-            displacement[1],
-            velocity[0],
-            dot(&system.centre, v) + local[1],
-            velocity[1],
-            forces[0],
-            forces[1],
-        ];
-        self.history.push(time, sample);
+        self.history.push(time, sample(system, [q, v], local, forces));
     }
 }

@@ -81,6 +81,8 @@ pub struct System {
     pub laws: [Hertz; 2],
     /// Residual flexibility in terms of the approaches; `None` if it is zero.
     pub residual: Option<Residual>,
+    /// Part of it in m/N that is the bodies' own, at their tips.
+    pub tip_residual: [f64; 2],
     /// Masses of outer and inner body in kg; of a bender the mass that has its kinetic energy at the tip's speed.
     pub masses: [f64; 2],
     /// How the outer body was driven, if it is a bender.
@@ -139,6 +141,7 @@ impl System {
             laws,
             local_centre,
             residual: (!residual.is_zero()).then_some(residual),
+            tip_residual,
             masses,
             drive: bodies[0].drive,
             speed: outer.speed,

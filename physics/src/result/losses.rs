@@ -11,4 +11,11 @@ pub struct Losses {
     pub squeeze_film: f64,
     /// By the drag on the inner body, J.
     pub drag: f64,
+    /// In the outer and the inner contact, to relaxing or yielding materials, J.
+    #[serde(default, skip_serializing_if = "are_none")]
+    pub contacts: [f64; 2],
+}
+
+fn are_none(losses: &[f64; 2]) -> bool {
+    *losses == [0.0; 2]
 }

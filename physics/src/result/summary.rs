@@ -1,6 +1,6 @@
 //! The result of a run in a few numbers, the same type for reduced models and the reference.
 
-use super::{ContactPressure, Drive, Limit, Losses, Quantity, Table};
+use super::{ContactPressure, Drive, Impact, Limit, Losses, Quantity, Table};
 use crate::scene::{Model, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -69,7 +69,10 @@ pub struct Summary {
     /// Plate impacts: Hertz's contact patches at the force peaks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact_pressure: Option<ContactPressure>,
-    /// Energy lost to damping and fluid, if there are any.
+    /// The impacts of a series; the quantities above are those of the last one. Of a stored summary read by [`Summary::read`] alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", skip_deserializing)]
+    pub impacts: Vec<Impact>,
+    /// Energy lost to damping, fluid and materials, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub losses: Option<Losses>,
     /// Reference only: half width of the 95 % band of each quantity, absolute, in its unit.
@@ -114,8 +117,9 @@ impl Summary {
         if document["in_contact_at_end"] == true {
             table = table.cut();
         }
+        let impacts = Impact::read_all(quantities, &document["impacts"])?;
         let rest: Self = serde_json::from_value(document).map_err(|e| e.to_string())?;
-        Ok(Self { quantities: table, ..rest })
+        Ok(Self { quantities: table, impacts, ..rest })
     }
 
     /// The value of the quantity called `name`; `None` if there is none, or it is not determined.
@@ -161,6 +165,7 @@ impl Summary {
             solve_seconds: 0.0,
             bender: None,
             contact_pressure: None,
+            impacts: Vec::new(),
             losses: None,
             truncation_error: None,
             integration_error: None,

@@ -31,6 +31,7 @@ pub(super) fn needed(kind: &Kind, path: &str) -> (&'static str, String) {
             "a list",
             format!("write a list in square brackets, for example [\"{}\"]", dimension.describe().2),
         ),
+        Kind::Tables(..) => ("a list of tables", "write a list like [{ key = value }]".to_owned()),
         Kind::Flag => ("true or false", "write true or false, without quotes".to_owned()),
         Kind::Table(_) | Kind::TableOf(_) | Kind::Tolerances => {
             ("a table", format!("write a table [{path}]"))

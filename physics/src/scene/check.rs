@@ -19,6 +19,7 @@ pub(super) enum Checked {
     Text(String),
     Flag(bool),
     Table(Values),
+    Tables(Vec<Values>),
 }
 
 /// The checked values of one table by key.
@@ -179,6 +180,9 @@ impl<'a> Checker<'a> {
             (Kind::Table(fields), DeValue::Table(table)) => {
                 Some(Checked::Table(self.table(place, table, fields)))
             }
+            (Kind::Tables(fields, most), DeValue::Array(items)) => {
+                self.list(place, value, items, fields, *most)
+            }
             (Kind::TableOf(fields), DeValue::Table(tables)) => self.tables(place, tables, fields),
             (kind, found) => {
                 let (needed, help) = needed(kind, place.path);
@@ -226,6 +230,35 @@ impl<'a> Checker<'a> {
             }
         }
         Some(Checked::Table(values))
+    }
+
+    fn list(
+        &mut self,
+        place: &Place,
+        value: &Spanned<DeValue>,
+        items: &[Spanned<DeValue>],
+        fields: &[Field],
+        most: usize,
+    ) -> Option<Checked> {
+        let keys: Vec<&str> = fields.iter().map(|f| f.key).collect();
+        let help = format!("write a list of tables like [{{ {} = ... }}]", keys.join(" = ..., "));
+        if items.is_empty() || items.len() > most {
+            let message = format!("but it has to have 1 to {most} entries; found: {}", items.len());
+            return self.fault(place, value, &message, "wrong length", help);
+        }
+        let mut tables = Vec::new();
+        for (k, item) in items.iter().enumerate() {
+            let path = format!("{}[{}]", place.path, k + 1);
+            let place = Place { path: &path, span: item.span() };
+            match item.get_ref() {
+                DeValue::Table(table) => tables.push(self.table(&place, table, fields)),
+                found => {
+                    let message = format!("but it has to be a table; found: {}", found.type_str());
+                    return self.fault(&place, item, &message, "wrong type", help);
+                }
+            }
+        }
+        Some(Checked::Tables(tables))
     }
 
     fn name(&mut self, place: &Place, value: &Spanned<DeValue>, text: &str) -> Option<Checked> {

@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 impl Scene {
     /// SHA-256 (hexadecimal) of what is physical in the scene: bodies, motion, fluid, length of the run.
     ///
-    /// Name, description, names and yield strengths of materials, tolerances and the settings of models and
+    /// Name, description, names of materials and the yield strengths of those that stay elastic, tolerances and the settings of models and
     /// reference are left out: two scenes with the same hash have the same exact solution.
     pub fn hash(&self) -> String {
         let mut physical = json!({ "setup": self.setup, "run": self.run });
@@ -16,13 +16,15 @@ impl Scene {
     }
 }
 
-/// Takes out of all materials below `value` what changes no elastic result: names and yield strengths.
+/// Takes out of all materials below `value` what changes no result: names, and yield strengths without hardening.
 pub fn drop_inelastic(value: &mut Value) {
     let Value::Object(map) = value else { return };
     for (key, child) in map.iter_mut() {
         if let (true, Value::Object(material)) = (key == "material", &mut *child) {
             material.remove("name");
-            material.remove("yield_strength");
+            if !material.contains_key("hardening") {
+                material.remove("yield_strength");
+            }
         }
         drop_inelastic(child);
     }

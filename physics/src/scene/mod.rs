@@ -9,6 +9,7 @@ mod alternatives;
 mod check;
 mod collision;
 pub mod hash;
+mod material;
 mod plate_impact;
 mod plausibility;
 mod problem;
@@ -21,7 +22,7 @@ mod template;
 mod tolerances;
 
 pub use plate_impact::{
-    Bender, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Shape, ShearThinning,
+    Bender, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape, ShearThinning, Spot,
 };
 pub use plausibility::doubts;
 pub use problem::suggestion;
@@ -33,42 +34,11 @@ pub use seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, 
 pub use specification::unit_of;
 pub use template::{Field, Rejected, Template};
 
+pub use crate::material::{Material, RateHardening, Relaxation};
+
 use crate::Error;
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// Elastic, isotropic material.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Material {
-    /// Name under `[materials]` in the scene file.
-    pub name: String,
-    /// Young's modulus E in Pa.
-    pub youngs_modulus: f64,
-    /// Poisson's ratio nu, -1 < nu < 0.5.
-    pub poisson_ratio: f64,
-    /// Density rho in kg/m^3.
-    pub density: f64,
-    /// Yield strength in uniaxial tension in Pa, if it is known. It changes no elastic result, only what is warned of.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub yield_strength: Option<f64>,
-}
-
-impl Material {
-    /// Plane-strain modulus E / (1 - nu^2) in Pa.
-    pub fn plane_strain_modulus(&self) -> f64 {
-        self.youngs_modulus / (1.0 - self.poisson_ratio.powi(2))
-    }
-
-    /// Shear modulus E / (2 (1 + nu)) in Pa.
-    pub fn shear_modulus(&self) -> f64 {
-        0.5 * self.youngs_modulus / (1.0 + self.poisson_ratio)
-    }
-
-    /// Speed of longitudinal waves in a thin bar, sqrt(E / rho), in m/s.
-    pub fn bar_wave_speed(&self) -> f64 {
-        (self.youngs_modulus / self.density).sqrt()
-    }
-}
 
 /// Names of the kinds in scene files.
 pub(crate) const PLATE_IMPACT: &str = "plate-impact";

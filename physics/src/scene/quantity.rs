@@ -248,12 +248,13 @@ fn split_number(text: &str) -> Option<(&str, i32, &str)> {
     Some((mantissa, 0, &text[end..]))
 }
 
-/// Reads a product of powers of units: `kg/m^3`, `mPa*s`, `m s^-2`, `m/s²`.
+/// Reads a product of powers of units: `kg/m^3`, `mPa*s`, `m s^-2`, `m/s²`, `1/s`.
 fn parse_unit(text: &str) -> Result<Unit, QuantityError> {
     let malformed = || QuantityError::MalformedUnit(text.to_owned());
     let mut total = Unit { dimension: Dimension::NONE, exponent: 0, factor: 1.0 };
-    let mut rest = text;
-    let mut sign = 1;
+    let reciprocal = text.strip_prefix('1').and_then(|rest| rest.trim_start().strip_prefix('/'));
+    let mut rest = reciprocal.map_or(text, str::trim_start);
+    let mut sign = if reciprocal.is_some() { -1 } else { 1 };
     loop {
         let end = rest.find(['*', '\u{b7}', '\u{22c5}', '/', ' ', '\t']).unwrap_or(rest.len());
         let (symbol, power) = split_power(&rest[..end]).ok_or_else(malformed)?;

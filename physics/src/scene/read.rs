@@ -191,6 +191,15 @@ impl<'a> Node<'a> {
         self.0.contains_key(key).then(|| self.table(key)).transpose()
     }
 
+    /// The tables of a list, none if it is not there.
+    pub(super) fn tables(&self, key: &str) -> Result<Vec<Node<'a>>> {
+        match self.0.get(key) {
+            None => Ok(Vec::new()),
+            Some(Checked::Tables(tables)) => Ok(tables.iter().map(Node).collect()),
+            Some(other) => Err(mismatch(key, other)),
+        }
+    }
+
     pub(super) fn number(&self, key: &str) -> Result<f64> {
         match self.get(key)? {
             Checked::Number(number) => Ok(*number),
@@ -201,6 +210,13 @@ impl<'a> Node<'a> {
     pub(super) fn numbers(&self, key: &str) -> Result<Vec<f64>> {
         match self.get(key)? {
             Checked::Numbers(numbers) => Ok(numbers.clone()),
+            other => Err(mismatch(key, other)),
+        }
+    }
+
+    pub(super) fn count(&self, key: &str) -> Result<u64> {
+        match self.get(key)? {
+            Checked::Count(count) => Ok(*count),
             other => Err(mismatch(key, other)),
         }
     }
@@ -252,17 +268,6 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>)
         reduced: reduced(root.optional_table("reduced")?)?,
         reference,
         tolerances,
-    })
-}
-
-pub(super) fn material(materials: &Node, name: &str) -> Result<Material> {
-    let material = materials.table(name)?;
-    Ok(Material {
-        name: name.to_owned(),
-        youngs_modulus: material.number("youngs_modulus")?,
-        poisson_ratio: material.number("poisson_ratio")?,
-        density: material.number("density")?,
-        yield_strength: material.optional_number("yield_strength")?,
     })
 }
 

@@ -122,6 +122,9 @@ fn value(kind: &Kind) -> Value {
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Table(fields) => table(fields),
         Kind::TableOf(fields) => json!({ "type": "object", "additionalProperties": table(fields) }),
+        Kind::Tables(fields, most) => json!({
+            "type": "array", "items": table(fields), "minItems": 1, "maxItems": most,
+        }),
         Kind::Tolerances => json!({}),
     }
 }
@@ -155,6 +158,7 @@ fn units(dimension: Dimension) -> String {
     };
     let mut ways: Vec<String> = symbols(dimension).map(symbol).collect();
     ways.push(r"[^0-9*/^\s]+\s*([*/^·⋅²³]|\s[^\s]).*".to_owned());
+    ways.push(r"1\s*/.*".to_owned());
     ways.join("|")
 }
 

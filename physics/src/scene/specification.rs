@@ -1,6 +1,7 @@
 //! Every key a scene file may have: one table that drives reading, checking and the JSON schema.
 
-use super::plate_impact::{FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE};
+use super::material::MATERIAL;
+use super::plate_impact::{FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE, SERIES};
 use super::quantity::Dimension;
 use super::seal_seat::{ACTUATOR, INTENDED, SEAT, SEAT_REDUCED, SEAT_REFERENCE, SEATED_SPHERE};
 use super::{PLATE_IMPACT, SEAL_SEAT};
@@ -78,6 +79,8 @@ pub(super) enum Kind {
     Table(&'static [Field]),
     /// A table of tables with fixed keys under names of the user's choice.
     TableOf(&'static [Field]),
+    /// A list of tables with fixed keys, of at least one and at most so many.
+    Tables(&'static [Field], usize),
     /// `[tolerances.<model>]`, see `tolerances.rs`.
     Tolerances,
 }
@@ -153,8 +156,6 @@ pub(super) const fn pure(bound: Bound) -> Kind {
     Kind::Quantity(Dimension::NONE, bound)
 }
 
-const POISSON: Bound = Bound { low: Some((-1.0, false)), high: Some((0.5, false)) };
-
 /// The names of the reduced models.
 pub(super) const MODELS: [Choice; 3] = [choice("A"), choice("B"), choice("C")];
 
@@ -162,7 +163,7 @@ const OF_PLATE_IMPACT: &[&str] = &[PLATE_IMPACT];
 const OF_SEAL_SEAT: &[&str] = &[SEAL_SEAT];
 
 /// The keys of a scene file. A key whose table depends on the scene's kind stands here once per kind.
-pub(super) static SCENE: [Field; 17] = [
+pub(super) static SCENE: [Field; 18] = [
     required("name", Kind::Name, "Name of the scene in the store and in reports"),
     optional("description", Kind::Text, "One line for people"),
     required("kind", Kind::Choice(&[choice(PLATE_IMPACT), choice(SEAL_SEAT)]), "What strikes what"),
@@ -174,6 +175,14 @@ pub(super) static SCENE: [Field; 17] = [
     ),
     only(OF_PLATE_IMPACT, required("inner", Kind::Table(&INNER), "The body that rests below the plate")),
     only(OF_PLATE_IMPACT, optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry")),
+    only(
+        OF_PLATE_IMPACT,
+        optional(
+            "series",
+            Kind::Table(&SERIES),
+            "The impact repeated, each time with the dents of those before",
+        ),
+    ),
     only(
         OF_SEAL_SEAT,
         required("seat", Kind::Table(&SEAT), "Membrane and island with the two seats, one piece"),
@@ -212,17 +221,6 @@ pub(super) const TIP_RADIUS: Field =
     required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");
 pub(super) const BODY_MATERIAL: Field =
     required("material", Kind::Material, "Material of the body, a name under [materials]");
-
-static MATERIAL: [Field; 4] = [
-    required("youngs_modulus", positive(Dimension::PRESSURE), "Young's modulus E"),
-    required("poisson_ratio", pure(POISSON), "Poisson's ratio nu"),
-    required("density", positive(Dimension::DENSITY), "Density rho"),
-    optional(
-        "yield_strength",
-        positive(Dimension::PRESSURE),
-        "Yield strength in uniaxial tension, beyond which contacts are warned of; absent = not checked",
-    ),
-];
 
 static RUN: [Field; 1] = [optional(
     "end_time",

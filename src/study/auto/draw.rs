@@ -20,12 +20,13 @@ const SPEEDS: std::ops::RangeInclusive<f64> = 1e-5..=100.0;
 /// sphere's radius if that is smaller.
 pub(super) fn draw(name: &str, x: &[f64]) -> Option<Scene> {
     let between = |axis: usize, low: f64, high: f64| logarithmic_at(low, high, x[axis]);
-    let material = |name: &str, first: usize| Material {
-        name: name.into(),
-        youngs_modulus: between(first, 1e7, 1e12),
-        poisson_ratio: -0.99 + 1.489 * x[first + 1],
-        density: between(first + 2, 500.0, 2e4),
-        yield_strength: None,
+    let material = |name: &str, first: usize| {
+        Material::elastic(
+            name,
+            between(first, 1e7, 1e12),
+            -0.99 + 1.489 * x[first + 1],
+            between(first + 2, 500.0, 2e4),
+        )
     };
     let compact = |radius: f64, material: &Material, share: f64, ratio: f64| {
         let sphere = Shape::Sphere { radius };
@@ -59,6 +60,7 @@ pub(super) fn draw(name: &str, x: &[f64]) -> Option<Scene> {
             outer: Outer { shape: outer_shape, material: outer_material, speed },
             inner: Inner { shape: inner_shape, material: inner_material, gap },
             fluid: None,
+            series: None,
         };
         scene(name, setup)
     })

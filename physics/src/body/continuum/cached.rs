@@ -139,13 +139,7 @@ mod tests {
     const PATCH: [f64; 2] = [0.3e-3, 0.2e-3];
 
     fn steel() -> Material {
-        Material {
-            name: "steel".into(),
-            youngs_modulus: 210e9,
-            poisson_ratio: 0.3,
-            density: 7780.0,
-            yield_strength: None,
-        }
+        Material::elastic("steel", 210e9, 0.3, 7780.0)
     }
 
     fn table1() -> Plate {

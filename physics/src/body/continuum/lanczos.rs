@@ -239,13 +239,7 @@ mod tests {
 
     #[test]
     fn no_mode_is_missed_or_found_twice_against_a_dense_solution() {
-        let material = Material {
-            name: "m".into(),
-            youngs_modulus: 1.0,
-            poisson_ratio: 0.3,
-            density: 1.0,
-            yield_strength: None,
-        };
+        let material = Material::elastic("m", 1.0, 0.3, 1.0);
         let plate = mesh::plate(2, &[0.0, 0.2, 0.5, 1.0], &[0.0, 0.1, 0.25]);
         let matrices = Rc::new(Matrices::new(&plate, &material).unwrap());
         for (parity, free) in

@@ -200,13 +200,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn material() -> Material {
-        Material {
-            name: "m".into(),
-            youngs_modulus: 2e11,
-            poisson_ratio: 0.3,
-            density: 7780.0,
-            yield_strength: None,
-        }
+        Material::elastic("m", 2e11, 0.3, 7780.0)
     }
 
     fn free_half(mesh: &Mesh, parity: Parity) -> HalfBody {

@@ -184,13 +184,7 @@ mod tests {
     use nalgebra::Matrix3;
 
     fn material() -> Material {
-        Material {
-            name: "m".into(),
-            youngs_modulus: 2.6e9,
-            poisson_ratio: 0.38,
-            density: 1320.0,
-            yield_strength: None,
-        }
+        Material::elastic("m", 2.6e9, 0.38, 1320.0)
     }
 
     /// Force on the nodes under the displacements `u`. Shape (nodes, 3).

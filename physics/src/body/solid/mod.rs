@@ -180,13 +180,7 @@ mod tests {
     /// Relative error of the first eigenfrequency of a bar, free at one end and held along y and z everywhere, of
     /// 4 `fine` bricks over its length and `fine` over its width.
     fn bar_error(fine: usize, order: usize) -> f64 {
-        let material = Material {
-            name: "m".into(),
-            youngs_modulus: 8.0,
-            poisson_ratio: 0.0,
-            density: 2.0,
-            yield_strength: None,
-        };
+        let material = Material::elastic("m", 8.0, 0.0, 2.0);
         let mesh = mesh::boxes([1.0, 0.25, 0.25], [4 * fine, fine, fine], order, |p| p);
         let held: Vec<[bool; 3]> = mesh.points.iter().map(|p| [p[0] == 0.0, true, true]).collect();
         let end: Vec<usize> = (0..mesh.points.len()).filter(|&n| mesh.points[n][0] == 1.0).collect();
@@ -210,13 +204,7 @@ mod tests {
 
     #[test]
     fn all_modes_together_leave_no_residual() {
-        let material = Material {
-            name: "m".into(),
-            youngs_modulus: 1.0,
-            poisson_ratio: 0.3,
-            density: 1.0,
-            yield_strength: None,
-        };
+        let material = Material::elastic("m", 1.0, 0.3, 1.0);
         let mesh = mesh::boxes([1.0, 0.7, 0.4], [4, 3, 2], 1, |p| p);
         let held: Vec<[bool; 3]> = mesh.points.iter().map(|p| [p[0] == 0.0; 3]).collect();
         let interface = [59, 58, 30, 2];

@@ -86,6 +86,16 @@ impl Residual {
 }
 
 impl State {
+    /// Relative curvatures under the forces `f` in N.
+    pub(super) fn curvature(&self, f: [f64; 2]) -> [f64; 2] {
+        self.g.map(|[g0, g1]| 1.0 + 5.0 * (g0 * f[0] + g1 * f[1]))
+    }
+
+    /// Flexibilities beyond the half-spaces in m/N. Shape (2, 2).
+    pub fn beyond_half_spaces(&self) -> [[f64; 2]; 2] {
+        self.r
+    }
+
     /// Strain energy of the contacts in J.
     #[inline(always)]
     pub(super) fn energy(&self) -> f64 {

@@ -9,6 +9,7 @@ mod limits;
 mod predictor;
 pub mod reduced;
 mod results;
+mod series;
 mod trials;
 mod truncation;
 mod validity;

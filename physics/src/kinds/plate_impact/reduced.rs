@@ -5,14 +5,15 @@ use super::choice::Plan;
 use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate, kirchhoff_system};
 use super::predictor::Predictor;
 use super::results::{PlateQuantities, quantities, values};
+use super::series::{Done, Impacts};
 use super::truncation;
 use super::validity::film_warning;
 use crate::body::cache::Cache;
 use crate::body::kirchhoff::UnitPlates;
-use crate::dynamics::assured::{self, assured};
-use crate::dynamics::integrate;
+use crate::dynamics::assured;
 use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::ledger_check;
+use crate::dynamics::memory::{self, Memory};
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
@@ -35,6 +36,8 @@ pub struct Reduced {
     omega_next: f64,
     /// Forces of the fluid; a dry impact has none and takes the dry integrator.
     fluid: Option<FluidForces>,
+    /// What its materials remember; elastic ones take the integrator that knows nothing of it.
+    memory: Option<Memory>,
     warnings: Vec<String>,
     /// Why it is this model, if it was left to the program.
     choice: Option<Choice>,
@@ -148,7 +151,12 @@ impl Reduced {
     fn of(built: Joined, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
         let Joined { system, omega_next, fluid, mut warnings } = built;
         warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
-        Ok(Self { model, system, omega_next, fluid, warnings, choice, scene })
+        let memory = Memory::new(scene.plate_impact()?, &system)?;
+        warnings.extend(memory.iter().flat_map(|memory| memory.warnings.iter().cloned()));
+        if memory.is_some() && choice.is_some() {
+            warnings.push("the estimate by which the model was chosen is that of elastic materials".into());
+        }
+        Ok(Self { model, system, omega_next, fluid, memory, warnings, choice, scene })
     }
 
     /// The model.
@@ -166,26 +174,28 @@ impl Reduced {
         &self.system
     }
 
-    fn integrate(&self, options: &Options) -> Result<Integration> {
-        let system = &self.system;
-        assured(options, system, |options| integrate(system, self.fluid.as_ref(), options))
+    fn impacts(&self) -> Impacts<'_> {
+        let series = self.scene.plate_impact().ok().and_then(|setup| setup.series);
+        Impacts { system: &self.system, fluid: self.fluid.as_ref(), memory: self.memory.as_ref(), series }
     }
 
     /// Runs the impact without keeping its history; `tolerance` bounds the efficiency's relative error from the
     /// time integration.
     ///
     /// # Errors
-    /// As [`integrate`] and [`ledger_check`].
+    /// As [`crate::dynamics::integrate`] and [`ledger_check`].
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
-        let mut summary = self.unjudged(tolerance)?;
+        let (mut summary, _) = self.unjudged(tolerance)?;
         Kind.judge(&self.scene, &mut summary, None);
         Ok(summary)
     }
 
-    fn unjudged(&self, tolerance: f64) -> Result<Summary> {
+    /// The summary, and what the materials remembered when the last impact began.
+    fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>)> {
         let start = Instant::now();
-        let result = self.integrate(&self.options(tolerance))?;
-        self.summary(&result, tolerance, start.elapsed().as_secs_f64())
+        let Done { last, impacts, memory } = self.impacts().all(&self.options(tolerance))?;
+        let summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
+        Ok((Summary { impacts, ..summary }, memory))
     }
 
     /// Runs the impact for its results alone, as a series of many needs them.
@@ -193,7 +203,8 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::run`], [`Error::Solver`] if the run is cut during a contact.
     pub fn point(&self, tolerance: f64) -> Result<Point> {
-        let result = self.integrate(&self.options(tolerance))?;
+        let result = self.impacts().all(&self.options(tolerance))?.last;
+        let tolerance = self.kept(tolerance);
         ledger_check(result.energy_residual, result.momentum_residual, tolerance)?;
         Ok(Point {
             quantities: quantities(&self.system, &result)?,
@@ -217,12 +228,12 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::run`].
     pub fn run_with_history_until(&self, tolerance: f64, end: f64) -> Result<Outcome> {
-        let mut summary = self.unjudged(tolerance)?;
+        let (mut summary, memory) = self.unjudged(tolerance)?;
         let system = &self.system;
         let sample_interval = Some(system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
         let options = Options { sample_interval, ..self.options(tolerance) };
         let record = |options: &Options| -> Result<_> {
-            let result = self.integrate(options)?;
+            let (result, _) = self.impacts().one(options, memory.as_ref())?;
             result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))
         };
         let mut history = record(&options)?;
@@ -235,12 +246,17 @@ impl Reduced {
         Ok(Outcome { summary, history })
     }
 
+    /// The tolerance that the time integration keeps where `tolerance` is asked for: materials with memory take even steps.
+    fn kept(&self, tolerance: f64) -> f64 {
+        if self.memory.is_some() { tolerance.max(memory::CHANGE) } else { tolerance }
+    }
+
     fn options(&self, tolerance: f64) -> Options {
         Options { tolerance, end_time: self.scene.run.end_time, sample_interval: None }
     }
 
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
-        let system = &self.system;
+        let (system, tolerance) = (&self.system, self.kept(tolerance));
         let setup = self.scene.plate_impact()?;
         let end_time = self.scene.run.end_time;
         let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
@@ -278,7 +294,8 @@ impl Reduced {
                 let efficiency = transmitted / drive.strain_energy;
                 BenderSummary { strain_energy_efficiency: (!result.is_cut()).then_some(efficiency), drive }
             }),
-            losses: (system.is_damped() || self.fluid.is_some()).then_some(result.losses),
+            losses: (system.is_damped() || self.fluid.is_some() || self.memory.is_some())
+                .then_some(result.losses),
             warnings,
             choice: self.choice.clone(),
             ..Summary::of_reduced(&self.scene, self.model, system.modes, table)
@@ -308,7 +325,7 @@ mod tests {
         let text = include_str!("../../../../tests/fixtures/plate-impact.toml");
         let scene = Scene::parse("plate-impact.toml", text).unwrap();
         let reduced = Reduced::new(&scene, Model::B, None).unwrap();
-        let sound = reduced.integrate(&reduced.options(1e-7)).unwrap();
+        let sound = reduced.impacts().all(&reduced.options(1e-7)).unwrap().last;
         let summary = |energy_residual: f64| {
             reduced.summary(&Integration { energy_residual, ..sound.clone() }, 1e-7, 0.0)
         };

@@ -128,6 +128,18 @@ pub(in crate::scene) static FLUID: [Field; 10] = [
     thinning("power_index", pure(FRACTION), "Carreau's law: power n"),
 ];
 
+/// Most impacts of a series.
+const MAX_IMPACTS: u64 = 200;
+
+pub(in crate::scene) static SERIES: [Field; 2] = [
+    required("impacts", Kind::Count(1, MAX_IMPACTS), "Number of impacts at most"),
+    optional(
+        "sphere_spot",
+        Kind::Choice(&[choice("same"), choice("fresh")]),
+        "Whether outer and inner body meet the plate each time with the same spot or with one that has not yielded yet; absent = same",
+    ),
+];
+
 /// Most modes of a plate that a model is built with: with so many the bodies of model C take a quarter of a minute, with twice as many ten
 /// times as long.
 pub const MAX_MODES: usize = 256;

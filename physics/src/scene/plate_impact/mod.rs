@@ -5,7 +5,7 @@ mod read;
 mod soundness;
 
 pub use keys::MAX_MODES;
-pub(super) use keys::{DEFAULT_GEOMETRY, FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE};
+pub(super) use keys::{DEFAULT_GEOMETRY, FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE, SERIES};
 pub(super) use read::{plate_impact, reference};
 
 use super::Material;
@@ -183,4 +183,26 @@ pub struct PlateImpact {
     pub inner: Inner,
     /// The fluid, if any.
     pub fluid: Option<Fluid>,
+    /// How often the impact is repeated, if it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub series: Option<Series>,
+}
+
+/// The same impact several times, each with the dents of those before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Series {
+    /// Number of impacts at most; they end earlier once nothing yields any more.
+    pub impacts: u64,
+    /// Where outer and inner body are hit.
+    pub sphere_spot: Spot,
+}
+
+/// Where a body is hit in a series of impacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Spot {
+    /// On the same spot each time.
+    Same,
+    /// On a spot that has not yielded yet.
+    Fresh,
 }

@@ -6,7 +6,8 @@ use crate::Result;
 use crate::analytical::cantilever;
 use crate::body::beam;
 use crate::scene::check::{Checked, Values};
-use crate::scene::read::{Node, element_order, material, refused, unknown};
+use crate::scene::material::material;
+use crate::scene::read::{Node, element_order, refused, unknown};
 use crate::scene::{Geometry, ReferenceSettings, Rigid};
 
 /// The bodies of a plate impact.
@@ -33,7 +34,16 @@ pub(in crate::scene) fn plate_impact(root: &Node, materials: &Node) -> Result<Pl
             gap: inner.number_or("gap", 0.0)?,
         },
         plate,
+        series: root.optional_table("series")?.map(|s| series(&s)).transpose()?,
     })
+}
+
+fn series(series: &Node) -> Result<Series> {
+    let sphere_spot = match series.0.get("sphere_spot") {
+        Some(Checked::Text(word)) if word == "fresh" => Spot::Fresh,
+        _ => Spot::Same,
+    };
+    Ok(Series { impacts: series.count("impacts")?, sphere_spot })
 }
 
 fn shape(body: &Node) -> Result<Shape> {

@@ -46,6 +46,11 @@ impl Part for PlateImpact {
             ("inner's tip radius", inner.shape.tip_radius()),
         ];
         found.extend(lengths.into_iter().filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
+        if self.series.is_some() && bodies.iter().all(|material| material.plasticity().is_none()) {
+            found.push(
+                "series: no material yields, so that the first impact is the last; give one `yield_strength` and `hardening`".into(),
+            );
+        }
         if plate.thickness > 4.0 * plate.radius {
             found.push(format!(
                 "plate.thickness is {:.3} times plate.radius: a rod rather than a plate; is one of them a diameter?",

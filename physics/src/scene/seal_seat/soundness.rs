@@ -3,7 +3,7 @@
 use super::SealSeat;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::material;
-use crate::scene::{Part, SEAL_SEAT};
+use crate::scene::{Material, Part, SEAL_SEAT};
 use std::f64::consts::FRAC_PI_2;
 
 /// Least thickness of a wall between two features, over the island's height: what a mesh can follow.
@@ -24,11 +24,28 @@ impl Part for SealSeat {
             found.extend(ring_and_walls(self));
         }
         found.extend(tips(self));
+        found.extend(broken(vec![
+            elastic("seat.material", &self.seat.material),
+            elastic("sphere.material", &self.sphere.material),
+        ]));
         found
     }
 
     fn doubts(&self) -> Vec<String> {
         [&self.seat.material, &self.sphere.material].into_iter().flat_map(material).collect()
+    }
+}
+
+/// That a material is elastic: no model of a seal seat knows another.
+fn elastic(field: &'static str, material: &Material) -> Rule {
+    Rule {
+        fields: vec![field],
+        holds: material.plasticity().is_none() && material.relaxation.is_empty(),
+        message: format!(
+            "`{field}` is `{}`, which yields or relaxes, but a seal seat has to be elastic",
+            material.name
+        ),
+        help: "leave `hardening`, `relaxation` and `loss_factor` out of the material",
     }
 }
 

@@ -1,0 +1,217 @@
+//! Impacts of materials with memory: viscoelastic bodies, and contacts that yield.
+//!
+//! Modes with internal variables move exactly under forces that change evenly over a step; the contacts are laws of the approach at its
+//! end, whose memory moves from step to step. All steps are of one length, of second order; runs with half the length follow until the
+//! result stands. Elastic impacts know nothing of this: they take [`super::integrator`].
+
+mod contact;
+mod modes;
+mod run;
+
+use self::contact::{Contact, DentedContact};
+use self::run::Run;
+use super::assured::differences;
+use super::integration::{Integration, Options};
+use super::system::System;
+use crate::analytical::hertz::HertzImpact;
+use crate::contact::{Dent, Hertz, ViscoelasticContact};
+use crate::error::{Error, Result};
+use crate::material::{Creep, Material, Relaxation};
+use crate::scene::{PlateImpact, Spot};
+
+/// Steps of the first run per duration of the outer body's impact on a rigid wall.
+const FIRST_STEPS: f64 = 200.0;
+/// Most halvings of the step.
+const MAX_HALVINGS: usize = 7;
+/// Change of velocities, over the impact speed, and force peaks, relative, from one run to the next that is in order: of second order,
+/// the finer one is off by a third of it.
+pub const CHANGE: f64 = 1e-4;
+/// Representative plastic strain under a sphere over the contact radius over its own (Tabor, The Hardness of Metals, 1951).
+const TABOR: f64 = 0.2;
+
+/// Share of the yield strength that hardening under a contact may come to before it is told.
+const HARDENED: f64 = 0.05;
+
+/// What the materials of an impact remember.
+#[derive(Debug, Clone)]
+pub struct Memory {
+    bodies: Bodies,
+    /// What the models leave out, a sentence each.
+    pub warnings: Vec<String>,
+    /// Relaxation of the plate's material.
+    plate: Vec<Relaxation>,
+}
+
+/// Contacts and what lies beneath them.
+#[derive(Debug, Clone)]
+struct Bodies {
+    contacts: [Contact; 2],
+    /// Creep of the plate and of the tips of both bodies beyond half-spaces.
+    plate: Creep,
+    tips: [Creep; 2],
+    /// Residual flexibility of the tips, m/N.
+    tip_residual: [f64; 2],
+}
+
+impl Bodies {
+    /// Prepares steps of `h` s.
+    fn prepare(&mut self, h: f64) {
+        self.contacts.iter_mut().for_each(|contact| contact.prepare(h));
+        self.plate.prepare(h);
+        self.tips.iter_mut().for_each(|tip| tip.prepare(h));
+    }
+
+    /// The creep beneath contact `i` of the plate (`part` 0) or of the body's tip (1).
+    fn creep(&self, i: usize, part: usize) -> &Creep {
+        if part == 0 { &self.plate } else { &self.tips[i] }
+    }
+
+    /// What plate and tip yield at once beyond half-spaces under the forces `force` in N (m, shape (contact; plate, tip)), the patches
+    /// in m, from those of a nearby state, and the flexibilities in m/N.
+    fn elastic(
+        &self,
+        system: &System,
+        force: [f64; 2],
+        patch: [f64; 2],
+    ) -> ([[f64; 2]; 2], [f64; 2], [[f64; 2]; 2]) {
+        let Some(residual) = &system.residual else {
+            return (
+                Default::default(),
+                [0, 1].map(|i| system.laws[i].approach(force[i])),
+                Default::default(),
+            );
+        };
+        let (both, patch) = residual.displacement(&system.laws, force, patch);
+        let parts = [0, 1].map(|i| {
+            let tip = self.tip_residual[i] * force[i];
+            [both[i] - tip, tip]
+        });
+        (parts, patch, residual.state(&system.laws, patch).beyond_half_spaces())
+    }
+}
+
+impl Memory {
+    /// What the materials of `setup` remember in a model that is `system`, virgin; `None` if all of them are elastic.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] for what is not covered: a fluid, a bender, a viscoelastic body on one that yields.
+    pub fn new(setup: &PlateImpact, system: &System) -> Result<Option<Self>> {
+        let bodies = [&setup.outer.material, &setup.inner.material];
+        let plate = &setup.plate.material;
+        let all = [bodies[0], bodies[1], plate];
+        if all.iter().all(|m| m.plasticity().is_none() && m.relaxation.is_empty()) {
+            return Ok(None);
+        }
+        if setup.fluid.is_some() || system.outer_returns() {
+            let what = if setup.fluid.is_some() { "a fluid" } else { "a bender" };
+            return Err(Error::Solver(format!(
+                "reduced model: viscoelastic and plastic materials together with {what} are not covered"
+            )));
+        }
+        let hit = system.hertz_impact();
+        let contact = |i: usize| contact([bodies[i], plate], system.laws[i], &hit);
+        let mut warnings: Vec<String> =
+            all.into_iter().filter_map(|material| hardening_left_out(material, system, &hit)).collect();
+        warnings.dedup();
+        Ok(Some(Self {
+            warnings,
+            bodies: Bodies {
+                contacts: [contact(0)?, contact(1)?],
+                plate: Creep::new(&plate.relaxation),
+                tips: bodies.map(|m| Creep::new(&m.relaxation)),
+                tip_residual: system.tip_residual,
+            },
+            plate: plate.relaxation.clone(),
+        }))
+    }
+
+    /// Whether contacts with these force peaks in N stay elastic, and everything else too.
+    pub fn is_elastic_below(&self, peaks: [f64; 2]) -> bool {
+        self.plate.is_empty()
+            && self.critical_forces().into_iter().zip(peaks).all(|(critical, peak)| peak <= critical)
+    }
+
+    /// Forces in N up to which the contacts are elastic as they are now: none of a dented or a viscoelastic one.
+    pub fn critical_forces(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.bodies.contacts[i].critical_force())
+    }
+
+    /// The same with fresh spots of outer and inner body, if the series has them so.
+    #[must_use]
+    pub fn next(mut self, spot: Spot) -> Self {
+        for contact in &mut self.bodies.contacts {
+            if let (Contact::Dented(contact), Spot::Fresh) = (contact, spot) {
+                contact.surfaces[0].dent = Dent::NONE;
+            }
+        }
+        self
+    }
+
+    /// Depths in m of the dents at the outer and the inner contact: what the surfaces have to approach to touch again.
+    pub fn dents(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.bodies.contacts[i].depth())
+    }
+}
+
+/// The contact of a body and the plate, the materials `pair`.
+fn contact(pair: [&Material; 2], hertz: Hertz, hit: &HertzImpact) -> Result<Contact> {
+    let radius = (hertz.tip_radius * hit.approach_peak()).sqrt();
+    let relaxes = pair.iter().any(|m| !m.relaxation.is_empty());
+    let yields = pair.map(|m| yield_strength(m, TABOR * radius / hertz.tip_radius / (0.5 * hit.duration())));
+    match (relaxes, yields.iter().any(Option::is_some)) {
+        (false, false) => Ok(Contact::Elastic(hertz)),
+        (false, true) => Ok(Contact::Dented(DentedContact::new(hertz, pair, yields))),
+        (true, false) => Ok(Contact::Viscoelastic(ViscoelasticContact::new(hertz.tip_radius, pair, radius))),
+        (true, true) => Err(Error::Solver(format!(
+            "reduced model: the contact of `{}` and `{}`, of which one is viscoelastic and one yields, is not covered",
+            pair[0].name, pair[1].name
+        ))),
+    }
+}
+
+/// A sentence if `material` hardens under the contacts of the impact `hit` by more than the law without hardening can leave out.
+fn hardening_left_out(material: &Material, system: &System, hit: &HertzImpact) -> Option<String> {
+    let plasticity = material.plasticity()?;
+    let radius = |hertz: &Hertz| (hit.approach_peak() / hertz.tip_radius).sqrt();
+    let strain = TABOR * system.laws.iter().map(radius).fold(0.0, f64::max);
+    let share = strain * plasticity.hardening / plasticity.yield_strength;
+    (share > HARDENED).then(|| {
+        format!(
+            "the contact law knows no hardening, but the yield stress of `{}` grows by about {:.0} % under the contacts",
+            material.name,
+            100.0 * share
+        )
+    })
+}
+
+/// Yield strength in Pa at the rate of plastic `strain` in 1/s, if the material yields.
+fn yield_strength(material: &Material, strain_rate: f64) -> Option<f64> {
+    let plasticity = material.plasticity()?;
+    let growth = plasticity.rate.map_or(0.0, |r| (strain_rate / r.reference_rate).powf(1.0 / r.exponent));
+    Some(plasticity.yield_strength * (1.0 + growth))
+}
+
+/// Integrates the impact of `system` with materials that remember `memory`; gives also what they remember afterwards.
+///
+/// # Errors
+/// [`Error::Solver`] if a contact has no equilibrium or the run does not end.
+pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<(Integration, Memory)> {
+    let run = |halvings: usize| -> Result<(Integration, [Contact; 2])> {
+        let h = system.hertz_impact().duration() / FIRST_STEPS * 0.5_f64.powi(halvings as i32);
+        Run::new(system, &memory.bodies, &memory.plate, h, options).go(options.end_time)
+    };
+    let (mut before, _) = run(0)?;
+    for halvings in 1..=MAX_HALVINGS {
+        let (result, contacts) = run(halvings)?;
+        let peaks = [&before, &result].map(|result| result.contacts.map(|c| c.force_peak));
+        let change = differences(system, [before.velocity, result.velocity], peaks);
+        let change = change[0].max(change[1]);
+        if change <= CHANGE || halvings == MAX_HALVINGS {
+            let bodies = Bodies { contacts, ..memory.bodies.clone() };
+            let error_estimate = Some(change / 3.0);
+            return Ok((Integration { error_estimate, ..result }, Memory { bodies, ..memory.clone() }));
+        }
+        before = result;
+    }
+    unreachable!("the last halving returns")
+}

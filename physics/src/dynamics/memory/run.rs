@@ -1,0 +1,268 @@
+//! One impact in even steps: the modes move exactly, the contacts answer at the end of every step.
+
+use super::Bodies;
+use super::contact::Contact;
+use super::modes::Modes;
+use crate::dynamics::contact_ledger::ContactLedger;
+use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
+use crate::dynamics::recorder::{CURVES, sample};
+use crate::dynamics::system::System;
+use crate::error::{Error, Result};
+use crate::material::{Deformation, Relaxation};
+use crate::result::{History, Losses};
+
+/// Steps after which a run counts as endless.
+const MAX_STEPS: u64 = 4_000_000;
+/// Newton steps after which a contact counts as unsolvable.
+const MAX_ITERATIONS: usize = 60;
+
+pub(super) struct Run<'a> {
+    system: &'a System,
+    bodies: Bodies,
+    modes: Modes<'a>,
+    h: f64,
+    time: f64,
+    steps: u64,
+    /// States of the modes, now and next.
+    state: [Vec<f64>; 2],
+    /// What plate and tips yield beyond half-spaces. Shape (contact; plate, tip).
+    yielded: [[Deformation; 2]; 2],
+    /// Approaches of the surfaces before dents, in m, and what is added to the modal ones for dents there were at the start.
+    x: [f64; 2],
+    offset: [f64; 2],
+    /// Modal approaches in m, forces in N and patches in m.
+    y: [f64; 2],
+    force: [f64; 2],
+    patch: [f64; 2],
+    contacts: [ContactLedger; 2],
+    /// What plate and tips have yielded at each contact for having crept, m.
+    crept: [f64; 2],
+    /// Energy lost in each contact, J.
+    contact_losses: [f64; 2],
+    /// Energy lost by the modes, J, and the power that they lose, W.
+    lost: f64,
+    power: f64,
+    /// What the contacts add to the displacement of the plate's centre, m.
+    centre: f64,
+    history: Option<History>,
+}
+
+impl<'a> Run<'a> {
+    /// With `h` s at most per step.
+    pub(super) fn new(
+        system: &'a System,
+        bodies: &Bodies,
+        terms: &'a [Relaxation],
+        h: f64,
+        options: &Options,
+    ) -> Self {
+        // a whole number of steps to the end that is asked for
+        let h = options.end_time.map_or(h, |end| end / (end / h).ceil());
+        let modes = Modes::new(system, terms, h);
+        let mut bodies = bodies.clone();
+        bodies.prepare(h);
+        let offset = [0, 1].map(|i| bodies.contacts[i].depth());
+        let start = modes.start();
+        let y = system.modal_approach(&modes.motion(&start)[0]);
+        let mut run = Self {
+            system,
+            modes,
+            h,
+            time: 0.0,
+            steps: 0,
+            state: [start.clone(), start],
+            yielded: Default::default(),
+            x: [y[0] + offset[0], y[1] + offset[1]],
+            offset,
+            y,
+            force: [0.0; 2],
+            patch: [0.0; 2],
+            contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+            crept: [0.0; 2],
+            contact_losses: [0.0; 2],
+            lost: 0.0,
+            power: 0.0,
+            centre: 0.0,
+            history: options.sample_interval.map(|_| History::new(&CURVES)),
+            bodies,
+        };
+        run.record();
+        run
+    }
+
+    /// Runs to `end_time` s, or until no further contact is possible; gives also the contacts as they are then.
+    pub(super) fn go(mut self, end_time: Option<f64>) -> Result<(Integration, [Contact; 2])> {
+        while end_time.map_or_else(|| !self.is_over(), |end| self.time < end * (1.0 - 1e-12)) {
+            self.step()?;
+            if self.steps > MAX_STEPS {
+                return Err(Error::Solver(format!(
+                    "reduced model: no end after {MAX_STEPS} steps, at t = {:.6e} s; set `run.end_time`",
+                    self.time
+                )));
+            }
+        }
+        Ok(self.finish())
+    }
+
+    fn step(&mut self) -> Result<()> {
+        let [now, next] = &mut self.state;
+        self.modes.advance(now, [self.force, [0.0; 2]], next);
+        let free = self.system.modal_approach(&self.modes.motion(next)[0]);
+        let (x, force, patch) = self.solve(free).ok_or_else(|| {
+            Error::Solver(format!(
+                "reduced model: at t = {:.6e} s the contacts find no equilibrium",
+                self.time
+            ))
+        })?;
+        let [now, next] = &mut self.state;
+        self.modes.advance(now, [self.force, force], next);
+        let coupling = self.modes.coupling;
+        let y = [0, 1].map(|i| free[i] - coupling[i][0] * force[0] - coupling[i][1] * force[1]);
+        self.book(x, y, force);
+        self.remember(x, force, patch);
+        let [_, power] = self.modes.energy(&self.state[1]);
+        self.lost += 0.5 * self.h * (self.power + power);
+        (self.x, self.y, self.force, self.patch, self.power) = (x, y, force, patch, power);
+        self.state.swap(0, 1);
+        self.steps += 1;
+        self.time += self.h;
+        self.record();
+        Ok(())
+    }
+
+    /// Books a step that ends with surfaces and bodies approached by `x` and `y` m under `force` N.
+    fn book(&mut self, x: [f64; 2], y: [f64; 2], force: [f64; 2]) {
+        for i in 0..2 {
+            let mean = 0.5 * (self.force[i] + force[i]);
+            // touch and release are where the force begins and ends
+            let past = [(self.x[i], self.force[i]), (x[i], force[i])].map(|(x, f)| {
+                let past = x - self.bodies.contacts[i].depth();
+                if f > 0.0 { past.max(f64::MIN_POSITIVE) } else { past.min(-f64::MIN_POSITIVE) }
+            });
+            let forces = [self.force[i], force[i]];
+            self.contacts[i].book_even(self.time, self.h, forces, past, mean * (y[i] - self.y[i]));
+            self.contact_losses[i] += mean * (x[i] - self.x[i]);
+        }
+    }
+
+    /// Lets contacts and residual flexibilities know how a step ended.
+    fn remember(&mut self, x: [f64; 2], force: [f64; 2], patch: [f64; 2]) {
+        let (elastic, ..) = self.bodies.elastic(self.system, force, patch);
+        for i in 0..2 {
+            self.bodies.contacts[i].advance(x[i]);
+            let mut crept = 0.0;
+            for part in 0..2 {
+                let state = &mut self.yielded[i][part];
+                self.bodies.creep(i, part).advance(state, elastic[i][part]);
+                crept += state.depth() - elastic[i][part];
+            }
+            // what yields elastically gives its energy back, to the other contact also
+            self.contact_losses[i] += 0.5 * (self.force[i] + force[i]) * (crept - self.crept[i]);
+            self.crept[i] = crept;
+        }
+    }
+
+    /// Approaches in m, forces in N and patches in m at the end of the step in which the modes alone would approach by `free` m:
+    /// Newton's method, with the flexibility beyond half-spaces as if it did not change with the patches.
+    fn solve(&self, free: [f64; 2]) -> Option<([f64; 2], [f64; 2], [f64; 2])> {
+        let free = [free[0] + self.offset[0], free[1] + self.offset[1]];
+        let scale = free[0].abs().max(free[1].abs()).max(f64::MIN_POSITIVE);
+        let (mut x, mut patch) = (self.x, self.patch);
+        let mut best = f64::INFINITY;
+        let (mut step, mut fraction) = ([0.0; 2], 1.0);
+        for _ in 0..MAX_ITERATIONS {
+            let trial = [x[0] - fraction * step[0], x[1] - fraction * step[1]];
+            let answer = [0, 1].map(|i| self.bodies.contacts[i].force(trial[i]));
+            let force = answer.map(|[force, _]| force);
+            let (elastic, patches, flexibility) = self.bodies.elastic(self.system, force, patch);
+            let coupling = self.modes.coupling;
+            let error = [0, 1].map(|i| {
+                let own: f64 = (0..2)
+                    .map(|part| {
+                        self.bodies.creep(i, part).deformation(&self.yielded[i][part], elastic[i][part])
+                    })
+                    .sum();
+                trial[i] + own + coupling[i][0] * force[0] + coupling[i][1] * force[1] - free[i]
+            });
+            let size = error[0].abs().max(error[1].abs());
+            if size <= 1e-13 * scale {
+                return Some((trial, force, patches));
+            }
+            if size >= best {
+                fraction *= 0.5;
+                if fraction < 1e-4 {
+                    // round-off is all that is left
+                    return (best <= 1e-10 * scale).then_some((trial, force, patches));
+                }
+                continue;
+            }
+            (x, patch, best, fraction) = (trial, patches, size, 1.0);
+            let slope = answer.map(|[_, slope]| slope);
+            let growth = [0, 1].map(|i| self.bodies.creep(i, 0).growth());
+            let [[a, b], [c, e]] = [0, 1].map(|i| {
+                [0, 1].map(|j| {
+                    f64::from(u8::from(i == j)) + (growth[i] * flexibility[i][j] + coupling[i][j]) * slope[j]
+                })
+            });
+            let determinant = a * e - b * c;
+            step = [(e * error[0] - b * error[1]) / determinant, (a * error[1] - c * error[0]) / determinant];
+        }
+        None
+    }
+
+    /// Whether no contact can touch any more: what every mode can reach by itself does not close the gaps that rigid motions open.
+    fn is_over(&self) -> bool {
+        if self.force != [0.0; 2] {
+            return false;
+        }
+        let reach = self.modes.reach(&self.state[0]);
+        let [q, v] = self.modes.motion(&self.state[0]);
+        (0..2).all(|i| {
+            let (mut gap, mut rate) =
+                (self.system.gap[i] - self.offset[i] + self.bodies.contacts[i].depth(), 0.0);
+            for (k, oscillator) in self.system.oscillators.iter().enumerate() {
+                let b = self.system.approach[i][k];
+                if oscillator.omega == 0.0 {
+                    gap -= b * q[k];
+                    rate -= b * v[k];
+                } else {
+                    gap -= b.abs() * reach[k];
+                }
+            }
+            gap >= 0.0 && rate >= 0.0
+        })
+    }
+
+    fn record(&mut self) {
+        let Some(history) = &mut self.history else { return };
+        let [q, v] = self.modes.motion(&self.state[0]);
+        let centre = self.system.local_centre.displacement(self.patch, self.force);
+        let rate = (centre - self.centre) / self.h;
+        self.centre = centre;
+        let values = sample(self.system, [&q, &v], [centre, rate], self.force);
+        history.push(self.time, values);
+    }
+
+    fn finish(self) -> (Integration, [Contact; 2]) {
+        let system = self.system;
+        let [_, v] = self.modes.motion(&self.state[0]);
+        let velocity = system.of_bodies(&v);
+        let [initial, _] = self.modes.energy(&self.modes.start());
+        let [end, _] = self.modes.energy(&self.state[0]);
+        let work = self.contacts.map(|contact| contact.work);
+        let unaccounted = end + self.lost + work[0] + work[1] - initial;
+        let integration = Integration {
+            velocity,
+            contacts: self.contacts,
+            energy_residual: unaccounted.abs() / initial,
+            energy_gained: unaccounted / initial,
+            momentum_residual: unexplained_momentum(system, &v, &self.contacts, &FluidAccount::default())
+                / (system.masses[0] * system.speed),
+            losses: Losses { plate_damping: self.lost, contacts: self.contact_losses, ..Losses::default() },
+            steps: self.steps,
+            error_estimate: None,
+            history: self.history,
+        };
+        (integration, self.bodies.contacts)
+    }
+}

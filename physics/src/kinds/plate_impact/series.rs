@@ -1,0 +1,92 @@
+//! One impact, or a series of them in which every one finds the dents of those before.
+
+use super::results::values;
+use crate::dynamics::assured::assured;
+use crate::dynamics::integrate;
+use crate::dynamics::integration::{Integration, Options};
+use crate::dynamics::memory::{self, Memory};
+use crate::dynamics::system::System;
+use crate::dynamics::wet::FluidForces;
+use crate::error::Result;
+use crate::result::Impact;
+use crate::scene::Series;
+
+/// Plastic work over the impact's energy below which nothing yields any more.
+const SHAKEN_DOWN: f64 = 3e-4;
+
+/// The impacts of a model.
+pub(super) struct Impacts<'a> {
+    pub(super) system: &'a System,
+    /// Forces of the fluid; a dry impact has none and takes the dry integrator.
+    pub(super) fluid: Option<&'a FluidForces>,
+    /// What the materials remember; elastic ones nothing.
+    pub(super) memory: Option<&'a Memory>,
+    pub(super) series: Option<Series>,
+}
+
+/// What a series comes to.
+pub(super) struct Done {
+    /// The last impact.
+    pub(super) last: Integration,
+    /// What the materials remembered when it began.
+    pub(super) memory: Option<Memory>,
+    /// All impacts; none without a series.
+    pub(super) impacts: Vec<Impact>,
+}
+
+impl Impacts<'_> {
+    /// All of them, without histories.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub(super) fn all(&self, options: &Options) -> Result<Done> {
+        let (mut last, mut after) = self.one(options, self.memory)?;
+        let Some(series) = self.series else {
+            return Ok(Done { last, memory: self.memory.cloned(), impacts: Vec::new() });
+        };
+        let mut before = self.memory.cloned();
+        let mut impacts = vec![self.row(1, &last)];
+        while impacts.len() < series.impacts as usize && !self.has_shaken_down(&last) {
+            before = after.map(|memory| memory.next(series.sphere_spot));
+            (last, after) = self.one(options, before.as_ref())?;
+            impacts.push(self.row(impacts.len() as u64 + 1, &last));
+        }
+        Ok(Done { last, memory: before, impacts })
+    }
+
+    /// One impact, and what the materials remember after it.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub(super) fn one(
+        &self,
+        options: &Options,
+        memory: Option<&Memory>,
+    ) -> Result<(Integration, Option<Memory>)> {
+        let elastic = || assured(options, self.system, |options| integrate(self.system, self.fluid, options));
+        let Some(memory) = memory else { return Ok((elastic()?, None)) };
+        // virgin contacts below their onset of yield are elastic ones
+        if memory.is_elastic_below([0.0; 2]) {
+            let result = elastic()?;
+            if memory.is_elastic_below(result.contacts.map(|contact| contact.force_peak)) {
+                return Ok((result, Some(memory.clone())));
+            }
+        }
+        memory::integrate(self.system, memory, options).map(|(result, after)| (result, Some(after)))
+    }
+
+    fn has_shaken_down(&self, impact: &Integration) -> bool {
+        impact.is_cut()
+            || impact.losses.contacts.iter().sum::<f64>() < SHAKEN_DOWN * self.system.initial_energy()
+    }
+
+    fn row(&self, number: u64, impact: &Integration) -> Impact {
+        let table = values(self.system, impact).table();
+        Impact {
+            number,
+            quantities: if impact.is_cut() { table.cut() } else { table },
+            plastic_work: (!impact.is_cut()).then(|| impact.losses.contacts.iter().sum()),
+            locked_in_energy: None,
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Materials with memory: impacts of yielding and relaxing bodies against elastic ones, closed forms and finite elements.
+
+use crate::common;
+use approx::assert_relative_eq;
+use impactcheck::body::{ModalBody, kirchhoff};
+use impactcheck::dynamics::integration::{Integration, Options};
+use impactcheck::dynamics::integrator;
+use impactcheck::dynamics::memory::{Memory, integrate};
+use impactcheck::dynamics::system::System;
+use impactcheck::kinds::plate_impact::reduced::Reduced;
+
+use impactcheck::result::Summary;
+use impactcheck::scene::{Material, Model, PlateImpact, Relaxation, Scene, resolve};
+
+fn with(setup: PlateImpact, change: impl Fn(&mut Material)) -> PlateImpact {
+    let mut setup = setup;
+    for material in [&mut setup.plate.material, &mut setup.outer.material, &mut setup.inner.material] {
+        change(material);
+    }
+    setup
+}
+
+fn yielding(strength: f64) -> impl Fn(&mut Material) {
+    move |material| (material.yield_strength, material.hardening) = (Some(strength), Some(2.1e9))
+}
+
+fn run(setup: &PlateImpact, system: &System) -> Integration {
+    let memory = Memory::new(setup, system).unwrap().expect("a material with memory");
+    integrate(system, &memory, &Options::default()).unwrap().0
+}
+
+/// With a yield strength that nothing reaches the steps of one length give what the elastic integrator gives, with the residual
+/// flexibility of model C too.
+#[test]
+fn an_impact_that_nothing_remembers_is_the_elastic_one() {
+    let setup = with(common::scaled_plate(0.01, 0.55), yielding(1e12));
+    let bending = System::new(&setup, &kirchhoff::modes(&setup.plate, 16).unwrap(), [0.0; 2]);
+    let scene = Scene::read(resolve("scaled-plate-r10").unwrap()).unwrap();
+    let continuum = Reduced::new(&scene, Model::C, None).unwrap();
+    for system in [&bending, continuum.system()] {
+        let exact = integrator::integrate(system, &Options::default()).unwrap();
+        let ours = run(&setup, system);
+        for i in 0..2 {
+            assert_relative_eq!(ours.velocity[i], exact.velocity[i], epsilon = 3e-5 * system.speed);
+            assert_relative_eq!(
+                ours.contacts[i].force_peak,
+                exact.contacts[i].force_peak,
+                max_relative = 5e-5
+            );
+            assert_relative_eq!(ours.contacts[i].end, exact.contacts[i].end, max_relative = 1e-3);
+            assert_eq!(ours.contacts[i].contacts, exact.contacts[i].contacts);
+            assert!(ours.losses.contacts[i].abs() < 1e-4 * system.initial_energy(), "{:?}", ours.losses);
+        }
+        assert!(ours.energy_residual < 2e-5 && ours.momentum_residual < 1e-9, "{ours:?}");
+    }
+}
+
+/// A Maxwell sphere on a rigid wall loses (4/9) T/tau of its speed in a contact that is short against tau (Hunter, The Hertz contact
+/// problem, J. Mech. Phys. Solids 8, 1960, 219).
+#[test]
+fn a_viscoelastic_sphere_rebounds_as_hunter_says() {
+    let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
+    let mut setup = common::scaled_plate(0.01, 0.55);
+    setup.plate.material.youngs_modulus = 1e17;
+    let duration = System::new(&setup, &held, [0.0; 2]).hertz_impact().duration();
+    for ratio in [0.01, 0.02] {
+        setup.outer.material.relaxation = vec![Relaxation { ratio: 1.0, time: duration / ratio }];
+        let system = System::new(&setup, &held, [0.0; 2]);
+        let result = run(&setup, &system);
+        let lost = 1.0 - result.velocity[0] / setup.outer.speed;
+        // the next order in T/tau is left out
+        assert_relative_eq!(lost, 4.0 / 9.0 * ratio, max_relative = 0.005 + 0.5 * ratio);
+        assert!(result.energy_residual < 1e-4);
+    }
+}
+
+/// Restitution on a rigid wall at multiples of the speed at which yield begins, against finite elements of a throw-away prototype, from
+/// which Jackson, Green & Marghitu's law (Nonlinear Dynamics 60, 2010, 217) differs by 1 to 8 %; the size of the sphere has no part in it.
+#[test]
+fn a_yielding_sphere_rebounds_as_in_finite_elements() {
+    let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
+    let restitution = |radius: f64, ratio: f64| {
+        let mut setup = common::scaled_plate(radius, 1.0);
+        setup.plate.material.youngs_modulus = 1e17;
+        yielding(600e6)(&mut setup.outer.material);
+        let system = System::new(&setup, &held, [0.0; 2]);
+        let critical = Memory::new(&setup, &system).unwrap().unwrap().critical_forces()[0];
+        // Hertz: 2/5 F_c x_c is the energy at the onset
+        let energy = 0.4 * critical * system.laws[0].approach(critical);
+        setup.outer.speed = ratio * (2.0 * energy / system.masses[0]).sqrt();
+        let system = System::new(&setup, &held, [0.0; 2]);
+        run(&setup, &system).velocity[0] / setup.outer.speed
+    };
+    for (ratio, found) in
+        [(2.1, 0.975), (5.3, 0.898), (10.5, 0.829), (26.0, 0.730), (53.0, 0.654), (105.0, 0.572)]
+    {
+        let large = restitution(0.01, ratio);
+        assert_relative_eq!(large, found, max_relative = 0.08);
+        assert_relative_eq!(large, restitution(0.001, ratio), max_relative = 2e-3);
+    }
+    assert_relative_eq!(restitution(0.01, 0.9), 1.0, epsilon = 1e-4);
+}
+
+fn series(scene: &str, model: Model, more: &str, strength: &str) -> Summary {
+    let text = std::fs::read_to_string(resolve(scene).unwrap()).unwrap();
+    let density = "density        = \"7780 kg/m^3\"";
+    assert!(text.contains(density));
+    let steel = format!("{density}\nyield_strength = \"{strength}\"\nhardening = \"2.1 GPa\"");
+    let scene = Scene::parse("series", &(text.replace(density, &steel) + more)).unwrap();
+    Reduced::new(&scene, model, None).unwrap().run(1e-7).unwrap()
+}
+
+fn efficiencies(summary: &Summary) -> Vec<f64> {
+    summary.impacts.iter().map(|impact| impact.quantities.value("efficiency").unwrap()).collect()
+}
+
+/// Shakedown against the finite elements of a throw-away prototype with plastic elements (Table 1's scenes, all bodies alike,
+/// Y = 600 MPa, H = E/100): a low start, a rise, a steady state above the elastic efficiency.
+#[test]
+fn repeated_impacts_shake_down_as_in_finite_elements() {
+    for (scene, elastic, first, second, steady, peaks) in [
+        ("scaled-plate-r10", 0.6946, 0.570, 0.653, 0.7043, [496.0, 421.0]),
+        ("scaled-plate-r6.35", 0.3868, 0.333, 0.405, 0.4376, [158.0, 99.0]),
+    ] {
+        let summary = series(scene, Model::C, "\n[series]\nimpacts = 20\n", "600 MPa");
+        let found = efficiencies(&summary);
+        assert_relative_eq!(found[0], first, max_relative = 0.02);
+        assert_relative_eq!(found[1], second, max_relative = 0.02);
+        let last = *found.last().unwrap();
+        assert_relative_eq!(last, steady, max_relative = 0.015);
+        assert!(last > elastic && found.windows(2).all(|pair| pair[1] > pair[0]), "{found:?}");
+        for (name, peak) in ["outer_force_peak", "inner_force_peak"].into_iter().zip(peaks) {
+            assert_relative_eq!(summary.value(name).unwrap(), peak, max_relative = 0.03);
+        }
+        assert_eq!(summary.value("efficiency"), Some(last));
+        let work = summary.impacts.last().unwrap().plastic_work.unwrap();
+        assert!(found.len() < 20 && work < 3e-4 * 5e-3, "{} impacts, {work} J", found.len());
+    }
+}
+
+/// The dents of the spheres decide the sign: with a fresh spot each time the steady state stays below the elastic efficiency.
+#[test]
+fn fresh_spots_stay_below_the_elastic_efficiency() {
+    let fresh =
+        series("scaled-plate-r10", Model::B, "\n[series]\nimpacts = 8\nsphere_spot = \"fresh\"\n", "600 MPa");
+    let found = efficiencies(&fresh);
+    let elastic = series("scaled-plate-r10", Model::B, "", "6000 MPa").value("efficiency").unwrap();
+    assert_eq!(found.len(), 8);
+    assert!(found[0] < found[7] && found[7] < 0.95 * elastic, "{found:?} {elastic}");
+}
+
+/// A contact that does not reach its onset of yield takes the elastic branch: the same steps and bits as without.
+#[test]
+fn below_the_onset_of_yield_everything_is_elastic() {
+    let scene = Scene::read(resolve("scaled-plate-r10").unwrap()).unwrap();
+    let elastic = Reduced::new(&scene, Model::C, None).unwrap().run(1e-7).unwrap();
+    let strong = series("scaled-plate-r10", Model::C, "\n[series]\nimpacts = 5\n", "2000 MPa");
+    assert_eq!((strong.quantities, strong.steps), (elastic.quantities, elastic.steps));
+    assert_eq!(strong.impacts.len(), 1);
+}
+
+/// A polymer plate between steel spheres with a loss factor of 0.02: explicit finite elements of a throw-away prototype lose 1.88
+/// points of efficiency, mostly in contacts and plate alike.
+#[test]
+fn a_polymer_plate_loses_two_points() {
+    let scene = |loss: &str| {
+        let text = format!(
+            r#"
+            name = "polymer"
+            kind = "plate-impact"
+            materials.polymer = {{ youngs_modulus = "2.6 GPa", poisson_ratio = 0.38, density = 1320 {loss} }}
+            materials.steel = {{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = 7780 }}
+            plate = {{ radius = "5.5 mm", thickness = "0.5 mm", edge = "clamped", material = "polymer" }}
+            outer = {{ kind = "sphere", radius = "1.5 mm", material = "steel", speed = "550 mm/s" }}
+            inner = {{ kind = "sphere", radius = "1.5 mm", material = "steel" }}
+            "#
+        );
+        Scene::parse("polymer", &text).unwrap()
+    };
+    let run = |loss: &str, model| Reduced::new(&scene(loss), model, None).unwrap().run(1e-7).unwrap();
+    for model in [Model::B, Model::C] {
+        let (elastic, lossy) =
+            (run("", model), run(", loss_factor = 0.02, modulus_frequency = \"10 kHz\"", model));
+        let points = 100.0 * (elastic.value("efficiency").unwrap() - lossy.value("efficiency").unwrap());
+        assert!((points - 1.88).abs() < 0.1, "{model}: {points}");
+        let losses = lossy.losses.unwrap();
+        assert!(losses.plate_damping > 0.0 && losses.contacts.iter().all(|loss| *loss > 0.0), "{losses:?}");
+    }
+}
