@@ -315,7 +315,11 @@ mod tests {
         for (text, told) in [(viscous, true), (water, false)] {
             let scene = Scene::parse("film.toml", text).unwrap();
             let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-4).unwrap();
-            assert_eq!(summary.warnings.iter().any(|w| w.contains("squeeze film takes")), told, "{summary:?}");
+            assert_eq!(
+                summary.warnings.iter().any(|w| w.contains("squeeze film takes")),
+                told,
+                "{summary:?}"
+            );
         }
     }
 
