@@ -3,7 +3,8 @@
 # make report    the report of the shipped scenes, into reports/
 # make solutions computes the stored references of the shipped scenes again
 # make evidence  slow evidence: references of all scenes and the truth of their bands, model C on the validation scenes,
-#                studies, run time against error, random impacts, FEniCSx 0.9 (an hour or more; the last needs root)
+#                studies, run time against error, random impacts, killed runs, FEniCSx 0.9 (an hour or more; the last
+#                needs root)
 
 # The python that has (or gets) FEniCSx; Debian's packages belong to /usr/bin/python3.
 PYTHON := $(or $(IMPACTCHECK_PYTHON),/usr/bin/python3)
@@ -89,6 +90,7 @@ evidence: setup
 	$(RUN) bench --peer benches/diffsol/target/release/diffsol-peer --out $(OUT)/bench
 	$(RUN) stress --cases 100000
 	$(PYTHON) benches/unneeded.py target/release/impactcheck $(addprefix --before ,$(BEFORE)) --out $(OUT)/unneeded
+	python3 benches/kills.py target/release/impactcheck --out reports/kills.md
 	fuzz/run.sh scene 1800
 	fuzz/run.sh store 1800
 	PROPTEST_CASES=200000 cargo test --release --test store random_input

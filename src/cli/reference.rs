@@ -52,8 +52,12 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             require_sound(scene, &stored)?;
             *stored
         }
+        Some(lookup @ Lookup::Damaged { .. }) => {
+            let problem = problem(scene, resolution, &lookup);
+            return Err(Error::Reference(format!("{problem}; `--fresh` computes it again")));
+        }
         other => {
-            if let Some(lookup @ (Lookup::Stale { .. } | Lookup::Damaged { .. })) = &other {
+            if let Some(lookup @ Lookup::Stale { .. }) = &other {
                 context.note(format_args!("{}; computing it again", problem(scene, resolution, lookup)));
             }
             if let (Some(Lookup::Missing), Ok(Lookup::Found(shipped))) =

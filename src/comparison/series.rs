@@ -30,6 +30,7 @@ struct Mesh {
     /// On the number of elements along a length; the finest first.
     factor: f64,
     energy_residual: f64,
+    steps: u64,
 }
 
 #[derive(Deserialize)]
@@ -37,7 +38,7 @@ struct Values {
     values: Vec<f64>,
 }
 
-/// Number of values, bands and residuals of `summary` that its series contradicts; `None` without a series. One that can't be
+/// Number of values, bands, residuals and steps of `summary` that its series contradicts; `None` without a series. One that can't be
 /// read contradicts itself.
 pub(super) fn contradictions(summary: &Summary) -> Option<usize> {
     let stated = summary.convergence.as_ref()?;
@@ -47,6 +48,9 @@ pub(super) fn contradictions(summary: &Summary) -> Option<usize> {
     let of_curve = |name: &str| name.ends_with("_rms") || name.ends_with("_max");
     let unfounded = |name: &&String| !of_curve(name) && !quantities.contains_key(*name);
     let unfounded = summary.uncertainty.keys().filter(unfounded).count();
+    let measured =
+        summary.quantities.iter().filter(|quantity| !quantity.is_count && quantity.value.is_some());
+    let without_series = measured.filter(|quantity| !quantities.contains_key(quantity.name)).count();
     let contradicts = |(name, series): &(&String, &Values)| {
         let values = &series.values;
         values.len() < LEAST_MESHES
@@ -54,8 +58,10 @@ pub(super) fn contradictions(summary: &Summary) -> Option<usize> {
             || summary.value(name).is_some_and(|value| value != values[0])
             || !summary.band(name).is_some_and(|stated| agree(stated, band(values, &sizes)))
     };
-    let residual = meshes.first().is_none_or(|finest| finest.energy_residual != summary.energy_residual);
-    Some(unfounded + quantities.iter().filter(contradicts).count() + usize::from(residual))
+    let run = |finest: &Mesh| (finest.energy_residual, finest.steps);
+    let run_differs = meshes.first().map(run) != Some((summary.energy_residual, summary.steps));
+    let contradicting = quantities.iter().filter(contradicts).count();
+    Some(unfounded + without_series + contradicting + usize::from(run_differs))
 }
 
 fn agree(a: f64, b: f64) -> bool {

@@ -16,6 +16,11 @@ impl CurveBands {
         CurveBands { time, widths }
     }
 
+    /// The curves and the largest half width of their bands, in their units.
+    pub(super) fn widest(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        self.widths.iter().map(|(curve, widths)| (*curve, widths.iter().copied().fold(0.0, f64::max)))
+    }
+
     /// Half width of the band of `curve` at the instants of `axis`, linear between the samples and constant beyond them.
     /// `None` if it has none. Shape (axis.samples).
     pub fn sampled(&self, curve: &str, axis: &CommonAxis) -> Option<Vec<f64>> {

@@ -42,6 +42,10 @@ const HISTORY: &str = "history.csv";
 const PROVENANCE: &str = "provenance.json";
 const MESH: &str = "mesh.vtu";
 const REQUIRED: [&str; 4] = [SUMMARY, HISTORY, MESH, PROVENANCE];
+const NO_SERIES: &str =
+    "has no `convergence` with the `dofs` of its meshes: nothing its bands could follow from";
+/// Bands of curves are written with three digits.
+const BAND_ROUNDING: f64 = 0.005;
 /// Bytes of a mesh file within which its number of points stands.
 const MESH_HEAD: u64 = 4096;
 
@@ -77,7 +81,9 @@ pub(super) fn load(scene: &Scene, folder: &Path, mesh_files: MeshFiles) -> Resul
             format!("scene_hash is {}, but {} in {SUMMARY}", provenance["scene_hash"], summary.scene_hash);
         return Err(damage(PROVENANCE, reason));
     }
-    check_mesh(folder, &summary).map_err(|reason| damage(MESH, reason))?;
+    let dofs = finest_dofs(&summary).ok_or_else(|| damage(SUMMARY, NO_SERIES.to_owned()))?;
+    check_mesh(folder, dofs).map_err(|reason| damage(MESH, reason))?;
+    check_bands(&summary, bands.as_ref()).map_err(|reason| damage(HISTORY, reason))?;
     kind.judge(scene, &mut summary, Some(&history));
     Ok(Stored {
         outcome: Outcome { summary, history },
@@ -88,10 +94,14 @@ pub(super) fn load(scene: &Scene, folder: &Path, mesh_files: MeshFiles) -> Resul
     })
 }
 
-/// That the mesh, if it is there, has as many nodes as the finest one of the series, with two or three displacements each.
-fn check_mesh(folder: &Path, summary: &Summary) -> Result<(), String> {
-    let dofs = summary.convergence.as_ref().and_then(|series| series["meshes"][0]["dofs"].as_u64());
-    let (Some(dofs), Ok(file)) = (dofs, std::fs::File::open(folder.join(MESH))) else { return Ok(()) };
+/// Displacements of the finest mesh of the series.
+fn finest_dofs(summary: &Summary) -> Option<u64> {
+    summary.convergence.as_ref()?["meshes"][0]["dofs"].as_u64()
+}
+
+/// That the mesh, if it is there, has nodes for the `dofs` of the finest one of the series, two or three each.
+fn check_mesh(folder: &Path, dofs: u64) -> Result<(), String> {
+    let Ok(file) = std::fs::File::open(folder.join(MESH)) else { return Ok(()) };
     let mut head = Vec::new();
     std::io::Read::read_to_end(&mut std::io::Read::take(file, MESH_HEAD), &mut head)
         .map_err(|e| format!("can't be read: {e}"))?;
@@ -103,6 +113,17 @@ fn check_mesh(folder: &Path, summary: &Summary) -> Result<(), String> {
         Some(nodes) => Err(format!("has {nodes} nodes; the solution is of a mesh with {dofs} displacements")),
         None => Err("does not say how many nodes it has".to_owned()),
     }
+}
+
+/// That the bands of the curves are as wide as the summary says of them, where it does.
+fn check_bands(summary: &Summary, bands: Option<&CurveBands>) -> Result<(), String> {
+    for (curve, widest) in bands.into_iter().flat_map(CurveBands::widest) {
+        let stated = summary.band(&format!("{curve}_max")).unwrap_or(widest);
+        if (widest - stated).abs() > BAND_ROUNDING * stated.abs() {
+            return Err(format!("the band of {curve} is at most {widest:e} wide; {SUMMARY} says {stated:e}"));
+        }
+    }
+    Ok(())
 }
 
 /// Text of the checksum file; what tells one version of an entry from the next.

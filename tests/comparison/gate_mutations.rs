@@ -48,9 +48,11 @@ impl Table {
         let samples = (delay / interval).round() as usize;
         assert!(samples > 0, "the samples are {interval} s apart");
         let earlier: Vec<Vec<f64>> = self.rows.clone();
+        // bands stay: they are as wide as the summary says
+        let curves = 1..self.header.iter().take_while(|name| !name.ends_with("_band")).count();
         for (i, row) in self.rows.iter_mut().enumerate() {
             let from = &earlier[i.saturating_sub(samples)];
-            row[1..].copy_from_slice(&from[1..]);
+            row[curves.clone()].copy_from_slice(&from[curves.clone()]);
         }
     }
 }
@@ -113,17 +115,17 @@ fn seal(folder: &Path) {
 /// Exit status of the gate on `scene` with the references of `store`.
 fn gate(scene: &str, store: &Path) -> i32 {
     let out = tempfile::tempdir().unwrap();
-    let output = Command::cargo_bin("impactcheck")
-        .unwrap()
-        .args(["gate", scene, "--models", "B", "--store"])
-        .arg(store)
-        .arg("--out")
-        .arg(out.path())
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap();
-    println!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    output.status.code().unwrap()
+    run(&["gate", scene, "--models", "B", "--out", out.path().to_str().unwrap()], store).0
+}
+
+/// Exit status of the program with the references of `store`, and what it says on standard error.
+fn run(arguments: &[&str], store: &Path) -> (i32, String) {
+    let mut program = Command::cargo_bin("impactcheck").unwrap();
+    program.args(arguments).arg("--store").arg(store).current_dir(env!("CARGO_MANIFEST_DIR"));
+    let output = program.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    println!("{}{said}", String::from_utf8_lossy(&output.stdout));
+    (output.status.code().unwrap(), said)
 }
 
 #[test]
@@ -203,10 +205,8 @@ fn a_summary_that_its_own_mesh_series_contradicts_fails() {
     let edited = summary(scene, residual);
     assert_eq!(gate(scene, edited.path()), 10);
     // what only looks it up is told as well
-    let program = || Command::cargo_bin("impactcheck").unwrap();
-    let told = program().args(["reference", scene, "--store"]).arg(edited.path()).output().unwrap();
-    let said = String::from_utf8_lossy(&told.stderr);
-    assert_eq!(told.status.code(), Some(11), "{said}");
+    let (status, said) = run(&["reference", scene], edited.path());
+    assert_eq!(status, 11);
     assert!(said.contains("contradictions_of_mesh_series"), "{said}");
     let unfounded = |summary: &mut Value| {
         summary["uncertainty"]["efficiency"] = json!(1e-9);
@@ -217,6 +217,45 @@ fn a_summary_that_its_own_mesh_series_contradicts_fails() {
         summary["convergence"]["quantities"]["efficiency"]["values"].as_array_mut().unwrap().pop();
     };
     assert_eq!(gate(scene, summary(scene, dropped).path()), 10);
+    let without_band = |summary: &mut Value| {
+        for bands in ["/uncertainty", "/convergence/quantities"] {
+            summary.pointer_mut(bands).unwrap().as_object_mut().unwrap().remove("efficiency");
+        }
+    };
+    assert_eq!(gate(scene, summary(scene, without_band).path()), 10);
+    let steps = |summary: &mut Value| summary["steps"] = json!(7);
+    assert_eq!(gate(scene, summary(scene, steps).path()), 10);
+}
+
+#[test]
+fn bands_without_a_series_of_meshes_are_damage() {
+    let scene = SCENES[0];
+    let remove = |path: &str, key: &str| {
+        summary(scene, |document| {
+            document.pointer_mut(path).unwrap().as_object_mut().unwrap().remove(key).unwrap();
+        })
+    };
+    for (path, key) in [("", "convergence"), ("/convergence", "meshes"), ("/convergence/meshes/0", "dofs")] {
+        let store = remove(path, key);
+        let out = store.path().join("out");
+        let models = ["--models", "B", "--out", out.to_str().unwrap()];
+        for arguments in [
+            vec!["reference", scene],
+            [&["gate", scene], &models[..]].concat(),
+            [&["compare", scene], &models[..]].concat(),
+        ] {
+            let (status, said) = run(&arguments, store.path());
+            assert_eq!(status, 11, "{arguments:?} without {key}");
+            assert!(said.contains("summary.json: has no `convergence`"), "{said}");
+        }
+        assert!(!out.exists());
+    }
+}
+
+#[test]
+fn bands_of_curves_that_the_summary_does_not_know_are_damage() {
+    let narrow = store(SCENES[0], |table| table.scale("outer_force_band", 1e-3));
+    assert_eq!(gate(SCENES[0], narrow.path()), 11);
 }
 
 #[test]

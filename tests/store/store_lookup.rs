@@ -171,6 +171,8 @@ fn documents_are_read_strictly() {
         (with("steps", json!(-1)), "invalid value"),
         (original.to_string().replace("\"efficiency\":0.7,", ""), "missing field `efficiency`"),
         (original.to_string().replace("0.7", "1e999"), "out of range"),
+        (with("convergence", Value::Null), "no `convergence`"),
+        (with("convergence", json!({ "meshes": [] })), "no `convergence`"),
         ("{".to_owned(), "EOF"),
     ] {
         replace(&folder, "summary.json", &text);

@@ -15,6 +15,8 @@ pub const HISTORY: &str = "time,outer_displacement,outer_velocity,outer_force,pl
 2e-07,-1.1e-07,-0.5498,25,-2e-09,-0.02,-1e-12,-2e-05,0.5
 ";
 
+pub const MESH: &str = "<VTKFile type=\"UnstructuredGrid\"><Piece NumberOfPoints=\"4\"/></VTKFile>\n";
+
 pub fn scene() -> Scene {
     scene_with("", "")
 }
@@ -33,6 +35,7 @@ pub fn summary(scene: &Scene) -> Value {
         "inner_contacts": 1, "first_frequency": 4655.0, "energy_residual": 1e-8,
         "momentum_residual": 1e-11, "steps": 44000, "solve_seconds": 2.0,
         "uncertainty": { "efficiency": 0.0002 }, "samples": 3, "sample_interval": 1e-7,
+        "convergence": { "meshes": [{ "dofs": 8 }] },
     })
 }
 
@@ -50,7 +53,7 @@ pub fn write_entry(folder: &Path, scene: &Scene, resolution: Resolution) {
     write("summary.json", summary(scene).to_string());
     write("provenance.json", provenance(scene, resolution).to_string());
     write("history.csv", HISTORY.to_owned());
-    write("mesh.vtu", "<VTKFile type=\"UnstructuredGrid\"/>\n".to_owned());
+    write("mesh.vtu", MESH.to_owned());
     seal(folder);
 }
 
