@@ -56,7 +56,7 @@ impl UnitPlate {
         let mut shapes = Mat::from_fn(shapes.nrows(), count, |i, k| shapes[(i, k)] * shapes[(0, k)].signum());
         if rigid(0) {
             // exactly even: a film's momentum rests on it. Only the slope on the axis is held
-            let even = |row: usize| row == 0 || (row + 1) % PER_ELEMENT == 0;
+            let even = |row: usize| row == 0 || (row + 1).is_multiple_of(PER_ELEMENT);
             (0..shapes.nrows())
                 .for_each(|row| shapes[(row, 0)] = if even(row) { PI.sqrt().recip() } else { 0.0 });
         }
