@@ -29,7 +29,8 @@ def test_yield_strength_is_admissible_and_changes_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    "key", [{"yield_strength": 6e8, "hardening": 0.0}, {"relaxation": [{"ratio": 0.1, "time": 1e-5}]}]
+    "key",
+    [{"yield_strength": 6e8, "hardening": 0.0}, {"relaxation": [{"ratio": 0.1, "time": 1e-5}]}],
 )
 def test_materials_with_memory_are_refused(key: dict[str, object]) -> None:
     scene = document()

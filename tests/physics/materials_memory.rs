@@ -187,3 +187,20 @@ fn a_polymer_plate_loses_two_points() {
         assert!(losses.plate_damping > 0.0 && losses.contacts.iter().all(|loss| *loss > 0.0), "{losses:?}");
     }
 }
+
+/// Far beyond the loads its law was found for a contact that yields is warned of, and then refused.
+#[test]
+fn a_yield_strength_far_below_the_pressure_is_told() {
+    let memory = |strength: f64| {
+        let setup = with(common::scaled_plate(0.01, 0.55), yielding(strength));
+        let system = System::new(&setup, &kirchhoff::modes(&setup.plate, 4).unwrap(), [0.0; 2]);
+        Memory::new(&setup, &system)
+    };
+    let told = |strength: f64| memory(strength).unwrap().unwrap().warnings.join("; ");
+    assert!(
+        !told(600e6).contains("found up to") && told(1e8).contains("found up to 110 times"),
+        "{}",
+        told(1e8)
+    );
+    assert!(memory(1e6).unwrap_err().to_string().contains("yield_strength"));
+}

@@ -53,8 +53,14 @@ impl UnitPlate {
         let omega =
             squares.iter().enumerate().map(|(k, s)| if rigid(k) { 0.0 } else { s.max(0.0).sqrt() }).collect();
         // the deflection of the axis is the first unknown
-        let centre = (0..count).map(|k| shapes[(0, k)].abs()).collect();
-        let shapes = Mat::from_fn(shapes.nrows(), count, |i, k| shapes[(i, k)] * shapes[(0, k)].signum());
+        let mut shapes = Mat::from_fn(shapes.nrows(), count, |i, k| shapes[(i, k)] * shapes[(0, k)].signum());
+        if rigid(0) {
+            // exactly even: a film's momentum rests on it. Only the slope on the axis is held
+            let even = |row: usize| row == 0 || (row + 1).is_multiple_of(PER_ELEMENT);
+            (0..shapes.nrows())
+                .for_each(|row| shapes[(row, 0)] = if even(row) { PI.sqrt().recip() } else { 0.0 });
+        }
+        let centre = (0..count).map(|k| shapes[(0, k)]).collect();
         Ok(Self { edge, poisson_ratio, omega, centre, shapes, elements })
     }
 

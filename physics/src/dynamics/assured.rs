@@ -17,6 +17,10 @@ use crate::error::Result;
 const FEW_TOUCHES: u32 = 2;
 const FEW_STEPS: u64 = 200;
 const SMALL_DEFECT: f64 = 1.0 / 6.0;
+/// The same where modes are damped by this share of the critical or more: approaches that follow the forces at once hide a part of the
+/// defect.
+const SMALL_DAMPED_DEFECT: f64 = 1.0 / 20.0;
+const STRONG_DAMPING: f64 = 0.3;
 const FULL_SHARE: f64 = 0.2;
 /// Factor between the tolerances of two solutions.
 const TIGHTER: f64 = 0.1;
@@ -39,7 +43,7 @@ pub fn assured(
     run: impl Fn(&Options) -> Result<Integration>,
 ) -> Result<Integration> {
     let mut best = run(options)?;
-    if options.tolerance > ROUGH || is_simple(&best, options.tolerance) {
+    if options.tolerance > ROUGH || is_simple(system, &best, options.tolerance) {
         return Ok(best);
     }
     let mut options = *options;
@@ -56,9 +60,12 @@ pub fn assured(
     Ok(best)
 }
 
-fn is_simple(result: &Integration, tolerance: f64) -> bool {
+fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
     let [outer, inner] = &result.contacts;
-    let small = SMALL_DEFECT * Bounds::new(tolerance).force_defect;
+    let strongly_damped =
+        system.oscillators.iter().any(|o| o.omega > 0.0 && o.alpha >= STRONG_DAMPING * o.omega);
+    let share = if strongly_damped { SMALL_DAMPED_DEFECT } else { SMALL_DEFECT };
+    let small = share * Bounds::new(tolerance).force_defect;
     outer.contacts + inner.contacts <= FEW_TOUCHES
         && result.steps <= FEW_STEPS
         && result.contacts.iter().all(|c| c.force_defect <= small * c.force_peak)

@@ -47,6 +47,14 @@ impl Contact {
         }
     }
 
+    /// The approach `x` in m over that at which the contact begins to yield; 0 of one that does not.
+    pub(super) fn overload(&self, x: f64) -> f64 {
+        match self {
+            Contact::Dented(contact) => x / contact.hertz.approach(contact.critical_force()),
+            _ => 0.0,
+        }
+    }
+
     /// Approach in m at which the surfaces touch for good: that of their dents.
     pub(super) fn depth(&self) -> f64 {
         match self {

@@ -29,6 +29,11 @@ pub const CHANGE: f64 = 1e-4;
 /// Representative plastic strain under a sphere over the contact radius over its own (Tabor, The Hardness of Metals, 1951).
 const TABOR: f64 = 0.2;
 
+/// Approaches over the critical one up to which the law of a contact that yields was found (Jackson & Green 2005), and up to which it is
+/// taken: beyond, contacts last so much longer than Hertz's that steps of his are the wrong ones.
+const PROVEN_OVERLOAD: f64 = 110.0;
+const MOST_OVERLOAD: f64 = 1e4;
+
 /// Share of the yield strength that hardening under a contact may come to before it is told.
 const HARDENED: f64 = 0.05;
 
@@ -94,7 +99,8 @@ impl Memory {
     /// What the materials of `setup` remember in a model that is `system`, virgin; `None` if all of them are elastic.
     ///
     /// # Errors
-    /// [`Error::Solver`] for what is not covered: a fluid, a bender, a viscoelastic body on one that yields.
+    /// [`Error::Solver`] for what is not covered: a fluid, a bender, a viscoelastic body on one that yields, a yield strength far below
+    /// the contact pressure.
     pub fn new(setup: &PlateImpact, system: &System) -> Result<Option<Self>> {
         let bodies = [&setup.outer.material, &setup.inner.material];
         let plate = &setup.plate.material;
@@ -109,14 +115,17 @@ impl Memory {
             )));
         }
         let hit = system.hertz_impact();
-        let contact = |i: usize| contact([bodies[i], plate], system.laws[i], &hit);
+        let contacts = [0, 1].map(|i| contact([bodies[i], plate], system.laws[i], &hit));
+        let [outer, inner] = contacts;
+        let contacts = [outer?, inner?];
         let mut warnings: Vec<String> =
             all.into_iter().filter_map(|material| hardening_left_out(material, system, &hit)).collect();
         warnings.dedup();
+        warnings.extend(overloaded(&contacts, &hit)?);
         Ok(Some(Self {
             warnings,
             bodies: Bodies {
-                contacts: [contact(0)?, contact(1)?],
+                contacts,
                 plate: Creep::new(&plate.relaxation),
                 tips: bodies.map(|m| Creep::new(&m.relaxation)),
                 tip_residual: system.tip_residual,
@@ -147,9 +156,9 @@ impl Memory {
         self
     }
 
-    /// Depths in m of the dents at the outer and the inner contact: what the surfaces have to approach to touch again.
-    pub fn dents(&self) -> [f64; 2] {
-        [0, 1].map(|i| self.bodies.contacts[i].depth())
+    /// Whether outer and inner contact can yield.
+    pub fn yields(&self) -> [bool; 2] {
+        [0, 1].map(|i| matches!(self.bodies.contacts[i], Contact::Dented(_)))
     }
 }
 
@@ -182,6 +191,23 @@ fn hardening_left_out(material: &Material, system: &System, hit: &HertzImpact) -
             100.0 * share
         )
     })
+}
+
+/// A sentence if the impact `hit` drives a contact beyond what its law was found for.
+///
+/// # Errors
+/// [`Error::Solver`] if it is so far beyond that nothing is known.
+fn overloaded(contacts: &[Contact; 2], hit: &HertzImpact) -> Result<Option<String>> {
+    let overload = contacts.iter().map(|contact| contact.overload(hit.approach_peak())).fold(0.0, f64::max);
+    let told = format!(
+        "a contact approaches by about {overload:.1e} times what begins to yield; the law of a contact that yields was found up to {PROVEN_OVERLOAD} times"
+    );
+    if overload > MOST_OVERLOAD {
+        return Err(Error::Solver(format!(
+            "reduced model: {told}, and nothing is known beyond {MOST_OVERLOAD:.0e}; is `yield_strength` in the right unit?"
+        )));
+    }
+    Ok((overload > PROVEN_OVERLOAD).then_some(told))
 }
 
 /// Yield strength in Pa at the rate of plastic `strain` in 1/s, if the material yields.

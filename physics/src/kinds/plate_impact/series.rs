@@ -76,8 +76,13 @@ impl Impacts<'_> {
     }
 
     fn has_shaken_down(&self, impact: &Integration) -> bool {
-        impact.is_cut()
-            || impact.losses.contacts.iter().sum::<f64>() < SHAKEN_DOWN * self.system.initial_energy()
+        impact.is_cut() || self.plastic_work(impact) < SHAKEN_DOWN * self.system.initial_energy()
+    }
+
+    /// Energy in J lost in contacts that yield.
+    fn plastic_work(&self, impact: &Integration) -> f64 {
+        let yields = self.memory.map_or([false; 2], Memory::yields);
+        impact.losses.contacts.iter().zip(yields).map(|(loss, yields)| if yields { *loss } else { 0.0 }).sum()
     }
 
     fn row(&self, number: u64, impact: &Integration) -> Impact {
@@ -85,7 +90,7 @@ impl Impacts<'_> {
         Impact {
             number,
             quantities: if impact.is_cut() { table.cut() } else { table },
-            plastic_work: (!impact.is_cut()).then(|| impact.losses.contacts.iter().sum()),
+            plastic_work: (!impact.is_cut()).then(|| self.plastic_work(impact)),
             locked_in_energy: None,
         }
     }
