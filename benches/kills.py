@@ -37,7 +37,7 @@ BOUNDS = {"SIGKILL": 2.0, "SIGTERM": 0.5, "SIGINT": 0.5, "Ctrl-C": 0.5}
 others reach the program alone."""
 STATUS = {"SIGKILL": 9, "SIGTERM": 15, "SIGINT": 2, "Ctrl-C": 2}
 """Signal that the program's exit status must name."""
-PATIENCE = 120.0
+PATIENCE = 600.0
 """Seconds within which a run has to come to its phase, and to its end."""
 YOUNG = 11.0
 """Seconds after which the store takes a work folder without a living maker for a leftover."""
