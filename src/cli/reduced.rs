@@ -116,8 +116,8 @@ pub fn table(summary: &Summary) -> String {
             ("lost to plate damping", losses.plate_damping, "J"),
             ("lost in squeeze film", losses.squeeze_film, "J"),
             ("lost to drag", losses.drag, "J"),
-            ("lost in outer contact", losses.contacts[0], "J"),
-            ("lost in inner contact", losses.contacts[1], "J"),
+            ("lost in outer contact", losses.contacts.map_or(0.0, |loss| loss[0]), "J"),
+            ("lost in inner contact", losses.contacts.map_or(0.0, |loss| loss[1]), "J"),
         ]
         .into_iter()
         .filter(|(_, loss, _)| *loss != 0.0)

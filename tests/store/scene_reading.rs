@@ -225,7 +225,7 @@ fn unknown_keys_are_refused_at_every_level() {
     diameter("0.066", ": radius = 0.033; ");
     diameter("true", "/ 2; ");
     refuses(&extra("speed", "sped"), 20, &["outer.sped", "did you mean `speed`"]);
-    refuses(&edited("\n[reduced]", "speed = 1\n[reduced]"), 26, &["inner.speed", "gap"]);
+    refuses(&edited("\n[reduced]", "velocity = 1\n[reduced]"), 26, &["inner.velocity", "gap"]);
     refuses(&extra("modes", "mods"), 29, &["reduced.mods", "did you mean `modes`"]);
     refuses(&extra("geometry", "mesh"), 32, &["reference.mesh", "elements_per_contact_radius"]);
     refuses(&edited("[reduced]", "[run]\nend = 1\n[reduced]"), 28, &["run.end", "end_time"]);

@@ -24,8 +24,9 @@ pub struct ElasticPlastic {
     critical_approach: f64,
     /// F_c in N.
     critical_force: f64,
-    /// B, and Y C / 4 over 2.84 Y: how the hardness enters.
-    exponent: f64,
+    /// B: how the radius of the contact grows beyond Hertz's.
+    growth: f64,
+    /// 4/(C Y) times the largest hardness, 2.84 Y.
     constraint: f64,
 }
 
@@ -61,7 +62,7 @@ impl ElasticPlastic {
             hertz,
             critical_approach,
             critical_force: hertz.force(critical_approach),
-            exponent: 0.14 * (23.0 * yield_strength / modulus).exp(),
+            growth: 0.14 * (23.0 * yield_strength / modulus).exp(),
             constraint: 4.0 * 2.84 / factor,
         }
     }
@@ -78,20 +79,20 @@ impl ElasticPlastic {
         if w < 1.9 {
             return elastic;
         }
-        let force = self.fully_plastic(w);
+        let force = self.beyond_onset(w);
         // the two curves cross near there
         if force >= elastic[0] {
             return elastic;
         }
         let step = 1e-5 * w;
-        let slope = (self.fully_plastic(w + step) - self.fully_plastic(w - step)) / (2.0 * step);
+        let slope = (self.beyond_onset(w + step) - self.beyond_onset(w - step)) / (2.0 * step);
         [force, slope / self.critical_approach]
     }
 
     /// Jackson and Green's force in N beyond 1.9 critical approaches, at `w` of them.
-    fn fully_plastic(&self, w: f64) -> f64 {
+    fn beyond_onset(&self, w: f64) -> f64 {
         let radius =
-            (w * self.critical_approach / self.hertz.tip_radius * (w / 1.9).powf(self.exponent)).sqrt();
+            (w * self.critical_approach / self.hertz.tip_radius * (w / 1.9).powf(self.growth)).sqrt();
         let hardness = 1.0 - (-0.82 * radius.powf(-0.7)).exp();
         let share = 1.0 - (-w.powf(5.0 / 9.0) / 25.0).exp();
         self.critical_force

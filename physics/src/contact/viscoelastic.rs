@@ -7,9 +7,6 @@
 
 use crate::material::{Creep, Deformation, Material};
 
-/// Springs across the radius of contact expected.
-const SPRINGS: f64 = 64.0;
-
 /// One body's half of the springs.
 #[derive(Debug, Clone)]
 struct Half {
@@ -22,16 +19,15 @@ struct Half {
 #[derive(Debug, Clone)]
 pub struct ViscoelasticContact {
     tip_radius: f64,
-    /// Distance of the springs in m.
+    /// Distance of the springs in m; the first stands on the axis.
     width: f64,
     halves: [Half; 2],
     springs: Vec<[Deformation; 2]>,
 }
 
 impl ViscoelasticContact {
-    /// A tip of `tip_radius` m between two materials, with patches of about `contact_radius` m, which stand for the accuracy only.
-    pub fn new(tip_radius: f64, materials: [&Material; 2], contact_radius: f64) -> Self {
-        let width = contact_radius / SPRINGS;
+    /// A tip of `tip_radius` m between two materials, with a spring every `width` m.
+    pub fn new(tip_radius: f64, materials: [&Material; 2], width: f64) -> Self {
         let half = |material: &Material| Half {
             stiffness: 2.0 * material.plane_strain_modulus() * width,
             creep: Creep::new(&material.relaxation),
@@ -44,9 +40,17 @@ impl ViscoelasticContact {
         self.halves.iter_mut().for_each(|half| half.creep.prepare(h));
     }
 
+    /// The same never touched, with a spring every `width` m.
+    #[must_use]
+    pub fn virgin(&self, width: f64) -> Self {
+        let mut virgin = Self { width, springs: Vec::new(), ..self.clone() };
+        virgin.halves.iter_mut().for_each(|half| half.stiffness *= width / self.width);
+        virgin
+    }
+
     /// Deformation in m of spring `k`, positive into the bodies, if the tip has approached by `x` m.
     fn pressed(&self, k: usize, x: f64) -> f64 {
-        let distance = (k as f64 + 0.5) * self.width;
+        let distance = k as f64 * self.width;
         x - distance * distance / self.tip_radius
     }
 
@@ -71,9 +75,10 @@ impl ViscoelasticContact {
                 break;
             }
             let [force, slope] = self.spring(self.springs.get(k).unwrap_or(&virgin), w);
-            // both sides of the axis are one spring, whose stiffness has the factor 2 E*
-            sum[0] += force;
-            sum[1] += slope;
+            // both sides of the axis are one spring, whose stiffness has the factor 2 E*; on the axis there is but one
+            let sides = if k == 0 { 0.5 } else { 1.0 };
+            sum[0] += sides * force;
+            sum[1] += sides * slope;
         }
         sum
     }
@@ -108,7 +113,7 @@ mod tests {
         let (soft, hard) = (polymer(vec![]), Material::elastic("steel", 210e9, 0.3, 7780.0));
         let hertz = Hertz::new(1.5e-3, &soft, &hard);
         let x: f64 = 4e-6;
-        let mut contact = ViscoelasticContact::new(1.5e-3, [&soft, &hard], (1.5e-3 * x).sqrt());
+        let mut contact = ViscoelasticContact::new(1.5e-3, [&soft, &hard], (1.5e-3 * x).sqrt() / 64.0);
         contact.prepare(1e-7);
         let [force, slope] = contact.force(x);
         assert_relative_eq!(force, hertz.force(x), max_relative = 1e-4);
@@ -124,7 +129,8 @@ mod tests {
         let hertz = Hertz::new(1.5e-3, &soft, &rigid);
         let (end, n) = (1e-4, 2000);
         let approach = |t: f64| 4e-6 * (t / end).powf(0.8);
-        let mut contact = ViscoelasticContact::new(1.5e-3, [&soft, &rigid], (1.5e-3 * 4e-6_f64).sqrt());
+        let mut contact =
+            ViscoelasticContact::new(1.5e-3, [&soft, &rigid], (1.5e-3 * 4e-6_f64).sqrt() / 64.0);
         let h = end / f64::from(n);
         contact.prepare(h);
         for k in 1..=n {

@@ -42,6 +42,8 @@ pub struct Integration {
     /// Estimated error of the velocities from the time integration, over the impact speed, if it was looked for
     /// ([`crate::dynamics::assured`]).
     pub error_estimate: Option<f64>,
+    /// Tolerance that the integration keeps whatever smaller one is asked for; 0 where it keeps any.
+    pub kept_tolerance: f64,
     /// Course over time, if asked for.
     pub history: Option<History>,
 }
@@ -123,6 +125,7 @@ impl Closing<'_> {
             },
             steps: self.steps,
             error_estimate: None,
+            kept_tolerance: 0.0,
             history,
         }
     }

@@ -85,6 +85,11 @@ impl Material {
         (self.youngs_modulus / self.density).sqrt()
     }
 
+    /// Whether it neither yields nor relaxes.
+    pub fn is_elastic(&self) -> bool {
+        self.plasticity().is_none() && self.relaxation.is_empty()
+    }
+
     /// How it yields, if it does.
     pub fn plasticity(&self) -> Option<Plasticity> {
         let (yield_strength, hardening) = (self.yield_strength?, self.hardening?);

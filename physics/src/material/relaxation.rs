@@ -51,8 +51,11 @@ pub fn fit_loss_factor(loss_factor: f64, frequency: f64) -> Option<(Vec<Relaxati
     });
     let wanted = DVector::from_element(frequencies.len(), loss_factor);
     let ratios = system.svd(true, true).solve(&wanted, 1e-12).ok()?;
-    let terms: Vec<Relaxation> =
-        ratios.iter().zip(&times).map(|(&ratio, &time)| Relaxation { ratio, time }).collect();
+    let terms: Vec<Relaxation> = ratios
+        .iter()
+        .zip(&times)
+        .map(|(&ratio, &time)| Relaxation { ratio: rounded(ratio), time: rounded(time) })
+        .collect();
     let error = |f: &f64| {
         let [storage, loss] = modulus_ratio(&terms, *f);
         (loss / storage / loss_factor - 1.0).abs()
@@ -60,6 +63,12 @@ pub fn fit_loss_factor(loss_factor: f64, frequency: f64) -> Option<(Vec<Relaxati
     let worst = frequencies.iter().map(error).fold(0.0, f64::max);
     let sound = terms.iter().all(|t| t.ratio > 0.0) && ratios.sum() < 1.0 && worst <= FIT;
     sound.then_some((terms, worst))
+}
+
+/// To nine digits: terms are part of a scene's identity, which rounding on another machine must not change.
+fn rounded(value: f64) -> f64 {
+    let unit = 10_f64.powi(value.abs().log10().floor() as i32 - 8);
+    (value / unit).round() * unit
 }
 
 #[cfg(test)]

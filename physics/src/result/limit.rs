@@ -80,9 +80,7 @@ pub(crate) fn of_contact<'m>(
     let pressure = law.maximum_pressure(force);
     let least = |of: fn(&Material) -> Option<f64>| materials.iter().filter_map(|m| of(m)).reduce(f64::min);
     let strain = least(|m| Some(m.shear_modulus())).map(|g| SMALL_STRAIN.at(place, SHEAR * pressure / g));
-    // a material that yields in the model is no limit of it
-    let elastic = |m: &Material| m.yield_strength.filter(|_| m.hardening.is_none());
-    let yielding = least(elastic).map(|y| ELASTICITY.at(place, pressure / (ONSET_OF_YIELD * y)));
+    let yielding = least(|m| m.yield_strength).map(|y| ELASTICITY.at(place, pressure / (ONSET_OF_YIELD * y)));
     [Some(HERTZ.at(place, law.contact_radius(force) / law.tip_radius)), strain, yielding]
         .into_iter()
         .flatten()

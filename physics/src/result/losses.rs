@@ -11,11 +11,7 @@ pub struct Losses {
     pub squeeze_film: f64,
     /// By the drag on the inner body, J.
     pub drag: f64,
-    /// In the outer and the inner contact, to relaxing or yielding materials, J.
-    #[serde(default, skip_serializing_if = "are_none")]
-    pub contacts: [f64; 2],
-}
-
-fn are_none(losses: &[f64; 2]) -> bool {
-    *losses == [0.0; 2]
+    /// In the outer and the inner contact, to relaxing or yielding materials or friction, J; `None` where nothing of it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contacts: Option<[f64; 2]>,
 }

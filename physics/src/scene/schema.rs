@@ -158,7 +158,9 @@ fn units(dimension: Dimension) -> String {
     };
     let mut ways: Vec<String> = symbols(dimension).map(symbol).collect();
     ways.push(r"[^0-9*/^\s]+\s*([*/^·⋅²³]|\s[^\s]).*".to_owned());
-    ways.push(r"1\s*/.*".to_owned());
+    if dimension.0.iter().any(|power| *power < 0) {
+        ways.push(r"1\s*/.*".to_owned());
+    }
     ways.join("|")
 }
 

@@ -173,7 +173,7 @@ pub(super) static SCENE: [Field; 19] = [
         OF_PLATE_IMPACT,
         required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above"),
     ),
-    only(OF_PLATE_IMPACT, required("inner", Kind::Table(&INNER), "The body that rests below the plate")),
+    only(OF_PLATE_IMPACT, required("inner", Kind::Table(&INNER), "The body below the plate")),
     only(
         OF_PLATE_IMPACT,
         optional(

@@ -9,13 +9,14 @@ pub(super) enum Contact {
     /// Remembers nothing.
     Elastic(Hertz),
     Dented(DentedContact),
-    Viscoelastic(ViscoelasticContact),
+    /// With the distance of its springs in m.
+    Viscoelastic(ViscoelasticContact, f64),
 }
 
 impl Contact {
     /// Prepares steps of `h` s.
     pub(super) fn prepare(&mut self, h: f64) {
-        if let Contact::Viscoelastic(contact) = self {
+        if let Contact::Viscoelastic(contact, _) = self {
             contact.prepare(h);
         }
     }
@@ -25,7 +26,7 @@ impl Contact {
         match self {
             Contact::Elastic(hertz) => [hertz.force(x), hertz.tangent(x)],
             Contact::Dented(contact) => contact.force(x),
-            Contact::Viscoelastic(contact) => contact.force(x),
+            Contact::Viscoelastic(contact, _) => contact.force(x),
         }
     }
 
@@ -34,7 +35,7 @@ impl Contact {
         match self {
             Contact::Elastic(_) => {}
             Contact::Dented(contact) => contact.advance(x),
-            Contact::Viscoelastic(contact) => contact.advance(x),
+            Contact::Viscoelastic(contact, _) => contact.advance(x),
         }
     }
 
@@ -43,7 +44,7 @@ impl Contact {
         match self {
             Contact::Elastic(_) => f64::INFINITY,
             Contact::Dented(contact) if contact.depth() == 0.0 => contact.critical_force(),
-            Contact::Dented(_) | Contact::Viscoelastic(_) => -1.0,
+            Contact::Dented(_) | Contact::Viscoelastic(..) => -1.0,
         }
     }
 

@@ -16,11 +16,18 @@ use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::contact::{Dent, Hertz, ViscoelasticContact};
 use crate::error::{Error, Result};
-use crate::material::{Creep, Material, Relaxation};
+use crate::material::{Creep, Material, Relaxation, modulus_ratio};
 use crate::scene::{PlateImpact, Spot};
 
 /// Steps of the first run per duration of the outer body's impact on a rigid wall.
 const FIRST_STEPS: f64 = 200.0;
+/// Steps after which a run counts as endless.
+const MAX_STEPS: u64 = 4_000_000;
+/// Springs of a viscoelastic contact across its radius in the first run, and their distance over that of the run before.
+const SPRINGS: f64 = 64.0;
+const FINER: f64 = 0.8;
+/// Iterations for the frequency of a relaxing plate.
+const FIXED_POINT: usize = 100;
 /// Most halvings of the step.
 const MAX_HALVINGS: usize = 7;
 /// Change of velocities, over the impact speed, and force peaks, relative, from one run to the next that is in order: of second order,
@@ -99,29 +106,23 @@ impl Memory {
     /// What the materials of `setup` remember in a model that is `system`, virgin; `None` if all of them are elastic.
     ///
     /// # Errors
-    /// [`Error::Solver`] for what is not covered: a fluid, a bender, a viscoelastic body on one that yields, a yield strength far below
-    /// the contact pressure.
+    /// [`Error::Solver`] for a yield strength far below the contact pressure, [`Error::Internal`] for what no scene may have.
     pub fn new(setup: &PlateImpact, system: &System) -> Result<Option<Self>> {
         let bodies = [&setup.outer.material, &setup.inner.material];
         let plate = &setup.plate.material;
         let all = [bodies[0], bodies[1], plate];
-        if all.iter().all(|m| m.plasticity().is_none() && m.relaxation.is_empty()) {
+        if all.iter().all(|m| m.is_elastic()) {
             return Ok(None);
         }
-        if setup.fluid.is_some() || system.outer_returns() {
-            let what = if setup.fluid.is_some() { "a fluid" } else { "a bender" };
-            return Err(Error::Solver(format!(
-                "reduced model: viscoelastic and plastic materials together with {what} are not covered"
-            )));
-        }
-        let hit = system.hertz_impact();
-        let contacts = [0, 1].map(|i| contact([bodies[i], plate], system.laws[i], &hit));
+        let hits = [0, 1].map(|i| hit(setup, system, i));
+        let contacts = [0, 1].map(|i| contact([bodies[i], plate], system.laws[i], &hits[i]));
         let [outer, inner] = contacts;
         let contacts = [outer?, inner?];
         let mut warnings: Vec<String> =
-            all.into_iter().filter_map(|material| hardening_left_out(material, system, &hit)).collect();
+            all.into_iter().filter_map(|material| hardening_left_out(material, system, &hits)).collect();
+        warnings.sort();
         warnings.dedup();
-        warnings.extend(overloaded(&contacts, &hit)?);
+        warnings.extend(overloaded(&contacts, &hits)?);
         Ok(Some(Self {
             warnings,
             bodies: Bodies {
@@ -145,21 +146,35 @@ impl Memory {
         [0, 1].map(|i| self.bodies.contacts[i].critical_force())
     }
 
-    /// The same with fresh spots of outer and inner body, if the series has them so.
+    /// The same when everything has come to rest and recovered, with fresh spots of outer and inner body if the series has them so.
     #[must_use]
     pub fn next(mut self, spot: Spot) -> Self {
         for contact in &mut self.bodies.contacts {
-            if let (Contact::Dented(contact), Spot::Fresh) = (contact, spot) {
-                contact.surfaces[0].dent = Dent::NONE;
+            match contact {
+                Contact::Dented(contact) if spot == Spot::Fresh => contact.surfaces[0].dent = Dent::NONE,
+                Contact::Viscoelastic(springs, width) => *springs = springs.virgin(*width),
+                _ => {}
             }
         }
         self
+    }
+
+    /// Frequency in Hz at which the plate vibrates in a mode of `instantaneous` Hz: the fixed point of the storage modulus.
+    pub fn frequency(&self, instantaneous: f64) -> f64 {
+        let at = |frequency: f64| instantaneous * modulus_ratio(&self.plate, frequency)[0].sqrt();
+        (0..FIXED_POINT).fold(instantaneous, |frequency, _| at(frequency))
     }
 
     /// Whether outer and inner contact can yield.
     pub fn yields(&self) -> [bool; 2] {
         [0, 1].map(|i| matches!(self.bodies.contacts[i], Contact::Dented(_)))
     }
+}
+
+/// Contact `i` as an impact on a rigid plate, both bodies closing: the scale of its load.
+fn hit(setup: &PlateImpact, system: &System, i: usize) -> HertzImpact {
+    let speed = setup.outer.speed + setup.inner.speed.max(0.0);
+    HertzImpact { mass: system.masses[i], speed, stiffness: system.laws[i].stiffness }
 }
 
 /// The contact of a body and the plate, the materials `pair`.
@@ -170,19 +185,19 @@ fn contact(pair: [&Material; 2], hertz: Hertz, hit: &HertzImpact) -> Result<Cont
     match (relaxes, yields.iter().any(Option::is_some)) {
         (false, false) => Ok(Contact::Elastic(hertz)),
         (false, true) => Ok(Contact::Dented(DentedContact::new(hertz, pair, yields))),
-        (true, false) => Ok(Contact::Viscoelastic(ViscoelasticContact::new(hertz.tip_radius, pair, radius))),
-        (true, true) => Err(Error::Solver(format!(
-            "reduced model: the contact of `{}` and `{}`, of which one is viscoelastic and one yields, is not covered",
-            pair[0].name, pair[1].name
-        ))),
+        (true, false) => {
+            let width = radius / SPRINGS;
+            Ok(Contact::Viscoelastic(ViscoelasticContact::new(hertz.tip_radius, pair, width), width))
+        }
+        (true, true) => Err(Error::Internal("a contact that yields and relaxes".into())),
     }
 }
 
-/// A sentence if `material` hardens under the contacts of the impact `hit` by more than the law without hardening can leave out.
-fn hardening_left_out(material: &Material, system: &System, hit: &HertzImpact) -> Option<String> {
+/// A sentence if `material` hardens under contacts as hard as `hits` by more than the law without hardening can leave out.
+fn hardening_left_out(material: &Material, system: &System, hits: &[HertzImpact; 2]) -> Option<String> {
     let plasticity = material.plasticity()?;
-    let radius = |hertz: &Hertz| (hit.approach_peak() / hertz.tip_radius).sqrt();
-    let strain = TABOR * system.laws.iter().map(radius).fold(0.0, f64::max);
+    let radius = |i: usize| (hits[i].approach_peak() / system.laws[i].tip_radius).sqrt();
+    let strain = TABOR * radius(0).max(radius(1));
     let share = strain * plasticity.hardening / plasticity.yield_strength;
     (share > HARDENED).then(|| {
         format!(
@@ -193,12 +208,13 @@ fn hardening_left_out(material: &Material, system: &System, hit: &HertzImpact) -
     })
 }
 
-/// A sentence if the impact `hit` drives a contact beyond what its law was found for.
+/// A sentence if a contact as hard as one of `hits` is driven beyond what its law was found for.
 ///
 /// # Errors
 /// [`Error::Solver`] if it is so far beyond that nothing is known.
-fn overloaded(contacts: &[Contact; 2], hit: &HertzImpact) -> Result<Option<String>> {
-    let overload = contacts.iter().map(|contact| contact.overload(hit.approach_peak())).fold(0.0, f64::max);
+fn overloaded(contacts: &[Contact; 2], hits: &[HertzImpact; 2]) -> Result<Option<String>> {
+    let overload = |i: usize| contacts[i].overload(hits[i].approach_peak());
+    let overload = overload(0).max(overload(1));
     let told = format!(
         "a contact approaches by about {overload:.1e} times what begins to yield; the law of a contact that yields was found up to {PROVEN_OVERLOAD} times"
     );
@@ -222,13 +238,29 @@ fn yield_strength(material: &Material, strain_rate: f64) -> Option<f64> {
 /// # Errors
 /// [`Error::Solver`] if a contact has no equilibrium or the run does not end.
 pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<(Integration, Memory)> {
-    let run = |halvings: usize| -> Result<(Integration, [Contact; 2])> {
-        let h = system.hertz_impact().duration() / FIRST_STEPS * 0.5_f64.powi(halvings as i32);
-        Run::new(system, &memory.bodies, &memory.plate, h, options).go(options.end_time)
+    let base = system.hertz_impact().duration() / FIRST_STEPS;
+    if let Some(end) = options.end_time.filter(|end| *end > base * MAX_STEPS as f64) {
+        return Err(Error::Solver(format!(
+            "reduced model: `run.end_time` is {end} s, but materials with memory take even steps, of which {MAX_STEPS} reach to {:.3e} s",
+            base * MAX_STEPS as f64
+        )));
+    }
+    let run = |halvings: usize, peaks: Option<[f64; 2]>| -> Result<(Integration, [Contact; 2])> {
+        let h = base * 0.5_f64.powi(halvings as i32);
+        let mut bodies = memory.bodies.clone();
+        for (i, contact) in bodies.contacts.iter_mut().enumerate() {
+            // as many springs as the peak of the run before asks for, and more with every halving
+            if let (Contact::Viscoelastic(springs, width), Some(peaks)) = (contact, peaks) {
+                let radius = system.laws[i].contact_radius(peaks[i]);
+                *width = if radius > 0.0 { radius / SPRINGS } else { *width } * FINER.powi(halvings as i32);
+                *springs = springs.virgin(*width);
+            }
+        }
+        Run::new(system, bodies, &memory.plate, h, options).go(options.end_time)
     };
-    let (mut before, _) = run(0)?;
+    let (mut before, _) = run(0, None)?;
     for halvings in 1..=MAX_HALVINGS {
-        let (result, contacts) = run(halvings)?;
+        let (result, contacts) = run(halvings, Some(before.contacts.map(|c| c.force_peak)))?;
         let peaks = [&before, &result].map(|result| result.contacts.map(|c| c.force_peak));
         let change = differences(system, [before.velocity, result.velocity], peaks);
         let change = change[0].max(change[1]);

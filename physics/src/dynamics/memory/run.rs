@@ -1,8 +1,8 @@
 //! One impact in even steps: the modes move exactly, the contacts answer at the end of every step.
 
-use super::Bodies;
 use super::contact::Contact;
 use super::modes::Modes;
+use super::{Bodies, CHANGE, MAX_STEPS};
 use crate::dynamics::contact_ledger::ContactLedger;
 use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
 use crate::dynamics::recorder::{CURVES, sample};
@@ -11,8 +11,6 @@ use crate::error::{Error, Result};
 use crate::material::{Deformation, Relaxation};
 use crate::result::{History, Losses};
 
-/// Steps after which a run counts as endless.
-const MAX_STEPS: u64 = 4_000_000;
 /// Newton steps after which a contact counts as unsolvable.
 const MAX_ITERATIONS: usize = 60;
 
@@ -25,8 +23,8 @@ pub(super) struct Run<'a> {
     steps: u64,
     /// States of the modes, now and next.
     state: [Vec<f64>; 2],
-    /// What plate and tips yield beyond half-spaces. Shape (contact; plate, tip).
-    yielded: [[Deformation; 2]; 2],
+    /// What plate and tips give way beyond half-spaces. Shape (contact; plate, tip).
+    deformed: [[Deformation; 2]; 2],
     /// Approaches of the surfaces before dents, in m, and what is added to the modal ones for dents there were at the start.
     x: [f64; 2],
     offset: [f64; 2],
@@ -39,11 +37,13 @@ pub(super) struct Run<'a> {
     crept: [f64; 2],
     /// Energy lost in each contact, J.
     contact_losses: [f64; 2],
-    /// Energy lost by the modes, J, and the power that they lose, W.
+    /// Energy lost beneath the contacts by creep, and by the modes, J; the power that the modes lose, W.
     lost: f64,
+    modal_loss: f64,
     power: f64,
     /// What the contacts add to the displacement of the plate's centre, m.
     centre: f64,
+    sample_interval: f64,
     history: Option<History>,
 }
 
@@ -51,7 +51,7 @@ impl<'a> Run<'a> {
     /// With `h` s at most per step.
     pub(super) fn new(
         system: &'a System,
-        bodies: &Bodies,
+        mut bodies: Bodies,
         terms: &'a [Relaxation],
         h: f64,
         options: &Options,
@@ -59,7 +59,6 @@ impl<'a> Run<'a> {
         // a whole number of steps to the end that is asked for
         let h = options.end_time.map_or(h, |end| end / (end / h).ceil());
         let modes = Modes::new(system, terms, h);
-        let mut bodies = bodies.clone();
         bodies.prepare(h);
         let offset = [0, 1].map(|i| bodies.contacts[i].depth());
         let start = modes.start();
@@ -71,7 +70,7 @@ impl<'a> Run<'a> {
             time: 0.0,
             steps: 0,
             state: [start.clone(), start],
-            yielded: Default::default(),
+            deformed: Default::default(),
             x: [y[0] + offset[0], y[1] + offset[1]],
             offset,
             y,
@@ -81,8 +80,10 @@ impl<'a> Run<'a> {
             crept: [0.0; 2],
             contact_losses: [0.0; 2],
             lost: 0.0,
+            modal_loss: 0.0,
             power: 0.0,
             centre: 0.0,
+            sample_interval: options.sample_interval.unwrap_or(0.0),
             history: options.sample_interval.map(|_| History::new(&CURVES)),
             bodies,
         };
@@ -121,7 +122,7 @@ impl<'a> Run<'a> {
         self.book(x, y, force);
         self.remember(x, force, patch);
         let [_, power] = self.modes.energy(&self.state[1]);
-        self.lost += 0.5 * self.h * (self.power + power);
+        self.modal_loss += 0.5 * self.h * (self.power + power);
         (self.x, self.y, self.force, self.patch, self.power) = (x, y, force, patch, power);
         self.state.swap(0, 1);
         self.steps += 1;
@@ -152,12 +153,12 @@ impl<'a> Run<'a> {
             self.bodies.contacts[i].advance(x[i]);
             let mut crept = 0.0;
             for part in 0..2 {
-                let state = &mut self.yielded[i][part];
+                let state = &mut self.deformed[i][part];
                 self.bodies.creep(i, part).advance(state, elastic[i][part]);
                 crept += state.depth() - elastic[i][part];
             }
-            // what yields elastically gives its energy back, to the other contact also
-            self.contact_losses[i] += 0.5 * (self.force[i] + force[i]) * (crept - self.crept[i]);
+            // what yields elastically gives its energy back, to the other contact also; so creep is the plate's as a whole
+            self.lost += 0.5 * (self.force[i] + force[i]) * (crept - self.crept[i]);
             self.crept[i] = crept;
         }
     }
@@ -179,7 +180,7 @@ impl<'a> Run<'a> {
             let error = [0, 1].map(|i| {
                 let own: f64 = (0..2)
                     .map(|part| {
-                        self.bodies.creep(i, part).deformation(&self.yielded[i][part], elastic[i][part])
+                        self.bodies.creep(i, part).deformation(&self.deformed[i][part], elastic[i][part])
                     })
                     .sum();
                 trial[i] + own + coupling[i][0] * force[0] + coupling[i][1] * force[1] - free[i]
@@ -198,7 +199,8 @@ impl<'a> Run<'a> {
             }
             (x, patch, best, fraction) = (trial, patches, size, 1.0);
             let slope = answer.map(|[_, slope]| slope);
-            let growth = [0, 1].map(|i| self.bodies.creep(i, 0).growth());
+            let growth =
+                [0, 1].map(|i| self.bodies.creep(i, 0).growth().max(self.bodies.creep(i, 1).growth()));
             let [[a, b], [c, e]] = [0, 1].map(|i| {
                 [0, 1].map(|j| {
                     f64::from(u8::from(i == j)) + (growth[i] * flexibility[i][j] + coupling[i][j]) * slope[j]
@@ -235,6 +237,11 @@ impl<'a> Run<'a> {
 
     fn record(&mut self) {
         let Some(history) = &mut self.history else { return };
+        let rest = self.force == [0.0; 2];
+        // every step of a contact is kept, what moves freely at the interval asked for
+        if rest && history.time.last().is_some_and(|last| self.time - last < self.sample_interval) {
+            return;
+        }
         let [q, v] = self.modes.motion(&self.state[0]);
         let centre = self.system.local_centre.displacement(self.patch, self.force);
         let rate = (centre - self.centre) / self.h;
@@ -250,17 +257,26 @@ impl<'a> Run<'a> {
         let [initial, _] = self.modes.energy(&self.modes.start());
         let [end, _] = self.modes.energy(&self.state[0]);
         let work = self.contacts.map(|contact| contact.work);
-        let unaccounted = end + self.lost + work[0] + work[1] - initial;
+        let modal = self.modal_loss;
+        let unaccounted = end + modal + work[0] + work[1] - initial;
+        // a law that gave more than it took made energy
+        let made: f64 = self.contact_losses.iter().map(|loss| (-loss).max(0.0)).sum();
+        let gained = unaccounted + if self.force == [0.0; 2] { made } else { 0.0 };
         let integration = Integration {
             velocity,
             contacts: self.contacts,
-            energy_residual: unaccounted.abs() / initial,
-            energy_gained: unaccounted / initial,
+            energy_residual: gained.abs() / initial,
+            energy_gained: gained / initial,
             momentum_residual: unexplained_momentum(system, &v, &self.contacts, &FluidAccount::default())
                 / (system.masses[0] * system.speed),
-            losses: Losses { plate_damping: self.lost, contacts: self.contact_losses, ..Losses::default() },
+            losses: Losses {
+                plate_damping: modal + self.lost,
+                contacts: Some(self.contact_losses),
+                ..Losses::default()
+            },
             steps: self.steps,
             error_estimate: None,
+            kept_tolerance: CHANGE,
             history: self.history,
         };
         (integration, self.bodies.contacts)

@@ -15,11 +15,14 @@ pub(super) fn judge(setup: &PlateImpact, summary: &mut Summary, history: Option<
     ];
     let laws = bodies.map(|(_, material, tip_radius)| Hertz::new(tip_radius, material, plate));
     let peaks = bodies.map(|(place, ..)| summary.value(&format!("{place}_force_peak")));
-    if let [Some(outer), Some(inner)] = peaks {
+    // Hertz's patches and pressures are those of elastic contacts
+    let elastic = bodies.map(|(_, material, _)| material.is_elastic() && plate.is_elastic());
+    if let ([Some(outer), Some(inner)], [true, true]) = (peaks, elastic) {
         summary.contact_pressure = Some(ContactPressure::new(&laws, [outer, inner]));
     }
     let mut limits: Vec<Limit> = Vec::new();
-    for ((law, peak), (place, material, _)) in laws.iter().zip(peaks).zip(bodies) {
+    for (((law, peak), (place, material, _)), elastic) in laws.iter().zip(peaks).zip(bodies).zip(elastic) {
+        let peak = peak.filter(|_| elastic);
         limits.extend(
             peak.into_iter().flat_map(|force| limit::of_contact(place, law, force, &[material, plate])),
         );

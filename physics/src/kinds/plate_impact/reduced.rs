@@ -149,12 +149,19 @@ impl Reduced {
     }
 
     fn of(built: Joined, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
-        let Joined { system, omega_next, fluid, mut warnings } = built;
-        warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
+        let Joined { mut system, omega_next, fluid, mut warnings } = built;
         let memory = Memory::new(scene.plate_impact()?, &system)?;
-        warnings.extend(memory.iter().flat_map(|memory| memory.warnings.iter().cloned()));
-        if memory.is_some() && choice.is_some() {
-            warnings.push("the estimate by which the model was chosen is that of elastic materials".into());
+        let choice = choice.map(|choice| match memory {
+            Some(_) => Choice {
+                met: false,
+                reason: format!("{}; for elastic materials, which these are not", choice.reason),
+                ..choice
+            },
+            None => choice,
+        });
+        warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
+        if let Some(memory) = &memory {
+            system.first_frequency = memory.frequency(system.first_frequency);
         }
         Ok(Self { model, system, omega_next, fluid, memory, warnings, choice, scene })
     }
@@ -193,8 +200,9 @@ impl Reduced {
     /// The summary, and what the materials remembered when the last impact began.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>)> {
         let start = Instant::now();
-        let Done { last, impacts, memory } = self.impacts().all(&self.options(tolerance))?;
-        let summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
+        let Done { last, impacts, memory, warning } = self.impacts().all(&self.options(tolerance))?;
+        let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
+        summary.warnings.extend(warning);
         Ok((Summary { impacts, ..summary }, memory))
     }
 
@@ -204,8 +212,7 @@ impl Reduced {
     /// As [`Reduced::run`], [`Error::Solver`] if the run is cut during a contact.
     pub fn point(&self, tolerance: f64) -> Result<Point> {
         let result = self.impacts().all(&self.options(tolerance))?.last;
-        let tolerance = self.kept(tolerance);
-        ledger_check(result.energy_residual, result.momentum_residual, tolerance)?;
+        ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.kept_tolerance))?;
         Ok(Point {
             quantities: quantities(&self.system, &result)?,
             energy_residual: result.energy_residual,
@@ -246,21 +253,18 @@ impl Reduced {
         Ok(Outcome { summary, history })
     }
 
-    /// The tolerance that the time integration keeps where `tolerance` is asked for: materials with memory take even steps.
-    fn kept(&self, tolerance: f64) -> f64 {
-        if self.memory.is_some() { tolerance.max(memory::CHANGE) } else { tolerance }
-    }
-
     fn options(&self, tolerance: f64) -> Options {
         Options { tolerance, end_time: self.scene.run.end_time, sample_interval: None }
     }
 
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
-        let (system, tolerance) = (&self.system, self.kept(tolerance));
+        let (system, tolerance) = (&self.system, tolerance.max(result.kept_tolerance));
         let setup = self.scene.plate_impact()?;
         let end_time = self.scene.run.end_time;
         let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
-        let unsure = result.error_estimate.filter(|error| *error > assured::ENOUGH * tolerance);
+        let even_steps = result.kept_tolerance > 0.0;
+        let unsure =
+            result.error_estimate.filter(|error| !even_steps && *error > assured::ENOUGH * tolerance);
         let mut warnings = scene::doubts(&self.scene);
         warnings.extend(self.warnings.iter().cloned());
         warnings.extend(truncation.warning);
@@ -273,6 +277,12 @@ impl Reduced {
                 "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
             )
         }));
+        if let (Some(memory), true) = (&self.memory, even_steps) {
+            warnings.extend(memory.warnings.iter().cloned());
+            warnings.extend(result.error_estimate.filter(|error| *error > memory::CHANGE / 3.0).map(|error| {
+                format!("velocities and force peaks are uncertain by {error:.0e}: ever shorter steps have not settled them")
+            }));
+        }
         for (body, contact) in ["outer", "inner"].iter().zip(&result.contacts) {
             if contact.contacts == 0 {
                 warnings.push(format!("the {body} body and the plate never touch"));

@@ -32,6 +32,8 @@ pub(super) struct Done {
     pub(super) memory: Option<Memory>,
     /// All impacts; none without a series.
     pub(super) impacts: Vec<Impact>,
+    /// Said if the last of a series still yields.
+    pub(super) warning: Option<String>,
 }
 
 impl Impacts<'_> {
@@ -42,7 +44,7 @@ impl Impacts<'_> {
     pub(super) fn all(&self, options: &Options) -> Result<Done> {
         let (mut last, mut after) = self.one(options, self.memory)?;
         let Some(series) = self.series else {
-            return Ok(Done { last, memory: self.memory.cloned(), impacts: Vec::new() });
+            return Ok(Done { last, memory: self.memory.cloned(), impacts: Vec::new(), warning: None });
         };
         let mut before = self.memory.cloned();
         let mut impacts = vec![self.row(1, &last)];
@@ -51,7 +53,14 @@ impl Impacts<'_> {
             (last, after) = self.one(options, before.as_ref())?;
             impacts.push(self.row(impacts.len() as u64 + 1, &last));
         }
-        Ok(Done { last, memory: before, impacts })
+        let left = self.plastic_work(&last) / self.system.initial_energy();
+        let warning = (!self.has_shaken_down(&last)).then(|| {
+            format!(
+                "the last of {} impacts still loses {left:.1e} of its energy to yielding: the series has not shaken down (below {SHAKEN_DOWN:.0e})",
+                impacts.len()
+            )
+        });
+        Ok(Done { last, memory: before, impacts, warning })
     }
 
     /// One impact, and what the materials remember after it.
@@ -82,7 +91,14 @@ impl Impacts<'_> {
     /// Energy in J lost in contacts that yield.
     fn plastic_work(&self, impact: &Integration) -> f64 {
         let yields = self.memory.map_or([false; 2], Memory::yields);
-        impact.losses.contacts.iter().zip(yields).map(|(loss, yields)| if yields { *loss } else { 0.0 }).sum()
+        impact
+            .losses
+            .contacts
+            .unwrap_or_default()
+            .iter()
+            .zip(yields)
+            .map(|(loss, yields)| if yields { *loss } else { 0.0 })
+            .sum()
     }
 
     fn row(&self, number: u64, impact: &Integration) -> Impact {

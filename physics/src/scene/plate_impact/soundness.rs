@@ -3,7 +3,7 @@
 use super::PlateImpact;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
-use crate::scene::{PLATE_IMPACT, Part};
+use crate::scene::{Material, PLATE_IMPACT, Part, Shape};
 
 /// Least and largest thickness of a plate over its radius.
 const SLENDERNESS: [f64; 2] = [1e-6, 100.0];
@@ -18,16 +18,47 @@ impl Part for PlateImpact {
     /// A plate that is no plate: its waves and its contacts live on scales that no run brings together.
     fn collisions(&self) -> Vec<Collision> {
         let plate = &self.plate;
+        let materials = [&plate.material, &self.outer.material, &self.inner.material];
+        let elastic = materials.iter().all(|material| material.is_elastic());
+        let pair = |body: &Material| {
+            let yields = body.plasticity().or(plate.material.plasticity()).is_some();
+            !(yields && !(body.relaxation.is_empty() && plate.material.relaxation.is_empty()))
+        };
         let ratio = plate.thickness / plate.radius;
         let [least, most] = SLENDERNESS;
-        broken(vec![Rule {
-            fields: vec!["plate.thickness", "plate.radius"],
-            holds: (least..=most).contains(&ratio),
-            message: format!(
-                "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it has to be {least:e} to {most} times"
-            ),
-            help: "is one of them in the wrong unit?",
-        }])
+        broken(vec![
+            Rule {
+                fields: vec!["plate.thickness", "plate.radius"],
+                holds: (least..=most).contains(&ratio),
+                message: format!(
+                    "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it has to be {least:e} to {most} times"
+                ),
+                help: "is one of them in the wrong unit?",
+            },
+            Rule {
+                fields: vec!["fluid"],
+                holds: elastic || self.fluid.is_none(),
+                message: "`fluid`: a material that yields or relaxes in a fluid is not covered".into(),
+                help: "leave the fluid out, or `hardening`, `relaxation` and `loss_factor` of the materials",
+            },
+            Rule {
+                fields: vec!["outer.kind"],
+                holds: elastic || !matches!(self.outer.shape, Shape::Bender(_)),
+                message:
+                    "`outer.kind` is \"bender\": with a material that yields or relaxes it is not covered"
+                        .into(),
+                help: "take a sphere or a compact body, or leave out `hardening`, `relaxation` and `loss_factor` of the materials",
+            },
+            Rule {
+                fields: vec!["plate.material"],
+                holds: pair(&self.outer.material) && pair(&self.inner.material),
+                message: format!(
+                    "a contact of `plate.material` `{}` joins a material that yields with one that relaxes, which is not covered",
+                    plate.material.name
+                ),
+                help: "leave out `hardening` of the one or the relaxation of the other",
+            },
+        ])
     }
 
     fn doubts(&self) -> Vec<String> {

@@ -40,7 +40,7 @@ impl Part for SealSeat {
 fn elastic(field: &'static str, material: &Material) -> Rule {
     Rule {
         fields: vec![field],
-        holds: material.plasticity().is_none() && material.relaxation.is_empty(),
+        holds: material.is_elastic(),
         message: format!(
             "`{field}` is `{}`, which yields or relaxes, but a seal seat has to be elastic",
             material.name
