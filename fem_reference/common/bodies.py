@@ -147,9 +147,7 @@ def read_material(reader: Reader) -> Material:
     """The material an object describes."""
     for key, verb in (("hardening", "yields"), ("relaxation", "relaxes")):
         if key in reader.node:
-            raise SceneError(
-                f"{reader.path}: a material that {verb} ({key!r}) is not supported"
-            )
+            raise SceneError(f"{reader.path}: a material that {verb} ({key!r}) is not supported")
     # without hardening the yield strength changes no result
     reader.allow("name", "youngs_modulus", "poisson_ratio", "density", "yield_strength")
     return Material(

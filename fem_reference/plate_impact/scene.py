@@ -183,6 +183,8 @@ def parse_scene(document: Any) -> Scene:
     """
     root = Reader(document, "")
     root.choice("kind", ("plate-impact",))
+    if root.node.get("series") is not None:
+        raise SceneError("series is given; repeated impacts are not supported, only single ones")
     root.allow(
         "name",
         "description",

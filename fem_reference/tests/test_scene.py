@@ -28,6 +28,11 @@ def test_yield_strength_is_admissible_and_changes_nothing() -> None:
     assert parse_scene(strong).plate == parse_scene(document()).plate
 
 
+def test_series_are_refused() -> None:
+    with pytest.raises(SceneError, match="repeated impacts"):
+        parse_scene(document(series={"impacts": 3, "sphere_spot": "same"}))
+
+
 @pytest.mark.parametrize(
     "key",
     [{"yield_strength": 6e8, "hardening": 0.0}, {"relaxation": [{"ratio": 0.1, "time": 1e-5}]}],
