@@ -219,8 +219,8 @@ def short(found: list[str]) -> str:
     return ", ".join(f"`{name}`" for name in sorted(cut)) or "nothing"
 
 
-def table(found: list[tuple[Case, Outcome]]) -> str:
-    """Markdown."""
+def table(found: list[tuple[Case, Outcome]], planned: int) -> str:
+    """Markdown; of `planned` cases those found so far."""
     lines = [
         "# Killed references",
         "",
@@ -230,6 +230,7 @@ def table(found: list[tuple[Case, Outcome]]) -> str:
         "Bounds: quiet within 0.5 s, after SIGKILL 2 s; the program ends by that signal; in the",
         "store at most `.checkpoint-*` stays, after SIGKILL `.partial-*` too; the lock is free;",
         "the next run ends with 0 and leaves nothing but its solution.",
+        f"{len(found)} of {planned} cases:",
         "",
         "| phase | signal | reference | processes | ended | quiet, s | left in the store |"
         " among temporary files | next run |",
@@ -266,7 +267,7 @@ def main() -> None:
             faults = "; ".join(outcome.faults(case)) or "as it should be"
             print(case, f"{outcome.quiet:.2f} s", faults, flush=True)
             found.append((case, outcome))
-            arguments.out.write_text(table(found), encoding="utf-8")
+            arguments.out.write_text(table(found, len(cases)), encoding="utf-8")
     sys.exit(any(list(outcome.faults(case)) for case, outcome in found))
 
 
