@@ -220,7 +220,7 @@ def test_provenance_holds_scene_settings_and_versions(solved: tuple[Path, str, s
 @pytest.mark.parametrize(
     ("changes", "options", "status", "words"),
     [
-        ({"outer__kind": "bender"}, (), 3, "outer.kind"),
+        ({"outer__kind": "wedge"}, (), 3, "outer.kind"),
         ({"reference__geometry": "shell"}, (), 3, "reference.geometry"),
         ({}, ("--courant", "1.01"), 12, "critical time step"),
         ({}, ("--stress-at", "-1"), 3, "--stress-at"),
