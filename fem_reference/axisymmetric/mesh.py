@@ -26,6 +26,12 @@ class BodyMesh:
         return float(np.sum(element_volumes(self.points, self.quads)))
 
 
+def face_nodes(points: Floats, z: float) -> Ints:
+    """Nodes of the flat face at z (m), which is not 0, by radius."""
+    face = np.flatnonzero(np.abs(points[:, 1] - z) < 1e-9 * abs(z))
+    return np.asarray(face[np.argsort(points[face, 0])])
+
+
 def element_volumes(points: Floats, quads: Ints) -> Floats:
     """(m,) volumes swept by the elements: 2 pi times area times centroid radius (Pappus), m^3."""
     corners = points[quads]

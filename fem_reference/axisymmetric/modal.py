@@ -13,7 +13,7 @@ from ..common.arrays import Floats
 from ..common.bodies import Plate
 from ..common.errors import SolverError
 from ..explicit.damping import Modes
-from .mesh import BodyMesh
+from .mesh import BodyMesh, face_nodes
 from .system import AxisymmetricSystem, plate_constraints
 
 
@@ -117,8 +117,7 @@ def plate_modes(
             f"SLEPc found {solver.getConverged()} of {count + extra} plate modes requested"
         )
     mirror = _mirror_nodes(points)
-    face = np.flatnonzero(points[:, 1] < -0.5 * plate.thickness * (1.0 - 1e-9))
-    face = face[np.argsort(points[face, 0])]
+    face = face_nodes(points, -0.5 * plate.thickness)
     vector = solver.getOperators()[0].createVecRight()
     modes = []
     for index in range(extra, count + extra):

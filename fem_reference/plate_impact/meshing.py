@@ -10,7 +10,7 @@ import scipy.sparse
 
 from ..axisymmetric.elasticity import BodyMatrices, assemble, beam_body, rigid_node
 from ..axisymmetric.film import facing_nodes, squeeze_film
-from ..axisymmetric.mesh import BodyMesh, check_elements
+from ..axisymmetric.mesh import BodyMesh, check_elements, face_nodes
 from ..axisymmetric.meshing import mesh_plate, mesh_sphere
 from ..axisymmetric.sizes import MeshSettings
 from ..axisymmetric.system import (
@@ -135,7 +135,7 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     quality = min(check_elements(body) for body in (outer, plate, inner) if body.quads.size)
 
     def face(z: float) -> Ints:
-        nodes = plate_face(plate, z)[: radii.size]
+        nodes = face_nodes(plate.points, z)[: radii.size]
         if not np.allclose(plate.points[nodes, 0], radii, rtol=0.0, atol=1e-9 * radii[-1]):
             raise SolverError("the plate's surface nodes do not match the spheres' contact nodes")
         return nodes
@@ -151,12 +151,6 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     )
 
 
-def plate_face(plate: BodyMesh, z: float) -> Ints:
-    """Nodes of the plate's face at z (m), by radius."""
-    face = np.flatnonzero(np.abs(plate.points[:, 1] - z) < 1e-9 * abs(z))
-    return np.asarray(face[np.argsort(plate.points[face, 0])])
-
-
 def _film(scene: Scene, mesh: ImpactMesh, numbers: list[Ints]) -> Film | None:
     """The squeeze film of a scene; ``numbers`` are the system's, of each body's nodes."""
     fluid, inner = scene.fluid, scene.inner
@@ -166,7 +160,7 @@ def _film(scene: Scene, mesh: ImpactMesh, numbers: list[Ints]) -> Film | None:
     surface = np.zeros(1, dtype=np.int64)
     if isinstance(inner, Sphere):
         surface = facing_nodes(mesh.inner, pole, inner.radius)
-    face = plate_face(mesh.plate, -0.5 * scene.plate.thickness)
+    face = face_nodes(mesh.plate.points, -0.5 * scene.plate.thickness)
     return squeeze_film(
         fluid,
         (numbers[1][face], mesh.plate.points[face, 0]),
@@ -181,7 +175,7 @@ def _watched(scene: Scene, plate: BodyMesh) -> tuple[Ints, Floats]:
     half, circle = scene.plate.thickness / 2.0, observed_circle(scene)
     nodes, shares = [], []
     for z in (half, -half):
-        face = plate_face(plate, z)
+        face = face_nodes(plate.points, z)
         share = hertz_weights(plate.points[face, 0], circle)
         nodes.append(face[share > 0.0])
         shares.append(0.5 * share[share > 0.0])

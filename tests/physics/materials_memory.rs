@@ -59,6 +59,36 @@ fn an_impact_that_nothing_remembers_is_the_elastic_one() {
     }
 }
 
+/// The curves of such a run, thinned out between the contacts, are those of the elastic integrator.
+#[test]
+fn the_history_of_an_impact_that_nothing_remembers_is_the_elastic_one() {
+    let setup = with(common::scaled_plate(0.01, 0.55), yielding(1e12));
+    let system = System::new(&setup, &kirchhoff::modes(&setup.plate, 4).unwrap(), [0.0; 2]);
+    let duration = system.hertz_impact().duration();
+    let every = |interval: f64| Options {
+        sample_interval: Some(interval),
+        end_time: Some(4e-4),
+        ..Options::default()
+    };
+    let memory = Memory::new(&setup, &system).unwrap().unwrap();
+    let ours = integrate(&system, &memory, &every(duration / 10.0)).unwrap().0.history.unwrap();
+    let exact = integrator::integrate(&system, &every(duration / 500.0)).unwrap().history.unwrap();
+    for name in ["plate_displacement", "plate_velocity", "inner_velocity", "outer_force"] {
+        let [ours_of, exact_of] = [&ours, &exact].map(|history| history.curve(name).unwrap());
+        let peak = exact_of.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
+        for (time, value) in ours.time.iter().zip(ours_of) {
+            let k = exact.time.partition_point(|t| t < time).clamp(1, exact.len() - 1);
+            let share = (time - exact.time[k - 1]) / (exact.time[k] - exact.time[k - 1]);
+            let expected = exact_of[k - 1] + share * (exact_of[k] - exact_of[k - 1]);
+            // the contacts' part of the velocity is a difference quotient, half a step late where they touch
+            assert!(
+                (value - expected).abs() < 0.04 * peak,
+                "{name} at {time:e}: {value}, {expected}, {peak}"
+            );
+        }
+    }
+}
+
 /// A Maxwell sphere on a rigid wall loses (4/9) T/tau of its speed in a contact that is short against tau (Hunter, The Hertz contact
 /// problem, J. Mech. Phys. Solids 8, 1960, 219).
 #[test]

@@ -40,12 +40,23 @@ impl ViscoelasticContact {
         self.halves.iter_mut().for_each(|half| half.creep.prepare(h));
     }
 
+    /// The same never touched.
+    #[must_use]
+    pub fn virgin(&self) -> Self {
+        self.with_springs_every(self.width)
+    }
+
     /// The same never touched, with a spring every `width` m.
     #[must_use]
-    pub fn virgin(&self, width: f64) -> Self {
-        let mut virgin = Self { width, springs: Vec::new(), ..self.clone() };
-        virgin.halves.iter_mut().for_each(|half| half.stiffness *= width / self.width);
-        virgin
+    pub fn with_springs_every(&self, width: f64) -> Self {
+        let half =
+            |half: &Half| Half { stiffness: half.stiffness * width / self.width, creep: half.creep.clone() };
+        Self {
+            tip_radius: self.tip_radius,
+            width,
+            halves: [half(&self.halves[0]), half(&self.halves[1])],
+            springs: Vec::new(),
+        }
     }
 
     /// Deformation in m of spring `k`, positive into the bodies, if the tip has approached by `x` m.

@@ -9,14 +9,13 @@ pub(super) enum Contact {
     /// Remembers nothing.
     Elastic(Hertz),
     Dented(DentedContact),
-    /// With the distance of its springs in m.
-    Viscoelastic(ViscoelasticContact, f64),
+    Viscoelastic(ViscoelasticContact),
 }
 
 impl Contact {
     /// Prepares steps of `h` s.
     pub(super) fn prepare(&mut self, h: f64) {
-        if let Contact::Viscoelastic(contact, _) = self {
+        if let Contact::Viscoelastic(contact) = self {
             contact.prepare(h);
         }
     }
@@ -26,7 +25,7 @@ impl Contact {
         match self {
             Contact::Elastic(hertz) => [hertz.force(x), hertz.tangent(x)],
             Contact::Dented(contact) => contact.force(x),
-            Contact::Viscoelastic(contact, _) => contact.force(x),
+            Contact::Viscoelastic(contact) => contact.force(x),
         }
     }
 
@@ -35,7 +34,7 @@ impl Contact {
         match self {
             Contact::Elastic(_) => {}
             Contact::Dented(contact) => contact.advance(x),
-            Contact::Viscoelastic(contact, _) => contact.advance(x),
+            Contact::Viscoelastic(contact) => contact.advance(x),
         }
     }
 
@@ -44,7 +43,7 @@ impl Contact {
         match self {
             Contact::Elastic(_) => f64::INFINITY,
             Contact::Dented(contact) if contact.depth() == 0.0 => contact.critical_force(),
-            Contact::Dented(_) | Contact::Viscoelastic(..) => -1.0,
+            Contact::Dented(_) | Contact::Viscoelastic(_) => -1.0,
         }
     }
 

@@ -115,9 +115,8 @@ impl Memory {
             return Ok(None);
         }
         let hits = [0, 1].map(|i| hit(setup, system, i));
-        let contacts = [0, 1].map(|i| contact([bodies[i], plate], system.laws[i], &hits[i]));
-        let [outer, inner] = contacts;
-        let contacts = [outer?, inner?];
+        let contact = |i: usize| contact([bodies[i], plate], system.laws[i], &hits[i]);
+        let contacts = [contact(0)?, contact(1)?];
         let mut warnings: Vec<String> =
             all.into_iter().filter_map(|material| hardening_left_out(material, system, &hits)).collect();
         warnings.sort();
@@ -152,7 +151,7 @@ impl Memory {
         for contact in &mut self.bodies.contacts {
             match contact {
                 Contact::Dented(contact) if spot == Spot::Fresh => contact.surfaces[0].dent = Dent::NONE,
-                Contact::Viscoelastic(springs, width) => *springs = springs.virgin(*width),
+                Contact::Viscoelastic(contact) => *contact = contact.virgin(),
                 _ => {}
             }
         }
@@ -186,8 +185,8 @@ fn contact(pair: [&Material; 2], hertz: Hertz, hit: &HertzImpact) -> Result<Cont
         (false, false) => Ok(Contact::Elastic(hertz)),
         (false, true) => Ok(Contact::Dented(DentedContact::new(hertz, pair, yields))),
         (true, false) => {
-            let width = radius / SPRINGS;
-            Ok(Contact::Viscoelastic(ViscoelasticContact::new(hertz.tip_radius, pair, width), width))
+            let springs = ViscoelasticContact::new(hertz.tip_radius, pair, radius / SPRINGS);
+            Ok(Contact::Viscoelastic(springs))
         }
         (true, true) => Err(Error::Internal("a contact that yields and relaxes".into())),
     }
@@ -249,11 +248,10 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
         let h = base * 0.5_f64.powi(halvings as i32);
         let mut bodies = memory.bodies.clone();
         for (i, contact) in bodies.contacts.iter_mut().enumerate() {
+            let radius = peaks.map(|peaks| system.laws[i].contact_radius(peaks[i])).filter(|r| *r > 0.0);
             // as many springs as the peak of the run before asks for, and more with every halving
-            if let (Contact::Viscoelastic(springs, width), Some(peaks)) = (contact, peaks) {
-                let radius = system.laws[i].contact_radius(peaks[i]);
-                *width = if radius > 0.0 { radius / SPRINGS } else { *width } * FINER.powi(halvings as i32);
-                *springs = springs.virgin(*width);
+            if let (Contact::Viscoelastic(contact), Some(radius)) = (contact, radius) {
+                *contact = contact.with_springs_every(radius / SPRINGS * FINER.powi(halvings as i32));
             }
         }
         Run::new(system, bodies, &memory.plate, h, options).go(options.end_time)

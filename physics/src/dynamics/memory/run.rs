@@ -11,8 +11,33 @@ use crate::error::{Error, Result};
 use crate::material::{Deformation, Relaxation};
 use crate::result::{History, Losses};
 
-/// Newton steps after which a contact counts as unsolvable.
+/// Newton steps after which a contact counts as unsolvable, and the least part of one.
 const MAX_ITERATIONS: usize = 60;
+const LEAST_FRACTION: f64 = 1e-4;
+/// What may be missing of the approaches, over the largest: to stop, and where rounding leaves no more.
+const SETTLED: f64 = 1e-13;
+const ROUNDING: f64 = 1e-10;
+
+/// Approaches tried for the end of a step.
+struct Trial {
+    x: [f64; 2],
+    force: [f64; 2],
+    /// Of the forces by the approaches, N/m.
+    slope: [f64; 2],
+    patch: [f64; 2],
+    /// Beyond half-spaces, m/N.
+    flexibility: [[f64; 2]; 2],
+    /// What is missing, m.
+    error: [f64; 2],
+}
+
+impl Trial {
+    /// Not a number if an error is none.
+    fn size(&self) -> f64 {
+        let [a, b] = self.error.map(f64::abs);
+        if a >= b || a.is_nan() { a } else { b }
+    }
+}
 
 pub(super) struct Run<'a> {
     system: &'a System,
@@ -38,7 +63,7 @@ pub(super) struct Run<'a> {
     /// Energy lost in each contact, J.
     contact_losses: [f64; 2],
     /// Energy lost beneath the contacts by creep, and by the modes, J; the power that the modes lose, W.
-    lost: f64,
+    creep_loss: f64,
     modal_loss: f64,
     power: f64,
     /// What the contacts add to the displacement of the plate's centre, m.
@@ -79,7 +104,7 @@ impl<'a> Run<'a> {
             contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
             crept: [0.0; 2],
             contact_losses: [0.0; 2],
-            lost: 0.0,
+            creep_loss: 0.0,
             modal_loss: 0.0,
             power: 0.0,
             centre: 0.0,
@@ -158,58 +183,62 @@ impl<'a> Run<'a> {
                 crept += state.depth() - elastic[i][part];
             }
             // what yields elastically gives its energy back, to the other contact also; so creep is the plate's as a whole
-            self.lost += 0.5 * (self.force[i] + force[i]) * (crept - self.crept[i]);
+            self.creep_loss += 0.5 * (self.force[i] + force[i]) * (crept - self.crept[i]);
             self.crept[i] = crept;
         }
     }
 
-    /// Approaches in m, forces in N and patches in m at the end of the step in which the modes alone would approach by `free` m:
-    /// Newton's method, with the flexibility beyond half-spaces as if it did not change with the patches.
+    /// Approaches in m, forces in N and patches in m at the end of the step in which the modes alone would approach by `free` m, by
+    /// Newton's method with halved steps; `None` if there is no equilibrium.
     fn solve(&self, free: [f64; 2]) -> Option<([f64; 2], [f64; 2], [f64; 2])> {
         let free = [free[0] + self.offset[0], free[1] + self.offset[1]];
         let scale = free[0].abs().max(free[1].abs()).max(f64::MIN_POSITIVE);
-        let (mut x, mut patch) = (self.x, self.patch);
-        let mut best = f64::INFINITY;
-        let (mut step, mut fraction) = ([0.0; 2], 1.0);
+        let mut best = self.trial(free, self.x, self.patch);
+        let mut step = self.newton(&best);
+        let mut fraction = 1.0;
         for _ in 0..MAX_ITERATIONS {
-            let trial = [x[0] - fraction * step[0], x[1] - fraction * step[1]];
-            let answer = [0, 1].map(|i| self.bodies.contacts[i].force(trial[i]));
-            let force = answer.map(|[force, _]| force);
-            let (elastic, patches, flexibility) = self.bodies.elastic(self.system, force, patch);
-            let coupling = self.modes.coupling;
-            let error = [0, 1].map(|i| {
-                let own: f64 = (0..2)
-                    .map(|part| {
-                        self.bodies.creep(i, part).deformation(&self.deformed[i][part], elastic[i][part])
-                    })
-                    .sum();
-                trial[i] + own + coupling[i][0] * force[0] + coupling[i][1] * force[1] - free[i]
-            });
-            let size = error[0].abs().max(error[1].abs());
-            if size <= 1e-13 * scale {
-                return Some((trial, force, patches));
+            if best.size() <= SETTLED * scale {
+                break;
             }
-            if size >= best {
+            let x = [best.x[0] - fraction * step[0], best.x[1] - fraction * step[1]];
+            let trial = self.trial(free, x, best.patch);
+            if trial.size() < best.size() {
+                (step, fraction) = (self.newton(&trial), 1.0);
+                best = trial;
+            } else if fraction > LEAST_FRACTION {
                 fraction *= 0.5;
-                if fraction < 1e-4 {
-                    // round-off is all that is left
-                    return (best <= 1e-10 * scale).then_some((trial, force, patches));
-                }
-                continue;
+            } else {
+                break;
             }
-            (x, patch, best, fraction) = (trial, patches, size, 1.0);
-            let slope = answer.map(|[_, slope]| slope);
-            let growth =
-                [0, 1].map(|i| self.bodies.creep(i, 0).growth().max(self.bodies.creep(i, 1).growth()));
-            let [[a, b], [c, e]] = [0, 1].map(|i| {
-                [0, 1].map(|j| {
-                    f64::from(u8::from(i == j)) + (growth[i] * flexibility[i][j] + coupling[i][j]) * slope[j]
-                })
-            });
-            let determinant = a * e - b * c;
-            step = [(e * error[0] - b * error[1]) / determinant, (a * error[1] - c * error[0]) / determinant];
         }
-        None
+        (best.size() <= ROUNDING * scale).then_some((best.x, best.force, best.patch))
+    }
+
+    /// What the contacts answer at the approaches `x`, from the patches of a nearby state on.
+    fn trial(&self, free: [f64; 2], x: [f64; 2], patch: [f64; 2]) -> Trial {
+        let answer = [0, 1].map(|i| self.bodies.contacts[i].force(x[i]));
+        let force = answer.map(|[force, _]| force);
+        let (elastic, patch, flexibility) = self.bodies.elastic(self.system, force, patch);
+        let beneath = |i: usize, part: usize| {
+            self.bodies.creep(i, part).deformation(&self.deformed[i][part], elastic[i][part])
+        };
+        let coupling = self.modes.coupling;
+        let error = [0, 1].map(|i| {
+            let moved = coupling[i][0] * force[0] + coupling[i][1] * force[1];
+            x[i] + beneath(i, 0) + beneath(i, 1) + moved - free[i]
+        });
+        Trial { x, force, slope: answer.map(|[_, slope]| slope), patch, flexibility, error }
+    }
+
+    /// Newton's step in the approaches, m, to be taken off: as if the flexibility did not change with the patches.
+    fn newton(&self, trial: &Trial) -> [f64; 2] {
+        let Trial { slope, flexibility, error, .. } = trial;
+        let growth = |i: usize| self.bodies.creep(i, 0).growth().max(self.bodies.creep(i, 1).growth());
+        let per_force = |i: usize, j: usize| growth(i) * flexibility[i][j] + self.modes.coupling[i][j];
+        let [a, b] = [1.0 + per_force(0, 0) * slope[0], per_force(0, 1) * slope[1]];
+        let [c, e] = [per_force(1, 0) * slope[0], 1.0 + per_force(1, 1) * slope[1]];
+        let determinant = a * e - b * c;
+        [(e * error[0] - b * error[1]) / determinant, (a * error[1] - c * error[0]) / determinant]
     }
 
     /// Whether no contact can touch any more: what every mode can reach by itself does not close the gaps that rigid motions open.
@@ -235,19 +264,18 @@ impl<'a> Run<'a> {
         })
     }
 
+    /// Keeps every step of a contact, and what moves freely at the interval asked for.
     fn record(&mut self) {
         let Some(history) = &mut self.history else { return };
-        let rest = self.force == [0.0; 2];
-        // every step of a contact is kept, what moves freely at the interval asked for
-        if rest && history.time.last().is_some_and(|last| self.time - last < self.sample_interval) {
+        let centre = self.system.local_centre.displacement(self.patch, self.force);
+        let local = [centre, (centre - self.centre) / self.h];
+        self.centre = centre;
+        let free = self.force == [0.0; 2];
+        if free && history.time.last().is_some_and(|last| self.time - last < self.sample_interval) {
             return;
         }
         let [q, v] = self.modes.motion(&self.state[0]);
-        let centre = self.system.local_centre.displacement(self.patch, self.force);
-        let rate = (centre - self.centre) / self.h;
-        self.centre = centre;
-        let values = sample(self.system, [&q, &v], [centre, rate], self.force);
-        history.push(self.time, values);
+        history.push(self.time, sample(self.system, [&q, &v], local, self.force));
     }
 
     fn finish(self) -> (Integration, [Contact; 2]) {
@@ -257,8 +285,7 @@ impl<'a> Run<'a> {
         let [initial, _] = self.modes.energy(&self.modes.start());
         let [end, _] = self.modes.energy(&self.state[0]);
         let work = self.contacts.map(|contact| contact.work);
-        let modal = self.modal_loss;
-        let unaccounted = end + modal + work[0] + work[1] - initial;
+        let unaccounted = end + self.modal_loss + work[0] + work[1] - initial;
         // a law that gave more than it took made energy
         let made: f64 = self.contact_losses.iter().map(|loss| (-loss).max(0.0)).sum();
         let gained = unaccounted + if self.force == [0.0; 2] { made } else { 0.0 };
@@ -270,7 +297,7 @@ impl<'a> Run<'a> {
             momentum_residual: unexplained_momentum(system, &v, &self.contacts, &FluidAccount::default())
                 / (system.masses[0] * system.speed),
             losses: Losses {
-                plate_damping: modal + self.lost,
+                plate_damping: self.modal_loss + self.creep_loss,
                 contacts: Some(self.contact_losses),
                 ..Losses::default()
             },

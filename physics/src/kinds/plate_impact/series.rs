@@ -91,14 +91,8 @@ impl Impacts<'_> {
     /// Energy in J lost in contacts that yield.
     fn plastic_work(&self, impact: &Integration) -> f64 {
         let yields = self.memory.map_or([false; 2], Memory::yields);
-        impact
-            .losses
-            .contacts
-            .unwrap_or_default()
-            .iter()
-            .zip(yields)
-            .map(|(loss, yields)| if yields { *loss } else { 0.0 })
-            .sum()
+        let losses = impact.losses.contacts.unwrap_or_default();
+        (0..2).filter(|i| yields[*i]).map(|i| losses[i]).sum()
     }
 
     fn row(&self, number: u64, impact: &Integration) -> Impact {
