@@ -23,10 +23,13 @@ from ..common.arrays import Floats
 from ..common.compiler import compiler, compiler_version
 from ..common.errors import SolverError
 
-FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=fast", "-fPIC", "-shared")
+FLAGS = ("-std=gnu11", "-O3", "-fopenmp", "-march=native", "-ffp-contract=fast", "-fPIC", "-shared")
 MAX_INTERVALS = 256
 FACET_NODES = 6
 CORNERS = 3
+LANES = {2: 2, 3: 4}
+"""Numbers per node in work space, by components."""
+SPACED = 16
 SAMPLED = 8
 """Numbers in a row of ``run``."""
 AGAINST_SURFACE, AGAINST_SPHERE = 0, 1
@@ -180,10 +183,12 @@ class Problem(ctypes.Structure):
     )
 
 
-class Level(ctypes.Structure):
-    """Mirror of ``Level`` in kernel.c."""
+class Part(ctypes.Structure):
+    """Mirror of ``Part`` in kernel.c."""
 
     _fields_ = (
+        ("border_shared", ctypes.c_int64),
+        ("border", ctypes.c_int64),
         ("shared_free", ctypes.c_int64),
         ("shared", ctypes.c_int64),
         ("free", ctypes.c_int64),
@@ -192,6 +197,9 @@ class Level(ctypes.Structure):
         ("row", _INT64),
         ("column", _INT32),
         ("block", _DOUBLE),
+        ("outer", _INT64),
+        ("outer_column", _INT32),
+        ("outer_block", _DOUBLE),
     )
 
 
@@ -201,11 +209,13 @@ class State(ctypes.Structure):
     _fields_ = (
         ("nodes", ctypes.c_int64),
         ("levels", ctypes.c_int64),
-        ("level", ctypes.POINTER(Level)),
+        ("parts", ctypes.c_int64),
+        ("part", ctypes.POINTER(Part)),
         ("inverse", _DOUBLE),
         ("u", _DOUBLE),
         ("v", _DOUBLE),
         ("f", _DOUBLE),
+        ("support", _DOUBLE),
         ("problem", ctypes.POINTER(Problem)),
     )
 
@@ -331,7 +341,7 @@ def load(components: int) -> ctypes.CDLL:
         function.argtypes, function.restype = arguments, None
     kernel.layout.restype = ctypes.c_int64
     for number, mirror in enumerate(
-        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip, Watched, Film)
+        (Record, Pairs, Rigid, Contact, Problem, Part, State, Carried, Tip, Watched, Film)
     ):
         if kernel.layout(number) != ctypes.sizeof(mirror):
             raise SolverError(

@@ -17,6 +17,7 @@ import scipy.sparse
 from ..common.arrays import Floats, Ints, Mask
 from . import kernel
 from .levels import fastest_levels, graded_levels
+from .parts import Blocks, level_parts
 from .problem import ContactProblem
 from .system import System
 
@@ -208,17 +209,26 @@ class Loop(ABC):
 
 
 class SerialLoop(Loop):
-    """One process: half of K in blocks, product and update in one sweep of compiled code."""
+    """One process: half of K in blocks, product and update in one sweep of compiled code.
 
-    def __init__(self, system: System, comm: Any) -> None:
+    Attributes:
+        threads: among which the rows are divided. For another number of them sums have another
+            order: results differ by rounding.
+    """
+
+    def __init__(self, system: System, comm: Any, threads: int = 1) -> None:
         super().__init__(system, comm)
+        self.threads = threads
         whole, arrays = system.part(None), kernel.Arrays()
         self.diagonal = whole.diagonal()
         state = kernel.State()
         state.nodes = system.owned.size
         for name in ("inverse", "u", "v"):
             setattr(state, name, arrays.pointer(getattr(self, name), np.float64))
-        state.f = arrays.pointer(np.zeros_like(self.u), np.float64)
+        lanes = kernel.LANES[self.components]
+        state.f = arrays.pointer(np.zeros(lanes * system.owned.size), np.float64)
+        state.support = arrays.pointer(np.zeros(kernel.SPACED * threads), np.float64)
+        state.parts = threads
         local = np.empty(system.owned.size, dtype=np.int64)
         local[system.owned] = np.arange(system.owned.size)
         self.problem.state.map = arrays.pointer(local[self.problem.nodes], np.int32)
@@ -226,39 +236,20 @@ class SerialLoop(Loop):
         self._state, self._arrays = state, arrays
         self._point_at([(whole, np.ones(system.owned.size, dtype=bool))])
 
-    def _point_at(self, parts: Iterable[tuple[scipy.sparse.csr_matrix, Mask]]) -> None:
+    def _point_at(self, matrices: Iterable[tuple[scipy.sparse.csr_matrix, Mask]]) -> None:
         """Make these the levels: stiffness, and the nodes that move with it."""
         arrays, held = kernel.Arrays(), self.system.held[self.system.owned]
-        made = [self._level(matrix, moves, held, arrays) for matrix, moves in parts]
-        structures = (kernel.Level * len(made))(*made)
-        self._state.levels = len(made)
-        self._state.level = ctypes.cast(structures, ctypes.POINTER(kernel.Level))
-        self._level_arrays = (structures, arrays)
-
-    def _level(
-        self, matrix: scipy.sparse.csr_matrix, moves: Mask, held: Mask, arrays: kernel.Arrays
-    ) -> kernel.Level:
-        """A level from its stiffness, all nodes; masks of nodes that move with it, and are held."""
-        size = self.components
-        touched = np.flatnonzero(np.diff(matrix.indptr)[::size])
-        groups = [
-            touched[(moves[touched] == moving) & (held[touched] == hold)]
-            for moving in (False, True)
-            for hold in (False, True)
+        made = [
+            part
+            for matrix, moves in matrices
+            for part in level_parts(
+                Blocks.of(matrix, self.components, moves, held), self.threads, arrays
+            )
         ]
-        nodes = np.concatenate(groups)
-        rows = (size * nodes[:, None] + np.arange(size)).ravel()
-        indptr, columns, blocks = _upper_blocks(matrix[rows][:, rows], size)
-        level = kernel.Level()
-        ends = np.cumsum([group.size for group in groups]).tolist()
-        level.shared_free, level.shared, level.free, level.rows = ends
-        level.node = arrays.pointer(nodes, np.int32)
-        level.row = arrays.pointer(indptr, np.int64)
-        level.column = arrays.pointer(nodes[columns], np.int32)
-        # Vectors of two components take the columns of a block.
-        data = blocks.transpose(0, 2, 1) if size == 2 else blocks
-        level.block = arrays.pointer(data, np.float64)
-        return level
+        structures = (kernel.Part * len(made))(*made)
+        self._state.levels = len(made) // self.threads
+        self._state.part = ctypes.cast(structures, ctypes.POINTER(kernel.Part))
+        self._level_arrays = (structures, arrays)
 
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
         self._state.levels = 0
@@ -268,12 +259,15 @@ class SerialLoop(Loop):
     @property
     def acting(self) -> tuple[int, ...]:
         """Nodes whose elements of each level act."""
-        return tuple(int(level.rows) for level in self._level_arrays[0])
+        rows = [int(part.rows) for part in self._level_arrays[0]]
+        return tuple(np.reshape(rows, (-1, self.threads)).sum(axis=1).tolist())
 
     @property
     def blocks(self) -> int:
         """Blocks of K that are stored, of all levels."""
-        return sum(int(level.row[level.rows]) for level in self._level_arrays[0])
+        return sum(
+            int(part.row[part.rows] + part.outer[part.border]) for part in self._level_arrays[0]
+        )
 
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
@@ -305,12 +299,3 @@ class SerialLoop(Loop):
         self._kernel.stiffness_product(state, first, end, kernel.doubles(x), kernel.doubles(y))
         return y
 
-
-def _upper_blocks(matrix: scipy.sparse.csr_matrix, size: int) -> tuple[Ints, Ints, Floats]:
-    """Rows, columns and blocks (k, size, size) from the diagonal on, the diagonal one first."""
-    blocks = matrix.tobsr((size, size))
-    blocks.sort_indices()
-    rows = np.repeat(np.arange(blocks.indptr.size - 1), np.diff(blocks.indptr))
-    upper = blocks.indices >= rows
-    counts = np.bincount(rows[upper], minlength=blocks.indptr.size - 1)
-    return np.concatenate([[0], np.cumsum(counts)]), blocks.indices[upper], blocks.data[upper]

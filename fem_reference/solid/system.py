@@ -82,7 +82,7 @@ def _bandwidth_order(matrix: scipy.sparse.bsr_matrix) -> Ints:
     return np.asarray(reverse_cuthill_mckee(pattern, symmetric_mode=True), dtype=np.int64)
 
 
-def make_loop(model: Model, comm: Any) -> Loop:
-    """The loop for the number of processes in ``comm``."""
+def make_loop(model: Model, comm: Any, threads: int = 1) -> Loop:
+    """The loop for the number of processes in ``comm``, each with so many threads."""
     system = SolidSystem(model, comm)
-    return SerialLoop(system, comm) if comm.size == 1 else ParallelLoop(system, comm)
+    return SerialLoop(system, comm, threads) if comm.size == 1 else ParallelLoop(system, comm)
