@@ -57,6 +57,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     solve.add_argument("--np", type=_count, default=1, metavar="N", help="processes (solid only)")
     solve.add_argument(
+        "--threads",
+        type=_count,
+        default=0,
+        metavar="N",
+        help="cores the time loop uses, all processes together (0: those there are)",
+    )
+    solve.add_argument(
         "--checkpoint", type=Path, metavar="DIR", help="states of a solid run, to go on from"
     )
     solve.add_argument(

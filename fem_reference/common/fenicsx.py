@@ -244,6 +244,11 @@ def world() -> Any:
     return MPI.COMM_WORLD
 
 
+def on_this_machine(comm: Any) -> Any:
+    """The processes of ``comm`` that share this machine's memory."""
+    return comm.Split_type(MPI.COMM_TYPE_SHARED)
+
+
 def alone() -> Any:
     """The communicator of this process only."""
     return MPI.COMM_SELF

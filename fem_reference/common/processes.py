@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from .errors import RunError, SolverError
+from .groups import affinity, quota
 from .parent import launched
 from .progress import Progress
 
@@ -35,6 +36,8 @@ def _launch(processes: int) -> None:
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
         # Processes that are told to end do so at once: they have nothing to put in order.
         "OMPI_MCA_odls_base_sigkill_timeout": "0",
+        # Two runs side by side would be bound to the same cores, threads of a process to one.
+        "OMPI_MCA_hwloc_base_binding_policy": "none",
     }
     if processes >= (os.cpu_count() or 1):
         # Somebody else needs a processor too: waiting must not keep it busy.
@@ -42,6 +45,16 @@ def _launch(processes: int) -> None:
     sys.stdout.flush()
     command = [program, "-n", str(processes), sys.executable, "-m", "fem_reference", *sys.argv[1:]]
     os.execve(program, command, {**settings, **kept})
+
+
+def threads_per_process(asked: int, comm: Any) -> int:
+    """Threads of this process: an even share of the ``asked`` ones of its machine, 0: of its cores."""
+    from .fenicsx import on_this_machine
+
+    here = on_this_machine(comm)
+    # A launcher may have bound every process to cores of its own.
+    there = len(frozenset().union(*here.allgather(affinity())))
+    return max(1, int(asked or min(there, quota())) // here.size)
 
 
 def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> None:

@@ -13,6 +13,15 @@ from . import kernel
 PADDING = 2
 """Numbers after the last block: the rows of a 3x3 block are read by fours."""
 
+DOFS_PER_THREAD = 5000
+"""Fewer do not pay: threads wait for each other several times a step, which with other work on the
+machine takes longer than the step."""
+
+
+def worthwhile(threads: int, dofs: int) -> int:
+    """How many of at most so many threads a process with so many degrees of freedom has."""
+    return max(1, min(threads, dofs // DOFS_PER_THREAD))
+
 
 @dataclass(frozen=True)
 class Blocks:

@@ -70,6 +70,8 @@ class Solution:
     system: AxisymmetricSystem
     levels: tuple[int, ...]
     """Nodes whose elements of each level of sub-cycling act."""
+    threads: int
+    """Of the time loop."""
     resolution: Resolution
     estimate: ContactEstimate
     meshes_tried: int
@@ -90,7 +92,7 @@ class Solution:
 
     def machine(self) -> dict[str, Any]:
         """For the summary's ``solver``."""
-        return {"nodes_per_level": list(self.levels)}
+        return {"nodes_per_level": list(self.levels), "threads": self.threads}
 
     def mesh_report(self) -> dict[str, Any]:
         """For the summary's ``mesh``."""
@@ -197,6 +199,7 @@ def _stepped(
             duration,
             most_levels=most_levels,
             courant=settings.courant,
+            threads=settings.threads,
             fields=recorder,
             **options,
         )
@@ -266,7 +269,8 @@ def compute(
         if like is not None or (enough and zone_left):
             levels = motion.loop.acting
             return Solution(
-                *(run, mesh, system, levels, resolution, estimate, attempt, factor, radii),
+                *(run, mesh, system, levels, motion.loop.threads),
+                *(resolution, estimate, attempt, factor, radii),
                 recorder=recorder,
             )
         size = sizes.contact_element

@@ -23,6 +23,7 @@ from ..explicit import kernel
 from ..explicit.damping import ModalDamping
 from ..explicit.drag import Drag
 from ..explicit.loop import Energies, SerialLoop
+from ..explicit.parts import worthwhile
 from .ending import Ending, Followed, Patch
 from .estimate import WAVE_FREQUENCY
 from .motion import SIDES, Further, Losses, State
@@ -48,8 +49,9 @@ class AxisymmetricMotion:
 
     share = 1.0
 
-    def __init__(self, system: AxisymmetricSystem) -> None:
-        self.system, self.loop = system, SerialLoop(system, alone())
+    def __init__(self, system: AxisymmetricSystem, threads: int = 1) -> None:
+        threads = worthwhile(threads, system.inverse_mass.size)
+        self.system, self.loop = system, SerialLoop(system, alone(), threads)
         self._bent = system.displacement is not None
         if system.displacement is not None:
             self.loop.u[:] = self.loop.own(system.displacement)
@@ -226,15 +228,19 @@ def _ending(motion: AxisymmetricMotion, damping_ratio: float) -> Ending:
 
 
 def integrate_axisymmetric(
-    system: AxisymmetricSystem, scene: Scene, contact_duration: float, **options: Any
+    system: AxisymmetricSystem,
+    scene: Scene,
+    contact_duration: float,
+    threads: int = 1,
+    **options: Any,
 ) -> tuple[Run, AxisymmetricMotion]:
-    """Step a system; see `run.integrate` for the options.
+    """Step a system, with at most so many threads; see `run.integrate` for the options.
 
     Raises:
         SolverError: time step above the critical one, divergence, or no end found.
     """
     damping_ratio = scene.plate.damping_ratio
-    motion = AxisymmetricMotion(system)
+    motion = AxisymmetricMotion(system, threads)
     if damping_ratio > 0.0:
         motion.damp(damping_ratio, 2.0 * math.pi * DAMPED_FREQUENCY / contact_duration)
     if scene.drag > 0.0:

@@ -12,6 +12,7 @@ from ..common.arrays import Floats, Ints, Mask
 from ..common.fenicsx import block_matrix, block_rows, petsc_rows
 from ..explicit.loop import Loop, SerialLoop
 from ..explicit.parallel import ParallelLoop
+from ..explicit.parts import worthwhile
 from .elasticity import Assembly, lumped_mass
 from .elements import element_time_steps
 from .model import Model
@@ -83,6 +84,7 @@ def _bandwidth_order(matrix: scipy.sparse.bsr_matrix) -> Ints:
 
 
 def make_loop(model: Model, comm: Any, threads: int = 1) -> Loop:
-    """The loop for the number of processes in ``comm``, each with so many threads."""
+    """The loop for the number of processes in ``comm``, each with at most so many threads."""
     system = SolidSystem(model, comm)
+    threads = worthwhile(threads, 3 * system.owned.size)
     return SerialLoop(system, comm, threads) if comm.size == 1 else ParallelLoop(system, comm)
