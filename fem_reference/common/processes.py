@@ -48,13 +48,14 @@ def _launch(processes: int) -> None:
 
 
 def threads_per_process(asked: int, comm: Any) -> int:
-    """Threads of this process: an even share of the ``asked`` ones of its machine, 0: of its cores."""
+    """Threads of this process: its share of those ``asked`` for on its machine, 0: of its cores."""
     from .fenicsx import on_this_machine
 
     here = on_this_machine(comm)
+    processes = int(here.size)
     # A launcher may have bound every process to cores of its own.
     there = len(frozenset().union(*here.allgather(affinity())))
-    return max(1, int(asked or min(there, quota())) // here.size)
+    return max(1, int(asked or min(there, quota())) // processes)
 
 
 def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> None:

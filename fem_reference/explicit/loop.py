@@ -58,9 +58,12 @@ class Loop(ABC):
         u, v: (C n,) displacement, and velocity half a step later.
         diagonal: (C n,) of K, N/m.
         levels: nodes that move with each level.
+        threads: among which the rows of a process are divided. For another number of them sums
+            have another order: results differ by rounding.
     """
 
     diagonal: Floats
+    threads = 1
 
     def __init__(self, system: System, comm: Any) -> None:
         self.system, self.comm = system, comm
@@ -209,12 +212,7 @@ class Loop(ABC):
 
 
 class SerialLoop(Loop):
-    """One process: half of K in blocks, product and update in one sweep of compiled code.
-
-    Attributes:
-        threads: among which the rows are divided. For another number of them sums have another
-            order: results differ by rounding.
-    """
+    """One process: half of K in blocks, product and update in one sweep of compiled code."""
 
     def __init__(self, system: System, comm: Any, threads: int = 1) -> None:
         super().__init__(system, comm)
@@ -298,4 +296,3 @@ class SerialLoop(Loop):
         state = ctypes.byref(self._state)
         self._kernel.stiffness_product(state, first, end, kernel.doubles(x), kernel.doubles(y))
         return y
-

@@ -1,4 +1,4 @@
-"""The rows of K_l as the compiled loop reads them: divided among threads, half of K within each part."""
+"""The rows of K_l as the compiled loop reads them: in parts for its threads, half of K in each."""
 
 from __future__ import annotations
 
