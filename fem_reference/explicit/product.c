@@ -59,24 +59,24 @@ static inline void add(double *x, double scale, const double *factor, Vector a) 
 
 static inline void shift(double *u, double h, const double *v) { store(u, load(u) + h * load(v)); }
 #else
-typedef double quad __attribute__((vector_size(32)));
-typedef int64_t quad_mask __attribute__((vector_size(32)));
+typedef double four __attribute__((vector_size(32)));
+typedef int64_t four_mask __attribute__((vector_size(32)));
 enum { AHEAD = 64 }; /* blocks: how far ahead of its use K is asked for from memory */
-typedef quad Vector; /* three components, the last lane says nothing */
+typedef four Vector; /* three components, the last lane says nothing */
 
-static inline quad load(const double *x) {
-    quad value;
+static inline four load(const double *x) {
+    four value;
     memcpy(&value, x, sizeof value);
     return value;
 }
 
-static inline void store(double *x, quad value) { memcpy(x, &value, sizeof value); }
+static inline void store(double *x, four value) { memcpy(x, &value, sizeof value); }
 
-static inline quad times(quad a, quad b, quad c, const double *x) { return a * x[0] + b * x[1] + c * x[2]; }
+static inline four times(four a, four b, four c, const double *x) { return a * x[0] + b * x[1] + c * x[2]; }
 
 /* Three rows of a block; the processor reads each from memory once. */
 typedef struct {
-    quad first, second, third;
+    four first, second, third;
 } Rows;
 
 static inline Rows rows_of(const double *block) {
@@ -88,17 +88,17 @@ static inline Rows rows_of(const double *block) {
 }
 
 /* The block times x, by its columns. */
-static inline quad forward(Rows r, const double *x) {
-    const quad_mask even = {0, 4, 2, 6}, odd = {1, 5, 3, 7}, low = {0, 1, 4, 5}, high = {2, 3, 6, 7};
-    const quad_mask next = {1, 1, 3, 3};
-    const quad outer = __builtin_shuffle(r.first, r.second, even);
-    const quad middle = __builtin_shuffle(r.first, r.second, odd);
+static inline four forward(Rows r, const double *x) {
+    const four_mask even = {0, 4, 2, 6}, odd = {1, 5, 3, 7}, low = {0, 1, 4, 5}, high = {2, 3, 6, 7};
+    const four_mask next = {1, 1, 3, 3};
+    const four outer = __builtin_shuffle(r.first, r.second, even);
+    const four middle = __builtin_shuffle(r.first, r.second, odd);
     return times(__builtin_shuffle(outer, r.third, low),
                  __builtin_shuffle(middle, __builtin_shuffle(r.third, next), low),
                  __builtin_shuffle(outer, r.third, high), x);
 }
 
-static inline quad block_product(const double *block, const double *x) { return forward(rows_of(block), x); }
+static inline four block_product(const double *block, const double *x) { return forward(rows_of(block), x); }
 
 static inline double component(Vector a, int d) { return a[d]; }
 
@@ -115,10 +115,10 @@ static inline Vector row_product(const Part *l, const double *restrict x, double
     const double *restrict b = l->block + 9 * l->row[row];
     const int32_t *restrict column = l->column + l->row[row];
     const int64_t count = l->row[row + 1] - l->row[row];
-    const quad zero = {0.0, 0.0, 0.0, 0.0};
+    const four zero = {0.0, 0.0, 0.0, 0.0};
     const double own[3] = {x[3 * i], x[3 * i + 1], x[3 * i + 2]};
     const double *mine = y + 4 * i;
-    quad sum = {mine[0] + b[0] * own[0] + b[1] * own[1] + b[2] * own[2],
+    four sum = {mine[0] + b[0] * own[0] + b[1] * own[1] + b[2] * own[2],
                 mine[1] + b[3] * own[0] + b[4] * own[1] + b[5] * own[2],
                 mine[2] + b[6] * own[0] + b[7] * own[1] + b[8] * own[2], 0.0};
     for (int64_t p = 1; p < count; ++p) {
