@@ -152,12 +152,12 @@ static void book_supports(const State *s, double *reaction) {
         }
 }
 
-/* Advances the elastic bodies alone by a number of steps, from an instant at which all levels meet;
- * neither contact nor ledger. */
-void drift(State *s, int64_t steps) {
+/* Advances the elastic bodies alone by a number of steps, the ``first`` one counted from an instant at which all
+ * levels meet; neither contact nor ledger. */
+void drift(State *s, int64_t first, int64_t steps) {
     double reaction[3] = {0.0, 0.0, 0.0};
 #pragma omp parallel num_threads(s->parts) if (s->parts > 1)
-    for (int64_t n = 0; n < steps; ++n) predict(s, n, reaction);
+    for (int64_t n = first; n < first + steps; ++n) predict(s, n, reaction);
     book_supports(s, reaction);
 }
 

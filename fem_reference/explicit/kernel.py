@@ -331,7 +331,7 @@ def load(components: int) -> ctypes.CDLL:
     state, count = ctypes.POINTER(State), ctypes.c_int64
     for name, arguments in {
         "advance": (state, count),
-        "drift": (state, count),
+        "drift": (state, count, count),
         "contact_step": (ctypes.POINTER(Problem),),
         "run": (state, ctypes.POINTER(Carried), ctypes.POINTER(Watched), count, count, _DOUBLE),
         "stiffness_product": (state, count, count, _DOUBLE, _DOUBLE),

@@ -56,6 +56,7 @@ class Loop(ABC):
         components: of displacement per node.
         mass: (n,) kg. inverse: (C n,) 1/kg, zero where fixed. body: (n,) number of each node's.
         u, v: (C n,) displacement, and velocity half a step later.
+        displacement: u, then that of other processes' nodes that own rows read.
         diagonal: (C n,) of K, N/m.
         levels: nodes that move with each level.
         threads: among which the rows of a process are divided. For another number of them sums
@@ -72,7 +73,8 @@ class Loop(ABC):
         self.mass = system.mass[system.owned]
         self.inverse = system.inverse_mass[self.rows]
         self.body = np.searchsorted(system.first, system.owned, side="right") - 1
-        self.u = np.zeros(self.rows.size)
+        self.displacement = np.zeros(self.rows.size + self.components * system.ghosts.size)
+        self.u = self.displacement[: self.rows.size]
         self.v = self.own(system.velocity)
         self.v[self.inverse == 0.0] = 0.0
         self.problem = ContactProblem(system)
@@ -107,12 +109,12 @@ class Loop(ABC):
         if count == 1 == len(self.levels):
             return
         node = fastest_levels(element, self.system.element_nodes, self.system.mass.size)
-        self._take_levels(element, node[self.system.owned], count)
+        self._take_levels(element, node, count)
         self.levels = tuple(np.bincount(node, minlength=count).tolist())
 
     @abstractmethod
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
-        """Split K by the level of each element; ``node`` (n,) has the levels of own nodes."""
+        """Split K by the level of each element; ``node`` (N,) has the levels of the nodes."""
 
     @property
     def meeting(self) -> int:
@@ -227,7 +229,7 @@ class SerialLoop(Loop):
         state.f = arrays.pointer(np.zeros(lanes * system.owned.size), np.float64)
         state.support = arrays.pointer(np.zeros(kernel.SPACED * threads), np.float64)
         state.parts = threads
-        local = np.empty(system.owned.size, dtype=np.int64)
+        local = np.full(system.mass.size, -1, dtype=np.int64)
         local[system.owned] = np.arange(system.owned.size)
         self.problem.state.map = arrays.pointer(local[self.problem.nodes], np.int32)
         state.problem = ctypes.pointer(self.problem.state)
@@ -252,7 +254,8 @@ class SerialLoop(Loop):
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
         self._state.levels = 0
         del self._level_arrays
-        self._point_at((self.system.part(element == k), node == k) for k in range(count))
+        own = node[self.system.owned]
+        self._point_at((self.system.part(element == k), own == k) for k in range(count))
 
     @property
     def acting(self) -> tuple[int, ...]:
@@ -269,7 +272,7 @@ class SerialLoop(Loop):
 
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
-        self._kernel.drift(ctypes.byref(self._state), steps)
+        self._kernel.drift(ctypes.byref(self._state), 0, steps)
 
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
@@ -290,9 +293,13 @@ class SerialLoop(Loop):
         """K x."""
         return self._product(x, 0, len(self.levels))
 
+    def _read(self, x: Floats) -> Floats:
+        """(C n,) as own rows read it."""
+        return np.ascontiguousarray(x)
+
     def _product(self, x: Floats, first: int, end: int) -> Floats:
-        x = np.ascontiguousarray(x)
-        y = np.empty_like(x)
+        y = np.empty(self.rows.size)
+        x = self._read(x)
         state = ctypes.byref(self._state)
         self._kernel.stiffness_product(state, first, end, kernel.doubles(x), kernel.doubles(y))
         return y

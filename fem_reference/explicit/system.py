@@ -42,6 +42,10 @@ class System(Protocol):
         """(n,) nodes of this process, in the order in which a loop keeps them."""
 
     @property
+    def ghosts(self) -> Ints:
+        """Nodes of other processes that have an element in common with own ones."""
+
+    @property
     def held(self) -> Mask:
         """(N,) nodes whose forces count as the supports' where they are fixed."""
 
@@ -57,7 +61,7 @@ class System(Protocol):
         """(m,) critical time step of each element alone, s."""
 
     def part(self, chosen: Mask | None) -> scipy.sparse.csr_matrix:
-        """Stiffness of some elements (m,), or of all: own rows and columns, as `owned`, N/m."""
+        """Stiffness of some elements (m,), or of all: own rows; columns as `owned`, `ghosts`; N/m."""
 
     @property
     def rigid(self) -> tuple[RigidBody, ...]:
