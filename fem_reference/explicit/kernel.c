@@ -312,6 +312,16 @@ void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64
     }
 }
 
+/* Takes the vectors of some nodes out of x. */
+void pack(const double *restrict x, const int64_t *restrict node, int64_t count, double *restrict packed) {
+    for (int64_t i = 0; i < count; ++i) memcpy(packed + C * i, x + C * node[i], C * sizeof *x);
+}
+
+/* And puts them in. */
+void unpack(double *restrict x, const int64_t *restrict node, int64_t count, const double *restrict packed) {
+    for (int64_t i = 0; i < count; ++i) memcpy(x + C * node[i], packed + C * i, C * sizeof *x);
+}
+
 /* The STREAM triad a = b + s c, repeated: what the memory that n numbers fit into delivers. */
 void triad(double *restrict a, const double *restrict b, const double *restrict c, int64_t n,
            int64_t repetitions) {

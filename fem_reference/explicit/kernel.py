@@ -335,6 +335,8 @@ def load(components: int) -> ctypes.CDLL:
         "contact_step": (ctypes.POINTER(Problem),),
         "run": (state, ctypes.POINTER(Carried), ctypes.POINTER(Watched), count, count, _DOUBLE),
         "stiffness_product": (state, count, count, _DOUBLE, _DOUBLE),
+        "pack": (_DOUBLE, _INT64, count, _DOUBLE),
+        "unpack": (_DOUBLE, _INT64, count, _DOUBLE),
         "triad": (_DOUBLE, _DOUBLE, _DOUBLE, count, count),
     }.items():
         function = getattr(kernel, name)

@@ -31,6 +31,7 @@ class Exchange:
     """Values of some nodes, from the processes that own them to those that read them.
 
     Args:
+        library: the compiled kernel.
         comm: of the processes.
         tag: of the messages.
         partners: other processes, with the places in this one's vectors of what goes there and of
@@ -39,24 +40,36 @@ class Exchange:
     """
 
     def __init__(
-        self, comm: Any, tag: int, partners: list[tuple[int, Ints, Ints]], components: int
+        self,
+        library: ctypes.CDLL,
+        comm: Any,
+        tag: int,
+        partners: list[tuple[int, Ints, Ints]],
+        components: int,
     ) -> None:
-        self._going = [(sent, np.zeros((sent.size, components))) for _, sent, _ in partners]
-        self._coming = [(got, np.zeros((got.size, components))) for _, _, got in partners]
-        self._requests = []
-        for (rank, _, _), (_, going), (_, coming) in zip(
-            partners, self._going, self._coming, strict=True
-        ):
-            self._requests += [comm.Recv_init(coming, rank, tag), comm.Send_init(going, rank, tag)]
+        self._library, self._arrays = library, kernel.Arrays()
+        self._going: list[tuple[Any, ...]] = []
+        self._coming: list[tuple[Any, ...]] = []
+        self._requests: list[Any] = []
+        for rank, sent, got in partners:
+            for places, ends, prepare in (
+                (got, self._coming, comm.Recv_init),
+                (sent, self._going, comm.Send_init),
+            ):
+                values = np.zeros(components * places.size)
+                where = self._arrays.pointer(places, np.int64)
+                ends.append((where, places.size, self._arrays.pointer(values, np.float64)))
+                self._requests.append(prepare(values, rank, tag))
 
     def __call__(self, x: Floats) -> None:
-        """Send and take over; ``x`` has own and others' nodes, a row each."""
-        for places, values in self._going:
-            np.take(x, places, axis=0, out=values)
+        """Send and take over; ``x`` has the components of own and others' nodes."""
+        pointer = kernel.doubles(x)
+        for end in self._going:
+            self._library.pack(pointer, *end)
         MPI.Prequest.Startall(self._requests)
         MPI.Request.Waitall(self._requests)
-        for places, values in self._coming:
-            x[places] = values
+        for end in self._coming:
+            self._library.unpack(pointer, *end)
 
     def free(self) -> None:
         """Give back what MPI has prepared."""
@@ -105,7 +118,8 @@ class ParallelLoop(SerialLoop):
             return [(p, place[sent], place[got]) for p, sent, got in both if sent.size + got.size]
 
         self._exchanges = [
-            Exchange(self.comm, level, partners(level), self.components) for level in range(count)
+            Exchange(self._kernel, self.comm, level, partners(level), self.components)
+            for level in range(count)
         ]
 
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
@@ -114,16 +128,16 @@ class ParallelLoop(SerialLoop):
 
     def _read(self, x: Floats) -> Floats:
         """(C n,) with the other processes' nodes that own rows read, of all levels."""
-        values = np.zeros((self.displacement.size // self.components, self.components))
-        values[: self.system.owned.size] = x.reshape(-1, self.components)
+        values = np.zeros(self.displacement.size)
+        values[: x.size] = x
         self._exchanges[-1](values)
-        return values.ravel()
+        return values
 
     def _step(self, take: Any, step: int) -> None:
         """One step by ``take``, then what moved in it is exchanged."""
         take()
         slowest = max(k for k in range(len(self._exchanges)) if step % (1 << k) == 0)
-        self._exchanges[slowest](self.displacement.reshape(-1, self.components))
+        self._exchanges[slowest](self.displacement)
 
     def _begin(self) -> Any:
         """Take over what was changed from outside; this process' problem."""

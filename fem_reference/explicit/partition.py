@@ -5,17 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from ..common.arrays import Floats, Ints, Mask
+from .levels import MOST_LEVELS, fastest_levels, graded_levels
 
-CLASSES_PER_OCTAVE = 2
-"""Nodes are shared out evenly in every class of time steps so wide: so they are in every level,
-whatever the levels will be."""
+EXPECTED = 1.2
+"""Critical time step of a system over the smallest of its elements, about."""
+SLACK = 0.04
+"""Share of a level that a part may have more or less of, so that its border is smoother."""
 
 
 def owners(points: Floats, elements: Ints, steps: Floats, touching: Ints, processes: int) -> Ints:
     """(n,) process of each node; nodes that can touch are all the first one's.
 
-    Meshes grow away from the contacts, so the parts are cones from there, cut in two again and
-    again along that coordinate of the direction which fewest elements straddle.
+    Meshes grow away from the contacts, so the parts are cones and sectors from there: cut in two
+    again and again along that direction or angle in which the fewest elements straddle the cut.
 
     Args:
         points: (n, 3) m.
@@ -27,51 +29,61 @@ def owners(points: Floats, elements: Ints, steps: Floats, touching: Ints, proces
     owner = np.zeros(points.shape[0], dtype=np.int64)
     if processes == 1:
         return owner
-    fastest = np.full(points.shape[0], np.inf)
-    for corner in elements.T:
-        np.minimum.at(fastest, corner, steps)
-    fastest[touching] = 0.0
-    classes = np.zeros(points.shape[0], dtype=np.int64)
-    classes[fastest > 0.0] = 1 + np.floor(
-        CLASSES_PER_OCTAVE * np.log2(fastest[fastest > 0.0] / steps.min())
-    ).astype(np.int64)
-    centre = points[touching].mean(axis=0) if touching.size else points.mean(axis=0)
-    away = points - centre
+    near = np.zeros(owner.size, dtype=bool)
+    near[touching] = True
+    level = graded_levels(steps / (EXPECTED * steps.min()), elements, near, MOST_LEVELS)
+    groups = np.where(near, -1, fastest_levels(level, elements, owner.size))
+    away = points - points[touching if touching.size else slice(None)].mean(axis=0)
     direction = away / np.maximum(np.linalg.norm(away, axis=1), 1e-300)[:, None]
-    _halve(owner, np.arange(points.shape[0]), range(processes), direction, classes, elements)
+    angle = np.arctan2(away[:, [1, 2, 2]], away[:, [0, 1, 0]])
+    _halve(
+        owner, np.arange(owner.size), range(processes), (*direction.T, *angle.T), groups, elements
+    )
     return owner
 
 
 def _halve(
-    owner: Ints, nodes: Ints, ranks: range, direction: Floats, classes: Ints, elements: Ints
+    owner: Ints,
+    nodes: Ints,
+    ranks: range,
+    fields: tuple[Floats, ...],
+    groups: Ints,
+    elements: Ints,
 ) -> None:
-    """Share out ``nodes`` among ``ranks``; those of class 0 go to the first."""
+    """Share out ``nodes`` among ``ranks``; those of group -1 go to the first."""
     if len(ranks) == 1:
         owner[nodes] = ranks[0]
         return
     half = len(ranks) // 2
-    share = half / len(ranks)
-    cuts = [_lower(direction[nodes, axis], classes[nodes], share) for axis in range(3)]
-    straddling = []
-    for lower in cuts:
+    cuts = [_lower(field[nodes], groups[nodes], half / len(ranks)) for field in fields]
+
+    def straddling(lower: Mask) -> int:
         side = np.zeros(owner.size, dtype=np.int64)
         side[nodes] = np.where(lower, 1, 2)
         on = side[elements]
-        straddling.append(np.count_nonzero((on == 1).any(axis=1) & (on == 2).any(axis=1)))
-    lower = cuts[int(np.argmin(straddling))]
-    _halve(owner, nodes[lower], ranks[:half], direction, classes, elements)
-    _halve(owner, nodes[~lower], ranks[half:], direction, classes, elements)
+        return np.count_nonzero((on == 1).any(axis=1) & (on == 2).any(axis=1))
+
+    lower = min(cuts, key=straddling)
+    _halve(owner, nodes[lower], ranks[:half], fields, groups, elements)
+    _halve(owner, nodes[~lower], ranks[half:], fields, groups, elements)
 
 
-def _lower(along: Floats, classes: Ints, share: float) -> Mask:
-    """The lower ``share`` of every class; what class 0 takes more is taken from the next ones."""
-    lower = classes == 0
+def _lower(field: Floats, groups: Ints, share: float) -> Mask:
+    """The ``share`` with the lower values; of every group as much, but for `SLACK`.
+
+    What group -1 takes more is taken from the next ones.
+    """
+    lower = groups < 0
     owed = (1.0 - share) * np.count_nonzero(lower)
-    for number in np.unique(classes[classes > 0]):
-        members = np.flatnonzero(classes == number)
-        wanted = share * members.size
-        given = min(owed, wanted)
+    cut = float(np.quantile(field, share))
+    for number in np.unique(groups[groups >= 0]):
+        members = groups == number
+        size = np.count_nonzero(members)
+        given = min(owed, share * size)
         owed -= given
-        order = members[np.argsort(along[members], kind="stable")]
-        lower[order[: round(wanted - given)]] = True
+        wanted = share - given / size
+        least, most = np.quantile(
+            field[members], [max(0.0, wanted - SLACK), min(1.0, wanted + SLACK)]
+        )
+        lower[members] = field[members] <= min(max(cut, least), most)
     return lower

@@ -61,7 +61,10 @@ class System(Protocol):
         """(m,) critical time step of each element alone, s."""
 
     def part(self, chosen: Mask | None) -> scipy.sparse.csr_matrix:
-        """Stiffness of some elements (m,), or of all: own rows; columns as `owned`, `ghosts`; N/m."""
+        """Own rows of the stiffness of some elements (m,), or of all, N/m.
+
+        Columns as `owned`, then `ghosts`.
+        """
 
     @property
     def rigid(self) -> tuple[RigidBody, ...]:

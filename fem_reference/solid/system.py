@@ -76,7 +76,10 @@ class SolidSystem:
         return self._steps
 
     def part(self, chosen: Mask | None) -> scipy.sparse.csr_matrix:
-        """Stiffness of some elements (m,), or of all: own rows; columns as `owned`, `ghosts`; N/m."""
+        """Own rows of the stiffness of some elements (m,), or of all, N/m.
+
+        Columns as `owned`, then `ghosts`.
+        """
         if chosen is not None:
             matrix = self._assembly.part(chosen[self._near])
         else:
