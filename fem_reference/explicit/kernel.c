@@ -331,6 +331,14 @@ void triad(double *restrict a, const double *restrict b, const double *restrict 
     }
 }
 
+/* The sum of n numbers: what so many threads read from where they lie. */
+double read_all(const double *a, int64_t n, int64_t threads) {
+    double sum = 0.0;
+#pragma omp parallel for simd reduction(+ : sum) num_threads(threads)
+    for (int64_t i = 0; i < n; ++i) sum += a[i];
+    return sum;
+}
+
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
                            sizeof(Part),  sizeof(State), sizeof(Carried), sizeof(Tip),

@@ -341,6 +341,7 @@ def load(components: int) -> ctypes.CDLL:
     }.items():
         function = getattr(kernel, name)
         function.argtypes, function.restype = arguments, None
+    kernel.read_all.argtypes, kernel.read_all.restype = (_DOUBLE, count, count), ctypes.c_double
     kernel.layout.restype = ctypes.c_int64
     for number, mirror in enumerate(
         (Record, Pairs, Rigid, Contact, Problem, Part, State, Carried, Tip, Watched, Film)
