@@ -189,7 +189,7 @@ def _told(problem: ContactProblem) -> list[npt.NDArray[np.uint8]]:
         memory(state, kernel.Problem.step.offset),
         *(memory(rigid, 0) for rigid in problem.rigids[: state.rigids]),
         *(
-            memory(contact, kernel.Contact.impulse.offset)
+            memory(contact, kernel.Contact.rubbed.offset)
             for contact in problem.contacts[: state.contacts]
         ),
     ]
