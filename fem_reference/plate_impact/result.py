@@ -28,6 +28,7 @@ from ..common.settings import RESOLUTIONS, Options, Settings
 from ..common.versions import versions
 from .estimate import ContactEstimate
 from .history import HISTORY_COLUMNS, curve_bands, history
+from .motion import Yielded
 from .run import Run
 from .scene import Scene
 
@@ -103,8 +104,15 @@ def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
     found = {**of_run(scene, solution.run), "first_frequency": solution.first_frequency()}
     if scene.series is not None:
         for number, run in enumerate(solution.runs, 1):
-            found |= {f"{number}/{name}": value for name, value in of_run(scene, run).items()}
+            impact = {**of_run(scene, run), **_of_yielding(run)}
+            found |= {f"{number}/{name}": value for name, value in impact.items()}
     return found
+
+
+def _of_yielding(run: Run) -> dict[str, float]:
+    """Energy that went into yielding, J."""
+    yielded = run.yielded or Yielded()
+    return {"plastic_work": sum(yielded.work), "locked_in_energy": sum(yielded.locked_in)}
 
 
 def _without_impacts(meshes: list[MeshResult]) -> list[MeshResult]:
@@ -120,7 +128,7 @@ def _impacts(runs: list[Run], meshes: list[MeshResult]) -> list[dict[str, Any]]:
     found, rows = estimates(meshes), []
     for number, run in enumerate(runs, 1):
         names = [name for name in meshes[0].values if name.startswith(f"{number}/")]
-        cut, yielded = run.in_contact_at_end, run.yielded
+        cut = run.in_contact_at_end
         rows.append(
             {
                 "number": number,
@@ -128,8 +136,6 @@ def _impacts(runs: list[Run], meshes: list[MeshResult]) -> list[dict[str, Any]]:
                 "first_frequency": meshes[0].values["first_frequency"],
                 "outer_contacts": None if cut else run.contacts[0].count,
                 "inner_contacts": None if cut else run.contacts[1].count,
-                "plastic_work": None if cut else sum(yielded.work) if yielded else 0.0,
-                "locked_in_energy": None if cut else sum(yielded.locked_in) if yielded else 0.0,
                 "energy_residual": run.energy_residual,
                 "momentum_residual": run.momentum_residual,
                 "uncertainty": {} if cut else {n.split("/")[1]: found[n].band for n in names},
@@ -259,8 +265,7 @@ def _write(
     if run.losses is not None:
         summary["losses"] = asdict(run.losses)
     if run.yielded is not None:
-        summary["plastic_work"] = sum(run.yielded.work)
-        summary["locked_in_energy"] = sum(run.yielded.locked_in)
+        summary.update(_of_yielding(run))
     if scene.series is not None:
         summary["impacts"] = _impacts(solution.runs, whole)
         for number, impact in enumerate(solution.runs, 1):

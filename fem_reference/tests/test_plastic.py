@@ -11,20 +11,20 @@ import pytest
 
 from fem_reference.axisymmetric.elasticity import scatter
 from fem_reference.axisymmetric.plastic import Box, mean_dilatation, plasticity, point_gradients
-from fem_reference.axisymmetric.system import AxisymmetricSystem, critical_time_step
+from fem_reference.axisymmetric.system import AxisymmetricSystem
 from fem_reference.common.arrays import Floats
 from fem_reference.common.bodies import Material, Yielding
 from fem_reference.common.errors import SceneError
 from fem_reference.explicit.plastic import PlasticState
 from fem_reference.plate_impact.axisymmetric_motion import (
-    AxisymmetricMotion,
     integrate_axisymmetric,
 )
 from fem_reference.plate_impact.dents import Dents
 from fem_reference.plate_impact.run import Run
 from fem_reference.plate_impact.scene import parse_scene
+from fem_reference.studies.yielding import Wall, first_yield, rebound
 
-from .conftest import STEEL, document, make_loop, make_system, solve_once
+from .conftest import STEEL, document, make_loop, make_system
 
 YIELDS = {**STEEL, "yield_strength": 600e6, "hardening": 2.1e9}
 
@@ -226,66 +226,14 @@ def test_yielding_is_for_dry_spheres_in_axisymmetric_geometry() -> None:
         parse_scene(document(plate__material={**YIELDS, "rate": {"D": 40.4, "q": 0.5}}))
 
 
-RIGID = {"name": "rigid", "youngs_modulus": 2.1e14, "poisson_ratio": 0.3, "density": 7.78e6}
-RADIUS, SPEED = 0.01, 0.02
-
-
-def wall(ratio: float, elements: float) -> tuple[Any, float]:
-    """A perfectly plastic sphere at ``ratio`` times its speed of first yield on a rigid wall.
-
-    Also the force of first yield, N: (pi p0)^3 R^2 / (6 E*^2) with p0 = 1.60 Y, and its energy
-    (8/15) E* R^(1/2) d^(5/2), d = (pi p0 / (2 E*))^2 R (Johnson 1985, ch. 4.2, 6.2 and 11.4).
-    """
-    modulus = 210e9 / (1.0 - 0.3**2)
-    mass = 7780.0 * 4.0 / 3.0 * math.pi * RADIUS**3
-    first = 0.5 * mass * (SPEED / ratio) ** 2
-    approach = (first / (8.0 / 15.0 * modulus * math.sqrt(RADIUS))) ** 0.4
-    pressure = 2.0 * modulus / math.pi * math.sqrt(approach / RADIUS)
-    soft = {**STEEL, "yield_strength": pressure / 1.60, "hardening": 0.0}
-    scene = parse_scene(
-        document(
-            plate__material=RIGID,
-            plate__edge="free",
-            plate__radius=0.006,
-            plate__thickness=0.003,
-            outer__material=soft,
-            outer__speed=SPEED,
-            inner__material=RIGID,
-            inner__gap=1e-3,
-            reference__elements_per_contact_radius=elements,
-            run__end_time=1.6e-4,
-        )
-    )
-    return scene, (math.pi * pressure) ** 3 * RADIUS**2 / (6.0 * modulus**2)
-
-
-@pytest.mark.parametrize(("ratio", "elements", "tolerance"), [(1.05, 5, 0.06)])
-def test_first_yield_lies_where_hertz_pressure_puts_it(
-    ratio: float, elements: float, tolerance: float
-) -> None:
+def test_first_yield_lies_where_hertz_pressure_puts_it() -> None:
     """p0 = 1.60 Y for nu = 0.3: the force at the first plastic work."""
-    scene, expected = wall(ratio, elements)
-    system, _ = make_system(scene)
-    motion = AxisymmetricMotion(system)
-    motion.loop.set_step(0.9 * critical_time_step(system), 1)
-    plastic = motion.loop.problem.plastic
-    assert plastic is not None
-    stride, before = 50, 0.0
-    while plastic.work.sum() == 0.0:
-        row = motion.sample(1, stride)[0]
-        force, before = (row[2] - before) / (stride * motion.loop.dt), row[2]
-    assert force == pytest.approx(expected, rel=tolerance)
+    assert first_yield(Wall(1.05), 5) == pytest.approx(1.0, abs=0.06)
 
 
 @pytest.mark.parametrize(("ratio", "restitution"), [(2.1, 0.975), (26.0, 0.730)])
 def test_rebound_from_a_rigid_wall(ratio: float, restitution: float) -> None:
-    scene, _ = wall(ratio, 5)
-    run = solve_once(scene).run
-    assert run.energy_residual < 1e-6
-    rebound = run.outer_velocity / SPEED
-    recoil = (
-        (1.0 + rebound)
-        * scene.outer.mass
-        / (math.pi * scene.plate.radius**2 * scene.plate.surface_density)
-    )
-    assert rebound + recoil == pytest.approx(restitution, abs=0.006)
+    found = rebound(Wall(ratio), 5)
+    assert found.energy_residual < 1e-5
+    assert found.inside
+    assert found.restitution == pytest.approx(restitution, abs=0.006)

@@ -10,6 +10,7 @@ use crate::dynamics::wet::FluidForces;
 use crate::error::Result;
 use crate::result::Impact;
 use crate::scene::Series;
+use std::collections::BTreeMap;
 
 /// Plastic work over the impact's energy below which nothing yields any more.
 const SHAKEN_DOWN: f64 = 3e-4;
@@ -102,6 +103,7 @@ impl Impacts<'_> {
             quantities: if impact.is_cut() { table.cut() } else { table },
             plastic_work: (!impact.is_cut()).then(|| self.plastic_work(impact)),
             locked_in_energy: None,
+            uncertainty: BTreeMap::new(),
         }
     }
 }
