@@ -17,6 +17,12 @@ pub(super) fn impacts_figure(report: &SceneReport) -> Option<String> {
     }
     let models =
         comparison.models.iter().map(|model| course(&model.summary, format!("model {}", model.model)));
+    let last = comparison.reference.impacts.len() as f64;
+    let elastic = comparison.models.iter().filter_map(|model| {
+        let efficiency = 100.0 * model.summary.elastic_efficiency?;
+        let name = format!("model {}, elastic", model.model);
+        Some(Series { name, points: vec![(1.0, efficiency), (last, efficiency)], ..Series::default() })
+    });
     let bands = comparison.reference.impacts.iter().map(|i| 100.0 * i.band("efficiency").unwrap_or(0.0));
     let reference = Series {
         marks: true,
@@ -26,7 +32,7 @@ pub(super) fn impacts_figure(report: &SceneReport) -> Option<String> {
     let panel = ChartPanel {
         x_label: "Number of the impact".into(),
         y_label: "Efficiency in %".into(),
-        series: std::iter::once(reference).chain(models).collect(),
+        series: std::iter::once(reference).chain(models).chain(elastic).collect(),
         counted: true,
         ..ChartPanel::default()
     };

@@ -7,8 +7,8 @@ use crate::kinds::plate_impact::reduced::Reduced;
 use crate::material::RateHardening;
 use crate::project::project_root;
 use crate::reference::{Lookup, Resolution, Store};
-use crate::result::Impact;
-use crate::scene::{Edge, Model, PlateImpact, Scene, Series, Spot};
+use crate::result::{Impact, Summary};
+use crate::scene::{Edge, Model, Scene, Series, Spot};
 use rayon::prelude::*;
 
 /// Table 1's plates: text, radius of the spheres in m, speed in m/s, and the scene whose stored reference is shown.
@@ -16,8 +16,10 @@ const PLATES: [(&str, f64, f64, &str); 2] =
     [("10 mm", 10e-3, 0.55, "repeated-r10"), ("6.35 mm", 6.35e-3, 0.437, "repeated-r6.35")];
 /// Radius and thickness of both, m.
 const PLATE: (f64, f64) = (33e-3, 2e-3);
-/// The paper does not tell its yield strength: text, Pa, spot on the spheres, rate.
-const CASES: [(&str, f64, Spot, Option<RateHardening>); 5] = [
+/// Text, yield strength in Pa, spot on the spheres, rate.
+type Case = (&'static str, f64, Spot, Option<RateHardening>);
+/// The paper does not tell its yield strength.
+const CASES: [Case; 5] = [
     ("350 MPa", 350e6, Spot::Same, None),
     (SHOWN, 600e6, Spot::Same, None),
     ("1000 MPa", 1000e6, Spot::Same, None),
@@ -115,32 +117,23 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
 
 /// The courses of all cases, and the elastic value as one.
 fn courses(radius: f64, speed: f64, model: Model) -> Result<Vec<Course>> {
-    let base = |yield_strength: Option<f64>| {
+    let summary = |(_, strength, sphere_spot, rate): &Case| {
         let mut setup = impact(PLATE.0, PLATE.1, Edge::Clamped, steel(), radius);
         setup.outer.speed = speed;
         for material in [&mut setup.plate.material, &mut setup.outer.material, &mut setup.inner.material] {
-            (material.yield_strength, material.hardening) =
-                (yield_strength, yield_strength.map(|_| HARDENING));
-        }
-        setup
-    };
-    let elastic = run_one(base(None), model)?.quantities.value("efficiency");
-    let course = |(case, strength, sphere_spot, rate): &(&'static str, f64, Spot, Option<RateHardening>)| {
-        let mut setup = base(Some(*strength));
-        for material in [&mut setup.plate.material, &mut setup.outer.material, &mut setup.inner.material] {
+            (material.yield_strength, material.hardening) = (Some(*strength), Some(HARDENING));
             material.rate = *rate;
         }
         setup.series = Some(Series { impacts: MOST_IMPACTS, sphere_spot: *sphere_spot });
-        Ok(Course::of(case, &run_one(setup, model)?.impacts))
+        Reduced::new(&scene("shakedown", setup), model, None)?.run(TOLERANCE)
     };
-    let mut courses = CASES.par_iter().map(course).collect::<Result<Vec<_>>>()?;
+    let summaries = CASES.par_iter().map(summary).collect::<Result<Vec<_>>>()?;
+    let of_case = |(case, summary): (&Case, &Summary)| Course::of(case.0, &summary.impacts);
+    let mut courses: Vec<Course> = CASES.iter().zip(&summaries).map(of_case).collect();
     let longest = courses.iter().filter_map(|course| Some(course.points.last()?.0)).max().unwrap_or(1);
+    let elastic = summaries[0].elastic_efficiency;
     courses.push(Course { case: ELASTIC, points: vec![(1, elastic, None), (longest, elastic, None)] });
     Ok(courses)
-}
-
-fn run_one(setup: PlateImpact, model: Model) -> Result<crate::result::Summary> {
-    Reduced::new(&scene("shakedown", setup), model, None)?.run(TOLERANCE)
 }
 
 /// The stored reference of a validation scene, the finest there is.
