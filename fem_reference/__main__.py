@@ -1,4 +1,4 @@
-"""Command line: ``solve``, ``modes``, ``mesh``, ``bands``, ``cost``, ``speed`` and ``versions``."""
+"""Command line: ``solve``, ``modes``, ``mesh``, ``versions`` and studies."""
 
 from __future__ import annotations
 
@@ -91,6 +91,8 @@ def _parser() -> argparse.ArgumentParser:
     speed.add_argument(
         "--dofs", type=_count, nargs="+", default=(), metavar="N", help="by default three sizes"
     )
+    yielding = commands.add_parser("yielding", help="a yielding sphere on a rigid wall")
+    yielding.add_argument("--out", type=Path, required=True, help="Markdown")
     mesh = commands.add_parser("mesh", help="mesh of a seal seat as .vtu, a .json beside it")
     mesh.add_argument("--scene", type=Path, required=True, help="scene.json of kind seal-seat")
     mesh.add_argument("--out", type=Path, required=True, help="FILE.vtu")
@@ -124,6 +126,11 @@ def _run(arguments: argparse.Namespace) -> None:
             from .studies.speed import SIZES, report_speed
 
             report_speed(arguments.scene, tuple(arguments.dofs) or SIZES, arguments.out)
+            return
+        if arguments.command == "yielding":
+            from .studies.yielding import report_yielding
+
+            report_yielding(arguments.out, Progress())
             return
         document = read_document(arguments.scene)
         commands = commands_of(document)

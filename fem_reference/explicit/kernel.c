@@ -35,6 +35,8 @@
 
 #include "film.c"
 
+#include "plastic.c"
+
 /* Friction on a closed pair of matching nodes, along the radius: the multiplier that leaves the two no relative
  * velocity at the step's end, as far as Coulomb's law lets it grow. */
 static void rub(const State *s, Pairs *c, int64_t k, double lambda) {
@@ -128,6 +130,10 @@ static inline void meet(const State *s) {
  * faster nodes, and do not share a node that moves with them with a faster level. */
 static void predict(const State *s, int64_t step, double *reaction) {
     const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
+    if (s->problem->plastic) {
+        if (leads()) strain_impulse(s, s->problem->plastic);
+        meet(s);
+    }
     for (int64_t k = s->levels - 1; k >= 0; --k) {
         const int64_t every = (int64_t)1 << k;
         if (step % every != 0) continue;
@@ -177,6 +183,7 @@ static void remember(const State *s) {
     for (int64_t i = 0; i < p->nodes; ++i)
         memcpy(p->before + C * i, v + C * (int64_t)p->global[i], C * sizeof *v);
     if (p->film) openings(p->film, v, p->film->before);
+    if (p->plastic) flow(p->plastic, s->u, p->dt);
 }
 
 /* Contact and film correct what was predicted. */
@@ -342,6 +349,6 @@ double read_all(const double *a, int64_t n, int64_t threads) {
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
                            sizeof(Part),  sizeof(State), sizeof(Carried), sizeof(Tip),
-                           sizeof(Watched), sizeof(Film)};
+                           sizeof(Watched), sizeof(Film), sizeof(Plastic)};
     return (int64_t)size[what];
 }

@@ -18,6 +18,7 @@ from ..common.arrays import Floats, Ints, Mask
 from . import kernel
 from .levels import fastest_levels, graded_levels
 from .parts import Blocks, level_parts
+from .plastic import PlasticState
 from .problem import ContactProblem
 from .system import System
 
@@ -98,6 +99,8 @@ class Loop(ABC):
             touching[contact.candidates] = touching[contact.opposite] = True
         if system.film is not None:
             touching[system.film.nodes] = True
+        if system.plasticity is not None:
+            touching[system.plasticity.nodes] = True
         steps = system.element_time_steps() / time_step
         return graded_levels(steps, system.element_nodes, touching, most)
 
@@ -189,12 +192,17 @@ class Loop(ABC):
 
     def energies(self) -> Energies:
         """Discrete energies at an instant at which all levels meet."""
+        plastic = self.problem.plastic
         if self.meeting == 1:
             other, velocity, force = self.u - self.dt * self.v, self.v, self.product(self.u)
+            if plastic is not None:
+                force -= plastic.force
         else:
             other, velocity, force = self._long_step()
         mass = np.repeat(self.mass, self.components)
         density = 0.5 * mass * velocity**2 + 0.5 * other * force
+        if plastic is not None:
+            density += self._of_plastic_strain(plastic)
         elastic = self.body_sums(density.reshape(-1, self.components).sum(axis=1))
         free = self.momenta()[:, self.system.free_axes]
         mean = (free**2).sum(axis=1) / (2.0 * self.body_masses())
@@ -202,8 +210,14 @@ class Loop(ABC):
         rigid = [0.5 * r.mass * sum(x * x for x in r.v) + _of_spin(r) for r in rigids]
         return Energies(tuple(elastic.tolist()), tuple(mean.tolist()), tuple(rigid))
 
+    def _of_plastic_strain(self, plastic: PlasticState) -> Floats:
+        """(C n,) what 1/2 (u - u_p) K (u - u_p) has besides 1/2 u (K u - f_p), J."""
+        density = -0.5 * self.u * plastic.force
+        np.add.at(density, 2 * plastic.plasticity.nodes[:, 0], plastic.stored())
+        return np.asarray(density)
+
     def _long_step(self) -> tuple[Floats, Floats, Floats]:
-        """u_{n+1}, w and K' u_n of `Energies`, without contact; the state stays as it is."""
+        """u_{n+1}, w and K' u_n - f_p of `Energies`, without contact; the state stays as it is."""
         now, velocity = self.u.copy(), self.v.copy()
         long_step = self.meeting * self.dt
         self.drift(self.meeting)
@@ -213,6 +227,8 @@ class Loop(ABC):
         for level in range(len(self.levels)):
             impulse = 0.5 * 2**level * self.dt * self.level_product(level, now)
             self.v += self.inverse * impulse
+        if self.problem.plastic is not None:
+            self.v -= 0.5 * self.dt * self.inverse * self.problem.plastic.force
         self.drift(self.meeting)
         force = 2.0 * np.repeat(self.mass, self.components) * (now - self.u) / long_step**2
         self.u[:], self.v[:] = now, velocity

@@ -9,6 +9,7 @@ import scipy.sparse
 from ..common.arrays import Floats, Ints, Mask
 from .contact import Contact, MatchedContact, RigidBody
 from .film import Film
+from .plastic import Plasticity
 
 
 class System(Protocol):
@@ -81,3 +82,7 @@ class System(Protocol):
     @property
     def film(self) -> Film | None:
         """Between two of them."""
+
+    @property
+    def plasticity(self) -> Plasticity | None:
+        """Of the elements that may yield."""

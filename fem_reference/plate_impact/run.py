@@ -15,7 +15,7 @@ from ..explicit.levels import MOST_LEVELS
 from ..explicit.loop import Energies
 from ..explicit.records import ContactRecord, intervals, peak_force
 from ..explicit.supervision import Course, Ended, Plan, supervise
-from .motion import Losses, Motion
+from .motion import Losses, Motion, Yielded
 from .scene import Scene
 
 PEAK_WINDOW_SAMPLES = 4
@@ -54,6 +54,8 @@ class Run:
     support_impulse: float
     losses: Losses | None
     """Of the whole bodies; None if nothing loses."""
+    yielded: Yielded | None
+    """None: nothing that could yield."""
 
 
 def integrate(
@@ -113,6 +115,7 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     support = problem.state.reaction[loop.components - 1]
     further = motion.further
     losses = further.losses or Losses()
+    vibration = energies.total - further.locked_in
     # Independent balances: all bodies against the supports, each free one against what acts on it.
     misses = [
         sum(momenta) - outer_start - inner_start - support - further.on_all,
@@ -141,11 +144,12 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         inner_velocity=velocities[1],
         energies=energies,
         initial_energy=initial_energy / share,
-        energy_residual=abs(energies.total + losses.total - initial_energy - work) / initial_energy,
+        energy_residual=abs(vibration + losses.total - initial_energy - work) / initial_energy,
         contact_loss=-(work + stored) / initial_energy,
         momentum_residual=max(abs(miss) for miss in misses) / abs(outer_start),
         support_impulse=support / share,
         losses=further.losses and further.losses.of_whole(share),
+        yielded=further.yielded,
     )
 
 
