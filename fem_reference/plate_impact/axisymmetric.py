@@ -345,9 +345,8 @@ def compute(
         if like is not None or found.accepted:
             loop = struck.motion.loop
             return Solution(
-                *(struck.runs, mesh, system, loop.acting, loop.threads),
-                *(found.resolution, estimate, attempt),
-                *(factor, radii, reach, stepper.recorder),
+                *(struck.runs, mesh, system, loop.acting, loop.threads, found.resolution, estimate),
+                *(attempt, factor, radii, reach, stepper.recorder),
             )
         radii = found.radii(sizes.contact_element, radii)
         reach = reach if found.reach_left else 1.4 * reach
