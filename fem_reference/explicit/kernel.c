@@ -22,6 +22,8 @@
 
 #include "product.c"
 
+#include "relaxation.c"
+
 #include "contact.c"
 
 #include "tip.c"
@@ -77,10 +79,10 @@ static inline __attribute__((always_inline)) void group(const State *s, const Le
                                                         int64_t from, int64_t to, int moves, int held,
                                                         double *reaction) {
     double *u = s->u, *v = s->v, *f = s->f;
-    const double *inverse = s->inverse;
+    const double *inverse = s->inverse, *effective = s->effective;
     for (int64_t i = from; i < to; ++i) {
         const int64_t n = l->node[i];
-        const Vector force = row_product(l, u, f, i, n);
+        const Vector force = row_product(l, effective, f, i, n);
         add(v + C * n, -h, inverse + C * n, force);
         for (int d = 0; held && d < C; ++d)
             if (inverse[C * n + d] == 0.0) reaction[d] += h * component(force, d);
@@ -108,7 +110,10 @@ static void predict(const State *s, int64_t step, double *reaction) {
  * neither contact nor ledger. */
 void drift(State *s, int64_t steps) {
     double reaction[3] = {0.0, 0.0, 0.0};
-    for (int64_t n = 0; n < steps; ++n) predict(s, n, reaction);
+    for (int64_t n = 0; n < steps; ++n) {
+        predict(s, n, reaction);
+        relax(s, n);
+    }
 }
 
 static void one_step(State *s) {
@@ -127,7 +132,8 @@ static void one_step(State *s) {
     for (int64_t i = 0; i < p->nodes; ++i)
         memcpy(p->before + C * i, v + C * (int64_t)p->global[i], C * sizeof *v);
     if (p->film) openings(p->film, v, p->film->before);
-    predict(s, p->step, p->reaction);
+    const int64_t step = p->step;
+    predict(s, step, p->reaction);
     if (p->film) correct_with_film(s, p->film);
     for (int64_t c = 0; c < p->matched; ++c) correct(s, &p->pairs[c]);
     if (p->film) book_film(s, p->film);
@@ -145,6 +151,7 @@ static void one_step(State *s) {
             u[g + d] += dt * change;
         }
     }
+    relax(s, step);
 }
 
 /* Advances a system that lies in one process by a number of steps. */
@@ -234,6 +241,6 @@ void triad(double *restrict a, const double *restrict b, const double *restrict 
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
                            sizeof(Level),  sizeof(State), sizeof(Carried), sizeof(Tip),
-                           sizeof(Watched), sizeof(Film)};
+                           sizeof(Watched), sizeof(Film), sizeof(Relaxing)};
     return (int64_t)size[what];
 }

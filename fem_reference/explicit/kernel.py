@@ -195,6 +195,21 @@ class Level(ctypes.Structure):
     )
 
 
+class Relaxing(ctypes.Structure):
+    """Mirror of ``Relaxing`` in kernel.c."""
+
+    _fields_ = (
+        ("level", ctypes.c_int64),
+        ("count", ctypes.c_int64),
+        ("terms", ctypes.c_int64),
+        ("node", _INT32),
+        ("lasting", ctypes.c_double),
+        ("ratio", _DOUBLE),
+        ("decay", _DOUBLE),
+        ("growth", _DOUBLE),
+    )
+
+
 class State(ctypes.Structure):
     """Mirror of ``State`` in kernel.c."""
 
@@ -204,8 +219,13 @@ class State(ctypes.Structure):
         ("level", ctypes.POINTER(Level)),
         ("inverse", _DOUBLE),
         ("u", _DOUBLE),
+        ("effective", _DOUBLE),
         ("v", _DOUBLE),
         ("f", _DOUBLE),
+        ("relaxings", ctypes.c_int64),
+        ("relaxing", ctypes.POINTER(Relaxing)),
+        ("springs", ctypes.c_int64),
+        ("extension", _DOUBLE),
         ("problem", ctypes.POINTER(Problem)),
     )
 
@@ -331,7 +351,10 @@ def load(components: int) -> ctypes.CDLL:
         function.argtypes, function.restype = arguments, None
     kernel.layout.restype = ctypes.c_int64
     for number, mirror in enumerate(
-        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip, Watched, Film)
+        (
+            *(Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip, Watched, Film),
+            Relaxing,
+        )
     ):
         if kernel.layout(number) != ctypes.sizeof(mirror):
             raise SolverError(

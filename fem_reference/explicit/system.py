@@ -7,6 +7,7 @@ from typing import Protocol
 import scipy.sparse
 
 from ..common.arrays import Floats, Ints, Mask
+from ..common.bodies import Relaxation
 from .contact import Contact, MatchedContact, RigidBody
 from .film import Film
 
@@ -58,6 +59,10 @@ class System(Protocol):
 
     def part(self, chosen: Mask | None) -> scipy.sparse.csr_matrix:
         """Stiffness of some elements (m,), or of all: own rows and columns, as `owned`, N/m."""
+
+    @property
+    def relaxations(self) -> tuple[tuple[Relaxation, ...], ...]:
+        """Of the material of each elastic body."""
 
     @property
     def rigid(self) -> tuple[RigidBody, ...]:

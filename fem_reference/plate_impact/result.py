@@ -51,7 +51,7 @@ class Solution(Solved, Protocol):
         """Made before any mesh."""
 
     def first_frequency(self) -> float:
-        """Lowest elastic eigenfrequency of the plate, Hz."""
+        """Lowest elastic eigenfrequency of the plate with its instantaneous modulus, Hz."""
 
     def machine(self) -> dict[str, Any]:
         """For the summary's ``solver``."""
@@ -82,7 +82,8 @@ def of_run(scene: Scene, run: Run) -> dict[str, float]:
 
 def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
     """`QUANTITIES`, SI."""
-    return {**of_run(scene, solution.run), "first_frequency": solution.first_frequency()}
+    frequency = scene.plate.material.vibrating(solution.first_frequency())
+    return {**of_run(scene, solution.run), "first_frequency": frequency}
 
 
 def curve_uncertainty(bands: Floats) -> dict[str, float]:
@@ -193,7 +194,8 @@ def _write(
     )
     summary["uncertainty"].update(curve_uncertainty(bands))
     if run.losses is not None:
-        summary["losses"] = asdict(run.losses)
+        losses = asdict(run.losses)
+        summary["losses"] = {name: loss for name, loss in losses.items() if loss is not None}
     if isinstance(scene.outer, Bender):
         summary["bender"] = _bender(scene.outer, summary)
     write_json(folder / "summary.json", summary)

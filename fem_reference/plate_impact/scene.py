@@ -229,6 +229,11 @@ def parse_scene(document: Any) -> Scene:
                 "run.end_time is missing; a bender swings back to the plate for ever, so that it "
                 "has to be given"
             )
+    if geometry == "solid" and any(x.material.relaxation for x in (plate, *bodies.values())):
+        raise SceneError(
+            "a material relaxes; solid geometry is for elastic ones: take reference.geometry "
+            "'axisymmetric'"
+        )
     friction = root.number_or("friction", 0.0, "(no unit)", inclusive=True)
     if friction > 0.0 and (geometry == "solid" or not _are_spheres(bodies)):
         raise SceneError(
@@ -236,6 +241,11 @@ def parse_scene(document: Any) -> Scene:
             "axisymmetric geometry, elsewhere it must be 0"
         )
     for name, body in bodies.items():
+        if not isinstance(body, Sphere) and name not in rigid and body.material.relaxation:
+            raise SceneError(
+                f"{name}.material.relaxation is given; the tip of a compact body or a bender "
+                "yields as an elastic half-space does: take a sphere"
+            )
         if geometry == "solid" and isinstance(body, Compact) and name not in rigid:
             raise SceneError(
                 f"{name}.kind is 'compact', whose tip has to yield; solid geometry has rigid tips "
