@@ -44,5 +44,5 @@ pub mod validated;
 
 pub use impactcheck_physics::{Error, ExitStatus, Result};
 pub use impactcheck_physics::{
-    analytical, body, contact, dynamics, error, file, fluid, kinds, material, result,
+    actuator, analytical, body, contact, dynamics, error, file, fluid, kinds, material, numerics, result,
 };

@@ -4,6 +4,7 @@
 //! together for every kind of scene. Nothing here knows of reports, the command line or other processes.
 #![warn(missing_docs)]
 
+pub mod actuator;
 pub mod analytical;
 pub mod body;
 pub mod contact;
@@ -13,6 +14,7 @@ pub mod file;
 pub mod fluid;
 pub mod kinds;
 pub mod material;
+pub mod numerics;
 pub mod result;
 pub mod scene;
 

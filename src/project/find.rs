@@ -1,8 +1,8 @@
 //! Finds scene files: a path, or the name of a scene the project ships.
 
 use super::project_root;
-use crate::scene::suggestion;
 use crate::{Error, Result};
+use impactcheck_physics::scene::suggestion;
 use std::path::{Path, PathBuf};
 
 /// The scene file a command line names: a path, or the name of a shipped scene with or

@@ -11,7 +11,7 @@ use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings,
-    Run, Scene, Setup, Shape,
+    RunSettings, Scene, Setup, Shape,
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -50,7 +50,7 @@ pub fn scene(name: &str, setup: PlateImpact) -> Scene {
         name: name.into(),
         description: format!("An impact of the study {name}"),
         setup: Setup::PlateImpact(Box::new(setup)),
-        run: Run { end_time: None },
+        run: RunSettings { end_time: None },
         reduced: ReducedSettings { model: None, modes: None },
         reference: ReferenceSettings {
             geometry: Geometry::Axisymmetric,

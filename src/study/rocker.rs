@@ -9,8 +9,8 @@
 
 use super::parameter::titanium;
 use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Study, parameter};
-use crate::analytical::cantilever;
-use crate::body::beam::Release;
+use crate::actuator::beam::Release;
+use crate::actuator::cantilever;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::result::Summary;

@@ -10,14 +10,14 @@ use impactcheck::report::{
     Attachments, Report, SceneReport, curves_csv, figure, index_page, junit, markdown, scene_page, terminal,
 };
 use impactcheck::result::{Outcome, Source};
-use impactcheck::scene::{Model, Run, Scene, Tolerance, resolve};
+use impactcheck::scene::{Model, RunSettings, Scene, Tolerance, resolve};
 use std::collections::BTreeMap;
 
 const END: f64 = 40e-6;
 
 fn base(end_time: Option<f64>) -> Scene {
     let scene = Scene::read(resolve("scaled-plate-r10").unwrap()).unwrap();
-    Scene { run: Run { end_time }, ..scene }
+    Scene { run: RunSettings { end_time }, ..scene }
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn cut_impact(tolerances: &[&str]) -> (Scene, Outcome, Outcome) {
     let half = Tolerance { relative: Some(0.5), ..Tolerance::default() };
     let tolerances = tolerances.iter().map(|name| ((*name).to_owned(), half)).collect();
     let scene = Scene {
-        run: Run { end_time: Some(END) },
+        run: RunSettings { end_time: Some(END) },
         tolerances: BTreeMap::from([(Model::B, tolerances)]),
         ..scene()
     };

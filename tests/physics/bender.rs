@@ -2,8 +2,8 @@
 
 use crate::common::scaled_plate;
 use approx::assert_relative_eq;
-use impactcheck::analytical::cantilever;
-use impactcheck::body::beam::{Beam, Release};
+use impactcheck::actuator::beam::{Beam, Release};
+use impactcheck::actuator::cantilever;
 use impactcheck::body::kirchhoff;
 use impactcheck::dynamics::MovingBody;
 use impactcheck::dynamics::integration::{Integration, Options};

@@ -63,16 +63,18 @@ fn an_impact_that_nothing_remembers_is_the_elastic_one() {
 #[test]
 fn the_history_of_an_impact_that_nothing_remembers_is_the_elastic_one() {
     let setup = with(common::scaled_plate(0.01, 0.55), yielding(1e12));
-    let system = System::new(&setup, &kirchhoff::modes(&setup.plate, 4).unwrap(), [0.0; 2]);
+    let scene = Scene::read(resolve("scaled-plate-r10").unwrap()).unwrap();
+    let continuum = Reduced::new(&scene, Model::C, None).unwrap();
+    let system = continuum.system();
     let duration = system.hertz_impact().duration();
     let every = |interval: f64| Options {
         sample_interval: Some(interval),
         end_time: Some(4e-4),
         ..Options::default()
     };
-    let memory = Memory::new(&setup, &system).unwrap().unwrap();
-    let ours = integrate(&system, &memory, &every(duration / 10.0)).unwrap().0.history.unwrap();
-    let exact = integrator::integrate(&system, &every(duration / 500.0)).unwrap().history.unwrap();
+    let memory = Memory::new(&setup, system).unwrap().unwrap();
+    let ours = integrate(system, &memory, &every(duration / 10.0)).unwrap().0.history.unwrap();
+    let exact = integrator::integrate(system, &every(duration / 500.0)).unwrap().history.unwrap();
     for name in ["plate_displacement", "plate_velocity", "inner_velocity", "outer_force"] {
         let [ours_of, exact_of] = [&ours, &exact].map(|history| history.curve(name).unwrap());
         let peak = exact_of.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));

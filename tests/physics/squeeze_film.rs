@@ -1,8 +1,8 @@
 //! The squeeze film (section 3.5.2 of the paper) against closed forms of lubrication theory.
 
 use approx::assert_relative_eq;
-use impactcheck::body::quadrature::gauss_legendre;
 use impactcheck::fluid::{Film, FilmForces, Profile, Viscosity};
+use impactcheck::numerics::quadrature::gauss_legendre;
 use impactcheck::scene::{Fluid, ShearThinning};
 use std::f64::consts::PI;
 

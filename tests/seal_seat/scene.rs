@@ -1,7 +1,7 @@
 //! Seal-seat scenes: what is valid arrives exactly, geometry that can't be is refused with the two features that
 //! collide, the ring lies where cone and sphere touch, and the hashes tell what matters.
 
-use impactcheck::scene::{Notch, Problem, Scene, SealSeat, SphereBody, Template, problems};
+use impactcheck::scene::{Fault, Notch, Scene, SealSeat, SphereBody, Template, faults};
 use impactcheck::{Error, ExitStatus};
 
 const VALID: &str = include_str!("../fixtures/seal-seat.toml");
@@ -26,18 +26,18 @@ fn with(changes: &[(&str, &str)]) -> String {
 }
 
 /// The faults of `text`, which has to be refused.
-fn faults(text: &str) -> Vec<Problem> {
+fn refused(text: &str) -> Vec<Fault> {
     let error = Scene::parse("scene.toml", text).expect_err("refused");
     assert_eq!(error.exit_status(), ExitStatus::InvalidScene);
     let Error::Scene(report) = error else { panic!("not a scene error") };
-    problems(&report)
+    faults(&report)
 }
 
 /// The one fault of the scene with `changes` says all of `words` and stands at one of the keys it names.
 #[track_caller]
 fn collides(changes: &[(&str, &str)], words: &[&str]) {
     let text = with(changes);
-    let found = faults(&text);
+    let found = refused(&text);
     assert_eq!(found.len(), 1, "{found:#?}");
     for word in words {
         assert!(found[0].message.contains(word), "`{word}` is not in: {}", found[0].message);
@@ -97,7 +97,7 @@ fn bounds_of_an_angle_are_told_in_the_unit_of_the_value() {
         ("\"2 rad\"", "at least 0 rad and less than 1.57"),
         ("2.0", "at least 0 rad and less than 1.57"),
     ] {
-        let found = faults(&with(&[("tilt", value)]));
+        let found = refused(&with(&[("tilt", value)]));
         assert!(found.iter().any(|fault| fault.message.contains(said)), "{value}: {found:#?}");
     }
 }
@@ -124,7 +124,7 @@ fn colliding_features_are_named() {
     collides(&[("tip_radius", "\"1 um\"")], &["too sharp", "1 m/s", "0.001 mm", "0.0851"]);
     collides(&[("speed", "\"300 m/s\"")], &["too sharp", "300 m/s", "3 mm"]);
     // The membrane as thick as the island swallows its notch, too.
-    let found = faults(&with(&[("membrane_thickness", "\"2.95 mm\"")]));
+    let found = refused(&with(&[("membrane_thickness", "\"2.95 mm\"")]));
     assert!(
         found.iter().any(|p| p.message.contains("island does not rise above the membrane")),
         "{found:#?}"

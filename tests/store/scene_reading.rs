@@ -1,7 +1,7 @@
 //! Reading of scene files: what is valid arrives exactly, what is not is refused with field,
 //! value, valid range and line, and nothing else happens.
 
-use impactcheck::scene::{self, Edge, Geometry, Model, PlateImpact, Problem, Rigid, Scene, Shape, problems};
+use impactcheck::scene::{self, Edge, Fault, Geometry, Model, PlateImpact, Rigid, Scene, Shape, faults};
 use impactcheck::{Error, ExitStatus};
 
 const VALID: &str = include_str!("../fixtures/plate-impact.toml");
@@ -20,13 +20,13 @@ fn edited(from: &str, to: &str) -> String {
     VALID.replacen(from, to, 1)
 }
 
-fn faults(text: &str) -> Vec<Problem> {
+fn refused(text: &str) -> Vec<Fault> {
     match Scene::parse("scene.toml", text) {
         Err(error) => {
             assert_eq!(error.exit_status(), ExitStatus::InvalidScene);
             let Error::Scene(report) = error else { panic!("not a scene error") };
             let rendered = format!("{report:?}");
-            let problems = problems(&report);
+            let problems = faults(&report);
             assert!(!problems.is_empty(), "{rendered}");
             for problem in &problems {
                 let place = format!("scene.toml:{}:", problem.line);
@@ -41,7 +41,7 @@ fn faults(text: &str) -> Vec<Problem> {
 /// The one fault of `text` stands in `line` and says all of `words`.
 #[track_caller]
 fn refuses(text: &str, line: usize, words: &[&str]) {
-    let found = faults(text);
+    let found = refused(text);
     assert_eq!(found.len(), 1, "{found:#?}");
     let said = format!("{} / {}", found[0].message, found[0].help.clone().unwrap_or_default());
     for word in words {
@@ -357,7 +357,7 @@ fn shear_thinning_is_given_in_full_or_not_at_all() {
 #[test]
 fn all_faults_are_told_at_once_in_the_order_of_the_file() {
     let text = edited("\"33 mm\"", "-1").replace("\"550 mm/s\"", "nan").replace("modes", "mode");
-    let lines: Vec<usize> = faults(&text).iter().map(|p| p.line).collect();
+    let lines: Vec<usize> = refused(&text).iter().map(|p| p.line).collect();
     assert_eq!(lines, [11, 20, 29]);
 }
 
@@ -421,7 +421,7 @@ fn materials_that_contradict_themselves_are_refused() {
         "relaxation = { ratio = 0.1, time = 1e-5 }",
         "rate = { D = 40 }",
     ] {
-        assert!(!faults(&material_with(keys)).is_empty(), "{keys}");
+        assert!(!refused(&material_with(keys)).is_empty(), "{keys}");
     }
 }
 

@@ -7,7 +7,7 @@ use impactcheck::kinds::plate_impact::{CURVES, PlateQuantities};
 use impactcheck::result::{History, Outcome, SCHEMA_VERSION, Source, Summary};
 use impactcheck::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings,
-    Run, Scene, Setup, Shape, Tolerance,
+    RunSettings, Scene, Setup, Shape, Tolerance,
 };
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -88,7 +88,7 @@ pub fn scene() -> Scene {
             fluid: None,
             series: None,
         })),
-        run: Run { end_time: None },
+        run: RunSettings { end_time: None },
         reduced: ReducedSettings { model: Some(Model::B), modes: Some(16) },
         reference: ReferenceSettings {
             geometry: Geometry::Axisymmetric,

@@ -5,9 +5,10 @@
 //! Elements are C1: Hermite cubics for deflection and slope at the nodes, and inside the element
 //! twice integrated Legendre polynomials, which vanish with their slope at both ends.
 
-use super::{ModalBody, eigenmodes};
+use super::ModalBody;
 use crate::analytical::circular_plate::rigidity;
 use crate::error::Result;
+use crate::numerics::eigenmodes::lowest;
 use crate::scene::{Edge, Plate};
 use faer::Mat;
 use std::f64::consts::PI;
@@ -48,7 +49,7 @@ impl UnitPlate {
         // a free plate's stiffness is singular: shift by a part of its first elastic eigenvalue
         let shift = if edge == Edge::Free { 10.0 } else { 0.0 };
         let count = modes + usize::from(edge == Edge::Free);
-        let (squares, shapes) = eigenmodes::lowest(&stiffness, &mass, shift, count, "plate modes")?;
+        let (squares, shapes) = lowest(&stiffness, &mass, shift, count, "plate modes")?;
         let rigid = |mode: usize| edge == Edge::Free && mode == 0;
         let omega =
             squares.iter().enumerate().map(|(k, s)| if rigid(k) { 0.0 } else { s.max(0.0).sqrt() }).collect();
@@ -215,7 +216,7 @@ fn assemble(edge: Edge, poisson_ratio: f64, elements: usize) -> (Mat<f64>, Mat<f
     let mut stiffness = Mat::<f64>::zeros(total, total);
     let mut mass = Mat::<f64>::zeros(total, total);
     let length = 1.0 / elements as f64;
-    let (points, weights) = super::quadrature::gauss_legendre(POINTS);
+    let (points, weights) = crate::numerics::quadrature::gauss_legendre(POINTS);
     for element in 0..elements {
         for (&xi, &weight) in points.iter().zip(&weights) {
             let r = (element as f64 + 0.5 * (xi + 1.0)) * length;

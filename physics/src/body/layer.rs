@@ -14,9 +14,9 @@
 use super::ModalBody;
 use super::continuum::{ContinuumPlate, WEIGHTED};
 use super::free_sphere::patch_transform;
-use super::quadrature::gauss_legendre;
 use crate::analytical::circular_plate::{centre_deflection, deflection, frequency_parameters, rigidity};
 use crate::contact::{PatchTable, RADII, Tabulated};
+use crate::numerics::quadrature::gauss_legendre;
 use crate::scene::{Edge, Plate};
 use std::f64::consts::PI;
 

@@ -1,14 +1,11 @@
 //! An elastic body as the impact sees it: modes, their participation at the contact points,
 //! residual flexibility.
 
-pub mod beam;
 pub mod cache;
 pub mod continuum;
-mod eigenmodes;
 pub mod free_sphere;
 pub mod kirchhoff;
 pub mod layer;
-pub mod quadrature;
 pub mod solid;
 
 use crate::contact::PatchFlexibility;

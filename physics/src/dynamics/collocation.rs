@@ -12,7 +12,7 @@
 
 use super::bank::{Bank, Block};
 use super::duhamel::{MOMENTS, Oscillator};
-use crate::body::quadrature::{gauss_legendre, gauss_radau};
+use crate::numerics::quadrature::{gauss_legendre, gauss_radau};
 use wide::f64x4;
 
 /// Gauss (or Radau) points of a step, its nodes.

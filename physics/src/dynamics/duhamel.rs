@@ -167,7 +167,7 @@ fn decay_moments(lambda: f64, t: f64) -> [f64; MOMENTS] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::quadrature::gauss_legendre;
+    use crate::numerics::quadrature::gauss_legendre;
     use approx::assert_relative_eq;
 
     /// s(t) in closed form, written apart from the code under test.

@@ -1,8 +1,8 @@
 //! A body beside the plate as oscillators, in the state in which the impact begins.
 
 use super::duhamel::Oscillator;
-use crate::analytical::cantilever;
-use crate::body::beam::Release;
+use crate::actuator::beam::Release;
+use crate::actuator::cantilever;
 use crate::error::Result;
 use crate::result::Drive;
 use crate::scene::{Material, Outer, PlateImpact, Shape};

@@ -6,7 +6,7 @@
 //! mu = tau^3/(3 * integral of s rate(s) ds) (Rabinowitsch; Chu et al. in the paper write it as a fluidity). As the
 //! film knows its flow, mu is tabulated over the apparent rate 6 Q/h^2 = tau/mu.
 
-use crate::body::quadrature::gauss_legendre;
+use crate::numerics::quadrature::gauss_legendre;
 use crate::scene::{Fluid, ShearThinning};
 
 /// Points of the table; the viscosity changes by at most 2.3 % between two.

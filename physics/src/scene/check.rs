@@ -1,8 +1,8 @@
 //! Walks the tree of a TOML file along the specification and notes every fault.
 
 use super::advice::{alternatives, chosen, example, half_of_it, needed};
+use super::fault::{Collector, did_you_mean};
 use super::plate_impact::DEFAULT_GEOMETRY;
-use super::problem::{Collector, did_you_mean};
 use super::quantity::{self, Dimension, QuantityError};
 use super::specification::{Bound, Field, Kind};
 use std::collections::BTreeMap;

@@ -8,11 +8,11 @@ mod advice;
 mod alternatives;
 mod check;
 mod collision;
+mod fault;
 pub mod hash;
 mod material;
 mod plate_impact;
 mod plausibility;
-mod problem;
 mod quantity;
 mod read;
 mod schema;
@@ -21,12 +21,12 @@ mod specification;
 mod template;
 mod tolerances;
 
+pub use fault::suggestion;
+pub use fault::{Fault, Faults, faults};
 pub use plate_impact::{
     Bender, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape, ShearThinning, Spot,
 };
 pub use plausibility::doubts;
-pub use problem::suggestion;
-pub use problem::{Problem, Problems, problems};
 pub use quantity::in_unit as quantity_in;
 pub use read::MAX_FILE_BYTES;
 pub use schema::schema;
@@ -77,7 +77,7 @@ trait Part {
 
 /// Length of the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Run {
+pub struct RunSettings {
     /// End time in s after the first touch; `None` = until no further contact is possible.
     pub end_time: Option<f64>,
 }
@@ -193,7 +193,7 @@ pub struct Scene {
     #[serde(flatten)]
     pub setup: Setup,
     /// Length of the run.
-    pub run: Run,
+    pub run: RunSettings,
     /// Settings of the reduced model.
     pub reduced: ReducedSettings,
     /// Settings of the reference.

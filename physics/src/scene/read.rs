@@ -1,8 +1,8 @@
 //! From the text of a scene file to a [`Scene`].
 
 use super::check::{Checked, Checker, Place, Values};
+use super::fault::Collector;
 use super::plate_impact::{plate_impact, reference};
-use super::problem::Collector;
 use super::seal_seat::{seal_seat, seat_reference};
 use super::specification::SCENE;
 use super::*;
@@ -264,7 +264,7 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>)
             String::new()
         },
         setup,
-        run: Run { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
+        run: RunSettings { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
         reduced: reduced(root.optional_table("reduced")?)?,
         reference,
         tolerances,

@@ -1,7 +1,7 @@
 //! Reads `[tolerances.<model>]`: bounds by quantity, per reduced model.
 
 use super::check::{Checker, Place};
-use super::problem::did_you_mean;
+use super::fault::did_you_mean;
 use super::quantity::{Dimension, dimension_of};
 use super::specification::{Bound, Choice, MODELS};
 use super::{Model, Tolerance, Tolerances};

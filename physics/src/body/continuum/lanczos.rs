@@ -6,8 +6,8 @@
 //! the sparse factor, and to a number of modes that is known beforehand.
 
 use super::mirror::{axpy, dot};
-use crate::body::eigenmodes::symmetric;
 use crate::error::{Error, Result};
+use crate::numerics::eigenmodes::symmetric;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 

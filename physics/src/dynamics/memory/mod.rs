@@ -6,10 +6,10 @@
 
 mod contact;
 mod modes;
-mod run;
+mod stepper;
 
 use self::contact::{Contact, DentedContact};
-use self::run::Run;
+use self::stepper::Stepper;
 use super::assured::differences;
 use super::integration::{Integration, Options};
 use super::system::System;
@@ -254,7 +254,7 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
                 *contact = contact.with_springs_every(radius / SPRINGS * FINER.powi(halvings as i32));
             }
         }
-        Run::new(system, bodies, &memory.plate, h, options).go(options.end_time)
+        Stepper::new(system, bodies, &memory.plate, h, options).go(options.end_time)
     };
     let (mut before, _) = run(0, None)?;
     for halvings in 1..=MAX_HALVINGS {

@@ -1,7 +1,8 @@
 //! Parts of the models beside closed forms, for the bodies of a scene: what of it is held against an exact solution.
 
-use crate::analytical::{cantilever, circular_plate};
-use crate::body::beam::{Beam, MODES};
+use crate::actuator::beam::{Beam, MODES};
+use crate::actuator::cantilever;
+use crate::analytical::circular_plate;
 use crate::body::{ModalBody, kirchhoff};
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;

@@ -13,10 +13,10 @@
 //! From one instant to the next only candidates with a small gap are watched; [`Contact::survey`] looks at all and tells
 //! whether one has been missed.
 
-use super::cholesky::Cholesky;
 use super::nodes::{Ball, Nodes};
 use super::watch::Watch;
 use crate::error::{Error, Result};
+use crate::numerics::cholesky::Cholesky;
 use nalgebra::Vector3;
 
 /// Largest gap in magnitude that a closed contact may have, over a typical indentation. It is also the largest turn of a normal

@@ -8,7 +8,6 @@ mod accumulate;
 mod body;
 mod candidates;
 mod checks;
-mod cholesky;
 pub mod contact;
 mod contact_set;
 mod doubts;

@@ -3,8 +3,7 @@
 use super::keys::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS};
 use super::*;
 use crate::Result;
-use crate::analytical::cantilever;
-use crate::body::beam;
+use crate::actuator::{beam, cantilever};
 use crate::scene::check::{Checked, Values};
 use crate::scene::material::material;
 use crate::scene::read::{Node, element_order, refused, unknown};

@@ -6,7 +6,7 @@ use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{ColMut, MatMut, MatRef, Par};
 
 /// Factor of a symmetric positive definite matrix of changing size.
-pub(super) struct Cholesky {
+pub(crate) struct Cholesky {
     /// Lower triangle, column by column with room for `capacity` rows. Shape (capacity, capacity).
     values: Vec<f64>,
     capacity: usize,

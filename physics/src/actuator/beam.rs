@@ -3,9 +3,9 @@
 //! Hermite cubics with consistent mass. A uniform bending moment (the piezo layer's) is a moment at the tip; its
 //! deflection M x^2/(2 E I) is among the cubics, so that the statics are exact on any mesh.
 
-use super::eigenmodes;
+use super::Bender;
 use crate::error::Result;
-use crate::scene::Bender;
+use crate::numerics::eigenmodes;
 use faer::Mat;
 
 /// Modes of the beam that take part in an impact.

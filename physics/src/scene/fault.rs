@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// One fault of a scene file.
 #[derive(Debug, Clone, thiserror::Error, Diagnostic)]
 #[error("{message}")]
-pub struct Problem {
+pub struct Fault {
     /// Field, value and what is wrong with it.
     pub message: String,
     /// Line in the file, counted from 1.
@@ -24,12 +24,12 @@ pub struct Problem {
 
 /// Several faults of one scene file, in the order of the file.
 #[derive(Debug, thiserror::Error, Diagnostic)]
-#[error("{name} has {} problems", problems.len())]
-pub struct Problems {
+#[error("{name} has {} problems", faults.len())]
+pub struct Faults {
     name: String,
     /// The faults.
     #[related]
-    pub problems: Vec<Problem>,
+    pub faults: Vec<Fault>,
 }
 
 /// Collects the faults of one file.
@@ -37,13 +37,13 @@ pub struct Problems {
 pub(super) struct Collector {
     name: String,
     file: Arc<NamedSource<String>>,
-    problems: Vec<Problem>,
+    faults: Vec<Fault>,
 }
 
 impl Collector {
     pub(super) fn new(name: &str, text: &str) -> Self {
         let file = Arc::new(NamedSource::new(name, text.to_owned()));
-        Collector { name: name.to_owned(), file, problems: Vec::new() }
+        Collector { name: name.to_owned(), file, faults: Vec::new() }
     }
 
     /// Notes a fault at `span` (bytes of the text).
@@ -53,7 +53,7 @@ impl Collector {
         let start = span.start.min(text.len());
         let line = 1 + text.as_bytes()[..start].iter().filter(|b| **b == b'\n').count();
         let length = span.end.min(text.len()).saturating_sub(start);
-        self.problems.push(Problem {
+        self.faults.push(Fault {
             message,
             line,
             help: Some(help),
@@ -64,25 +64,25 @@ impl Collector {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.problems.is_empty()
+        self.faults.is_empty()
     }
 
     /// The report of all faults; a single one stands alone.
     pub(super) fn into_report(mut self) -> miette::Report {
-        self.problems.sort_by_key(|p| p.span.offset());
-        if self.problems.len() == 1 {
-            return self.problems.remove(0).into();
+        self.faults.sort_by_key(|p| p.span.offset());
+        if self.faults.len() == 1 {
+            return self.faults.remove(0).into();
         }
-        Problems { name: self.name, problems: self.problems }.into()
+        Faults { name: self.name, faults: self.faults }.into()
     }
 }
 
 /// The faults a report of this module carries; empty for a report of another kind.
-pub fn problems(report: &miette::Report) -> Vec<Problem> {
-    if let Some(problem) = report.downcast_ref::<Problem>() {
-        return vec![problem.clone()];
+pub fn faults(report: &miette::Report) -> Vec<Fault> {
+    if let Some(fault) = report.downcast_ref::<Fault>() {
+        return vec![fault.clone()];
     }
-    report.downcast_ref::<Problems>().map(|p| p.problems.clone()).unwrap_or_default()
+    report.downcast_ref::<Faults>().map(|p| p.faults.clone()).unwrap_or_default()
 }
 
 /// The entry of `known` that `word` may have been meant to be.

@@ -14,7 +14,7 @@ use faer::{Mat, Par, Side};
 ///
 /// # Errors
 /// [`Error::Internal`], naming `what`, if K + shift M is not positive definite or the iteration does not converge.
-pub(super) fn lowest(
+pub(crate) fn lowest(
     stiffness: &Mat<f64>,
     mass: &Mat<f64>,
     shift: f64,
@@ -43,7 +43,7 @@ pub(super) fn lowest(
 ///
 /// On one thread: those that faer would take for a matrix of some hundred rows wait for one another in a loop, which on a
 /// machine with other work costs a hundred times what they save.
-pub(super) fn symmetric(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
+pub(crate) fn symmetric(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
     let size = matrix.nrows();
     let (mut values, mut vectors) = (Diag::<f64>::zeros(size), Mat::zeros(size, size));
     let scratch =

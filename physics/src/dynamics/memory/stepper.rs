@@ -39,7 +39,7 @@ impl Trial {
     }
 }
 
-pub(super) struct Run<'a> {
+pub(super) struct Stepper<'a> {
     system: &'a System,
     bodies: Bodies,
     modes: Modes<'a>,
@@ -72,7 +72,7 @@ pub(super) struct Run<'a> {
     history: Option<History>,
 }
 
-impl<'a> Run<'a> {
+impl<'a> Stepper<'a> {
     /// With `h` s at most per step.
     pub(super) fn new(
         system: &'a System,
