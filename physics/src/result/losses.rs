@@ -14,4 +14,7 @@ pub struct Losses {
     /// In the outer and the inner contact, to relaxing or yielding materials or friction, J; `None` where nothing of it is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contacts: Option<[f64; 2]>,
+    /// In outer body, plate and inner body to relaxation, contacts included, J: of references, which know no contact apart.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bodies: Option<[f64; 3]>,
 }
