@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from typing import Any, Protocol
 
-from .series import MeshResult, Run, estimates, relative_error
+from .series import MeshResult, Run, Target, estimates, relative_error
 from .settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION, RESOLUTIONS
 from .uncertainty import ORDER, Estimate
 
@@ -59,10 +59,10 @@ class Verified(Run, Protocol):
 
 
 def _convergence(
-    meshes: list[MeshResult], found: dict[str, Estimate], targeted: tuple[str, ...]
+    meshes: list[MeshResult], found: dict[str, Estimate], targeted: tuple[Target, ...]
 ) -> dict[str, Any]:
     """What the meshes (finest first) say together, per quantity that is determined."""
-    determined = set(targeted) <= set(found)
+    determined = {target.name for target in targeted} <= set(found)
     return {
         "rule": "least squares after Eca & Hoekstra 2014, order fixed",
         "order": ORDER,
@@ -94,7 +94,7 @@ def summary(
     resolution: str,
     run: Verified,
     meshes: list[MeshResult],
-    targeted: tuple[str, ...],
+    targeted: tuple[Target, ...],
     solver: dict[str, Any],
     **special: Any,
 ) -> dict[str, Any]:

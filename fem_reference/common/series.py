@@ -71,6 +71,22 @@ S = TypeVar("S", bound=Solved)
 
 
 @dataclass(frozen=True)
+class Target:
+    """A quantity whose band counts for `Options.target_error`."""
+
+    name: str
+    small: float = 0.0
+    """Of what the impact has of it: errors of a value below are relative to that share."""
+    of: str | None = None
+    """The quantity that says what the impact has; None: 1."""
+
+    def scale(self, values: dict[str, float]) -> float:
+        """What an error is relative to, in the quantity's unit."""
+        impact = values[self.of] if self.of else 1.0
+        return max(abs(values[self.name]), self.small * abs(impact))
+
+
+@dataclass(frozen=True)
 class Problem(Generic[S]):
     """A scene, and how a kind of scene is solved on one mesh."""
 
@@ -79,8 +95,7 @@ class Problem(Generic[S]):
     end_time: float | None
     ratio: float
     """Elements of a mesh in every direction over those of the next finer one."""
-    targeted: tuple[str, ...]
-    """Quantities whose relative band counts for `Options.target_error`."""
+    targeted: tuple[Target, ...]
     compute: Callable[[float, Settings, Report, S | None], S]
     """Solves with a factor on the number of elements in every direction; where the finest mesh
     leads, coarser ones get its solution."""
@@ -115,11 +130,11 @@ def estimates(meshes: list[MeshResult]) -> dict[str, Estimate]:
     }
 
 
-def relative_error(meshes: list[MeshResult], targeted: tuple[str, ...]) -> float:
-    """Largest relative band of the quantities ``targeted``; one of value 0 aside."""
+def relative_error(meshes: list[MeshResult], targeted: tuple[Target, ...]) -> float:
+    """Largest relative band of the quantities ``targeted``; one of no size aside."""
     found = estimates(meshes)
-    values = meshes[0].values
-    return max(found[name].band / abs(values[name]) for name in targeted if values[name] != 0.0)
+    scales = {target.name: target.scale(meshes[0].values) for target in targeted}
+    return max(found[name].band / scale for name, scale in scales.items() if scale > 0.0)
 
 
 def solve_series(

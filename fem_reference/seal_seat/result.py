@@ -10,7 +10,7 @@ import numpy as np
 from ..common import document
 from ..common.output import write_history, write_json
 from ..common.progress import Progress
-from ..common.series import MeshResult, Problem, solve_series
+from ..common.series import MeshResult, Problem, Target, solve_series
 from ..common.settings import RESOLUTIONS, Options
 from ..common.uncertainty import bands
 from ..common.versions import versions
@@ -25,8 +25,7 @@ from .solve import HISTORY_COLUMNS, Solution, compute, history, method, quantiti
 RATIO = 0.8
 """Elements of neighbouring meshes, in every direction."""
 
-TARGETED = ("efficiency", "sphere_force_peak", "actuator_force_peak")
-"""Quantities whose relative band counts for a target error."""
+TARGETED = tuple(map(Target, ("efficiency", "sphere_force_peak", "actuator_force_peak")))
 
 
 def solve(

@@ -124,7 +124,8 @@ def _point(scene: Scene, factor: float, sub_cycling: str, exact: dict[str, float
     nodes = system.mass.size
     updates = sum(count / 2**level for level, count in enumerate(motion.loop.acting))
     found = of_run(scene, run)
-    errors = {name: found[name] / exact[name] - 1.0 for name in TARGETED if exact[name] != 0.0}
+    scales = {target.name: target.scale(exact) for target in TARGETED}
+    errors = {n: (found[n] - exact[n]) / scale for n, scale in scales.items() if scale > 0.0}
     seconds = run.processor_seconds
     per_step = seconds / run.steps / (2 * nodes) * 1e9
     return Point(

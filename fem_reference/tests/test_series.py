@@ -17,10 +17,11 @@ from fem_reference.common import series
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.common.output import result_folder
 from fem_reference.common.progress import MeshOfSeries, Progress
-from fem_reference.common.series import MeshResult, Problem, solve_series
+from fem_reference.common.series import MeshResult, Problem, Target, solve_series
 from fem_reference.common.settings import Options, Settings
 
 EXACT = 3.0
+VALUE = (Target("value"),)
 LARGE = 5.0
 """Factor beyond which the leading mesh of `Convergent` differs in what the others depend on."""
 
@@ -79,7 +80,7 @@ class Convergent:
             method=[self.revision, {"scene": 1}],
             end_time=2.0,
             ratio=0.8,
-            targeted=("value",),
+            targeted=VALUE,
             compute=self.compute,
             quantities=lambda solution: {"value": float(solution.run.rows[0, 0])},
             write=self.write,
@@ -126,7 +127,7 @@ def test_refinement_ends_as_soon_as_the_target_is_met(
 ) -> None:
     target = 0.02
     method = solve(target_error=target)
-    assert series.relative_error(method.meshes, ("value",)) <= target
+    assert series.relative_error(method.meshes, VALUE) <= target
     # Every mesh once, the coarsest first.
     assert len(set(method.factors)) == len(method.factors)
     assert method.factors == sorted(method.factors)
@@ -142,11 +143,21 @@ def test_refinement_stops_at_the_first_mesh_that_is_fine_enough(
     solve: Callable[..., Convergent], order: float, target: float
 ) -> None:
     meshes = solve(order, target_error=target).meshes
-    assert series.relative_error(meshes, ("value",)) <= target
+    assert series.relative_error(meshes, VALUE) <= target
     coarser = [0.8 * mesh.factor for mesh in meshes]
     values = {factor: {"value": EXACT + 0.1 * factor**-order} for factor in coarser}
     before = [MeshResult(f, v, np.zeros(1), np.zeros(1), {}) for f, v in values.items()]
-    assert series.relative_error(before, ("value",)) > target
+    assert series.relative_error(before, VALUE) > target
+
+
+def test_what_passes_on_little_of_the_impact_needs_not_be_known_to_more_digits() -> None:
+    values = [{"force": 100.0, "minor": value} for value in (1.0, 1.4, 0.8, 1.3, 0.7)]
+    meshes = [MeshResult(0.8**k, row, np.zeros(1), np.zeros(1), {}) for k, row in enumerate(values)]
+    band = series.estimates(meshes)["minor"].band
+    alone = series.relative_error(meshes, (Target("minor"),))
+    beside = series.relative_error(meshes, (Target("minor", small=0.05, of="force"),))
+    assert (alone, beside) == pytest.approx((band, band / 5.0))
+    assert Target("minor", small=0.005, of="force").scale(values[0]) == 1.0
 
 
 def test_a_mesh_that_is_fine_enough_is_not_refined(solve: Callable[..., Convergent]) -> None:

@@ -18,20 +18,26 @@ impl ModelComparison {
     }
 }
 
+/// Band of a difference (95 %, in its unit) that was `coarser` on a mesh whose elements are `ratio` > 1 times as large, and is
+/// `finer` here.
+pub fn difference_band(coarser: f64, finer: f64, ratio: f64) -> f64 {
+    SAFETY_FACTOR / (ratio.powf(ORDER) - 1.0) * (finer - coarser).abs()
+}
+
 impl SceneComparison {
     /// Judges by the bands of the differences themselves, from the comparison of the same scene on a `coarser` mesh whose
     /// elements are `ratio` > 1 times as large; on either mesh model and reference are solutions on the very same one. A band
     /// that is not narrower than the reference's own changes nothing.
     pub fn judge_on_common_mesh(&mut self, coarser: &SceneComparison, ratio: f64) {
         let sound = Verdict::of_soundness(self.integrity.iter().map(|check| check.verdict));
-        let share = SAFETY_FACTOR / (ratio.powf(ORDER) - 1.0);
         for model in &mut self.models {
             let Some(other) = coarser.models.iter().find(|other| other.model == model.model) else {
                 continue;
             };
             for row in &mut model.discrepancies {
                 let before = other.discrepancy(&row.quantity).and_then(|before| before.difference);
-                let change = before.zip(row.difference).map(|(before, now)| share * (now - before).abs());
+                let change =
+                    before.zip(row.difference).map(|(before, now)| difference_band(before, now, ratio));
                 // a difference that the mesh changes more than the reference has no band of its own
                 if let Some((band, _)) = change.zip(row.uncertainty).filter(|(band, own)| band < own) {
                     row.judge_by(band);

@@ -8,7 +8,7 @@
 
 pub mod budget;
 mod changed_tolerance;
-mod common_mesh;
+pub mod common_mesh;
 mod discrepancy;
 mod integrity;
 mod moved;

@@ -1,10 +1,10 @@
 //! Lays a record over a model: offset, drift and shift in time, by [`super::RULE`].
 
 use super::filter::Filtered;
-use super::least_squares::fit;
 use super::record::{Channel, Record};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::PlateQuantities;
+use crate::numerics::least_squares::fit;
 use crate::scene::PlateImpact;
 use argmin::core::{CostFunction, Executor, State};
 use argmin::solver::brent::BrentOpt;

@@ -7,7 +7,6 @@
 mod align;
 mod compare;
 mod filter;
-mod least_squares;
 mod record;
 
 pub use align::{AlignedRecord, ChannelCorrection, Speed, align};

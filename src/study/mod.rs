@@ -15,6 +15,7 @@ mod plot;
 pub mod rocker;
 pub mod seal_seat;
 pub mod seal_seat_cost;
+pub mod seal_seat_direction;
 pub mod sweep;
 pub mod table2;
 mod write;
@@ -78,7 +79,7 @@ impl Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 12] = [
+pub const STUDIES: [Entry; 13] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
@@ -165,6 +166,14 @@ pub const STUDIES: [Entry; 12] = [
         takes_model: false,
         run: |_, note| seal_seat::run(note),
         panels: &seal_seat::PANELS,
+        drawing: None,
+    },
+    Entry {
+        name: "seal-seat-direction",
+        about: "The direction out of the flexible seal seat with the band of many meshes",
+        takes_model: false,
+        run: seal_seat_direction::run,
+        panels: &seal_seat_direction::PANELS,
         drawing: None,
     },
     Entry {

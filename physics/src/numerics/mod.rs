@@ -2,4 +2,5 @@
 
 pub(crate) mod cholesky;
 pub(crate) mod eigenmodes;
+pub mod least_squares;
 pub mod quadrature;

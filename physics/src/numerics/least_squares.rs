@@ -5,16 +5,18 @@ use faer::linalg::solvers::{DenseSolveCore, FullPivLu};
 
 /// Coefficients, their standard errors, and what is left.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Fit<const N: usize> {
-    pub(super) coefficients: [f64; N],
-    pub(super) errors: [f64; N],
+pub struct Fit<const N: usize> {
+    /// In the units of the values over those of the basis. Shape (N).
+    pub coefficients: [f64; N],
+    /// Their standard errors, likewise. Shape (N).
+    pub errors: [f64; N],
     /// Standard deviation of the values about the fit.
-    pub(super) scatter: f64,
+    pub scatter: f64,
 }
 
 /// Fits `sum_i coefficients[i] basis[i]` to the values; rows are (basis, value). `None` if the basis is not independent or
 /// there are not more rows than coefficients.
-pub(super) fn fit<const N: usize>(rows: &[([f64; N], f64)]) -> Option<Fit<N>> {
+pub fn fit<const N: usize>(rows: &[([f64; N], f64)]) -> Option<Fit<N>> {
     if rows.len() <= N {
         return None;
     }
