@@ -25,7 +25,7 @@ CHUNK_SAMPLES, CHUNK_STEPS = 16, 200
 LARGEST_ENERGY_RESIDUAL = 1e-5
 """Of a run with sub-cycling; beyond it levels have resonated, and the run is made without them."""
 
-LEDGER_ERROR = 1e-3
+LEDGER_ERROR = 2e-3
 """What the ledger of relaxing bodies may miss of the energy they lose: it looks at intervals."""
 RELAXATION_LOOKS = 400
 """Looks of the ledger of what relaxes in the contact's duration."""

@@ -229,11 +229,6 @@ def parse_scene(document: Any) -> Scene:
                 "run.end_time is missing; a bender swings back to the plate for ever, so that it "
                 "has to be given"
             )
-    if geometry == "solid" and any(x.material.relaxation for x in (plate, *bodies.values())):
-        raise SceneError(
-            "a material relaxes; solid geometry is for elastic ones: take reference.geometry "
-            "'axisymmetric'"
-        )
     friction = root.number_or("friction", 0.0, "(no unit)", inclusive=True)
     if friction > 0.0 and (geometry == "solid" or not _are_spheres(bodies)):
         raise SceneError(

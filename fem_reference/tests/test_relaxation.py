@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,20 @@ from fem_reference.axisymmetric.system import OUTER, PLATE
 from fem_reference.common.arrays import Floats
 from fem_reference.common.bodies import Relaxation
 from fem_reference.common.errors import SceneError
+from fem_reference.common.fenicsx import alone
+from fem_reference.explicit.checkpoint import Checkpoint
 from fem_reference.explicit.levels import MOST_LEVELS
 from fem_reference.explicit.supervision import LEDGER_ERROR
 from fem_reference.plate_impact.axisymmetric_motion import AxisymmetricMotion
+from fem_reference.plate_impact.estimate import estimate_contact, shortest_wavelengths
 from fem_reference.plate_impact.run import Run
 from fem_reference.plate_impact.scene import parse_scene
+from fem_reference.plate_impact.solid_model import plate_model
+from fem_reference.plate_impact.solid_motion import integrate_solid
+from fem_reference.solid.system import make_loop as make_solid_loop
 
 from .conftest import STEEL, document, integrate, make_loop, make_system
+from .cut_off import CutOffError, cut_off
 from .test_hertz import RIGID
 
 TERMS = [{"ratio": 0.05, "time": 1e-7}, {"ratio": 0.1, "time": 1e-5}, {"ratio": 0.1, "time": 1e-4}]
@@ -159,6 +167,38 @@ def test_maxwell_sphere_on_a_rigid_wall_hunter() -> None:
     fluid = run_of(relaxing("outer", terms=terms, **changes), end_time=1.8e-4)
     lost = 1.0 - fluid.outer_velocity / elastic.outer_velocity
     assert lost == pytest.approx(4.0 / 9.0 * 0.01, rel=0.005)
+
+
+def solid_run(scene_document: dict[str, Any], **options: Any) -> Run:
+    """A run in three dimensions, of a scene with its own end."""
+    scene = parse_scene(scene_document)
+    estimate = estimate_contact(scene)
+    wavelengths = shortest_wavelengths(scene, estimate.duration)
+    plate = plate_model(scene, estimate, wavelengths, 1.0)
+    loop = make_solid_loop(plate.model, alone())
+    return integrate_solid(loop, plate, scene, estimate.duration, **options)
+
+
+def test_solid_elements_lose_what_axisymmetric_ones_do(tmp_path: Path) -> None:
+    """And a run that is cut off goes on from its checkpoint as if nothing had been."""
+    size = {"plate__radius": 0.012, "outer__radius": 0.005, "inner__radius": 0.005}
+    scene = relaxing("outer", "plate", **size, outer__speed=2.0, run={"end_time": 4e-5})
+    flat = run_of(scene, end_time=4e-5)
+    scene["reference"] = {"geometry": "solid", "elements_per_contact_radius": 2}
+    whole = solid_run(scene)
+    assert whole.energy_residual < 2e-5
+    assert flat.losses is not None and flat.losses.bodies is not None
+    assert whole.losses is not None and whole.losses.bodies is not None
+    # Two elements per contact radius are two elements.
+    assert whole.losses.bodies[:2] == pytest.approx(flat.losses.bodies[:2], rel=0.06)
+    assert whole.losses.bodies[2] == 0.0 and sum(whole.losses.bodies) > 0.02 * whole.initial_energy
+    checkpoint = Checkpoint(tmp_path / "run.npz", "x", 0.0)
+    with pytest.raises(CutOffError):
+        solid_run(scene, checkpoint=checkpoint, on_progress=cut_off)
+    resumed = solid_run(scene, checkpoint=checkpoint)
+    assert resumed.losses is not None
+    assert np.array_equal(resumed.rows, whole.rows)
+    assert resumed.losses.bodies == pytest.approx(whole.losses.bodies, rel=1e-12)
 
 
 def constant_loss(loss: float, frequency: float) -> tuple[list[dict[str, float]], float]:
