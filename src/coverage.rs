@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::kinds;
 use crate::kinds::plate_impact::closed_forms::{ClosedForm, Form, closed_forms};
 use crate::result::SCHEMA_VERSION;
-use crate::scene::{Edge, Fluid, Material, Model, PlateImpact, Scene, Setup, Shape, SphereBody};
+use crate::scene::{Edge, Fluid, Material, Model, PlateImpact, Scene, SealSeat, Setup, Shape, SphereBody};
 use crate::validated::Validation;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -75,14 +75,16 @@ pub static FEATURES: [Feature; 21] = [
     feature("drag", |s| fluid(s, |f| f.drag_coefficient > 0.0)),
     feature("run cut by its end time", |s| s.run.end_time.is_some()),
     feature("seal seat", |s| matches!(s.setup, Setup::SealSeat(_))),
-    feature(
-        "seal seat, elastic sphere",
-        |s| matches!(&s.setup, Setup::SealSeat(seat) if seat.sphere.body == SphereBody::Elastic),
-    ),
+    feature("seal seat, friction", |s| seat(s, |seat| seat.friction > 0.0)),
+    feature("seal seat, elastic sphere", |s| seat(s, |seat| seat.sphere.body == SphereBody::Elastic)),
 ];
 
 fn plate(scene: &Scene, has: fn(&PlateImpact) -> bool) -> bool {
     matches!(&scene.setup, Setup::PlateImpact(setup) if has(setup))
+}
+
+fn seat(scene: &Scene, has: fn(&SealSeat) -> bool) -> bool {
+    matches!(&scene.setup, Setup::SealSeat(setup) if has(setup))
 }
 
 fn fluid(scene: &Scene, has: fn(&Fluid) -> bool) -> bool {

@@ -1,6 +1,8 @@
 /* Part of kernel.c: contact of candidates with surfaces and spheres: multipliers by Gauss-Seidel, ledger. */
 
 enum { MAX_SWEEPS = 1000 };
+/* Change of a friction in the last sweep, over the largest there may be. */
+#define FRICTION_TOLERANCE 1e-6
 
 static inline double dot(const double *a, const double *b) {
     return a[0] * b[0] + a[1] * b[1] + (C == 3 ? a[2] * b[2] : 0.0);
@@ -155,6 +157,8 @@ static void ledger(Problem *p, Contact *c) {
     record(&c->record, total, p->step);
 }
 
+#include "friction.c"
+
 /* Contact forces on the surface nodes, into p->force, from p->u, p->predicted and p->before;
  * takes the rigid bodies through the step. */
 void contact_step(Problem *p) {
@@ -162,6 +166,7 @@ void contact_step(Problem *p) {
     for (int32_t b = 0; b < p->rigids; ++b) {
         Rigid *r = &p->rigid[b];
         memcpy(r->before, r->v, sizeof r->v);
+        memcpy(r->spun, r->spin, sizeof r->spin);
         for (int d = 0; d < C; ++d) r->u[d] += dt * r->v[d];
         memset(r->force, 0, sizeof r->force);
     }
@@ -202,6 +207,7 @@ void contact_step(Problem *p) {
         p->predicted[i] += dt * p->inverse[i] * p->force[i];
         if (p->inverse[i] == 0.0) p->reaction[i % C] -= dt * p->force[i];
     }
+    rub_all(p);
     /* The discrete energy changes by exactly dt lambda times the mean relative velocity. */
     for (int32_t a = 0; a < p->contacts; ++a) {
         Contact *c = &p->contact[a];
@@ -211,6 +217,7 @@ void contact_step(Problem *p) {
                 c->record.work += 0.5 * dt * c->lambda[k]
                            * (relative(c, k, p->predicted, r ? r->v : 0)
                               + relative(c, k, p->before, r ? r->before : 0));
+        if (c->friction > 0.0) book_friction(p, c);
     }
     ++p->step;
 }

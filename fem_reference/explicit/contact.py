@@ -14,7 +14,7 @@ FREE = np.eye(3)
 
 @dataclass(frozen=True)
 class RigidBody:
-    """A body that moves without turning or deforming."""
+    """A body that does not deform, and turns by friction alone."""
 
     name: str
     mass: float
@@ -23,6 +23,8 @@ class RigidBody:
     """(3, 3) projector on the directions in which it may move: `guided`, or all."""
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """At the start, m/s."""
+    turning: Floats = field(default_factory=lambda: np.zeros((3, 3)))
+    """(3, 3) inverse inertia about its centre, of the part modelled, 1/(kg m^2)."""
 
 
 def guided(*axes: Sequence[float]) -> Floats:
@@ -45,6 +47,8 @@ class SphereContact:
     radius: float
     places: Floats | None = None
     """(n, 3) where the exact body has its candidates, if not where its mesh has them, m."""
+    friction: float = 0.0
+    """Coulomb's coefficient."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,8 @@ class SurfaceContact:
     """(n,) initial gap, m, of the exact bodies rather than their meshes."""
     reachable: Ints | None = None
     """Nodes of the target that later pairs may have, if there are to be any."""
+    friction: float = 0.0
+    """Coulomb's coefficient."""
 
 
 @dataclass(frozen=True)

@@ -121,10 +121,13 @@ class Rigid(ctypes.Structure):
 
     _fields_ = (
         ("mobility", ctypes.c_double * 9),
+        ("turning", ctypes.c_double * 9),
         ("mass", ctypes.c_double),
         ("u", _VECTOR),
         ("v", _VECTOR),
+        ("spin", _VECTOR),
         ("before", _VECTOR),
+        ("spun", _VECTOR),
         ("force", _VECTOR),
     )
 
@@ -146,6 +149,9 @@ class Contact(ctypes.Structure):
         ("reserved", ctypes.c_int32),
         ("multipliers", _DOUBLE),
         ("compliance", _DOUBLE),
+        ("friction", ctypes.c_double),
+        ("traction", _DOUBLE),
+        ("rubbed", ctypes.c_double),
         ("active", _INT32),
         ("impulse", _VECTOR),
         ("force", _VECTOR),

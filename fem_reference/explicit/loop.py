@@ -49,6 +49,12 @@ class Energies:
         return sum(self.elastic) + sum(self.rigid)
 
 
+def _of_spin(rigid: kernel.Rigid) -> float:
+    """Energy of a ball's rotation, J."""
+    about = zip(rigid.spin, rigid.turning[::4], strict=True)
+    return float(sum(0.5 * spin**2 / turning for spin, turning in about if turning > 0.0))
+
+
 class Loop(ABC):
     """What serial and parallel runs have in common.
 
@@ -242,7 +248,7 @@ class Loop(ABC):
         free = self.momenta()[:, self.system.free_axes]
         mean = (free**2).sum(axis=1) / (2.0 * self.body_masses())
         rigids = self.problem.rigids[: self.problem.state.rigids]
-        rigid = [0.5 * r.mass * sum(x * x for x in r.v) for r in rigids]
+        rigid = [0.5 * r.mass * sum(x * x for x in r.v) + _of_spin(r) for r in rigids]
         parts = (tuple(energy.tolist()) for energy in (elastic, mean, np.array(rigid), lost))
         return Energies(*parts)
 

@@ -46,6 +46,7 @@ class ContactProblem:
         self.matched = (kernel.Pairs * max(1, len(system.matched)))()
         for rigid, body in zip(self.rigids, system.rigid, strict=False):
             rigid.mobility[:] = (body.directions / body.mass).ravel().tolist()
+            rigid.turning[:] = body.turning.ravel().tolist()
             rigid.mass = body.mass
             rigid.v[:] = list(body.velocity)
         for structure, contact in zip(self.contacts, system.contacts, strict=False):
@@ -125,6 +126,9 @@ class ContactProblem:
         structure.multipliers = pointer(np.zeros(count), np.float64)
         structure.compliance = pointer(np.zeros(count), np.float64)
         structure.active = pointer(np.zeros(count), np.int32)
+        structure.friction = contact.friction
+        if contact.friction > 0.0:
+            structure.traction = pointer(np.zeros((count, components)), np.float64)
         if isinstance(contact, SphereContact):
             points = contact.places if contact.places is not None else system.points[nodes]
             structure.kind = kernel.AGAINST_SPHERE
@@ -179,6 +183,8 @@ class ContactProblem:
         *("first_step", "last_step"),
     )
 
+    _TAKEN = ("impulse", "force", "rubbed")
+
     def checkpoint(self) -> dict[str, Any]:
         """Everything that a step depends on or adds to, as JSON values."""
         return {
@@ -186,10 +192,8 @@ class ContactProblem:
             "sweeps": self.state.sweeps,
             "unconverged": self.state.unconverged,
             "reaction": list(self.state.reaction),
-            "rigid": [_read(r, ("u", "v")) for r in self.rigids[: self.state.rigids]],
-            "contacts": [
-                _read(c, ("impulse", "force")) for c in self.contacts[: self.state.contacts]
-            ],
+            "rigid": [_read(r, ("u", "v", "spin")) for r in self.rigids[: self.state.rigids]],
+            "contacts": [_read(c, self._TAKEN) for c in self.contacts[: self.state.contacts]],
             "records": [_read(r, self._RECORD) for r in self.records()],
         }
 

@@ -73,13 +73,16 @@ typedef struct {
     double work;             /* on both bodies so far, J */
 } Film;
 
-/* A rigid body that moves without turning; vectors have room for three components. */
+/* A rigid body that only friction turns; vectors have room for three components. */
 typedef struct {
     double mobility[9]; /* 3x3 inverse mass, zero along directions that are guided, 1/kg */
+    double turning[9];  /* 3x3 inverse inertia about its centre, zero about guided axes, 1/(kg m^2) */
     double mass;        /* kg */
     double u[3];        /* displacement, m */
     double v[3];        /* velocity at half steps, m/s */
-    double before[3];
+    double spin[3];     /* at half steps, rad/s */
+    double before[3];   /* velocity before the step, m/s */
+    double spun[3];     /* spin before the step, rad/s */
     double force[3];    /* of the contacts in the last step, N */
 } Rigid;
 
@@ -97,6 +100,9 @@ typedef struct {
     int32_t reserved;
     double *lambda;        /* (count) multipliers of the last step, N */
     double *compliance;    /* (count) diagonal of G M^-1 G^T, 1/kg */
+    double friction;       /* Coulomb's coefficient */
+    double *traction;      /* (3 count) friction on the candidates in the last step, N; only with friction */
+    double rubbed;         /* work of friction on both sides so far, J */
     int32_t *active;       /* (count) work space */
     double impulse[3];     /* on the candidates so far, N s */
     double force[3];       /* on the candidates in the last step, N */

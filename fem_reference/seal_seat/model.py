@@ -158,11 +158,15 @@ def seat_model(scene: SeatScene, mesh: TetMesh, sphere_mesh: TetMesh | None = No
     sphere_facets = None
     if sphere_mesh is None:
         in_plane = guided((1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
-        rigid.insert(0, RigidBody("sphere", FRACTION * scene.sphere_mass, in_plane))
+        mass = FRACTION * scene.sphere_mass
+        turning = guided((0.0, 1.0, 0.0)) / (0.4 * mass * scene.sphere_radius**2)
+        rigid.insert(0, RigidBody("sphere", mass, in_plane, turning=turning))
+        centre, radius, friction = scene.ring().sphere_centre, scene.sphere_radius, scene.friction
         for name, patch in flanks:
-            centre, radius = scene.ring().sphere_centre, scene.sphere_radius
             exact = places[patch.nodes]
-            contacts.append(SphereContact(name, SEAT, patch.nodes, 0, centre, radius, exact))
+            contacts.append(
+                SphereContact(name, SEAT, patch.nodes, 0, centre, radius, exact, friction)
+            )
     else:
         # The mass is the scene's, whatever the material's density.
         density = FRACTION * scene.sphere_mass / sphere_mesh.volume()
@@ -183,11 +187,20 @@ def seat_model(scene: SeatScene, mesh: TetMesh, sphere_mesh: TetMesh | None = No
                     pairs.normals,
                     pairs.gaps,
                     np.unique(sphere_facets),
+                    scene.friction,
                 )
             )
     radius = scene.actuator.tip_radius
     contacts += [
-        SphereContact(f"tip {number}", SEAT, patch.nodes, len(rigid) - 1, (x, 0.0, -radius), radius)
+        SphereContact(
+            f"tip {number}",
+            SEAT,
+            patch.nodes,
+            len(rigid) - 1,
+            (x, 0.0, -radius),
+            radius,
+            friction=scene.friction,
+        )
         for number, (x, patch) in enumerate(
             zip(scene.actuator.tip_positions, tips, strict=True), start=1
         )

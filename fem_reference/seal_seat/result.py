@@ -95,6 +95,8 @@ def _write(
         sample_interval=interval,
         stress_times=write_fields(folder, model, solution.recorder),
     )
+    if scene.friction > 0.0:
+        summary["losses"] = {"contacts": run.rubbed}
     record_geometry(folder / "mesh.vtu", scene)
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(

@@ -58,6 +58,8 @@ class SeatRun:
     in_contact_at_end: bool
     energy_residual: float
     contact_loss: float
+    rubbed: tuple[float, float]
+    """Lost to friction at the tips and on the flanks, J."""
     momentum_residual: float
     support_impulse: float
     """Along z, N s."""
@@ -204,6 +206,8 @@ def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows:
     problem = loop.problem
     energies: Energies = loop.energies()
     work = sum(record.work for record in problem.records())
+    places = (seat.tips, (LEFT, RIGHT))
+    rubbed = [sum(problem.contacts[k].rubbed for k in which) for which in places]
     _, speed = sphere_motion(loop, seat)
     actuator = problem.rigids[seat.actuator]
     initial = FRACTION * scene.initial_energy
@@ -224,8 +228,9 @@ def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows:
         actuator_contacts=_intervals(loop, tuple(seat.tips)),
         flank_impulses=(flanks[0], flanks[1]),
         in_contact_at_end=loop.touching,
-        energy_residual=abs(energies.total - initial - work) / initial,
+        energy_residual=abs(energies.total - initial - work - sum(rubbed)) / initial,
         contact_loss=-work / initial,
+        rubbed=(-rubbed[0] / FRACTION, -rubbed[1] / FRACTION),
         momentum_residual=max(abs(m) for m in momentum_misses(loop, seat, scene)) / momentum,
         support_impulse=problem.state.reaction[2] / FRACTION,
         unconverged=problem.state.unconverged,

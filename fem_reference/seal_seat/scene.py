@@ -142,6 +142,8 @@ class SeatScene:
     """kg"""
     sphere_elastic: bool
     actuator: Actuator
+    friction: float
+    """Coulomb's coefficient, of all contacts."""
     intended_angle: float
     """rad"""
     end_time: float | None
@@ -242,6 +244,7 @@ def parse_seat_scene(document: Any) -> SeatScene:
         "seat",
         "sphere",
         "actuator",
+        "friction",
         "intended_angle",
         "run",
         "reference",
@@ -274,6 +277,7 @@ def parse_seat_scene(document: Any) -> SeatScene:
         sphere_mass=sphere.number("mass", "kg"),
         sphere_elastic=sphere.choice("body", ("rigid", "elastic")) == "elastic",
         actuator=_actuator(root.child("actuator")),
+        friction=root.number_or("friction", 0.0, "(no unit)", inclusive=True),
         intended_angle=root.number("intended_angle", "rad", above=-math.pi, inclusive=True),
         end_time=end_time,
         elements_per_ring_radius=reference.number(

@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from fem_reference.common.errors import SceneError
+from fem_reference.common.fenicsx import alone
+from fem_reference.explicit import kernel
+from fem_reference.explicit.contact import RigidBody, SphereContact
+from fem_reference.explicit.problem import ContactProblem
 from fem_reference.plate_impact.run import Run
 from fem_reference.plate_impact.scene import parse_scene
+from fem_reference.seal_seat.meshing import seat_mesh, sphere_mesh
+from fem_reference.seal_seat.model import seat_model
+from fem_reference.seal_seat.run import integrate as launch_seat
+from fem_reference.seal_seat.scene import parse_seat_scene
+from fem_reference.solid.system import make_loop as make_solid_loop
+from fem_reference.tests.seal_seat_scenes import seat_document
 
 from .conftest import STEEL, document, integrate, make_loop, make_system
 
@@ -115,3 +127,61 @@ def test_rough_contact_is_stiffer_as_much_as_a_punch_that_sticks() -> None:
     }
     ratio = peak(100.0, **scene).contacts[0].force_peak / peak(0.0, **scene).contacts[0].force_peak
     assert 1.0 + 0.5 * (math.log(3.0) ** 0.4 - 1.0) < ratio < math.log(3.0) ** 0.4
+
+
+@pytest.mark.parametrize(("friction", "rolls"), [(0.05, False), (1.0, True)])
+def test_a_ball_that_strikes_a_wall_obliquely_slides_or_rolls(friction: float, rolls: bool) -> None:
+    """Sliding takes mu times the normal impulse, rolling 2/7 of the velocity along the wall.
+
+    The multipliers stop what approaches; the ball's inertia is 2/5 m r^2.
+    """
+    mass, radius, along, towards = 2.0, 0.1, 3.0, 1.0
+    turning = np.diag([0.0, 1.0 / (0.4 * mass * radius**2), 0.0])
+    ball = RigidBody("ball", mass, velocity=(along, 0.0, -towards), turning=turning)
+    wall = SphereContact("wall", 0, np.array([0]), 0, (0.0, 0.0, radius), radius, None, friction)
+    system: Any = SimpleNamespace(
+        points=np.zeros((1, 3)),
+        inverse_mass=np.zeros(3),
+        first=np.array([0, 1]),
+        contacts=(wall,),
+        rigid=(ball,),
+        matched=(),
+        film=None,
+    )
+    problem = ContactProblem(system)
+    step = 1e-9
+    problem.set_step(step, 1)
+    kernel.load(3).contact_step(ctypes.byref(problem.state))
+    moved = problem.rigids[0]
+    lost = 2.0 / 7.0 * along if rolls else friction * towards
+    assert list(moved.v) == pytest.approx([along - lost, 0.0, 0.0], abs=1e-6)
+    assert list(moved.spin) == pytest.approx([0.0, 2.5 * lost / radius, 0.0], abs=1e-5)
+    assert (radius * moved.spin[1] == pytest.approx(moved.v[0], abs=1e-6)) == rolls
+    gained = 0.5 * mass * (moved.v[0] ** 2 + 0.4 * (radius * moved.spin[1]) ** 2 - along**2)
+    assert problem.contacts[0].rubbed == pytest.approx(gained, rel=1e-6)
+    assert problem.state.reaction[0] == pytest.approx(-mass * lost, rel=1e-6)
+
+
+def test_a_ball_leaves_a_rough_seat_as_an_elastic_one_does() -> None:
+    """The elastic ball turns by itself: its elements know no spin."""
+    states = []
+    for body, friction in (("rigid", 0.0), ("rigid", 0.3), ("elastic", 0.3)):
+        design = parse_seat_scene(
+            seat_document(
+                reference__element_order=1,
+                sphere__body=body,
+                friction=friction,
+                run={"end_time": 40e-6},
+            )
+        )
+        sphere = sphere_mesh(design, 0.4) if design.sphere_elastic else None
+        model = seat_model(design, seat_mesh(design, 0.4), sphere)
+        run = launch_seat(make_solid_loop(model.model, alone()), model, design)
+        assert run.energy_residual < 1e-12
+        assert run.momentum_residual < 1e-12
+        assert (min(run.rubbed) > 1e-5 * design.initial_energy) == (friction > 0.0)
+        states.append(run.sphere_velocity)
+    smooth, rigid, elastic = np.array(states)
+    speed = np.linalg.norm(smooth)
+    assert np.linalg.norm(elastic - rigid) < 0.01 * speed
+    assert np.linalg.norm(rigid - smooth) > 0.03 * speed

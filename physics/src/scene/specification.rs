@@ -174,13 +174,10 @@ pub(super) static SCENE: [Field; 19] = [
         required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above"),
     ),
     only(OF_PLATE_IMPACT, required("inner", Kind::Table(&INNER), "The body below the plate")),
-    only(
-        OF_PLATE_IMPACT,
-        optional(
-            "friction",
-            pure(Bound::NOT_NEGATIVE),
-            "Coulomb's coefficient of friction between plate and bodies, which the reference has; absent = 0",
-        ),
+    optional(
+        "friction",
+        pure(Bound::NOT_NEGATIVE),
+        "Coulomb's coefficient of friction between plate or seat and bodies, which the reference has; absent = 0",
     ),
     only(OF_PLATE_IMPACT, optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry")),
     only(

@@ -115,7 +115,7 @@ pub struct Inner {
 
 /// What is zero is written as before it could be anything else, so that the hash of the scene stays.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
-fn is_zero(value: &f64) -> bool {
+pub(super) fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 

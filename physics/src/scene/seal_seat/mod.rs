@@ -12,6 +12,7 @@ mod soundness;
 pub(super) use keys::{ACTUATOR, INTENDED, SEAT, SEAT_REDUCED, SEAT_REFERENCE, SEATED_SPHERE};
 pub(super) use read::{seal_seat, seat_reference};
 
+use super::plate_impact::is_zero;
 use super::Material;
 use super::hash::{canonical, drop_inelastic, sha256_hex};
 use serde::Serialize;
@@ -102,6 +103,9 @@ pub struct SealSeat {
     pub sphere: SeatedSphere,
     /// The actuator.
     pub actuator: Actuator,
+    /// Coulomb's coefficient of friction of the seat with sphere and tips; the reference alone knows it.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub friction: f64,
     /// Intended direction of the sphere's flight against z in rad, positive towards +x.
     pub intended_angle: f64,
 }

@@ -47,6 +47,7 @@ pub(in crate::scene) fn seal_seat(root: &Node, materials: &Node) -> Result<SealS
             tip_radius: actuator.number("tip_radius")?,
             tip_positions: actuator.numbers("tip_positions")?,
         },
+        friction: root.number_or("friction", 0.0)?,
         intended_angle: root.table("intended")?.number("angle")?,
     })
 }
