@@ -181,8 +181,9 @@ def solid_run(scene_document: dict[str, Any], **options: Any) -> Run:
 
 def test_solid_elements_lose_what_axisymmetric_ones_do(tmp_path: Path) -> None:
     """And a run that is cut off goes on from its checkpoint as if nothing had been."""
-    size = {"plate__radius": 0.012, "outer__radius": 0.005, "inner__radius": 0.005}
-    scene = relaxing("outer", "plate", **size, outer__speed=2.0, run={"end_time": 4e-5})
+    scene = relaxing("outer", "plate", plate__radius=0.012, run={"end_time": 4e-5})
+    scene["inner"]["radius"] = scene["outer"]["radius"] = 0.005
+    scene["outer"]["speed"] = 2.0
     flat = run_of(scene, end_time=4e-5)
     scene["reference"] = {"geometry": "solid", "elements_per_contact_radius": 2}
     whole = solid_run(scene)
