@@ -1,4 +1,4 @@
-"""Command line: ``solve``, ``modes``, ``mesh``, ``bands``, ``cost`` and ``versions``."""
+"""Command line: ``solve``, ``modes``, ``mesh``, ``bands``, ``cost``, ``yielding``, ``versions``."""
 
 from __future__ import annotations
 
@@ -78,6 +78,8 @@ def _parser() -> argparse.ArgumentParser:
     cost = commands.add_parser("cost", help="cost against error over meshes, limits of the machine")
     cost.add_argument("--scene", type=Path, required=True, help="or provenance.json")
     cost.add_argument("--out", type=Path, required=True, help="JSON; a figure .svg beside it")
+    yielding = commands.add_parser("yielding", help="a yielding sphere on a rigid wall")
+    yielding.add_argument("--out", type=Path, required=True, help="Markdown")
     mesh = commands.add_parser("mesh", help="mesh of a seal seat as .vtu, a .json beside it")
     mesh.add_argument("--scene", type=Path, required=True, help="scene.json of kind seal-seat")
     mesh.add_argument("--out", type=Path, required=True, help="FILE.vtu")
@@ -106,6 +108,11 @@ def _run(arguments: argparse.Namespace) -> None:
             from .studies.cost import report_cost
 
             report_cost(arguments.scene, arguments.out)
+            return
+        if arguments.command == "yielding":
+            from .studies.yielding import report_yielding
+
+            report_yielding(arguments.out, Progress())
             return
         document = read_document(arguments.scene)
         commands = commands_of(document)

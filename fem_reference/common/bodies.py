@@ -30,8 +30,22 @@ class Relaxation:
 
 
 @dataclass(frozen=True)
+class Yielding:
+    """Von Mises yielding with linear isotropic hardening."""
+
+    strength: float
+    """Y, Pa"""
+    hardening: float
+    """Slope H of the yield stress over the plastic strain, Pa"""
+    rate: float = 0.0
+    """D of Cowper & Symonds: strain rate that doubles the yield stress, 1/s; 0: none does"""
+    exponent: float = 1.0
+    """q: the yield stress grows by 1 + (strain rate / D)^(1/q)"""
+
+
+@dataclass(frozen=True)
 class Material:
-    """Linear isotropic material; bulk and shear relax alike."""
+    """Linear isotropic material, up to where it yields if it does; bulk and shear relax alike."""
 
     name: str
     youngs_modulus: float
@@ -39,8 +53,10 @@ class Material:
     poisson_ratio: float
     density: float
     """kg/m^3"""
+    yielding: Yielding | None = None
+    """None: elastic whatever the stress"""
     relaxation: tuple[Relaxation, ...] = ()
-    """Empty: elastic."""
+    """Empty: none."""
 
     @property
     def lasting(self) -> float:
@@ -174,19 +190,36 @@ def sphere_profile(radius: float, r: Floats) -> Floats:
     return np.asarray(r**2 / (radius + np.sqrt(radius**2 - r**2)))
 
 
-def read_material(reader: Reader) -> Material:
-    """The material an object describes."""
-    if "hardening" in reader.node:
-        raise SceneError(f"{reader.path}: a material that yields ('hardening') is not supported")
-    # without hardening the yield strength changes no result
-    reader.allow(
-        *("name", "youngs_modulus", "poisson_ratio", "density", "yield_strength", "relaxation")
+def _yielding(reader: Reader) -> Yielding | None:
+    if "hardening" not in reader.node:
+        # the yield strength alone changes no result
+        return None
+    rate, exponent = 0.0, 1.0
+    if reader.node.get("rate") is not None:
+        law = reader.child("rate")
+        law.allow("D", "q")
+        rate = law.number("D", "1/s")
+        exponent = law.number("q", "(no unit)", above=1.0, inclusive=True)
+    return Yielding(
+        strength=reader.number("yield_strength", "Pa"),
+        hardening=reader.number("hardening", "Pa", inclusive=True),
+        rate=rate,
+        exponent=exponent,
     )
+
+
+def read_material(reader: Reader, may_yield: bool = False) -> Material:
+    """The material an object describes."""
+    if "hardening" in reader.node and not may_yield:
+        raise SceneError(f"{reader.path}: a material that yields ('hardening') is not supported")
+    elastic = ("name", "youngs_modulus", "poisson_ratio", "density")
+    reader.allow(*elastic, "yield_strength", "hardening", "rate", "relaxation")
     return Material(
         name=reader.text("name"),
         youngs_modulus=reader.number("youngs_modulus", "Pa"),
         poisson_ratio=reader.number("poisson_ratio", "(no unit)", above=-1.0, below=0.5),
         density=reader.number("density", "kg/m^3"),
+        yielding=_yielding(reader),
         relaxation=_relaxation(reader) if "relaxation" in reader.node else (),
     )
 

@@ -30,6 +30,8 @@
 
 #include "film.c"
 
+#include "plastic.c"
+
 /* Friction on a closed pair of matching nodes, along the radius: the multiplier that leaves the two no relative
  * velocity at the step's end, as far as Coulomb's law lets it grow. */
 static void rub(const State *s, Pairs *c, int64_t k, double lambda) {
@@ -94,6 +96,7 @@ static inline __attribute__((always_inline)) void group(const State *s, const Le
 /* Step number ``step`` without contact. Slower levels come first: they still need u_n of the faster
  * nodes. */
 static void predict(const State *s, int64_t step, double *reaction) {
+    if (s->problem->plastic) strain_impulse(s, s->problem->plastic);
     for (int64_t k = s->levels - 1; k >= 0; --k) {
         const int64_t every = (int64_t)1 << k;
         if (step % every != 0) continue;
@@ -132,6 +135,7 @@ static void one_step(State *s) {
     for (int64_t i = 0; i < p->nodes; ++i)
         memcpy(p->before + C * i, v + C * (int64_t)p->global[i], C * sizeof *v);
     if (p->film) openings(p->film, v, p->film->before);
+    if (p->plastic) flow(p->plastic, u, dt);
     const int64_t step = p->step;
     predict(s, step, p->reaction);
     if (p->film) correct_with_film(s, p->film);
@@ -241,6 +245,6 @@ void triad(double *restrict a, const double *restrict b, const double *restrict 
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
                            sizeof(Level),  sizeof(State), sizeof(Carried), sizeof(Tip),
-                           sizeof(Watched), sizeof(Film), sizeof(Relaxing)};
+                           sizeof(Watched), sizeof(Film), sizeof(Plastic), sizeof(Relaxing)};
     return (int64_t)size[what];
 }

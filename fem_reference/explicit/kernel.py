@@ -116,6 +116,28 @@ class Film(ctypes.Structure):
     )
 
 
+class Plastic(ctypes.Structure):
+    """Mirror of ``Plastic`` in kernel.c."""
+
+    _fields_ = (
+        ("elements", ctypes.c_int64),
+        ("nodes", ctypes.c_int64),
+        ("touched", _INT32),
+        ("node", _INT32),
+        ("gradient", _DOUBLE),
+        ("weight", _DOUBLE),
+        ("shear", _DOUBLE),
+        ("yield_strength", _DOUBLE),
+        ("hardening", _DOUBLE),
+        ("rate", _DOUBLE),
+        ("exponent", _DOUBLE),
+        ("strain", _DOUBLE),
+        ("accumulated", _DOUBLE),
+        ("work", _DOUBLE),
+        ("force", _DOUBLE),
+    )
+
+
 class Rigid(ctypes.Structure):
     """Mirror of ``Rigid`` in kernel.c."""
 
@@ -177,6 +199,7 @@ class Problem(ctypes.Structure):
         ("rigid", ctypes.POINTER(Rigid)),
         ("pairs", ctypes.POINTER(Pairs)),
         ("film", ctypes.POINTER(Film)),
+        ("plastic", ctypes.POINTER(Plastic)),
         ("dt", ctypes.c_double),
         ("tolerance", ctypes.c_double),
         ("step", ctypes.c_int64),
@@ -359,7 +382,7 @@ def load(components: int) -> ctypes.CDLL:
     for number, mirror in enumerate(
         (
             *(Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip, Watched, Film),
-            Relaxing,
+            *(Plastic, Relaxing),
         )
     ):
         if kernel.layout(number) != ctypes.sizeof(mirror):

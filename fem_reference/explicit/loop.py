@@ -19,6 +19,7 @@ from ..common.arrays import Floats, Ints, Mask
 from ..common.errors import SolverError
 from . import kernel
 from .levels import fastest_levels, graded_levels
+from .plastic import PlasticState
 from .problem import ContactProblem
 from .relaxation import Ledger, Springs
 from .system import System
@@ -107,6 +108,8 @@ class Loop(ABC):
             touching[contact.candidates] = touching[contact.opposite] = True
         if system.film is not None:
             touching[system.film.nodes] = True
+        if system.plasticity is not None:
+            touching[system.plasticity.nodes] = True
         steps = system.element_time_steps() / time_step
         return graded_levels(steps, system.element_nodes, touching, most)
 
@@ -232,8 +235,12 @@ class Loop(ABC):
     def energies(self) -> Energies:
         """Discrete energies at an instant at which all levels meet."""
         lost = stored = np.zeros(self.system.first.size - 1)
+        plastic = self.problem.plastic
         if self.meeting == 1 and self.ledger is None:
-            velocity, strain = self.v, 0.5 * (self.u - self.dt * self.v) * self.product(self.u)
+            velocity, force = self.v, self.product(self.u)
+            if plastic is not None:
+                force -= plastic.force
+            strain = 0.5 * (self.u - self.dt * self.v) * force
         else:
             velocity, strain = self._long_step()
         if self.springs is not None and self.ledger is not None:
@@ -244,6 +251,8 @@ class Loop(ABC):
             stored, lost = self.body_sums(np.stack(both, axis=1)).T
         mass = np.repeat(self.mass, self.components)
         density = 0.5 * mass * velocity**2 + strain
+        if plastic is not None:
+            density += self._of_plastic_strain(plastic)
         elastic = self.body_sums(density.reshape(-1, self.components).sum(axis=1)) + stored
         free = self.momenta()[:, self.system.free_axes]
         mean = (free**2).sum(axis=1) / (2.0 * self.body_masses())
@@ -251,6 +260,12 @@ class Loop(ABC):
         rigid = [0.5 * r.mass * sum(x * x for x in r.v) + _of_spin(r) for r in rigids]
         parts = (tuple(energy.tolist()) for energy in (elastic, mean, np.array(rigid), lost))
         return Energies(*parts)
+
+    def _of_plastic_strain(self, plastic: PlasticState) -> Floats:
+        """(C n,) what 1/2 (u - u_p) K (u - u_p) has besides 1/2 u (K u - f_p), J."""
+        density = -0.5 * self.u * plastic.force
+        np.add.at(density, 2 * plastic.plasticity.nodes[:, 0], plastic.stored())
+        return np.asarray(density)
 
     def _long_step(self) -> tuple[Floats, Floats]:
         """W and 1/2 u_{n+1} K' u_n of `Energies`, by component, without contact."""
@@ -262,12 +277,14 @@ class Loop(ABC):
         return (following - now) / long_step, 0.5 * following * self._mean_force()
 
     def _mean_force(self) -> Floats:
-        """K' u_n of `Energies`."""
+        """K' u_n - f_p of `Energies`."""
         if self.meeting == 1:
             return self.product(self.u)
         with self._as_it_was():
             # From rest: half the impulses, which the step itself gives in full.
             now, self.v[:] = self.u.copy(), 0.5 * self.inverse * self.impulse(self.u)
+            if self.problem.plastic is not None:
+                self.v -= 0.5 * self.dt * self.inverse * self.problem.plastic.force
             self.drift_elastic(self.meeting)
             mass, long_step = np.repeat(self.mass, self.components), self.meeting * self.dt
             return np.asarray(2.0 * mass * (now - self.u) / long_step**2)

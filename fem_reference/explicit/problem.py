@@ -11,6 +11,7 @@ from ..common.arrays import Floats, Ints
 from . import kernel
 from .contact import MatchedContact, SphereContact
 from .film import compiled
+from .plastic import PlasticState
 from .system import System
 
 TOLERANCE = 1e-12
@@ -24,6 +25,7 @@ class ContactProblem:
         nodes: (s,) surface nodes that can touch, the system's numbering, matching ones aside.
         u, predicted, before, force: (C s) work arrays of the kernel.
         contacts, matched, rigids, film: the kernel's structures.
+        plastic: what elements that may yield remember.
     """
 
     def __init__(self, system: System) -> None:
@@ -68,6 +70,10 @@ class ContactProblem:
         if system.film is not None:
             self.film = compiled(system.film, self._arrays)
             state.film = ctypes.pointer(self.film)
+        self.plastic: PlasticState | None = None
+        if system.plasticity is not None:
+            self.plastic = PlasticState(system.plasticity, system.mass.size)
+            state.plastic = ctypes.pointer(self.plastic.structure)
         state.tolerance = TOLERANCE
         self.state = state
 

@@ -73,6 +73,25 @@ typedef struct {
     double work;             /* on both bodies so far, J */
 } Film;
 
+/* Elements that may yield, see plastic.c. */
+typedef struct {
+    int64_t elements;
+    int64_t nodes;           /* of these elements */
+    const int32_t *touched;  /* (nodes) them */
+    const int32_t *node;     /* (4 elements) */
+    const double *gradient;  /* (elements 12 points) dN/dr of the corners, dN/dz, N/r, 1/m */
+    const double *weight;    /* (elements points) 2 pi r dr dz, m^3 */
+    const double *shear;     /* (elements) modulus, Pa */
+    const double *yield;     /* (elements) strength, Pa */
+    const double *hardening; /* (elements) its slope over the plastic strain, Pa */
+    const double *rate;      /* (elements) of strain that doubles the yield stress, 1/s; 0: none */
+    const double *exponent;  /* (elements) of the rate */
+    double *strain;          /* (elements 4 points) plastic: rr, tt, zz, twice rz */
+    double *accumulated;     /* (elements points) equivalent plastic strain */
+    double *work;            /* (elements) plastic, so far, J */
+    double *force;           /* (2 nodes of the system) load of the plastic strain, N */
+} Plastic;
+
 /* A rigid body that only friction turns; vectors have room for three components. */
 typedef struct {
     double mobility[9]; /* 3x3 inverse mass, zero along directions that are guided, 1/kg */
@@ -124,6 +143,7 @@ typedef struct {
     Rigid *rigid;
     Pairs *pairs;           /* (matched), in the numbering of the system */
     Film *film;             /* 0: none */
+    Plastic *plastic;       /* 0: none */
     double dt;
     double tolerance;       /* of the multipliers, over the largest one */
     int64_t step;           /* steps done */

@@ -10,6 +10,7 @@ from ..common.arrays import Floats, Ints, Mask
 from ..common.bodies import Relaxation
 from .contact import Contact, MatchedContact, RigidBody
 from .film import Film
+from .plastic import Plasticity
 
 
 class System(Protocol):
@@ -79,3 +80,7 @@ class System(Protocol):
     @property
     def film(self) -> Film | None:
         """Between two of them."""
+
+    @property
+    def plasticity(self) -> Plasticity | None:
+        """Of the elements that may yield."""

@@ -53,7 +53,7 @@ class Losses:
     squeeze_film: float = 0.0
     drag: float = 0.0
     contacts: tuple[float, float] = (0.0, 0.0)
-    """To friction, of outer and inner body."""
+    """To friction and to yielding, at outer and inner body."""
     bodies: tuple[float, ...] | None = None
     """To relaxation, of outer body, plate and inner body; None: none of them relaxes."""
 
@@ -76,6 +76,21 @@ class Losses:
 
 
 @dataclass(frozen=True)
+class Yielded:
+    """Energy that went into yielding, at outer and inner contact, J."""
+
+    work: tuple[float, float] = (0.0, 0.0)
+    """Plastic."""
+    locked_in: tuple[float, float] = (0.0, 0.0)
+    """Elastic energy that stays at rest, gained during the run."""
+
+    @property
+    def lost(self) -> tuple[float, float]:
+        """Both."""
+        return self.work[0] + self.locked_in[0], self.work[1] + self.locked_in[1]
+
+
+@dataclass(frozen=True)
 class Further:
     """What acts besides contacts and supports."""
 
@@ -85,6 +100,10 @@ class Further:
     """Impulse on the bodies together so far, along z, N s."""
     on_inner: float = 0.0
     """On the inner one, N s."""
+    yielded: Yielded | None = None
+    """None: nothing that could yield."""
+    locked_in: float = 0.0
+    """Elastic energy that would be left at rest, J."""
 
 
 class Motion(Protocol):

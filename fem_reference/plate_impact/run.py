@@ -15,7 +15,7 @@ from ..explicit.levels import MOST_LEVELS
 from ..explicit.loop import Energies
 from ..explicit.records import ContactRecord, intervals, peak_force
 from ..explicit.supervision import Account, Course, Ended, Plan, supervise
-from .motion import Losses, Motion
+from .motion import Losses, Motion, Yielded
 from .scene import Scene
 
 PEAK_WINDOW_SAMPLES = 4
@@ -54,6 +54,8 @@ class Run:
     support_impulse: float
     losses: Losses | None
     """Of the whole bodies; None if nothing loses."""
+    yielded: Yielded | None
+    """None: nothing that could yield."""
 
     def account(self, levels: int) -> Account:
         """For `stable_run`, of a run with so many levels."""
@@ -120,7 +122,8 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     losses = further.losses
     if loop.ledger is not None:
         losses = replace(losses or Losses(), bodies=motion.by_role(energies.lost))
-    missed = energies.total + (losses.total if losses else 0.0) - initial_energy - work
+    vibration = energies.total - further.locked_in
+    missed = vibration + (losses.total if losses else 0.0) - initial_energy - work
     # Independent balances: all bodies against the supports, each free one against what acts on it.
     misses = [
         sum(momenta) - outer_start - inner_start - support - further.on_all,
@@ -154,6 +157,7 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         momentum_residual=max(abs(miss) for miss in misses) / abs(outer_start),
         support_impulse=support / share,
         losses=losses and losses.of_whole(share),
+        yielded=further.yielded,
     )
 
 

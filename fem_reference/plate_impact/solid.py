@@ -64,6 +64,11 @@ class Solution:
     """At most so far, bytes."""
 
     @property
+    def runs(self) -> list[Run]:
+        """The one run."""
+        return [self.run]
+
+    @property
     def dofs(self) -> int:
         """Degrees of freedom, fixed ones included."""
         return 3 * int(self.loop.system.mass.size)

@@ -24,7 +24,7 @@ class SolidSystem:
         bodies = model.elastic
         self.model, self.comm, self.first = model, comm, model.first
         self.rigid, self.contacts, self.matched = model.rigid, model.contacts, ()
-        self.film = None
+        self.film = self.plasticity = None
         self.relaxations = tuple(body.material.relaxation for body in bodies)
         self.free_axes = (0, 1, 2)
         self.points = np.concatenate([body.mesh.points for body in bodies])

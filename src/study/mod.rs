@@ -17,6 +17,7 @@ pub mod rocker;
 pub mod seal_seat;
 pub mod seal_seat_cost;
 pub mod seal_seat_direction;
+pub mod shakedown;
 pub mod sweep;
 pub mod table2;
 mod write;
@@ -151,6 +152,14 @@ pub const STUDIES: [Entry; 14] = [
         takes_model: false,
         run: |_, note| rocker::run(note),
         panels: &rocker::PANELS,
+        drawing: None,
+    },
+    Entry {
+        name: "shakedown",
+        about: "Section 3.4.2, Fig. 13: efficiency of repeated impacts, several yield strengths, same and fresh spots, rate",
+        takes_model: true,
+        run: shakedown::run,
+        panels: &shakedown::PANELS,
         drawing: None,
     },
     Entry {
