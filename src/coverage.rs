@@ -52,7 +52,7 @@ const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
 }
 
 /// The features, of plates first.
-pub static FEATURES: [Feature; 21] = [
+pub static FEATURES: [Feature; 22] = [
     feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)).by(Form::CircularPlate),
     feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported))
         .by(Form::CircularPlate),
