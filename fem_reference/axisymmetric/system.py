@@ -72,6 +72,11 @@ class AxisymmetricSystem:
         return np.arange(self.mass.size)
 
     @property
+    def ghosts(self) -> Ints:
+        """None: there is one process."""
+        return np.zeros(0, dtype=np.int64)
+
+    @property
     def held(self) -> Mask:
         """(n,) nodes of the support."""
         held = np.zeros(self.mass.size, dtype=bool)

@@ -16,9 +16,9 @@ import numpy as np
 import scipy.sparse
 
 from ..common.arrays import Floats, Ints, Mask
-from ..common.errors import SolverError
 from . import kernel
 from .levels import fastest_levels, graded_levels
+from .parts import Blocks, level_parts
 from .plastic import PlasticState
 from .problem import ContactProblem
 from .relaxation import Ledger, Springs
@@ -69,11 +69,15 @@ class Loop(ABC):
         u, v: (C n,) displacement, and velocity half a step later.
         springs, ledger: of bodies that relax; None: all are elastic.
         effective: (C n,) displacement that K acts on: u itself unless there are springs.
+        displacement: u, then that of other processes' nodes that own rows read.
         diagonal: (C n,) of K, N/m.
         levels: nodes that move with each level.
+        threads: among which the rows of a process are divided. For another number of them sums
+            have another order: results differ by rounding.
     """
 
     diagonal: Floats
+    threads = 1
 
     def __init__(self, system: System, comm: Any) -> None:
         self.system, self.comm = system, comm
@@ -82,7 +86,8 @@ class Loop(ABC):
         self.mass = system.mass[system.owned]
         self.inverse = system.inverse_mass[self.rows]
         self.body = np.searchsorted(system.first, system.owned, side="right") - 1
-        self.u = np.zeros(self.rows.size)
+        self.displacement = np.zeros(self.rows.size + self.components * system.ghosts.size)
+        self.u = self.displacement[: self.rows.size]
         self.v = self.own(system.velocity)
         self.v[self.inverse == 0.0] = 0.0
         self.springs: Springs | None = None
@@ -126,14 +131,14 @@ class Loop(ABC):
         count = int(element.max()) + 1
         node = fastest_levels(element, self.system.element_nodes, self.system.mass.size)
         if count > 1 or len(self.levels) > 1:
-            self._take_levels(element, node[self.system.owned], count)
+            self._take_levels(element, node, count)
             self.levels = tuple(np.bincount(node, minlength=count).tolist())
         if self.springs is not None:
             self._take_springs(self.springs, node[self.system.owned])
 
+    @abstractmethod
     def _take_springs(self, springs: Springs, node: Ints) -> None:
         """Let the springs move; ``node`` (n,) has the levels of own nodes."""
-        raise SolverError("materials that relax are for one process only")
 
     def restore_ledger(self, saved: dict[str, Floats]) -> None:
         """Continue with the state saved at a look."""
@@ -148,7 +153,7 @@ class Loop(ABC):
 
     @abstractmethod
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
-        """Split K by the level of each element; ``node`` (n,) has the levels of own nodes."""
+        """Split K by the level of each element; ``node`` (N,) has the levels of the nodes."""
 
     @property
     def meeting(self) -> int:
@@ -173,9 +178,9 @@ class Loop(ABC):
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
 
+    @abstractmethod
     def drift_elastic(self, steps: int) -> None:
         """The same of bodies that do not relax."""
-        self.drift(steps)
 
     @abstractmethod
     def level_product(self, level: int, x: Floats) -> Floats:
@@ -304,60 +309,46 @@ class Loop(ABC):
 class SerialLoop(Loop):
     """One process: half of K in blocks, product and update in one sweep of compiled code."""
 
-    def __init__(self, system: System, comm: Any) -> None:
+    def __init__(self, system: System, comm: Any, threads: int = 1) -> None:
         super().__init__(system, comm)
+        self.threads = threads
         whole, arrays = system.part(None), kernel.Arrays()
         self.diagonal = whole.diagonal()
         state = kernel.State()
         state.nodes = system.owned.size
         for name in ("inverse", "u", "effective", "v"):
             setattr(state, name, arrays.pointer(getattr(self, name), np.float64))
-        state.f = arrays.pointer(np.zeros_like(self.u), np.float64)
-        local = np.empty(system.owned.size, dtype=np.int64)
+        lanes = kernel.LANES[self.components]
+        state.f = arrays.pointer(np.zeros(lanes * system.owned.size), np.float64)
+        state.support = arrays.pointer(np.zeros(kernel.SPACED * threads), np.float64)
+        state.parts = threads
+        local = np.full(system.mass.size, -1, dtype=np.int64)
         local[system.owned] = np.arange(system.owned.size)
         self.problem.state.map = arrays.pointer(local[self.problem.nodes], np.int32)
         state.problem = ctypes.pointer(self.problem.state)
         self._state, self._arrays = state, arrays
         self._point_at([(whole, np.ones(system.owned.size, dtype=bool))])
 
-    def _point_at(self, parts: Iterable[tuple[scipy.sparse.csr_matrix, Mask]]) -> None:
+    def _point_at(self, matrices: Iterable[tuple[scipy.sparse.csr_matrix, Mask]]) -> None:
         """Make these the levels: stiffness, and the nodes that move with it."""
         arrays, held = kernel.Arrays(), self.system.held[self.system.owned]
-        made = [self._level(matrix, moves, held, arrays) for matrix, moves in parts]
-        structures = (kernel.Level * len(made))(*made)
-        self._state.levels = len(made)
-        self._state.level = ctypes.cast(structures, ctypes.POINTER(kernel.Level))
-        self._level_arrays = (structures, arrays)
-
-    def _level(
-        self, matrix: scipy.sparse.csr_matrix, moves: Mask, held: Mask, arrays: kernel.Arrays
-    ) -> kernel.Level:
-        """A level from its stiffness, all nodes; masks of nodes that move with it, and are held."""
-        size = self.components
-        touched = np.flatnonzero(np.diff(matrix.indptr)[::size])
-        groups = [
-            touched[(moves[touched] == moving) & (held[touched] == hold)]
-            for moving in (False, True)
-            for hold in (False, True)
+        made = [
+            part
+            for matrix, moves in matrices
+            for part in level_parts(
+                Blocks.of(matrix, self.components, moves, held), self.threads, arrays
+            )
         ]
-        nodes = np.concatenate(groups)
-        rows = (size * nodes[:, None] + np.arange(size)).ravel()
-        indptr, columns, blocks = _upper_blocks(matrix[rows][:, rows], size)
-        level = kernel.Level()
-        ends = np.cumsum([group.size for group in groups]).tolist()
-        level.shared_free, level.shared, level.free, level.rows = ends
-        level.node = arrays.pointer(nodes, np.int32)
-        level.row = arrays.pointer(indptr, np.int64)
-        level.column = arrays.pointer(nodes[columns], np.int32)
-        # Vectors of two components take the columns of a block.
-        data = blocks.transpose(0, 2, 1) if size == 2 else blocks
-        level.block = arrays.pointer(data, np.float64)
-        return level
+        structures = (kernel.Part * len(made))(*made)
+        self._state.levels = len(made) // self.threads
+        self._state.part = ctypes.cast(structures, ctypes.POINTER(kernel.Part))
+        self._level_arrays = (structures, arrays)
 
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
         self._state.levels = 0
         del self._level_arrays
-        self._point_at((self.system.part(element == k), node == k) for k in range(count))
+        own = node[self.system.owned]
+        self._point_at((self.system.part(element == k), own == k) for k in range(count))
 
     def _take_springs(self, springs: Springs, node: Ints) -> None:
         arrays, state = kernel.Arrays(), self._state
@@ -371,22 +362,28 @@ class SerialLoop(Loop):
     @property
     def acting(self) -> tuple[int, ...]:
         """Nodes whose elements of each level act."""
-        return tuple(int(level.rows) for level in self._level_arrays[0])
+        rows = [int(part.rows) for part in self._level_arrays[0]]
+        return tuple(np.reshape(rows, (-1, self.threads)).sum(axis=1).tolist())
 
     @property
     def blocks(self) -> int:
         """Blocks of K that are stored, of all levels."""
-        return sum(int(level.row[level.rows]) for level in self._level_arrays[0])
+        return sum(
+            int(part.row[part.rows] + part.outer[part.border]) for part in self._level_arrays[0]
+        )
 
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
-        self._kernel.drift(ctypes.byref(self._state), steps)
+        self._kernel.drift(ctypes.byref(self._state), 0, steps)
 
     def drift_elastic(self, steps: int) -> None:
         """The same of bodies that do not relax."""
+        if self.springs is None:
+            self.drift(steps)
+            return
         state = kernel.State.from_buffer_copy(self._state)
         state.relaxings, state.effective = 0, state.u
-        self._kernel.drift(ctypes.byref(state), steps)
+        self._kernel.drift(ctypes.byref(state), 0, steps)
 
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
@@ -407,19 +404,13 @@ class SerialLoop(Loop):
         """K x."""
         return self._product(x, 0, len(self.levels))
 
+    def _read(self, x: Floats) -> Floats:
+        """(C n,) as own rows read it."""
+        return np.ascontiguousarray(x)
+
     def _product(self, x: Floats, first: int, end: int) -> Floats:
-        x = np.ascontiguousarray(x)
-        y = np.empty_like(x)
+        y = np.empty(self.rows.size)
+        x = self._read(x)
         state = ctypes.byref(self._state)
         self._kernel.stiffness_product(state, first, end, kernel.doubles(x), kernel.doubles(y))
         return y
-
-
-def _upper_blocks(matrix: scipy.sparse.csr_matrix, size: int) -> tuple[Ints, Ints, Floats]:
-    """Rows, columns and blocks (k, size, size) from the diagonal on, the diagonal one first."""
-    blocks = matrix.tobsr((size, size))
-    blocks.sort_indices()
-    rows = np.repeat(np.arange(blocks.indptr.size - 1), np.diff(blocks.indptr))
-    upper = blocks.indices >= rows
-    counts = np.bincount(rows[upper], minlength=blocks.indptr.size - 1)
-    return np.concatenate([[0], np.cumsum(counts)]), blocks.indices[upper], blocks.data[upper]

@@ -8,11 +8,14 @@
  * the instantaneous modulus sets the stable step, and every mode loses energy.
  */
 
-/* Moves the extensions of the nodes that have moved in step number ``step``, and their effective displacement. */
+/* Moves the extensions of the nodes that have moved in step number ``step``, and their effective displacement; each
+ * thread a share of them. */
 static void relax(const State *s, int64_t step) {
+    if (s->relaxings == 0) return;
+    const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
     for (const Relaxing *r = s->relaxing; r < s->relaxing + s->relaxings; ++r) {
         if (step % ((int64_t)1 << r->level) != 0) continue;
-        for (int64_t i = 0; i < r->count; ++i) {
+        for (int64_t i = r->count * thread / threads; i < r->count * (thread + 1) / threads; ++i) {
             const int64_t n = C * (int64_t)r->node[i];
             const double *u = s->u + n, *v = s->v + n;
             double *extension = s->extension + n * s->springs, e[C];
@@ -25,4 +28,5 @@ static void relax(const State *s, int64_t step) {
             memcpy(s->effective + n, e, sizeof e);
         }
     }
+    meet(s);
 }

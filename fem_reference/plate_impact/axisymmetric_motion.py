@@ -23,6 +23,7 @@ from ..explicit import kernel
 from ..explicit.damping import ModalDamping
 from ..explicit.drag import Drag
 from ..explicit.loop import Energies, SerialLoop
+from ..explicit.parts import worthwhile
 from .dents import Dents, Memory
 from .ending import Ending, Followed, Patch
 from .estimate import WAVE_FREQUENCY
@@ -49,8 +50,9 @@ class AxisymmetricMotion:
 
     share = 1.0
 
-    def __init__(self, system: AxisymmetricSystem) -> None:
-        self.system, self.loop = system, SerialLoop(system, alone())
+    def __init__(self, system: AxisymmetricSystem, threads: int = 1) -> None:
+        threads = worthwhile(threads, system.inverse_mass.size)
+        self.system, self.loop = system, SerialLoop(system, alone(), threads)
         self._bent = system.displacement is not None
         self._watched_before = 0.0
         if system.displacement is not None:
@@ -274,15 +276,18 @@ def integrate_axisymmetric(
     scene: Scene,
     contact_duration: float,
     memory: Memory | None = None,
+    threads: int = 1,
     **options: Any,
 ) -> tuple[Run, AxisymmetricMotion]:
-    """Step a system, with what yielding bodies know of earlier impacts; options of `run.integrate`.
+    """Step a system, with at most so many threads; see `run.integrate` for the options.
+
+    ``memory`` is what yielding bodies know of earlier impacts.
 
     Raises:
         SolverError: time step above the critical one, divergence, or no end found.
     """
     damping_ratio = scene.plate.damping_ratio
-    motion = AxisymmetricMotion(system)
+    motion = AxisymmetricMotion(system, threads)
     if memory is not None:
         motion.lay(memory, scene.gap)
     if damping_ratio > 0.0:

@@ -160,7 +160,7 @@ def _stepped(
     report: Report,
 ) -> tuple[Loop, Run, Recorder]:
     def attempt(most_levels: int) -> tuple[Loop, Run, Recorder]:
-        loop = make_loop(plate.model, comm)
+        loop = make_loop(plate.model, comm, settings.threads)
         recorder = Recorder(settings, f"{suffix}-{most_levels}")
         run = integrate_solid(
             loop,

@@ -106,7 +106,7 @@ def compute(
     )
 
     def attempt(most_levels: int) -> tuple[Loop, SeatRun, Recorder]:
-        loop = make_loop(seat.model, comm)
+        loop = make_loop(seat.model, comm, settings.threads)
         recorder = Recorder(settings, f"-{most_levels}")
         run = integrate(
             loop,
