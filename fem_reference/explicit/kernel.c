@@ -86,10 +86,10 @@ static inline __attribute__((always_inline)) void group(const State *s, const Pa
                                                         int64_t from, int64_t to, int moves, int held,
                                                         double *reaction) {
     double *u = s->u, *v = s->v, *f = s->f;
-    const double *inverse = s->inverse;
+    const double *inverse = s->inverse, *effective = s->effective;
     for (int64_t i = from; i < to; ++i) {
         const int64_t n = l->node[i];
-        const Vector force = row_product(l, u, f, i, n);
+        const Vector force = row_product(l, effective, f, i, n);
         add(v + C * n, -h, inverse + C * n, force);
         for (int d = 0; held && d < C; ++d)
             if (inverse[C * n + d] == 0.0) reaction[d] += h * component(force, d);
@@ -102,7 +102,7 @@ static inline __attribute__((always_inline)) void group(const State *s, const Pa
 static void border(const State *s, const Part *l, double h, double *reaction) {
     for (int64_t i = 0; i < l->border; ++i) {
         const int64_t n = l->node[i];
-        const Vector force = row_product(l, s->u, s->f, i, n) + outer_product(l, s->u, i);
+        const Vector force = row_product(l, s->effective, s->f, i, n) + outer_product(l, s->effective, i);
         add(s->v + C * n, -h, s->inverse + C * n, force);
         for (int d = 0; d < C; ++d)
             if (s->inverse[C * n + d] == 0.0) reaction[d] += h * component(force, d);
@@ -125,6 +125,8 @@ static inline void meet(const State *s) {
 #pragma omp barrier
     }
 }
+
+#include "relaxation.c"
 
 /* Step number ``step`` without contact, each thread its parts. Slower levels come first: they still need u_n of the
  * faster nodes, and do not share a node that moves with them with a faster level. */
@@ -163,7 +165,10 @@ static void book_supports(const State *s, double *reaction) {
 void drift(State *s, int64_t first, int64_t steps) {
     double reaction[3] = {0.0, 0.0, 0.0};
 #pragma omp parallel num_threads(s->parts) if (s->parts > 1)
-    for (int64_t n = first; n < first + steps; ++n) predict(s, n, reaction);
+    for (int64_t n = first; n < first + steps; ++n) {
+        predict(s, n, reaction);
+        relax(s, n);
+    }
     book_supports(s, reaction);
 }
 
@@ -213,11 +218,13 @@ static void close_step(const State *s) {
 
 /* All threads take part; contact is the first one's. */
 static void one_step(const State *s) {
+    const int64_t step = s->problem->step;
     if (leads()) remember(s);
     meet(s);
-    predict(s, s->problem->step, s->problem->reaction);
+    predict(s, step, s->problem->reaction);
     if (leads()) close_step(s);
     meet(s);
+    relax(s, step);
 }
 
 /* Advances a system that lies in one process by a number of steps. */
@@ -349,6 +356,6 @@ double read_all(const double *a, int64_t n, int64_t threads) {
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
                            sizeof(Part),  sizeof(State), sizeof(Carried), sizeof(Tip),
-                           sizeof(Watched), sizeof(Film), sizeof(Plastic)};
+                           sizeof(Watched), sizeof(Film), sizeof(Plastic), sizeof(Relaxing)};
     return (int64_t)size[what];
 }

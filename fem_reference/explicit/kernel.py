@@ -232,6 +232,21 @@ class Part(ctypes.Structure):
     )
 
 
+class Relaxing(ctypes.Structure):
+    """Mirror of ``Relaxing`` in kernel.c."""
+
+    _fields_ = (
+        ("level", ctypes.c_int64),
+        ("count", ctypes.c_int64),
+        ("terms", ctypes.c_int64),
+        ("node", _INT32),
+        ("lasting", ctypes.c_double),
+        ("ratio", _DOUBLE),
+        ("decay", _DOUBLE),
+        ("growth", _DOUBLE),
+    )
+
+
 class State(ctypes.Structure):
     """Mirror of ``State`` in kernel.c."""
 
@@ -242,9 +257,14 @@ class State(ctypes.Structure):
         ("part", ctypes.POINTER(Part)),
         ("inverse", _DOUBLE),
         ("u", _DOUBLE),
+        ("effective", _DOUBLE),
         ("v", _DOUBLE),
         ("f", _DOUBLE),
         ("support", _DOUBLE),
+        ("relaxings", ctypes.c_int64),
+        ("relaxing", ctypes.POINTER(Relaxing)),
+        ("springs", ctypes.c_int64),
+        ("extension", _DOUBLE),
         ("problem", ctypes.POINTER(Problem)),
     )
 
@@ -373,7 +393,10 @@ def load(components: int) -> ctypes.CDLL:
     kernel.read_all.argtypes, kernel.read_all.restype = (_DOUBLE, count, count), ctypes.c_double
     kernel.layout.restype = ctypes.c_int64
     for number, mirror in enumerate(
-        (Record, Pairs, Rigid, Contact, Problem, Part, State, Carried, Tip, Watched, Film, Plastic)
+        (
+            *(Record, Pairs, Rigid, Contact, Problem, Part, State, Carried, Tip, Watched, Film),
+            *(Plastic, Relaxing),
+        )
     ):
         if kernel.layout(number) != ctypes.sizeof(mirror):
             raise SolverError(

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import ctypes
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +21,7 @@ from .levels import fastest_levels, graded_levels
 from .parts import Blocks, level_parts
 from .plastic import PlasticState
 from .problem import ContactProblem
+from .relaxation import Ledger, Springs
 from .system import System
 
 
@@ -39,6 +41,8 @@ class Energies:
     rigid_motion: tuple[float, ...]
     """Share of each elastic body's mean translation."""
     rigid: tuple[float, ...]
+    lost: tuple[float, ...]
+    """By each elastic body to relaxation so far."""
 
     @property
     def total(self) -> float:
@@ -63,6 +67,8 @@ class Loop(ABC):
         components: of displacement per node.
         mass: (n,) kg. inverse: (C n,) 1/kg, zero where fixed. body: (n,) number of each node's.
         u, v: (C n,) displacement, and velocity half a step later.
+        springs, ledger: of bodies that relax; None: all are elastic.
+        effective: (C n,) displacement that K acts on: u itself unless there are springs.
         displacement: u, then that of other processes' nodes that own rows read.
         diagonal: (C n,) of K, N/m.
         levels: nodes that move with each level.
@@ -84,6 +90,14 @@ class Loop(ABC):
         self.u = self.displacement[: self.rows.size]
         self.v = self.own(system.velocity)
         self.v[self.inverse == 0.0] = 0.0
+        self.springs: Springs | None = None
+        self.ledger: Ledger | None = None
+        self._looked = 0
+        self.effective = self.u
+        if any(system.relaxations):
+            self.springs = Springs(system.relaxations, self.body, self.components)
+            self.ledger = Ledger(self.springs)
+            self.effective = np.zeros_like(self.u)
         self.problem = ContactProblem(system)
         self._kernel = kernel.load(self.components)
         self.levels: tuple[int, ...] = (system.mass.size,)
@@ -115,11 +129,27 @@ class Loop(ABC):
         self.problem.set_step(time_step, split)
         element = self.element_levels(time_step, most_levels)
         count = int(element.max()) + 1
-        if count == 1 == len(self.levels):
-            return
         node = fastest_levels(element, self.system.element_nodes, self.system.mass.size)
-        self._take_levels(element, node, count)
-        self.levels = tuple(np.bincount(node, minlength=count).tolist())
+        if count > 1 or len(self.levels) > 1:
+            self._take_levels(element, node, count)
+            self.levels = tuple(np.bincount(node, minlength=count).tolist())
+        if self.springs is not None:
+            self._take_springs(self.springs, node[self.system.owned])
+
+    @abstractmethod
+    def _take_springs(self, springs: Springs, node: Ints) -> None:
+        """Let the springs move; ``node`` (n,) has the levels of own nodes."""
+
+    def restore_ledger(self, saved: dict[str, Floats]) -> None:
+        """Continue with the state saved at a look."""
+        if self.ledger is not None:
+            self.ledger.restore(saved, self.u, self.product(self.u))
+            self._looked = self.problem.state.step
+
+    def strain(self) -> None:
+        """Make `effective` what it is at the present displacement and extensions."""
+        if self.springs is not None:
+            self.effective[:] = self.springs.effective(self.u)
 
     @abstractmethod
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
@@ -147,6 +177,10 @@ class Loop(ABC):
     @abstractmethod
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
+
+    @abstractmethod
+    def drift_elastic(self, steps: int) -> None:
+        """The same of bodies that do not relax."""
 
     @abstractmethod
     def level_product(self, level: int, x: Floats) -> Floats:
@@ -190,25 +224,47 @@ class Loop(ABC):
         """(bodies,) kg."""
         return np.add.reduceat(self.system.mass, self.system.first[:-1])
 
+    def impulse(self, x: Floats) -> Floats:
+        """(C n,) what the levels take from the momenta where all meet at a displacement, N s."""
+        products = (2**k * self.level_product(k, x) for k in range(len(self.levels)))
+        return np.asarray(self.dt * sum(products))
+
+    def look(self) -> None:
+        """Let the ledger of what relaxes follow to this instant, at which all levels meet."""
+        step = self.problem.state.step
+        if self.ledger is not None and step > self._looked:
+            time = (step - self._looked) * self.dt
+            self.ledger.look(time, self.u, self.product(self.u))
+            self._looked = step
+
     def energies(self) -> Energies:
         """Discrete energies at an instant at which all levels meet."""
+        lost = stored = np.zeros(self.system.first.size - 1)
         plastic = self.problem.plastic
-        if self.meeting == 1:
-            other, velocity, force = self.u - self.dt * self.v, self.v, self.product(self.u)
+        if self.meeting == 1 and self.ledger is None:
+            velocity, force = self.v, self.product(self.u)
             if plastic is not None:
                 force -= plastic.force
+            strain = 0.5 * (self.u - self.dt * self.v) * force
         else:
-            other, velocity, force = self._long_step()
+            velocity, strain = self._long_step()
+        if self.springs is not None and self.ledger is not None:
+            self.look()
+            strain *= np.repeat(self.springs.lasting[self.body], self.components)
+            time = self.meeting * self.dt
+            both = self.ledger.energies(time, time * velocity)
+            stored, lost = self.body_sums(np.stack(both, axis=1)).T
         mass = np.repeat(self.mass, self.components)
-        density = 0.5 * mass * velocity**2 + 0.5 * other * force
+        density = 0.5 * mass * velocity**2 + strain
         if plastic is not None:
             density += self._of_plastic_strain(plastic)
-        elastic = self.body_sums(density.reshape(-1, self.components).sum(axis=1))
+        elastic = self.body_sums(density.reshape(-1, self.components).sum(axis=1)) + stored
         free = self.momenta()[:, self.system.free_axes]
         mean = (free**2).sum(axis=1) / (2.0 * self.body_masses())
         rigids = self.problem.rigids[: self.problem.state.rigids]
         rigid = [0.5 * r.mass * sum(x * x for x in r.v) + _of_spin(r) for r in rigids]
-        return Energies(tuple(elastic.tolist()), tuple(mean.tolist()), tuple(rigid))
+        parts = (tuple(energy.tolist()) for energy in (elastic, mean, np.array(rigid), lost))
+        return Energies(*parts)
 
     def _of_plastic_strain(self, plastic: PlasticState) -> Floats:
         """(C n,) what 1/2 (u - u_p) K (u - u_p) has besides 1/2 u (K u - f_p), J."""
@@ -216,23 +272,38 @@ class Loop(ABC):
         np.add.at(density, 2 * plastic.plasticity.nodes[:, 0], plastic.stored())
         return np.asarray(density)
 
-    def _long_step(self) -> tuple[Floats, Floats, Floats]:
-        """u_{n+1}, w and K' u_n - f_p of `Energies`, without contact; the state stays as it is."""
-        now, velocity = self.u.copy(), self.v.copy()
+    def _long_step(self) -> tuple[Floats, Floats]:
+        """W and 1/2 u_{n+1} K' u_n of `Energies`, by component, without contact."""
         long_step = self.meeting * self.dt
-        self.drift(self.meeting)
-        following = self.u.copy()
-        # From rest: half the impulses, which the step itself gives in full.
-        self.u[:], self.v[:] = now, 0.0
-        for level in range(len(self.levels)):
-            impulse = 0.5 * 2**level * self.dt * self.level_product(level, now)
-            self.v += self.inverse * impulse
-        if self.problem.plastic is not None:
-            self.v -= 0.5 * self.dt * self.inverse * self.problem.plastic.force
-        self.drift(self.meeting)
-        force = 2.0 * np.repeat(self.mass, self.components) * (now - self.u) / long_step**2
-        self.u[:], self.v[:] = now, velocity
-        return following, (following - now) / long_step, force
+        with self._as_it_was():
+            now = self.u.copy()
+            self.drift(self.meeting)
+            following = self.u.copy()
+        return (following - now) / long_step, 0.5 * following * self._mean_force()
+
+    def _mean_force(self) -> Floats:
+        """K' u_n - f_p of `Energies`."""
+        if self.meeting == 1:
+            return self.product(self.u)
+        with self._as_it_was():
+            # From rest: half the impulses, which the step itself gives in full.
+            now, self.v[:] = self.u.copy(), 0.5 * self.inverse * self.impulse(self.u)
+            if self.problem.plastic is not None:
+                self.v -= 0.5 * self.dt * self.inverse * self.problem.plastic.force
+            self.drift_elastic(self.meeting)
+            mass, long_step = np.repeat(self.mass, self.components), self.meeting * self.dt
+            return np.asarray(2.0 * mass * (now - self.u) / long_step**2)
+
+    @contextmanager
+    def _as_it_was(self) -> Iterator[None]:
+        """Afterwards the state is what it is now."""
+        u, v = self.u.copy(), self.v.copy()
+        extension = None if self.springs is None else self.springs.extension.copy()
+        yield
+        self.u[:], self.v[:] = u, v
+        if self.springs is not None and extension is not None:
+            self.springs.extension[:] = extension
+            self.strain()
 
 
 class SerialLoop(Loop):
@@ -245,7 +316,7 @@ class SerialLoop(Loop):
         self.diagonal = whole.diagonal()
         state = kernel.State()
         state.nodes = system.owned.size
-        for name in ("inverse", "u", "v"):
+        for name in ("inverse", "u", "effective", "v"):
             setattr(state, name, arrays.pointer(getattr(self, name), np.float64))
         lanes = kernel.LANES[self.components]
         state.f = arrays.pointer(np.zeros(lanes * system.owned.size), np.float64)
@@ -279,6 +350,15 @@ class SerialLoop(Loop):
         own = node[self.system.owned]
         self._point_at((self.system.part(element == k), own == k) for k in range(count))
 
+    def _take_springs(self, springs: Springs, node: Ints) -> None:
+        arrays, state = kernel.Arrays(), self._state
+        groups = springs.groups(node, self.dt, arrays)
+        state.relaxings, state.springs = len(groups), springs.extension.shape[1]
+        state.relaxing = ctypes.cast(groups, ctypes.POINTER(kernel.Relaxing))
+        state.extension = arrays.pointer(springs.extension, np.float64)
+        self._spring_arrays = (groups, arrays)
+        self.strain()
+
     @property
     def acting(self) -> tuple[int, ...]:
         """Nodes whose elements of each level act."""
@@ -295,6 +375,15 @@ class SerialLoop(Loop):
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
         self._kernel.drift(ctypes.byref(self._state), 0, steps)
+
+    def drift_elastic(self, steps: int) -> None:
+        """The same of bodies that do not relax."""
+        if self.springs is None:
+            self.drift(steps)
+            return
+        state = kernel.State.from_buffer_copy(self._state)
+        state.relaxings, state.effective = 0, state.u
+        self._kernel.drift(ctypes.byref(state), 0, steps)
 
     def advance(self, steps: int) -> None:
         """Take a number of steps."""

@@ -10,9 +10,11 @@ import numpy.typing as npt
 from mpi4py import MPI
 
 from ..common.arrays import Floats, Ints
+from ..common.errors import SolverError
 from . import kernel
 from .loop import SerialLoop
 from .problem import ContactProblem
+from .relaxation import Springs
 from .system import System
 
 FIRST = 0
@@ -125,6 +127,9 @@ class ParallelLoop(SerialLoop):
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
         super()._take_levels(element, node, count)
         self._meet(node, count)
+
+    def _take_springs(self, springs: Springs, node: Ints) -> None:
+        raise SolverError("materials that relax are for one process: run without --np")
 
     def _read(self, x: Floats) -> Floats:
         """(C n,) with the other processes' nodes that own rows read, of all levels."""

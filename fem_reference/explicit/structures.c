@@ -174,6 +174,18 @@ typedef struct {
     const double *outer_block;
 } Part;
 
+/* Nodes of one body that move with one level, in a system in which some body relaxes; see relaxation.c. */
+typedef struct {
+    int64_t level;
+    int64_t count;
+    int64_t terms;         /* of the body, 0: elastic */
+    const int32_t *node;   /* (count) */
+    double lasting;        /* 1 - sum of the ratios: share of the modulus that does not relax */
+    const double *ratio;   /* (terms) share g of each spring */
+    const double *decay;   /* (terms) exp(-h / tau) over the level's time step h */
+    const double *growth;  /* (terms) tau (1 - exp(-h / tau)), s */
+} Relaxing;
+
 typedef struct {
     int64_t nodes;
     int64_t levels;
@@ -181,8 +193,13 @@ typedef struct {
     const Part *part;       /* (levels, parts) */
     const double *inverse;  /* (C nodes) 1/m, zero where fixed */
     double *u;              /* (C nodes) displacement */
+    double *effective;      /* (C nodes) displacement that K acts on: u itself, or see relaxation.c */
     double *v;              /* (C nodes) velocity at half steps */
     double *f;              /* (LANES nodes) work space, zero between sweeps */
     double *support;        /* (SPACED parts) impulse of the supports on each part, not yet in the problem's, N s */
+    int64_t relaxings;      /* 0: all bodies are elastic */
+    const Relaxing *relaxing;
+    int64_t springs;        /* most terms of any body */
+    double *extension;      /* (C springs nodes) m */
     Problem *problem;
 } State;

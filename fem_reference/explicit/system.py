@@ -7,6 +7,7 @@ from typing import Protocol
 import scipy.sparse
 
 from ..common.arrays import Floats, Ints, Mask
+from ..common.bodies import Relaxation
 from .contact import Contact, MatchedContact, RigidBody
 from .film import Film
 from .plastic import Plasticity
@@ -66,6 +67,10 @@ class System(Protocol):
 
         Columns as `owned`, then `ghosts`.
         """
+
+    @property
+    def relaxations(self) -> tuple[tuple[Relaxation, ...], ...]:
+        """Of the material of each elastic body."""
 
     @property
     def rigid(self) -> tuple[RigidBody, ...]:

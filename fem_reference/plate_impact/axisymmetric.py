@@ -276,7 +276,7 @@ class _Stepper:
 
         if self.scene.end_time is not None:
             return attempt(1)
-        return stable_run(attempt, lambda made: (len(made[1].loop.levels), made[0].energy_residual))
+        return stable_run(attempt, lambda made: made[0].account(len(made[1].loop.levels)))
 
 
 def compute(

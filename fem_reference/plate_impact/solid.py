@@ -177,7 +177,7 @@ def _stepped(
         )
         return loop, run, recorder
 
-    return stable_run(attempt, lambda made: (len(made[0].levels), made[1].energy_residual))
+    return stable_run(attempt, lambda made: made[1].account(len(made[0].levels)))
 
 
 def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: Report) -> Solution:

@@ -29,6 +29,7 @@ class SolidSystem:
         self.model, self.comm, self.first = model, comm, model.first
         self.rigid, self.contacts, self.matched = model.rigid, model.contacts, ()
         self.film = self.plasticity = None
+        self.relaxations = tuple(body.material.relaxation for body in bodies)
         self.free_axes = (0, 1, 2)
         self.points = np.concatenate([body.mesh.points for body in bodies])
         self.mass = np.concatenate([lumped_mass(b.mesh, b.material.density) for b in bodies])
