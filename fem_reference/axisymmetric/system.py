@@ -11,7 +11,7 @@ import scipy.sparse.linalg
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ..common.arrays import Floats, Ints, Mask
-from ..common.bodies import Plate
+from ..common.bodies import Plate, Relaxation
 from ..explicit.contact import Contact, MatchedContact, RigidBody
 from ..explicit.film import Film
 from ..explicit.plastic import Plasticity
@@ -60,6 +60,7 @@ class AxisymmetricSystem:
     free_axes: tuple[int, ...] = (1,)
     displacement: Floats | None = None
     """(n, 2) at the start, m; None: none."""
+    relaxations: tuple[tuple[Relaxation, ...], ...] = ((), (), ())
     tip: int | None = None
     """Node whose motion is the outer body's, if that is a beam."""
     plasticity: Plasticity | None = None
@@ -69,6 +70,11 @@ class AxisymmetricSystem:
     def owned(self) -> Ints:
         """(n,) all nodes."""
         return np.arange(self.mass.size)
+
+    @property
+    def ghosts(self) -> Ints:
+        """None: there is one process."""
+        return np.zeros(0, dtype=np.int64)
 
     @property
     def held(self) -> Mask:

@@ -15,6 +15,7 @@ import numpy as np
 from .arrays import Floats
 from .errors import SceneError, SolverError
 from .output import exclusive, result_folder, write_json
+from .processes import threads_per_process
 from .progress import MeshOfSeries, Progress
 from .settings import Options, Settings, require_instants, require_share
 from .uncertainty import Estimate, least_squares
@@ -266,6 +267,7 @@ class Series(Generic[S]):
             options.checkpoint_interval,
             self._label(number),
             refinement=self._factor(finest) / self._factor(number),
+            threads=threads_per_process(options.threads, self.comm),
         )
         if number == finest:
             settings = replace(settings, frames=options.frames, frame_times=options.stress_times)

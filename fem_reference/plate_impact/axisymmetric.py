@@ -48,6 +48,8 @@ class Solution:
     system: AxisymmetricSystem
     levels: tuple[int, ...]
     """Nodes whose elements of each level of sub-cycling act."""
+    threads: int
+    """Of the time loop."""
     resolution: Resolution
     estimate: ContactEstimate
     meshes_tried: int
@@ -75,7 +77,7 @@ class Solution:
 
     def machine(self) -> dict[str, Any]:
         """For the summary's ``solver``."""
-        return {"nodes_per_level": list(self.levels)}
+        return {"nodes_per_level": list(self.levels), "threads": self.threads}
 
     def mesh_report(self) -> dict[str, Any]:
         """For the summary's ``mesh``."""
@@ -165,13 +167,14 @@ class _Stepper:
                 end_time=None if end is None else float(end),
                 most_levels=most_levels,
                 courant=self.settings.courant,
+                threads=self.settings.threads,
                 fields=self.recorder,
                 on_progress=lambda done, message: self.report("stepping", done, named + message),
             )
 
         if self.scene.end_time is not None:
             return attempt(1)
-        return stable_run(attempt, lambda made: (len(made[1].loop.levels), made[0].energy_residual))
+        return stable_run(attempt, lambda made: made[0].account(len(made[1].loop.levels)))
 
 
 def compute(
@@ -238,10 +241,10 @@ def compute(
         )
         found = suits(struck.runs[-1], struck.motion)
         if like is not None or found.accepted:
-            levels = struck.motion.loop.acting
+            loop = struck.motion.loop
             return Solution(
-                *(struck.runs, mesh, system, levels, found.resolution, estimate, attempt),
-                *(factor, radii, reach, stepper.recorder),
+                *(struck.runs, mesh, system, loop.acting, loop.threads, found.resolution, estimate),
+                *(attempt, factor, radii, reach, stepper.recorder),
             )
         radii = found.radii(sizes.contact_element, radii)
         reach = reach if found.reach_left else 1.4 * reach

@@ -23,6 +23,7 @@ from ..explicit import kernel
 from ..explicit.damping import ModalDamping
 from ..explicit.drag import Drag
 from ..explicit.loop import Energies, SerialLoop
+from ..explicit.parts import worthwhile
 from .dents import Dents, Memory
 from .ending import Ending, Followed, Patch
 from .estimate import WAVE_FREQUENCY
@@ -49,12 +50,14 @@ class AxisymmetricMotion:
 
     share = 1.0
 
-    def __init__(self, system: AxisymmetricSystem) -> None:
-        self.system, self.loop = system, SerialLoop(system, alone())
+    def __init__(self, system: AxisymmetricSystem, threads: int = 1) -> None:
+        threads = worthwhile(threads, system.inverse_mass.size)
+        self.system, self.loop = system, SerialLoop(system, alone(), threads)
         self._bent = system.displacement is not None
         self._watched_before = 0.0
         if system.displacement is not None:
             self.loop.u[:] = self.loop.own(system.displacement)
+            self.loop.strain()
         self.damping: ModalDamping | None = None
         self.drag: Drag | None = None
         self._interval, self._undamped = math.inf, 0.0
@@ -135,6 +138,11 @@ class AxisymmetricMotion:
             float(dents.locked_in().sum()) if dents else 0.0,
         )
 
+    def by_role(self, of_bodies: tuple[float, ...]) -> tuple[float, float, float]:
+        """See `Motion.by_role`."""
+        outer, plate, inner = of_bodies
+        return outer, plate, inner
+
     @property
     def records(self) -> list[kernel.Record]:
         """Of the two contacts."""
@@ -166,11 +174,9 @@ class AxisymmetricMotion:
     def _fall_behind(self) -> None:
         """Take the velocities half a step back from the start, at which a bent body has forces."""
         loop, system = self.loop, self.system
-        for level in range(len(loop.levels)):
-            impulse = 0.5 * 2**level * loop.dt * loop.level_product(level, loop.u)
-            loop.v += loop.inverse * impulse
-            held = impulse[1::2][system.supports]
-            loop.problem.state.reaction[1] -= float(held.sum())
+        impulse = 0.5 * loop.impulse(loop.u)
+        loop.v += loop.inverse * impulse
+        loop.problem.state.reaction[1] -= float(impulse[1::2][system.supports].sum())
 
     def velocities(self) -> tuple[float, float]:
         """Mean velocity of each body, of a bender its tip's, half a step late, m/s."""
@@ -234,8 +240,8 @@ class AxisymmetricMotion:
         return float(mass @ values[system.body(body)][1::2] / mass.sum())
 
 
-def _ending(motion: AxisymmetricMotion, damping_ratio: float) -> Ending:
-    system, loop = motion.system, motion.loop
+def _ending(motion: AxisymmetricMotion, scene: Scene) -> Ending:
+    system, loop, materials = motion.system, motion.loop, scene.materials
     modes = elastic_modes(system, FOLLOWED_MODES)
     frequencies, shapes = modes.frequencies, modes.shapes
     rows, start = system.body(PLATE), int(system.first[PLATE])
@@ -248,13 +254,21 @@ def _ending(motion: AxisymmetricMotion, damping_ratio: float) -> Ending:
         whole = patch_flexibility(system, PLATE, pairs.opposite, weights)
         rest = whole - float(np.sum((shares / frequencies) ** 2))
         sphere = patch_flexibility(system, body, pairs.candidates, weights)
-        return Patch(max(rest, 0.0), sphere, shares)
+        # The stiffness that lasts bounds what an energy can displace.
+        return Patch(max(rest, 0.0) / lasting[PLATE], sphere / lasting[body], shares)
 
-    def coordinates() -> tuple[Floats, Floats]:
-        return shapes.T @ (mass * motion.strained()[rows]), shapes.T @ (mass * loop.v[rows])
+    def coordinates() -> tuple[Floats, Floats, Floats]:
+        position, velocity = (shapes.T @ (mass * x[rows]) for x in (motion.strained(), loop.v))
+        springs = loop.springs
+        if springs is None:
+            return position, velocity, np.zeros((frequencies.size, 0))
+        return position, velocity, shapes.T @ (mass[:, None] * springs.of_body(PLATE))
 
+    lasting = [material.lasting for material in materials]
     patches = (patch(0, OUTER), patch(1, INNER))
-    return Ending(motion, patches, WINDOW, Followed(frequencies, damping_ratio, coordinates))
+    relaxation = materials[PLATE].relaxation
+    followed = Followed(frequencies, scene.plate.damping_ratio, relaxation, coordinates)
+    return Ending(motion, patches, WINDOW, followed)
 
 
 def integrate_axisymmetric(
@@ -262,15 +276,18 @@ def integrate_axisymmetric(
     scene: Scene,
     contact_duration: float,
     memory: Memory | None = None,
+    threads: int = 1,
     **options: Any,
 ) -> tuple[Run, AxisymmetricMotion]:
-    """Step a system, with what yielding bodies know of earlier impacts; options of `run.integrate`.
+    """Step a system, with at most so many threads; see `run.integrate` for the options.
+
+    ``memory`` is what yielding bodies know of earlier impacts.
 
     Raises:
         SolverError: time step above the critical one, divergence, or no end found.
     """
     damping_ratio = scene.plate.damping_ratio
-    motion = AxisymmetricMotion(system)
+    motion = AxisymmetricMotion(system, threads)
     if memory is not None:
         motion.lay(memory, scene.gap)
     if damping_ratio > 0.0:
@@ -281,7 +298,7 @@ def integrate_axisymmetric(
         motion,
         scene,
         contact_duration,
-        lambda: _ending(motion, damping_ratio),
+        lambda: _ending(motion, scene),
         lambda: critical_time_step(system),
         levels_within_samples=False,
         chunk=CHUNK_SAMPLES,

@@ -301,6 +301,7 @@ def build_system(
         element_stiffness=np.concatenate(element_stiffness),
         element_steps=np.concatenate(element_steps),
         displacement=displacement,
+        relaxations=tuple(material.relaxation for material in scene.materials),
         tip=tip,
         film=_film(scene, mesh, numbers),
         plasticity=together(yielding),

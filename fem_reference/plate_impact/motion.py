@@ -54,11 +54,14 @@ class Losses:
     drag: float = 0.0
     contacts: tuple[float, float] = (0.0, 0.0)
     """To friction and to yielding, at outer and inner body."""
+    bodies: tuple[float, ...] | None = None
+    """To relaxation, of outer body, plate and inner body; None: none of them relaxes."""
 
     @property
     def total(self) -> float:
         """All of it, J."""
-        return self.plate_damping + self.squeeze_film + self.drag + sum(self.contacts)
+        others = (*self.contacts, *(self.bodies or ()))
+        return self.plate_damping + self.squeeze_film + self.drag + sum(others)
 
     def of_whole(self, share: float) -> Losses:
         """That of the whole bodies, if this is that of a ``share``."""
@@ -68,6 +71,7 @@ class Losses:
             self.squeeze_film / share,
             self.drag / share,
             (outer / share, inner / share),
+            self.bodies and tuple(lost / share for lost in self.bodies),
         )
 
 
@@ -112,6 +116,9 @@ class Motion(Protocol):
     @property
     def further(self) -> Further:
         """What has acted besides contacts and supports, on the part modelled."""
+
+    def by_role(self, of_bodies: tuple[float, ...]) -> tuple[float, float, float]:
+        """Values of the loop's elastic bodies (bodies,) as those of outer body, plate, inner."""
 
     @property
     def share(self) -> float:

@@ -70,7 +70,7 @@ class Solution(Solved, Protocol):
         """Made before any mesh."""
 
     def first_frequency(self) -> float:
-        """Lowest elastic eigenfrequency of the plate, Hz."""
+        """Lowest elastic eigenfrequency of the plate with its instantaneous modulus, Hz."""
 
     def machine(self) -> dict[str, Any]:
         """For the summary's ``solver``."""
@@ -101,7 +101,8 @@ def of_run(scene: Scene, run: Run) -> dict[str, float]:
 
 def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
     """`QUANTITIES`, SI, and of a series those `of_run` of each impact as "NUMBER/NAME"."""
-    found = {**of_run(scene, solution.run), "first_frequency": solution.first_frequency()}
+    frequency = scene.plate.material.vibrating(solution.first_frequency())
+    found = {**of_run(scene, solution.run), "first_frequency": frequency}
     if scene.series is not None:
         for number, run in enumerate(solution.runs, 1):
             impact = {**of_run(scene, run), **_of_yielding(run)}
@@ -263,7 +264,8 @@ def _write(
     )
     summary["uncertainty"].update(curve_uncertainty(bands))
     if run.losses is not None:
-        summary["losses"] = asdict(run.losses)
+        losses = asdict(run.losses)
+        summary["losses"] = {name: loss for name, loss in losses.items() if loss is not None}
     if run.yielded is not None:
         summary.update(_of_yielding(run))
     if scene.series is not None:

@@ -202,12 +202,18 @@ def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:
 def _require_elastic(
     materials: dict[str, Material], geometry: str, spheres: bool, wet: bool
 ) -> None:
-    """Refuse what yields where this solver has no yielding."""
+    """Refuse what yields where this solver has no yielding, and beside what relaxes."""
+    relaxing = [name for name, material in materials.items() if material.relaxation]
     for name, material in materials.items():
         if material.yielding is not None and not (spheres and geometry != "solid" and not wet):
             raise SceneError(
                 f"{name}.material yields (hardening {material.yielding.hardening:g} Pa); this "
                 "solver has that between spheres and plate in axisymmetric geometry, dry"
+            )
+        if material.yielding is not None and relaxing:
+            raise SceneError(
+                f"{name}.material yields and {relaxing[0]}.material relaxes; this solver has "
+                "one of both in a scene"
             )
 
 
@@ -277,6 +283,11 @@ def parse_scene(document: Any) -> Scene:
     materials = {"plate": plate.material, **{n: body.material for n, body in bodies.items()}}
     _require_elastic(materials, geometry, _are_spheres(bodies), fluid is not None)
     for name, body in bodies.items():
+        if not isinstance(body, Sphere) and name not in rigid and body.material.relaxation:
+            raise SceneError(
+                f"{name}.material.relaxation is given; the tip of a compact body or a bender "
+                "yields as an elastic half-space does: take a sphere"
+            )
         if geometry == "solid" and isinstance(body, Compact) and name not in rigid:
             raise SceneError(
                 f"{name}.kind is 'compact', whose tip has to yield; solid geometry has rigid tips "

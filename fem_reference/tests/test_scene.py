@@ -28,10 +28,11 @@ def test_yield_strength_is_admissible_and_changes_nothing() -> None:
     assert parse_scene(strong).plate == parse_scene(document()).plate
 
 
-def test_relaxing_materials_are_refused() -> None:
+def test_relaxing_and_yielding_together_are_refused() -> None:
     scene = document()
     scene["plate"]["material"]["relaxation"] = [{"ratio": 0.1, "time": 1e-5}]
-    with pytest.raises(SceneError, match="not supported"):
+    scene["outer"]["material"] |= {"yield_strength": 6e8, "hardening": 0.0}
+    with pytest.raises(SceneError, match=r"outer\.material yields and plate\.material relaxes"):
         parse_scene(scene)
 
 

@@ -18,6 +18,8 @@ pub struct Wish {
     pub fields: u32,
     /// Processes, for solid geometry; 0 is 1.
     pub processes: u32,
+    /// Processor cores for the time loop, all processes together; 0: those there are.
+    pub threads: u32,
 }
 
 /// Computes the reference of `scene` at `resolution` and puts it into `store`.
@@ -89,6 +91,9 @@ pub fn solve_with(
     }
     if wish.fields > 0 {
         command.args(["--fields", &wish.fields.to_string()]);
+    }
+    if wish.threads > 0 {
+        command.args(["--threads", &wish.threads.to_string()]);
     }
     let solid = scene.reference.geometry == Geometry::Solid;
     if solid || matches!(&scene.setup, Setup::PlateImpact(setup) if setup.series.is_some()) {

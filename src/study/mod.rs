@@ -3,6 +3,7 @@
 //! A study is one file with one function that returns a [`Study`], and one line in [`STUDIES`].
 
 pub mod auto;
+pub mod damping;
 pub mod fig14;
 pub mod fig15;
 pub mod fig16;
@@ -80,7 +81,7 @@ impl Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 14] = [
+pub const STUDIES: [Entry; 15] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
@@ -167,6 +168,14 @@ pub const STUDIES: [Entry; 14] = [
         takes_model: true,
         run: fluid::run,
         panels: &fluid::PANELS,
+        drawing: None,
+    },
+    Entry {
+        name: "damping",
+        about: "Section 4.2.4: what a polymer plate's damping takes, in its modes and in both contacts",
+        takes_model: false,
+        run: |_, note| damping::run(note),
+        panels: &damping::PANELS,
         drawing: None,
     },
     Entry {
