@@ -17,7 +17,10 @@ pub(super) fn of_model(scene: &SealSeat, mesh: &SeatMesh) -> Vec<String> {
         doubts.push("the reduced model takes the sphere as rigid, the scene has an elastic one".to_owned());
     }
     if scene.friction > 0.0 {
-        doubts.push("the reduced model leaves out friction, which turns the sphere's flight; the reference has it".to_owned());
+        doubts.push(
+            "the reduced model leaves out friction, which turns the sphere's flight; the reference has it"
+                .to_owned(),
+        );
     }
     let [seat, sphere] = [&scene.seat.material, &scene.sphere.material].map(|m| m.plane_strain_modulus());
     let share = seat / (seat + sphere);

@@ -12,9 +12,9 @@ mod soundness;
 pub(super) use keys::{ACTUATOR, INTENDED, SEAT, SEAT_REDUCED, SEAT_REFERENCE, SEATED_SPHERE};
 pub(super) use read::{seal_seat, seat_reference};
 
-use super::plate_impact::is_zero;
 use super::Material;
 use super::hash::{canonical, drop_inelastic, sha256_hex};
+use super::plate_impact::is_zero;
 use serde::Serialize;
 use serde_json::json;
 
