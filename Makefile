@@ -82,9 +82,12 @@ evidence: setup
 	$(RUN) --store $(OUT)/evidence coverage --record
 	$(RUN) --store $(OUT)/evidence study auto --out $(OUT)/studies
 	$(PYTHON) -m fem_reference bands --random 50 --out $(OUT)/bands
+	$(PYTHON) -m fem_reference yielding --out reports/yielding.md
 	for scene in $(PLATES); do $(PYTHON) -m fem_reference cost --out reports/reference-cost-$$scene.json \
 	    --scene fem_reference/solutions/$$scene/paper/provenance.json || exit 1; done
-	for study in table2 rocker fluid insensitivity seal-seat seal-seat-direction seal-seat-cost; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done
+	$(PYTHON) -m fem_reference speed --out reports/reference-speed.json \
+	    --scene fem_reference/solutions/solid-plate-r10/paper/provenance.json
+	for study in table2 rocker fluid damping shakedown insensitivity seal-seat seal-seat-direction seal-seat-cost; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done
 	for study in fig14 fig15 fig16 fig17 half-period; do $(RUN) study $$study --model C --out $(OUT)/studies || exit 1; done
 	cargo build --release --manifest-path benches/diffsol/Cargo.toml
 	$(RUN) bench --peer benches/diffsol/target/release/diffsol-peer --out $(OUT)/bench

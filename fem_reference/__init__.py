@@ -4,3 +4,10 @@ The package meshes two spheres and a plate (gmsh), assembles stiffness and mass 
 (dolfinx), steps with central differences and kinematic contact (compiled loop) and writes
 the result as a folder. It is run as ``python3 -m fem_reference``. All quantities are SI.
 """
+
+import os
+
+# How often a thread of the loop looks for the others before it sleeps, read by OpenMP where it is
+# loaded. By default it looks for milliseconds: where other programs want the processor, that is
+# their time lost, and that of the thread it waits for.
+os.environ.setdefault("GOMP_SPINCOUNT", "1000")

@@ -1,4 +1,4 @@
-"""Command line: ``solve``, ``modes``, ``mesh``, ``bands``, ``cost`` and ``versions``."""
+"""Command line: ``solve``, ``modes``, ``mesh``, ``versions`` and studies."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def _times(text: str) -> tuple[float, ...]:
 
 
 def _count(text: str) -> int:
-    if not text.isdecimal() or not 0 <= int(text) <= 100000:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 100000")
+    if not text.isdecimal() or not 0 <= int(text) <= 10_000_000:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 10000000")
     return int(text)
 
 
@@ -57,6 +57,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     solve.add_argument("--np", type=_count, default=1, metavar="N", help="processes (solid only)")
     solve.add_argument(
+        "--threads",
+        type=_count,
+        default=0,
+        metavar="N",
+        help="cores the time loop uses, all processes together (0: those there are)",
+    )
+    solve.add_argument(
         "--checkpoint", type=Path, metavar="DIR", help="states of a solid run, to go on from"
     )
     solve.add_argument(
@@ -78,6 +85,14 @@ def _parser() -> argparse.ArgumentParser:
     cost = commands.add_parser("cost", help="cost against error over meshes, limits of the machine")
     cost.add_argument("--scene", type=Path, required=True, help="or provenance.json")
     cost.add_argument("--out", type=Path, required=True, help="JSON; a figure .svg beside it")
+    speed = commands.add_parser("speed", help="of the 3D loop on threads and processes")
+    speed.add_argument("--scene", type=Path, required=True, help="of solid geometry")
+    speed.add_argument("--out", type=Path, required=True, help="JSON; a table .md beside it")
+    speed.add_argument(
+        "--dofs", type=_count, nargs="+", default=(), metavar="N", help="by default three sizes"
+    )
+    yielding = commands.add_parser("yielding", help="a yielding sphere on a rigid wall")
+    yielding.add_argument("--out", type=Path, required=True, help="Markdown")
     mesh = commands.add_parser("mesh", help="mesh of a seal seat as .vtu, a .json beside it")
     mesh.add_argument("--scene", type=Path, required=True, help="scene.json of kind seal-seat")
     mesh.add_argument("--out", type=Path, required=True, help="FILE.vtu")
@@ -106,6 +121,16 @@ def _run(arguments: argparse.Namespace) -> None:
             from .studies.cost import report_cost
 
             report_cost(arguments.scene, arguments.out)
+            return
+        if arguments.command == "speed":
+            from .studies.speed import SIZES, report_speed
+
+            report_speed(arguments.scene, tuple(arguments.dofs) or SIZES, arguments.out)
+            return
+        if arguments.command == "yielding":
+            from .studies.yielding import report_yielding
+
+            report_yielding(arguments.out, Progress())
             return
         document = read_document(arguments.scene)
         commands = commands_of(document)

@@ -52,7 +52,7 @@ const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
 }
 
 /// The features, of plates first.
-pub static FEATURES: [Feature; 21] = [
+pub static FEATURES: [Feature; 22] = [
     feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)).by(Form::CircularPlate),
     feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported))
         .by(Form::CircularPlate),
@@ -66,6 +66,7 @@ pub static FEATURES: [Feature; 21] = [
     feature("compact outer body", |s| plate(s, |p| matches!(p.outer.shape, Shape::Compact { .. })))
         .by(Form::Hertz),
     feature("compact inner body", |s| plate(s, |p| matches!(p.inner.shape, Shape::Compact { .. }))),
+    feature("relaxing material", |s| plate(s, PlateImpact::relaxes)).by(Form::Hunter),
     feature("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))).by(Form::Cantilever),
     feature("friction", |s| plate(s, |p| p.friction > 0.0)),
     feature("squeeze film", |s| fluid(s, |f| f.squeeze_film)).by(Form::Film),

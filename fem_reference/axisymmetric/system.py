@@ -11,9 +11,10 @@ import scipy.sparse.linalg
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ..common.arrays import Floats, Ints, Mask
-from ..common.bodies import Plate
+from ..common.bodies import Plate, Relaxation
 from ..explicit.contact import Contact, MatchedContact, RigidBody
 from ..explicit.film import Film
+from ..explicit.plastic import Plasticity
 from .elasticity import BodyMatrices, scatter
 from .mesh import BodyMesh
 from .tip import ring_edges
@@ -59,13 +60,21 @@ class AxisymmetricSystem:
     free_axes: tuple[int, ...] = (1,)
     displacement: Floats | None = None
     """(n, 2) at the start, m; None: none."""
+    relaxations: tuple[tuple[Relaxation, ...], ...] = ((), (), ())
     tip: int | None = None
     """Node whose motion is the outer body's, if that is a beam."""
+    plasticity: Plasticity | None = None
+    """Of the boxes around the contacts of bodies that yield."""
 
     @property
     def owned(self) -> Ints:
         """(n,) all nodes."""
         return np.arange(self.mass.size)
+
+    @property
+    def ghosts(self) -> Ints:
+        """None: there is one process."""
+        return np.zeros(0, dtype=np.int64)
 
     @property
     def held(self) -> Mask:
@@ -155,33 +164,3 @@ def hertz_weights(radii: Floats, circle: float | None = None) -> Floats:
     """
     inside = np.minimum(ring_edges(radii) / (circle or radii[-1]), 1.0)
     return np.asarray(-np.diff((1.0 - inside**2) ** 1.5))
-
-
-def patch_flexibility(system: AxisymmetricSystem, body: int, nodes: Ints, weights: Floats) -> float:
-    """Axial flexibility of a body over a patch, p^T K^-1 p, m/N.
-
-    The mean displacement, weighted with ``weights``, under a unit axial force spread with the
-    same weights over ``nodes``: static if the body is supported, otherwise that of the free
-    body under the force and its own inertia, rigid motion apart (inertia relief).
-    """
-    rows = system.body(body)
-    stiffness = system.stiffness[rows, rows].tocsc()
-    free = np.flatnonzero(system.inverse_mass[rows] > 0.0)
-    mass = system.mass[system.first[body] : system.first[body + 1]]
-    load = np.zeros(2 * mass.size)
-    load[2 * (nodes - system.first[body]) + 1] = weights
-    patch = load.copy()
-    supported = bool(
-        np.any((system.supports >= system.first[body]) & (system.supports < system.first[body + 1]))
-    )
-    if not supported:
-        load[1::2] -= mass / mass.sum()
-        # One axial component pinned: the load is in equilibrium, so the pin carries nothing.
-        free = free[free != 2 * mass.size - 1]
-    if free.size == 0:
-        return 0.0
-    solution = np.zeros_like(load)
-    solution[free] = scipy.sparse.linalg.splu(stiffness[free][:, free]).solve(load[free])
-    if not supported:
-        solution[1::2] -= mass @ solution[1::2] / mass.sum()
-    return float(patch @ solution)

@@ -14,19 +14,66 @@ from .beam import Beam, Strike
 from .errors import SceneError
 from .reader import Reader
 
+FIXED_POINT = 100
+"""Iterations for the frequency of a mode that relaxes."""
 EDGES = ("clamped", "simply-supported", "free")
 
 
 @dataclass(frozen=True)
+class Relaxation:
+    """A term of a Prony series E(t) = E_0 (1 - sum ratio (1 - exp(-t/time)))."""
+
+    ratio: float
+    """Share of the instantaneous modulus that relaxes."""
+    time: float
+    """s"""
+
+
+@dataclass(frozen=True)
+class Yielding:
+    """Von Mises yielding with linear isotropic hardening."""
+
+    strength: float
+    """Y, Pa"""
+    hardening: float
+    """Slope H of the yield stress over the plastic strain, Pa"""
+    rate: float = 0.0
+    """D of Cowper & Symonds: strain rate that doubles the yield stress, 1/s; 0: none does"""
+    exponent: float = 1.0
+    """q: the yield stress grows by 1 + (strain rate / D)^(1/q)"""
+
+
+@dataclass(frozen=True)
 class Material:
-    """Linear isotropic elastic material."""
+    """Linear isotropic material, up to where it yields if it does; bulk and shear relax alike."""
 
     name: str
     youngs_modulus: float
-    """Pa"""
+    """Instantaneous, Pa."""
     poisson_ratio: float
     density: float
     """kg/m^3"""
+    yielding: Yielding | None = None
+    """None: elastic whatever the stress"""
+    relaxation: tuple[Relaxation, ...] = ()
+    """Empty: none."""
+
+    @property
+    def lasting(self) -> float:
+        """Share of the modulus that does not relax."""
+        return 1.0 - sum(term.ratio for term in self.relaxation)
+
+    def storage(self, frequency: float) -> float:
+        """Storage modulus at a frequency (Hz) over the instantaneous one."""
+        omega = 2.0 * math.pi * frequency
+        return 1.0 - sum(t.ratio / (1.0 + (omega * t.time) ** 2) for t in self.relaxation)
+
+    def vibrating(self, instantaneous: float) -> float:
+        """Frequency of a mode with the storage modulus at it, Hz, from the instantaneous one's."""
+        frequency = instantaneous
+        for _ in range(FIXED_POINT if self.relaxation else 0):
+            frequency = instantaneous * math.sqrt(self.storage(frequency))
+        return frequency
 
     @property
     def plane_strain_modulus(self) -> float:
@@ -143,16 +190,48 @@ def sphere_profile(radius: float, r: Floats) -> Floats:
     return np.asarray(r**2 / (radius + np.sqrt(radius**2 - r**2)))
 
 
-def read_material(reader: Reader) -> Material:
+def _yielding(reader: Reader) -> Yielding | None:
+    if "hardening" not in reader.node:
+        # the yield strength alone changes no result
+        return None
+    rate, exponent = 0.0, 1.0
+    if reader.node.get("rate") is not None:
+        law = reader.child("rate")
+        law.allow("D", "q")
+        rate = law.number("D", "1/s")
+        exponent = law.number("q", "(no unit)", above=1.0, inclusive=True)
+    return Yielding(
+        strength=reader.number("yield_strength", "Pa"),
+        hardening=reader.number("hardening", "Pa", inclusive=True),
+        rate=rate,
+        exponent=exponent,
+    )
+
+
+def read_material(reader: Reader, may_yield: bool = False) -> Material:
     """The material an object describes."""
-    for key, verb in (("hardening", "yields"), ("relaxation", "relaxes")):
-        if key in reader.node:
-            raise SceneError(f"{reader.path}: a material that {verb} ({key!r}) is not supported")
-    # without hardening the yield strength changes no result
-    reader.allow("name", "youngs_modulus", "poisson_ratio", "density", "yield_strength")
+    if "hardening" in reader.node and not may_yield:
+        raise SceneError(f"{reader.path}: a material that yields ('hardening') is not supported")
+    elastic = ("name", "youngs_modulus", "poisson_ratio", "density")
+    reader.allow(*elastic, "yield_strength", "hardening", "rate", "relaxation")
     return Material(
         name=reader.text("name"),
         youngs_modulus=reader.number("youngs_modulus", "Pa"),
         poisson_ratio=reader.number("poisson_ratio", "(no unit)", above=-1.0, below=0.5),
         density=reader.number("density", "kg/m^3"),
+        yielding=_yielding(reader),
+        relaxation=_relaxation(reader) if "relaxation" in reader.node else (),
     )
+
+
+def _relaxation(reader: Reader) -> tuple[Relaxation, ...]:
+    terms = tuple(
+        Relaxation(term.number("ratio", "(no unit)", below=1.0), term.number("time", "s"))
+        for term in reader.children("relaxation")
+    )
+    relaxing = sum(term.ratio for term in terms)
+    if relaxing >= 1.0:
+        raise SceneError(
+            f"{reader.path}.relaxation: the ratios add up to {relaxing:g}; it must be below 1"
+        )
+    return terms

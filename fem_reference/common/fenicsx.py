@@ -148,25 +148,15 @@ class Domain:
 
 
 class TetDomain:
-    """Tetrahedra distributed over the processes of ``comm`` with a vector space of degree 1 or 2.
+    """Tetrahedra of this process with a vector space of degree 1 or 2."""
 
-    Process ``rank`` of ``size`` hands in its share of the elements, all points are handed in by
-    every process; dolfinx then partitions the mesh as it sees fit.
-    """
-
-    def __init__(self, points: Floats, corners: Ints, degree: int, comm: Any) -> None:
-        ranks, rank = comm.size, comm.rank
-        elements = _share(corners.shape[0], ranks, rank)
-        nodes = _share(points.shape[0], ranks, rank)
-        # dolfinx takes the points of process 0 as the first ones, and so on.
-        self.mesh = _mesh(comm, points[nodes], corners[elements], "tetrahedron")
+    def __init__(self, points: Floats, corners: Ints, degree: int) -> None:
+        self.mesh = _mesh(MPI.COMM_SELF, points, corners, "tetrahedron")
         self.space = _function_space(self.mesh, "Lagrange", degree, (3,))
-        self.comm = comm
 
-    def owned_points(self) -> Floats:
-        """(n, 3) the nodes whose rows this process owns, m."""
-        owned = self.space.dofmap.index_map.size_local
-        return np.asarray(self.space.tabulate_dof_coordinates()[:owned], dtype=np.float64)
+    def points_of_nodes(self) -> Floats:
+        """(n, 3) places of the nodes, m."""
+        return np.asarray(self.space.tabulate_dof_coordinates(), dtype=np.float64)
 
     def cell_constants(self, of_element: Floats) -> Any:
         """A piecewise constant function from one value per element as handed in."""
@@ -177,7 +167,7 @@ class TetDomain:
         return function
 
     def local_cells(self) -> Ints:
-        """For each element of this process, ghosts included, its number as handed in."""
+        """For each of dolfinx's elements its number as handed in."""
         return np.asarray(self.mesh.topology.original_cell_index, dtype=np.int64)
 
     def petsc_matrix(self, form: Any) -> Any:
@@ -187,7 +177,7 @@ class TetDomain:
         return matrix
 
     def function(self, values: Floats) -> Any:
-        """A function of the space with the values (n, 3) at its nodes (one process only)."""
+        """A function of the space with the values (n, 3) at its nodes."""
         function = fem.Function(self.space)
         function.x.array[:] = values.ravel()
         return function
@@ -202,46 +192,22 @@ class TetDomain:
         return values
 
 
-def _share(count: int, ranks: int, rank: int) -> slice:
-    return slice(count * rank // ranks, count * (rank + 1) // ranks)
-
-
-def block_matrix(matrix: Any) -> Any:
-    """The PETSc matrix in 3x3 blocks: its product reads a ninth of the column numbers."""
-    return matrix.convert("baij")
-
-
 def petsc_rows(matrix: Any) -> scipy.sparse.csr_matrix:
-    """This process' rows; the PETSc matrix is destroyed."""
+    """The matrix; that of PETSc is destroyed."""
     indptr, indices, values = matrix.getValuesCSR()
     columns = matrix.getSize()[1]
     matrix.destroy()
     return scipy.sparse.csr_matrix((values, indices, indptr), shape=(indptr.size - 1, columns))
 
 
-def block_rows(rows: scipy.sparse.csr_matrix, comm: Any) -> Any:
-    """PETSc's matrix in 3x3 blocks from the rows that this process owns."""
-    whole = rows.tobsr((3, 3)).tocsr()
-    size = (rows.shape[0], rows.shape[1])
-    matrix = PETSc.Mat().createAIJ(
-        ((size[0], size[1]), (size[0], size[1])),
-        bsize=3,
-        csr=(whole.indptr.astype(PETSc.IntType), whole.indices.astype(PETSc.IntType), whole.data),
-        comm=comm,
-    )
-    matrix.assemble()
-    return block_matrix(matrix)
-
-
-def petsc_vectors(matrix: Any) -> tuple[Any, Any]:
-    """Vectors x and y of a product y = K x."""
-    x, y = matrix.createVecs()
-    return x, y
-
-
 def world() -> Any:
     """The communicator of all processes."""
     return MPI.COMM_WORLD
+
+
+def on_this_machine(comm: Any) -> Any:
+    """The processes of ``comm`` that share this machine's memory."""
+    return comm.Split_type(MPI.COMM_TYPE_SHARED)
 
 
 def alone() -> Any:

@@ -37,12 +37,19 @@ class Fields:
         meshio.vtu.write(path, self._grid({}, {}), binary=True, compression=None)
 
     def write_frame(self, path: Path, displacements: list[Floats]) -> None:
-        """Displacement (nodes), stress and von Mises stress (elements' midpoints) as .vtu."""
-        stress = np.vstack([self.stress(k, local) for k, local in enumerate(displacements)])
+        """Displacement (nodes), stress and von Mises stress (elements' midpoints) as .vtu.
+
+        Args:
+            path: of the file.
+            displacements: (n, d) of each body, m, or (n, 2 d) if what strains is another: the
+                effective displacement of a material that relaxes, behind it.
+        """
+        size = self.bodies[0][0].shape[1]
+        stress = np.vstack([self.stress(k, u[:, -size:]) for k, u in enumerate(displacements)])
         cell_data = {"von_mises": [self.von_mises(stress)]}
         for name, column in zip(self.components, stress.T, strict=True):
             cell_data[name] = [column]
-        point_data = {"displacement": np.vstack([_spatial(local) for local in displacements])}
+        point_data = {"displacement": np.vstack([_spatial(u[:, :size]) for u in displacements])}
         grid = self._grid(point_data, cell_data)
         meshio.vtu.write(path, grid, binary=True, compression=None)
 

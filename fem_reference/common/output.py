@@ -164,8 +164,8 @@ def write_json(path: Path, document: dict[str, Any]) -> None:
 def write_history(
     path: Path, columns: Sequence[str], table: Floats, bands: Floats, digits: int
 ) -> None:
-    """Comma-separated: ``columns``, then the half width of the band of all but the first."""
-    names = [*columns, *(f"{name}_band" for name in columns[1:])]
+    """Comma-separated: ``columns``, then half widths of bands of all but the first, if any."""
+    names = [*columns, *(f"{name}_band" for name in columns[1:][: bands.shape[1]])]
     formats = [f"%.{digits}g"] * len(columns) + ["%.3g"] * bands.shape[1]
     rows = np.column_stack([table, bands])
     np.savetxt(path, rows, fmt=formats, delimiter=",", header=",".join(names), comments="")

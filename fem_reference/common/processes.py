@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from .errors import RunError, SolverError
+from .groups import affinity, quota
 from .parent import launched
 from .progress import Progress
 
@@ -18,30 +19,56 @@ INHERITED = ("PMIX_", "PMI_", "OMPI_COMM_", "OMPI_UNIVERSE", "OMPI_MCA_ess", "OM
 """What a process that has used MPI leaves in the environment of those it starts."""
 
 
-def _launch(processes: int) -> None:
-    """Become mpirun with this command in ``processes`` processes.
+def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str, str]]:
+    """The command that runs ``command`` in so many processes, and its environment.
 
     Raises:
         SolverError: there is no mpirun.
     """
+    kept = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
+    if processes == 1:
+        return command, kept
     program = shutil.which("mpirun") or shutil.which("mpiexec")
     if program is None:
         raise SolverError("mpirun is missing; --np needs it: install openmpi-bin")
-    kept = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
-    # One thread per process; no refusal for root: who may start the solver may start it so.
+    # Libraries have one thread, the loop is told its own; no refusal for root: who may start the
+    # solver may start it so.
     settings = {
         "OMP_NUM_THREADS": "1",
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
         # Processes that are told to end do so at once: they have nothing to put in order.
         "OMPI_MCA_odls_base_sigkill_timeout": "0",
+        # Two runs side by side would be bound to the same cores, threads of a process to one.
+        "OMPI_MCA_hwloc_base_binding_policy": "none",
     }
     if processes >= (os.cpu_count() or 1):
         # Somebody else needs a processor too: waiting must not keep it busy.
         settings["OMPI_MCA_mpi_yield_when_idle"] = "1"
+    return [program, "-n", str(processes), *command], {**settings, **kept}
+
+
+def _launch(processes: int) -> None:
+    """Become this command in ``processes`` processes.
+
+    Raises:
+        SolverError: there is no mpirun.
+    """
+    again = [sys.executable, "-m", "fem_reference", *sys.argv[1:]]
+    command, environment = launched_by(again, processes)
     sys.stdout.flush()
-    command = [program, "-n", str(processes), sys.executable, "-m", "fem_reference", *sys.argv[1:]]
-    os.execve(program, command, {**settings, **kept})
+    os.execve(command[0], command, environment)
+
+
+def threads_per_process(asked: int, comm: Any) -> int:
+    """Threads of this process: its share of those ``asked`` for on its machine, 0: of its cores."""
+    from .fenicsx import on_this_machine
+
+    here = on_this_machine(comm)
+    processes = int(here.size)
+    # A launcher may have bound every process to cores of its own.
+    there = len(frozenset().union(*here.allgather(affinity())))
+    return max(1, int(asked or min(there, quota())) // processes)
 
 
 def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> None:

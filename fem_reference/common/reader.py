@@ -40,6 +40,13 @@ class Reader:
         """The object under a key."""
         return Reader(self.get(key), self._name(key))
 
+    def children(self, key: str) -> list[Reader]:
+        """The objects in the list under a key."""
+        values = self.get(key)
+        if not isinstance(values, list):
+            raise SceneError(f"{self._name(key)} must be a list, not {_show(values)}")
+        return [Reader(value, f"{self._name(key)}[{k}]") for k, value in enumerate(values)]
+
     def text(self, key: str) -> str:
         """The text under a key."""
         value = self.get(key)

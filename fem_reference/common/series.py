@@ -15,6 +15,7 @@ import numpy as np
 from .arrays import Floats
 from .errors import SceneError, SolverError
 from .output import exclusive, result_folder, write_json
+from .processes import threads_per_process
 from .progress import MeshOfSeries, Progress
 from .settings import Options, Settings, require_instants, require_share
 from .uncertainty import Estimate, least_squares
@@ -106,6 +107,8 @@ class Problem(Generic[S]):
     """A run costs the elements in a direction to this power, and once more for the steps."""
     leads: Callable[[S], list[Any]] | None = None
     """If the finest mesh is solved first: what the others' results depend on of its solution."""
+    resumes: bool = True
+    """Whether a run that was killed finds something to go on from."""
 
 
 @dataclass(frozen=True)
@@ -157,8 +160,7 @@ def solve_series(
     progress = progress if progress is not None else Progress()
     require_instants(options.stress_times, problem.end_time)
     require_share(options.target_error)
-    # Where the finest mesh leads it is solved first, and again: nothing to go on from.
-    name = f".checkpoint-{target.name}" if problem.leads is None else f".partial-{target.name}-kept"
+    name = f".checkpoint-{target.name}" if problem.resumes else f".partial-{target.name}-kept"
     folder = options.checkpoint or target.absolute().parent / name
 
     def waiting() -> None:
@@ -265,6 +267,7 @@ class Series(Generic[S]):
             options.checkpoint_interval,
             self._label(number),
             refinement=self._factor(finest) / self._factor(number),
+            threads=threads_per_process(options.threads, self.comm),
         )
         if number == finest:
             settings = replace(settings, frames=options.frames, frame_times=options.stress_times)

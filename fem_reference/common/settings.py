@@ -62,6 +62,8 @@ class Options:
     """Wall-clock time between checkpoints, s."""
     target_error: float | None = None
     """Refine until the relative bands are that small."""
+    threads: int = 1
+    """Cores the time loop uses, all processes on a machine together; 0: those there are."""
 
     @staticmethod
     def of(arguments: argparse.Namespace) -> Options:
@@ -73,6 +75,7 @@ class Options:
             arguments.checkpoint,
             arguments.checkpoint_interval,
             arguments.target_error,
+            arguments.threads,
         )
 
 
@@ -90,3 +93,5 @@ class Settings:
     frame_times: tuple[float, ...] = ()
     refinement: float = 1.0
     """Of the finest mesh of the series over this one, in every direction."""
+    threads: int = 1
+    """At most, per process."""

@@ -50,6 +50,8 @@ class Checkpoint:
             SolverError: the file cannot be written.
         """
         u, v = loop.gather(loop.u), loop.gather(loop.v)
+        if loop.springs is not None and loop.ledger is not None:
+            values |= {"extension": loop.springs.extension, **loop.ledger.state}
         if loop.comm.rank == 0:
             scalars = {"identity": self.identity, "problem": loop.problem.checkpoint()}
             temporary = self.path.with_name(f".partial-{self.path.name}")

@@ -41,6 +41,8 @@ class Frames:
         if not self._wanted(sample):
             return
         displacement = loop.gather(loop.u)
+        if loop.springs is not None:
+            displacement = np.hstack([displacement, loop.gather(loop.effective)])
         if loop.comm.rank != 0:
             return
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -62,7 +64,10 @@ class Frames:
         return sorted(self.folder.glob("frame-*.npy"))
 
     def frames(self) -> list[tuple[float, Floats]]:
-        """Instant (s) and displacement (N, 3) of all frames."""
+        """Instant (s) and displacement (N, C) of all frames.
+
+        Where bodies relax (N, 2 C): the displacement that strains stands behind it.
+        """
         return [
             (self.interval * int(file.stem.split("-")[1]), np.load(file)) for file in self._files()
         ]

@@ -18,6 +18,13 @@
  * rigid motion alone, so momentum is kept to round-off whatever the levels. Nodes that can touch have
  * elements of level 0 only.
  */
+#ifdef _OPENMP
+#include <omp.h>
+#else
+#define omp_get_thread_num() 0
+#define omp_get_num_threads() 1
+#endif
+
 #include "structures.c"
 
 #include "product.c"
@@ -27,6 +34,8 @@
 #include "tip.c"
 
 #include "film.c"
+
+#include "plastic.c"
 
 /* Friction on a closed pair of matching nodes, along the radius: the multiplier that leaves the two no relative
  * velocity at the step's end, as far as Coulomb's law lets it grow. */
@@ -73,14 +82,14 @@ static void correct(const State *s, Pairs *c) {
 
 /* Rows of one group: the impulse of their level over its time step h; the motion of those that move;
  * the support's impulse on those that are held. */
-static inline __attribute__((always_inline)) void group(const State *s, const Level *l, double h,
+static inline __attribute__((always_inline)) void group(const State *s, const Part *l, double h,
                                                         int64_t from, int64_t to, int moves, int held,
                                                         double *reaction) {
     double *u = s->u, *v = s->v, *f = s->f;
-    const double *inverse = s->inverse;
+    const double *inverse = s->inverse, *effective = s->effective;
     for (int64_t i = from; i < to; ++i) {
         const int64_t n = l->node[i];
-        const Vector force = row_product(l, u, f, i, n);
+        const Vector force = row_product(l, effective, f, i, n);
         add(v + C * n, -h, inverse + C * n, force);
         for (int d = 0; held && d < C; ++d)
             if (inverse[C * n + d] == 0.0) reaction[d] += h * component(force, d);
@@ -89,32 +98,84 @@ static inline __attribute__((always_inline)) void group(const State *s, const Le
     }
 }
 
-/* Step number ``step`` without contact. Slower levels come first: they still need u_n of the faster
- * nodes. */
-static void predict(const State *s, int64_t step, double *reaction) {
-    for (int64_t k = s->levels - 1; k >= 0; --k) {
-        const int64_t every = (int64_t)1 << k;
-        if (step % every != 0) continue;
-        const Level *l = &s->level[k];
-        const double h = s->problem->dt * (double)every;
-        group(s, l, h, 0, l->shared_free, 0, 0, reaction);
-        group(s, l, h, l->shared_free, l->shared, 0, 1, reaction);
-        group(s, l, h, l->shared, l->free, 1, 0, reaction);
-        group(s, l, h, l->free, l->rows, 1, 1, reaction);
+/* Rows at the border: the impulse of their level; they move when all parts are done. */
+static void border(const State *s, const Part *l, double h, double *reaction) {
+    for (int64_t i = 0; i < l->border; ++i) {
+        const int64_t n = l->node[i];
+        const Vector force = row_product(l, s->effective, s->f, i, n) + outer_product(l, s->effective, i);
+        add(s->v + C * n, -h, s->inverse + C * n, force);
+        for (int d = 0; d < C; ++d)
+            if (s->inverse[C * n + d] == 0.0) reaction[d] += h * component(force, d);
     }
 }
 
-/* Advances the elastic bodies alone by a number of steps, from an instant at which all levels meet;
- * neither contact nor ledger. */
-void drift(State *s, int64_t steps) {
-    double reaction[3] = {0.0, 0.0, 0.0};
-    for (int64_t n = 0; n < steps; ++n) predict(s, n, reaction);
+static void sweep(const State *s, const Part *l, double h, double *reaction) {
+    border(s, l, h, reaction);
+    group(s, l, h, l->border, l->shared_free, 0, 0, reaction);
+    group(s, l, h, l->shared_free, l->shared, 0, 1, reaction);
+    group(s, l, h, l->shared, l->free, 1, 0, reaction);
+    group(s, l, h, l->free, l->rows, 1, 1, reaction);
 }
 
-static void one_step(State *s) {
-    Problem *p = s->problem;
-    const double dt = p->dt;
-    double *u = s->u, *v = s->v;
+static inline int leads(void) { return omp_get_thread_num() == 0; }
+
+/* Waits for the other threads. */
+static inline void meet(const State *s) {
+    if (s->parts > 1) {
+#pragma omp barrier
+    }
+}
+
+#include "relaxation.c"
+
+/* Step number ``step`` without contact, each thread its parts. Slower levels come first: they still need u_n of the
+ * faster nodes, and do not share a node that moves with them with a faster level. */
+static void predict(const State *s, int64_t step, double *reaction) {
+    const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
+    if (s->problem->plastic) {
+        if (leads()) strain_impulse(s, s->problem->plastic);
+        meet(s);
+    }
+    for (int64_t k = s->levels - 1; k >= 0; --k) {
+        const int64_t every = (int64_t)1 << k;
+        if (step % every != 0) continue;
+        const Part *part = &s->part[k * s->parts];
+        const double h = s->problem->dt * (double)every;
+        for (int64_t q = thread; q < s->parts; q += threads)
+            sweep(s, &part[q], h, q == 0 ? reaction : s->support + SPACED * q);
+        meet(s);
+        for (int64_t q = thread; q < s->parts; q += threads)
+            for (int64_t i = part[q].border_shared; i < part[q].border; ++i)
+                shift(s->u + C * (int64_t)part[q].node[i], h, s->v + C * (int64_t)part[q].node[i]);
+    }
+    meet(s);
+}
+
+/* Takes what the supports gave to the parts but the first. */
+static void book_supports(const State *s, double *reaction) {
+    for (int64_t q = 1; q < s->parts; ++q)
+        for (int d = 0; d < C; ++d) {
+            reaction[d] += s->support[SPACED * q + d];
+            s->support[SPACED * q + d] = 0.0;
+        }
+}
+
+/* Advances the elastic bodies alone by a number of steps, the ``first`` one counted from an instant at which all
+ * levels meet; neither contact nor ledger. */
+void drift(State *s, int64_t first, int64_t steps) {
+    double reaction[3] = {0.0, 0.0, 0.0};
+#pragma omp parallel num_threads(s->parts) if (s->parts > 1)
+    for (int64_t n = first; n < first + steps; ++n) {
+        predict(s, n, reaction);
+        relax(s, n);
+    }
+    book_supports(s, reaction);
+}
+
+/* What contact needs of the velocities before a step. */
+static void remember(const State *s) {
+    const Problem *p = s->problem;
+    const double *v = s->v;
     for (int64_t c = 0; c < p->matched; ++c) {
         const Pairs *q = &p->pairs[c];
         for (int64_t k = 0; k < q->count; ++k)
@@ -127,7 +188,15 @@ static void one_step(State *s) {
     for (int64_t i = 0; i < p->nodes; ++i)
         memcpy(p->before + C * i, v + C * (int64_t)p->global[i], C * sizeof *v);
     if (p->film) openings(p->film, v, p->film->before);
-    predict(s, p->step, p->reaction);
+    if (p->plastic) flow(p->plastic, s->u, p->dt);
+}
+
+/* Contact and film correct what was predicted. */
+static void close_step(const State *s) {
+    Problem *p = s->problem;
+    const double dt = p->dt;
+    double *u = s->u, *v = s->v;
+    book_supports(s, p->reaction);
     if (p->film) correct_with_film(s, p->film);
     for (int64_t c = 0; c < p->matched; ++c) correct(s, &p->pairs[c]);
     if (p->film) book_film(s, p->film);
@@ -147,8 +216,20 @@ static void one_step(State *s) {
     }
 }
 
+/* All threads take part; contact is the first one's. */
+static void one_step(const State *s) {
+    const int64_t step = s->problem->step;
+    if (leads()) remember(s);
+    meet(s);
+    predict(s, step, s->problem->reaction);
+    if (leads()) close_step(s);
+    meet(s);
+    relax(s, step);
+}
+
 /* Advances a system that lies in one process by a number of steps. */
 void advance(State *s, int64_t steps) {
+#pragma omp parallel num_threads(s->parts) if (s->parts > 1)
     for (int64_t n = 0; n < steps; ++n) one_step(s);
 }
 
@@ -190,36 +271,69 @@ static double driven(const Problem *p, int c) {
     return c == 1 && p->film ? contact + p->film->impulse : contact;
 }
 
+/* What a row of samples has from before its first step, of both contacts and bodies. */
+typedef struct {
+    double contact[2]; /* impulse so far, N s */
+    double driven[2];
+    double speed[2];
+} Before;
+
+static Before begin_row(const State *s, const Carried *body, const Watched *watched, double *row) {
+    const Pairs *pairs = s->problem->pairs;
+    row[0] = place(s, &body[0]);
+    row[3] = mean(s->u, watched);
+    row[5] = place(s, &body[1]);
+    row[4] = mean(s->v, watched);
+    return (Before){{pairs[0].record.impulse, pairs[1].record.impulse},
+                    {driven(s->problem, 0), driven(s->problem, 1)},
+                    {speed(s, &body[0]), speed(s, &body[1])}};
+}
+
+static void complete_row(const State *s, const Carried *body, const Watched *watched, Before before,
+                         double *row) {
+    const Pairs *pairs = s->problem->pairs;
+    row[4] = 0.5 * (row[4] + mean(s->v, watched));
+    for (int c = 0; c < 2; ++c) {
+        const double impulse = 0.5 * (before.driven[c] + driven(s->problem, c));
+        row[c == 0 ? 2 : 7] = 0.5 * (before.contact[c] + pairs[c].record.impulse);
+        row[c == 0 ? 1 : 6] = body[c].node < 0
+                                  ? body[c].start + pairs[c].normal * impulse / body[c].mass
+                                  : 0.5 * (before.speed[c] + speed(s, &body[c]));
+    }
+}
+
+static void carry(const State *s, Carried *body) {
+    for (int c = 0; c < 2; ++c)
+        body[c].displacement += s->problem->dt * (body[c].start + s->problem->pairs[c].normal
+                                                  * driven(s->problem, c) / body[c].mass);
+}
+
 /* Advances by samples * stride steps with two contacts of matching nodes and writes a row of SAMPLED
  * numbers at the first step of each stride, all at t_n: displacement, velocity and impulse so far of
  * the first carried body, mean displacement and velocity of the watched nodes, and the second body's
  * three. Velocities are the mean of both half steps. */
-void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64_t stride, double *row) {
-    const Pairs *pairs = s->problem->pairs;
-    for (int64_t j = 0; j < samples; ++j, row += SAMPLED) {
-        const double last[2] = {pairs[0].record.impulse, pairs[1].record.impulse};
-        const double before[2] = {driven(s->problem, 0), driven(s->problem, 1)};
-        const double moved[2] = {speed(s, &body[0]), speed(s, &body[1])};
-        row[0] = place(s, &body[0]);
-        row[3] = mean(s->u, watched);
-        row[5] = place(s, &body[1]);
-        row[4] = mean(s->v, watched);
+void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64_t stride, double *rows) {
+#pragma omp parallel num_threads(s->parts) if (s->parts > 1)
+    for (int64_t j = 0; j < samples; ++j) {
+        double *row = rows + SAMPLED * j;
+        Before before = {{0.0}};
+        if (leads()) before = begin_row(s, body, watched, row);
         for (int64_t n = 0; n < stride; ++n) {
             one_step(s);
-            for (int c = 0; c < 2; ++c)
-                body[c].displacement += s->problem->dt * (body[c].start + pairs[c].normal
-                                                          * driven(s->problem, c) / body[c].mass);
-            if (n > 0) continue;
-            row[4] = 0.5 * (row[4] + mean(s->v, watched));
-            for (int c = 0; c < 2; ++c) {
-                const double impulse = 0.5 * (before[c] + driven(s->problem, c));
-                row[c == 0 ? 2 : 7] = 0.5 * (last[c] + pairs[c].record.impulse);
-                row[c == 0 ? 1 : 6] = body[c].node < 0
-                                          ? body[c].start + pairs[c].normal * impulse / body[c].mass
-                                          : 0.5 * (moved[c] + speed(s, &body[c]));
-            }
+            if (leads()) carry(s, body);
+            if (leads() && n == 0) complete_row(s, body, watched, before, row);
         }
     }
+}
+
+/* Takes the vectors of some nodes out of x. */
+void pack(const double *restrict x, const int64_t *restrict node, int64_t count, double *restrict packed) {
+    for (int64_t i = 0; i < count; ++i) memcpy(packed + C * i, x + C * node[i], C * sizeof *x);
+}
+
+/* And puts them in. */
+void unpack(double *restrict x, const int64_t *restrict node, int64_t count, const double *restrict packed) {
+    for (int64_t i = 0; i < count; ++i) memcpy(x + C * node[i], packed + C * i, C * sizeof *x);
 }
 
 /* The STREAM triad a = b + s c, repeated: what the memory that n numbers fit into delivers. */
@@ -231,9 +345,17 @@ void triad(double *restrict a, const double *restrict b, const double *restrict 
     }
 }
 
+/* The sum of n numbers: what so many threads read from where they lie. */
+double read_all(const double *a, int64_t n, int64_t threads) {
+    double sum = 0.0;
+#pragma omp parallel for simd reduction(+ : sum) num_threads(threads)
+    for (int64_t i = 0; i < n; ++i) sum += a[i];
+    return sum;
+}
+
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
-                           sizeof(Level),  sizeof(State), sizeof(Carried), sizeof(Tip),
-                           sizeof(Watched), sizeof(Film)};
+                           sizeof(Part),  sizeof(State), sizeof(Carried), sizeof(Tip),
+                           sizeof(Watched), sizeof(Film), sizeof(Plastic), sizeof(Relaxing)};
     return (int64_t)size[what];
 }

@@ -23,10 +23,13 @@ from ..common.arrays import Floats
 from ..common.compiler import compiler, compiler_version
 from ..common.errors import SolverError
 
-FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=fast", "-fPIC", "-shared")
+FLAGS = ("-std=gnu11", "-O3", "-fopenmp", "-march=native", "-ffp-contract=fast", "-fPIC", "-shared")
 MAX_INTERVALS = 256
 FACET_NODES = 6
 CORNERS = 3
+LANES = {2: 2, 3: 4}
+"""Numbers per node in work space, by components."""
+SPACED = 16
 SAMPLED = 8
 """Numbers in a row of ``run``."""
 AGAINST_SURFACE, AGAINST_SPHERE = 0, 1
@@ -116,6 +119,28 @@ class Film(ctypes.Structure):
     )
 
 
+class Plastic(ctypes.Structure):
+    """Mirror of ``Plastic`` in kernel.c."""
+
+    _fields_ = (
+        ("elements", ctypes.c_int64),
+        ("nodes", ctypes.c_int64),
+        ("touched", _INT32),
+        ("node", _INT32),
+        ("gradient", _DOUBLE),
+        ("weight", _DOUBLE),
+        ("shear", _DOUBLE),
+        ("yield_strength", _DOUBLE),
+        ("hardening", _DOUBLE),
+        ("rate", _DOUBLE),
+        ("exponent", _DOUBLE),
+        ("strain", _DOUBLE),
+        ("accumulated", _DOUBLE),
+        ("work", _DOUBLE),
+        ("force", _DOUBLE),
+    )
+
+
 class Rigid(ctypes.Structure):
     """Mirror of ``Rigid`` in kernel.c."""
 
@@ -151,8 +176,8 @@ class Contact(ctypes.Structure):
         ("compliance", _DOUBLE),
         ("friction", ctypes.c_double),
         ("traction", _DOUBLE),
-        ("rubbed", ctypes.c_double),
         ("active", _INT32),
+        ("rubbed", ctypes.c_double),
         ("impulse", _VECTOR),
         ("force", _VECTOR),
         ("record", Record),
@@ -177,6 +202,7 @@ class Problem(ctypes.Structure):
         ("rigid", ctypes.POINTER(Rigid)),
         ("pairs", ctypes.POINTER(Pairs)),
         ("film", ctypes.POINTER(Film)),
+        ("plastic", ctypes.POINTER(Plastic)),
         ("dt", ctypes.c_double),
         ("tolerance", ctypes.c_double),
         ("step", ctypes.c_int64),
@@ -186,10 +212,12 @@ class Problem(ctypes.Structure):
     )
 
 
-class Level(ctypes.Structure):
-    """Mirror of ``Level`` in kernel.c."""
+class Part(ctypes.Structure):
+    """Mirror of ``Part`` in kernel.c."""
 
     _fields_ = (
+        ("border_shared", ctypes.c_int64),
+        ("border", ctypes.c_int64),
         ("shared_free", ctypes.c_int64),
         ("shared", ctypes.c_int64),
         ("free", ctypes.c_int64),
@@ -198,6 +226,24 @@ class Level(ctypes.Structure):
         ("row", _INT64),
         ("column", _INT32),
         ("block", _DOUBLE),
+        ("outer", _INT64),
+        ("outer_column", _INT32),
+        ("outer_block", _DOUBLE),
+    )
+
+
+class Relaxing(ctypes.Structure):
+    """Mirror of ``Relaxing`` in kernel.c."""
+
+    _fields_ = (
+        ("level", ctypes.c_int64),
+        ("count", ctypes.c_int64),
+        ("terms", ctypes.c_int64),
+        ("node", _INT32),
+        ("lasting", ctypes.c_double),
+        ("ratio", _DOUBLE),
+        ("decay", _DOUBLE),
+        ("growth", _DOUBLE),
     )
 
 
@@ -207,11 +253,18 @@ class State(ctypes.Structure):
     _fields_ = (
         ("nodes", ctypes.c_int64),
         ("levels", ctypes.c_int64),
-        ("level", ctypes.POINTER(Level)),
+        ("parts", ctypes.c_int64),
+        ("part", ctypes.POINTER(Part)),
         ("inverse", _DOUBLE),
         ("u", _DOUBLE),
+        ("effective", _DOUBLE),
         ("v", _DOUBLE),
         ("f", _DOUBLE),
+        ("support", _DOUBLE),
+        ("relaxings", ctypes.c_int64),
+        ("relaxing", ctypes.POINTER(Relaxing)),
+        ("springs", ctypes.c_int64),
+        ("extension", _DOUBLE),
         ("problem", ctypes.POINTER(Problem)),
     )
 
@@ -327,17 +380,23 @@ def load(components: int) -> ctypes.CDLL:
     state, count = ctypes.POINTER(State), ctypes.c_int64
     for name, arguments in {
         "advance": (state, count),
-        "drift": (state, count),
+        "drift": (state, count, count),
         "contact_step": (ctypes.POINTER(Problem),),
         "run": (state, ctypes.POINTER(Carried), ctypes.POINTER(Watched), count, count, _DOUBLE),
         "stiffness_product": (state, count, count, _DOUBLE, _DOUBLE),
+        "pack": (_DOUBLE, _INT64, count, _DOUBLE),
+        "unpack": (_DOUBLE, _INT64, count, _DOUBLE),
         "triad": (_DOUBLE, _DOUBLE, _DOUBLE, count, count),
     }.items():
         function = getattr(kernel, name)
         function.argtypes, function.restype = arguments, None
+    kernel.read_all.argtypes, kernel.read_all.restype = (_DOUBLE, count, count), ctypes.c_double
     kernel.layout.restype = ctypes.c_int64
     for number, mirror in enumerate(
-        (Record, Pairs, Rigid, Contact, Problem, Level, State, Carried, Tip, Watched, Film)
+        (
+            *(Record, Pairs, Rigid, Contact, Problem, Part, State, Carried, Tip, Watched, Film),
+            *(Plastic, Relaxing),
+        )
     ):
         if kernel.layout(number) != ctypes.sizeof(mirror):
             raise SolverError(

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import ctypes
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +18,10 @@ import scipy.sparse
 from ..common.arrays import Floats, Ints, Mask
 from . import kernel
 from .levels import fastest_levels, graded_levels
+from .parts import Blocks, level_parts
+from .plastic import PlasticState
 from .problem import ContactProblem
+from .relaxation import Ledger, Springs
 from .system import System
 
 
@@ -37,6 +41,8 @@ class Energies:
     rigid_motion: tuple[float, ...]
     """Share of each elastic body's mean translation."""
     rigid: tuple[float, ...]
+    lost: tuple[float, ...]
+    """By each elastic body to relaxation so far."""
 
     @property
     def total(self) -> float:
@@ -61,11 +67,17 @@ class Loop(ABC):
         components: of displacement per node.
         mass: (n,) kg. inverse: (C n,) 1/kg, zero where fixed. body: (n,) number of each node's.
         u, v: (C n,) displacement, and velocity half a step later.
+        springs, ledger: of bodies that relax; None: all are elastic.
+        effective: (C n,) displacement that K acts on: u itself unless there are springs.
+        displacement: u, then that of other processes' nodes that own rows read.
         diagonal: (C n,) of K, N/m.
         levels: nodes that move with each level.
+        threads: among which the rows of a process are divided. For another number of them sums
+            have another order: results differ by rounding.
     """
 
     diagonal: Floats
+    threads = 1
 
     def __init__(self, system: System, comm: Any) -> None:
         self.system, self.comm = system, comm
@@ -74,9 +86,18 @@ class Loop(ABC):
         self.mass = system.mass[system.owned]
         self.inverse = system.inverse_mass[self.rows]
         self.body = np.searchsorted(system.first, system.owned, side="right") - 1
-        self.u = np.zeros(self.rows.size)
+        self.displacement = np.zeros(self.rows.size + self.components * system.ghosts.size)
+        self.u = self.displacement[: self.rows.size]
         self.v = self.own(system.velocity)
         self.v[self.inverse == 0.0] = 0.0
+        self.springs: Springs | None = None
+        self.ledger: Ledger | None = None
+        self._looked = 0
+        self.effective = self.u
+        if any(system.relaxations):
+            self.springs = Springs(system.relaxations, self.body, self.components)
+            self.ledger = Ledger(self.springs)
+            self.effective = np.zeros_like(self.u)
         self.problem = ContactProblem(system)
         self._kernel = kernel.load(self.components)
         self.levels: tuple[int, ...] = (system.mass.size,)
@@ -92,6 +113,8 @@ class Loop(ABC):
             touching[contact.candidates] = touching[contact.opposite] = True
         if system.film is not None:
             touching[system.film.nodes] = True
+        if system.plasticity is not None:
+            touching[system.plasticity.nodes] = True
         steps = system.element_time_steps() / time_step
         return graded_levels(steps, system.element_nodes, touching, most)
 
@@ -106,15 +129,31 @@ class Loop(ABC):
         self.problem.set_step(time_step, split)
         element = self.element_levels(time_step, most_levels)
         count = int(element.max()) + 1
-        if count == 1 == len(self.levels):
-            return
         node = fastest_levels(element, self.system.element_nodes, self.system.mass.size)
-        self._take_levels(element, node[self.system.owned], count)
-        self.levels = tuple(np.bincount(node, minlength=count).tolist())
+        if count > 1 or len(self.levels) > 1:
+            self._take_levels(element, node, count)
+            self.levels = tuple(np.bincount(node, minlength=count).tolist())
+        if self.springs is not None:
+            self._take_springs(self.springs, node[self.system.owned])
+
+    @abstractmethod
+    def _take_springs(self, springs: Springs, node: Ints) -> None:
+        """Let the springs move; ``node`` (n,) has the levels of own nodes."""
+
+    def restore_ledger(self, saved: dict[str, Floats]) -> None:
+        """Continue with the state saved at a look."""
+        if self.ledger is not None:
+            self.ledger.restore(saved, self.u, self.product(self.u))
+            self._looked = self.problem.state.step
+
+    def strain(self) -> None:
+        """Make `effective` what it is at the present displacement and extensions."""
+        if self.springs is not None:
+            self.effective[:] = self.springs.effective(self.u)
 
     @abstractmethod
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
-        """Split K by the level of each element; ``node`` (n,) has the levels of own nodes."""
+        """Split K by the level of each element; ``node`` (N,) has the levels of the nodes."""
 
     @property
     def meeting(self) -> int:
@@ -138,6 +177,10 @@ class Loop(ABC):
     @abstractmethod
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
+
+    @abstractmethod
+    def drift_elastic(self, steps: int) -> None:
+        """The same of bodies that do not relax."""
 
     @abstractmethod
     def level_product(self, level: int, x: Floats) -> Floats:
@@ -181,109 +224,166 @@ class Loop(ABC):
         """(bodies,) kg."""
         return np.add.reduceat(self.system.mass, self.system.first[:-1])
 
+    def impulse(self, x: Floats) -> Floats:
+        """(C n,) what the levels take from the momenta where all meet at a displacement, N s."""
+        products = (2**k * self.level_product(k, x) for k in range(len(self.levels)))
+        return np.asarray(self.dt * sum(products))
+
+    def look(self) -> None:
+        """Let the ledger of what relaxes follow to this instant, at which all levels meet."""
+        step = self.problem.state.step
+        if self.ledger is not None and step > self._looked:
+            time = (step - self._looked) * self.dt
+            self.ledger.look(time, self.u, self.product(self.u))
+            self._looked = step
+
     def energies(self) -> Energies:
         """Discrete energies at an instant at which all levels meet."""
-        if self.meeting == 1:
-            other, velocity, force = self.u - self.dt * self.v, self.v, self.product(self.u)
+        lost = stored = np.zeros(self.system.first.size - 1)
+        plastic = self.problem.plastic
+        if self.meeting == 1 and self.ledger is None:
+            velocity, force = self.v, self.product(self.u)
+            if plastic is not None:
+                force -= plastic.force
+            strain = 0.5 * (self.u - self.dt * self.v) * force
         else:
-            other, velocity, force = self._long_step()
+            velocity, strain = self._long_step()
+        if self.springs is not None and self.ledger is not None:
+            self.look()
+            strain *= np.repeat(self.springs.lasting[self.body], self.components)
+            time = self.meeting * self.dt
+            both = self.ledger.energies(time, time * velocity)
+            stored, lost = self.body_sums(np.stack(both, axis=1)).T
         mass = np.repeat(self.mass, self.components)
-        density = 0.5 * mass * velocity**2 + 0.5 * other * force
-        elastic = self.body_sums(density.reshape(-1, self.components).sum(axis=1))
+        density = 0.5 * mass * velocity**2 + strain
+        if plastic is not None:
+            density += self._of_plastic_strain(plastic)
+        elastic = self.body_sums(density.reshape(-1, self.components).sum(axis=1)) + stored
         free = self.momenta()[:, self.system.free_axes]
         mean = (free**2).sum(axis=1) / (2.0 * self.body_masses())
         rigids = self.problem.rigids[: self.problem.state.rigids]
         rigid = [0.5 * r.mass * sum(x * x for x in r.v) + _of_spin(r) for r in rigids]
-        return Energies(tuple(elastic.tolist()), tuple(mean.tolist()), tuple(rigid))
+        parts = (tuple(energy.tolist()) for energy in (elastic, mean, np.array(rigid), lost))
+        return Energies(*parts)
 
-    def _long_step(self) -> tuple[Floats, Floats, Floats]:
-        """u_{n+1}, w and K' u_n of `Energies`, without contact; the state stays as it is."""
-        now, velocity = self.u.copy(), self.v.copy()
+    def _of_plastic_strain(self, plastic: PlasticState) -> Floats:
+        """(C n,) what 1/2 (u - u_p) K (u - u_p) has besides 1/2 u (K u - f_p), J."""
+        density = -0.5 * self.u * plastic.force
+        np.add.at(density, 2 * plastic.plasticity.nodes[:, 0], plastic.stored())
+        return np.asarray(density)
+
+    def _long_step(self) -> tuple[Floats, Floats]:
+        """W and 1/2 u_{n+1} K' u_n of `Energies`, by component, without contact."""
         long_step = self.meeting * self.dt
-        self.drift(self.meeting)
-        following = self.u.copy()
-        # From rest: half the impulses, which the step itself gives in full.
-        self.u[:], self.v[:] = now, 0.0
-        for level in range(len(self.levels)):
-            impulse = 0.5 * 2**level * self.dt * self.level_product(level, now)
-            self.v += self.inverse * impulse
-        self.drift(self.meeting)
-        force = 2.0 * np.repeat(self.mass, self.components) * (now - self.u) / long_step**2
-        self.u[:], self.v[:] = now, velocity
-        return following, (following - now) / long_step, force
+        with self._as_it_was():
+            now = self.u.copy()
+            self.drift(self.meeting)
+            following = self.u.copy()
+        return (following - now) / long_step, 0.5 * following * self._mean_force()
+
+    def _mean_force(self) -> Floats:
+        """K' u_n - f_p of `Energies`."""
+        if self.meeting == 1:
+            return self.product(self.u)
+        with self._as_it_was():
+            # From rest: half the impulses, which the step itself gives in full.
+            now, self.v[:] = self.u.copy(), 0.5 * self.inverse * self.impulse(self.u)
+            if self.problem.plastic is not None:
+                self.v -= 0.5 * self.dt * self.inverse * self.problem.plastic.force
+            self.drift_elastic(self.meeting)
+            mass, long_step = np.repeat(self.mass, self.components), self.meeting * self.dt
+            return np.asarray(2.0 * mass * (now - self.u) / long_step**2)
+
+    @contextmanager
+    def _as_it_was(self) -> Iterator[None]:
+        """Afterwards the state is what it is now."""
+        u, v = self.u.copy(), self.v.copy()
+        extension = None if self.springs is None else self.springs.extension.copy()
+        yield
+        self.u[:], self.v[:] = u, v
+        if self.springs is not None and extension is not None:
+            self.springs.extension[:] = extension
+            self.strain()
 
 
 class SerialLoop(Loop):
     """One process: half of K in blocks, product and update in one sweep of compiled code."""
 
-    def __init__(self, system: System, comm: Any) -> None:
+    def __init__(self, system: System, comm: Any, threads: int = 1) -> None:
         super().__init__(system, comm)
+        self.threads = threads
         whole, arrays = system.part(None), kernel.Arrays()
         self.diagonal = whole.diagonal()
         state = kernel.State()
         state.nodes = system.owned.size
-        for name in ("inverse", "u", "v"):
+        for name in ("inverse", "u", "effective", "v"):
             setattr(state, name, arrays.pointer(getattr(self, name), np.float64))
-        state.f = arrays.pointer(np.zeros_like(self.u), np.float64)
-        local = np.empty(system.owned.size, dtype=np.int64)
+        lanes = kernel.LANES[self.components]
+        state.f = arrays.pointer(np.zeros(lanes * system.owned.size), np.float64)
+        state.support = arrays.pointer(np.zeros(kernel.SPACED * threads), np.float64)
+        state.parts = threads
+        local = np.full(system.mass.size, -1, dtype=np.int64)
         local[system.owned] = np.arange(system.owned.size)
         self.problem.state.map = arrays.pointer(local[self.problem.nodes], np.int32)
         state.problem = ctypes.pointer(self.problem.state)
         self._state, self._arrays = state, arrays
         self._point_at([(whole, np.ones(system.owned.size, dtype=bool))])
 
-    def _point_at(self, parts: Iterable[tuple[scipy.sparse.csr_matrix, Mask]]) -> None:
+    def _point_at(self, matrices: Iterable[tuple[scipy.sparse.csr_matrix, Mask]]) -> None:
         """Make these the levels: stiffness, and the nodes that move with it."""
         arrays, held = kernel.Arrays(), self.system.held[self.system.owned]
-        made = [self._level(matrix, moves, held, arrays) for matrix, moves in parts]
-        structures = (kernel.Level * len(made))(*made)
-        self._state.levels = len(made)
-        self._state.level = ctypes.cast(structures, ctypes.POINTER(kernel.Level))
-        self._level_arrays = (structures, arrays)
-
-    def _level(
-        self, matrix: scipy.sparse.csr_matrix, moves: Mask, held: Mask, arrays: kernel.Arrays
-    ) -> kernel.Level:
-        """A level from its stiffness, all nodes; masks of nodes that move with it, and are held."""
-        size = self.components
-        touched = np.flatnonzero(np.diff(matrix.indptr)[::size])
-        groups = [
-            touched[(moves[touched] == moving) & (held[touched] == hold)]
-            for moving in (False, True)
-            for hold in (False, True)
+        made = [
+            part
+            for matrix, moves in matrices
+            for part in level_parts(
+                Blocks.of(matrix, self.components, moves, held), self.threads, arrays
+            )
         ]
-        nodes = np.concatenate(groups)
-        rows = (size * nodes[:, None] + np.arange(size)).ravel()
-        indptr, columns, blocks = _upper_blocks(matrix[rows][:, rows], size)
-        level = kernel.Level()
-        ends = np.cumsum([group.size for group in groups]).tolist()
-        level.shared_free, level.shared, level.free, level.rows = ends
-        level.node = arrays.pointer(nodes, np.int32)
-        level.row = arrays.pointer(indptr, np.int64)
-        level.column = arrays.pointer(nodes[columns], np.int32)
-        # Vectors of two components take the columns of a block.
-        data = blocks.transpose(0, 2, 1) if size == 2 else blocks
-        level.block = arrays.pointer(data, np.float64)
-        return level
+        structures = (kernel.Part * len(made))(*made)
+        self._state.levels = len(made) // self.threads
+        self._state.part = ctypes.cast(structures, ctypes.POINTER(kernel.Part))
+        self._level_arrays = (structures, arrays)
 
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
         self._state.levels = 0
         del self._level_arrays
-        self._point_at((self.system.part(element == k), node == k) for k in range(count))
+        own = node[self.system.owned]
+        self._point_at((self.system.part(element == k), own == k) for k in range(count))
+
+    def _take_springs(self, springs: Springs, node: Ints) -> None:
+        arrays, state = kernel.Arrays(), self._state
+        groups = springs.groups(node, self.dt, arrays)
+        state.relaxings, state.springs = len(groups), springs.extension.shape[1]
+        state.relaxing = ctypes.cast(groups, ctypes.POINTER(kernel.Relaxing))
+        state.extension = arrays.pointer(springs.extension, np.float64)
+        self._spring_arrays = (groups, arrays)
+        self.strain()
 
     @property
     def acting(self) -> tuple[int, ...]:
         """Nodes whose elements of each level act."""
-        return tuple(int(level.rows) for level in self._level_arrays[0])
+        rows = [int(part.rows) for part in self._level_arrays[0]]
+        return tuple(np.reshape(rows, (-1, self.threads)).sum(axis=1).tolist())
 
     @property
     def blocks(self) -> int:
         """Blocks of K that are stored, of all levels."""
-        return sum(int(level.row[level.rows]) for level in self._level_arrays[0])
+        return sum(
+            int(part.row[part.rows] + part.outer[part.border]) for part in self._level_arrays[0]
+        )
 
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
-        self._kernel.drift(ctypes.byref(self._state), steps)
+        self._kernel.drift(ctypes.byref(self._state), 0, steps)
+
+    def drift_elastic(self, steps: int) -> None:
+        """The same of bodies that do not relax."""
+        if self.springs is None:
+            self.drift(steps)
+            return
+        state = kernel.State.from_buffer_copy(self._state)
+        state.relaxings, state.effective = 0, state.u
+        self._kernel.drift(ctypes.byref(state), 0, steps)
 
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
@@ -304,19 +404,13 @@ class SerialLoop(Loop):
         """K x."""
         return self._product(x, 0, len(self.levels))
 
+    def _read(self, x: Floats) -> Floats:
+        """(C n,) as own rows read it."""
+        return np.ascontiguousarray(x)
+
     def _product(self, x: Floats, first: int, end: int) -> Floats:
-        x = np.ascontiguousarray(x)
-        y = np.empty_like(x)
+        y = np.empty(self.rows.size)
+        x = self._read(x)
         state = ctypes.byref(self._state)
         self._kernel.stiffness_product(state, first, end, kernel.doubles(x), kernel.doubles(y))
         return y
-
-
-def _upper_blocks(matrix: scipy.sparse.csr_matrix, size: int) -> tuple[Ints, Ints, Floats]:
-    """Rows, columns and blocks (k, size, size) from the diagonal on, the diagonal one first."""
-    blocks = matrix.tobsr((size, size))
-    blocks.sort_indices()
-    rows = np.repeat(np.arange(blocks.indptr.size - 1), np.diff(blocks.indptr))
-    upper = blocks.indices >= rows
-    counts = np.bincount(rows[upper], minlength=blocks.indptr.size - 1)
-    return np.concatenate([[0], np.cumsum(counts)]), blocks.indices[upper], blocks.data[upper]

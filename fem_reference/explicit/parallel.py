@@ -1,4 +1,4 @@
-"""A run in several processes: PETSc's block matrix, partitioned by dolfinx."""
+"""A run in several processes: each steps its own nodes and tells its neighbours of them."""
 
 from __future__ import annotations
 
@@ -6,104 +6,195 @@ import ctypes
 from typing import Any, Protocol
 
 import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
 
-from ..common.arrays import Floats, Ints, Mask
-from ..common.fenicsx import petsc_vectors
-from .loop import Loop
+from ..common.arrays import Floats, Ints
+from ..common.errors import SolverError
+from . import kernel
+from .loop import SerialLoop
+from .problem import ContactProblem
+from .relaxation import Springs
 from .system import System
+
+FIRST = 0
+"""The process that owns all nodes that can touch."""
 
 
 class DistributedSystem(System, Protocol):
-    """A system whose stiffness lies in several processes."""
+    """A system whose nodes lie in several processes."""
 
-    def blocks(self, chosen: Mask | None) -> Any:
-        """PETSc's block matrix of some elements, or of all."""
+    @property
+    def owner(self) -> Ints:
+        """(N,) process of each node."""
 
 
-class ParallelLoop(Loop):
-    """Several processes, three components."""
+class Exchange:
+    """Values of some nodes, from the processes that own them to those that read them.
 
-    def __init__(self, system: DistributedSystem, comm: Any) -> None:
-        super().__init__(system, comm)
-        self._blocks = system.blocks
-        whole = system.blocks(None)
-        self._x, self._y = petsc_vectors(whole)
-        self.diagonal = np.array(whole.getDiagonal().array)
-        self._parts: list[tuple[Any, Any]] = [(whole, slice(None))]
-        local = np.full(system.mass.size, -1, dtype=np.int64)
-        local[system.owned] = np.arange(system.owned.size)
-        mine = np.flatnonzero(local[self.problem.nodes] >= 0)
-        self._surface = (3 * local[self.problem.nodes[mine]][:, None] + np.arange(3)).ravel()
-        self._mine = (3 * mine[:, None] + np.arange(3)).ravel()
-        self._counts = np.array(comm.allgather(9 * mine.size))
-        self._order = np.concatenate(comm.allgather(self._mine)).reshape(-1, 3)
-        self._exchanged = np.empty(9 * self.problem.nodes.size)
-        self._fixed = np.flatnonzero(self.inverse == 0.0)
+    Args:
+        library: the compiled kernel.
+        comm: of the processes.
+        tag: of the messages.
+        partners: other processes, with the places in this one's vectors of what goes there and of
+            what comes from there; both sides have the nodes in the same order.
+        components: values per node.
+    """
 
-    def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
-        for matrix, _ in self._parts:
-            matrix.destroy()
-        self._parts = [
-            (
-                self._blocks(element == k),
-                np.flatnonzero(np.repeat(node == k, 3)),
-            )
-            for k in range(count)
+    def __init__(
+        self,
+        library: ctypes.CDLL,
+        comm: Any,
+        tag: int,
+        partners: list[tuple[int, Ints, Ints]],
+        components: int,
+    ) -> None:
+        self._library, self._arrays = library, kernel.Arrays()
+        self._going: list[tuple[Any, ...]] = []
+        self._coming: list[tuple[Any, ...]] = []
+        self._requests: list[Any] = []
+        for rank, sent, got in partners:
+            for places, ends, prepare in (
+                (got, self._coming, comm.Recv_init),
+                (sent, self._going, comm.Send_init),
+            ):
+                values = np.zeros(components * places.size)
+                where = self._arrays.pointer(places, np.int64)
+                ends.append((where, places.size, self._arrays.pointer(values, np.float64)))
+                self._requests.append(prepare(values, rank, tag))
+
+    def __call__(self, x: Floats) -> None:
+        """Send and take over; ``x`` has the components of own and others' nodes."""
+        pointer = kernel.doubles(x)
+        for end in self._going:
+            self._library.pack(pointer, *end)
+        MPI.Prequest.Startall(self._requests)
+        MPI.Request.Waitall(self._requests)
+        for end in self._coming:
+            self._library.unpack(pointer, *end)
+
+    def free(self) -> None:
+        """Give back what MPI has prepared."""
+        for request in self._requests:
+            request.Free()
+        self._requests = []
+
+
+class ParallelLoop(SerialLoop):
+    """Several processes: the rows of each are those of its own nodes, whole.
+
+    At the end of each step a node that moved is sent to the processes that read it, once, whatever
+    the levels: those that act in the same step do not read what slower ones moved. Nodes that can
+    touch are all the first process', which alone solves their problem.
+    """
+
+    def __init__(self, system: DistributedSystem, comm: Any, threads: int = 1) -> None:
+        super().__init__(system, comm, threads)
+        self._owner = system.owner
+        if comm.rank != FIRST:
+            self._idle = kernel.Problem()
+            self._state.problem = ctypes.pointer(self._idle)
+        self._told = _told(self.problem)
+        self._exchanges: list[Exchange] = []
+        self._meet(np.zeros(system.mass.size, dtype=np.int64), 1)
+
+    def _meet(self, node: Ints, count: int) -> None:
+        """Prepare an exchange of all nodes that move with each level, or a faster one."""
+        for exchange in self._exchanges:
+            exchange.free()
+        elements, rank = self.system.element_nodes, self.comm.rank
+        place = np.full(node.size, -1, dtype=np.int64)
+        kept = np.concatenate([self.system.owned, self.system.ghosts])
+        place[kept] = np.arange(kept.size)
+        processes = self._owner[elements]
+        read = [np.unique(elements[(processes == p).any(axis=1)]) for p in range(self.comm.size)]
+
+        def partners(level: int) -> list[tuple[int, Ints, Ints]]:
+            moving = [nodes[node[nodes] <= level] for nodes in read]
+            both = [
+                (p, moving[p][self._owner[moving[p]] == rank], mine)
+                for p in range(self.comm.size)
+                for mine in [moving[rank][self._owner[moving[rank]] == p]]
+                if p != rank
+            ]
+            return [(p, place[sent], place[got]) for p, sent, got in both if sent.size + got.size]
+
+        self._exchanges = [
+            Exchange(self._kernel, self.comm, level, partners(level), self.components)
+            for level in range(count)
         ]
 
-    def level_product(self, level: int, x: Floats) -> Floats:
-        """K_l x."""
-        self._x.array[:] = x
-        self._parts[level][0].mult(self._x, self._y)
-        return np.asarray(self._y.array).copy()
+    def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
+        super()._take_levels(element, node, count)
+        self._meet(node, count)
 
-    def product(self, x: Floats) -> Floats:
-        """K x."""
-        result = self.level_product(0, x)
-        for level in range(1, len(self.levels)):
-            result += self.level_product(level, x)
-        return result
+    def _take_springs(self, springs: Springs, node: Ints) -> None:
+        raise SolverError("materials that relax are for one process: run without --np")
 
-    def _predict(self, step: int) -> Floats:
-        """A step without contact; (3,) impulse of the supports on this process' nodes, N s."""
-        u, v, reaction = self.u, self.v, np.zeros(3)
-        # Slower levels come first: they still need u_n of the faster nodes.
-        for level in range(len(self._parts) - 1, -1, -1):
-            if step % (1 << level) == 0:
-                h = self.dt * (1 << level)
-                f = self.level_product(level, u)
-                v -= h * self.inverse * f
-                moves = self._parts[level][1]
-                u[moves] += h * v[moves]
-                np.add.at(reaction, self._fixed % 3, h * f[self._fixed])
-        return reaction
+    def _read(self, x: Floats) -> Floats:
+        """(C n,) with the other processes' nodes that own rows read, of all levels."""
+        values = np.zeros(self.displacement.size)
+        values[: x.size] = x
+        self._exchanges[-1](values)
+        return values
+
+    def _step(self, take: Any, step: int) -> None:
+        """One step by ``take``, then what moved in it is exchanged."""
+        take()
+        slowest = max(k for k in range(len(self._exchanges)) if step % (1 << k) == 0)
+        self._exchanges[slowest](self.displacement)
+
+    def _begin(self) -> Any:
+        """Take over what was changed from outside; this process' problem."""
+        self.displacement[:] = self._read(self.u)
+        problem = self._state.problem.contents
+        problem.dt, problem.step = self.dt, self.problem.state.step
+        return problem
 
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
+        self._begin()
+        state = ctypes.byref(self._state)
         for step in range(steps):
-            self._predict(step)
+            self._step(lambda at=step: self._kernel.drift(state, at, 1), step)
 
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
-        u, v, dt, problem = self.u, self.v, self.dt, self.problem
-        scale_surface = (dt * self.inverse)[self._surface]
-        reaction = np.zeros(3)
+        problem, state = self._begin(), ctypes.byref(self._state)
         for _ in range(steps):
-            before = v[self._surface]
-            reaction += self._predict(problem.state.step)
-            self._exchange(u[self._surface], v[self._surface], before)
-            self._kernel.contact_step(ctypes.byref(problem.state))
-            change = scale_surface * problem.force[self._mine]
-            v[self._surface] += change
-            u[self._surface] += dt * change
-        reaction = self.total(reaction)
-        for direction in range(3):
-            problem.state.reaction[direction] += reaction[direction]
+            self._step(lambda: self._kernel.advance(state, 1), problem.step)
+        self._tell()
 
-    def _exchange(self, u: Floats, v: Floats, before: Floats) -> None:
-        packed = np.stack([u.reshape(-1, 3), v.reshape(-1, 3), before.reshape(-1, 3)], axis=1)
-        self.comm.Allgatherv(packed.ravel(), (self._exchanged, self._counts))
-        values = self._exchanged.reshape(-1, 3, 3)
-        self.problem.u[self._order] = values[:, 0]
-        self.problem.predicted[self._order] = values[:, 1]
-        self.problem.before[self._order] = values[:, 2]
+    def _tell(self) -> None:
+        """Tell all processes what the first one's problem has come to, supports of all included."""
+        reaction = np.zeros(3)
+        if self.comm.rank != FIRST:
+            reaction[:] = self._idle.reaction
+            self._idle.reaction[:] = [0.0, 0.0, 0.0]
+        reaction = self.total(reaction) + np.array(self.problem.state.reaction)
+        self.problem.state.reaction[:] = reaction.tolist()
+        message = np.concatenate(self._told)
+        self.comm.Bcast(message, FIRST)
+        start = 0
+        for part in self._told:
+            part[:] = message[start : start + part.size]
+            start += part.size
+
+
+def _told(problem: ContactProblem) -> list[npt.NDArray[np.uint8]]:
+    """Memory of all numbers of a problem that steps change and that runs look at."""
+
+    def memory(structure: ctypes.Structure, start: int) -> npt.NDArray[np.uint8]:
+        size = ctypes.sizeof(structure) - start
+        found = (ctypes.c_uint8 * size).from_address(ctypes.addressof(structure) + start)
+        return np.ctypeslib.as_array(found)
+
+    state = problem.state
+    return [
+        memory(state, kernel.Problem.step.offset),
+        *(memory(rigid, 0) for rigid in problem.rigids[: state.rigids]),
+        *(
+            memory(contact, kernel.Contact.rubbed.offset)
+            for contact in problem.contacts[: state.contacts]
+        ),
+    ]

@@ -3,18 +3,32 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from ..common.arrays import Floats, Ints
 from . import kernel
-from .contact import MatchedContact, SphereContact
+from .contact import Contact, MatchedContact, SphereContact
 from .film import compiled
+from .plastic import PlasticState
 from .system import System
 
 TOLERANCE = 1e-12
 """Change of a multiplier in the last Gauss-Seidel sweep, over the largest multiplier."""
+
+
+def touching(contacts: Iterable[Contact], first: Ints) -> Ints:
+    """Surface nodes that can touch; ``first`` node of each body."""
+    parts: list[Ints] = []
+    for contact in contacts:
+        parts.append(contact.nodes + first[contact.body])
+        if not isinstance(contact, SphereContact):
+            parts.append(contact.facets.ravel() + first[contact.target])
+            if contact.reachable is not None:
+                parts.append(contact.reachable + first[contact.target])
+    return np.unique(np.concatenate(parts)) if parts else np.zeros(0, np.int64)
 
 
 class ContactProblem:
@@ -24,18 +38,11 @@ class ContactProblem:
         nodes: (s,) surface nodes that can touch, the system's numbering, matching ones aside.
         u, predicted, before, force: (C s) work arrays of the kernel.
         contacts, matched, rigids, film: the kernel's structures.
+        plastic: what elements that may yield remember.
     """
 
     def __init__(self, system: System) -> None:
-        first = system.first
-        parts: list[Ints] = []
-        for contact in system.contacts:
-            parts.append(contact.nodes + first[contact.body])
-            if not isinstance(contact, SphereContact):
-                parts.append(contact.facets.ravel() + first[contact.target])
-                if contact.reachable is not None:
-                    parts.append(contact.reachable + first[contact.target])
-        self.nodes: Ints = np.unique(np.concatenate(parts)) if parts else np.zeros(0, np.int64)
+        self.nodes = touching(system.contacts, system.first)
         components = system.points.shape[1]
         size = components * self.nodes.size
         self.u, self.predicted, self.before, self.force = (np.zeros(size) for _ in range(4))
@@ -68,6 +75,10 @@ class ContactProblem:
         if system.film is not None:
             self.film = compiled(system.film, self._arrays)
             state.film = ctypes.pointer(self.film)
+        self.plastic: PlasticState | None = None
+        if system.plasticity is not None:
+            self.plastic = PlasticState(system.plasticity, system.mass.size)
+            state.plastic = ctypes.pointer(self.plastic.structure)
         state.tolerance = TOLERANCE
         self.state = state
 

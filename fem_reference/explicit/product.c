@@ -27,7 +27,11 @@ static inline pair off_diagonal(const double *block, int64_t j, const double *x,
     return sum + first * x[2 * j] + second * x[2 * j + 1];
 }
 
-static inline pair row_product(const Level *l, const double *x, double *y, int64_t i, int64_t n) {
+static inline pair block_product(const double *block, const double *x) {
+    return load(block) * x[0] + load(block + 2) * x[1];
+}
+
+static inline pair row_product(const Part *l, const double *x, double *y, int64_t i, int64_t n) {
     const double *block = l->block + 4 * l->row[i];
     const int32_t *column = l->column + l->row[i];
     const int64_t count = l->row[i + 1] - l->row[i];
@@ -55,53 +59,112 @@ static inline void add(double *x, double scale, const double *factor, Vector a) 
 
 static inline void shift(double *u, double h, const double *v) { store(u, load(u) + h * load(v)); }
 #else
+typedef double four __attribute__((vector_size(32)));
+typedef int64_t four_mask __attribute__((vector_size(32)));
+enum { AHEAD = 64 }; /* blocks: how far ahead of its use K is asked for from memory */
+typedef four Vector; /* three components, the last lane says nothing */
+
+static inline four load(const double *x) {
+    four value;
+    memcpy(&value, x, sizeof value);
+    return value;
+}
+
+static inline void store(double *x, four value) { memcpy(x, &value, sizeof value); }
+
+static inline four times(four a, four b, four c, const double *x) { return a * x[0] + b * x[1] + c * x[2]; }
+
+/* Three rows of a block; the processor reads each from memory once. */
 typedef struct {
-    double x[C];
-} Vector;
+    four first, second, third;
+} Rows;
 
-static inline double component(Vector a, int d) { return a.x[d]; }
+static inline Rows rows_of(const double *block) {
+    Rows r = {load(block), load(block + 3), load(block + 6)};
+#ifdef __AVX__
+    __asm__("" : "+x"(r.first), "+x"(r.second), "+x"(r.third));
+#endif
+    return r;
+}
 
-static inline void store(double *x, Vector a) { memcpy(x, a.x, sizeof a.x); }
+/* The block times x, by its columns. */
+static inline four forward(Rows r, const double *x) {
+    const four_mask even = {0, 4, 2, 6}, odd = {1, 5, 3, 7}, low = {0, 1, 4, 5}, high = {2, 3, 6, 7};
+    const four_mask next = {1, 1, 3, 3};
+    const four outer = __builtin_shuffle(r.first, r.second, even);
+    const four middle = __builtin_shuffle(r.first, r.second, odd);
+    return times(__builtin_shuffle(outer, r.third, low),
+                 __builtin_shuffle(middle, __builtin_shuffle(r.third, next), low),
+                 __builtin_shuffle(outer, r.third, high), x);
+}
+
+static inline four block_product(const double *block, const double *x) { return forward(rows_of(block), x); }
+
+static inline double component(Vector a, int d) { return a[d]; }
 
 static inline void add(double *x, double scale, const double *factor, Vector a) {
-    for (int d = 0; d < C; ++d) x[d] += scale * factor[d] * a.x[d];
+    for (int d = 0; d < C; ++d) x[d] += scale * factor[d] * a[d];
 }
 
 static inline void shift(double *u, double h, const double *v) {
     for (int d = 0; d < C; ++d) u[d] += h * v[d];
 }
 
-static inline Vector row_product(const Level *l, const double *restrict x, double *restrict y,
+static inline Vector row_product(const Part *l, const double *restrict x, double *restrict y,
                                  int64_t row, int64_t i) {
     const double *restrict b = l->block + 9 * l->row[row];
     const int32_t *restrict column = l->column + l->row[row];
     const int64_t count = l->row[row + 1] - l->row[row];
-    const double x0 = x[3 * i], x1 = x[3 * i + 1], x2 = x[3 * i + 2];
-    double s0 = y[3 * i] + b[0] * x0 + b[1] * x1 + b[2] * x2;
-    double s1 = y[3 * i + 1] + b[3] * x0 + b[4] * x1 + b[5] * x2;
-    double s2 = y[3 * i + 2] + b[6] * x0 + b[7] * x1 + b[8] * x2;
+    const four zero = {0.0, 0.0, 0.0, 0.0};
+    const double own[3] = {x[3 * i], x[3 * i + 1], x[3 * i + 2]};
+    const double *mine = y + 4 * i;
+    four sum = {mine[0] + b[0] * own[0] + b[1] * own[1] + b[2] * own[2],
+                mine[1] + b[3] * own[0] + b[4] * own[1] + b[5] * own[2],
+                mine[2] + b[6] * own[0] + b[7] * own[1] + b[8] * own[2], 0.0};
     for (int64_t p = 1; p < count; ++p) {
         b += 9;
-        const int64_t j = 3 * (int64_t)column[p];
-        const double z0 = x[j], z1 = x[j + 1], z2 = x[j + 2];
-        s0 += b[0] * z0 + b[1] * z1 + b[2] * z2;
-        s1 += b[3] * z0 + b[4] * z1 + b[5] * z2;
-        s2 += b[6] * z0 + b[7] * z1 + b[8] * z2;
-        y[j] += b[0] * x0 + b[3] * x1 + b[6] * x2;
-        y[j + 1] += b[1] * x0 + b[4] * x1 + b[7] * x2;
-        y[j + 2] += b[2] * x0 + b[5] * x1 + b[8] * x2;
+        __builtin_prefetch(b + 9 * AHEAD);
+        const int64_t j = column[p];
+        const Rows r = rows_of(b);
+        sum += forward(r, x + 3 * j);
+        store(y + 4 * j, load(y + 4 * j) + times(r.first, r.second, r.third, own));
     }
-    for (int d = 0; d < C; ++d) y[3 * i + d] = 0.0;
-    return (Vector){{s0, s1, s2}};
+    store(y + 4 * i, zero);
+    return sum;
 }
 #endif
 
+/* What the nodes outside its part add to a row at the border. */
+static inline Vector outer_product(const Part *l, const double *x, int64_t i) {
+    Vector sum = {0.0};
+    for (int64_t p = l->outer[i]; p < l->outer[i + 1]; ++p)
+        sum += block_product(l->outer_block + C * C * p, x + C * (int64_t)l->outer_column[p]);
+    return sum;
+}
+
+/* f += K_l x of one part */
+static void part_product(const Part *l, const double *x, double *f) {
+    for (int64_t i = 0; i < l->rows; ++i) {
+        const int64_t n = l->node[i];
+        Vector sum = row_product(l, x, f, i, n);
+        if (i < l->border) sum += outer_product(l, x, i);
+        store(f + LANES * n, sum);
+    }
+}
+
 /* y = (K_first + ... + K_{end-1}) x */
 void stiffness_product(const State *s, int64_t first, int64_t end, const double *x, double *y) {
-    memset(y, 0, C * (size_t)s->nodes * sizeof *y);
-    for (int64_t k = first; k < end; ++k)
-        for (int64_t i = 0; i < s->level[k].rows; ++i) {
-            const int64_t n = s->level[k].node[i];
-            store(y + C * n, row_product(&s->level[k], x, y, i, n));
+    const Vector zero = {0.0};
+    double *f = s->f;
+#pragma omp parallel num_threads(s->parts) if (s->parts > 1)
+    {
+        for (int64_t k = first; k < end; ++k)
+#pragma omp for schedule(static, 1)
+            for (int64_t q = 0; q < s->parts; ++q) part_product(&s->part[k * s->parts + q], x, f);
+#pragma omp for
+        for (int64_t n = 0; n < s->nodes; ++n) {
+            memcpy(y + C * n, f + LANES * n, C * sizeof *y);
+            store(f + LANES * n, zero);
         }
+    }
 }

@@ -3,7 +3,8 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { C = COMPONENTS, RADIAL = 0, AXIAL = C - 1, MAX_INTERVALS = 256, FACET_NODES = 6, SAMPLED = 8, CORNERS = 3 };
+enum { C = COMPONENTS, LANES = C == 2 ? 2 : 4, RADIAL = 0, AXIAL = C - 1, MAX_INTERVALS = 256, FACET_NODES = 6, SAMPLED = 8, CORNERS = 3 };
+enum { SPACED = 16 }; /* numbers of different threads are so far apart, in cache lines of their own */
 enum { AGAINST_SURFACE = 0, AGAINST_SPHERE = 1 };
 
 /* What a contact has done so far. */
@@ -73,6 +74,25 @@ typedef struct {
     double work;             /* on both bodies so far, J */
 } Film;
 
+/* Elements that may yield, see plastic.c. */
+typedef struct {
+    int64_t elements;
+    int64_t nodes;           /* of these elements */
+    const int32_t *touched;  /* (nodes) them */
+    const int32_t *node;     /* (4 elements) */
+    const double *gradient;  /* (elements 12 points) dN/dr of the corners, dN/dz, N/r, 1/m */
+    const double *weight;    /* (elements points) 2 pi r dr dz, m^3 */
+    const double *shear;     /* (elements) modulus, Pa */
+    const double *yield;     /* (elements) strength, Pa */
+    const double *hardening; /* (elements) its slope over the plastic strain, Pa */
+    const double *rate;      /* (elements) of strain that doubles the yield stress, 1/s; 0: none */
+    const double *exponent;  /* (elements) of the rate */
+    double *strain;          /* (elements 4 points) plastic: rr, tt, zz, twice rz */
+    double *accumulated;     /* (elements points) equivalent plastic strain */
+    double *work;            /* (elements) plastic, so far, J */
+    double *force;           /* (2 nodes of the system) load of the plastic strain, N */
+} Plastic;
+
 /* A rigid body that only friction turns; vectors have room for three components. */
 typedef struct {
     double mobility[9]; /* 3x3 inverse mass, zero along directions that are guided, 1/kg */
@@ -102,8 +122,8 @@ typedef struct {
     double *compliance;    /* (count) diagonal of G M^-1 G^T, 1/kg */
     double friction;       /* Coulomb's coefficient */
     double *traction;      /* (3 count) friction on the candidates in the last step, N; only with friction */
-    double rubbed;         /* work of friction on both sides so far, J */
     int32_t *active;       /* (count) work space */
+    double rubbed;         /* work of friction on both sides so far, J */
     double impulse[3];     /* on the candidates so far, N s */
     double force[3];       /* on the candidates in the last step, N */
     Record record;         /* of forces along each candidate's own normal */
@@ -124,6 +144,7 @@ typedef struct {
     Rigid *rigid;
     Pairs *pairs;           /* (matched), in the numbering of the system */
     Film *film;             /* 0: none */
+    Plastic *plastic;       /* 0: none */
     double dt;
     double tolerance;       /* of the multipliers, over the largest one */
     int64_t step;           /* steps done */
@@ -132,11 +153,15 @@ typedef struct {
     double reaction[3];     /* impulse of the supports on the bodies so far, N s */
 } Problem;
 
-/* The elements of one level. Rows come in four groups: nodes that also have faster elements (they only
- * receive the impulse), last those of them that are held somewhere; then nodes that move with this level,
- * last those of them that are held. Later rows never read the displacement of a row that moves. */
+/* The elements of one level, and of their rows those of one part: a part is what one thread sums. First come the
+ * rows at its border, which also have neighbours outside it: all of these read each other's displacements, so a
+ * node at a border moves when every part is done. The other rows come in four groups: nodes that also have faster
+ * elements (they only receive the impulse), last those of them that are held somewhere; then nodes that move with this
+ * level, last those of them that are held. Later rows never read the displacement of a row that moves. */
 typedef struct {
-    int64_t shared_free; /* ends of the groups */
+    int64_t border_shared; /* ends of the groups */
+    int64_t border;
+    int64_t shared_free;
     int64_t shared;
     int64_t free;
     int64_t rows;
@@ -144,15 +169,37 @@ typedef struct {
     const int64_t *row;    /* (rows + 1) first block of each row */
     const int32_t *column; /* the row's own node, then those of later rows */
     const double *block;   /* (C^2 per block), the upper half of K_l; row by row, of two components column by column */
-} Level;
+    const int64_t *outer;  /* (border + 1) first block of each row with a node outside the part */
+    const int32_t *outer_column;
+    const double *outer_block;
+} Part;
+
+/* Nodes of one body that move with one level, in a system in which some body relaxes; see relaxation.c. */
+typedef struct {
+    int64_t level;
+    int64_t count;
+    int64_t terms;         /* of the body, 0: elastic */
+    const int32_t *node;   /* (count) */
+    double lasting;        /* 1 - sum of the ratios: share of the modulus that does not relax */
+    const double *ratio;   /* (terms) share g of each spring */
+    const double *decay;   /* (terms) exp(-h / tau) over the level's time step h */
+    const double *growth;  /* (terms) tau (1 - exp(-h / tau)), s */
+} Relaxing;
 
 typedef struct {
     int64_t nodes;
     int64_t levels;
-    const Level *level;
+    int64_t parts;
+    const Part *part;       /* (levels, parts) */
     const double *inverse;  /* (C nodes) 1/m, zero where fixed */
     double *u;              /* (C nodes) displacement */
+    double *effective;      /* (C nodes) displacement that K acts on: u itself, or see relaxation.c */
     double *v;              /* (C nodes) velocity at half steps */
-    double *f;              /* (C nodes) work space, zero between sweeps */
+    double *f;              /* (LANES nodes) work space, zero between sweeps */
+    double *support;        /* (SPACED parts) impulse of the supports on each part, not yet in the problem's, N s */
+    int64_t relaxings;      /* 0: all bodies are elastic */
+    const Relaxing *relaxing;
+    int64_t springs;        /* most terms of any body */
+    double *extension;      /* (C springs nodes) m */
     Problem *problem;
 } State;

@@ -7,8 +7,10 @@ from typing import Protocol
 import scipy.sparse
 
 from ..common.arrays import Floats, Ints, Mask
+from ..common.bodies import Relaxation
 from .contact import Contact, MatchedContact, RigidBody
 from .film import Film
+from .plastic import Plasticity
 
 
 class System(Protocol):
@@ -42,6 +44,10 @@ class System(Protocol):
         """(n,) nodes of this process, in the order in which a loop keeps them."""
 
     @property
+    def ghosts(self) -> Ints:
+        """Nodes of other processes that have an element in common with own ones."""
+
+    @property
     def held(self) -> Mask:
         """(N,) nodes whose forces count as the supports' where they are fixed."""
 
@@ -57,7 +63,14 @@ class System(Protocol):
         """(m,) critical time step of each element alone, s."""
 
     def part(self, chosen: Mask | None) -> scipy.sparse.csr_matrix:
-        """Stiffness of some elements (m,), or of all: own rows and columns, as `owned`, N/m."""
+        """Own rows of the stiffness of some elements (m,), or of all, N/m.
+
+        Columns as `owned`, then `ghosts`.
+        """
+
+    @property
+    def relaxations(self) -> tuple[tuple[Relaxation, ...], ...]:
+        """Of the material of each elastic body."""
 
     @property
     def rigid(self) -> tuple[RigidBody, ...]:
@@ -74,3 +87,7 @@ class System(Protocol):
     @property
     def film(self) -> Film | None:
         """Between two of them."""
+
+    @property
+    def plasticity(self) -> Plasticity | None:
+        """Of the elements that may yield."""

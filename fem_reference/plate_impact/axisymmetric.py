@@ -21,6 +21,7 @@ from ..common.settings import Settings
 from ..explicit.frames import Recorder
 from ..explicit.supervision import stable_run
 from .axisymmetric_motion import AxisymmetricMotion, integrate_axisymmetric
+from .dents import Memory
 from .estimate import (
     ACCEPTED_SHARE,
     MINOR_FORCE,
@@ -30,9 +31,10 @@ from .estimate import (
     estimate_contact,
     shortest_wavelengths,
 )
-from .meshing import ImpactMesh, build_system, mesh_impact, mesh_settings
+from .meshing import YIELDING_REACH, ImpactMesh, build_system, mesh_impact, mesh_settings
 from .run import Run
 from .scene import Scene
+from .series import Kept, strike
 
 REVISION = 2
 """Counts changes of the method that make kept results useless."""
@@ -63,13 +65,16 @@ class Resolution:
 
 @dataclass(frozen=True)
 class Solution:
-    """A verified run."""
+    """A verified run, or several."""
 
-    run: Run
+    runs: list[Run]
+    """Of all impacts, one after the other."""
     mesh: ImpactMesh
     system: AxisymmetricSystem
     levels: tuple[int, ...]
     """Nodes whose elements of each level of sub-cycling act."""
+    threads: int
+    """Of the time loop."""
     resolution: Resolution
     estimate: ContactEstimate
     meshes_tried: int
@@ -77,7 +82,14 @@ class Solution:
     """On the number of elements asked for."""
     radii: tuple[float, float]
     """Contact radii the mesh is made for, outer and inner, m."""
+    reach: float
+    """Radius and depth of the boxes that may yield over that of the matching nodes."""
     recorder: Recorder
+
+    @property
+    def run(self) -> Run:
+        """The last impact's."""
+        return self.runs[-1]
 
     @property
     def dofs(self) -> int:
@@ -90,7 +102,7 @@ class Solution:
 
     def machine(self) -> dict[str, Any]:
         """For the summary's ``solver``."""
-        return {"nodes_per_level": list(self.levels)}
+        return {"nodes_per_level": list(self.levels), "threads": self.threads}
 
     def mesh_report(self) -> dict[str, Any]:
         """For the summary's ``mesh``."""
@@ -161,6 +173,8 @@ def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Re
             effective_modulus(body.material, scene.plate.material),
             body.tip_radius,
         )
+        if not scene.yields
+        else contact.outermost_radius
         for contact, body in zip(run.contacts, (scene.outer, scene.inner), strict=True)
     ]
     edges = np.concatenate([edge_lengths(body.points, body.quads) for body in mesh.bodies])
@@ -181,30 +195,88 @@ def _resolution(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Re
     )
 
 
-def _stepped(
-    scene: Scene, system: AxisymmetricSystem, duration: float, settings: Settings, **options: Any
-) -> tuple[Run, AxisymmetricMotion, Recorder]:
-    """Step with sub-cycling where that can be; a run that the scene cuts short has one level.
+@dataclass(frozen=True)
+class Suitability:
+    """Whether a mesh suits what happened on it."""
 
-    It may end in the middle of a contact, where the energy of a run with levels cannot be read.
+    resolution: Resolution
+    asked: float
+    """Elements per contact radius."""
+    zone_left: bool
+    """Whether nodes of the contact zone were never touched."""
+    reach_left: bool
+    """Whether nothing yielded at the edge of what may."""
+
+    @property
+    def least(self) -> float:
+        """Elements per contact radius, of both contacts."""
+        return min(self.resolution.outer, self.resolution.inner)
+
+    @property
+    def accepted(self) -> bool:
+        """Whether it does."""
+        return self.least >= ACCEPTED_SHARE * self.asked and self.zone_left and self.reach_left
+
+    def radii(self, size: float, before: tuple[float, float]) -> tuple[float, float]:
+        """Contact radii for the next mesh, after one with elements of ``size`` (m)."""
+        grow = 1.0 if self.zone_left else 1.3
+        outer, inner = (
+            grow * size * found if math.isfinite(found) else radius
+            for found, radius in zip(
+                (self.resolution.outer, self.resolution.inner), before, strict=True
+            )
+        )
+        return outer, inner
+
+    def __str__(self) -> str:
+        """What a message says."""
+        beyond = "" if self.reach_left else " and yielding beyond its zone"
+        return f"{self.least:.3g} elements per contact radius, {self.asked:.3g} asked{beyond}"
+
+
+class _Stepper:
+    """Makes the impacts of a scene, with sub-cycling where that can be.
+
+    An impact that the scene cuts short has one level: it may end in the middle of a contact, where
+    the energy of a run with levels cannot be read.
     """
 
-    def attempt(most_levels: int) -> tuple[Run, AxisymmetricMotion, Recorder]:
-        recorder = Recorder(settings, f"-{most_levels}")
-        run, motion = integrate_axisymmetric(
-            system,
-            scene,
-            duration,
-            most_levels=most_levels,
-            courant=settings.courant,
-            fields=recorder,
-            **options,
-        )
-        return run, motion, recorder
+    def __init__(
+        self,
+        scene: Scene,
+        system: AxisymmetricSystem,
+        duration: float,
+        settings: Settings,
+        report: Report,
+        like: Solution | None,
+    ) -> None:
+        self.scene, self.system, self.duration = scene, system, duration
+        self.settings, self.report, self.like = settings, report, like
+        self.recorder = Recorder(settings)
 
-    if scene.end_time is not None:
-        return attempt(1)
-    return stable_run(attempt, lambda made: (len(made[1].loop.levels), made[0].energy_residual))
+    def __call__(self, number: int, memory: Memory | None) -> tuple[Run, AxisymmetricMotion]:
+        """Impact ``number``, from 0 on."""
+        named = "" if self.scene.series is None else f"impact {number + 1}: "
+        end = self.scene.end_time if self.like is None else self.like.runs[number].times[-1]
+
+        def attempt(most_levels: int) -> tuple[Run, AxisymmetricMotion]:
+            self.recorder = Recorder(self.settings, f"-{most_levels}")
+            return integrate_axisymmetric(
+                self.system,
+                self.scene,
+                self.duration,
+                memory,
+                end_time=None if end is None else float(end),
+                most_levels=most_levels,
+                courant=self.settings.courant,
+                threads=self.settings.threads,
+                fields=self.recorder,
+                on_progress=lambda done, message: self.report("stepping", done, named + message),
+            )
+
+        if self.scene.end_time is not None:
+            return attempt(1)
+        return stable_run(attempt, lambda made: made[0].account(len(made[1].loop.levels)))
 
 
 def compute(
@@ -234,7 +306,7 @@ def compute(
     """
     estimate = estimate_contact(scene)
     radii = (estimate.outer_radius, estimate.inner_radius) if like is None else like.radii
-    end_time = scene.end_time if like is None else float(like.run.times[-1])
+    reach = YIELDING_REACH if like is None else like.reach
     asked = scene.elements_per_contact_radius * factor
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
@@ -249,39 +321,34 @@ def compute(
             )
         nodes = sum(body.points.shape[0] for body in mesh.bodies)
         report("assembly", 0.0, f"{nodes} nodes")
-        system = build_system(scene, mesh)
-        run, motion, recorder = _stepped(
-            scene,
-            system,
-            estimate.duration,
-            settings,
-            end_time=end_time,
-            on_progress=lambda done, message: report("stepping", done, message),
-        )
-        resolution = _resolution(scene, mesh, run, estimate.duration)
-        zone_left = all(
-            contact.outermost_radius < 0.999 * sizes.contact_zone for contact in run.contacts
-        )
-        enough = min(resolution.outer, resolution.inner) >= ACCEPTED_SHARE * asked
-        if like is not None or (enough and zone_left):
-            levels = motion.loop.acting
-            return Solution(
-                *(run, mesh, system, levels, resolution, estimate, attempt, factor, radii),
-                recorder=recorder,
+        system = build_system(scene, mesh, reach)
+        stepper = _Stepper(scene, system, estimate.duration, settings, report, like)
+
+        def suits(run: Run, motion: AxisymmetricMotion, mesh: ImpactMesh = mesh) -> Suitability:
+            resolution = _resolution(scene, mesh, run, estimate.duration)
+            zone = mesh.settings.contact_zone
+            return Suitability(
+                resolution,
+                asked,
+                all(contact.outermost_radius < 0.999 * zone for contact in run.contacts),
+                motion.dents is None or not motion.dents.reach_the_edge(),
             )
-        size = sizes.contact_element
-        grow = 1.0 if zone_left else 1.3
-        radii = (
-            grow * size * resolution.outer if math.isfinite(resolution.outer) else radii[0],
-            grow * size * resolution.inner if math.isfinite(resolution.inner) else radii[1],
+
+        struck = strike(
+            scene.series,
+            stepper,
+            Kept(settings, method(scene), system),
+            lambda run, motion: like is not None or suits(run, motion).accepted,
+            None if like is None else len(like.runs),
         )
-        print(
-            f"mesh {attempt}: {min(resolution.outer, resolution.inner):.3g} elements per contact "
-            f"radius, {asked:.3g} asked; meshing again with the radii found",
-            file=sys.stderr,
-        )
-    raise SolverError(
-        f"after {MOST_MESHES} meshes there are still only "
-        f"{min(resolution.outer, resolution.inner):.3g} elements per contact radius, "
-        f"{asked:.3g} are asked for"
-    )
+        found = suits(struck.runs[-1], struck.motion)
+        if like is not None or found.accepted:
+            loop = struck.motion.loop
+            return Solution(
+                *(struck.runs, mesh, system, loop.acting, loop.threads, found.resolution, estimate),
+                *(attempt, factor, radii, reach, stepper.recorder),
+            )
+        radii = found.radii(sizes.contact_element, radii)
+        reach = reach if found.reach_left else 1.4 * reach
+        print(f"mesh {attempt}: {found}; meshing again with what was found", file=sys.stderr)
+    raise SolverError(f"after {MOST_MESHES} meshes there are still {found}")

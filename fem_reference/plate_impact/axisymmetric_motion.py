@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..axisymmetric.modal import elastic_modes, modes_up_to
+from ..axisymmetric.statics import patch_flexibility
 from ..axisymmetric.system import (
     INNER,
     OUTER,
@@ -15,7 +16,6 @@ from ..axisymmetric.system import (
     AxisymmetricSystem,
     critical_time_step,
     hertz_weights,
-    patch_flexibility,
 )
 from ..common.arrays import Floats, Ints
 from ..common.fenicsx import alone
@@ -23,9 +23,11 @@ from ..explicit import kernel
 from ..explicit.damping import ModalDamping
 from ..explicit.drag import Drag
 from ..explicit.loop import Energies, SerialLoop
+from ..explicit.parts import worthwhile
+from .dents import Dents, Memory
 from .ending import Ending, Followed, Patch
 from .estimate import WAVE_FREQUENCY
-from .motion import SIDES, Further, Losses, State
+from .motion import SIDES, Further, Losses, State, Yielded
 from .run import Run, integrate
 from .scene import Scene
 
@@ -48,11 +50,14 @@ class AxisymmetricMotion:
 
     share = 1.0
 
-    def __init__(self, system: AxisymmetricSystem) -> None:
-        self.system, self.loop = system, SerialLoop(system, alone())
+    def __init__(self, system: AxisymmetricSystem, threads: int = 1) -> None:
+        threads = worthwhile(threads, system.inverse_mass.size)
+        self.system, self.loop = system, SerialLoop(system, alone(), threads)
         self._bent = system.displacement is not None
+        self._watched_before = 0.0
         if system.displacement is not None:
             self.loop.u[:] = self.loop.own(system.displacement)
+            self.loop.strain()
         self.damping: ModalDamping | None = None
         self.drag: Drag | None = None
         self._interval, self._undamped = math.inf, 0.0
@@ -66,9 +71,19 @@ class AxisymmetricMotion:
             carried.node = -1
         if system.tip is not None:
             bodies[0].node = system.tip
+        self.dents: Dents | None = None
+        if self.loop.problem.plastic is not None:
+            self.dents = Dents(system, self.loop.problem.plastic)
         self._arrays = kernel.Arrays()
         self._bodies = bodies
         self._watched = self._watch(*system.watched)
+
+    def lay(self, memory: Memory, gap: float) -> None:
+        """Begin with the dents of earlier impacts, the inner sphere ``gap`` (m) from the plate."""
+        if self.dents is not None:
+            self.loop.u[:] = self.dents.lay(memory, (0.0, gap))
+            nodes, shares = self.system.watched
+            self._watched_before = float(shares @ self.loop.u[1::2][nodes])
 
     def _watch(self, nodes: Ints, shares: Floats) -> kernel.Watched:
         watched = kernel.Watched()
@@ -105,19 +120,28 @@ class AxisymmetricMotion:
     def further(self) -> Further:
         """See `Motion.further`."""
         damping, film, drag = self.damping, self.loop.problem.film, self.drag
+        dents = self.dents
         outer, inner = self.loop.problem.matched[:2]
+        yielded = dents.yielded() if dents else Yielded()
         losses = Losses(
             damping.dissipated if damping else 0.0,
             -film.work if film else 0.0,
             drag.dissipated if drag else 0.0,
-            (-outer.rubbed, -inner.rubbed),
+            (yielded.lost[0] - outer.rubbed, yielded.lost[1] - inner.rubbed),
         )
         slowed = drag.impulse if drag else 0.0
         return Further(
-            losses if damping or film or drag or outer.friction > 0.0 else None,
+            losses if damping or film or drag or dents or outer.friction > 0.0 else None,
             slowed + (damping.impulse if damping else 0.0),
             slowed - (film.impulse if film else 0.0),
+            yielded if dents else None,
+            float(dents.locked_in().sum()) if dents else 0.0,
         )
+
+    def by_role(self, of_bodies: tuple[float, ...]) -> tuple[float, float, float]:
+        """See `Motion.by_role`."""
+        outer, plate, inner = of_bodies
+        return outer, plate, inner
 
     @property
     def records(self) -> list[kernel.Record]:
@@ -126,6 +150,11 @@ class AxisymmetricMotion:
 
     def sample(self, samples: int, stride: int) -> Floats:
         """See `Motion.sample`; samples lie close, so that compiled code takes them."""
+        rows = self._sample(samples, stride)
+        rows[:, 3] -= self._watched_before
+        return rows
+
+    def _sample(self, samples: int, stride: int) -> Floats:
         if self._bent:
             self._fall_behind()
             self._bent = False
@@ -145,11 +174,9 @@ class AxisymmetricMotion:
     def _fall_behind(self) -> None:
         """Take the velocities half a step back from the start, at which a bent body has forces."""
         loop, system = self.loop, self.system
-        for level in range(len(loop.levels)):
-            impulse = 0.5 * 2**level * loop.dt * loop.level_product(level, loop.u)
-            loop.v += loop.inverse * impulse
-            held = impulse[1::2][system.supports]
-            loop.problem.state.reaction[1] -= float(held.sum())
+        impulse = 0.5 * loop.impulse(loop.u)
+        loop.v += loop.inverse * impulse
+        loop.problem.state.reaction[1] -= float(impulse[1::2][system.supports].sum())
 
     def velocities(self) -> tuple[float, float]:
         """Mean velocity of each body, of a bender its tip's, half a step late, m/s."""
@@ -173,21 +200,32 @@ class AxisymmetricMotion:
     def plate_energy(self, energies: Energies) -> float:
         """Elastic energy of the plate, rigid motion of a free one apart, J."""
         rigid = energies.rigid_motion[PLATE] if self._free else 0.0
-        return energies.elastic[PLATE] - rigid
+        return energies.elastic[PLATE] - rigid - self._locked_in(PLATE)
+
+    def _locked_in(self, body: int) -> float:
+        """Energy of a body that does not vibrate, J."""
+        return float(self.dents.locked_in_bodies()[body]) if self.dents else 0.0
+
+    def strained(self) -> Floats:
+        """(2n,) displacement but for what plastic strain leaves at rest, m."""
+        return self.loop.u - self.dents.at_rest() if self.dents else self.loop.u
 
     def states(self, energies: Energies) -> tuple[State, State]:
         """Of each sphere against the plate in its rigid motion."""
         place = speed = 0.0
+        strained = self.strained()
         if self._free:
-            place = self.mean_axial(self.loop.u, PLATE)
+            place = self.mean_axial(strained, PLATE)
             speed = self.mean_axial(self.loop.v, PLATE)
 
         def state(number: int, body: int) -> State:
-            opened = self.mean_axial(self.loop.u, body) - place
+            opened = self.mean_axial(strained, body) - place
             opening = self.mean_axial(self.loop.v, body) - speed
-            gap = float(self.system.matched[number].gaps.min())
+            dents = self.dents
+            gap = dents.clearance(number) if dents else self.system.matched[number].gaps.min()
             vibration = energies.elastic[body] - energies.rigid_motion[body]
-            return State(gap + SIDES[number] * opened, SIDES[number] * opening, vibration)
+            vibration -= self._locked_in(body)
+            return State(float(gap) + SIDES[number] * opened, SIDES[number] * opening, vibration)
 
         return state(0, OUTER), state(1, INNER)
 
@@ -202,8 +240,8 @@ class AxisymmetricMotion:
         return float(mass @ values[system.body(body)][1::2] / mass.sum())
 
 
-def _ending(motion: AxisymmetricMotion, damping_ratio: float) -> Ending:
-    system, loop = motion.system, motion.loop
+def _ending(motion: AxisymmetricMotion, scene: Scene) -> Ending:
+    system, loop, materials = motion.system, motion.loop, scene.materials
     modes = elastic_modes(system, FOLLOWED_MODES)
     frequencies, shapes = modes.frequencies, modes.shapes
     rows, start = system.body(PLATE), int(system.first[PLATE])
@@ -216,25 +254,42 @@ def _ending(motion: AxisymmetricMotion, damping_ratio: float) -> Ending:
         whole = patch_flexibility(system, PLATE, pairs.opposite, weights)
         rest = whole - float(np.sum((shares / frequencies) ** 2))
         sphere = patch_flexibility(system, body, pairs.candidates, weights)
-        return Patch(max(rest, 0.0), sphere, shares)
+        # The stiffness that lasts bounds what an energy can displace.
+        return Patch(max(rest, 0.0) / lasting[PLATE], sphere / lasting[body], shares)
 
-    def coordinates() -> tuple[Floats, Floats]:
-        return shapes.T @ (mass * loop.u[rows]), shapes.T @ (mass * loop.v[rows])
+    def coordinates() -> tuple[Floats, Floats, Floats]:
+        position, velocity = (shapes.T @ (mass * x[rows]) for x in (motion.strained(), loop.v))
+        springs = loop.springs
+        if springs is None:
+            return position, velocity, np.zeros((frequencies.size, 0))
+        return position, velocity, shapes.T @ (mass[:, None] * springs.of_body(PLATE))
 
+    lasting = [material.lasting for material in materials]
     patches = (patch(0, OUTER), patch(1, INNER))
-    return Ending(motion, patches, WINDOW, Followed(frequencies, damping_ratio, coordinates))
+    relaxation = materials[PLATE].relaxation
+    followed = Followed(frequencies, scene.plate.damping_ratio, relaxation, coordinates)
+    return Ending(motion, patches, WINDOW, followed)
 
 
 def integrate_axisymmetric(
-    system: AxisymmetricSystem, scene: Scene, contact_duration: float, **options: Any
+    system: AxisymmetricSystem,
+    scene: Scene,
+    contact_duration: float,
+    memory: Memory | None = None,
+    threads: int = 1,
+    **options: Any,
 ) -> tuple[Run, AxisymmetricMotion]:
-    """Step a system; see `run.integrate` for the options.
+    """Step a system, with at most so many threads; see `run.integrate` for the options.
+
+    ``memory`` is what yielding bodies know of earlier impacts.
 
     Raises:
         SolverError: time step above the critical one, divergence, or no end found.
     """
     damping_ratio = scene.plate.damping_ratio
-    motion = AxisymmetricMotion(system)
+    motion = AxisymmetricMotion(system, threads)
+    if memory is not None:
+        motion.lay(memory, scene.gap)
     if damping_ratio > 0.0:
         motion.damp(damping_ratio, 2.0 * math.pi * DAMPED_FREQUENCY / contact_duration)
     if scene.drag > 0.0:
@@ -243,7 +298,7 @@ def integrate_axisymmetric(
         motion,
         scene,
         contact_duration,
-        lambda: _ending(motion, damping_ratio),
+        lambda: _ending(motion, scene),
         lambda: critical_time_step(system),
         levels_within_samples=False,
         chunk=CHUNK_SAMPLES,

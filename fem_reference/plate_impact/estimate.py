@@ -99,11 +99,31 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
         # Not reached in the first contact: the mesh is made for the other one, and verified.
         radii[1] = min(radii[0], 0.15 * scene.inner.tip_radius)
     speeds = (scene.speed, max(scene.speed, scene.inner_speed))
+    radii = [
+        max(radius, _dented_radius(radius, force, body, plate.material))
+        for radius, force, body in zip(radii, peak, bodies, strict=True)
+    ]
     durations = [
         3.218 * hertz_time_scale(body.mass, k, speed)
         for k, body, speed in zip(stiffness, bodies, speeds, strict=True)
     ]
     return ContactEstimate(radii[0], radii[1], min(durations))
+
+
+FULL_YIELDING = 2.8
+"""Mean pressure of a fully developed dent over the yield strength (Johnson 1985, ch. 6.3)."""
+
+
+def _dented_radius(radius: float, force: float, body: Body, plate: Material) -> float:
+    """Radius in m of the dent that takes the energy of Hertz's contact at a peak; 0 if elastic.
+
+    The energy is 2/5 F a^2/R; a dent under a constant pressure p takes pi p a^4 / (4 R).
+    """
+    laws = [law for law in (body.material.yielding, plate.yielding) if law is not None]
+    if not laws:
+        return 0.0
+    pressure = FULL_YIELDING * min(law.strength for law in laws)
+    return math.pow(1.6 * force * radius**2 / (math.pi * pressure), 0.25)
 
 
 def shortest_wavelengths(scene: Scene, duration: float) -> tuple[float, float, float]:

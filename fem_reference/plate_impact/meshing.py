@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse
@@ -12,6 +12,7 @@ from ..axisymmetric.elasticity import BodyMatrices, assemble, beam_body, rigid_n
 from ..axisymmetric.film import facing_nodes, squeeze_film
 from ..axisymmetric.mesh import BodyMesh, check_elements, face_nodes
 from ..axisymmetric.meshing import mesh_plate, mesh_sphere
+from ..axisymmetric.plastic import boxes, plasticity, together, with_box
 from ..axisymmetric.sizes import MeshSettings
 from ..axisymmetric.system import (
     AxisymmetricSystem,
@@ -26,11 +27,14 @@ from ..common.bodies import Bender, Body, Compact, Plate, Sphere, sphere_profile
 from ..common.errors import SceneError, SolverError
 from ..explicit.contact import MatchedContact
 from ..explicit.film import Film
+from ..explicit.plastic import Plasticity
 from .motion import observed_circle
 from .scene import Scene
 
 CONTACT_ZONE = 1.3
 """Radius with matching nodes over the largest contact radius expected."""
+YIELDING_REACH = 3.0
+"""Radius and depth of the boxes that may yield over the radius with matching nodes."""
 
 
 def mesh_settings(
@@ -71,7 +75,9 @@ def mesh_settings(
             f"the scene needs {count} elements across the contact zone, more than 400: its two "
             "contacts or contact and plate differ too much in size"
         )
-    growth, through_growth = (ratio ** (1.0 / factor) for ratio in (1.2, 1.35))
+    # What yields lies up to twice the contact radius deep.
+    through_ratio = 1.35 if scene.plate.material.yielding is None else 1.12
+    growth, through_growth = (ratio ** (1.0 / factor) for ratio in (1.2, through_ratio))
     edge = (min(outer_radius, inner_radius), max(outer_radius, inner_radius))
     return MeshSettings(size, count, along, through, growth, through_growth, edge, rim)
 
@@ -103,6 +109,16 @@ class ImpactMesh:
     def bodies(self) -> tuple[BodyMesh, BodyMesh, BodyMesh]:
         """Outer body, plate, inner body."""
         return self.outer, self.plate, self.inner
+
+    @property
+    def poles(self) -> tuple[dict[int, float], ...]:
+        """Of each body the z of its contacts by their number, m."""
+        upper, lower = (
+            float(self.plate.points[surface.plate_nodes[0], 1])
+            for surface in (self.outer_contact, self.inner_contact)
+        )
+        inner = float(self.inner.points[self.inner_contact.body_nodes[0], 1])
+        return {0: upper}, {0: upper, 1: lower}, {1: inner}
 
 
 def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
@@ -192,14 +208,22 @@ def _discretised(body: BodyMesh, made: Body | Plate) -> tuple[BodyMatrices, Ints
     return assemble(body, made.material), fixed
 
 
-def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
+def build_system(
+    scene: Scene, mesh: ImpactMesh, yielding_reach: float = YIELDING_REACH
+) -> AxisymmetricSystem:
     """Assemble with dolfinx, constrain and renumber.
+
+    Args:
+        scene: what to solve.
+        mesh: of its bodies.
+        yielding_reach: radius and depth of the boxes that may yield over `contact_zone`.
 
     Raises:
         SolverError: a lumped mass is not positive.
     """
     stiffness, mass, inverse, numbers, points, supports = [], [], [], [], [], []
     element_nodes, element_stiffness, element_steps = [], [], []
+    yielding: list[Plasticity] = []
     first = np.zeros(4, dtype=np.int64)
     of_scene = (scene.outer, scene.plate, scene.inner)
     for index, (body, made) in enumerate(zip(mesh.bodies, of_scene, strict=True)):
@@ -211,6 +235,11 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
                 f"node {node} of body '{body.name}' at r = {r:.6g} m, z = {z:.6g} m has the mass "
                 f"{matrices.mass[node]:.3g} kg; it must be positive"
             )
+        box = None
+        if made.material.yielding is not None:
+            size = yielding_reach * mesh.settings.contact_zone
+            box = boxes(body.points, matrices.elements.nodes, mesh.poles[index], size)
+            matrices = with_box(matrices, body.points, made.material, box)
         number = renumbering(matrices)
         order = np.argsort(number)
         rows = (2 * order[:, None] + np.arange(2)).ravel()
@@ -223,6 +252,9 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
         numbers.append(number + first[index])
         supports.append(numbers[index][fixed[fixed % 2 == 1] // 2])
         elements = matrices.elements
+        if box is not None:
+            part = plasticity(elements.nodes, body.points, made.material, box)
+            yielding.append(replace(part, nodes=numbers[index][part.nodes]))
         element_nodes.append(numbers[index][elements.nodes])
         element_stiffness.append(elements.stiffness)
         element_steps.append(elements.critical_time_steps())
@@ -269,6 +301,8 @@ def build_system(scene: Scene, mesh: ImpactMesh) -> AxisymmetricSystem:
         element_stiffness=np.concatenate(element_stiffness),
         element_steps=np.concatenate(element_steps),
         displacement=displacement,
+        relaxations=tuple(material.relaxation for material in scene.materials),
         tip=tip,
         film=_film(scene, mesh, numbers),
+        plasticity=together(yielding),
     )

@@ -53,12 +53,15 @@ class Losses:
     squeeze_film: float = 0.0
     drag: float = 0.0
     contacts: tuple[float, float] = (0.0, 0.0)
-    """To friction, of outer and inner body."""
+    """To friction and to yielding, at outer and inner body."""
+    bodies: tuple[float, ...] | None = None
+    """To relaxation, of outer body, plate and inner body; None: none of them relaxes."""
 
     @property
     def total(self) -> float:
         """All of it, J."""
-        return self.plate_damping + self.squeeze_film + self.drag + sum(self.contacts)
+        others = (*self.contacts, *(self.bodies or ()))
+        return self.plate_damping + self.squeeze_film + self.drag + sum(others)
 
     def of_whole(self, share: float) -> Losses:
         """That of the whole bodies, if this is that of a ``share``."""
@@ -68,7 +71,23 @@ class Losses:
             self.squeeze_film / share,
             self.drag / share,
             (outer / share, inner / share),
+            self.bodies and tuple(lost / share for lost in self.bodies),
         )
+
+
+@dataclass(frozen=True)
+class Yielded:
+    """Energy that went into yielding, at outer and inner contact, J."""
+
+    work: tuple[float, float] = (0.0, 0.0)
+    """Plastic."""
+    locked_in: tuple[float, float] = (0.0, 0.0)
+    """Elastic energy that stays at rest, gained during the run."""
+
+    @property
+    def lost(self) -> tuple[float, float]:
+        """Both."""
+        return self.work[0] + self.locked_in[0], self.work[1] + self.locked_in[1]
 
 
 @dataclass(frozen=True)
@@ -81,6 +100,10 @@ class Further:
     """Impulse on the bodies together so far, along z, N s."""
     on_inner: float = 0.0
     """On the inner one, N s."""
+    yielded: Yielded | None = None
+    """None: nothing that could yield."""
+    locked_in: float = 0.0
+    """Elastic energy that would be left at rest, J."""
 
 
 class Motion(Protocol):
@@ -93,6 +116,9 @@ class Motion(Protocol):
     @property
     def further(self) -> Further:
         """What has acted besides contacts and supports, on the part modelled."""
+
+    def by_role(self, of_bodies: tuple[float, ...]) -> tuple[float, float, float]:
+        """Values of the loop's elastic bodies (bodies,) as those of outer body, plate, inner."""
 
     @property
     def share(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -12,13 +12,23 @@ import numpy as np
 from ..common import document
 from ..common.arrays import Floats
 from ..common.bodies import Bender
+from ..common.errors import SceneError
 from ..common.output import write_history, write_json
 from ..common.progress import Progress
-from ..common.series import MeshResult, Problem, Report, Solved, Target, solve_series
+from ..common.series import (
+    MeshResult,
+    Problem,
+    Report,
+    Solved,
+    Target,
+    estimates,
+    solve_series,
+)
 from ..common.settings import RESOLUTIONS, Options, Settings
 from ..common.versions import versions
 from .estimate import ContactEstimate
 from .history import HISTORY_COLUMNS, curve_bands, history
+from .motion import Yielded
 from .run import Run
 from .scene import Scene
 
@@ -49,14 +59,18 @@ class Solution(Solved, Protocol):
 
     @property
     def run(self) -> Run:
-        """The run."""
+        """The run; of a series the last one."""
+
+    @property
+    def runs(self) -> list[Run]:
+        """Of all impacts."""
 
     @property
     def estimate(self) -> ContactEstimate:
         """Made before any mesh."""
 
     def first_frequency(self) -> float:
-        """Lowest elastic eigenfrequency of the plate, Hz."""
+        """Lowest elastic eigenfrequency of the plate with its instantaneous modulus, Hz."""
 
     def machine(self) -> dict[str, Any]:
         """For the summary's ``solver``."""
@@ -86,8 +100,49 @@ def of_run(scene: Scene, run: Run) -> dict[str, float]:
 
 
 def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
-    """`QUANTITIES`, SI."""
-    return {**of_run(scene, solution.run), "first_frequency": solution.first_frequency()}
+    """`QUANTITIES`, SI, and of a series those `of_run` of each impact as "NUMBER/NAME"."""
+    frequency = scene.plate.material.vibrating(solution.first_frequency())
+    found = {**of_run(scene, solution.run), "first_frequency": frequency}
+    if scene.series is not None:
+        for number, run in enumerate(solution.runs, 1):
+            impact = {**of_run(scene, run), **_of_yielding(run)}
+            found |= {f"{number}/{name}": value for name, value in impact.items()}
+    return found
+
+
+def _of_yielding(run: Run) -> dict[str, float]:
+    """Energy that went into yielding, J."""
+    yielded = run.yielded or Yielded()
+    return {"plastic_work": sum(yielded.work), "locked_in_energy": sum(yielded.locked_in)}
+
+
+def _without_impacts(meshes: list[MeshResult]) -> list[MeshResult]:
+    """The same with the quantities of the last impact alone."""
+    return [
+        replace(mesh, values={n: v for n, v in mesh.values.items() if "/" not in n})
+        for mesh in meshes
+    ]
+
+
+def _impacts(runs: list[Run], meshes: list[MeshResult]) -> list[dict[str, Any]]:
+    """Rows of the summary's ``impacts``; what one that is cut leaves open is null."""
+    found, rows = estimates(meshes), []
+    for number, run in enumerate(runs, 1):
+        names = [name for name in meshes[0].values if name.startswith(f"{number}/")]
+        cut = run.in_contact_at_end
+        rows.append(
+            {
+                "number": number,
+                **{n.split("/")[1]: None if cut else meshes[0].values[n] for n in names},
+                "first_frequency": meshes[0].values["first_frequency"],
+                "outer_contacts": None if cut else run.contacts[0].count,
+                "inner_contacts": None if cut else run.contacts[1].count,
+                "energy_residual": run.energy_residual,
+                "momentum_residual": run.momentum_residual,
+                "uncertainty": {} if cut else {n.split("/")[1]: found[n].band for n in names},
+            }
+        )
+    return rows
 
 
 def curve_uncertainty(bands: Floats) -> dict[str, float]:
@@ -100,7 +155,15 @@ def curve_uncertainty(bands: Floats) -> dict[str, float]:
 
 
 def problem(scene: Scene, resolution: str, comm: Any, options: Options) -> Problem[Any]:
-    """How the scene is solved, by its geometry."""
+    """How the scene is solved, by its geometry.
+
+    Raises:
+        SceneError: fields are asked for of what yields.
+    """
+    if scene.yields and options.stress_times:
+        raise SceneError(
+            "fields are asked for, but a material yields: the stress they show is the elastic one"
+        )
     compute: Callable[[float, Settings, Report, Any], Any]
     if scene.geometry == "solid":
         from . import solid
@@ -118,7 +181,8 @@ def problem(scene: Scene, resolution: str, comm: Any, options: Options) -> Probl
         method, dimension = axisymmetric.method(scene), 2
 
         def leads(solution: Any) -> list[Any]:
-            return list(solution.radii)
+            impacts = [len(solution.runs), solution.reach] if scene.yields else []
+            return [*solution.radii, *impacts]
 
     def write(folder: Path, solution: Any, meshes: list[MeshResult]) -> None:
         _write(folder, scene, solution, resolution, meshes, options)
@@ -133,6 +197,7 @@ def problem(scene: Scene, resolution: str, comm: Any, options: Options) -> Probl
         write=write,
         dimension=dimension,
         leads=leads,
+        resumes=scene.geometry == "solid" or scene.series is not None,
     )
 
 
@@ -179,6 +244,7 @@ def _write(
 ) -> None:
     run, duration = solution.run, solution.estimate.duration
     found = versions()
+    whole, meshes = meshes, _without_impacts(meshes)
     table, interval = history(run)
     bands = curve_bands(meshes, [mesh.factor for mesh in meshes])
     write_history(folder / "history.csv", HISTORY_COLUMNS, table, bands, digits=10)
@@ -198,7 +264,16 @@ def _write(
     )
     summary["uncertainty"].update(curve_uncertainty(bands))
     if run.losses is not None:
-        summary["losses"] = asdict(run.losses)
+        losses = asdict(run.losses)
+        summary["losses"] = {name: loss for name, loss in losses.items() if loss is not None}
+    if run.yielded is not None:
+        summary.update(_of_yielding(run))
+    if scene.series is not None:
+        summary["impacts"] = _impacts(solution.runs, whole)
+        for number, impact in enumerate(solution.runs, 1):
+            table, _ = history(impact)
+            nothing = np.zeros((table.shape[0], 0))
+            write_history(folder / f"impact-{number}.csv", HISTORY_COLUMNS, table, nothing, 10)
     if isinstance(scene.outer, Bender):
         summary["bender"] = _bender(scene.outer, summary)
     write_json(folder / "summary.json", summary)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,8 +14,8 @@ from ..common.settings import PEAK_WINDOW_FRACTION
 from ..explicit.levels import MOST_LEVELS
 from ..explicit.loop import Energies
 from ..explicit.records import ContactRecord, intervals, peak_force
-from ..explicit.supervision import Course, Ended, Plan, supervise
-from .motion import Losses, Motion
+from ..explicit.supervision import Account, Course, Ended, Plan, supervise
+from .motion import Losses, Motion, Yielded
 from .scene import Scene
 
 PEAK_WINDOW_SAMPLES = 4
@@ -54,6 +54,13 @@ class Run:
     support_impulse: float
     losses: Losses | None
     """Of the whole bodies; None if nothing loses."""
+    yielded: Yielded | None
+    """None: nothing that could yield."""
+
+    def account(self, levels: int) -> Account:
+        """For `stable_run`, of a run with so many levels."""
+        relaxed = sum(self.losses.bodies or ()) if self.losses else 0.0
+        return Account(levels, self.energy_residual, relaxed / self.initial_energy)
 
 
 def integrate(
@@ -112,7 +119,11 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     initial_energy = share * scene.initial_energy
     support = problem.state.reaction[loop.components - 1]
     further = motion.further
-    losses = further.losses or Losses()
+    losses = further.losses
+    if loop.ledger is not None:
+        losses = replace(losses or Losses(), bodies=motion.by_role(energies.lost))
+    vibration = energies.total - further.locked_in
+    missed = vibration + (losses.total if losses else 0.0) - initial_energy - work
     # Independent balances: all bodies against the supports, each free one against what acts on it.
     misses = [
         sum(momenta) - outer_start - inner_start - support - further.on_all,
@@ -141,11 +152,12 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         inner_velocity=velocities[1],
         energies=energies,
         initial_energy=initial_energy / share,
-        energy_residual=abs(energies.total + losses.total - initial_energy - work) / initial_energy,
+        energy_residual=abs(missed) / initial_energy,
         contact_loss=-(work + stored) / initial_energy,
         momentum_residual=max(abs(miss) for miss in misses) / abs(outer_start),
         support_impulse=support / share,
-        losses=further.losses and further.losses.of_whole(share),
+        losses=losses and losses.of_whole(share),
+        yielded=further.yielded,
     )
 
 

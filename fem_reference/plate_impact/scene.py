@@ -34,6 +34,16 @@ RIGID: dict[str, tuple[str, ...]] = {
 
 
 @dataclass(frozen=True)
+class Series:
+    """The same impact several times, each with the dents of those before."""
+
+    impacts: int
+    """At most; they end earlier once nothing yields any more."""
+    fresh: bool
+    """Whether the spheres are hit where they have not yielded each time."""
+
+
+@dataclass(frozen=True)
 class Scene:
     """A body (outer) strikes a plate that a second one (inner) touches from below."""
 
@@ -55,6 +65,8 @@ class Scene:
     """Speed of the inner body towards the plate at the start, m/s; negative: away from it."""
     friction: float
     """Coulomb's coefficient of both contacts."""
+    series: Series | None
+    """None: a single impact."""
     end_time: float | None
     """s; None: until no further contact is possible."""
     elements_per_contact_radius: float
@@ -87,6 +99,11 @@ class Scene:
         return self.outer.material, self.plate.material, self.inner.material
 
     @property
+    def yields(self) -> bool:
+        """Whether any material may."""
+        return any(material.yielding is not None for material in self.materials)
+
+    @property
     def drag(self) -> float:
         """Resistance of the inner body over the square of its velocity, N s^2/m^2.
 
@@ -108,13 +125,13 @@ def _plate(reader: Reader) -> Plate:
         radius=reader.number("radius", "m"),
         thickness=reader.number("thickness", "m"),
         edge=reader.choice("edge", EDGES),
-        material=read_material(reader.child("material")),
+        material=read_material(reader.child("material"), may_yield=True),
         damping_ratio=damping,
     )
 
 
 def _body(reader: Reader, *extra: str) -> Body:
-    material = read_material(reader.child("material"))
+    material = read_material(reader.child("material"), may_yield=True)
     if reader.choice("kind", ("sphere", "compact")) == "sphere":
         reader.allow("kind", "radius", "material", *extra)
         return Sphere(reader.number("radius", "m"), material)
@@ -149,6 +166,17 @@ def _bender(reader: Reader) -> Bender:
     return bender
 
 
+def _series(root: Reader, geometry: str) -> Series | None:
+    if root.node.get("series") is None:
+        return None
+    if geometry == "solid":
+        raise SceneError("series is given: take reference.geometry 'axisymmetric'")
+    series = root.child("series")
+    series.allow("impacts", "sphere_spot")
+    impacts = series.number("impacts", "(no unit)", above=1.0, inclusive=True)
+    return Series(int(impacts), series.choice("sphere_spot", ("same", "fresh")) == "fresh")
+
+
 def _outer(reader: Reader) -> Body:
     return _bender(reader) if reader.node.get("kind") == "bender" else _body(reader, "speed")
 
@@ -171,6 +199,24 @@ def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:
     return geometry, order, RIGID[rigid]
 
 
+def _require_elastic(
+    materials: dict[str, Material], geometry: str, spheres: bool, wet: bool
+) -> None:
+    """Refuse what yields where this solver has no yielding, and beside what relaxes."""
+    relaxing = [name for name, material in materials.items() if material.relaxation]
+    for name, material in materials.items():
+        if material.yielding is not None and not (spheres and geometry != "solid" and not wet):
+            raise SceneError(
+                f"{name}.material yields (hardening {material.yielding.hardening:g} Pa); this "
+                "solver has that between spheres and plate in axisymmetric geometry, dry"
+            )
+        if material.yielding is not None and relaxing:
+            raise SceneError(
+                f"{name}.material yields and {relaxing[0]}.material relaxes; this solver has "
+                "one of both in a scene"
+            )
+
+
 def _are_spheres(bodies: dict[str, Body]) -> bool:
     return all(isinstance(body, Sphere) for body in bodies.values())
 
@@ -183,8 +229,6 @@ def parse_scene(document: Any) -> Scene:
     """
     root = Reader(document, "")
     root.choice("kind", ("plate-impact",))
-    if root.node.get("series") is not None:
-        raise SceneError("series is given; repeated impacts are not supported, only single ones")
     root.allow(
         "name",
         "description",
@@ -196,6 +240,7 @@ def parse_scene(document: Any) -> Scene:
         "inner",
         "friction",
         "fluid",
+        "series",
         "run",
         "reference",
     )
@@ -235,7 +280,14 @@ def parse_scene(document: Any) -> Scene:
             f"friction is {friction:g}; this solver has it between spheres and plate in "
             "axisymmetric geometry, elsewhere it must be 0"
         )
+    materials = {"plate": plate.material, **{n: body.material for n, body in bodies.items()}}
+    _require_elastic(materials, geometry, _are_spheres(bodies), fluid is not None)
     for name, body in bodies.items():
+        if not isinstance(body, Sphere) and name not in rigid and body.material.relaxation:
+            raise SceneError(
+                f"{name}.material.relaxation is given; the tip of a compact body or a bender "
+                "yields as an elastic half-space does: take a sphere"
+            )
         if geometry == "solid" and isinstance(body, Compact) and name not in rigid:
             raise SceneError(
                 f"{name}.kind is 'compact', whose tip has to yield; solid geometry has rigid tips "
@@ -254,6 +306,7 @@ def parse_scene(document: Any) -> Scene:
         gap=inner.number("gap", "m", inclusive=True),
         inner_speed=inner.number_or("speed", 0.0, "m/s", above=-math.inf),
         friction=friction,
+        series=_series(root, geometry),
         end_time=end_time,
         elements_per_contact_radius=reference.number(
             "elements_per_contact_radius", "(no unit)", above=2.0, below=65.0, inclusive=True

@@ -64,6 +64,11 @@ class Solution:
     """At most so far, bytes."""
 
     @property
+    def runs(self) -> list[Run]:
+        """The one run."""
+        return [self.run]
+
+    @property
     def dofs(self) -> int:
         """Degrees of freedom, fixed ones included."""
         return 3 * int(self.loop.system.mass.size)
@@ -155,7 +160,7 @@ def _stepped(
     report: Report,
 ) -> tuple[Loop, Run, Recorder]:
     def attempt(most_levels: int) -> tuple[Loop, Run, Recorder]:
-        loop = make_loop(plate.model, comm)
+        loop = make_loop(plate.model, comm, settings.threads)
         recorder = Recorder(settings, f"{suffix}-{most_levels}")
         run = integrate_solid(
             loop,
@@ -172,7 +177,7 @@ def _stepped(
         )
         return loop, run, recorder
 
-    return stable_run(attempt, lambda made: (len(made[0].levels), made[1].energy_residual))
+    return stable_run(attempt, lambda made: made[1].account(len(made[0].levels)))
 
 
 def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: Report) -> Solution:

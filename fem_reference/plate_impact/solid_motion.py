@@ -50,6 +50,12 @@ class SolidMotion:
         points = self.plate.model.elastic[contact.body].mesh.points[contact.nodes]
         return np.asarray(np.hypot(points[:, 0], points[:, 1]))
 
+    def by_role(self, of_bodies: tuple[float, ...]) -> tuple[float, float, float]:
+        """See `Motion.by_role`; a rigid body has 0."""
+        numbers = [self.plate.elastic.get(name) for name in (OUTER, PLATE, INNER)]
+        outer, plate, inner = (0.0 if k is None else of_bodies[k] for k in numbers)
+        return outer, plate, inner
+
     @property
     def records(self) -> list[kernel.Record]:
         """Of the two contacts."""
@@ -152,7 +158,9 @@ def _ending(motion: SolidMotion) -> Ending:
         points = plate.model.elastic[number].mesh.points[nodes]
         squares = (points[:, :2] ** 2).sum(axis=1) / plate.zone**2
         weights = areas * np.sqrt(np.maximum(0.0, 1.0 - squares))
-        return patch_flexibility(loop, number, nodes, weights / weights.sum())
+        # The stiffness that lasts bounds what an energy can displace.
+        lasting = plate.model.elastic[number].material.lasting
+        return patch_flexibility(loop, number, nodes, weights / weights.sum()) / lasting
 
     of_plate = max(flexibility(PLATE, name) for name in SPHERES)
     return Ending(

@@ -48,11 +48,11 @@ def seat_modes(scene: SeatScene, mesh: TetMesh, count: int) -> Floats:
     """
     from slepc4py import SLEPc
 
-    from ..common.fenicsx import alone, petsc_matrix, petsc_rows
+    from ..common.fenicsx import petsc_matrix, petsc_rows
 
     body = seat_model(scene, mesh).model.elastic[0]
-    assembly = Assembly([mesh], [body.material], alone())
-    rows = np.argsort(assembly.owned)
+    assembly = Assembly([mesh], [body.material])
+    rows = np.argsort(assembly.nodes)
     rows = (3 * rows[:, None] + np.arange(3)).ravel()
     keep = np.setdiff1d(np.arange(rows.size), body.fixed)
     stiffness = petsc_rows(assembly.stiffness())[rows[keep]][:, rows[keep]]

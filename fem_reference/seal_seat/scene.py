@@ -262,14 +262,16 @@ def parse_seat_scene(document: Any) -> SeatScene:
         run.allow("end_time")
         if run.node.get("end_time") is not None:
             end_time = run.number("end_time", "s")
-    sphere = root.child("sphere")
+    seat, sphere = _seat(root.child("seat")), root.child("sphere")
+    if seat.material.relaxation or "relaxation" in sphere.child("material").node:
+        raise SceneError("a material relaxes; the bodies of a seal seat are elastic")
     sphere.allow("radius", "material", "mass", "body")
     return SeatScene(
         name=root.text("name"),
         scene_hash=root.text("scene_hash"),
         settings_hash=root.text("settings_hash"),
         geometry_hash=root.text("geometry_hash") if "geometry_hash" in root.node else None,
-        seat=_seat(root.child("seat")),
+        seat=seat,
         sphere_radius=sphere.number("radius", "m"),
         sphere_material=read_material(sphere.child("material")),
         sphere_mass=sphere.number("mass", "kg"),

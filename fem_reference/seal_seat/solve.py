@@ -16,7 +16,7 @@ from ..explicit.checkpoint import checkpoint_of
 from ..explicit.frames import Recorder
 from ..explicit.loop import Loop
 from ..explicit.spectrum import first_frequency
-from ..explicit.supervision import stable_run
+from ..explicit.supervision import Account, stable_run
 from ..solid.memory import memory_needed, peak_memory, require_memory
 from ..solid.system import make_loop
 from .meshing import seat_mesh, sphere_mesh
@@ -106,7 +106,7 @@ def compute(
     )
 
     def attempt(most_levels: int) -> tuple[Loop, SeatRun, Recorder]:
-        loop = make_loop(seat.model, comm)
+        loop = make_loop(seat.model, comm, settings.threads)
         recorder = Recorder(settings, f"-{most_levels}")
         run = integrate(
             loop,
@@ -121,7 +121,7 @@ def compute(
         return loop, run, recorder
 
     loop, run, recorder = stable_run(
-        attempt, lambda made: (len(made[0].levels), made[1].energy_residual)
+        attempt, lambda made: Account(len(made[0].levels), made[1].energy_residual)
     )
     needed = memory_needed(nodes, scene.element_order, comm.size)
     return Solution(run, seat, loop, recorder, needed, peak_memory(comm))

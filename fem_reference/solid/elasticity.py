@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Material
 from ..common.errors import SolverError
-from ..common.fenicsx import TetDomain, alone, petsc_rows
+from ..common.fenicsx import TetDomain, petsc_rows
 from ..common.fields import Fields
 from ..explicit.frames import Recorder
 from .mesh import TetMesh, scatter_sum, volumes
@@ -65,17 +65,17 @@ def mass_form(domain: TetDomain, density: Any) -> Any:
 
 
 class Assembly:
-    """Several bodies in one dolfinx mesh, distributed over the processes of ``comm``.
+    """Several bodies, or the elements of them that are given, in one dolfinx mesh.
 
     Nodes are numbered body after body in the order of their meshes.
 
     Attributes:
-        owned: (n,) nodes whose rows this process owns, in dolfinx's order.
+        nodes: (n,) of the elements, in dolfinx's order.
     """
 
-    owned: Ints
+    nodes: Ints
 
-    def __init__(self, meshes: Sequence[TetMesh], materials: Sequence[Material], comm: Any) -> None:
+    def __init__(self, meshes: Sequence[TetMesh], materials: Sequence[Material]) -> None:
         order = meshes[0].order
         self.first = np.cumsum([0, *(mesh.points.shape[0] for mesh in meshes)])
         # Bodies that touch are moved apart, so that a place belongs to one node only.
@@ -94,13 +94,13 @@ class Assembly:
         used = np.unique(corners)
         number = np.empty(points.shape[0], dtype=np.int64)
         number[used] = np.arange(used.size)
-        self.domain = TetDomain(points[used], number[corners], order, comm)
+        self.domain = TetDomain(points[used], number[corners], order)
         counts = [mesh.cells.shape[0] for mesh in meshes]
         self._lame = np.repeat([m.lame_lambda for m in materials], counts)
         self._shear = np.repeat([m.shear_modulus for m in materials], counts)
         self.lame = self.domain.cell_constants(self._lame)
         self.shear = self.domain.cell_constants(self._shear)
-        distance, self.owned = cKDTree(points).query(self.domain.owned_points())
+        distance, self.nodes = cKDTree(points).query(self.domain.points_of_nodes())
         scale = float(np.ptp(points[:, 0]))
         if distance.size and distance.max() > 1e-9 * scale:
             raise SolverError("dolfinx's nodes are not those of the mesh")
@@ -110,7 +110,7 @@ class Assembly:
         return self.domain.petsc_matrix(stiffness_form(self.domain, self.lame, self.shear))
 
     def part(self, chosen: npt.NDArray[np.bool_]) -> scipy.sparse.csr_matrix:
-        """This process' rows of the stiffness of some elements, N/m.
+        """Stiffness of some elements, N/m.
 
         Args:
             chosen: (m,) whether an element counts, body after body.
@@ -122,11 +122,11 @@ class Assembly:
         return rows
 
 
-def cell_stress(mesh: TetMesh, material: Material, displacement: Floats, comm: Any) -> Floats:
+def cell_stress(mesh: TetMesh, material: Material, displacement: Floats) -> Floats:
     """(m, 6) `STRESS_COMPONENTS` at the elements' midpoints from the displacement (n, 3), Pa."""
-    assembly = Assembly([mesh], [material], comm)
+    assembly = Assembly([mesh], [material])
     domain = assembly.domain
-    u = domain.function(displacement[assembly.owned])
+    u = domain.function(displacement[assembly.nodes])
     s = _stress(u, assembly.lame, assembly.shear)
     vector = ufl.as_vector([s[0, 0], s[1, 1], s[2, 2], s[0, 1], s[1, 2], s[2, 0]])
     return domain.cell_values(vector, 6)
@@ -141,10 +141,10 @@ def von_mises(stress: Floats) -> Floats:
 
 def write_fields(folder: Path, model: Model, recorder: Recorder) -> list[float]:
     """``mesh.vtu`` of all elastic bodies and the fields kept of a run; their instants, s."""
-    meshes, comm = [body.mesh for body in model.elastic], alone()
+    meshes = [body.mesh for body in model.elastic]
 
     def stress(number: int, local: Floats) -> Floats:
-        return cell_stress(meshes[number], model.elastic[number].material, local, comm)
+        return cell_stress(meshes[number], model.elastic[number].material, local)
 
     writer = Fields(
         "tetra" if meshes[0].order == 1 else "tetra10",

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import resource
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Any
 
 from ..common.errors import SolverError
+from ..common.groups import control_groups
 from ..explicit.loop import Loop
 
 BASE = 0.25e9
@@ -65,27 +66,13 @@ def _mapped(system: Path) -> float:
 
 def _left_in_groups(system: Path) -> list[float]:
     """What every control group that this process is in, or one above, leaves of its memory."""
-    try:
-        lines = (system / "proc/self/cgroup").read_text(encoding="utf-8").splitlines()
-    except (OSError, ValueError):
-        return []
     left = []
-    for line in (line for line in lines if line.count(":") >= 2):
-        _, controllers, path = line.split(":", 2)
-        if controllers == "":
-            mount, limit, used = "sys/fs/cgroup", "memory.max", "memory.current"
-        elif "memory" in controllers.split(","):
-            mount = "sys/fs/cgroup/memory"
-            limit, used = "memory.limit_in_bytes", "memory.usage_in_bytes"
-        else:
-            continue
-        own = PurePosixPath(path.strip("/"))
-        for group in (own, *own.parents):
-            # a group without a limit says "max"
-            with contextlib.suppress(OSError, ValueError):
-                place = system / mount / group
-                most, now = (int((place / name).read_text()) for name in (limit, used))
-                left.append(float(max(most - now + _file_cache(place), 0)))
+    for group, unified in control_groups("memory", system):
+        names = ("max", "current") if unified else ("limit_in_bytes", "usage_in_bytes")
+        # a group without a limit says "max"
+        with contextlib.suppress(OSError, ValueError):
+            most, now = (int((group / f"memory.{name}").read_text()) for name in names)
+            left.append(float(max(most - now + _file_cache(group), 0)))
     return left
 
 
@@ -156,6 +143,7 @@ def machine(loop: Loop, stated: float, used: float) -> dict[str, Any]:
         "contact_sweeps_per_step": state.sweeps / max(1, state.step),
         "contact_unconverged_steps": state.unconverged,
         "processes": loop.comm.size,
+        "threads": loop.threads,
         "peak_memory": used,
         "memory_stated": stated,
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,12 @@ import scipy.sparse
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ..common.arrays import Floats, Ints, Mask
-from ..common.fenicsx import block_matrix, block_rows, petsc_rows
+from ..common.fenicsx import petsc_rows
 from ..explicit.loop import Loop, SerialLoop
 from ..explicit.parallel import ParallelLoop
+from ..explicit.partition import owners
+from ..explicit.parts import worthwhile
+from ..explicit.problem import touching
 from .elasticity import Assembly, lumped_mass
 from .elements import element_time_steps
 from .model import Model
@@ -24,7 +28,8 @@ class SolidSystem:
         bodies = model.elastic
         self.model, self.comm, self.first = model, comm, model.first
         self.rigid, self.contacts, self.matched = model.rigid, model.contacts, ()
-        self.film = None
+        self.film = self.plasticity = None
+        self.relaxations = tuple(body.material.relaxation for body in bodies)
         self.free_axes = (0, 1, 2)
         self.points = np.concatenate([body.mesh.points for body in bodies])
         self.mass = np.concatenate([lumped_mass(b.mesh, b.material.density) for b in bodies])
@@ -39,15 +44,30 @@ class SolidSystem:
             [body.mesh.cells + offset for body, offset in zip(bodies, self.first, strict=False)]
         )
         self._steps: Floats | None = None
-        self._assembly = Assembly([b.mesh for b in bodies], [b.material for b in bodies], comm)
-        self.owned: Ints = self._assembly.owned
-        self._whole: scipy.sparse.csr_matrix | None = None
-        self._rows: Ints | slice = slice(None)
-        if comm.size == 1:
-            self._whole = petsc_rows(self._assembly.stiffness())
-            order = _bandwidth_order(self._whole.tobsr((3, 3)))
-            self.owned = self._assembly.owned[order]
-            self._rows = (3 * order[:, None] + np.arange(3)).ravel()
+        self.owner = self._owners()
+        # All elements at own nodes are assembled here, so that own rows are whole.
+        self._near = np.any(self.owner[self.element_nodes] == comm.rank, axis=1)
+        elements = np.split(self._near, np.cumsum([b.mesh.cells.shape[0] for b in bodies])[:-1])
+        meshes = [
+            replace(body.mesh, cells=body.mesh.cells[near])
+            for body, near in zip(bodies, elements, strict=True)
+        ]
+        self._assembly = Assembly(meshes, [body.material for body in bodies])
+        nodes = self._assembly.nodes
+        self._whole: scipy.sparse.csr_matrix | None = petsc_rows(self._assembly.stiffness())
+        mine = self.owner[nodes] == comm.rank
+        own = np.flatnonzero(mine)[_bandwidth_order(self._whole.tobsr((3, 3)), mine)]
+        others = np.flatnonzero(~mine)
+        self.owned, self.ghosts = nodes[own], nodes[others]
+        self._rows, self._columns = _rows_of(own), _rows_of(np.concatenate([own, others]))
+
+    def _owners(self) -> Ints:
+        """(N,) process of each node."""
+        if self.comm.size == 1:
+            return np.zeros(self.mass.size, dtype=np.int64)
+        near = touching(self.contacts, self.first)
+        steps = self.element_time_steps()
+        return owners(self.points, self.element_nodes, steps, near, self.comm.size)
 
     def element_time_steps(self) -> Floats:
         """(m,) critical time step of each element alone, s."""
@@ -57,32 +77,38 @@ class SolidSystem:
         return self._steps
 
     def part(self, chosen: Mask | None) -> scipy.sparse.csr_matrix:
-        """Stiffness of some elements (m,), or of all: own rows and columns, as `owned`, N/m."""
+        """Own rows of the stiffness of some elements (m,), or of all, N/m.
+
+        Columns as `owned`, then `ghosts`.
+        """
         if chosen is not None:
-            matrix = self._assembly.part(chosen)
+            matrix = self._assembly.part(chosen[self._near])
         else:
             matrix, self._whole = self._whole, None
             if matrix is None:
                 matrix = petsc_rows(self._assembly.stiffness())
-        return matrix[self._rows][:, self._rows]
-
-    def blocks(self, chosen: Mask | None) -> Any:
-        """PETSc's block matrix of some elements, or of all."""
-        if chosen is None:
-            return block_matrix(self._assembly.stiffness())
-        return block_rows(self._assembly.part(chosen), self.comm)
+        return matrix[self._rows][:, self._columns]
 
 
-def _bandwidth_order(matrix: scipy.sparse.bsr_matrix) -> Ints:
-    """Order of the nodes that keeps neighbours close in memory (reverse Cuthill-McKee)."""
+def _rows_of(nodes: Ints) -> Ints:
+    return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
+
+
+def _bandwidth_order(matrix: scipy.sparse.bsr_matrix, chosen: Mask) -> Ints:
+    """Order of some nodes that keeps neighbours close in memory (reverse Cuthill-McKee)."""
     pattern = scipy.sparse.csr_matrix(
         (np.ones(matrix.indices.size, np.int8), matrix.indices, matrix.indptr),
         shape=(matrix.shape[0] // 3,) * 2,
     )
+    if not chosen.all():
+        pattern = pattern[chosen][:, chosen]
     return np.asarray(reverse_cuthill_mckee(pattern, symmetric_mode=True), dtype=np.int64)
 
 
-def make_loop(model: Model, comm: Any) -> Loop:
-    """The loop for the number of processes in ``comm``."""
+def make_loop(model: Model, comm: Any, threads: int = 1) -> Loop:
+    """The loop for the number of processes in ``comm``, each with at most so many threads."""
     system = SolidSystem(model, comm)
-    return SerialLoop(system, comm) if comm.size == 1 else ParallelLoop(system, comm)
+    threads = worthwhile(threads, 3 * system.owned.size)
+    if comm.size == 1:
+        return SerialLoop(system, comm, threads)
+    return ParallelLoop(system, comm, threads)

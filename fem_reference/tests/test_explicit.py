@@ -10,12 +10,12 @@ import pytest
 
 from fem_reference.axisymmetric import system as system_module
 from fem_reference.axisymmetric.elasticity import BodyMatrices
+from fem_reference.axisymmetric.statics import patch_flexibility
 from fem_reference.axisymmetric.system import (
     INNER,
     OUTER,
     AxisymmetricSystem,
     critical_time_step,
-    patch_flexibility,
 )
 from fem_reference.common.arrays import Ints
 from fem_reference.common.errors import SolverError

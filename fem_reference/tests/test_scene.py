@@ -28,19 +28,11 @@ def test_yield_strength_is_admissible_and_changes_nothing() -> None:
     assert parse_scene(strong).plate == parse_scene(document()).plate
 
 
-def test_series_are_refused() -> None:
-    with pytest.raises(SceneError, match="repeated impacts"):
-        parse_scene(document(series={"impacts": 3, "sphere_spot": "same"}))
-
-
-@pytest.mark.parametrize(
-    "key",
-    [{"yield_strength": 6e8, "hardening": 0.0}, {"relaxation": [{"ratio": 0.1, "time": 1e-5}]}],
-)
-def test_materials_with_memory_are_refused(key: dict[str, object]) -> None:
+def test_relaxing_and_yielding_together_are_refused() -> None:
     scene = document()
-    scene["plate"]["material"] = {**scene["plate"]["material"], **key}
-    with pytest.raises(SceneError, match="not supported"):
+    scene["plate"]["material"]["relaxation"] = [{"ratio": 0.1, "time": 1e-5}]
+    scene["outer"]["material"] |= {"yield_strength": 6e8, "hardening": 0.0}
+    with pytest.raises(SceneError, match=r"outer\.material yields and plate\.material relaxes"):
         parse_scene(scene)
 
 

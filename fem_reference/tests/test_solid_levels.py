@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from fem_reference.explicit.checkpoint import Checkpoint
 from fem_reference.explicit.levels import BUFFER, LEVEL_MARGIN, MOST_LEVELS, fastest_levels
 from fem_reference.explicit.loop import Loop
 from fem_reference.explicit.spectrum import critical_time_step
-from fem_reference.explicit.supervision import LARGEST_ENERGY_RESIDUAL, stable_run
+from fem_reference.explicit.supervision import LARGEST_ENERGY_RESIDUAL, Account, stable_run
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import SeatModel, seat_model
 from fem_reference.seal_seat.run import SeatRun, integrate
@@ -172,8 +173,8 @@ def test_a_given_end_has_one_level(linear: SeatModel) -> None:
 def test_resonance_is_stepped_again_without_levels(
     runs: dict[int, tuple[Loop, SeatRun]], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def account(made: tuple[Loop, SeatRun]) -> tuple[int, float]:
-        return len(made[0].levels), made[1].energy_residual
+    def account(made: tuple[Loop, SeatRun]) -> Account:
+        return Account(len(made[0].levels), made[1].energy_residual)
 
     assert stable_run(lambda most: runs[most], account)[1] is runs[MOST_LEVELS][1]
     assert capsys.readouterr().err == ""
@@ -186,6 +187,8 @@ def test_resonance_is_stepped_again_without_levels(
     assert stable_run(diverges, account)[1] is runs[1][1]
     assert "diverged at 1 s; stepping again without" in capsys.readouterr().err
     gaining = 2.0 * LARGEST_ENERGY_RESIDUAL
-    made = stable_run(lambda most: runs[most], lambda made: (account(made)[0], gaining))
+    made = stable_run(
+        lambda most: runs[most], lambda made: replace(account(made), residual=gaining)
+    )
     assert made[1] is runs[1][1]
     assert "energy residual 2e-05 with sub-cycling" in capsys.readouterr().err

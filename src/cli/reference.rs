@@ -21,6 +21,9 @@ pub struct Arguments {
     /// Number of processes (three-dimensional references only)
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     np: u32,
+    /// Processor cores for the time loop, all processes together [default: those there are]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    threads: Option<u32>,
     /// Compute even if there is a stored solution
     #[arg(long)]
     fresh: bool,
@@ -73,6 +76,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
                 stress_at: arguments.stress_at.clone(),
                 fields: arguments.fields,
                 processes: arguments.np,
+                threads: arguments.threads.unwrap_or(0),
             };
             compute(context, scene, resolution, store, &wish)?
         }

@@ -4,6 +4,7 @@
 //! the summary says is therefore found again in the history, as closely as its sampling permits.
 
 use super::discrepancy::Discrepancy;
+use super::impacts;
 use super::series;
 use super::verdict::Verdict;
 use crate::kinds::{self, Kind};
@@ -68,7 +69,7 @@ pub(super) fn same_impact(reference: &Summary, reduced: &Summary) -> Check {
 
 /// Every tolerance names a row, so that a misspelt one doesn't pass unseen.
 pub(super) fn tolerances_are_used(tolerances: &Tolerances, rows: &[Discrepancy]) -> Check {
-    let unused = tolerances.keys().filter(|name| rows.iter().all(|r| r.quantity != **name));
+    let unused = tolerances.keys().filter(|name| rows.iter().all(|row| !impacts::bounds(name, row)));
     Check::count("unknown_tolerances", unused.count())
 }
 

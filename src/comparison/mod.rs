@@ -10,6 +10,7 @@ pub mod budget;
 mod changed_tolerance;
 pub mod common_mesh;
 mod discrepancy;
+mod impacts;
 mod integrity;
 mod moved;
 mod series;
@@ -233,6 +234,7 @@ fn compare_model(
     let kind = kinds::of(scene);
     let (m, c) = (&reference.summary, &reduced.summary);
     let mut discrepancies = quantities(kind, reference, c, tolerances);
+    discrepancies.extend(impacts::rows(m, c, tolerances));
     discrepancies.extend(curve_distances(kind.curves(), m, &aligned, tolerances));
     discrepancies.extend(residuals(m, c, tolerances));
     undecided::tell(&mut discrepancies, m);

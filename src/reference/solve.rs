@@ -4,7 +4,7 @@ use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::store::Installed;
 use super::{Lookup, Resolution, Store, identity, python};
-use crate::scene::{Geometry, Scene};
+use crate::scene::{Geometry, Scene, Setup};
 use crate::{Error, Result};
 use std::ffi::OsStr;
 use std::path::Path;
@@ -18,6 +18,8 @@ pub struct Wish {
     pub fields: u32,
     /// Processes, for solid geometry; 0 is 1.
     pub processes: u32,
+    /// Processor cores for the time loop, all processes together; 0: those there are.
+    pub threads: u32,
 }
 
 /// Computes the reference of `scene` at `resolution` and puts it into `store`.
@@ -26,8 +28,8 @@ pub struct Wish {
 /// settings. Until then an older entry stays, and a failed run leaves the store as it was. A solution of another scene of
 /// the same name, or with other settings, is kept beside the new one ([`Stored::earlier`]). Where another run computes
 /// the same, its result is waited for and taken, unless fields are wished for.
-/// The states of a solid run are kept beside its place in the store, and a run that was killed
-/// goes on from there.
+/// The states of a solid run and the impacts of a series are kept beside their place in the store, and a run that was
+/// killed goes on from there.
 ///
 /// # Errors
 /// [`Error::Scene`] if the solver does not support the scene, [`Error::Solver`] if there is no
@@ -90,8 +92,14 @@ pub fn solve_with(
     if wish.fields > 0 {
         command.args(["--fields", &wish.fields.to_string()]);
     }
-    if scene.reference.geometry == Geometry::Solid {
+    if wish.threads > 0 {
+        command.args(["--threads", &wish.threads.to_string()]);
+    }
+    let solid = scene.reference.geometry == Geometry::Solid;
+    if solid || matches!(&scene.setup, Setup::PlateImpact(setup) if setup.series.is_some()) {
         command.arg("--checkpoint").arg(store.checkpoint_folder(scene, resolution)?);
+    }
+    if solid {
         command.args(["--np", &wish.processes.max(1).to_string()]);
     }
     let ending = child::run(command, progress)

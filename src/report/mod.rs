@@ -29,6 +29,7 @@ pub(crate) mod format;
 pub mod github;
 mod history_file;
 mod html;
+mod impacts_section;
 mod index_page;
 mod interactive;
 mod json;

@@ -76,7 +76,9 @@ impl Presentation for Plate {
         let curves = drawing("", Some("Displacement, velocity and contact force"), curves);
         let measured = measured.map(|svg| drawing("-measured", None, svg));
         let efficiencies = efficiencies.map(|svg| drawing("-efficiencies", None, svg));
-        [Some(curves), measured, efficiencies].into_iter().flatten().collect()
+        let impacts = super::impacts_section::impacts_figure(report)
+            .map(|svg| drawing("-impacts", Some("Efficiency over the number of the impact"), svg));
+        [Some(curves), impacts, measured, efficiencies].into_iter().flatten().collect()
     }
 
     fn scene_drawing(&self, report: &SceneReport) -> Markup {
@@ -92,6 +94,7 @@ impl Presentation for Plate {
         let measured = super::measured_section::measured_html(report);
         vec![
             Section::new("movement", "The impact moving", super::animation_section::animation_html(report)),
+            Section::new("impacts", "Impacts in series", super::impacts_section::impacts_html(report)),
             Section::new("budget", "Discrepancy budget", budget),
             Section::new("measurement", "Measurement", measured),
         ]

@@ -3,6 +3,7 @@
 //! A study is one file with one function that returns a [`Study`], and one line in [`STUDIES`].
 
 pub mod auto;
+pub mod damping;
 pub mod fig14;
 pub mod fig15;
 pub mod fig16;
@@ -16,6 +17,7 @@ pub mod rocker;
 pub mod seal_seat;
 pub mod seal_seat_cost;
 pub mod seal_seat_direction;
+pub mod shakedown;
 pub mod sweep;
 pub mod table2;
 mod write;
@@ -79,7 +81,7 @@ impl Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 13] = [
+pub const STUDIES: [Entry; 15] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
@@ -153,11 +155,27 @@ pub const STUDIES: [Entry; 13] = [
         drawing: None,
     },
     Entry {
+        name: "shakedown",
+        about: "Section 3.4.2, Fig. 13: efficiency of repeated impacts, several yield strengths, same and fresh spots, rate",
+        takes_model: true,
+        run: shakedown::run,
+        panels: &shakedown::PANELS,
+        drawing: None,
+    },
+    Entry {
         name: "fluid",
         about: "Section 4.2.5: squeeze film, plate damping, added mass and drag, alone and together",
         takes_model: true,
         run: fluid::run,
         panels: &fluid::PANELS,
+        drawing: None,
+    },
+    Entry {
+        name: "damping",
+        about: "Section 4.2.4: what a polymer plate's damping takes, in its modes and in both contacts",
+        takes_model: false,
+        run: |_, note| damping::run(note),
+        panels: &damping::PANELS,
         drawing: None,
     },
     Entry {

@@ -87,12 +87,12 @@ fn a_solid_run_is_told_its_processes_and_where_its_states_are_kept() {
     scene.reference.geometry = impactcheck::scene::Geometry::Solid;
     write_entry(&bench.path("solid"), &scene, PAPER);
     let solver = bench.solver("echo \"$@\" > \"$here/arguments\"; cp -r \"$here/solid\" \"$out\"");
-    let wish = Wish { processes: 3, fields: 7, ..Wish::default() };
+    let wish = Wish { processes: 3, threads: 6, fields: 7, ..Wish::default() };
     let stored = solve_with(&solver, &scene, PAPER, &bench.store, &wish, &mut |_| ()).expect("success");
     let arguments = fs::read_to_string(bench.path("arguments")).expect("arguments");
     let words: Vec<&str> = arguments.split_whitespace().collect();
     let after = |key: &str| words[words.iter().position(|w| *w == key).expect(key) + 1];
-    assert_eq!((after("--np"), after("--fields")), ("3", "7"));
+    assert_eq!((after("--np"), after("--threads"), after("--fields")), ("3", "6", "7"));
     // Beside the entry, so that the next start of the same finds them.
     let states = Path::new(after("--checkpoint"));
     assert!(states.is_absolute());
@@ -123,7 +123,7 @@ fn success_enters_the_store_complete() {
     let words: Vec<&str> = arguments.split_whitespace().collect();
     assert_eq!(words[..4], ["-m", "fem_reference", "solve", "--scene"]);
     assert_eq!((words[5], words[7], words[8]), ("--out", "--resolution", "paper"));
-    // Neither processes nor checkpoints: the scene is axisymmetric.
+    // Neither processes nor checkpoints: the scene is axisymmetric; threads are left to the solver.
     assert_eq!(words.len(), 9);
     let root = read("cwd").trim().to_owned();
     assert!(Path::new(&root).join("scenes").is_dir());

@@ -162,6 +162,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
     let inner_velocity = -inner.impulse(inner.end) / mass();
     Summary {
         impacts: Vec::new(),
+        elastic_efficiency: None,
         schema_version: SCHEMA_VERSION,
         scene: "synthetic".into(),
         scene_hash: "5ce4e".into(),

@@ -15,4 +15,7 @@ pub struct Losses {
     /// In the contacts of the outer and the inner body, of a seal seat those of actuator and sphere, to relaxing or yielding materials or friction, J; `None` where nothing of it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<[f64; 2]>,
+    /// In outer body, plate and inner body to relaxation, contacts included, J: of references, which know no contact apart.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bodies: Option<[f64; 3]>,
 }

@@ -72,6 +72,9 @@ pub struct Summary {
     /// The impacts of a series; the quantities above are those of the last one. Of a stored summary read by [`Summary::read`] alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty", skip_deserializing)]
     pub impacts: Vec<Impact>,
+    /// Reduced models of a series whose bodies yield: the efficiency if they did not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elastic_efficiency: Option<f64>,
     /// Energy lost to damping, fluid and materials, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub losses: Option<Losses>,
@@ -166,6 +169,7 @@ impl Summary {
             bender: None,
             contact_pressure: None,
             impacts: Vec::new(),
+            elastic_efficiency: None,
             losses: None,
             truncation_error: None,
             integration_error: None,

@@ -6,6 +6,7 @@ use super::quantity::{Dimension, dimension_of};
 use super::specification::{Bound, Choice, MODELS};
 use super::{Model, Tolerance, Tolerances};
 use crate::kinds::Kind;
+use crate::result::Impact;
 use std::collections::BTreeMap;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -34,15 +35,28 @@ pub(super) fn gated_names(kind: &dyn Kind) -> impl Iterator<Item = String> {
     let scalars = quantities.iter().map(|quantity| quantity.name.to_owned());
     let curves =
         curves.iter().flat_map(|curve| ["rms", "max"].map(|distance| format!("{}_{distance}", curve.name)));
-    scalars.chain(curves).chain(RESIDUALS.map(str::to_owned))
+    let impacts = Impact::COMPARED.map(|(name, _)| format!("{OF_IMPACTS}{name}"));
+    let impacts = impacts.into_iter().filter(|_| has_series(kind));
+    scalars.chain(curves).chain(impacts).chain(RESIDUALS.map(str::to_owned))
 }
 
 const RESIDUALS: [&str; 2] = ["energy_residual", "momentum_residual"];
+/// Before the quantities of all impacts of a series.
+const OF_IMPACTS: &str = "impact_";
+
+/// Whether impacts of this kind can come in series.
+fn has_series(kind: &dyn Kind) -> bool {
+    kind.quantities().iter().any(|quantity| quantity.name == Impact::COMPARED[0].0)
+}
 
 fn gated(name: &str, kind: &dyn Kind) -> Option<Gated> {
     let curves = kind.curves();
     if RESIDUALS.contains(&name) {
         return Some(Gated { dimension: Dimension::NONE, has_curve: false, is_residual: true });
+    }
+    if let Some(name) = name.strip_prefix(OF_IMPACTS).filter(|_| has_series(kind)) {
+        let (_, unit) = Impact::COMPARED.iter().find(|(known, _)| *known == name)?;
+        return Some(Gated { dimension: dimension_of(unit)?, has_curve: false, is_residual: false });
     }
     if let Some(quantity) = kind.quantities().iter().find(|quantity| quantity.name == name) {
         let has_curve = curves.iter().any(|curve| name.starts_with(curve.name));

@@ -206,10 +206,12 @@ impl Reduced {
     /// The summary, and what the materials remembered when the last impact began.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>)> {
         let start = Instant::now();
-        let Done { last, impacts, memory, warning } = self.impacts().all(&self.options(tolerance))?;
+        let options = self.options(tolerance);
+        let Done { last, impacts, memory, warning } = self.impacts().all(&options)?;
         let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
         summary.warnings.extend(warning);
-        Ok((Summary { impacts, ..summary }, memory))
+        let elastic_efficiency = self.impacts().elastic_efficiency(&options)?;
+        Ok((Summary { impacts, elastic_efficiency, ..summary }, memory))
     }
 
     /// Runs the impact for its results alone, as a series of many needs them.

@@ -10,6 +10,7 @@ use crate::dynamics::wet::FluidForces;
 use crate::error::Result;
 use crate::result::Impact;
 use crate::scene::Series;
+use std::collections::BTreeMap;
 
 /// Plastic work over the impact's energy below which nothing yields any more.
 const SHAKEN_DOWN: f64 = 3e-4;
@@ -72,16 +73,32 @@ impl Impacts<'_> {
         options: &Options,
         memory: Option<&Memory>,
     ) -> Result<(Integration, Option<Memory>)> {
-        let elastic = || assured(options, self.system, |options| integrate(self.system, self.fluid, options));
-        let Some(memory) = memory else { return Ok((elastic()?, None)) };
+        let Some(memory) = memory else { return Ok((self.elastic(options)?, None)) };
         // virgin contacts below their onset of yield are elastic ones
         if memory.is_elastic_below([0.0; 2]) {
-            let result = elastic()?;
+            let result = self.elastic(options)?;
             if memory.is_elastic_below(result.contacts.map(|contact| contact.force_peak)) {
                 return Ok((result, Some(memory.clone())));
             }
         }
         memory::integrate(self.system, memory, options).map(|(result, after)| (result, Some(after)))
+    }
+
+    fn elastic(&self, options: &Options) -> Result<Integration> {
+        assured(options, self.system, |options| integrate(self.system, self.fluid, options))
+    }
+
+    /// What the efficiency of a series whose bodies yield would be if they did not.
+    ///
+    /// # Errors
+    /// As [`integrate`].
+    pub(super) fn elastic_efficiency(&self, options: &Options) -> Result<Option<f64>> {
+        if self.series.is_none() || !self.memory.is_some_and(|memory| memory.yields().contains(&true)) {
+            return Ok(None);
+        }
+        let result = self.elastic(options)?;
+        let table = values(self.system, &result).table();
+        Ok(if result.is_cut() { None } else { table.value("efficiency") })
     }
 
     fn has_shaken_down(&self, impact: &Integration) -> bool {
@@ -102,6 +119,7 @@ impl Impacts<'_> {
             quantities: if impact.is_cut() { table.cut() } else { table },
             plastic_work: (!impact.is_cut()).then(|| self.plastic_work(impact)),
             locked_in_energy: None,
+            uncertainty: BTreeMap::new(),
         }
     }
 }

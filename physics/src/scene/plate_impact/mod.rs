@@ -173,6 +173,15 @@ pub struct PlateImpact {
     pub series: Option<Series>,
 }
 
+impl PlateImpact {
+    /// Whether a body's material is viscoelastic.
+    pub fn relaxes(&self) -> bool {
+        [&self.outer.material, &self.plate.material, &self.inner.material]
+            .iter()
+            .any(|material| !material.relaxation.is_empty())
+    }
+}
+
 /// The same impact several times, each with the dents of those before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Series {

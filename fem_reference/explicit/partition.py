@@ -1,0 +1,89 @@
+"""Which process owns which node: as many of every level for each, few neighbours in others."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..common.arrays import Floats, Ints, Mask
+from .levels import MOST_LEVELS, fastest_levels, graded_levels
+
+EXPECTED = 1.2
+"""Critical time step of a system over the smallest of its elements, about."""
+SLACK = 0.04
+"""Share of a level that a part may have more or less of, so that its border is smoother."""
+
+
+def owners(points: Floats, elements: Ints, steps: Floats, touching: Ints, processes: int) -> Ints:
+    """(n,) process of each node; nodes that can touch are all the first one's.
+
+    Meshes grow away from the contacts, so the parts are cones and sectors from there: cut in two
+    again and again along that direction or angle in which the fewest elements straddle the cut.
+
+    Args:
+        points: (n, 3) m.
+        elements: (m, k) nodes.
+        steps: (m,) critical time step of each element, s.
+        touching: nodes that can touch.
+        processes: how many.
+    """
+    owner = np.zeros(points.shape[0], dtype=np.int64)
+    if processes == 1:
+        return owner
+    near = np.zeros(owner.size, dtype=bool)
+    near[touching] = True
+    level = graded_levels(steps / (EXPECTED * steps.min()), elements, near, MOST_LEVELS)
+    groups = np.where(near, -1, fastest_levels(level, elements, owner.size))
+    away = points - points[touching if touching.size else slice(None)].mean(axis=0)
+    direction = away / np.maximum(np.linalg.norm(away, axis=1), 1e-300)[:, None]
+    angle = np.arctan2(away[:, [1, 2, 2]], away[:, [0, 1, 0]])
+    _halve(
+        owner, np.arange(owner.size), range(processes), (*direction.T, *angle.T), groups, elements
+    )
+    return owner
+
+
+def _halve(
+    owner: Ints,
+    nodes: Ints,
+    ranks: range,
+    fields: tuple[Floats, ...],
+    groups: Ints,
+    elements: Ints,
+) -> None:
+    """Share out ``nodes`` among ``ranks``; those of group -1 go to the first."""
+    if len(ranks) == 1:
+        owner[nodes] = ranks[0]
+        return
+    half = len(ranks) // 2
+    cuts = [_lower(field[nodes], groups[nodes], half / len(ranks)) for field in fields]
+
+    def straddling(lower: Mask) -> int:
+        side = np.zeros(owner.size, dtype=np.int64)
+        side[nodes] = np.where(lower, 1, 2)
+        on = side[elements]
+        return np.count_nonzero((on == 1).any(axis=1) & (on == 2).any(axis=1))
+
+    lower = min(cuts, key=straddling)
+    _halve(owner, nodes[lower], ranks[:half], fields, groups, elements)
+    _halve(owner, nodes[~lower], ranks[half:], fields, groups, elements)
+
+
+def _lower(field: Floats, groups: Ints, share: float) -> Mask:
+    """The ``share`` with the lower values; of every group as much, but for `SLACK`.
+
+    What group -1 takes more is taken from the next ones.
+    """
+    lower = groups < 0
+    owed = (1.0 - share) * np.count_nonzero(lower)
+    cut = float(np.quantile(field, share))
+    for number in np.unique(groups[groups >= 0]):
+        members = groups == number
+        size = np.count_nonzero(members)
+        given = min(owed, share * size)
+        owed -= given
+        wanted = share - given / size
+        least, most = np.quantile(
+            field[members], [max(0.0, wanted - SLACK), min(1.0, wanted + SLACK)]
+        )
+        lower[members] = field[members] <= min(max(cut, least), most)
+    return lower
