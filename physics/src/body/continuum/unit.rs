@@ -23,6 +23,8 @@ const SPHERE_NODES: usize = 12;
 const WIDEST: f64 = 1.1;
 /// Patches of a sphere over its radius.
 const SPHERE_PATCHES: [f64; 2] = [1e-3, 0.45];
+/// Thicknesses over radii that differ by less are the same.
+const ROUNDING: f64 = 1e-14;
 /// Size ratio of adjacent elements: no patch's rim is among their ends, as it is where a mesh is made for one patch.
 const GROWTH: f64 = 1.15;
 
@@ -139,7 +141,7 @@ impl UnitPlate {
     fn is_of(&self, plate: &Plate, modes: usize) -> bool {
         self.edge == plate.edge
             && self.poisson_ratio == plate.material.poisson_ratio
-            && self.thickness == plate.thickness / plate.radius
+            && (self.thickness * plate.radius / plate.thickness - 1.0).abs() < ROUNDING
             && self.omega.len() == modes + 1
     }
 
