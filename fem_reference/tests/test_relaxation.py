@@ -19,6 +19,7 @@ from fem_reference.common.errors import SceneError
 from fem_reference.common.fenicsx import alone
 from fem_reference.explicit.checkpoint import Checkpoint
 from fem_reference.explicit.levels import MOST_LEVELS
+from fem_reference.explicit.loop import SerialLoop
 from fem_reference.explicit.supervision import LEDGER_ERROR
 from fem_reference.plate_impact.axisymmetric_motion import AxisymmetricMotion
 from fem_reference.plate_impact.estimate import estimate_contact, shortest_wavelengths
@@ -135,6 +136,19 @@ def test_ledgers_close(edge: str) -> None:
         assert abs(run.contact_loss) < 1e-5
     assert one.energy_residual < 2e-5
     assert efficiency(many) == pytest.approx(efficiency(one), abs=1e-4)
+
+
+def test_threads_relax_as_one() -> None:
+    system, _ = make_system(parse_scene(relaxing("outer", "plate")))
+    loops = [SerialLoop(system, alone(), threads) for threads in (1, 2)]
+    for loop in loops:
+        loop.set_step(2e-9, 1, MOST_LEVELS)
+        loop.advance(64 * loop.meeting)
+    one, two = (loop.springs for loop in loops)
+    assert one is not None and two is not None
+    largest = np.abs(one.extension).max(axis=(0, 2))
+    assert largest.min() > 0.0
+    assert (np.abs(one.extension - two.extension).max(axis=(0, 2)) < 1e-10 * largest).all()
 
 
 def test_damping_and_relaxation_together() -> None:
