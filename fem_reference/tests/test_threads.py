@@ -26,6 +26,7 @@ from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import seat_model
 from fem_reference.seal_seat.scene import parse_seat_scene
 from fem_reference.solid.system import SolidSystem
+from fem_reference.studies import speed
 from fem_reference.tests.program import ROOT
 from fem_reference.tests.seal_seat_scenes import seat_document
 
@@ -160,3 +161,19 @@ def test_control_groups_limit_the_cores(tmp_path: Path) -> None:
     assert quota(tmp_path) == np.inf
     (older / "cpu.cfs_quota_us").write_text("200000\n", encoding="ascii")
     assert quota(tmp_path) == 2.0
+
+
+def test_speed_is_measured_with_and_without_levels(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(speed, "SECONDS", 0.01)
+    design = parse_seat_scene(seat_document(True, reference__element_order=1))
+    model = seat_model(design, seat_mesh(design, 0.4)).model
+    whole, levels = speed.measure(model, 2, alone(), (1, MOST_LEVELS))
+    assert (whole.levels, whole.threads, whole.processes) == (1, 2, 1)
+    assert levels.levels > 1 and levels.bytes_per_second is None
+    assert whole.dofs == 3 * sum(body.mesh.points.shape[0] for body in model.elastic)
+    # The loop reads no faster than from a cache, a step is no shorter than its sums.
+    assert whole.nanoseconds_per_dof_and_step > 0.02
+    assert whole.bytes_per_second is not None and 0.0 < whole.bytes_per_second < 1e12
+    rows = speed.table([whole, levels]).splitlines()
+    assert len(rows) == 4 and all(row.count("|") == 9 for row in rows)
+    assert rows[2].split("|")[6].strip() == "1.00"
