@@ -22,11 +22,13 @@ from fem_reference.explicit.loop import SerialLoop
 from fem_reference.explicit.parts import DOFS_PER_THREAD, worthwhile
 from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.plate_impact.axisymmetric_motion import AxisymmetricMotion
+from fem_reference.plate_impact.scene import parse_scene
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import seat_model
 from fem_reference.seal_seat.scene import parse_seat_scene
 from fem_reference.solid.system import SolidSystem
 from fem_reference.studies import speed
+from fem_reference.tests.conftest import STEEL, document, make_system
 from fem_reference.tests.program import ROOT
 from fem_reference.tests.seal_seat_scenes import seat_document
 
@@ -124,6 +126,20 @@ def test_axisymmetric_samples_are_those_of_one_thread(system: AxisymmetricSystem
     one, three = rows
     assert np.all(one[-1, [2, 7]] > 0.0)
     assert np.all(np.abs(three - one).max(axis=0) <= 1e-12 * np.abs(one).max(axis=0))
+
+
+def test_bodies_yield_with_threads_as_with_one() -> None:
+    weak = {**STEEL, "yield_strength": 300e6, "hardening": 2.1e9}
+    system, _ = make_system(parse_scene(document(outer__material=weak, plate__material=weak)))
+    found = []
+    for threads in (1, 3):
+        loop = SerialLoop(system, alone(), threads)
+        loop.set_step(0.9 * axisymmetric_step(system), 1, MOST_LEVELS)
+        loop.advance(40 * loop.meeting)
+        assert loop.problem.plastic is not None
+        found.append({"u": loop.u.copy(), "work": loop.problem.plastic.work.copy()})
+    assert found[0]["work"].max() > 0.0
+    agree(found[0], found[1], 1e-12, 0.0)
 
 
 def test_small_systems_have_one_thread(system: AxisymmetricSystem) -> None:
