@@ -1,10 +1,11 @@
 //! Kernels of the reduced models, by criterion: `cargo bench --bench kernels`.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
-use impactcheck::body::kirchhoff::{UnitPlate, UnitPlates};
+use impactcheck::body::kirchhoff::UnitPlate;
 use impactcheck::contact::{Hertz, PatchFlexibility, PatchTable, RADII, Residual};
 use impactcheck::dynamics::duhamel::Oscillator;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
+use impactcheck::kinds::plate_impact::shared::SharedBodies;
 use impactcheck::scene::{Edge, Model, Scene};
 use std::hint::black_box;
 use std::time::Duration;
@@ -76,7 +77,7 @@ fn impact(c: &mut Criterion) {
 
 /// A point of a sweep: the scene's model from known modes, and its impact.
 fn sweep_point(c: &mut Criterion) {
-    let (scene, plates) = (scene("", ""), UnitPlates::default());
+    let (scene, plates) = (scene("", ""), SharedBodies::default());
     Reduced::in_series(scene.clone(), Model::B, Some(16), &plates).expect("modes that are known from now on");
     c.bench_function("sweep_point", |b| {
         b.iter_batched(

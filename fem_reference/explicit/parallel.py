@@ -63,15 +63,14 @@ class Exchange:
                 ends.append((where, places.size, self._arrays.pointer(values, np.float64)))
                 self._requests.append(prepare(values, rank, tag))
 
-    def __call__(self, x: Floats) -> None:
-        """Send and take over; ``x`` has the components of own and others' nodes."""
-        pointer = kernel.doubles(x)
+    def __call__(self, x: Any) -> None:
+        """Send and take over; ``x`` points to the components of own and others' nodes."""
         for end in self._going:
-            self._library.pack(pointer, *end)
+            self._library.pack(x, *end)
         MPI.Prequest.Startall(self._requests)
         MPI.Request.Waitall(self._requests)
         for end in self._coming:
-            self._library.unpack(pointer, *end)
+            self._library.unpack(x, *end)
 
     def free(self) -> None:
         """Give back what MPI has prepared."""
@@ -135,14 +134,15 @@ class ParallelLoop(SerialLoop):
         """(C n,) with the other processes' nodes that own rows read, of all levels."""
         values = np.zeros(self.displacement.size)
         values[: x.size] = x
-        self._exchanges[-1](values)
+        self._exchanges[-1](kernel.doubles(values))
         return values
 
-    def _step(self, take: Any, step: int) -> None:
-        """One step by ``take``, then what moved in it is exchanged."""
-        take()
-        slowest = max(k for k in range(len(self._exchanges)) if step % (1 << k) == 0)
-        self._exchanges[slowest](self.displacement)
+    def _moved(self, step: int) -> Exchange:
+        """The exchange of what moves in a step."""
+        slowest = len(self._exchanges) - 1
+        while step % (1 << slowest):
+            slowest -= 1
+        return self._exchanges[slowest]
 
     def _begin(self) -> Any:
         """Take over what was changed from outside; this process' problem."""
@@ -154,15 +154,18 @@ class ParallelLoop(SerialLoop):
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
         self._begin()
-        state = ctypes.byref(self._state)
+        state, u = ctypes.byref(self._state), kernel.doubles(self.displacement)
         for step in range(steps):
-            self._step(lambda at=step: self._kernel.drift(state, at, 1), step)
+            self._kernel.drift(state, step, 1)
+            self._moved(step)(u)
 
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
-        problem, state = self._begin(), ctypes.byref(self._state)
-        for _ in range(steps):
-            self._step(lambda: self._kernel.advance(state, 1), problem.step)
+        first = self._begin().step
+        state, u = ctypes.byref(self._state), kernel.doubles(self.displacement)
+        for step in range(first, first + steps):
+            self._kernel.advance(state, 1)
+            self._moved(step)(u)
         self._tell()
 
     def _tell(self) -> None:

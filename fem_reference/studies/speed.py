@@ -33,9 +33,9 @@ SIZES = (20_000, 100_000, 400_000)
 """Degrees of freedom, about."""
 WAYS = ((1, 1), (2, 1), (1, 2))
 """Threads and processes."""
-SECONDS = 1.5
+SECONDS = 0.6
 """Of stepping, at least, per trial."""
-TRIALS = 3
+TRIALS = 5
 BLOCK, NODE = 76, 104
 """Bytes that a step reads and writes per block of K (nine numbers and a column) and per node."""
 
@@ -98,9 +98,8 @@ def measure(model: Model, threads: int, comm: Any, most_levels: tuple[int, ...])
         seconds = _step_seconds(loop, comm)
         dofs, blocks = 3 * system.mass.size, comm.allreduce(loop.blocks)
         moved = BLOCK * blocks + NODE * system.mass.size
-        bandwidth = comm.bcast(
-            read_bandwidth(9 * blocks, threads * comm.size) if comm.rank == 0 else None
-        )
+        comm.barrier()
+        bandwidth = comm.allreduce(read_bandwidth(9 * loop.blocks, threads))
         found.append(
             Speed(
                 *(dofs, threads, comm.size, len(loop.levels), seconds / dofs * 1e9),
@@ -122,7 +121,7 @@ def _step_seconds(loop: SerialLoop, comm: Any) -> float:
         took = comm.bcast(time.perf_counter() - started)
         if trial == 0:
             # the first trial finds how many steps last long enough
-            steps *= max(1, math.ceil(SECONDS * steps / loop.meeting / max(took, 1e-9) / steps))
+            steps *= max(1, math.ceil(SECONDS / took))
             continue
         best = min(best, took / steps)
     return best

@@ -7,9 +7,9 @@ pub mod search;
 pub use confirmation::{Confirmation, Rival, confirm};
 pub use neighbourhood::{Neighbourhood, PROFILE_POINTS};
 
-use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
+use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::report::{ChartPanel, Series, chart};
 use crate::result::{CUT, Outcome, SCHEMA_VERSION, Summary};
 use crate::scene::{Field, Model, Scene, Template};
@@ -96,7 +96,7 @@ pub struct Problem {
     variables: Vec<Variable>,
     model: Model,
     modes: Option<usize>,
-    plates: UnitPlates,
+    bodies: SharedBodies,
 }
 
 /// The optimum; part of the document of `optimise --json`.
@@ -141,7 +141,8 @@ impl Problem {
         if let Some(twice) = names.windows(2).find(|w| w[0] == w[1]) {
             return Err(Error::Usage(format!("--over names `{}` twice", twice[0])));
         }
-        Ok(Problem { template, variables, model, modes, plates: UnitPlates::default() })
+        let bodies = SharedBodies::for_varied(names.into_iter());
+        Ok(Problem { template, variables, model, modes, bodies })
     }
 
     fn numbers<'a>(&'a self, values: &[f64]) -> Vec<(&'a Field, f64)> {
@@ -173,7 +174,7 @@ impl Problem {
 
     /// The reduced model with `values` for the variables.
     fn reduced(&self, values: &[f64]) -> Result<Reduced> {
-        Reduced::in_series(self.scene(values)?, self.model, self.modes, &self.plates)
+        Reduced::in_series(self.scene(values)?, self.model, self.modes, &self.bodies)
     }
 
     /// The efficiency with `values` for the variables; `None` where there is no result.
@@ -186,7 +187,7 @@ impl Problem {
     /// # Errors
     /// Those of the model.
     fn efficiency_of(&self, model: Model, values: &[f64]) -> Result<f64> {
-        let reduced = Reduced::in_series(self.scene(values)?, model, None, &self.plates)?;
+        let reduced = Reduced::in_series(self.scene(values)?, model, None, &self.bodies)?;
         Ok(reduced.point(TOLERANCE)?.quantities.efficiency)
     }
 

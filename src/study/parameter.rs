@@ -5,10 +5,10 @@
 //! paper's statements survive that.
 
 use super::{Claim, Note};
-use crate::body::kirchhoff::UnitPlates;
 use crate::error::Result;
 use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::reduced::Reduced;
+use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings,
     RunSettings, Scene, Setup, Shape,
@@ -67,13 +67,13 @@ pub fn scene(name: &str, setup: PlateImpact) -> Scene {
 #[derive(Debug)]
 pub struct Runner {
     model: Model,
-    plates: UnitPlates,
+    bodies: SharedBodies,
 }
 
 impl Runner {
     /// Runs `model`.
     pub fn new(model: Model) -> Self {
-        Runner { model, plates: UnitPlates::default() }
+        Runner { model, bodies: SharedBodies::default() }
     }
 
     /// The result of one impact.
@@ -81,7 +81,7 @@ impl Runner {
     /// # Errors
     /// As [`Reduced::new`] and [`Reduced::point`].
     pub fn run(&self, setup: PlateImpact) -> Result<PlateQuantities> {
-        let reduced = Reduced::in_series(scene("study", setup), self.model, None, &self.plates)?;
+        let reduced = Reduced::in_series(scene("study", setup), self.model, None, &self.bodies)?;
         Ok(reduced.point(TOLERANCE)?.quantities)
     }
 

@@ -12,6 +12,7 @@ mod hertz_goldsmith;
 mod integrator_runge_kutta;
 mod materials_memory;
 mod plate_frequencies_leissa;
+mod shared_bodies;
 mod squeeze_film;
 mod studies_paper;
 mod table1_paper;

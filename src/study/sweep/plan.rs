@@ -2,9 +2,9 @@
 
 use super::axis::{Axis, Sampling, Vary};
 use super::record::{Outcome, Record};
-use crate::body::kirchhoff::UnitPlates;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
+use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::sampling::latin_hypercube;
 use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
 use crate::scene::{self, Field, Model, Template};
@@ -55,7 +55,7 @@ pub struct Plan {
     /// Points of the unit cube; `None` = a grid.
     samples: Option<Vec<Vec<f64>>>,
     hash: String,
-    plates: UnitPlates,
+    bodies: SharedBodies,
 }
 
 impl Plan {
@@ -126,8 +126,9 @@ impl Plan {
             axes,
             samples,
             hash: String::new(),
-            plates: UnitPlates::default(),
+            bodies: SharedBodies::default(),
         };
+        plan.bodies = SharedBodies::for_varied(plan.fields().map(Field::path));
         plan.hash = plan.identity(&file);
         Ok(plan)
     }
@@ -256,7 +257,7 @@ impl Plan {
         let outcome = match self.template.with(&numbers) {
             Err(rejected) => Outcome::Invalid(rejected.to_string()),
             Ok(scene) => {
-                let run = Reduced::in_series(scene, self.model(index), self.modes, &self.plates)
+                let run = Reduced::in_series(scene, self.model(index), self.modes, &self.bodies)
                     .and_then(|reduced| reduced.point(self.tolerance));
                 match run {
                     Ok(point) => Outcome::Done(point),

@@ -17,10 +17,12 @@ pub(super) mod mirror;
 mod patch;
 mod plate;
 mod sphere;
+mod unit;
 
 pub use patch::half_space_flexibility;
 pub use plate::{ContinuumPlate, PlateMode, WEIGHTED, eigenfrequencies, face_shapes, plate};
 pub use sphere::sphere_residual;
+pub use unit::UnitBodies;
 
 use crate::error::{Error, Result};
 

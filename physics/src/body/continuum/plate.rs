@@ -77,7 +77,7 @@ impl ContinuumPlate {
             patch_radius,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
             damping_ratio: plate.damping_ratio,
-            degrees_of_freedom: halves.bending.size() + halves.longitudinal.size(),
+            degrees_of_freedom: halves.degrees_of_freedom(),
         };
         for (parity, half) in halves.each() {
             let load = forces.each_ref().map(|forces| forces.each_ref().map(|f| half.axial_load(f)));
@@ -212,28 +212,28 @@ pub const WEIGHTED: [f64; TABULATED + 1] = [RADII[0], RADII[1], RADII[2], RADII[
 /// Index of the wide patch.
 const WIDE: usize = TABULATED;
 /// Waves of the layer that tells how the flexibility changes with the patches.
-const WAVES: usize = 32;
+pub(super) const WAVES: usize = 32;
 
 /// +1, or -1 for the inner face in longitudinal motion.
-fn sign(parity: Parity, point: usize) -> f64 {
+pub(super) fn sign(parity: Parity, point: usize) -> f64 {
     if parity == Parity::Longitudinal && point == 1 { -1.0 } else { 1.0 }
 }
 
 /// The two independent motions of the plate.
-struct Halves {
+pub(super) struct Halves {
     bending: HalfBody,
     longitudinal: HalfBody,
 }
 
 /// Elastic mode of one parity; `shape` as in [`Modes`].
-struct SpectrumEntry {
-    omega: f64,
-    parity: Parity,
-    shape: Vec<f64>,
+pub(super) struct SpectrumEntry {
+    pub(super) omega: f64,
+    pub(super) parity: Parity,
+    pub(super) shape: Vec<f64>,
 }
 
 impl Halves {
-    fn new(plate: &Plate, mesh: &Mesh) -> Result<Self> {
+    pub(super) fn new(plate: &Plate, mesh: &Mesh) -> Result<Self> {
         let matrices = Rc::new(Matrices::new(mesh, &plate.material)?);
         let held = match plate.edge {
             Edge::Clamped => [true, true],
@@ -247,12 +247,17 @@ impl Halves {
         Ok(Self { bending: half(Parity::Bending)?, longitudinal: half(Parity::Longitudinal)? })
     }
 
-    fn each(&self) -> [(Parity, &HalfBody); 2] {
+    /// Of both meshes.
+    pub(super) fn degrees_of_freedom(&self) -> usize {
+        self.bending.size() + self.longitudinal.size()
+    }
+
+    pub(super) fn each(&self) -> [(Parity, &HalfBody); 2] {
         [(Parity::Bending, &self.bending), (Parity::Longitudinal, &self.longitudinal)]
     }
 
     /// The `count` lowest elastic modes of both parities, ascending.
-    fn spectrum(&self, count: usize) -> Result<Vec<SpectrumEntry>> {
+    pub(super) fn spectrum(&self, count: usize) -> Result<Vec<SpectrumEntry>> {
         let entries = |modes: Modes, parity| {
             modes.omega.into_iter().zip(modes.shape).map(move |(omega, shape)| SpectrumEntry {
                 omega,
@@ -281,7 +286,12 @@ impl Halves {
 
 /// Mesh of the upper half, fine at the patch (if any) and at a held rim, and
 /// fine enough everywhere for the `modes` lowest modes.
-fn plate_mesh(plate: &Plate, patch_radius: Option<f64>, modes: usize, options: &MeshOptions) -> Mesh {
+pub(super) fn plate_mesh(
+    plate: &Plate,
+    patch_radius: Option<f64>,
+    modes: usize,
+    options: &MeshOptions,
+) -> Mesh {
     let half_thickness = 0.5 * plate.thickness;
     // Wave number of the highest mode: at most that of modes in one row along the longer
     // side, and of twice Weyl's count of modes over the section (wider rows, surface waves).

@@ -2,10 +2,10 @@
 
 use super::predictor::Predictor;
 use super::reduced::DEFAULT_MODES;
+use super::shared::Continua;
 use super::trials::Cut;
 use super::validity;
 use crate::body::ModalBody;
-use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
 use crate::dynamics::MovingBody;
@@ -80,15 +80,14 @@ pub(super) fn continuum(
     setup: &PlateImpact,
     wanted: Wanted,
     predictor: &Predictor,
-    cache: &Cache,
+    bodies: Continua,
 ) -> Result<Joined> {
     let rigid = usize::from(setup.plate.edge == Edge::Free);
-    let (plate, omega_next) = continuum_plate(setup, wanted, predictor, cache)?;
+    let (plate, omega_next) = continuum_plate(setup, wanted, predictor, bodies)?;
     let elastic = plate.omega.len() - rigid;
-    let mesh = MeshOptions::default();
     let inner: Vec<f64> = plate.participation.iter().map(|phi| phi[1]).collect();
     let fluid = fluid_forces(setup, |radii| continuum_shapes(setup, predictor, elastic, &inner, radii))?;
-    let tips = tip_residuals(setup, predictor.patch_radius, &mesh, cache)?;
+    let tips = tip_residuals(setup, predictor.patch_radius, |r, m, a| bodies.sphere_residual(r, m, a))?;
     let system = join(setup, plate, tips)?;
     let warnings = validity::warnings(setup, predictor, &system);
     let slower = setup.fluid.as_ref().map_or(1.0, |fluid| mass_factor(fluid.added_mass_frequency_ratio));
@@ -132,11 +131,10 @@ fn continuum_plate(
     setup: &PlateImpact,
     wanted: Wanted,
     predictor: &Predictor,
-    cache: &Cache,
+    bodies: Continua,
 ) -> Result<(ModalBody, f64)> {
-    let mesh = MeshOptions::default();
     let patches = predictor.meshed_patches(&setup.plate);
-    let build = |modes| cached::plate_in(cache, &setup.plate, patches, modes, &mesh);
+    let build = |modes| bodies.plate(&setup.plate, patches, modes);
     let lowest = |plate: &ContinuumPlate, modes| {
         Ok((plate.modal_body(modes, predictor.slow()), plate.omega_next(modes)))
     };
@@ -165,15 +163,14 @@ fn continuum_plate(
 }
 
 /// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
-/// radii `patch` in m.
+/// radii `patch` in m; `sphere` gives that of a sphere by radius, material and patch.
 pub(super) fn tip_residuals(
     setup: &PlateImpact,
     patch: [f64; 2],
-    mesh: &MeshOptions,
-    cache: &Cache,
+    sphere: impl Fn(f64, &Material, f64) -> Result<f64>,
 ) -> Result<[f64; 2]> {
     let tip = |shape: &Shape, material: &Material, patch| match *shape {
-        Shape::Sphere { radius } => cached::sphere_residual_in(cache, radius, material, patch, mesh),
+        Shape::Sphere { radius } => sphere(radius, material, patch),
         // a compact body and the tip of a bender are rigid but for their Hertz contact
         Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
     };

@@ -11,6 +11,7 @@ mod predictor;
 pub mod reduced;
 mod results;
 mod series;
+pub mod shared;
 mod trials;
 mod truncation;
 mod validity;

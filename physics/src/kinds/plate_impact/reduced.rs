@@ -6,10 +6,10 @@ use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate, kirch
 use super::predictor::Predictor;
 use super::results::{PlateQuantities, quantities, values};
 use super::series::{Done, Impacts};
+use super::shared::{Continua, SharedBodies};
 use super::truncation;
 use super::validity::film_warning;
 use crate::body::cache::Cache;
-use crate::body::kirchhoff::UnitPlates;
 use crate::dynamics::assured;
 use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::ledger_check;
@@ -64,15 +64,20 @@ impl Reduced {
     /// # Errors
     /// [`Error::Usage`] for a number of modes that makes no sense, [`Error::Solver`] for what no reduced model covers.
     pub fn new(scene: &Scene, model: Model, modes: Option<usize>) -> Result<Self> {
-        Self::in_series(scene.clone(), model, modes, &UnitPlates::default())
+        Self::in_series(scene.clone(), model, modes, &SharedBodies::default())
     }
 
-    /// As [`Reduced::new`], one of a series of impacts that share the eigenproblems in `plates`.
+    /// As [`Reduced::new`], one of a series of impacts that share `bodies`.
     ///
     /// # Errors
     /// As [`Reduced::new`].
-    pub fn in_series(scene: Scene, model: Model, modes: Option<usize>, plates: &UnitPlates) -> Result<Self> {
-        Self::build(scene, model, modes, plates, &Cache::from_environment())
+    pub fn in_series(
+        scene: Scene,
+        model: Model,
+        modes: Option<usize>,
+        bodies: &SharedBodies,
+    ) -> Result<Self> {
+        Self::build(scene, model, modes, bodies, &Cache::from_environment())
     }
 
     /// As [`Reduced::new`] with the bodies of model C from `cache`.
@@ -80,14 +85,14 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::new`].
     pub fn new_in(scene: &Scene, model: Model, modes: Option<usize>, cache: &Cache) -> Result<Self> {
-        Self::build(scene.clone(), model, modes, &UnitPlates::default(), cache)
+        Self::build(scene.clone(), model, modes, &SharedBodies::default(), cache)
     }
 
     fn build(
         scene: Scene,
         model: Model,
         modes: Option<usize>,
-        plates: &UnitPlates,
+        bodies: &SharedBodies,
         cache: &Cache,
     ) -> Result<Self> {
         let setup = scene.plate_impact()?;
@@ -103,10 +108,11 @@ impl Reduced {
             (_, modes) => modes.or(scene.reduced.modes),
         };
         let built = match model {
-            Model::A | Model::B => kirchhoff(setup, modes.unwrap_or(DEFAULT_MODES), plates)?,
+            Model::A | Model::B => kirchhoff(setup, modes.unwrap_or(DEFAULT_MODES), &bodies.kirchhoff)?,
             Model::C => {
-                let predictor = Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, plates)?)?;
-                continuum(setup, modes.map_or(Wanted::Estimate, Wanted::Modes), &predictor, cache)?
+                let predictor = Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, &bodies.kirchhoff)?)?;
+                let wanted = modes.map_or(Wanted::Estimate, Wanted::Modes);
+                continuum(setup, wanted, &predictor, bodies.continua(cache))?
             }
         };
         Self::of(built, model, scene, None)
@@ -130,7 +136,7 @@ impl Reduced {
         let mut plan = Plan::new(scene, tolerance)?;
         let mut continua: Option<Joined> = None;
         while let Some(cut) = plan.cut {
-            match continuum(setup, Wanted::Below(cut), &plan.trials.predictor, cache) {
+            match continuum(setup, Wanted::Below(cut), &plan.trials.predictor, Continua::meshed(cache)) {
                 Ok(built) => {
                     plan.judge(&built.system, built.omega_next);
                     continua = Some(built);

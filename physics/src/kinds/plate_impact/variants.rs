@@ -23,7 +23,6 @@ use super::joined::tip_residuals;
 use super::predictor::Predictor;
 use super::results::PlateQuantities;
 use super::results::quantities;
-use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::{ModalBody, kirchhoff};
 use crate::contact::PatchFlexibility;
@@ -100,7 +99,7 @@ impl<'a> Variants<'a> {
                 modes[1],
                 &continuum.mesh,
             )?,
-            tips: tip_residuals(setup, patch, &continuum.mesh, &Cache::from_environment())?,
+            tips: tip_residuals(setup, patch, |r, m, a| cached::sphere_residual(r, m, a, &continuum.mesh))?,
             kirchhoff,
             predictor,
         })

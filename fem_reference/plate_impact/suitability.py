@@ -1,0 +1,112 @@
+"""What a mesh resolves of a run on it, and whether that is enough."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..axisymmetric.mesh import edge_lengths
+from ..common.hertz import effective_modulus, hertz_contact_radius
+from .estimate import ACCEPTED_SHARE, MINOR_FORCE, shortest_wavelengths
+from .meshing import ImpactMesh
+from .run import Run
+from .scene import Scene
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """What the mesh resolves, found after the run."""
+
+    outer: float
+    """Elements per contact radius at the outer body's peak force."""
+    inner: float
+    """The same for the inner body; infinite for a contact of less than `MINOR_FORCE`."""
+    wavelength: float
+    """Shortest wavelength that matters, m."""
+    per_wavelength: float
+    """Elements per this wavelength, at the largest element of the body it is in (the least of all
+    bodies)."""
+    smallest: float
+    """Shortest edge, m."""
+    largest: float
+    """Longest edge, m."""
+
+
+def elements_per_wavelength(scene: Scene, mesh: ImpactMesh, duration: float) -> tuple[float, float]:
+    """Least number of elements per wavelength in any body, and that wavelength, m."""
+    return min(
+        (wavelength / float(edge_lengths(body.points, body.quads).max()), wavelength)
+        for wavelength, body in zip(shortest_wavelengths(scene, duration), mesh.bodies, strict=True)
+        if body.quads.size
+    )
+
+
+def resolution_of(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Resolution:
+    """What a mesh resolves of a run, by the contact radii found."""
+    found = [
+        hertz_contact_radius(
+            contact.force_peak,
+            effective_modulus(body.material, scene.plate.material),
+            body.tip_radius,
+        )
+        if not scene.yields
+        else contact.outermost_radius
+        for contact, body in zip(run.contacts, (scene.outer, scene.inner), strict=True)
+    ]
+    edges = np.concatenate([edge_lengths(body.points, body.quads) for body in mesh.bodies])
+    per_wavelength, wavelength = elements_per_wavelength(scene, mesh, duration)
+    size = mesh.settings.contact_element
+    peaks = [contact.force_peak for contact in run.contacts]
+    outer, inner = (
+        radius / size if peak >= MINOR_FORCE * max(peaks) else math.inf
+        for radius, peak in zip(found, peaks, strict=True)
+    )
+    return Resolution(
+        outer=outer,
+        inner=inner,
+        wavelength=wavelength,
+        per_wavelength=per_wavelength,
+        smallest=float(edges.min()),
+        largest=float(edges.max()),
+    )
+
+
+@dataclass(frozen=True)
+class Suitability:
+    """Whether a mesh suits what happened on it."""
+
+    resolution: Resolution
+    asked: float
+    """Elements per contact radius."""
+    zone_left: bool
+    """Whether nodes of the contact zone were never touched."""
+    reach_left: bool
+    """Whether nothing yielded at the edge of what may."""
+
+    @property
+    def least(self) -> float:
+        """Elements per contact radius, of both contacts."""
+        return min(self.resolution.outer, self.resolution.inner)
+
+    @property
+    def accepted(self) -> bool:
+        """Whether it does."""
+        return self.least >= ACCEPTED_SHARE * self.asked and self.zone_left and self.reach_left
+
+    def radii(self, size: float, before: tuple[float, float]) -> tuple[float, float]:
+        """Contact radii for the next mesh, after one with elements of ``size`` (m)."""
+        grow = 1.0 if self.zone_left else 1.3
+        outer, inner = (
+            grow * size * found if math.isfinite(found) else radius
+            for found, radius in zip(
+                (self.resolution.outer, self.resolution.inner), before, strict=True
+            )
+        )
+        return outer, inner
+
+    def __str__(self) -> str:
+        """What a message says."""
+        beyond = "" if self.reach_left else " and yielding beyond its zone"
+        return f"{self.least:.3g} elements per contact radius, {self.asked:.3g} asked{beyond}"
