@@ -18,8 +18,6 @@ const USUAL: f64 = 0.02;
 const PAPER: (f64, f64) = (0.02, 0.005);
 /// How far what it takes in model C may lie from the finite elements.
 const CLOSE: f64 = 1e-3;
-const MODELS: [(Model, &str); 3] = [(Model::A, "A"), (Model::B, "B"), (Model::C, "C")];
-const REFERENCE: &str = "finite elements";
 /// Relative error of the efficiency from the time integration.
 const TOLERANCE: f64 = 1e-6;
 
@@ -72,52 +70,67 @@ fn lost(scene: &Scene, summary: &Summary) -> [f64; 3] {
     [losses.plate_damping, outer, inner].map(|loss| loss / energy)
 }
 
+/// The impact over the loss factors, by one model or by finite elements.
+struct Course {
+    by: &'static str,
+    /// The columns behind `by`, for each loss factor.
+    rows: Vec<[Option<f64>; 6]>,
+}
+
+impl Course {
+    fn by(model: Model, name: &'static str, scenes: &[Scene]) -> Result<Self> {
+        let row = |(scene, loss_factor): (&Scene, f64)| {
+            let summary = Reduced::new(scene, model, None)?.run(TOLERANCE)?;
+            let [plate, outer, inner] = lost(scene, &summary).map(Some);
+            Ok([Some(loss_factor), summary.value("efficiency"), None, plate, outer, inner])
+        };
+        Ok(Self { by: name, rows: scenes.iter().zip(LOSS_FACTORS).map(row).collect::<Result<_>>()? })
+    }
+
+    /// What is recorded of the references of the same impacts.
+    fn recorded(scenes: &[Scene]) -> Result<Self> {
+        let validated = validated::shipped()?;
+        let row = |(scene, loss_factor): (&Scene, f64)| {
+            let mut same = validated.iter().filter(|v| v.scene_hash == scene.hash()).flat_map(|v| &v.rows);
+            let found = same.find(|row| row.quantity == "efficiency")?;
+            Some([Some(loss_factor), Some(found.reference), found.band, None, None, None])
+        };
+        Ok(Self { by: "finite elements", rows: scenes.iter().zip(LOSS_FACTORS).filter_map(row).collect() })
+    }
+
+    fn at(&self, loss_factor: f64) -> Option<&[Option<f64>; 6]> {
+        self.rows.iter().find(|row| row[0] == Some(loss_factor))
+    }
+
+    /// What the usual loss factor takes of the efficiency.
+    fn taken(&self) -> Option<f64> {
+        Some(self.at(0.0)?[1]? - self.at(USUAL)?[1]?)
+    }
+
+    /// Share of the plate's modes in what is lost.
+    fn share_of_plate(&self) -> Option<f64> {
+        let [.., plate, outer, inner] = *self.at(USUAL)?;
+        Some(plate? / (plate? + outer? + inner?))
+    }
+
+    fn cells(&self) -> impl Iterator<Item = Vec<Cell>> {
+        self.rows.iter().map(|row| [Cell::Text(self.by)].into_iter().chain(row.map(Cell::from)).collect())
+    }
+}
+
 /// The study.
 ///
 /// # Errors
 /// As [`Reduced::new`] and [`Reduced::run`], and if the record of validated scenes can't be read.
 pub fn run(note: &mut Note) -> Result<Study> {
     let scenes: Vec<Scene> = LOSS_FACTORS.into_iter().map(scene).collect::<Result<_>>()?;
-    let mut rows = Vec::new();
-    let mut claims = Vec::new();
-    let validated = validated::shipped()?;
-    let references: Vec<Option<[f64; 2]>> = scenes
-        .iter()
-        .map(|scene| {
-            let rows = validated.iter().filter(|v| v.scene_hash == scene.hash()).flat_map(|v| &v.rows);
-            let row = rows.into_iter().find(|row| row.quantity == "efficiency")?;
-            Some([row.reference, row.band?])
-        })
-        .collect();
-    let of_usual = |values: &[Option<f64>]| {
-        let at = LOSS_FACTORS.iter().position(|loss| *loss == USUAL)?;
-        Some(values[0]? - values[at]?)
-    };
-    let in_elements =
-        of_usual(&references.iter().map(|found| found.map(|[value, _]| value)).collect::<Vec<_>>());
-    for (model, name) in MODELS {
-        note(&format!("{} impacts with model {model}", scenes.len()));
-        let mut efficiencies = Vec::new();
-        for (scene, loss_factor) in scenes.iter().zip(LOSS_FACTORS) {
-            let summary = Reduced::new(scene, model, None)?.run(TOLERANCE)?;
-            let efficiency = summary.value("efficiency");
-            let [plate, outer, inner] = lost(scene, &summary);
-            efficiencies.push(efficiency);
-            let numbers = [Some(loss_factor), efficiency, None, Some(plate), Some(outer), Some(inner)];
-            rows.push([Cell::Text(name)].into_iter().chain(numbers.map(Cell::from)).collect());
-            if model == Model::C && loss_factor == USUAL {
-                claims.push(contacts_lose_most(plate, outer + inner));
-            }
-        }
-        let taken = of_usual(&efficiencies);
-        claims.extend(claims_of(model, taken, in_elements));
-    }
-    for (found, loss_factor) in references.iter().zip(LOSS_FACTORS) {
-        let Some([value, band]) = found else { continue };
-        let numbers = [Some(loss_factor), Some(*value), Some(*band), None, None, None];
-        rows.push([Cell::Text(REFERENCE)].into_iter().chain(numbers.map(Cell::from)).collect());
-    }
-    claims.push(taken_by(REFERENCE, in_elements));
+    note(&format!("{} impacts with models A, B and C", scenes.len()));
+    let courses = [
+        Course::by(Model::A, "A", &scenes)?,
+        Course::by(Model::B, "B", &scenes)?,
+        Course::by(Model::C, "C", &scenes)?,
+        Course::recorded(&scenes)?,
+    ];
     Ok(Study {
         schema_version: SCHEMA_VERSION,
         study: "damping",
@@ -127,34 +140,29 @@ pub fn run(note: &mut Note) -> Result<Study> {
             .into(),
         columns: vec!["by", "loss_factor", "efficiency", "band", "lost_in_plate", "lost_in_outer_contact", "lost_in_inner_contact"],
         units: vec!["1"; 7],
-        rows,
-        claims,
+        rows: courses.iter().flat_map(Course::cells).collect(),
+        claims: claims(&courses),
     })
 }
 
-/// Of one model that loses `taken` in efficiency, beside what finite elements lose.
-fn claims_of(model: Model, taken: Option<f64>, in_elements: Option<f64>) -> Vec<Claim> {
-    let difference = taken.zip(in_elements).map(|(ours, theirs)| ours - theirs);
-    let beside = format!("model {model} loses as much as the finite elements: difference in efficiency");
-    let mut claims = vec![taken_by(&format!("model {model}"), taken)];
-    claims.extend((model == Model::C).then(|| Claim::new(beside, "1", None, difference, CLOSE)));
-    claims
-}
-
-fn taken_by(by: &str, taken: Option<f64>) -> Claim {
-    let claim = format!(
-        "a polymer's damping takes about two per cent: efficiency lost at a loss factor of {USUAL}, {by}"
-    );
-    Claim::new(claim, "1", Some(PAPER.0), taken, PAPER.1)
-}
-
-fn contacts_lose_most(plate: f64, contacts: f64) -> Claim {
-    let share = plate / (plate + contacts);
-    Claim::new(
-        "it is lost in the contacts, model C: share of the plate's modes, at most 0.5".into(),
-        "1",
-        None,
-        Some(share),
-        0.5,
-    )
+fn claims(courses: &[Course; 4]) -> Vec<Claim> {
+    let [.., ours, theirs] = courses;
+    let two_per_cent = |course: &Course| {
+        let claim = format!(
+            "a polymer's damping takes about two per cent: efficiency lost at a loss factor of {USUAL}, {}",
+            course.by
+        );
+        Claim::new(claim, "1", Some(PAPER.0), course.taken(), PAPER.1)
+    };
+    let difference = ours.taken().zip(theirs.taken()).map(|(ours, theirs)| ours - theirs);
+    let beside = "model C loses as much as the finite elements: difference in efficiency";
+    let most = "most is lost in the contacts: share of the plate's modes in model C, at most 0.5";
+    courses
+        .iter()
+        .map(two_per_cent)
+        .chain([
+            Claim::new(beside.into(), "1", None, difference, CLOSE),
+            Claim::new(most.into(), "1", None, ours.share_of_plate(), 0.5),
+        ])
+        .collect()
 }

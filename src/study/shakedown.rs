@@ -174,11 +174,11 @@ fn claims_of(spheres: &str, courses: &[Course]) -> Vec<Claim> {
             first.zip(steady).zip(elastic).map(|((f, s), e)| (s - e).abs() < (f - e).abs()),
         ),
         Claim::new(
-            told("impacts until within 1 % of the steady state (the paper: several)"),
+            told("impacts until within 1 % of the steady state: several, of the order of ten at most"),
             "1",
-            Some(5.0),
+            None,
             shown.and_then(Course::impacts_needed),
-            3.0,
+            10.0,
         ),
     ]
 }
