@@ -52,7 +52,7 @@ const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
 }
 
 /// The features, of plates first.
-pub static FEATURES: [Feature; 22] = [
+pub static FEATURES: [Feature; 24] = [
     feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)).by(Form::CircularPlate),
     feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported))
         .by(Form::CircularPlate),
@@ -67,6 +67,8 @@ pub static FEATURES: [Feature; 22] = [
         .by(Form::Hertz),
     feature("compact inner body", |s| plate(s, |p| matches!(p.inner.shape, Shape::Compact { .. }))),
     feature("relaxing material", |s| plate(s, PlateImpact::relaxes)).by(Form::Hunter),
+    feature("yielding material", |s| plate(s, |p| p.yields())),
+    feature("impacts in series", |s| plate(s, |p| p.series.is_some())),
     feature("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))).by(Form::Cantilever),
     feature("friction", |s| plate(s, |p| p.friction > 0.0)),
     feature("squeeze film", |s| fluid(s, |f| f.squeeze_film)).by(Form::Film),

@@ -96,7 +96,8 @@ def _write(
         stress_times=write_fields(folder, model, solution.recorder),
     )
     if scene.friction > 0.0:
-        summary["losses"] = {"contacts": run.rubbed}
+        none = {"plate_damping": 0.0, "squeeze_film": 0.0, "drag": 0.0}
+        summary["losses"] = {**none, "contacts": run.rubbed}
     record_geometry(folder / "mesh.vtu", scene)
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(

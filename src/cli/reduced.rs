@@ -111,13 +111,20 @@ pub fn table(summary: &Summary) -> String {
             ("strike_delay", drive.strike_delay, "s"),
         ])
     });
+    let [striker, struck] = match summary.quantities.get("actuator_force_peak") {
+        Some(_) => ["lost in actuator contact", "lost in sphere contact"],
+        None => ["lost in outer contact", "lost in inner contact"],
+    };
     let losses = summary.losses.iter().flat_map(|losses| {
         [
             ("lost to plate damping", losses.plate_damping, "J"),
             ("lost in squeeze film", losses.squeeze_film, "J"),
             ("lost to drag", losses.drag, "J"),
-            ("lost in outer contact", losses.contacts.map_or(0.0, |loss| loss[0]), "J"),
-            ("lost in inner contact", losses.contacts.map_or(0.0, |loss| loss[1]), "J"),
+            (striker, losses.contacts.map_or(0.0, |loss| loss[0]), "J"),
+            (struck, losses.contacts.map_or(0.0, |loss| loss[1]), "J"),
+            ("lost in outer body", losses.bodies.map_or(0.0, |loss| loss[0]), "J"),
+            ("lost in plate", losses.bodies.map_or(0.0, |loss| loss[1]), "J"),
+            ("lost in inner body", losses.bodies.map_or(0.0, |loss| loss[2]), "J"),
         ]
         .into_iter()
         .filter(|(_, loss, _)| *loss != 0.0)

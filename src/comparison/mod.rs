@@ -8,7 +8,7 @@
 
 pub mod budget;
 mod changed_tolerance;
-pub mod common_mesh;
+mod common_mesh;
 mod discrepancy;
 mod impacts;
 mod integrity;
@@ -18,6 +18,7 @@ mod undecided;
 mod verdict;
 
 pub use changed_tolerance::ChangedTolerance;
+pub use common_mesh::difference_band;
 pub use discrepancy::{BandVerdict, Discrepancy};
 pub use integrity::{Check, check as integrity};
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};

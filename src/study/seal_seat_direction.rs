@@ -6,7 +6,7 @@
 use super::seal_seat::{determined, shipped};
 use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
 use crate::body::cache::Cache;
-use crate::comparison::common_mesh::difference_band;
+use crate::comparison::difference_band;
 use crate::error::{Error, Result};
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel, SeatQuantities};
 use crate::numerics::least_squares::fit;

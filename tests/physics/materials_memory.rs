@@ -75,16 +75,22 @@ fn the_history_of_an_impact_that_nothing_remembers_is_the_elastic_one() {
     let memory = Memory::new(&setup, system).unwrap().unwrap();
     let ours = integrate(system, &memory, &every(duration / 10.0)).unwrap().0.history.unwrap();
     let exact = integrator::integrate(system, &every(duration / 500.0)).unwrap().history.unwrap();
-    for name in ["plate_displacement", "plate_velocity", "inner_velocity", "outer_force"] {
+    // the contacts' part of the plate's velocity is a difference quotient, half a step late where they touch
+    let bounds = [
+        ("plate_displacement", 0.01),
+        ("plate_velocity", 0.04),
+        ("inner_velocity", 0.01),
+        ("outer_force", 0.01),
+    ];
+    for (name, bound) in bounds {
         let [ours_of, exact_of] = [&ours, &exact].map(|history| history.curve(name).unwrap());
         let peak = exact_of.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
         for (time, value) in ours.time.iter().zip(ours_of) {
             let k = exact.time.partition_point(|t| t < time).clamp(1, exact.len() - 1);
             let share = (time - exact.time[k - 1]) / (exact.time[k] - exact.time[k - 1]);
             let expected = exact_of[k - 1] + share * (exact_of[k] - exact_of[k - 1]);
-            // the contacts' part of the velocity is a difference quotient, half a step late where they touch
             assert!(
-                (value - expected).abs() < 0.04 * peak,
+                (value - expected).abs() < bound * peak,
                 "{name} at {time:e}: {value}, {expected}, {peak}"
             );
         }

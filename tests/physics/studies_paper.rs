@@ -92,6 +92,23 @@ fn best_is_a_contact_of_about_half_the_first_period_whatever_the_thickness() {
 }
 
 #[test]
+fn a_polymer_plate_loses_what_the_paper_says_and_finite_elements_find() {
+    let study = run("damping", None);
+    assert!(study.claims.iter().all(|c| c.verdict == Verdict::Pass), "{:?}", study.claims);
+    let by = |name| study.rows.iter().filter(|row| row[0] == Cell::Text(name)).count();
+    assert_eq!(by("C"), 9);
+    // 0, 0.02 and 0.1 are recorded
+    assert_eq!(by("finite elements"), 3);
+}
+
+#[test]
+fn repeated_impacts_shake_down_as_the_paper_says() {
+    let study = run("shakedown", Some(Model::B));
+    assert_eq!(study.claims.len(), 10);
+    assert!(study.claims.iter().all(|c| c.verdict == Verdict::Pass), "{:?}", study.claims);
+}
+
+#[test]
 fn every_study_is_drawn_from_columns_it_has() {
     for entry in STUDIES.iter().filter(|entry| entry.takes_model) {
         let study = run(entry.name, Some(Model::A));

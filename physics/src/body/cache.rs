@@ -13,7 +13,7 @@ use serde_json::Value;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// Environment variable that names the folder; empty = no cache.
+/// Environment variable that names the folder; empty or `off` = no cache.
 const CACHE_VARIABLE: &str = "IMPACTCHECK_CACHE";
 
 /// A folder of values that are dear to compute, or none.
@@ -23,7 +23,7 @@ pub struct Cache {
 }
 
 impl Cache {
-    /// The user's cache: `$IMPACTCHECK_CACHE` (empty = none), else `$XDG_CACHE_HOME/impactcheck`, else
+    /// The user's cache: `$IMPACTCHECK_CACHE` (empty or `off` = none), else `$XDG_CACHE_HOME/impactcheck`, else
     /// `~/.cache/impactcheck`.
     pub fn from_environment() -> Self {
         Self::from_variables(|name| std::env::var_os(name))
@@ -31,7 +31,7 @@ impl Cache {
 
     fn from_variables(variable: impl Fn(&str) -> Option<OsString>) -> Self {
         if let Some(folder) = variable(CACHE_VARIABLE) {
-            return Cache { folder: (!folder.is_empty()).then(|| folder.into()) };
+            return Cache { folder: (!folder.is_empty() && folder != "off").then(|| folder.into()) };
         }
         // The XDG base directory specification has relative paths ignored.
         let absolute = |name| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());

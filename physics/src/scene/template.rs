@@ -126,6 +126,11 @@ impl Field {
     }
 }
 
+/// Whether no reduced model has the field called `path`.
+fn is_of_reference(path: &str) -> bool {
+    path == "friction" || path.starts_with("reference.")
+}
+
 impl Template {
     /// Reads and checks the scene file at `path`.
     ///
@@ -161,6 +166,11 @@ impl Template {
         if let Some(field) = fields.iter().find(|field| field.path == path) {
             return Ok(field.clone());
         }
+        if is_of_reference(path) {
+            return Err(Error::Usage(format!(
+                "`{path}` changes no reduced model: it is the reference's alone"
+            )));
+        }
         let names: Vec<&str> = fields.iter().map(|field| field.path.as_str()).collect();
         let hint = suggestion(path, names.iter().copied()).map(|s| format!("; did you mean `{s}`?"));
         Err(Error::Usage(format!(
@@ -171,10 +181,11 @@ impl Template {
         )))
     }
 
-    /// Every numeric field that the scene has or may have.
+    /// Every numeric field that the scene has or may have and a reduced model knows.
     pub fn fields(&self) -> Vec<Field> {
         let mut fields = Vec::new();
         collect(&SCENE, Some(&self.values), &mut Vec::new(), &mut fields);
+        fields.retain(|field: &Field| !is_of_reference(&field.path));
         fields
     }
 
@@ -399,6 +410,8 @@ mod tests {
             ("outer.mass", "no numeric field `outer.mass`"),
             ("fluid.viscosity", "no numeric field"),
             ("plate.edge", "no numeric field"),
+            ("friction", "it is the reference's alone"),
+            ("reference.elements_per_contact_radius", "it is the reference's alone"),
         ] {
             let said = template.field(path).expect_err("refused").to_string();
             assert!(said.contains(part), "{said}");

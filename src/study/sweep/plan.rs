@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 /// Relative error of the efficiency that the time integration aims at when the file names none. The errors are smaller:
 /// over 4000 scenes around Table 1 at most 1.1e-5, in 95 % of them below 2e-6.
 pub const DEFAULT_TOLERANCE: f64 = 1e-4;
+/// Counts changes of the numbers that the same sweep gives.
+const METHOD: u32 = 2;
 /// Most points of a sweep.
 const MOST_POINTS: usize = 100_000_000;
 
@@ -140,7 +142,7 @@ impl Plan {
             json!([fields, format!("{:?}", a.values)])
         };
         let mut identity = json!({
-            "version": env!("CARGO_PKG_VERSION"), "setup": self.template.scene().setup,
+            "version": env!("CARGO_PKG_VERSION"), "method": METHOD, "setup": self.template.scene().setup,
             "run": self.template.scene().run, "reduced": self.template.scene().reduced,
             "model": if let [one] = self.models[..] { json!(one) } else { json!(self.models) }, "modes": self.modes, "tolerance": self.tolerance,
             "samples": file.samples, "seed": file.seed,

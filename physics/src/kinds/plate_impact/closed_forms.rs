@@ -117,20 +117,20 @@ fn contact(setup: &PlateImpact) -> Result<f64> {
 /// Outer body and plate as Maxwell fluids that relax in a hundred contacts, the plate not moving: of the speed 4/9 T/tau is lost (Hunter,
 /// The Hertz contact problem, J. Mech. Phys. Solids 8, 1960, 219), to first order in T/tau.
 fn lost_speed(setup: &PlateImpact) -> Result<f64> {
-    let mut fluid = PlateImpact { fluid: None, ..setup.clone() };
-    let elastic = System::new(&fluid, &held(), [0.0; 2]);
+    let mut maxwell = PlateImpact { fluid: None, ..setup.clone() };
+    let elastic = System::new(&maxwell, &held(), [0.0; 2]);
     let duration = elastic.hertz_impact().duration();
-    for material in [&mut fluid.outer.material, &mut fluid.plate.material] {
+    for material in [&mut maxwell.outer.material, &mut maxwell.plate.material] {
         material.relaxation = vec![Relaxation { ratio: 1.0, time: duration / SHORT }];
         material.hardening = None;
     }
-    let system = System::new(&fluid, &held(), [0.0; 2]);
+    let system = System::new(&maxwell, &held(), [0.0; 2]);
     let options = Options { end_time: Some(2.0 * duration), ..Options::default() };
-    let run = match Memory::new(&fluid, &system)? {
+    let run = match Memory::new(&maxwell, &system)? {
         Some(memory) => memory::integrate(&system, &memory, &options)?.0,
         None => integrate(&system, &options)?,
     };
-    let lost = 1.0 - run.velocity[0] / fluid.outer.speed;
+    let lost = 1.0 - run.velocity[0] / maxwell.outer.speed;
     Ok((lost / (4.0 / 9.0 * SHORT) - 1.0).abs())
 }
 

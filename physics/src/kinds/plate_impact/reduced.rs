@@ -210,7 +210,7 @@ impl Reduced {
         let Done { last, impacts, memory, warning } = self.impacts().all(&options)?;
         let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
         summary.warnings.extend(warning);
-        let elastic_efficiency = self.impacts().elastic_efficiency(&options)?;
+        let elastic_efficiency = self.impacts().elastic_efficiency(&options);
         Ok((Summary { impacts, elastic_efficiency, ..summary }, memory))
     }
 

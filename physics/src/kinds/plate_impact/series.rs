@@ -88,17 +88,12 @@ impl Impacts<'_> {
         assured(options, self.system, |options| integrate(self.system, self.fluid, options))
     }
 
-    /// What the efficiency of a series whose bodies yield would be if they did not.
-    ///
-    /// # Errors
-    /// As [`integrate`].
-    pub(super) fn elastic_efficiency(&self, options: &Options) -> Result<Option<f64>> {
-        if self.series.is_none() || !self.memory.is_some_and(|memory| memory.yields().contains(&true)) {
-            return Ok(None);
-        }
-        let result = self.elastic(options)?;
-        let table = values(self.system, &result).table();
-        Ok(if result.is_cut() { None } else { table.value("efficiency") })
+    /// What the efficiency of a series whose bodies yield would be if they were elastic; `None` where they do not or that is not known.
+    pub(super) fn elastic_efficiency(&self, options: &Options) -> Option<f64> {
+        self.series?;
+        self.memory.filter(|memory| memory.yields().contains(&true))?;
+        let result = self.elastic(options).ok().filter(|result| !result.is_cut())?;
+        values(self.system, &result).table().value("efficiency")
     }
 
     fn has_shaken_down(&self, impact: &Integration) -> bool {

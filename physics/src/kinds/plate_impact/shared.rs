@@ -17,8 +17,8 @@ impl SharedBodies {
     /// For a series in which the numbers of `fields` vary: plates and spheres of model C are scaled from those of their shape (edge,
     /// thickness over radius, Poisson's ratio), unless it varies.
     ///
-    /// That is as near to the converged bodies as a mesh for every impact is, and within 3e-4 of it in the forces (99 % of
-    /// random impacts: 2e-4).
+    /// That is as near to the converged bodies as a mesh for every impact is, and within 3e-4 of it in the forces
+    /// (guide, scenes).
     pub fn for_varied<'a>(mut fields: impl Iterator<Item = &'a str>) -> Self {
         let shape = |field: &str| {
             ["plate.radius", "plate.thickness"].contains(&field) || field.ends_with(".poisson_ratio")

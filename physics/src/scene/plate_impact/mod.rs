@@ -174,11 +174,19 @@ pub struct PlateImpact {
 }
 
 impl PlateImpact {
+    /// Materials of outer body, plate and inner body.
+    fn materials(&self) -> [&Material; 3] {
+        [&self.outer.material, &self.plate.material, &self.inner.material]
+    }
+
     /// Whether a body's material is viscoelastic.
     pub fn relaxes(&self) -> bool {
-        [&self.outer.material, &self.plate.material, &self.inner.material]
-            .iter()
-            .any(|material| !material.relaxation.is_empty())
+        self.materials().iter().any(|material| !material.relaxation.is_empty())
+    }
+
+    /// Whether a body's material may yield.
+    pub fn yields(&self) -> bool {
+        self.materials().iter().any(|material| material.hardening.is_some())
     }
 }
 
