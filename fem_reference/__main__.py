@@ -26,10 +26,18 @@ def _times(text: str) -> tuple[float, ...]:
         ) from None
 
 
-def _count(text: str) -> int:
-    if not text.isdecimal() or not 0 <= int(text) <= 10_000_000:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 10000000")
+def _whole(text: str, least: int, most: int) -> int:
+    if not text.isdecimal() or not least <= int(text) <= most:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} to {most}")
     return int(text)
+
+
+def _count(text: str) -> int:
+    return _whole(text, 0, 100_000)
+
+
+def _dofs(text: str) -> int:
+    return _whole(text, 1, 10_000_000)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -89,7 +97,7 @@ def _parser() -> argparse.ArgumentParser:
     speed.add_argument("--scene", type=Path, required=True, help="of solid geometry")
     speed.add_argument("--out", type=Path, required=True, help="JSON; a table .md beside it")
     speed.add_argument(
-        "--dofs", type=_count, nargs="+", default=(), metavar="N", help="by default three sizes"
+        "--dofs", type=_dofs, nargs="+", default=(), metavar="N", help="by default three sizes"
     )
     yielding = commands.add_parser("yielding", help="a yielding sphere on a rigid wall")
     yielding.add_argument("--out", type=Path, required=True, help="Markdown")

@@ -68,6 +68,7 @@ def threads_per_process(asked: int, comm: Any) -> int:
     processes = int(here.size)
     # A launcher may have bound every process to cores of its own.
     there = len(frozenset().union(*here.allgather(affinity())))
+    here.Free()
     return max(1, int(asked or min(there, quota())) // processes)
 
 

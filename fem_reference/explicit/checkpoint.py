@@ -26,6 +26,24 @@ INTERVAL = 60.0
 """Wall-clock time between checkpoints, s."""
 
 
+def write_arrays(path: Path, **arrays: Any) -> None:
+    """Write an ``.npz`` file that is complete or not there, even if the machine fails.
+
+    Raises:
+        SolverError: it cannot be written.
+    """
+    temporary = path.with_name(f".partial-{path.name}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with temporary.open("wb") as stream:
+            np.savez(stream, **arrays)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.replace(path)
+    except OSError as error:
+        raise SolverError(f"checkpoint {path} cannot be written: {error}") from error
+
+
 class Checkpoint:
     """The checkpoint file of one run.
 
@@ -54,16 +72,7 @@ class Checkpoint:
             values |= {"extension": loop.springs.extension, **loop.ledger.state}
         if loop.comm.rank == 0:
             scalars = {"identity": self.identity, "problem": loop.problem.checkpoint()}
-            temporary = self.path.with_name(f".partial-{self.path.name}")
-            try:
-                self.path.parent.mkdir(parents=True, exist_ok=True)
-                with temporary.open("wb") as stream:
-                    np.savez(stream, u=u, v=v, scalars=np.array(json.dumps(scalars)), **values)
-                    stream.flush()
-                    os.fsync(stream.fileno())
-                temporary.replace(self.path)
-            except OSError as error:
-                raise SolverError(f"checkpoint {self.path} cannot be written: {error}") from error
+            write_arrays(self.path, u=u, v=v, scalars=np.array(json.dumps(scalars)), **values)
         loop.comm.barrier()
         self._last = time.monotonic()
 

@@ -78,7 +78,10 @@ class ModalDamping:
         """What the modes lose in ``interval`` s, at an instant at which all levels meet."""
         loop, rows = self._loop, self._rows
         velocity = self._weighted.T @ loop.v[rows]
-        velocity -= 0.5 * loop.dt * (self._half_step().T @ loop.effective[rows])
+        impulse = self._half_step().T @ loop.effective[rows]
+        if loop.problem.plastic is not None:
+            impulse -= self._modes.shapes.T @ loop.problem.plastic.force[rows]
+        velocity -= 0.5 * loop.dt * impulse
         change = velocity * np.expm1(-self._rates * interval)
         loop.v[rows] += self._modes.shapes @ change
         # Exactly the change of the loop's discrete energy if it has one level.

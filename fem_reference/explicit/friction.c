@@ -1,4 +1,6 @@
-/* Part of kernel.c: Coulomb friction of candidates with surfaces and spheres, after the multipliers of a step. */
+/* Part of kernel.c: Coulomb friction of candidates with surfaces and spheres, once after the multipliers of a step.
+ * These are of the state before friction: what friction does to the normal velocities the next step's multipliers
+ * mend (a splitting of first order in the step). */
 #if COMPONENTS == 3
 
 static inline void cross(const double *a, const double *b, double *c) {

@@ -9,7 +9,7 @@
  * The multiplier is the contact force of the candidate at t_n. Where the surface nodes of two bodies
  * match, the pairs are independent of each other: lambda = max(0, -g) / (dt^2 (1/m_s + 1/m_p)).
  * Elsewhere Gauss-Seidel; there contact sees only the surface nodes that can touch, in a numbering of
- * their own, so that a parallel run solves it redundantly in every process and gets the same forces.
+ * their own. Of several processes the first one has them all, and alone solves it.
  *
  * Sub-cycling: every element has a level l, K = sum K_l, and K_l acts at every 2^l-th step only,
  * with 2^l times the impulse (impulse form of the Verlet splitting: Tuckerman, Berne & Martyna

@@ -60,8 +60,8 @@ class Loop(ABC):
     """What serial and parallel runs have in common.
 
     Vectors have the components of own nodes, in the order of `System.owned`; what concerns the
-    whole system is summed over the processes. Every process solves the contact problem with all
-    surface nodes, redundantly.
+    whole system is summed over the processes. The first one has all surface nodes that can touch
+    and alone solves the contact problem.
 
     Attributes:
         components: of displacement per node.

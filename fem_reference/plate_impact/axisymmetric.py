@@ -235,7 +235,7 @@ def compute(
         struck = strike(
             scene.series,
             stepper,
-            Kept(settings, method(scene), system),
+            Kept(settings, attempt, [*method(scene), reach], system),
             lambda run, motion: like is not None or suits(run, motion).accepted,
             None if like is None else len(like.runs),
         )

@@ -7,7 +7,7 @@ import json
 from dataclasses import replace
 from typing import Any
 
-from ..common.errors import SolverError
+from ..common.errors import SceneError, SolverError
 from ..common.processes import in_processes
 from ..common.settings import Options
 from .scene import parse_scene
@@ -42,7 +42,14 @@ def _modes(document: Any, arguments: argparse.Namespace) -> None:
 def _solve(document: Any, arguments: argparse.Namespace) -> None:
     scene = parse_scene(document)
     options = Options.of(arguments)
-    if scene.geometry != "solid":
+    if scene.geometry == "solid":
+        relaxing = scene.relaxing
+        if arguments.np > 1 and relaxing:
+            raise SceneError(
+                f"{relaxing[0]}.material.relaxation is given; solid geometry relaxes in one "
+                f"process, --np is {arguments.np}; it must be 1"
+            )
+    else:
         if arguments.np > 1:
             raise SolverError(
                 f"--np is {arguments.np}; an axisymmetric reference runs as one process"

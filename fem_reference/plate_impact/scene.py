@@ -104,6 +104,12 @@ class Scene:
         return any(material.yielding is not None for material in self.materials)
 
     @property
+    def relaxing(self) -> list[str]:
+        """Bodies whose material relaxes."""
+        named = zip(("outer", "plate", "inner"), self.materials, strict=True)
+        return [name for name, material in named if material.relaxation]
+
+    @property
     def drag(self) -> float:
         """Resistance of the inner body over the square of its velocity, N s^2/m^2.
 
@@ -174,6 +180,8 @@ def _series(root: Reader, geometry: str) -> Series | None:
     series = root.child("series")
     series.allow("impacts", "sphere_spot")
     impacts = series.number("impacts", "(no unit)", above=1.0, inclusive=True)
+    if impacts != int(impacts):
+        raise SceneError(f"series.impacts is {impacts:g}; it must be a whole number")
     return Series(int(impacts), series.choice("sphere_spot", ("same", "fresh")) == "fresh")
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from ..axisymmetric.system import AxisymmetricSystem
 from ..common.arrays import Floats
 from ..common.settings import Settings
+from ..explicit.checkpoint import write_arrays
 from ..explicit.loop import Energies
 from ..explicit.records import ContactRecord
 from .axisymmetric_motion import AxisymmetricMotion
@@ -38,27 +39,30 @@ class Kept:
 
     Args:
         settings: of the mesh.
+        attempt: number of the mesh among those tried; each has a file of its own.
         method: what the impacts depend on besides the mesh, as JSON.
         system: on the mesh.
     """
 
-    def __init__(self, settings: Settings, method: list[Any], system: AxisymmetricSystem) -> None:
+    def __init__(
+        self, settings: Settings, attempt: int, method: list[Any], system: AxisymmetricSystem
+    ) -> None:
         digest = hashlib.sha256(json.dumps([*method, settings.courant], sort_keys=True).encode())
         digest.update(np.round(system.points, 15).tobytes())
         self._identity = digest.hexdigest()
-        self._path: Path = settings.folder / f"{settings.label}-impacts.npz"
+        self._path: Path = settings.folder / f"{settings.label}-impacts-{attempt}.npz"
 
     def save(self, runs: list[Run], memory: Memory) -> None:
-        """All runs so far and what the next impact has to know."""
+        """All runs so far and what the next impact has to know.
+
+        Raises:
+            SolverError: the file cannot be written.
+        """
         described = [{**asdict(run), "times": None, "rows": None} for run in runs]
         arrays = {f"times-{k}": run.times for k, run in enumerate(runs)}
         arrays |= {f"rows-{k}": run.rows for k, run in enumerate(runs)}
         text = json.dumps({"identity": self._identity, "runs": described})
-        temporary = self._path.with_name(f".partial-{self._path.name}")
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        with temporary.open("wb") as stream:
-            np.savez(stream, text=np.array(text), **asdict(memory), **arrays)
-        temporary.replace(self._path)
+        write_arrays(self._path, text=np.array(text), **asdict(memory), **arrays)
 
     def load(self) -> tuple[list[Run], Memory | None]:
         """What was saved of the same impacts on the same mesh."""

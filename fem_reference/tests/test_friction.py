@@ -147,6 +147,7 @@ def test_a_ball_that_strikes_a_wall_obliquely_slides_or_rolls(friction: float, r
         rigid=(ball,),
         matched=(),
         film=None,
+        plasticity=None,
     )
     problem = ContactProblem(system)
     step = 1e-9
@@ -160,6 +161,21 @@ def test_a_ball_that_strikes_a_wall_obliquely_slides_or_rolls(friction: float, r
     gained = 0.5 * mass * (moved.v[0] ** 2 + 0.4 * (radius * moved.spin[1]) ** 2 - along**2)
     assert problem.contacts[0].rubbed == pytest.approx(gained, rel=1e-6)
     assert problem.state.reaction[0] == pytest.approx(-mass * lost, rel=1e-6)
+
+
+def test_friction_hardly_depends_on_the_time_step() -> None:
+    """Though the normal multipliers of a step know nothing of its friction."""
+    design = parse_seat_scene(
+        seat_document(reference__element_order=1, friction=0.3, run={"end_time": 40e-6})
+    )
+    model = seat_model(design, seat_mesh(design, 0.4), None)
+    whole, half = (
+        launch_seat(make_solid_loop(model.model, alone()), model, design, courant=courant)
+        for courant in (0.9, 0.45)
+    )
+    assert min(whole.rubbed) > 1e-5 * design.initial_energy
+    change = np.subtract(whole.sphere_velocity, half.sphere_velocity)
+    assert np.linalg.norm(change) < 3e-4 * np.linalg.norm(half.sphere_velocity)
 
 
 def test_a_ball_leaves_a_rough_seat_as_an_elastic_one_does() -> None:

@@ -17,6 +17,7 @@ from fem_reference.common.bodies import Material, Yielding
 from fem_reference.common.errors import SceneError
 from fem_reference.explicit.plastic import PlasticState
 from fem_reference.plate_impact.axisymmetric_motion import (
+    AxisymmetricMotion,
     integrate_axisymmetric,
 )
 from fem_reference.plate_impact.dents import Dents
@@ -158,6 +159,37 @@ def test_energy_of_an_impact_that_yields_is_accounted_for() -> None:
     assert run.contacts[0].count == 2
     assert run.contacts[0].end == pytest.approx(177e-6, rel=0.02)
     assert not motion.dents.reach_the_edge()
+
+
+@pytest.mark.parametrize("change", [{"plate__damping_ratio": 0.04}, {"friction": 0.3}])
+def test_ledger_closes_with_yielding_beside_another_loss(change: dict[str, float]) -> None:
+    run, motion, _ = impact(1, **STEELS, **change, reference__elements_per_contact_radius=3)
+    assert run.energy_residual < 1e-6
+    assert run.momentum_residual < 1e-9
+    assert run.losses is not None and run.yielded is not None
+    assert sum(run.yielded.work) > 0.1 * run.initial_energy
+    rubbed = -sum(pairs.rubbed for pairs in motion.loop.problem.matched)
+    assert (run.losses.plate_damping > 0.01 * run.initial_energy) == ("friction" not in change)
+    assert (rubbed > 1e-5 * run.initial_energy) == ("friction" in change)
+
+
+def test_dented_plate_at_rest_has_nothing_to_damp() -> None:
+    _, dented, scene = impact(
+        **STEELS, reference__elements_per_contact_radius=3, run__end_time=6e-5
+    )
+    assert dented.dents is not None
+    motion = AxisymmetricMotion(make_system(scene)[0])
+    motion.lay(dented.dents.memory(fresh_spheres=False), 0.0)
+    motion.damp(0.04, 1e6)
+    motion.loop.set_step(1e-8, 1)
+    motion.loop.v[:] = 0.0
+    assert motion.damping is not None
+    motion.damping.lose(1.0)
+    # The plastic load alone would do this to the velocities in half a step.
+    plastic = motion.loop.problem.plastic
+    assert plastic is not None
+    half_step = 0.5 * motion.loop.dt * motion.loop.inverse * plastic.force
+    assert np.abs(motion.loop.v).max() < 1e-9 * np.abs(half_step).max()
 
 
 def test_strong_material_gives_the_elastic_impact() -> None:

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fem_reference.axisymmetric.system import AxisymmetricSystem
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.common.settings import Settings
 from fem_reference.plate_impact import axisymmetric
 from fem_reference.plate_impact.axisymmetric import Solution, compute
+from fem_reference.plate_impact.dents import Dents
 from fem_reference.plate_impact.result import of_run, quantities
 from fem_reference.plate_impact.scene import Scene, parse_scene
 from fem_reference.plate_impact.series import has_shaken_down
@@ -77,7 +79,7 @@ def test_fresh_spots_leave_the_spheres_to_yield_again(three: Solution, tmp_path:
 
 
 def test_series_ends_when_nothing_yields(tmp_path: Path) -> None:
-    """2 GPa: the first impact already leaves nothing."""
+    """2.6 GPa: the first impact already leaves nothing."""
     solution = solved(repeated(5, yield_strength=2.6e9), tmp_path)
     assert len(solution.runs) == 1
     assert has_shaken_down(solution.run)
@@ -110,6 +112,42 @@ def test_killed_series_goes_on_at_the_last_finished_impact(
     made.clear()
     solved(repeated(2, "fresh"), tmp_path)
     assert made[0] == 0
+
+
+def test_killed_series_goes_on_though_its_first_mesh_was_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each mesh tried keeps its own impacts; the first is refused at the second impact here."""
+    step = axisymmetric._Stepper.__call__
+    made: list[tuple[int, int]] = []
+
+    def elements(system: AxisymmetricSystem) -> int:
+        assert system.plasticity is not None
+        return int(system.plasticity.nodes.shape[0])
+
+    def killed(self: Any, number: int, memory: Any) -> Any:
+        made.append((elements(self.system), number))
+        if len(made) == 4:
+            raise SolverError("killed")
+        return step(self, number, memory)
+
+    def refused(self: Any) -> bool:
+        return made[-1] == (made[0][0], 1)
+
+    monkeypatch.setattr(axisymmetric._Stepper, "__call__", killed)
+    monkeypatch.setattr(Dents, "reach_the_edge", refused)
+    with pytest.raises(SolverError, match="killed"):
+        solved(repeated(2), tmp_path)
+    assert len(solved(repeated(2), tmp_path).runs) == 2
+    first, second = made[0][0], made[2][0]
+    assert first < second
+    assert made[:4] == [(first, 0), (first, 1), (second, 0), (second, 1)]
+    assert made[4:] == [(first, 1), (second, 1)]
+
+
+def test_impacts_are_not_a_fraction() -> None:
+    with pytest.raises(SceneError, match=r"series\.impacts is 2\.5; .* whole"):
+        repeated(2.5)  # type: ignore[arg-type]
 
 
 def test_series_of_a_coarser_mesh_has_as_many_impacts(three: Solution, tmp_path: Path) -> None:
