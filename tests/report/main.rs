@@ -5,6 +5,7 @@ mod exports;
 mod figures;
 mod files;
 mod first_screen;
+mod impacts;
 mod validated_map;
 
 #[path = "../support/report_data.rs"]
