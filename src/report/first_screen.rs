@@ -42,10 +42,11 @@ fn percent(share: f64) -> String {
 fn trust(columns: &[Column], report: &SceneReport) -> Markup {
     let comparison = &report.comparison;
     let models = &comparison.models;
-    let common = models.first().map(|model| validity(&model.summary)).unwrap_or_default();
-    let is_common = models.len() > 1 && models.iter().all(|model| validity(&model.summary) == common);
+    let of = |model: &ModelComparison| validity(report.scene, &model.summary);
+    let common = models.first().map(of).unwrap_or_default();
+    let is_common = models.len() > 1 && models.iter().all(|model| of(model) == common);
     let sentence = |model: &ModelComparison| {
-        let own = if is_common { Vec::new() } else { validity(&model.summary) };
+        let own = if is_common { Vec::new() } else { of(model) };
         let elsewhere = validated(report.scene, comparison, &model.model, &report.attachments.validated);
         std::iter::once(accuracy(columns, model)).chain(elsewhere).chain(own).collect::<Vec<_>>().join("; ")
     };

@@ -4,7 +4,7 @@ use super::format::{percent_above, significant, words};
 use super::summary_column::Column;
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
 use crate::result::Summary;
-use crate::scene::Scene;
+use crate::scene::{PlateImpact, Scene};
 use crate::validated::{MEASURES, Place, Validation, Vicinity};
 
 /// Discrepancy, relative or in rad, up to which a model is said to be right within it rather than off by it.
@@ -85,7 +85,7 @@ fn worst_curve(model: &ModelComparison) -> Option<String> {
 }
 
 /// Whether the theories hold that the model shares with the reference, as far as that was computed.
-pub(super) fn validity(summary: &Summary) -> Vec<String> {
+pub(super) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
     let limits = &summary.limits;
     if limits.is_empty() {
         return Vec::new();
@@ -99,7 +99,8 @@ pub(super) fn validity(summary: &Summary) -> Vec<String> {
         true => "inside the range of validity".to_owned(),
         false => format!("outside the range of validity: {}", exceeded.join(", ")),
     };
-    let yielding = limits.iter().any(|limit| limit.is_of_yield());
+    let knows = scene.plate_impact().is_ok_and(PlateImpact::yields);
+    let yielding = knows || limits.iter().any(|limit| limit.is_of_yield());
     let unchecked = "elastic limit not checked: no yield strength given".to_owned();
     std::iter::once(range).chain((!yielding).then_some(unchecked)).collect()
 }

@@ -34,7 +34,14 @@ fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
         assert!(scenes.iter().any(is_of), "{} is no scene any more", entry.scene);
         assert!(entry.revision >= SAME_SINCE, "{}", entry.scene);
     }
-    for scene in scenes.iter().filter(|s| s.plate_impact().is_ok() && s.name != UNSOUND) {
+    // dents and creep have no place on a map that is drawn by Hertz's patches: what is recorded of them is for the coverage alone
+    let remembers = |s: &&Scene| s.plate_impact().is_ok_and(|p| p.yields() || p.relaxes());
+    for scene in scenes.iter().filter(remembers) {
+        let entry = recorded(&known, &scene.name, Model::C).unwrap_or_else(|| panic!("{}", scene.name));
+        assert!(entry.place.is_none() && entry.rows.len() >= 3, "{}", scene.name);
+    }
+    let elastic = |s: &&Scene| s.plate_impact().is_ok() && s.name != UNSOUND && !remembers(s);
+    for scene in scenes.iter().filter(elastic) {
         for model in [Model::A, Model::B, Model::C] {
             let at = format!("{} {model}", scene.name);
             let entry =
