@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.arrays import Floats, Ints
-from . import kernel
+from . import kernel, structures
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ class Film:
     viscosity: Viscosity
 
 
-def compiled(film: Film, arrays: kernel.Arrays) -> kernel.Film:
+def compiled(film: Film, arrays: kernel.Arrays) -> structures.Film:
     """The kernel's structure of a film at rest; ``arrays`` keeps what it points to."""
-    made, viscosity = kernel.Film(), film.viscosity
+    made, viscosity = structures.Film(), film.viscosity
     made.count, made.places = film.areas.size, film.nodes.size
     made.node = arrays.pointer(film.nodes, np.int32)
     made.corner = arrays.pointer(film.corners, np.int32)

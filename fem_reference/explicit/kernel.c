@@ -336,22 +336,7 @@ void unpack(double *restrict x, const int64_t *restrict node, int64_t count, con
     for (int64_t i = 0; i < count; ++i) memcpy(x + C * node[i], packed + C * i, C * sizeof *x);
 }
 
-/* The STREAM triad a = b + s c, repeated: what the memory that n numbers fit into delivers. */
-void triad(double *restrict a, const double *restrict b, const double *restrict c, int64_t n,
-           int64_t repetitions) {
-    for (int64_t k = 0; k < repetitions; ++k) {
-        for (int64_t i = 0; i < n; ++i) a[i] = b[i] + 0.5 * c[i];
-        __asm__ volatile("" : : "r"(a) : "memory"); /* every repetition counts */
-    }
-}
-
-/* The sum of n numbers: what so many threads read from where they lie. */
-double read_all(const double *a, int64_t n, int64_t threads) {
-    double sum = 0.0;
-#pragma omp parallel for simd reduction(+ : sum) num_threads(threads)
-    for (int64_t i = 0; i < n; ++i) sum += a[i];
-    return sum;
-}
+#include "bandwidth.c"
 
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),

@@ -22,9 +22,25 @@ import numpy.typing as npt
 from ..common.arrays import Floats
 from ..common.compiler import compiler, compiler_version
 from ..common.errors import SolverError
+from .structures import (
+    DOUBLE,
+    INT64,
+    Carried,
+    Contact,
+    Film,
+    Pairs,
+    Part,
+    Plastic,
+    Problem,
+    Record,
+    Relaxing,
+    Rigid,
+    State,
+    Tip,
+    Watched,
+)
 
 FLAGS = ("-std=gnu11", "-O3", "-fopenmp", "-march=native", "-ffp-contract=fast", "-fPIC", "-shared")
-MAX_INTERVALS = 256
 FACET_NODES = 6
 CORNERS = 3
 LANES = {2: 2, 3: 4}
@@ -34,250 +50,6 @@ SAMPLED = 8
 """Numbers in a row of ``run``."""
 AGAINST_SURFACE, AGAINST_SPHERE = 0, 1
 _SOURCE = Path(__file__).with_name("kernel.c")
-_INT32 = ctypes.POINTER(ctypes.c_int32)
-_INT64 = ctypes.POINTER(ctypes.c_int64)
-_DOUBLE = ctypes.POINTER(ctypes.c_double)
-_VECTOR = ctypes.c_double * 3
-
-
-class Record(ctypes.Structure):
-    """Mirror of ``Record`` in kernel.c."""
-
-    _fields_ = (
-        ("impulse", ctypes.c_double),
-        ("work", ctypes.c_double),
-        ("force", ctypes.c_double),
-        ("stored", ctypes.c_double),
-        ("last", ctypes.c_int64),
-        ("split", ctypes.c_int64),
-        ("intervals", ctypes.c_int64),
-        ("first_step", ctypes.c_int64 * MAX_INTERVALS),
-        ("last_step", ctypes.c_int64 * MAX_INTERVALS),
-        ("outermost", ctypes.c_int64),
-    )
-
-
-class Tip(ctypes.Structure):
-    """Mirror of ``Tip`` in kernel.c."""
-
-    _fields_ = (
-        ("flexibility", _DOUBLE),
-        ("matrix", _DOUBLE),
-        ("multipliers", _DOUBLE),
-        ("wanted", _DOUBLE),
-        ("closed", _INT32),
-        ("closings", ctypes.c_int64),
-        ("factor", _DOUBLE),
-        ("factored", ctypes.c_int64),
-    )
-
-
-class Pairs(ctypes.Structure):
-    """Mirror of ``Pairs`` in kernel.c."""
-
-    _fields_ = (
-        ("count", ctypes.c_int64),
-        ("candidate", _INT32),
-        ("opposite", _INT32),
-        ("gap", _DOUBLE),
-        ("compliance", _DOUBLE),
-        ("before", _DOUBLE),
-        ("normal", ctypes.c_double),
-        ("friction", ctypes.c_double),
-        ("sliding", _DOUBLE),
-        ("rubbed", ctypes.c_double),
-        ("tip", ctypes.POINTER(Tip)),
-        ("record", Record),
-    )
-
-
-class Film(ctypes.Structure):
-    """Mirror of ``Film`` in kernel.c."""
-
-    _fields_ = (
-        ("count", ctypes.c_int64),
-        ("places", ctypes.c_int64),
-        ("node", _INT32),
-        ("corner", _INT32),
-        ("weight", _DOUBLE),
-        ("radius", _DOUBLE),
-        ("area", _DOUBLE),
-        ("gap", ctypes.c_double),
-        ("curvature", ctypes.c_double),
-        ("minimum_gap", ctypes.c_double),
-        ("rates", ctypes.c_int64),
-        ("first_rate", ctypes.c_double),
-        ("log_ratio", ctypes.c_double),
-        ("viscosity", _DOUBLE),
-        ("pressure", _DOUBLE),
-        ("flow", _DOUBLE),
-        ("load", _DOUBLE),
-        ("before", _DOUBLE),
-        ("force", ctypes.c_double),
-        ("impulse", ctypes.c_double),
-        ("work", ctypes.c_double),
-    )
-
-
-class Plastic(ctypes.Structure):
-    """Mirror of ``Plastic`` in kernel.c."""
-
-    _fields_ = (
-        ("elements", ctypes.c_int64),
-        ("nodes", ctypes.c_int64),
-        ("touched", _INT32),
-        ("node", _INT32),
-        ("gradient", _DOUBLE),
-        ("weight", _DOUBLE),
-        ("shear", _DOUBLE),
-        ("yield_strength", _DOUBLE),
-        ("hardening", _DOUBLE),
-        ("rate", _DOUBLE),
-        ("exponent", _DOUBLE),
-        ("strain", _DOUBLE),
-        ("accumulated", _DOUBLE),
-        ("work", _DOUBLE),
-        ("force", _DOUBLE),
-    )
-
-
-class Rigid(ctypes.Structure):
-    """Mirror of ``Rigid`` in kernel.c."""
-
-    _fields_ = (
-        ("mobility", ctypes.c_double * 9),
-        ("turning", ctypes.c_double * 9),
-        ("mass", ctypes.c_double),
-        ("u", _VECTOR),
-        ("v", _VECTOR),
-        ("spin", _VECTOR),
-        ("before", _VECTOR),
-        ("spun", _VECTOR),
-        ("force", _VECTOR),
-    )
-
-
-class Contact(ctypes.Structure):
-    """Mirror of ``Contact`` in kernel.c."""
-
-    _fields_ = (
-        ("kind", ctypes.c_int32),
-        ("count", ctypes.c_int32),
-        ("node", _INT32),
-        ("facet", _INT32),
-        ("weight", _DOUBLE),
-        ("normal", _DOUBLE),
-        ("gap", _DOUBLE),
-        ("place", _DOUBLE),
-        ("radius", ctypes.c_double),
-        ("rigid", ctypes.c_int32),
-        ("reserved", ctypes.c_int32),
-        ("multipliers", _DOUBLE),
-        ("compliance", _DOUBLE),
-        ("friction", ctypes.c_double),
-        ("traction", _DOUBLE),
-        ("active", _INT32),
-        ("rubbed", ctypes.c_double),
-        ("impulse", _VECTOR),
-        ("force", _VECTOR),
-        ("record", Record),
-    )
-
-
-class Problem(ctypes.Structure):
-    """Mirror of ``Problem`` in kernel.c."""
-
-    _fields_ = (
-        ("nodes", ctypes.c_int64),
-        ("map", _INT32),
-        ("inverse", _DOUBLE),
-        ("u", _DOUBLE),
-        ("predicted", _DOUBLE),
-        ("before", _DOUBLE),
-        ("force", _DOUBLE),
-        ("contacts", ctypes.c_int32),
-        ("rigids", ctypes.c_int32),
-        ("matched", ctypes.c_int64),
-        ("contact", ctypes.POINTER(Contact)),
-        ("rigid", ctypes.POINTER(Rigid)),
-        ("pairs", ctypes.POINTER(Pairs)),
-        ("film", ctypes.POINTER(Film)),
-        ("plastic", ctypes.POINTER(Plastic)),
-        ("dt", ctypes.c_double),
-        ("tolerance", ctypes.c_double),
-        ("step", ctypes.c_int64),
-        ("sweeps", ctypes.c_int64),
-        ("unconverged", ctypes.c_int64),
-        ("reaction", _VECTOR),
-    )
-
-
-class Part(ctypes.Structure):
-    """Mirror of ``Part`` in kernel.c."""
-
-    _fields_ = (
-        ("border_shared", ctypes.c_int64),
-        ("border", ctypes.c_int64),
-        ("shared_free", ctypes.c_int64),
-        ("shared", ctypes.c_int64),
-        ("free", ctypes.c_int64),
-        ("rows", ctypes.c_int64),
-        ("node", _INT32),
-        ("row", _INT64),
-        ("column", _INT32),
-        ("block", _DOUBLE),
-        ("outer", _INT64),
-        ("outer_column", _INT32),
-        ("outer_block", _DOUBLE),
-    )
-
-
-class Relaxing(ctypes.Structure):
-    """Mirror of ``Relaxing`` in kernel.c."""
-
-    _fields_ = (
-        ("level", ctypes.c_int64),
-        ("count", ctypes.c_int64),
-        ("terms", ctypes.c_int64),
-        ("node", _INT32),
-        ("lasting", ctypes.c_double),
-        ("ratio", _DOUBLE),
-        ("decay", _DOUBLE),
-        ("growth", _DOUBLE),
-    )
-
-
-class State(ctypes.Structure):
-    """Mirror of ``State`` in kernel.c."""
-
-    _fields_ = (
-        ("nodes", ctypes.c_int64),
-        ("levels", ctypes.c_int64),
-        ("parts", ctypes.c_int64),
-        ("part", ctypes.POINTER(Part)),
-        ("inverse", _DOUBLE),
-        ("u", _DOUBLE),
-        ("effective", _DOUBLE),
-        ("v", _DOUBLE),
-        ("f", _DOUBLE),
-        ("support", _DOUBLE),
-        ("relaxings", ctypes.c_int64),
-        ("relaxing", ctypes.POINTER(Relaxing)),
-        ("springs", ctypes.c_int64),
-        ("extension", _DOUBLE),
-        ("problem", ctypes.POINTER(Problem)),
-    )
-
-
-class Carried(ctypes.Structure):
-    """Mirror of ``Carried`` in kernel.c."""
-
-    _fields_ = (
-        ("mass", ctypes.c_double),
-        ("start", ctypes.c_double),
-        ("displacement", ctypes.c_double),
-        ("node", ctypes.c_int64),
-    )
 
 
 _C_TYPES: dict[type[np.generic], Any] = {
@@ -302,7 +74,7 @@ class Arrays:
 
 def doubles(array: Floats) -> Any:
     """Pointer to a contiguous array, for the duration of a call."""
-    return array.ctypes.data_as(_DOUBLE)
+    return array.ctypes.data_as(DOUBLE)
 
 
 def _processor() -> str:
@@ -360,16 +132,6 @@ def _compiled(components: int) -> ctypes.CDLL:
     return ctypes.CDLL(str(library))
 
 
-class Watched(ctypes.Structure):
-    """Mirror of ``Watched`` in kernel.c."""
-
-    _fields_ = (
-        ("count", ctypes.c_int64),
-        ("node", _INT32),
-        ("share", _DOUBLE),
-    )
-
-
 def load(components: int) -> ctypes.CDLL:
     """The compiled kernel for 2 or 3 components of displacement per node.
 
@@ -382,15 +144,15 @@ def load(components: int) -> ctypes.CDLL:
         "advance": (state, count),
         "drift": (state, count, count),
         "contact_step": (ctypes.POINTER(Problem),),
-        "run": (state, ctypes.POINTER(Carried), ctypes.POINTER(Watched), count, count, _DOUBLE),
-        "stiffness_product": (state, count, count, _DOUBLE, _DOUBLE),
-        "pack": (_DOUBLE, _INT64, count, _DOUBLE),
-        "unpack": (_DOUBLE, _INT64, count, _DOUBLE),
-        "triad": (_DOUBLE, _DOUBLE, _DOUBLE, count, count),
+        "run": (state, ctypes.POINTER(Carried), ctypes.POINTER(Watched), count, count, DOUBLE),
+        "stiffness_product": (state, count, count, DOUBLE, DOUBLE),
+        "pack": (DOUBLE, INT64, count, DOUBLE),
+        "unpack": (DOUBLE, INT64, count, DOUBLE),
+        "triad": (DOUBLE, DOUBLE, DOUBLE, count, count),
     }.items():
         function = getattr(kernel, name)
         function.argtypes, function.restype = arguments, None
-    kernel.read_all.argtypes, kernel.read_all.restype = (_DOUBLE, count, count), ctypes.c_double
+    kernel.read_all.argtypes, kernel.read_all.restype = (DOUBLE, count, count), ctypes.c_double
     kernel.layout.restype = ctypes.c_int64
     for number, mirror in enumerate(
         (

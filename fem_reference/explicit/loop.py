@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse
 
 from ..common.arrays import Floats, Ints, Mask
-from . import kernel
+from . import kernel, structures
 from .levels import fastest_levels, graded_levels
 from .parts import Blocks, level_parts
 from .plastic import PlasticState
@@ -50,7 +50,7 @@ class Energies:
         return sum(self.elastic) + sum(self.rigid)
 
 
-def _of_spin(rigid: kernel.Rigid) -> float:
+def _of_spin(rigid: structures.Rigid) -> float:
     """Energy of a ball's rotation, J."""
     about = zip(rigid.spin, rigid.turning[::4], strict=True)
     return float(sum(0.5 * spin**2 / turning for spin, turning in about if turning > 0.0))
@@ -314,7 +314,7 @@ class SerialLoop(Loop):
         self.threads = threads
         whole, arrays = system.part(None), kernel.Arrays()
         self.diagonal = whole.diagonal()
-        state = kernel.State()
+        state = structures.State()
         state.nodes = system.owned.size
         for name in ("inverse", "u", "effective", "v"):
             setattr(state, name, arrays.pointer(getattr(self, name), np.float64))
@@ -339,10 +339,10 @@ class SerialLoop(Loop):
                 Blocks.of(matrix, self.components, moves, held), self.threads, arrays
             )
         ]
-        structures = (kernel.Part * len(made))(*made)
+        parts = (structures.Part * len(made))(*made)
         self._state.levels = len(made) // self.threads
-        self._state.part = ctypes.cast(structures, ctypes.POINTER(kernel.Part))
-        self._level_arrays = (structures, arrays)
+        self._state.part = ctypes.cast(parts, ctypes.POINTER(structures.Part))
+        self._level_arrays = (parts, arrays)
 
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
         self._state.levels = 0
@@ -354,7 +354,7 @@ class SerialLoop(Loop):
         arrays, state = kernel.Arrays(), self._state
         groups = springs.groups(node, self.dt, arrays)
         state.relaxings, state.springs = len(groups), springs.extension.shape[1]
-        state.relaxing = ctypes.cast(groups, ctypes.POINTER(kernel.Relaxing))
+        state.relaxing = ctypes.cast(groups, ctypes.POINTER(structures.Relaxing))
         state.extension = arrays.pointer(springs.extension, np.float64)
         self._spring_arrays = (groups, arrays)
         self.strain()
@@ -381,7 +381,7 @@ class SerialLoop(Loop):
         if self.springs is None:
             self.drift(steps)
             return
-        state = kernel.State.from_buffer_copy(self._state)
+        state = structures.State.from_buffer_copy(self._state)
         state.relaxings, state.effective = 0, state.u
         self._kernel.drift(ctypes.byref(state), 0, steps)
 

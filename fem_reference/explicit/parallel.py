@@ -11,7 +11,7 @@ from mpi4py import MPI
 
 from ..common.arrays import Floats, Ints
 from ..common.errors import SolverError
-from . import kernel
+from . import kernel, structures
 from .loop import SerialLoop
 from .problem import ContactProblem
 from .relaxation import Springs
@@ -91,7 +91,7 @@ class ParallelLoop(SerialLoop):
         super().__init__(system, comm, threads)
         self._owner = system.owner
         if comm.rank != FIRST:
-            self._idle = kernel.Problem()
+            self._idle = structures.Problem()
             self._state.problem = ctypes.pointer(self._idle)
         self._told = _told(self.problem)
         self._exchanges: list[Exchange] = []
@@ -194,10 +194,10 @@ def _told(problem: ContactProblem) -> list[npt.NDArray[np.uint8]]:
 
     state = problem.state
     return [
-        memory(state, kernel.Problem.step.offset),
+        memory(state, structures.Problem.step.offset),
         *(memory(rigid, 0) for rigid in problem.rigids[: state.rigids]),
         *(
-            memory(contact, kernel.Contact.rubbed.offset)
+            memory(contact, structures.Contact.rubbed.offset)
             for contact in problem.contacts[: state.contacts]
         ),
     ]

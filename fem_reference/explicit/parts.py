@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse
 
 from ..common.arrays import Floats, Ints, Mask
-from . import kernel
+from . import kernel, structures
 
 PADDING = 2
 """Numbers after the last block: the rows of a 3x3 block are read by fours."""
@@ -59,7 +59,7 @@ class Blocks:
         return np.concatenate([part, others])
 
 
-def level_parts(blocks: Blocks, parts: int, arrays: kernel.Arrays) -> list[kernel.Part]:
+def level_parts(blocks: Blocks, parts: int, arrays: kernel.Arrays) -> list[structures.Part]:
     """The parts of a level for so many threads."""
     part = blocks.divided(parts)
     crossing = part[blocks.row] != part[blocks.column]
@@ -70,7 +70,7 @@ def level_parts(blocks: Blocks, parts: int, arrays: kernel.Arrays) -> list[kerne
 
 def _part(
     blocks: Blocks, inside: Mask, border: Mask, crossing: Mask, arrays: kernel.Arrays
-) -> kernel.Part:
+) -> structures.Part:
     """The part of the nodes ``inside``; ``crossing`` are the blocks between two parts."""
     present = np.zeros(inside.size, dtype=bool)
     present[blocks.row] = True
@@ -85,7 +85,7 @@ def _part(
     place = np.full(inside.size, -1)
     place[nodes] = np.arange(nodes.size)
     mine = place[blocks.row] >= 0
-    made = kernel.Part()
+    made = structures.Part()
     ends = np.cumsum([group.size for group in groups]).tolist()
     made.border_shared, made.border, made.shared_free, made.shared, made.free, made.rows = ends
     made.node = arrays.pointer(nodes, np.int32)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.arrays import Floats, Ints, Mask
-from . import kernel
+from . import kernel, structures
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class PlasticState:
         self._arrays = kernel.Arrays()
         pointer = self._arrays.pointer
         touched = np.unique(plasticity.nodes)
-        self.structure = kernel.Plastic()
+        self.structure = structures.Plastic()
         self.structure.elements, self.structure.nodes = count, touched.size
         self.structure.touched = pointer(touched, np.int32)
         self.structure.node = pointer(plasticity.nodes, np.int32)

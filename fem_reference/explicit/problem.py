@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..common.arrays import Floats, Ints
-from . import kernel
+from . import kernel, structures
 from .contact import Contact, MatchedContact, SphereContact
 from .film import compiled
 from .plastic import PlasticState
@@ -32,7 +32,7 @@ def touching(contacts: Iterable[Contact], first: Ints) -> Ints:
 
 
 class ContactProblem:
-    """`kernel.Problem` with its arrays.
+    """`structures.Problem` with its arrays.
 
     Attributes:
         nodes: (s,) surface nodes that can touch, the system's numbering, matching ones aside.
@@ -47,10 +47,10 @@ class ContactProblem:
         size = components * self.nodes.size
         self.u, self.predicted, self.before, self.force = (np.zeros(size) for _ in range(4))
         self._arrays = kernel.Arrays()
-        self._tips: list[tuple[kernel.Tip, Floats, Floats, Floats]] = []
-        self.contacts = (kernel.Contact * max(1, len(system.contacts)))()
-        self.rigids = (kernel.Rigid * max(1, len(system.rigid)))()
-        self.matched = (kernel.Pairs * max(1, len(system.matched)))()
+        self._tips: list[tuple[structures.Tip, Floats, Floats, Floats]] = []
+        self.contacts = (structures.Contact * max(1, len(system.contacts)))()
+        self.rigids = (structures.Rigid * max(1, len(system.rigid)))()
+        self.matched = (structures.Pairs * max(1, len(system.matched)))()
         for rigid, body in zip(self.rigids, system.rigid, strict=False):
             rigid.mobility[:] = (body.directions / body.mass).ravel().tolist()
             rigid.turning[:] = body.turning.ravel().tolist()
@@ -60,7 +60,7 @@ class ContactProblem:
             self._fill(structure, contact, system)
         for pairs, matched in zip(self.matched, system.matched, strict=False):
             self._match(pairs, matched, system)
-        state = kernel.Problem()
+        state = structures.Problem()
         state.nodes = self.nodes.size
         rows = (components * self.nodes[:, None] + np.arange(components)).ravel()
         state.inverse = self._arrays.pointer(system.inverse_mass[rows], np.float64)
@@ -68,10 +68,10 @@ class ContactProblem:
             setattr(state, name, self._arrays.pointer(getattr(self, name), np.float64))
         state.contacts, state.rigids = len(system.contacts), len(system.rigid)
         state.matched = len(system.matched)
-        state.contact = ctypes.cast(self.contacts, ctypes.POINTER(kernel.Contact))
-        state.rigid = ctypes.cast(self.rigids, ctypes.POINTER(kernel.Rigid))
-        state.pairs = ctypes.cast(self.matched, ctypes.POINTER(kernel.Pairs))
-        self.film: kernel.Film | None = None
+        state.contact = ctypes.cast(self.contacts, ctypes.POINTER(structures.Contact))
+        state.rigid = ctypes.cast(self.rigids, ctypes.POINTER(structures.Rigid))
+        state.pairs = ctypes.cast(self.matched, ctypes.POINTER(structures.Pairs))
+        self.film: structures.Film | None = None
         if system.film is not None:
             self.film = compiled(system.film, self._arrays)
             state.film = ctypes.pointer(self.film)
@@ -91,12 +91,12 @@ class ContactProblem:
         for record in self.records():
             record.split = split
 
-    def records(self) -> list[kernel.Record]:
+    def records(self) -> list[structures.Record]:
         """What each contact has done so far, matching ones first."""
         of_pairs = [pairs.record for pairs in self.matched[: self.state.matched]]
         return of_pairs + [contact.record for contact in self.contacts[: self.state.contacts]]
 
-    def _match(self, structure: kernel.Pairs, contact: MatchedContact, system: System) -> None:
+    def _match(self, structure: structures.Pairs, contact: MatchedContact, system: System) -> None:
         pointer = self._arrays.pointer
         axial = system.points.shape[1] - 1
         inverse = system.inverse_mass[axial :: axial + 1]
@@ -114,10 +114,10 @@ class ContactProblem:
             mobility = np.diag(inverse[contact.opposite]) + inverse[contact.candidates[0]]
             structure.tip = ctypes.pointer(self._tip(contact.flexibility, mobility))
 
-    def _tip(self, flexibility: Floats, mobility: Floats) -> kernel.Tip:
+    def _tip(self, flexibility: Floats, mobility: Floats) -> structures.Tip:
         """A tip; ``mobility`` (n, n) is of the nodes it stands between, 1/kg."""
         pointer, count = self._arrays.pointer, flexibility.shape[0]
-        matrix, tip = np.zeros((count, count)), kernel.Tip()
+        matrix, tip = np.zeros((count, count)), structures.Tip()
         self._tips.append((tip, matrix, flexibility, mobility))
         tip.flexibility = pointer(flexibility, np.float64)
         tip.matrix = pointer(matrix, np.float64)
@@ -127,7 +127,7 @@ class ContactProblem:
         tip.factor = pointer(np.zeros((count, count)), np.float64)
         return tip
 
-    def _fill(self, structure: kernel.Contact, contact: Any, system: System) -> None:
+    def _fill(self, structure: structures.Contact, contact: Any, system: System) -> None:
         pointer, first = self._arrays.pointer, system.first
         count, components = contact.nodes.size, system.points.shape[1]
         structure.count = count
@@ -213,12 +213,12 @@ class ContactProblem:
         for name in ("step", "sweeps", "unconverged"):
             setattr(self.state, name, saved[name])
         self.state.reaction[:] = saved["reaction"]
-        for structures, key in (
+        for group, key in (
             (self.rigids, "rigid"),
             (self.contacts, "contacts"),
             (self.records(), "records"),
         ):
-            for structure, values in zip(structures, saved[key], strict=False):
+            for structure, values in zip(group, saved[key], strict=False):
                 _write(structure, values)
 
 

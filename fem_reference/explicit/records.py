@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..common.arrays import Floats
-from . import kernel
+from . import structures
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ def peak_force(cumulative_impulse: Floats, window: int, sample_interval: float) 
     return float(means.max())
 
 
-def intervals(record: kernel.Record, time_step: float) -> tuple[tuple[float, float], ...]:
+def intervals(record: structures.Record, time_step: float) -> tuple[tuple[float, float], ...]:
     """First and last instant of each contact, s."""
     # The multiplier of step n acts from t_n - dt/2 to t_n + dt/2.
     return tuple(
@@ -46,5 +46,5 @@ def intervals(record: kernel.Record, time_step: float) -> tuple[tuple[float, flo
             max(0.0, record.first_step[k] - 0.5) * time_step,
             (record.last_step[k] + 0.5) * time_step,
         )
-        for k in range(min(record.intervals, kernel.MAX_INTERVALS))
+        for k in range(min(record.intervals, structures.MAX_INTERVALS))
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Relaxation
-from . import kernel
+from . import kernel, structures
 
 
 class Springs:
@@ -50,10 +50,10 @@ class Springs:
 
     def groups(
         self, level: Ints, dt: float, arrays: kernel.Arrays
-    ) -> ctypes.Array[kernel.Relaxing]:
+    ) -> ctypes.Array[structures.Relaxing]:
         """The kernel's, for a time step (s) and the level (n,) of each node."""
         pairs = sorted(set(zip(self.body.tolist(), level.tolist(), strict=True)))
-        made = (kernel.Relaxing * len(pairs))()
+        made = (structures.Relaxing * len(pairs))()
         for group, (body, of_level) in zip(made, pairs, strict=True):
             nodes = np.flatnonzero((self.body == body) & (level == of_level))
             terms = slice(self.counts[body])

@@ -19,7 +19,7 @@ from ..axisymmetric.system import (
 )
 from ..common.arrays import Floats, Ints
 from ..common.fenicsx import alone
-from ..explicit import kernel
+from ..explicit import kernel, structures
 from ..explicit.damping import ModalDamping
 from ..explicit.drag import Drag
 from ..explicit.loop import Energies, SerialLoop
@@ -64,7 +64,7 @@ class AxisymmetricMotion:
         first, second = system.matched
         self.radii = (first.radii, second.radii)
         self._masses = [system.body_mass(body) for body in (OUTER, PLATE, INNER)]
-        bodies = (kernel.Carried * 2)()
+        bodies = (structures.Carried * 2)()
         for carried, body in zip(bodies, (OUTER, INNER), strict=True):
             carried.mass = self._masses[body]
             carried.start = float(system.velocity[system.first[body], 1])
@@ -85,8 +85,8 @@ class AxisymmetricMotion:
             nodes, shares = self.system.watched
             self._watched_before = float(shares @ self.loop.u[1::2][nodes])
 
-    def _watch(self, nodes: Ints, shares: Floats) -> kernel.Watched:
-        watched = kernel.Watched()
+    def _watch(self, nodes: Ints, shares: Floats) -> structures.Watched:
+        watched = structures.Watched()
         watched.count = nodes.size
         watched.node = self._arrays.pointer(nodes, np.int32)
         watched.share = self._arrays.pointer(shares, np.float64)
@@ -144,7 +144,7 @@ class AxisymmetricMotion:
         return outer, plate, inner
 
     @property
-    def records(self) -> list[kernel.Record]:
+    def records(self) -> list[structures.Record]:
         """Of the two contacts."""
         return self.loop.problem.records()
 

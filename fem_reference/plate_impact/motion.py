@@ -8,7 +8,7 @@ from typing import Protocol
 
 from ..common.arrays import Floats
 from ..common.hertz import effective_modulus, hertz_approach, hertz_stiffness
-from ..explicit import kernel
+from ..explicit import structures
 from ..explicit.loop import Energies, Loop
 from .scene import Scene
 
@@ -125,7 +125,7 @@ class Motion(Protocol):
         """Of the bodies that is modelled."""
 
     @property
-    def records(self) -> list[kernel.Record]:
+    def records(self) -> list[structures.Record]:
         """Of the two contacts."""
 
     @property

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..common.arrays import Floats
-from ..explicit import kernel
+from ..explicit import structures
 from ..explicit.loop import Energies, Loop
 from ..explicit.spectrum import critical_time_step, patch_flexibility
 from .ending import Ending, Patch
@@ -57,7 +57,7 @@ class SolidMotion:
         return outer, plate, inner
 
     @property
-    def records(self) -> list[kernel.Record]:
+    def records(self) -> list[structures.Record]:
         """Of the two contacts."""
         return self.loop.problem.records()
 

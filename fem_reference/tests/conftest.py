@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
 import pytest
 
-from fem_reference.axisymmetric.system import AxisymmetricSystem
+from fem_reference.axisymmetric.modal import elastic_modes
+from fem_reference.axisymmetric.system import OUTER, PLATE, AxisymmetricSystem
+from fem_reference.common.arrays import Floats
 from fem_reference.common.fenicsx import alone
 from fem_reference.common.settings import Settings
+from fem_reference.explicit.damping import Modes
 from fem_reference.explicit.loop import SerialLoop
 from fem_reference.plate_impact.axisymmetric import Solution, compute
-from fem_reference.plate_impact.axisymmetric_motion import integrate_axisymmetric
+from fem_reference.plate_impact.axisymmetric_motion import (
+    AxisymmetricMotion,
+    integrate_axisymmetric,
+)
 from fem_reference.plate_impact.estimate import estimate_contact
 from fem_reference.plate_impact.meshing import build_system, mesh_impact, mesh_settings
 from fem_reference.plate_impact.run import Run
@@ -72,6 +80,26 @@ def make_loop(system: AxisymmetricSystem, time_step: float, most_levels: int = 1
     loop = SerialLoop(system, alone())
     loop.set_step(time_step, 1, most_levels)
     return loop
+
+
+def vibrating(
+    system: AxisymmetricSystem, mode: int, levels: int, damping_ratio: float = 0.0
+) -> tuple[AxisymmetricMotion, Modes, Floats]:
+    """A plate that starts in one of its modes with unit modal velocity, bodies leaving it.
+
+    Returns:
+        The motion, the plate's modes, and their masses times shapes.
+    """
+    modes = elastic_modes(system, 4)
+    velocity = np.zeros_like(system.velocity)
+    velocity[system.first[OUTER] : system.first[OUTER + 1], 1] = 1e3
+    plate = slice(int(system.first[PLATE]), int(system.first[PLATE + 1]))
+    velocity[plate] = modes.shapes[:, mode].reshape(-1, 2)
+    motion = AxisymmetricMotion(replace(system, velocity=velocity))
+    if damping_ratio > 0.0:
+        motion.damp(damping_ratio, float(modes.frequencies[-1]))
+    motion.loop.set_step(2e-9, 1, levels)
+    return motion, modes, np.repeat(system.mass[plate], 2)[:, None] * modes.shapes
 
 
 def solve_once(scene: Scene) -> Solution:

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from fem_reference.axisymmetric.modal import elastic_modes
-from fem_reference.axisymmetric.system import OUTER, PLATE, AxisymmetricSystem
-from fem_reference.common.arrays import Floats
+from fem_reference.axisymmetric.system import PLATE
 from fem_reference.common.errors import SceneError
-from fem_reference.explicit.damping import Modes
 from fem_reference.explicit.ending import least_clearance
 from fem_reference.explicit.levels import MOST_LEVELS
 from fem_reference.plate_impact import axisymmetric_motion
@@ -20,7 +16,7 @@ from fem_reference.plate_impact.axisymmetric_motion import AxisymmetricMotion
 from fem_reference.plate_impact.result import of_run
 from fem_reference.plate_impact.scene import parse_scene
 
-from .conftest import document, integrate, make_system
+from .conftest import document, integrate, make_system, vibrating
 
 RATIO = 0.04
 
@@ -33,31 +29,12 @@ def test_damping_ratio_of_a_scene() -> None:
         parse_scene(document(plate__damping_ratio=RATIO, reference__geometry="solid"))
 
 
-def vibrating(
-    system: AxisymmetricSystem, mode: int, levels: int
-) -> tuple[AxisymmetricMotion, Modes, Floats]:
-    """A plate that starts in one of its modes with unit modal velocity, bodies leaving it.
-
-    Returns:
-        The motion, the plate's modes, and their masses times shapes.
-    """
-    modes = elastic_modes(system, 4)
-    velocity = np.zeros_like(system.velocity)
-    velocity[system.first[OUTER] : system.first[OUTER + 1], 1] = 1e3
-    plate = slice(int(system.first[PLATE]), int(system.first[PLATE + 1]))
-    velocity[plate] = modes.shapes[:, mode].reshape(-1, 2)
-    motion = AxisymmetricMotion(replace(system, velocity=velocity))
-    motion.damp(RATIO, float(modes.frequencies[-1]))
-    motion.loop.set_step(2e-9, 1, levels)
-    return motion, modes, np.repeat(system.mass[plate], 2)[:, None] * modes.shapes
-
-
 @pytest.mark.parametrize("levels", [1, MOST_LEVELS])
 @pytest.mark.parametrize("mode", [0, 2])
 def test_free_mode_decays_as_its_closed_form(mode: int, levels: int) -> None:
     """Of the mode exp(-zeta omega t) sin(omega_d t) / omega_d; the others stay at rest."""
     system, _ = make_system(parse_scene(document(inner__gap=1e-3)))
-    motion, modes, weighted = vibrating(system, mode, levels)
+    motion, modes, weighted = vibrating(system, mode, levels, RATIO)
     loop, damping = motion.loop, motion.damping
     assert damping is not None
     omega = float(modes.frequencies[mode])

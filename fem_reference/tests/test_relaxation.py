@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import scipy.optimize
 
-from fem_reference.axisymmetric.modal import elastic_modes
 from fem_reference.axisymmetric.system import OUTER, PLATE
 from fem_reference.common.arrays import Floats
 from fem_reference.common.bodies import Relaxation
@@ -21,7 +20,7 @@ from fem_reference.explicit.checkpoint import Checkpoint
 from fem_reference.explicit.levels import MOST_LEVELS
 from fem_reference.explicit.loop import SerialLoop
 from fem_reference.explicit.supervision import LEDGER_ERROR
-from fem_reference.plate_impact.axisymmetric_motion import AxisymmetricMotion
+from fem_reference.plate_impact.command import COMMANDS
 from fem_reference.plate_impact.estimate import estimate_contact, shortest_wavelengths
 from fem_reference.plate_impact.run import Run
 from fem_reference.plate_impact.scene import parse_scene
@@ -29,8 +28,9 @@ from fem_reference.plate_impact.solid_model import plate_model
 from fem_reference.plate_impact.solid_motion import integrate_solid
 from fem_reference.solid.system import make_loop as make_solid_loop
 
-from .conftest import STEEL, document, integrate, make_loop, make_system
+from .conftest import STEEL, document, integrate, make_loop, make_system, vibrating
 from .cut_off import CutOffError, cut_off
+from .test_film import WATER
 from .test_hertz import RIGID
 
 TERMS = [{"ratio": 0.05, "time": 1e-7}, {"ratio": 0.1, "time": 1e-5}, {"ratio": 0.1, "time": 1e-4}]
@@ -64,14 +64,8 @@ def test_free_mode_decays_as_its_prony_roots_say(mode: int, levels: int) -> None
     By its residues; the oscillation's root alone has the decay.
     """
     system, _ = make_system(parse_scene(relaxing("plate", inner__gap=1e-3)))
-    modes = elastic_modes(system, 4)
-    velocity = np.zeros_like(system.velocity)
-    velocity[system.first[OUTER] : system.first[OUTER + 1], 1] = 1e3
-    plate = slice(int(system.first[PLATE]), int(system.first[PLATE + 1]))
-    velocity[plate] = modes.shapes[:, mode].reshape(-1, 2)
-    motion = AxisymmetricMotion(replace(system, velocity=velocity))
-    motion.loop.set_step(2e-9, 1, levels)
-    omega, weighted = modes.frequencies[mode], np.repeat(system.mass[plate], 2)
+    motion, modes, weighted = vibrating(system, mode, levels)
+    omega = modes.frequencies[mode]
     numerator = np.poly1d([1.0])
     for term in TERMS:
         numerator *= np.poly1d([term["time"], 1.0])
@@ -90,7 +84,7 @@ def test_free_mode_decays_as_its_prony_roots_say(mode: int, levels: int) -> None
         motion.sample(samples, 16)
         now += samples * 16 * motion.loop.dt
         exact = float((residues * np.exp(poles * now)).sum().real)
-        place = (weighted[:, None] * modes.shapes).T @ motion.loop.u[system.body(PLATE)]
+        place = weighted.T @ motion.loop.u[system.body(PLATE)]
         assert place[mode] == pytest.approx(exact, abs=1e-3 / omega), turn
         assert np.abs(np.delete(place * modes.frequencies, mode)).max() < 1e-3
     assert math.exp(poles.real[np.argmax(poles.imag)] * now) < 0.7
@@ -156,6 +150,46 @@ def test_damping_and_relaxation_together() -> None:
     assert run.losses is not None and run.losses.bodies is not None
     assert run.losses.plate_damping > 0.005 * run.initial_energy
     assert run.energy_residual < 2e-5
+
+
+@pytest.mark.parametrize(
+    "beside",
+    [
+        {"friction": 0.3},
+        {"fluid": WATER},
+        {
+            "fluid": {
+                **WATER,
+                "squeeze_film": False,
+                "drag_coefficient": 4e3,
+                "added_mass_frequency_ratio": 0.8,
+                "plate_damping_ratio": 0.02,
+            }
+        },
+    ],
+    ids=["friction", "film", "drag, mass and damping"],
+)
+def test_ledger_closes_beside_another_loss(beside: dict[str, Any]) -> None:
+    coarse: dict[str, Any] = {
+        "reference__elements_per_contact_radius": 3,
+        "run__end_time": 1e-4,
+    }
+    scene = relaxing("outer", "plate", **beside, **coarse)
+    run = run_of(scene, end_time=1e-4, most_levels=1)
+    assert run.losses is not None and run.losses.bodies is not None
+    assert sum(run.losses.bodies) > 0.05 * run.initial_energy
+    other = run.losses.total - sum(run.losses.bodies)
+    assert other > 2e-5 * run.initial_energy
+    assert run.energy_residual < 1.5e-5
+    assert run.momentum_residual < 1e-9
+
+
+def test_solid_bodies_relax_in_one_process() -> None:
+    options = {"np": 2, "courant": 0.9, "stress_at": (), "fields": 0, "checkpoint": None}
+    options |= {"checkpoint_interval": 60.0, "target_error": None, "threads": 0}
+    scene = relaxing("plate", reference={"geometry": "solid", "elements_per_contact_radius": 2})
+    with pytest.raises(SceneError, match=r"plate\.material\.relaxation .* --np is 2"):
+        COMMANDS["solve"](scene, Namespace(**options))
 
 
 def test_maxwell_sphere_on_a_rigid_wall_hunter() -> None:
