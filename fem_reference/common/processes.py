@@ -62,13 +62,15 @@ def _launch(processes: int) -> None:
 
 def threads_per_process(asked: int, comm: Any) -> int:
     """Threads of this process: its share of those ``asked`` for on its machine, 0: of its cores."""
-    from .fenicsx import on_this_machine
+    processes, there = 1, len(affinity())
+    if comm.size > 1:
+        from .fenicsx import on_this_machine
 
-    here = on_this_machine(comm)
-    processes = int(here.size)
-    # A launcher may have bound every process to cores of its own.
-    there = len(frozenset().union(*here.allgather(affinity())))
-    here.Free()
+        here = on_this_machine(comm)
+        processes = int(here.size)
+        # A launcher may have bound every process to cores of its own.
+        there = len(frozenset().union(*here.allgather(affinity())))
+        here.Free()
     return max(1, int(asked or min(there, quota())) // processes)
 
 
