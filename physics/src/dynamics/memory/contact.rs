@@ -55,6 +55,14 @@ impl Contact {
         }
     }
 
+    /// Approach in m up to which there is no force at the end of the step.
+    pub(super) fn touch(&self) -> f64 {
+        match self {
+            Contact::Viscoelastic(contact) => contact.touch(),
+            _ => self.depth(),
+        }
+    }
+
     /// Approach in m at which the surfaces touch for good: that of their dents.
     pub(super) fn depth(&self) -> f64 {
         match self {
