@@ -6,7 +6,7 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::report::format::{prefixed, with_unit};
 use crate::report::{self, TableFormat};
-use crate::result::{ContactPressure, Impact, Outcome, Quantity, Summary};
+use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Summary};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -130,7 +130,9 @@ pub fn table(summary: &Summary) -> String {
         .filter(|(_, loss, _)| *loss != 0.0)
     });
     let patches = summary.contact_pressure.iter().flat_map(ContactPressure::rows);
-    for (name, value, unit) in patches.chain(bender).chain(losses) {
+    let speeds = summary.elastic_limit.iter().flat_map(ElasticLimit::rows);
+    let speeds = speeds.map(|(name, speed)| (name, speed, "m/s"));
+    for (name, value, unit) in patches.chain(speeds).chain(bender).chain(losses) {
         lines.push(format!("  {name:<24} {:>14}", with_unit(value, prefixed(unit, value), 6)));
     }
     lines.extend(series(&summary.impacts));

@@ -5,6 +5,7 @@
 
 mod child;
 mod curve_bands;
+mod dents;
 mod doctor;
 mod entry;
 mod fields;
@@ -20,6 +21,7 @@ mod turn;
 
 pub use child::Progress;
 pub use curve_bands::CurveBands;
+pub use dents::Dents;
 pub use doctor::{Check, doctor};
 pub use entry::Stored;
 pub use fields::FieldMesh;

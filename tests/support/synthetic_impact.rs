@@ -163,6 +163,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
     Summary {
         impacts: Vec::new(),
         elastic_efficiency: None,
+        elastic_limit: None,
         schema_version: SCHEMA_VERSION,
         scene: "synthetic".into(),
         scene_hash: "5ce4e".into(),

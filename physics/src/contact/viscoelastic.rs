@@ -172,5 +172,10 @@ mod tests {
             .sum();
         assert_relative_eq!(force, hereditary, max_relative = 2e-3);
         assert!(force < 0.8 * hertz.force(4e-6));
+        // unloaded, the surface lags behind the tip
+        let touch = contact.touch();
+        assert!(touch > 0.02 * approach(end) && touch < approach(end), "{touch}");
+        assert_eq!(contact.force(touch)[0], 0.0);
+        assert!(contact.force(touch * (1.0 + 1e-9))[0] > 0.0);
     }
 }

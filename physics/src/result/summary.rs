@@ -29,6 +29,24 @@ pub struct BenderSummary {
     pub drive: Drive,
 }
 
+/// Largest speed of the outer body in m/s at which a contact stays elastic, all else being as it is; `None` where no yield strength
+/// is known, or the contact never comes to it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ElasticLimit {
+    /// Between outer body and plate.
+    pub outer: Option<f64>,
+    /// Between plate and inner body.
+    pub inner: Option<f64>,
+}
+
+impl ElasticLimit {
+    /// Name and speed in m/s of each contact.
+    pub fn rows(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
+        let named = [("outer_elastic_speed", self.outer), ("inner_elastic_speed", self.inner)];
+        named.into_iter().filter_map(|(name, speed)| Some((name, speed?)))
+    }
+}
+
 /// Summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -75,6 +93,9 @@ pub struct Summary {
     /// Reduced models of a series whose bodies yield: the efficiency if they did not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elastic_efficiency: Option<f64>,
+    /// Reduced models of plate impacts with a yield strength.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elastic_limit: Option<ElasticLimit>,
     /// Energy lost to damping, fluid and materials, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub losses: Option<Losses>,
@@ -170,6 +191,7 @@ impl Summary {
             contact_pressure: None,
             impacts: Vec::new(),
             elastic_efficiency: None,
+            elastic_limit: None,
             losses: None,
             truncation_error: None,
             integration_error: None,
