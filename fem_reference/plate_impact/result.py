@@ -235,7 +235,7 @@ def _bender(bender: Bender, summary: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _write_dents(path: Path, runs: list[Run]) -> None:
+def write_dents(path: Path, runs: list[Run]) -> None:
     """The surfaces at rest after each impact, comma-separated; see `Dents.profiles`."""
     columns = ("impact", "radius", *DENTED_SURFACES)
     profiles = [run.dents for run in runs if run.dents is not None]
@@ -277,7 +277,7 @@ def _write(
         summary["losses"] = {name: loss for name, loss in losses.items() if loss is not None}
     if run.yielded is not None:
         summary.update(_of_yielding(run))
-        _write_dents(folder / "dents.csv", solution.runs)
+        write_dents(folder / "dents.csv", solution.runs)
     if scene.series is not None:
         summary["impacts"] = _impacts(solution.runs, whole)
         for number, impact in enumerate(solution.runs, 1):
