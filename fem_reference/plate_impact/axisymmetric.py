@@ -243,7 +243,15 @@ def compute(
         if like is not None or found.accepted:
             loop = struck.motion.loop
             return Solution(
-                *(struck.runs, mesh, system, loop.acting, loop.threads, found.resolution, estimate),
+                *(
+                    struck.runs,
+                    mesh,
+                    system,
+                    loop.divided.acting,
+                    loop.threads,
+                    found.resolution,
+                    estimate,
+                ),
                 *(attempt, factor, radii, reach, stepper.recorder),
             )
         radii = found.radii(sizes.contact_element, radii)
