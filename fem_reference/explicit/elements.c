@@ -130,7 +130,7 @@ static inline __attribute__((always_inline)) void add_elements(const Part *l, in
         for (int k = 0; k < 4; ++k)
             for (int a = 0; a < size; ++a) {
                 const int64_t n = node[4 * a + k];
-                double *to = f + LANES * (n >= l->begin && n < l->end ? n : nowhere);
+                double *to = f + LANES * (l->part[n] == l->number ? n : nowhere);
                 store(to, load(to) + force[a][k]);
             }
     }
@@ -147,13 +147,12 @@ static void add_product(const Part *l, double scale, const double *x, double *f,
 void stiffness_product(const State *s, int64_t first, int64_t end, const double *x, double *y) {
     const four zero = {0.0, 0.0, 0.0, 0.0};
 #pragma omp parallel for num_threads(s->parts) if (s->parts > 1) schedule(static, 1)
-    for (int64_t q = 0; q < s->parts; ++q) {
+    for (int64_t q = 0; q < s->parts; ++q)
         for (int64_t k = end - 1; k >= first; --k)
             add_product(&s->part[k * s->parts + q], 1.0, x, s->f, s->nodes + q);
-        for (int64_t n = s->part[q].begin; n < s->part[q].end; ++n) {
-            memcpy(y + C * n, s->f + LANES * n, C * sizeof *y);
-            store(s->f + LANES * n, zero);
-        }
+    for (int64_t n = 0; n < s->nodes; ++n) {
+        memcpy(y + C * n, s->f + LANES * n, C * sizeof *y);
+        store(s->f + LANES * n, zero);
     }
 }
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -43,12 +42,19 @@ class Tetrahedra:
         """See `explicit.stiffness.Stiffness`."""
         level = element[self.element]
         levels = range(int(element.max()) + 1)
-        ends = self._ends(0.5**level, node.size, threads)
-        parts = [
-            self._part(level == number, node == number, held, begin, end, arrays)
-            for number in levels
-            for begin, end in pairwise(ends)
-        ]
+        part = self._shares(node, threads)
+        shared = arrays.pointer(part, np.int32)
+        parts = []
+        for number in levels:
+            moves = node == number
+            groups = [np.flatnonzero(moves & ~held), np.flatnonzero(moves & held)]
+            for q in range(threads):
+                made = self._part(level == number, part == q, arrays)
+                made.number, made.part = q, shared
+                free, fixed = (group[part[group] == q] for group in groups)
+                made.free, made.moving = free.size, free.size + fixed.size
+                made.moves = arrays.pointer(np.concatenate([free, fixed]), np.int32)
+                parts.append(made)
         acting = [np.unique(self.nodes[level == number]) for number in levels]
         size = (8 * 11 + 4 * self.nodes.shape[1]) * LANES
         return Divided(
@@ -57,35 +63,29 @@ class Tetrahedra:
             size * sum(int(part.fours) for part in parts),
         )
 
-    def _ends(self, work: Floats, nodes: int, threads: int) -> list[int]:
-        """Stretches of the own nodes with as much work of their elements each."""
-        size = self.nodes.shape[1]
-        at_node = np.bincount(self.nodes.ravel(), np.repeat(work, size), nodes)[:nodes]
-        done = np.cumsum(at_node)
-        inner = np.searchsorted(done, done[-1] * np.arange(1, threads) / threads)
-        return [0, *inner.tolist(), nodes]
+    def _shares(self, node: Ints, threads: int) -> Ints:
+        """Part of each node, -1 for other processes': stretches of each level with as much work."""
+        part = np.full(max(node.size, int(self.nodes.max()) + 1), -1)
+        work = np.bincount(self.nodes.ravel(), minlength=node.size)
+        for level in range(int(node.max()) + 1):
+            nodes = np.flatnonzero(node == level)
+            middle = np.cumsum(work[nodes]) - 0.5 * work[nodes]
+            part[nodes] = threads * middle / max(1, work[nodes].sum())
+        return part
 
-    def _part(
-        self, acts: Mask, moves: Mask, held: Mask, begin: int, end: int, arrays: kernel.Arrays
-    ) -> structures.ElementPart:
-        inside = (self.nodes >= begin) & (self.nodes < end)
-        chosen = np.flatnonzero(acts & inside.any(axis=1))
+    def _part(self, acts: Mask, inside: Mask, arrays: kernel.Arrays) -> structures.ElementPart:
+        """The elements that act on nodes ``inside``, by fours."""
+        chosen = np.flatnonzero(acts & inside[self.nodes].any(axis=1))
         made = structures.ElementPart()
-        made.begin, made.end, made.size = begin, end, self.nodes.shape[1]
-        made.fours = -(-chosen.size // LANES)
-        filled = made.fours * LANES - chosen.size
+        made.size, made.fours = self.nodes.shape[1], -(-chosen.size // LANES)
         # the last four is filled up with copies of an element that have no stiffness
-        which = np.concatenate([chosen, np.repeat(chosen[-1:], filled)])
+        which = np.concatenate([chosen, np.repeat(chosen[-1:], made.fours * LANES - chosen.size)])
         numbers = np.empty((which.size, 11))
         numbers[:, :9] = self.gradients[which].reshape(-1, 9)
         numbers[:, 9], numbers[:, 10] = self.lame[which], self.shear[which]
         numbers[chosen.size :, 9:] = 0.0
         made.element = arrays.pointer(_by_fours(numbers), np.float64)
         made.node = arrays.pointer(_by_fours(self.nodes[which]), np.int32)
-        moving = begin + np.flatnonzero(moves[begin:end])
-        free, fixed = moving[~held[moving]], moving[held[moving]]
-        made.free, made.moving = free.size, moving.size
-        made.moves = arrays.pointer(np.concatenate([free, fixed]), np.int32)
         return made
 
 

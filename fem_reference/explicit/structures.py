@@ -207,8 +207,8 @@ class ElementPart(ctypes.Structure):
     """Mirror of ``Part`` in C, of three components."""
 
     _fields_ = (
-        ("begin", ctypes.c_int64),
-        ("end", ctypes.c_int64),
+        ("number", ctypes.c_int64),
+        ("part", INT32),
         ("size", ctypes.c_int64),
         ("fours", ctypes.c_int64),
         ("element", DOUBLE),

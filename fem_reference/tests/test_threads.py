@@ -86,7 +86,7 @@ def test_threads_step_as_one(seat: Make, threads: int) -> None:
     assert state(one)["impulses"].any(axis=1).all()
     assert several.divided.acting == one.divided.acting
     # Elements at nodes of two parts are there for both.
-    assert one.divided.size < several.divided.size < 1.5 * one.divided.size
+    assert 1.0 < several.divided.size / one.divided.size < 1.0 + 0.15 * threads
     # Only the supports' impulse is summed over the parts.
     for name, values in (found := state(one)).items():
         tolerance = 1e-12 if name == "reaction" else 0.0

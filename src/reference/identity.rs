@@ -2,17 +2,18 @@
 
 use super::Resolution;
 use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
-use crate::scene::{Scene, Setup, unit_of};
+use crate::scene::{Geometry, Scene, Setup, unit_of};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Counts changes of `fem_reference` that change the results of a kind of scene; raising it makes their stored solutions
+/// Counts changes of `fem_reference` that change the results of a kind of scene and geometry; raising it makes their stored solutions
 /// stale.
 pub fn revision(scene: &Scene) -> u32 {
-    match scene.setup {
-        Setup::PlateImpact(_) => 4,
-        Setup::SealSeat(_) => 3,
+    match (&scene.setup, scene.reference.geometry) {
+        (Setup::PlateImpact(_), Geometry::Axisymmetric) => 4,
+        (Setup::PlateImpact(_), Geometry::Solid) => 5,
+        (Setup::SealSeat(_), _) => 4,
     }
 }
 
