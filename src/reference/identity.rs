@@ -31,7 +31,7 @@ pub(super) fn solver_document(scene: &Scene, resolution: Resolution) -> Result<V
     let mut document = serde_json::to_value(scene).map_err(failed)?;
     let fields =
         document.as_object_mut().ok_or_else(|| Error::Internal("the scene is no JSON object".into()))?;
-    for foreign in ["reduced", "tolerances"] {
+    for foreign in ["reduced", "tolerances", "external"] {
         fields.remove(foreign);
     }
     fields.insert("scene_hash".into(), scene.hash().into());

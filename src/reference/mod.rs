@@ -19,6 +19,7 @@ mod store;
 mod turn;
 
 pub use child::Progress;
+pub(crate) use child::tail;
 pub use curve_bands::CurveBands;
 pub use doctor::{Check, doctor};
 pub use entry::Stored;
