@@ -1,7 +1,8 @@
-"""Model B of the paper in 60 lines: spheres on a clamped Kirchhoff plate of 16 axisymmetric modes, contacts of Hertz.
+"""Model B of the paper: spheres on a clamped plate of 16 Kirchhoff modes, contacts of Hertz.
 
-Reads the question of impactcheck on standard input and answers on standard output: quantities and curves in SI, signed
-along z (from the inner to the outer side). What is not stated is read off the curves.
+Reads the question of impactcheck on standard input, answers on standard output: quantities and
+curves in SI, signed along z (from the inner to the outer body). What is not stated is read off
+the curves.
 """
 
 import json
@@ -52,6 +53,7 @@ def forces(z_outer, z_inner, w):
 
 
 def rate(_, state):
+    """Rate of the state: positions of outer body, inner body and modes, then velocities."""
     z, v = np.split(state, 2)
     above, below = forces(z[0], z[1], centre @ z[2:])
     modal = centre * (below - above) - omega**2 * z[2:]
@@ -66,9 +68,15 @@ z, v = np.split(run.y, 2)
 above, below = forces(z[0], z[1], centre @ z[2:])
 history = {
     "time": times,
-    **{"outer_displacement": z[0], "inner_displacement": z[1] - z[1][0], "plate_displacement": centre @ z[2:]},
-    **{"outer_velocity": v[0], "inner_velocity": v[1], "plate_velocity": centre @ v[2:]},
-    **{"outer_force": above, "inner_force": below},
+    "outer_displacement": z[0],
+    "inner_displacement": z[1] - z[1][0],
+    "plate_displacement": centre @ z[2:],
+    "outer_velocity": v[0],
+    "inner_velocity": v[1],
+    "plate_velocity": centre @ v[2:],
+    "outer_force": above,
+    "inner_force": below,
 }
 answer = {"schema_version": 1, "modes": MODES, "first_frequency": omega[0] / (2 * np.pi)}
-json.dump(answer | {"history": {name: list(curve) for name, curve in history.items()}}, sys.stdout)
+answer["history"] = {name: list(curve) for name, curve in history.items()}
+json.dump(answer, sys.stdout)

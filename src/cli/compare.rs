@@ -224,7 +224,12 @@ impl<'a> Job<'a> {
             let models = kinds::of(scene);
             let (mut reduced, cost) = models.beside(context, scene, &stored, asked)?;
             if self.arguments.models.contains(&AskedModel::External) {
-                reduced.extend(external::results(context, file, scene, &stored.outcome.summary));
+                reduced.extend(external::results(
+                    context,
+                    file,
+                    scene,
+                    stored.outcome.summary.sample_interval,
+                ));
             }
             let coarser = self.coarser(context, file, scene).map(|stored| -> Result<_> {
                 let (reduced, _) = models.beside(context, scene, &stored, asked)?;

@@ -23,12 +23,17 @@ pub(super) struct Permission {
 }
 
 impl Permission {
+    /// Whether the user has given leave.
+    pub(super) fn is_given(self) -> bool {
+        self.allow_external || std::env::var_os(ALLOW_VARIABLE).is_some_and(|value| value == "1")
+    }
+
     /// Refuses scenes that name programs, unless the user has given leave.
     ///
     /// # Errors
     /// [`Error::Usage`] with the first program.
     pub(super) fn ask(self, scenes: &[(PathBuf, Scene)]) -> Result<()> {
-        if self.allow_external || std::env::var_os(ALLOW_VARIABLE).is_some_and(|value| value == "1") {
+        if self.is_given() {
             return Ok(());
         }
         let mut programs =
@@ -45,20 +50,26 @@ impl Permission {
     }
 }
 
-/// The results of all programs that `scene` in `file` names, beside a `reference`, each run after the other.
-pub(super) fn results(context: &Context, file: &Path, scene: &Scene, reference: &Summary) -> Vec<Outcome> {
+/// The results of all programs that `scene` in `file` names, one after the other, asked for samples at the distance that the
+/// reference has, in s.
+pub(super) fn results(
+    context: &Context,
+    file: &Path,
+    scene: &Scene,
+    sample_interval: Option<f64>,
+) -> Vec<Outcome> {
     let folder = file.parent().unwrap_or(Path::new(""));
-    let interval = reference.sample_interval.unwrap_or(SAMPLE_INTERVAL);
+    let interval = sample_interval.unwrap_or(SAMPLE_INTERVAL);
     let run = |program| {
         let outcome = external::run(scene, program, folder, interval);
         let Summary { failure, warnings, solve_seconds, .. } = &outcome.summary;
         context.detail(format_args!("{}: {} answered in {solve_seconds:.2} s", scene.name, program.name));
-        for warning in warnings {
-            context.note(format_args!("{}: {}: {warning}", scene.name, program.name));
-        }
-        if let Some(reason) = failure {
+        match failure {
             // not a note: --quiet must not hide that a model is missing
-            eprintln!("error: {}: model `{}` has no result: {reason}", scene.name, program.name);
+            Some(why) => eprintln!("error: {}: model `{}` has no result: {why}", scene.name, program.name),
+            None => warnings.iter().for_each(|warning| {
+                context.note(format_args!("{}: {}: {warning}", scene.name, program.name));
+            }),
         }
         outcome
     };

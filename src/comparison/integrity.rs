@@ -32,6 +32,13 @@ pub struct Check {
     pub verdict: Verdict,
 }
 
+impl std::fmt::Display for Check {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Check { check, unit, found, expected, bound, .. } = self;
+        write!(f, "{check}: {found:.6e} instead of {expected:.6e} {unit} (± {bound:.1e})")
+    }
+}
+
 impl From<Statement> for Check {
     fn from(statement: Statement) -> Self {
         let verdict = Verdict::of(statement.holds());

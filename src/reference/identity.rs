@@ -19,6 +19,10 @@ pub fn revision(scene: &Scene) -> u32 {
 /// SHA-256 (hexadecimal) of how the reference of `scene` is computed: its settings, the
 /// resolution and the revision of the method.
 pub fn settings_hash(scene: &Scene, resolution: Resolution) -> String {
+    if resolution == Resolution::Imported {
+        // whatever this program would do differently, another's result stays
+        return sha256_hex(canonical(&json!({ "resolution": resolution })).as_bytes());
+    }
     let settings = json!({
         "reference": scene.reference, "resolution": resolution, "revision": revision(scene),
     });
