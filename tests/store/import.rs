@@ -21,10 +21,9 @@ fn scene() -> Scene {
 #[test]
 fn recipes_give_references_that_models_are_judged_by() {
     let model = Reduced::new(&scene(), Model::C, None).expect("model").run_with_history(1e-7).expect("run");
-    for (file, map, program) in [
-        ("abaqus.rpt", "abaqus.toml", "Abaqus/Explicit"),
-        ("lsprepost.csv", "lsprepost.toml", "LS-DYNA"),
-    ] {
+    for (file, map, program) in
+        [("abaqus.rpt", "abaqus.toml", "Abaqus/Explicit"), ("lsprepost.csv", "lsprepost.toml", "LS-DYNA")]
+    {
         let folder = tempfile::tempdir().expect("folder");
         let store = Store::open(Some(folder.path()));
         let imported = import(&scene(), &recipe(file), Some(&recipe(map)), &store).expect(file);
