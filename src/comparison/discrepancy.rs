@@ -153,7 +153,8 @@ impl Discrepancy {
         let width = bound.map(|b| b.width);
         let verdict = width.map_or(row.verdict, |width| {
             let of = |residual: Option<f64>| Verdict::within(residual.map_or(f64::NAN, f64::abs), 0.0, width);
-            Verdict::worst([reduced, reference].map(of))
+            // a reference that states none is judged as to that by nobody
+            Verdict::worst([Some(reduced), reference.map(Some)].into_iter().flatten().map(of))
         });
         Discrepancy { tolerance: width, verdict, ..row }
     }

@@ -296,7 +296,8 @@ fn quantities(
             (name, unit),
             (reduced.value(name), value),
             Scales { value: size, peak },
-            tolerances.get(name),
+            // what another program's result does not state can't be judged by it
+            tolerances.get(name).filter(|_| value.is_some() || reference.summary.source != Source::External),
             reference.summary.band(name),
         )
     };
@@ -318,6 +319,7 @@ fn curve_distances(
         let lacks =
             |side: &Outcome| side.summary.source == Source::External && side.history.curve(name).is_none();
         let is_given = !sides.into_iter().any(lacks);
+        let is_judged = !lacks(sides[0]);
         let distances = [
             ("rms", found.map_or(f64::NAN, AlignedCurve::rms)),
             ("max", found.map_or(f64::NAN, AlignedCurve::largest_difference)),
@@ -328,7 +330,7 @@ fn curve_distances(
                 (&quantity, unit),
                 (Some(distance).filter(|_| is_given), Some(0.0)),
                 Scales { value: peak, peak },
-                tolerances.get(&quantity),
+                tolerances.get(&quantity).filter(|_| is_judged),
                 sides[0].summary.band(&quantity),
             ));
         }

@@ -5,7 +5,7 @@ use super::colours::class_of;
 use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::measured::Measured;
-use crate::result::Outcome;
+use crate::result::{Outcome, Summary};
 
 /// Curves of one result, and how they are drawn.
 pub(super) struct Line {
@@ -29,9 +29,14 @@ pub(super) fn dash(model: &str) -> &'static str {
     }
 }
 
+/// What the reference is called: that of another program by the program's name.
+pub(super) fn reference_name(reference: &Summary) -> String {
+    reference.model.clone().unwrap_or_else(|| "FE reference".into())
+}
+
 pub(super) fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
     let reference = Line {
-        name: "FE reference".into(),
+        name: reference_name(&report.reference.summary),
         short: "FE".into(),
         class: "fig-reference".into(),
         dash: "none",

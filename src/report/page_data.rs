@@ -3,7 +3,7 @@
 use super::SceneReport;
 use super::colours::class_of;
 use super::figure::PanelOf;
-use super::figure_lines::dash;
+use super::figure_lines::{dash, reference_name};
 use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::reference::CurveBands;
@@ -17,8 +17,11 @@ pub(super) fn curves(report: &SceneReport, panels: &[PanelOf]) -> Value {
     let Some(axis) = report.comparison.window else {
         return json!({"time": [], "sources": [], "panels": []});
     };
-    let reference =
-        ("reference".to_owned(), "FE reference".to_owned(), sample(axis, &report.reference.history));
+    let reference = (
+        "reference".to_owned(),
+        reference_name(&report.reference.summary),
+        sample(axis, &report.reference.history),
+    );
     let with_curves = report.reduced.iter().filter(|outcome| outcome.summary.failure.is_none());
     let reduced = with_curves.map(|outcome| {
         let model = outcome.summary.model.clone().unwrap_or_default();

@@ -43,6 +43,9 @@ fn recipes_give_references_that_models_are_judged_by() {
             let row = judged.discrepancy(quantity).expect(quantity);
             assert!(matches!(row.verdict, Verdict::Pass | Verdict::Undecided), "{file}: {row:?}");
         }
+        // what the program does not state, such as the plate's frequency, is not gated
+        assert!(matches!(judged.verdict, Verdict::Pass | Verdict::Undecided), "{file}: {judged:?}");
+        assert_eq!(judged.discrepancy("first_frequency").expect("a row").verdict, Verdict::NotGated);
         // it is not the reference of any other speed
         let text = fs::read_to_string(recipe("../../scenes/scaled-plate-r10.toml")).expect("scene");
         let faster = Scene::parse("faster", &text.replace("550 mm/s", "560 mm/s")).expect("valid");
