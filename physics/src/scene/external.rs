@@ -111,7 +111,8 @@ mod tests {
             ("[[external]]\nname = \"mine\"".into(), "`external[1].command` is missing"),
         ] {
             let crate::Error::Scene(report) = with(&text).expect_err(part) else { panic!("{part}") };
-            let said = format!("{report:?}").split_whitespace().collect::<Vec<_>>().join(" ");
+            let said =
+                format!("{report:?}").replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
             assert!(said.contains(part), "{said}");
         }
     }
