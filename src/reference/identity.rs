@@ -20,6 +20,10 @@ pub fn revision(scene: &Scene) -> u32 {
 /// SHA-256 (hexadecimal) of how the reference of `scene` is computed: its settings, the
 /// resolution and the revision of the method.
 pub fn settings_hash(scene: &Scene, resolution: Resolution) -> String {
+    if resolution == Resolution::Imported {
+        // whatever this program would do differently, another's result stays
+        return sha256_hex(canonical(&json!({ "resolution": resolution })).as_bytes());
+    }
     let settings = json!({
         "reference": scene.reference, "resolution": resolution, "revision": revision(scene),
     });
@@ -32,7 +36,7 @@ pub(super) fn solver_document(scene: &Scene, resolution: Resolution) -> Result<V
     let mut document = serde_json::to_value(scene).map_err(failed)?;
     let fields =
         document.as_object_mut().ok_or_else(|| Error::Internal("the scene is no JSON object".into()))?;
-    for foreign in ["reduced", "tolerances"] {
+    for foreign in ["reduced", "tolerances", "external"] {
         fields.remove(foreign);
     }
     fields.insert("scene_hash".into(), scene.hash().into());
