@@ -251,7 +251,15 @@ def compute(
             quads = zip(system.numbers, mesh.bodies, strict=True)
             cells = np.vstack([number[body.quads] for number, body in quads if body.quads.size])
             return Solution(
-                *(struck.runs, mesh, system, loop.acting, loop.threads, found.resolution, estimate),
+                *(
+                    struck.runs,
+                    mesh,
+                    system,
+                    loop.divided.acting,
+                    loop.threads,
+                    found.resolution,
+                    estimate,
+                ),
                 *(attempt, factor, radii, reach, stepper.recorder),
                 dents.plastic_strain(cells) if dents else None,
             )

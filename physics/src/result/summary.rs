@@ -16,6 +16,8 @@ pub enum Source {
     Reduced,
     /// Finite-element reference.
     Reference,
+    /// Another program, run or imported.
+    External,
 }
 
 /// What is said about a bender besides the quantities; its eq. (1) efficiency relates to its kinetic energy.
@@ -58,21 +60,24 @@ pub struct Summary {
     pub scene_hash: String,
     /// Reduced model or reference.
     pub source: Source,
-    /// Name of the reduced model; `None` for the reference.
+    /// Name of the reduced model or of the other program; `None` for the reference.
     pub model: Option<String>,
     /// Number of elastic modes of the reduced model; `None` for the reference.
     pub modes: Option<usize>,
     /// The physical results; of a stored summary read by [`Summary::read`] alone.
     #[serde(flatten, skip_deserializing)]
     pub quantities: Table,
-    /// |energy at the end + losses - energy at the start| over the energy at the start.
-    pub energy_residual: f64,
-    /// Momentum that no impulse accounts for, over the momentum at the start.
-    pub momentum_residual: f64,
-    /// Time steps taken.
-    pub steps: u64,
-    /// Wall time of the time integration, s.
+    /// |energy at the end + losses - energy at the start| over the energy at the start; `None` if another program states none.
+    pub energy_residual: Option<f64>,
+    /// Momentum that no impulse accounts for, over the momentum at the start; `None` if another program states none.
+    pub momentum_residual: Option<f64>,
+    /// Time steps taken; `None` if another program states none.
+    pub steps: Option<u64>,
+    /// Wall time of the time integration, s; of another program that is run, from its start to its end.
     pub solve_seconds: f64,
+    /// Why there is no result, in one sentence, if another program failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
     /// Reduced models: estimated error for want of modes, the largest of efficiency, outer velocity and force peaks; the
     /// efficiency's relative to at least 0.05, the velocity's to the impact speed. `None` if there is no estimate.
     #[serde(default)]
@@ -176,17 +181,26 @@ impl Summary {
     /// What a reduced model of `scene` says; balances, steps and time are still to be told.
     pub(crate) fn of_reduced(scene: &Scene, model: Model, modes: usize, quantities: Table) -> Self {
         Self {
+            modes: Some(modes),
+            ..Self::new(scene, (Source::Reduced, Some(model.to_string())), quantities)
+        }
+    }
+
+    /// What `model` of `source` says of `scene`; everything else is still to be told.
+    pub fn new(scene: &Scene, (source, model): (Source, Option<String>), quantities: Table) -> Self {
+        Self {
             schema_version: SCHEMA_VERSION,
             scene: scene.name.clone(),
             scene_hash: scene.hash(),
-            source: Source::Reduced,
-            model: Some(model.to_string()),
-            modes: Some(modes),
+            source,
+            model,
+            modes: None,
             quantities,
-            energy_residual: f64::NAN,
-            momentum_residual: f64::NAN,
-            steps: 0,
+            energy_residual: None,
+            momentum_residual: None,
+            steps: None,
             solve_seconds: 0.0,
+            failure: None,
             bender: None,
             contact_pressure: None,
             impacts: Vec::new(),

@@ -318,9 +318,9 @@ impl Reduced {
             warnings.push(CUT.into());
         }
         Ok(Summary {
-            energy_residual: result.energy_residual,
-            momentum_residual: result.momentum_residual,
-            steps: result.steps,
+            energy_residual: Some(result.energy_residual),
+            momentum_residual: Some(result.momentum_residual),
+            steps: Some(result.steps),
             solve_seconds,
             integration_error: result.error_estimate,
             truncation_error: Some(truncation.error),
