@@ -6,13 +6,14 @@
 //! twice integrated Legendre polynomials, which vanish with their slope at both ends.
 
 use super::ModalBody;
+use super::kept::Kept;
 use crate::analytical::circular_plate::rigidity;
 use crate::error::Result;
 use crate::numerics::eigenmodes::lowest;
 use crate::scene::{Edge, Plate};
 use faer::Mat;
 use std::f64::consts::PI;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::Arc;
 
 /// Degree of the polynomials in an element.
 const DEGREE: usize = 9;
@@ -141,13 +142,9 @@ pub fn shapes(plate: &Plate, modes: usize, radii: &[f64]) -> Result<Vec<Vec<f64>
     Ok(UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.shapes(plate, radii))
 }
 
-/// Most unit plates that [`UnitPlates`] keeps: a study of the other numbers needs a few, one of Poisson's ratio a
-/// new one each time.
-const KEPT: usize = 32;
-
 /// The unit plates that a series of impacts has needed so far; shared by its threads.
 #[derive(Debug, Default)]
-pub struct UnitPlates(RwLock<Vec<Arc<UnitPlate>>>);
+pub struct UnitPlates(Kept<UnitPlate>);
 
 impl UnitPlates {
     /// As [`modes`], without solving an eigenproblem again.
@@ -169,21 +166,10 @@ impl UnitPlates {
     fn unit(&self, plate: &Plate, modes: usize) -> Result<Arc<UnitPlate>> {
         let (edge, poisson_ratio) = (plate.edge, plate.material.poisson_ratio);
         let count = modes + usize::from(edge == Edge::Free);
-        let fits = |unit: &&Arc<UnitPlate>| {
+        let fits = |unit: &UnitPlate| {
             unit.edge == edge && unit.poisson_ratio == poisson_ratio && unit.omega.len() == count
         };
-        // the list is whole after every change, whatever became of the thread that made it
-        let known = self.0.read().unwrap_or_else(PoisonError::into_inner).iter().find(fits).cloned();
-        if let Some(unit) = known {
-            return Ok(unit);
-        }
-        let unit = Arc::new(UnitPlate::new(edge, poisson_ratio, modes)?);
-        let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() >= KEPT {
-            kept.remove(0);
-        }
-        kept.push(Arc::clone(&unit));
-        Ok(unit)
+        self.0.find_or(fits, || UnitPlate::new(edge, poisson_ratio, modes))
     }
 }
 

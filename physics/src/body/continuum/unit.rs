@@ -5,16 +5,17 @@
 //! its radius: polynomials in the square of it, through Chebyshev's points, have them to [`NODES`] terms.
 
 use super::lanczos::ShiftInvert;
-use super::mirror::{Parity, dot};
+use super::mirror::{HalfBody, Parity, dot};
 use super::patch::{half_space_flexibility, nodal_forces};
-use super::plate::{ContinuumPlate, Halves, WAVES, WEIGHTED, plate_mesh, sign};
+use super::plate::{ContinuumPlate, Halves, SpectrumEntry, WAVES, WEIGHTED, plate_mesh, sign};
 use super::{MeshOptions, sphere_residual};
+use crate::body::kept::Kept;
 use crate::body::layer::Waves;
 use crate::contact::{PatchTable, RADII, TABULATED, WHOLE};
 use crate::error::Result;
+use crate::numerics::chebyshev::Chebyshev;
 use crate::scene::{Edge, Material, Plate};
-use std::f64::consts::{FRAC_PI_2, SQRT_2};
-use std::sync::{Arc, PoisonError, RwLock};
+use std::f64::consts::SQRT_2;
 
 /// Chebyshev's points of the patches of a plate, and of a sphere.
 const NODES: usize = 32;
@@ -27,39 +28,6 @@ const SPHERE_PATCHES: [f64; 2] = [1e-3, 0.45];
 const ROUNDING: f64 = 1e-14;
 /// Size ratio of adjacent elements: no patch's rim is among their ends, as it is where a mesh is made for one patch.
 const GROWTH: f64 = 1.15;
-
-/// Polynomials through `count` Chebyshev points of the first kind in `from..to`.
-#[derive(Debug, Clone, PartialEq)]
-struct Chebyshev {
-    from: f64,
-    to: f64,
-    /// Ascending. Shape (count).
-    nodes: Vec<f64>,
-    /// Barycentric. Shape (count).
-    factors: Vec<f64>,
-}
-
-impl Chebyshev {
-    fn new(from: f64, to: f64, count: usize) -> Self {
-        let angle = |j: usize| FRAC_PI_2 * (2 * j + 1) as f64 / count as f64;
-        let node = |j: usize| from + (to - from) * 0.5 * (1.0 - angle(j).cos());
-        let factor = |j: usize| if j.is_multiple_of(2) { angle(j).sin() } else { -angle(j).sin() };
-        Self { from, to, nodes: (0..count).map(node).collect(), factors: (0..count).map(factor).collect() }
-    }
-
-    /// What the values at the nodes are multiplied by and summed to have the polynomial at `x` (barycentric: Berrut & Trefethen,
-    /// SIAM Rev. 46, 2004, 501). Shape (count).
-    fn weights(&self, x: f64) -> Vec<f64> {
-        if let Some(at) = self.nodes.iter().position(|node| *node == x) {
-            return (0..self.nodes.len()).map(|j| f64::from(u8::from(j == at))).collect();
-        }
-        let pairs = self.factors.iter().zip(&self.nodes);
-        let mut weights: Vec<f64> = pairs.map(|(factor, node)| factor / (x - node)).collect();
-        let sum: f64 = weights.iter().sum();
-        weights.iter_mut().for_each(|weight| *weight /= sum);
-        weights
-    }
-}
 
 /// Plates of one shape.
 #[derive(Debug)]
@@ -94,45 +62,18 @@ impl UnitPlate {
         let mesh = plate_mesh(&unit, Some(radii[0]), modes, &options);
         let halves = Halves::new(&unit, &mesh)?;
         let forces: Vec<_> = radii.iter().map(|a| nodal_forces(&mesh, *a)).collect();
-        let [mut bending, mut longitudinal] = [Vec::new(), Vec::new()];
-        let mut weighted = Vec::new();
-        for (parity, half) in halves.each() {
-            let loads: Vec<_> = forces.iter().map(|forces| half.axial_load(forces)).collect();
-            let displaced: Vec<_> = loads
-                .iter()
-                .map(|load| {
-                    let mut displacement = load.clone();
-                    half.solve(&mut displacement);
-                    loads.iter().map(|load| dot(load, &displacement)).collect::<Vec<f64>>()
-                })
-                .collect();
-            *(if parity == Parity::Bending { &mut bending } else { &mut longitudinal }) = displaced;
-            weighted.push((parity, loads));
-        }
+        let loads = halves.each().map(|(_, half)| forces.iter().map(|f| half.axial_load(f)).collect());
         let spectrum = halves.spectrum(modes + 1)?;
-        let shapes = spectrum.iter().map(|entry| {
-            let loads = weighted.iter().find(|(parity, _)| *parity == entry.parity);
-            let at = |load: &Vec<f64>| dot(load, &entry.shape) / SQRT_2;
-            loads.map_or_else(Vec::new, |(_, loads)| loads.iter().map(at).collect())
-        });
-        let shapes = shapes.collect();
-        let face = |i: usize, j: usize, sign: f64| 0.5 * (bending[i][j] + sign * longitudinal[i][j]);
-        let own = (0..NODES).map(|i| face(i, i, 1.0) - half_space_flexibility(&unit.material, radii[i]));
-        let mutual = (0..NODES).map(|i| (0..NODES).map(|j| face(i, j, -1.0)).collect()).collect();
-        let waves = Waves::new(&unit, WAVES);
-        let layer = |i: usize, j: usize| waves.layer([radii[i], radii[j]]).flexibility;
+        let (own, mutual) = static_flexibility(&unit, &radii, &halves, &loads);
         Ok(Self {
             edge: plate.edge,
             poisson_ratio: plate.material.poisson_ratio,
             thickness,
             omega: spectrum.iter().map(|entry| entry.omega).collect(),
             parity: spectrum.iter().map(|entry| entry.parity).collect(),
-            shapes,
-            own: [own.collect(), (0..NODES).map(|i| layer(i, i).own[0][WHOLE]).collect()],
-            mutual: [
-                mutual,
-                (0..NODES).map(|i| (0..NODES).map(|j| layer(i, j).mutual[WHOLE][WHOLE]).collect()).collect(),
-            ],
+            shapes: spectrum.iter().map(|entry| weighted(entry, &loads)).collect(),
+            own,
+            mutual,
             degrees_of_freedom: halves.degrees_of_freedom(),
             patches,
         })
@@ -191,6 +132,47 @@ impl UnitPlate {
     }
 }
 
+/// Loads of unit forces over patches, in the motions of [`Halves::each`]. Shape (2, patches, unknowns).
+type Loads = [Vec<Vec<f64>>; 2];
+
+/// The shape of `entry` over the patches of the `loads`, of the face turned outwards. Shape (patches).
+fn weighted(entry: &SpectrumEntry, [bending, longitudinal]: &Loads) -> Vec<f64> {
+    let loads = if entry.parity == Parity::Bending { bending } else { longitudinal };
+    loads.iter().map(|load| dot(load, &entry.shape) / SQRT_2).collect()
+}
+
+/// [`UnitPlate::own`] and [`UnitPlate::mutual`] of patches of the `radii` under their `loads`.
+fn static_flexibility(
+    unit: &Plate,
+    radii: &[f64],
+    halves: &Halves,
+    loads: &Loads,
+) -> ([Vec<f64>; 2], [Vec<Vec<f64>>; 2]) {
+    let displaced = |half: &HalfBody, loads: &Vec<Vec<f64>>| -> Vec<Vec<f64>> {
+        let under = |load: &Vec<f64>| {
+            let mut displacement = load.clone();
+            half.solve(&mut displacement);
+            loads.iter().map(|load| dot(load, &displacement)).collect()
+        };
+        loads.iter().map(under).collect()
+    };
+    let [(_, bending), (_, longitudinal)] = halves.each();
+    let [bending, longitudinal] = [displaced(bending, &loads[0]), displaced(longitudinal, &loads[1])];
+    let waves = Waves::new(unit, WAVES);
+    let face = |i: usize, j: usize, sign: f64| 0.5 * (bending[i][j] + sign * longitudinal[i][j]);
+    let layer = |i: usize, j: usize| waves.layer([radii[i], radii[j]]).flexibility;
+    let all = 0..radii.len();
+    let each = |value: &dyn Fn(usize) -> f64| all.clone().map(value).collect();
+    let pairs = |value: &dyn Fn(usize, usize) -> f64| {
+        all.clone().map(|i| all.clone().map(|j| value(i, j)).collect()).collect()
+    };
+    let own = |i: usize| face(i, i, 1.0) - half_space_flexibility(&unit.material, radii[i]);
+    (
+        [each(&own), each(&|i| layer(i, i).own[0][WHOLE])],
+        [pairs(&|i, j| face(i, j, -1.0)), pairs(&|i, j| layer(i, j).mutual[WHOLE][WHOLE])],
+    )
+}
+
 /// Spheres of one Poisson's ratio.
 #[derive(Debug)]
 struct UnitSphere {
@@ -220,14 +202,11 @@ impl UnitSphere {
     }
 }
 
-/// Most shapes that are kept: a series of impacts between bodies of many more is better off without.
-const KEPT: usize = 64;
-
 /// The shapes of continuum bodies that a series of impacts has needed so far; shared by its threads.
 #[derive(Debug, Default)]
 pub struct UnitBodies {
-    plates: RwLock<Vec<Arc<UnitPlate>>>,
-    spheres: RwLock<Vec<Arc<UnitSphere>>>,
+    plates: Kept<UnitPlate>,
+    spheres: Kept<UnitSphere>,
 }
 
 impl UnitBodies {
@@ -241,7 +220,7 @@ impl UnitBodies {
         patch_radius: [f64; 2],
         modes: usize,
     ) -> Result<Option<ContinuumPlate>> {
-        let unit = find_or(&self.plates, |unit| unit.is_of(plate, modes), || UnitPlate::new(plate, modes))?;
+        let unit = self.plates.find_or(|unit| unit.is_of(plate, modes), || UnitPlate::new(plate, modes))?;
         Ok(unit.scaled(plate, patch_radius))
     }
 
@@ -256,32 +235,9 @@ impl UnitBodies {
         patch_radius: f64,
     ) -> Result<Option<f64>> {
         let ratio = material.poisson_ratio;
-        let unit = find_or(&self.spheres, |unit| unit.poisson_ratio == ratio, || UnitSphere::new(ratio))?;
+        let unit = self.spheres.find_or(|unit| unit.poisson_ratio == ratio, || UnitSphere::new(ratio))?;
         Ok(unit.scaled(radius, material, patch_radius))
     }
-}
-
-/// The entry of the list that `fits`, made if there is none; by one thread, while the others wait for it.
-fn find_or<T>(
-    list: &RwLock<Vec<Arc<T>>>,
-    fits: impl Fn(&T) -> bool,
-    make: impl FnOnce() -> Result<T>,
-) -> Result<Arc<T>> {
-    let find = |list: &[Arc<T>]| list.iter().find(|entry| fits(entry)).cloned();
-    // the list is whole after every change, whatever became of the thread that made it
-    if let Some(known) = find(&list.read().unwrap_or_else(PoisonError::into_inner)) {
-        return Ok(known);
-    }
-    let mut kept = list.write().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = find(&kept) {
-        return Ok(known);
-    }
-    let made = Arc::new(make()?);
-    if kept.len() >= KEPT {
-        kept.remove(0);
-    }
-    kept.push(Arc::clone(&made));
-    Ok(made)
 }
 
 #[cfg(test)]
@@ -335,7 +291,7 @@ mod tests {
             }
             assert!(bodies.plate(&plate, [0.3e-3, 2.0 * radius], 8).unwrap().is_none());
         }
-        assert_eq!(bodies.plates.read().unwrap().len(), 3);
+        assert_eq!(bodies.plates.len(), 3);
     }
 
     #[test]
