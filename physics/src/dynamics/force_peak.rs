@@ -35,6 +35,8 @@ pub(super) struct SolvedStep<'a, const P: usize, M: Fn(f64) -> Motion> {
     pub(super) approach: &'a [[f64; P]; 2],
     /// Forces there, N.
     pub(super) force: &'a [[f64; P]; 2],
+    /// Error that a peak may have, relative.
+    pub(super) error: f64,
     /// The motion at a place from 0 to 1.
     pub(super) motion: M,
 }
@@ -64,7 +66,8 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
         let ends = [low, high];
         let guess = crossing(&slope, ends, ends.map(|u| horner(&slope, u))).clamp(low, high);
         let expected = horner(&polynomial, guess);
-        let quick = ((self.motion)(guess)[0][contact] - expected).abs() > QUICK * expected.abs();
+        let quick =
+            ((self.motion)(guess)[0][contact] - expected).abs() > QUICK.max(self.error) * expected.abs();
         let found = if quick { self.search(contact) } else { self.climb(contact, guess, ends) };
         before.max(largest).max(found)
     }
@@ -94,7 +97,7 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
         for _ in 0..MAX_ITERATIONS {
             let [force, slope, bend] = self.force_at(contact, place);
             best = force.max(best);
-            if slope * slope <= 2.0 * FOUND * force * bend.abs() {
+            if slope * slope <= 2.0 * FOUND.max(self.error) * force * bend.abs() {
                 break;
             }
             if slope > 0.0 {

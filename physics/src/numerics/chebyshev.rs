@@ -35,6 +35,15 @@ impl Chebyshev {
     }
 }
 
+/// Sum of the `rows` times their `weights`. Shape of a row.
+pub(crate) fn blend(weights: &[f64], rows: &[Vec<f64>]) -> Vec<f64> {
+    let mut sum = vec![0.0; rows.first().map_or(0, Vec::len)];
+    for (weight, row) in weights.iter().zip(rows) {
+        sum.iter_mut().zip(row).for_each(|(sum, value)| *sum += weight * value);
+    }
+    sum
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

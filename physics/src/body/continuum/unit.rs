@@ -13,7 +13,7 @@ use crate::body::kept::Kept;
 use crate::body::layer::Waves;
 use crate::contact::{PatchTable, RADII, TABULATED, WHOLE};
 use crate::error::Result;
-use crate::numerics::chebyshev::Chebyshev;
+use crate::numerics::chebyshev::{Chebyshev, blend};
 use crate::scene::{Edge, Material, Plate};
 use std::f64::consts::SQRT_2;
 
@@ -41,7 +41,7 @@ struct UnitPlate {
     /// One more than there are modes. Shape (modes + 1).
     omega: Vec<f64>,
     parity: Vec<Parity>,
-    /// Mass-normalised, of the face turned outwards, by patch. Shape (modes + 1, nodes).
+    /// Mass-normalised, of the face turned outwards. Shape (nodes, modes + 1).
     shapes: Vec<Vec<f64>>,
     /// Static flexibility of a face without the half-space, by finite elements and of the layer. Shape (2, nodes).
     own: [Vec<f64>; 2],
@@ -71,7 +71,7 @@ impl UnitPlate {
             thickness,
             omega: spectrum.iter().map(|entry| entry.omega).collect(),
             parity: spectrum.iter().map(|entry| entry.parity).collect(),
-            shapes: spectrum.iter().map(|entry| weighted(entry, &loads)).collect(),
+            shapes: weighted(&spectrum, &loads),
             own,
             mutual,
             degrees_of_freedom: halves.degrees_of_freedom(),
@@ -96,15 +96,13 @@ impl UnitPlate {
         let weights = patch_radius.map(|a| WEIGHTED.map(|r| self.patches.weights(square(r * a))));
         let amplitude = 1.0 / (material.density * radius.powi(3)).sqrt();
         let speed = (material.youngs_modulus / material.density).sqrt() / radius;
-        let shape = |(shape, parity): (&Vec<f64>, &Parity)| {
-            let face = |i: usize| {
-                weights[i].each_ref().map(|weights| amplitude * sign(*parity, i) * dot(weights, shape))
-            };
-            [face(0), face(1)]
+        let shapes = weights.each_ref().map(|weights| weights.each_ref().map(|w| blend(w, &self.shapes)));
+        let shape = |(k, parity): (usize, &Parity)| {
+            [0, 1].map(|i| shapes[i].each_ref().map(|shape| amplitude * sign(*parity, i) * shape[k]))
         };
         Some(ContinuumPlate {
             omega: self.omega.iter().map(|omega| omega * speed).collect(),
-            participation: self.shapes.iter().zip(&self.parity).map(shape).collect(),
+            participation: self.parity.iter().enumerate().map(shape).collect(),
             flexibility: self.flexibility(&weights, 1.0 / (material.youngs_modulus * radius)),
             patch_radius,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
@@ -117,16 +115,14 @@ impl UnitPlate {
     fn flexibility(&self, weights: &[[Vec<f64>; WEIGHTED.len()]; 2], unit: f64) -> PatchTable {
         let own = |which: usize, i: usize, m: usize| unit * dot(&weights[i][m], &self.own[which]);
         let radii: [usize; RADII.len()] = std::array::from_fn(|m| m);
-        // the last index first: by the radii of contact 1, at the nodes of contact 0
-        let along = |which: usize, n: usize| -> Vec<f64> {
-            self.mutual[which].iter().map(|row| unit * dot(&weights[1][n], row)).collect()
-        };
+        // by the radii of contact 1, at the nodes of contact 0; the plate is the same from both sides
+        let along = |which: usize, n: usize| blend(&weights[1][n], &self.mutual[which]);
         let layer = radii.map(|n| along(1, n));
         let mut table = PatchTable {
             own: [0, 1].map(|i| radii.map(|m| own(1, i, m))),
-            mutual: radii.map(|m| radii.map(|n| dot(&weights[0][m], &layer[n]))),
+            mutual: radii.map(|m| radii.map(|n| unit * dot(&weights[0][m], &layer[n]))),
         };
-        let between = dot(&weights[0][WHOLE], &along(0, WHOLE));
+        let between = unit * dot(&weights[0][WHOLE], &along(0, WHOLE));
         table.shift_to([own(0, 0, WHOLE), between, own(0, 1, WHOLE)]);
         table
     }
@@ -135,10 +131,16 @@ impl UnitPlate {
 /// Loads of unit forces over patches, in the motions of [`Halves::each`]. Shape (2, patches, unknowns).
 type Loads = [Vec<Vec<f64>>; 2];
 
-/// The shape of `entry` over the patches of the `loads`, of the face turned outwards. Shape (patches).
-fn weighted(entry: &SpectrumEntry, [bending, longitudinal]: &Loads) -> Vec<f64> {
-    let loads = if entry.parity == Parity::Bending { bending } else { longitudinal };
-    loads.iter().map(|load| dot(load, &entry.shape) / SQRT_2).collect()
+/// The shapes of `spectrum` over the patches of the `loads`, of the face turned outwards. Shape (patches, modes).
+fn weighted(spectrum: &[SpectrumEntry], [bending, longitudinal]: &Loads) -> Vec<Vec<f64>> {
+    let over = |(bending, longitudinal): (&Vec<f64>, &Vec<f64>)| {
+        let at = |entry: &SpectrumEntry| {
+            let load = if entry.parity == Parity::Bending { bending } else { longitudinal };
+            dot(load, &entry.shape) / SQRT_2
+        };
+        spectrum.iter().map(at).collect()
+    };
+    bending.iter().zip(longitudinal).map(over).collect()
 }
 
 /// [`UnitPlate::own`] and [`UnitPlate::mutual`] of patches of the `radii` under their `loads`.

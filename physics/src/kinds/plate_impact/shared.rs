@@ -1,16 +1,27 @@
 //! What the impacts of a series share, so that only the first of them pays for its bodies.
 
+use super::predictor::Predictor;
 use crate::body::cache::Cache;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, UnitBodies, cached};
 use crate::body::kirchhoff::UnitPlates;
+use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::scene::{Material, Plate};
 
 /// Eigenproblems that are not solved again, and, where shapes recur, bodies that are not meshed again.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct SharedBodies {
     pub(super) kirchhoff: UnitPlates,
     continuum: Option<UnitBodies>,
+    /// Of bodies that are not shared.
+    cache: Cache,
+}
+
+impl Default for SharedBodies {
+    /// For an impact alone.
+    fn default() -> Self {
+        Self::meshed(Cache::from_environment())
+    }
 }
 
 impl SharedBodies {
@@ -23,12 +34,22 @@ impl SharedBodies {
         let shape = |field: &str| {
             ["plate.radius", "plate.thickness"].contains(&field) || field.ends_with(".poisson_ratio")
         };
-        Self { continuum: (!fields.any(shape)).then(UnitBodies::default), kirchhoff: UnitPlates::default() }
+        Self { continuum: (!fields.any(shape)).then(UnitBodies::default), ..Self::default() }
     }
 
-    /// The bodies of model C, from `cache` where they are not shared.
-    pub(super) fn continua<'a>(&'a self, cache: &'a Cache) -> Continua<'a> {
-        Continua { shared: self.continuum.as_ref(), cache }
+    /// Every continuum on a mesh of its own, through `cache`.
+    pub(super) fn meshed(cache: Cache) -> Self {
+        Self { continuum: None, kirchhoff: UnitPlates::default(), cache }
+    }
+
+    /// A first look at the impact of `system`; where bodies are scaled it may be a rough one.
+    pub(super) fn predictor(&self, system: &System) -> Result<Predictor> {
+        if self.continuum.is_some() { Predictor::rough(system) } else { Predictor::of(system) }
+    }
+
+    /// The bodies of model C.
+    pub(super) fn continua(&self) -> Continua<'_> {
+        Continua { shared: self.continuum.as_ref(), cache: &self.cache }
     }
 }
 
