@@ -7,7 +7,15 @@ the result as a folder. It is run as ``python3 -m fem_reference``. All quantitie
 
 import os
 
+from .common.parent import launched
+
 # How often a thread of the loop looks for the others before it sleeps, read by OpenMP where it is
 # loaded. By default it looks for milliseconds: where other programs want the processor, that is
 # their time lost, and that of the thread it waits for.
 os.environ.setdefault("GOMP_SPINCOUNT", "1000")
+
+# Open MPI starts a daemon beside a single process, and keeps a folder for it that a killed one
+# leaves behind; nobody else joins such a process.
+if not launched():
+    os.environ.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
+    os.environ.setdefault("OMPI_MCA_orte_create_session_dirs", "0")

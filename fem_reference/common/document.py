@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from typing import Any, Protocol
 
-from .series import MeshResult, Run, Target, estimates, relative_error
+from .series import MeshResult, SampledRun, Target, estimates, relative_error
 from .settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION, RESOLUTIONS
 from .uncertainty import ORDER, Estimate
 
@@ -34,7 +34,7 @@ class Described(Protocol):
         """The scene as it was read."""
 
 
-class Verified(Run, Protocol):
+class Verified(SampledRun, Protocol):
     """What a document says about a run."""
 
     @property

@@ -15,7 +15,10 @@ from .groups import affinity, quota
 from .parent import launched
 from .progress import Progress
 
-INHERITED = ("PMIX_", "PMI_", "OMPI_COMM_", "OMPI_UNIVERSE", "OMPI_MCA_ess", "OMPI_MCA_orte")
+INHERITED = (
+    *("PMIX_", "PMI_", "OMPI_COMM_", "OMPI_UNIVERSE"),
+    *("OMPI_MCA_ess", "OMPI_MCA_orte", "OMPI_MCA_pmix"),
+)
 """What a process that has used MPI leaves in the environment of those it starts."""
 
 

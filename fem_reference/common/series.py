@@ -28,7 +28,7 @@ Report = Callable[[str, float, str], None]
 """Gets phase, share done, message."""
 
 
-class Run(Protocol):
+class SampledRun(Protocol):
     """What a series needs of a run."""
 
     @property
@@ -60,7 +60,7 @@ class Solved(Protocol):
     """What a series needs of a solution."""
 
     @property
-    def run(self) -> Run:
+    def run(self) -> SampledRun:
         """The run."""
 
     @property
@@ -88,7 +88,7 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Problem(Generic[S]):
+class MeshSolver(Generic[S]):
     """A scene, and how a kind of scene is solved on one mesh."""
 
     method: list[Any]
@@ -141,7 +141,7 @@ def relative_error(meshes: list[MeshResult], targeted: tuple[Target, ...]) -> fl
 
 
 def solve_series(
-    problem: Problem[S],
+    solver: MeshSolver[S],
     target: Path,
     factor: float,
     comm: Any,
@@ -158,9 +158,9 @@ def solve_series(
         RunError: a mesh could not be solved, or the result not be written.
     """
     progress = progress if progress is not None else Progress()
-    require_instants(options.stress_times, problem.end_time)
+    require_instants(options.stress_times, solver.end_time)
     require_share(options.target_error)
-    name = f".checkpoint-{target.name}" if problem.resumes else f".partial-{target.name}-kept"
+    name = f".checkpoint-{target.name}" if solver.resumes else f".partial-{target.name}-kept"
     folder = options.checkpoint or target.absolute().parent / name
 
     def waiting() -> None:
@@ -170,10 +170,10 @@ def solve_series(
         exclusive(folder, comm, waiting),
         result_folder(target) if comm.rank == 0 else nullcontext(target) as partial,
     ):
-        solution, meshes = Series(problem, factor, comm, options, folder, progress).solve()
+        solution, meshes = Series(solver, factor, comm, options, folder, progress).solve()
         if comm.rank == 0:
             progress.report("writing", 0.0, "writing the results", series=1.0)
-            problem.write(partial, solution, meshes)
+            solver.write(partial, solution, meshes)
             progress.report("writing", 1.0, "done", series=1.0)
             shutil.rmtree(folder, ignore_errors=True)
         comm.barrier()
@@ -183,7 +183,7 @@ class Series(Generic[S]):
     """Meshes numbered from the one asked for (0); finer ones have negative numbers.
 
     Args:
-        problem: see there.
+        solver: see there.
         factor: of mesh 0 on the number of elements in every direction.
         comm: of the processes.
         options: what the user asks for.
@@ -193,14 +193,14 @@ class Series(Generic[S]):
 
     def __init__(
         self,
-        problem: Problem[S],
+        solver: MeshSolver[S],
         factor: float,
         comm: Any,
         options: Options,
         folder: Path,
         progress: Progress,
     ) -> None:
-        self.problem, self.factor, self.comm = problem, factor, comm
+        self.solver, self.factor, self.comm = solver, factor, comm
         self.options, self.folder, self.progress = options, folder, progress
         self.lead: S | None = None
 
@@ -217,14 +217,14 @@ class Series(Generic[S]):
                     "the run ends at run.end_time during a contact, which leaves open what the "
                     f"band of {aim:g} is asked for; set a later end, or none"
                 )
-            reached = relative_error(meshes, self.problem.targeted)
+            reached = relative_error(meshes, self.solver.targeted)
             if reached <= aim:
                 return solution, meshes
             self._keep(finest, meshes[0])
             # Second order at best: never further than that would need, and at least one step.
-            steps = int(np.log(reached / aim) / -np.log(self.problem.ratio) / 2.0)
+            steps = int(np.log(reached / aim) / -np.log(self.solver.ratio) / 2.0)
             finest -= max(1, min(3, steps))
-            if self._factor(finest) > MOST_REFINED[self.problem.dimension] * self.factor:
+            if self._factor(finest) > MOST_REFINED[self.solver.dimension] * self.factor:
                 raise SolverError(
                     f"the largest relative band is {reached:.3g} at {meshes[0].factor:.3g} times "
                     f"the elements asked for; {aim:g} is asked for"
@@ -233,7 +233,7 @@ class Series(Generic[S]):
     def _meshes(self, finest: int) -> tuple[S, list[MeshResult]]:
         coarser = range(finest + 1, finest + MESHES)
         self.lead = None
-        if self.problem.leads is None:
+        if self.solver.leads is None:
             kept = [self._kept(number, finest) for number in reversed(coarser)][::-1]
             solution = self._compute(finest, finest)
         else:
@@ -243,16 +243,16 @@ class Series(Generic[S]):
         return solution, [found, *(kept or [self._kept(number, finest) for number in coarser])]
 
     def _factor(self, number: int) -> float:
-        return float(self.factor * self.problem.ratio**number)
+        return float(self.factor * self.solver.ratio**number)
 
     def _label(self, number: int) -> str:
         return f"mesh{number:+d}"
 
     def _compute(self, number: int, finest: int) -> S:
         """Solve mesh ``number`` of the series of ``finest``; only that keeps fields."""
-        costs = [self.problem.ratio ** (k * (self.problem.dimension + 1)) for k in range(MESHES)]
+        costs = [self.solver.ratio ** (k * (self.solver.dimension + 1)) for k in range(MESHES)]
         place = number - finest
-        if self.problem.leads is None:
+        if self.solver.leads is None:
             costs, place = costs[::-1], MESHES - 1 - place
         progress = MeshOfSeries(self.progress, place + 1, costs)
 
@@ -271,7 +271,7 @@ class Series(Generic[S]):
         )
         if number == finest:
             settings = replace(settings, frames=options.frames, frame_times=options.stress_times)
-        return self.problem.compute(self._factor(number), settings, report, self.lead)
+        return self.solver.compute(self._factor(number), settings, report, self.lead)
 
     def _result(self, number: int, solution: S) -> MeshResult:
         run, factor = solution.run, self._factor(number)
@@ -282,7 +282,7 @@ class Series(Generic[S]):
             "seconds": run.loop_seconds,
             "energy_residual": run.energy_residual,
         }
-        values = self.problem.quantities(solution)
+        values = self.solver.quantities(solution)
         return MeshResult(factor, values, run.times, run.rows, numbers)
 
     def _kept(self, number: int, finest: int) -> MeshResult:
@@ -295,9 +295,9 @@ class Series(Generic[S]):
         return found
 
     def _identity(self, number: int) -> dict[str, Any]:
-        method = self.problem.method
-        if self.problem.leads is not None and self.lead is not None:
-            method = [*method, self.problem.leads(self.lead)]
+        method = self.solver.method
+        if self.solver.leads is not None and self.lead is not None:
+            method = [*method, self.solver.leads(self.lead)]
         # Through JSON, as the identity read is.
         method = json.loads(json.dumps(method))
         return {

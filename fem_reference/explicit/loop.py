@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import ctypes
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -19,41 +17,9 @@ from ..common.arrays import Floats, Ints, Mask
 from . import kernel, structures
 from .levels import fastest_levels, graded_levels
 from .parts import Blocks, level_parts
-from .plastic import PlasticState
 from .problem import ContactProblem
 from .relaxation import Ledger, Springs
 from .system import System
-
-
-@dataclass(frozen=True)
-class Energies:
-    """Discrete energy of the part that is modelled, J.
-
-    1/2 w M w + 1/2 u_n K' u_{n+1}, w = (u_{n+1} - u_n)/D, with the step D at whose ends all levels
-    meet and u_{n+1} - 2 u_n + u_{n-1} = -D^2 M^-1 K' u_n (e.g. Hairer, Lubich & Wanner, Geometric
-    Numerical Integration). With one level K' = K, and the loop without contact conserves it. With
-    several, K' is close to K and nearly symmetric for what is slower than D: 1e-6 is missed in a
-    run, 1 % with white noise. K' u is found by one step from rest, which leads to
-    (u_{n+1} + u_{n-1})/2.
-    """
-
-    elastic: tuple[float, ...]
-    rigid_motion: tuple[float, ...]
-    """Share of each elastic body's mean translation."""
-    rigid: tuple[float, ...]
-    lost: tuple[float, ...]
-    """By each elastic body to relaxation so far."""
-
-    @property
-    def total(self) -> float:
-        """Of all bodies, J."""
-        return sum(self.elastic) + sum(self.rigid)
-
-
-def _of_spin(rigid: structures.Rigid) -> float:
-    """Energy of a ball's rotation, J."""
-    about = zip(rigid.spin, rigid.turning[::4], strict=True)
-    return float(sum(0.5 * spin**2 / turning for spin, turning in about if turning > 0.0))
 
 
 class Loop(ABC):
@@ -236,74 +202,6 @@ class Loop(ABC):
             time = (step - self._looked) * self.dt
             self.ledger.look(time, self.u, self.product(self.u))
             self._looked = step
-
-    def energies(self) -> Energies:
-        """Discrete energies at an instant at which all levels meet."""
-        lost = stored = np.zeros(self.system.first.size - 1)
-        plastic = self.problem.plastic
-        if self.meeting == 1 and self.ledger is None:
-            velocity, force = self.v, self.product(self.u)
-            if plastic is not None:
-                force -= plastic.force
-            strain = 0.5 * (self.u - self.dt * self.v) * force
-        else:
-            velocity, strain = self._long_step()
-        if self.springs is not None and self.ledger is not None:
-            self.look()
-            strain *= np.repeat(self.springs.lasting[self.body], self.components)
-            time = self.meeting * self.dt
-            both = self.ledger.energies(time, time * velocity)
-            stored, lost = self.body_sums(np.stack(both, axis=1)).T
-        mass = np.repeat(self.mass, self.components)
-        density = 0.5 * mass * velocity**2 + strain
-        if plastic is not None:
-            density += self._of_plastic_strain(plastic)
-        elastic = self.body_sums(density.reshape(-1, self.components).sum(axis=1)) + stored
-        free = self.momenta()[:, self.system.free_axes]
-        mean = (free**2).sum(axis=1) / (2.0 * self.body_masses())
-        rigids = self.problem.rigids[: self.problem.state.rigids]
-        rigid = [0.5 * r.mass * sum(x * x for x in r.v) + _of_spin(r) for r in rigids]
-        parts = (tuple(energy.tolist()) for energy in (elastic, mean, np.array(rigid), lost))
-        return Energies(*parts)
-
-    def _of_plastic_strain(self, plastic: PlasticState) -> Floats:
-        """(C n,) what 1/2 (u - u_p) K (u - u_p) has besides 1/2 u (K u - f_p), J."""
-        density = -0.5 * self.u * plastic.force
-        np.add.at(density, 2 * plastic.plasticity.nodes[:, 0], plastic.stored())
-        return np.asarray(density)
-
-    def _long_step(self) -> tuple[Floats, Floats]:
-        """W and 1/2 u_{n+1} K' u_n of `Energies`, by component, without contact."""
-        long_step = self.meeting * self.dt
-        with self._as_it_was():
-            now = self.u.copy()
-            self.drift(self.meeting)
-            following = self.u.copy()
-        return (following - now) / long_step, 0.5 * following * self._mean_force()
-
-    def _mean_force(self) -> Floats:
-        """K' u_n - f_p of `Energies`."""
-        if self.meeting == 1:
-            return self.product(self.u)
-        with self._as_it_was():
-            # From rest: half the impulses, which the step itself gives in full.
-            now, self.v[:] = self.u.copy(), 0.5 * self.inverse * self.impulse(self.u)
-            if self.problem.plastic is not None:
-                self.v -= 0.5 * self.dt * self.inverse * self.problem.plastic.force
-            self.drift_elastic(self.meeting)
-            mass, long_step = np.repeat(self.mass, self.components), self.meeting * self.dt
-            return np.asarray(2.0 * mass * (now - self.u) / long_step**2)
-
-    @contextmanager
-    def _as_it_was(self) -> Iterator[None]:
-        """Afterwards the state is what it is now."""
-        u, v = self.u.copy(), self.v.copy()
-        extension = None if self.springs is None else self.springs.extension.copy()
-        yield
-        self.u[:], self.v[:] = u, v
-        if self.springs is not None and extension is not None:
-            self.springs.extension[:] = extension
-            self.strain()
 
 
 class SerialLoop(Loop):

@@ -15,9 +15,10 @@ from ..common.arrays import Floats
 from ..common.errors import DivergedError, SolverError
 from ..common.settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
 from .checkpoint import Checkpoint
+from .energies import Energies, energies_of
 from .frames import Frames
 from .levels import MOST_LEVELS
-from .loop import Energies, Loop
+from .loop import Loop
 
 CHUNK_SAMPLES, CHUNK_STEPS = 16, 200
 """At least so many samples and steps between two looks at energy, end and clock."""
@@ -151,7 +152,7 @@ def supervise(
         processor += time.process_time() - chunk_started[1]
         samples += count
         now = samples * interval
-        energies = loop.energies()
+        energies = energies_of(loop)
         if not energies.total <= 10.0 * plan.initial_energy:
             raise DivergedError(
                 f"the solution diverged at {now:.4g} s: energy {energies.total:.3g} J, at the "

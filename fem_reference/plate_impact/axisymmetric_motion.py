@@ -22,7 +22,8 @@ from ..common.fenicsx import alone
 from ..explicit import kernel, structures
 from ..explicit.damping import ModalDamping
 from ..explicit.drag import Drag
-from ..explicit.loop import Energies, SerialLoop
+from ..explicit.energies import Energies
+from ..explicit.loop import SerialLoop
 from ..explicit.parts import worthwhile
 from .dents import Dents, Memory
 from .ending import Ending, Followed, Patch

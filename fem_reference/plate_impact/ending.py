@@ -12,7 +12,7 @@ import numpy as np
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Relaxation
 from ..explicit.ending import NONE, no_further_contact
-from ..explicit.loop import Energies
+from ..explicit.energies import Energies
 from .motion import SIDES, Motion
 
 ENERGY_MARGIN = 1e-3

@@ -9,7 +9,8 @@ from typing import Protocol
 from ..common.arrays import Floats
 from ..common.hertz import effective_modulus, hertz_approach, hertz_stiffness
 from ..explicit import structures
-from ..explicit.loop import Energies, Loop
+from ..explicit.energies import Energies
+from ..explicit.loop import Loop
 from .scene import Scene
 
 OUTER, PLATE, INNER = "outer", "plate", "inner"

@@ -17,7 +17,7 @@ from ..common.output import write_history, write_json
 from ..common.progress import Progress
 from ..common.series import (
     MeshResult,
-    Problem,
+    MeshSolver,
     Report,
     Solved,
     Target,
@@ -154,7 +154,7 @@ def curve_uncertainty(bands: Floats) -> dict[str, float]:
     return found
 
 
-def problem(scene: Scene, resolution: str, comm: Any, options: Options) -> Problem[Any]:
+def solver(scene: Scene, resolution: str, comm: Any, options: Options) -> MeshSolver[Any]:
     """How the scene is solved, by its geometry.
 
     Raises:
@@ -187,7 +187,7 @@ def problem(scene: Scene, resolution: str, comm: Any, options: Options) -> Probl
     def write(folder: Path, solution: Any, meshes: list[MeshResult]) -> None:
         _write(folder, scene, solution, resolution, meshes, options)
 
-    return Problem(
+    return MeshSolver(
         method=method,
         end_time=scene.end_time,
         ratio=RATIO,
@@ -214,8 +214,8 @@ def solve(
     Raises:
         RunError: see `compute` of the geometry and `solve_series`.
     """
-    posed = problem(scene, resolution, comm, options)
-    solve_series(posed, target, RESOLUTIONS[resolution], comm, options, progress)
+    on_a_mesh = solver(scene, resolution, comm, options)
+    solve_series(on_a_mesh, target, RESOLUTIONS[resolution], comm, options, progress)
 
 
 def _bender(bender: Bender, summary: dict[str, Any]) -> dict[str, Any]:

@@ -11,8 +11,8 @@ import numpy as np
 from ..common.arrays import Floats
 from ..common.bodies import Bender
 from ..common.settings import PEAK_WINDOW_FRACTION
+from ..explicit.energies import Energies, energies_of
 from ..explicit.levels import MOST_LEVELS
-from ..explicit.loop import Energies
 from ..explicit.records import ContactRecord, intervals, peak_force
 from ..explicit.supervision import Account, Course, Ended, Plan, supervise
 from .motion import Losses, Motion, Yielded
@@ -110,7 +110,7 @@ def integrate(
 def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Run:
     loop, share = motion.loop, motion.share
     problem = loop.problem
-    energies, in_contact = loop.energies(), loop.touching
+    energies, in_contact = energies_of(loop), loop.touching
     work = sum(record.work for record in motion.records)
     stored = sum(record.stored for record in motion.records)
     velocities, momenta = motion.velocities(), motion.momenta()

@@ -19,7 +19,7 @@ from ..axisymmetric.system import AxisymmetricSystem
 from ..common.arrays import Floats
 from ..common.settings import Settings
 from ..explicit.checkpoint import write_arrays
-from ..explicit.loop import Energies
+from ..explicit.energies import Energies
 from ..explicit.records import ContactRecord
 from .axisymmetric_motion import AxisymmetricMotion
 from .dents import Memory

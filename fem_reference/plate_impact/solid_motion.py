@@ -8,7 +8,8 @@ import numpy as np
 
 from ..common.arrays import Floats
 from ..explicit import structures
-from ..explicit.loop import Energies, Loop
+from ..explicit.energies import Energies
+from ..explicit.loop import Loop
 from ..explicit.spectrum import critical_time_step, patch_flexibility
 from .ending import Ending, Patch
 from .motion import INNER, OUTER, PLATE, SIDES, SPHERES, Further, State

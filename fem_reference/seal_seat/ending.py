@@ -8,7 +8,8 @@ import numpy as np
 
 from ..common.arrays import Floats
 from ..explicit.ending import no_further_contact
-from ..explicit.loop import Energies, Loop
+from ..explicit.energies import Energies
+from ..explicit.loop import Loop
 from ..explicit.spectrum import conjugate_gradients, free_components
 from ..solid.model import nodal_areas
 from .model import ELASTIC_SPHERE, LEFT, RIGHT, SEAT, Patch, SeatModel

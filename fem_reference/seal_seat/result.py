@@ -10,7 +10,7 @@ import numpy as np
 from ..common import document
 from ..common.output import write_history, write_json
 from ..common.progress import Progress
-from ..common.series import MeshResult, Problem, Target, solve_series
+from ..common.series import MeshResult, MeshSolver, Target, solve_series
 from ..common.settings import RESOLUTIONS, Options
 from ..common.uncertainty import bands
 from ..common.versions import versions
@@ -41,7 +41,7 @@ def solve(
     Raises:
         RunError: see `compute` and `solve_series`.
     """
-    problem: Problem[Solution] = Problem(
+    solver: MeshSolver[Solution] = MeshSolver(
         method=method(scene),
         end_time=scene.end_time,
         ratio=RATIO,
@@ -52,7 +52,7 @@ def solve(
             folder, scene, solution, resolution, meshes, options
         ),
     )
-    solve_series(problem, target, RESOLUTIONS[resolution], comm, options, progress)
+    solve_series(solver, target, RESOLUTIONS[resolution], comm, options, progress)
 
 
 def _write_history(path: Path, meshes: list[MeshResult]) -> tuple[int, float]:

@@ -10,8 +10,9 @@ import numpy as np
 from ..common.arrays import Floats
 from ..common.errors import SolverError
 from ..common.hertz import hertz_stiffness
+from ..explicit.energies import Energies, energies_of
 from ..explicit.levels import MOST_LEVELS
-from ..explicit.loop import Energies, Loop
+from ..explicit.loop import Loop
 from ..explicit.records import intervals
 from ..explicit.spectrum import critical_time_step
 from ..explicit.supervision import Course, Plan, supervise
@@ -204,7 +205,7 @@ def momentum_misses(loop: Loop, seat: SeatModel, scene: SeatScene) -> list[float
 
 def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows: Floats) -> SeatRun:
     problem = loop.problem
-    energies: Energies = loop.energies()
+    energies: Energies = energies_of(loop)
     work = sum(record.work for record in problem.records())
     places = (seat.tips, (LEFT, RIGHT))
     rubbed = [sum(problem.contacts[k].rubbed for k in which) for which in places]

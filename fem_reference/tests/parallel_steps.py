@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from fem_reference.common.fenicsx import world
+from fem_reference.explicit.energies import energies_of
 from fem_reference.explicit.levels import MOST_LEVELS
 from fem_reference.explicit.loop import SerialLoop
 from fem_reference.explicit.parallel import ParallelLoop
@@ -34,7 +35,7 @@ def main(scene_path: Path, steps: int, threads: int, out: Path) -> None:
     loop.set_step(0.9 * critical, 1, MOST_LEVELS)
     loop.advance(steps)
     u, v = loop.gather(loop.u), loop.gather(loop.v)
-    energy = loop.energies().total
+    energy = energies_of(loop).total
     if comm.rank == 0:
         state = loop.problem.state
         force = [list(contact.force) for contact in loop.problem.contacts]

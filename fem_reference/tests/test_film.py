@@ -14,6 +14,7 @@ from fem_reference.axisymmetric.film import effective_viscosity
 from fem_reference.axisymmetric.modal import first_frequency
 from fem_reference.axisymmetric.system import INNER, PLATE, AxisymmetricSystem, critical_time_step
 from fem_reference.common.errors import SceneError
+from fem_reference.explicit.energies import energies_of
 from fem_reference.explicit.loop import SerialLoop
 from fem_reference.plate_impact.axisymmetric_motion import AxisymmetricMotion
 from fem_reference.plate_impact.result import of_run
@@ -144,10 +145,10 @@ def test_no_film_is_too_stiff_for_the_step() -> None:
     loop = make_loop(approaching(make_system(scene)[0]), 1e-10)
     film = loop.problem.film
     assert film is not None
-    last = start = loop.energies().total
+    last = start = energies_of(loop).total
     for _ in range(50):
         loop.advance(10)
-        now = loop.energies().total
+        now = energies_of(loop).total
         assert now < last * (1.0 + 1e-9)
         assert now - film.work == pytest.approx(start, rel=1e-9)
         last = now
@@ -254,7 +255,7 @@ def test_drag_follows_its_square_law() -> None:
     system = approaching(make_system(scene)[0])
     motion = AxisymmetricMotion(system)
     motion.loop.set_step(1e-9, 1)
-    start = motion.loop.energies().total
+    start = energies_of(motion.loop).total
     motion.drag_inner(scene.drag, 1e-7)
     rows = motion.sample(1000, 10)
     coefficient = 4e3 * 500.0 * math.pi * RADIUS**2
@@ -266,7 +267,7 @@ def test_drag_follows_its_square_law() -> None:
     assert rows[-1, 6] == pytest.approx(velocity, rel=1e-3)
     losses = motion.further.losses
     assert losses is not None
-    assert start - motion.loop.energies().total == pytest.approx(losses.drag, rel=1e-9)
+    assert start - energies_of(motion.loop).total == pytest.approx(losses.drag, rel=1e-9)
     assert motion.further.on_inner == pytest.approx(scene.inner.mass * (velocity - SPEED))
 
 

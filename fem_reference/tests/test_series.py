@@ -17,7 +17,7 @@ from fem_reference.common import series
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.common.output import result_folder
 from fem_reference.common.progress import MeshOfSeries, Progress
-from fem_reference.common.series import MeshResult, Problem, Target, solve_series
+from fem_reference.common.series import MeshResult, MeshSolver, Target, solve_series
 from fem_reference.common.settings import Options, Settings
 
 EXACT = 3.0
@@ -74,9 +74,9 @@ class Convergent:
         self.meshes = meshes
         np.savetxt(folder / "value.txt", solution.run.rows)
 
-    def problem(self) -> Problem[Any]:
+    def solver(self) -> MeshSolver[Any]:
         """To be solved on meshes."""
-        return Problem(
+        return MeshSolver(
             method=[self.revision, {"scene": 1}],
             end_time=2.0,
             ratio=0.8,
@@ -100,7 +100,7 @@ def solve(tmp_path: Path) -> Callable[..., Convergent]:
     ) -> Convergent:
         method = Convergent(order, leads, revision, cut)
         asked = Options(courant=0.5, checkpoint=tmp_path / "kept", **options)
-        solve_series(method.problem(), tmp_path / "out", 1.0, Alone(), asked)
+        solve_series(method.solver(), tmp_path / "out", 1.0, Alone(), asked)
         return method
 
     return solve
@@ -207,7 +207,7 @@ def test_meshes_are_reported_as_one_series(tmp_path: Path) -> None:
     stream = io.StringIO()
     method = Convergent(2.0)
     options = Options(courant=0.5)
-    solve_series(method.problem(), tmp_path / "out", 1.0, Alone(), options, Progress(stream))
+    solve_series(method.solver(), tmp_path / "out", 1.0, Alone(), options, Progress(stream))
     lines = [json.loads(line) for line in stream.getvalue().splitlines()]
     ends = [line for line in lines if line["phase"] == "stepping" and line["done"] == 1.0]
     assert [line["message"] for line in ends] == [f"mesh {k} of 5: half" for k in range(1, 6)]

@@ -17,6 +17,7 @@ from fem_reference.axisymmetric.system import critical_time_step as axisymmetric
 from fem_reference.common.fenicsx import alone
 from fem_reference.common.groups import affinity, quota
 from fem_reference.common.processes import threads_per_process
+from fem_reference.explicit.energies import energies_of
 from fem_reference.explicit.levels import MOST_LEVELS
 from fem_reference.explicit.loop import SerialLoop
 from fem_reference.explicit.parts import DOFS_PER_THREAD, worthwhile
@@ -66,7 +67,7 @@ def state(loop: SerialLoop) -> dict[str, Any]:
         "v": loop.v.copy(),
         "impulses": np.array([list(contact.impulse) for contact in problem.contacts]),
         "reaction": np.array(problem.state.reaction),
-        "energy": np.array([loop.energies().total]),
+        "energy": np.array([energies_of(loop).total]),
         "product": loop.product(np.sin(np.arange(loop.u.size))),
     }
 

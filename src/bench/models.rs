@@ -3,7 +3,7 @@
 use super::{Bench, Ratio, WorkPrecision, timed};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
-use crate::reference::{Lookup, Resolution, Store};
+use crate::reference::{Resolution, Store};
 use crate::scene::{self, Model, Scene};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -29,7 +29,7 @@ pub(super) fn run(store: &Store, bench: &mut Bench) -> Result<()> {
                 .push(format!("scene `{}` is a seal seat: `impactcheck study seal-seat-cost`", scene.name));
             continue;
         }
-        let Lookup::Found(finest) = store.find(&scene, Resolution::Fine) else {
+        let Some(finest) = store.find(&scene, Resolution::Fine).found() else {
             bench.notes.push(format!("scene `{}` has no stored fine reference", scene.name));
             continue;
         };

@@ -11,7 +11,7 @@ use crate::comparison::{Comparison, GateRules, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
-use crate::reference::{COARSER, Lookup, Resolution, Stored};
+use crate::reference::{COARSER, Resolution, Stored};
 use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
 use crate::result::Outcome;
 use crate::scene::Scene;
@@ -228,10 +228,7 @@ impl<'a> Job<'a> {
     /// The reference on the next coarser mesh, if it is stored and the models solve on the reference's mesh.
     fn coarser(&self, context: &Context, file: &Path, scene: &Scene) -> Option<Stored> {
         let resolution = self.resolution().coarser().filter(|_| kinds::of(scene).shares_mesh())?;
-        match context.store().for_scene_in(file).find_here_or_shipped(scene, resolution) {
-            Lookup::Found(stored) => Some(*stored),
-            _ => None,
-        }
+        context.store().for_scene_in(file).find_here_or_shipped(scene, resolution).found()
     }
 
     /// The comparison of all scenes, and what is shown with it.

@@ -5,7 +5,7 @@ use super::{Context, JsonArgument, compare_inputs, kinds};
 use crate::comparison::compare_scene;
 use crate::coverage::{CLOSED_FORM, Case, Coverage, Finding, coverage, exact};
 use crate::error::{ExitStatus, Result};
-use crate::reference::{Lookup, Store, Stored};
+use crate::reference::{Store, Stored};
 use crate::scene::{self, Model, Scene};
 use crate::validated::{self, Validation};
 use clap::Args;
@@ -60,13 +60,8 @@ fn finest(store: &Store, scene: &Scene) -> Option<Stored> {
     let shipped = Store::shipped().ok();
     let dofs = |stored: &Stored| stored.outcome.summary.mesh.as_ref().and_then(|mesh| mesh["dofs"].as_u64());
     [Some(store), shipped.as_ref()].into_iter().flatten().find_map(|store| {
-        let found = store.resolutions(scene).into_iter().filter_map(|resolution| {
-            match store.find(scene, resolution) {
-                Lookup::Found(stored) => Some(*stored),
-                _ => None,
-            }
-        });
-        found.max_by_key(dofs)
+        let resolutions = store.resolutions(scene).into_iter();
+        resolutions.filter_map(|resolution| store.find(scene, resolution).found()).max_by_key(dofs)
     })
 }
 

@@ -5,7 +5,7 @@ use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::optimise::{Confirmation, Optimum, Problem, Variable, confirm};
-use crate::reference::{Lookup, Resolution, Stored, Wish};
+use crate::reference::{Resolution, Stored, Wish};
 use crate::report;
 use crate::result::Summary;
 use crate::scene::{self, Model, Scene, Template};
@@ -133,9 +133,9 @@ fn verify(
 
 fn reference_of(context: &Context, arguments: &Arguments, scene: &Scene) -> Result<Stored> {
     let store = context.store();
-    match store.find_here_or_shipped(scene, arguments.resolution) {
-        Lookup::Found(stored) => Ok(*stored),
-        _ => reference::compute(context, scene, arguments.resolution, &store, &Wish::default()),
+    match store.find_here_or_shipped(scene, arguments.resolution).found() {
+        Some(stored) => Ok(stored),
+        None => reference::compute(context, scene, arguments.resolution, &store, &Wish::default()),
     }
 }
 

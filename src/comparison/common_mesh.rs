@@ -3,13 +3,12 @@
 //! Both sides have the mesh's error, and it leaves with the difference: the reference is a control variate. What the mesh
 //! does to the difference itself is seen by comparing the same two on a coarser mesh.
 
+use super::series::ORDER;
 use super::verdict::Verdict;
 use super::{ModelComparison, SceneComparison, undecided};
 
 /// Safety factor of the grid convergence index of two meshes (Roache 1994, J. Fluids Eng. 116, 405).
 const SAFETY_FACTOR: f64 = 3.0;
-/// Order of the differences in the element size, that of the references' bands.
-const ORDER: f64 = 1.5;
 
 impl ModelComparison {
     /// Whether it was judged by the bands of the differences, see [`SceneComparison::judge_on_common_mesh`].

@@ -22,6 +22,7 @@ pub use common_mesh::difference_band;
 pub use discrepancy::{BandVerdict, Discrepancy};
 pub use integrity::{Check, check as integrity};
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
+pub use series::{ORDER, STANDARD_ERRORS};
 pub use verdict::{GateRules, Undecided, Verdict};
 
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, align, peak};

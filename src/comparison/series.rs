@@ -3,16 +3,17 @@
 //! The rule is that of `fem_reference/common/uncertainty.py`: values on meshes of the size h over the finest one's are fitted by
 //! v + c h^1.5 (least squares, weighted with h^-2); the band is the distance to v and 2.5 of its standard errors.
 
+use crate::numerics::least_squares::fit;
 use crate::result::Summary;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
 /// Power of the element size with which errors fall.
-const ORDER: f64 = 1.5;
+pub const ORDER: f64 = 1.5;
 /// Power with which the values scatter.
 const SCATTER_ORDER: f64 = 2.0;
 /// Standard errors in a band, beside the error fitted.
-const STANDARD_ERRORS: f64 = 2.5;
+pub const STANDARD_ERRORS: f64 = 2.5;
 /// Meshes that a fit with its scatter needs.
 const LEAST_MESHES: usize = 4;
 /// Relative difference of two computations of one band.
@@ -68,24 +69,17 @@ fn agree(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * a.abs().max(b.abs())
 }
 
-/// Half width of the 95 % band about `values[0]` from the `values` on meshes of the `sizes`.
+/// Half width of the 95 % band about `values[0]` from the `values` on meshes of the `sizes`; infinite if they tell none.
 fn band(values: &[f64], sizes: &[f64]) -> f64 {
-    // rows (w, w h^1.5) of the fit to w (value - finest)
-    let rows: Vec<[f64; 3]> = values
+    let rows: Vec<([f64; 2], f64)> = values
         .iter()
         .zip(sizes)
         .map(|(value, h)| {
             let weight = h.powf(-SCATTER_ORDER);
-            [weight, weight * h.powf(ORDER), weight * (value - values[0])]
+            ([weight, weight * h.powf(ORDER)], weight * (value - values[0]))
         })
         .collect();
-    let sum = |i: usize, j: usize| rows.iter().map(|row| row[i] * row[j]).sum::<f64>();
-    let (aa, ab, bb, ay, by) = (sum(0, 0), sum(0, 1), sum(1, 1), sum(0, 2), sum(1, 2));
-    let determinant = aa * bb - ab * ab;
-    let (limit, slope) = ((ay * bb - by * ab) / determinant, (aa * by - ab * ay) / determinant);
-    let misses = rows.iter().map(|[a, b, y]| (y - limit * a - slope * b).powi(2)).sum::<f64>();
-    let variance = misses / (rows.len() as f64 - 2.0) * bb / determinant;
-    limit.abs() + STANDARD_ERRORS * variance.sqrt()
+    fit(&rows).map_or(f64::INFINITY, |line| line.coefficients[0].abs() + STANDARD_ERRORS * line.errors[0])
 }
 
 #[cfg(test)]

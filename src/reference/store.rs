@@ -55,6 +55,16 @@ pub enum Lookup {
     },
 }
 
+impl Lookup {
+    /// The solution, if there is one.
+    pub fn found(self) -> Option<Stored> {
+        match self {
+            Lookup::Found(stored) => Some(*stored),
+            _ => None,
+        }
+    }
+}
+
 impl From<Damage> for Lookup {
     fn from(damage: Damage) -> Self {
         Lookup::Damaged { file: damage.file, reason: damage.reason }

@@ -26,7 +26,8 @@ pub use plot::{Axis, Only, Panel, figure};
 pub use write::{MOST_ROWS, csv, json, markdown, told, write};
 
 use crate::error::{Error, Result};
-use crate::scene::{Model, suggestion};
+use crate::project::project_root;
+use crate::scene::{Model, Scene, suggestion};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -203,6 +204,14 @@ pub const STUDIES: [Entry; 15] = [
         drawing: None,
     },
 ];
+
+/// A scene of the project by its path below `scenes/`, without the ending.
+///
+/// # Errors
+/// As [`project_root`] and [`Scene::read`].
+fn of_project(name: &str) -> Result<Scene> {
+    Scene::read(project_root()?.join(format!("scenes/{name}.toml")))
+}
 
 /// The study called `name`.
 ///

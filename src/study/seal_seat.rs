@@ -3,14 +3,13 @@
 //! Around both shipped designs one quantity at a time is varied: aperture angle, tilt, place of impact, notch, membrane.
 //! Each geometry is meshed (coarse, the meshes stay in the cache); the paper publishes no dimensions, only what it found.
 
-use super::{Axis, Cell, Claim, Note, Only, Panel, SCHEMA_VERSION, Study};
+use super::{Axis, Cell, Claim, Note, Only, Panel, SCHEMA_VERSION, Study, of_project};
 use crate::body::cache::Cache;
 use crate::error::{Error, Result};
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel, SeatQuantities};
-use crate::project::project_root;
-use crate::reference::{self, Lookup, Resolution, Store};
+use crate::reference::{self, Resolution, Store};
 use crate::result::{CUT, Summary};
-use crate::scene::{self, Model, Notch, Scene, SealSeat, Setup};
+use crate::scene::{Model, Notch, Scene, SealSeat, Setup};
 
 /// How far the improved design's direction may lie from the intended one, rad.
 const INTENDED_WITHIN: f64 = 1.5 * DEGREE;
@@ -118,7 +117,7 @@ impl Case {
 /// [`Error::Usage`] if a shipped scene is gone, [`Error::Solver`] if a seat can't
 /// be meshed or solved.
 pub fn run(note: &mut Note) -> Result<Study> {
-    let [initial, improved] = [shipped(DESIGNS[0].1)?, shipped(DESIGNS[1].1)?];
+    let [initial, improved] = [of_project(DESIGNS[0].1)?, of_project(DESIGNS[1].1)?];
     let cases = cases(&initial, &improved)?;
     let cache = Cache::from_environment();
     let mut results = Vec::new();
@@ -171,30 +170,23 @@ struct Corner {
 /// Without notch and with it, hit at the centre and on both sides.
 const CORNERS: [Corner; 4] = [
     Corner { design: "initial", varied: "nothing", scene: "seal-seat-initial" },
-    Corner { design: "improved", varied: "no notch", scene: "scenes/validation/seal-seat-no-notch.toml" },
-    Corner {
-        design: "improved",
-        varied: "hit at the centre",
-        scene: "scenes/validation/seal-seat-notch-centre.toml",
-    },
+    Corner { design: "improved", varied: "no notch", scene: "validation/seal-seat-no-notch" },
+    Corner { design: "improved", varied: "hit at the centre", scene: "validation/seal-seat-notch-centre" },
     Corner { design: "improved", varied: "nothing", scene: "seal-seat-improved" },
 ];
 
 impl Corner {
     /// What the stored reference says; without one it is told how to get it.
     fn reference(&self, note: &mut Note) -> Option<SeatQuantities> {
-        let path = project_root().ok()?.join(self.scene);
-        let scene = if path.is_file() { Scene::read(path) } else { shipped(self.scene) }.ok()?;
-        match Store::open(None).find(&scene, Resolution::Paper) {
-            Lookup::Found(stored) => SeatQuantities::of_table(&stored.outcome.summary.quantities),
-            _ => {
-                note(&format!(
-                    "{} design, {}: no reference stored; `impactcheck reference {}` computes it",
-                    self.design, self.varied, self.scene
-                ));
-                None
-            }
-        }
+        let scene = of_project(self.scene).ok()?;
+        let Some(stored) = Store::open(None).find(&scene, Resolution::Paper).found() else {
+            note(&format!(
+                "{} design, {}: no reference stored; `impactcheck reference scenes/{}.toml` computes it",
+                self.design, self.varied, self.scene
+            ));
+            return None;
+        };
+        SeatQuantities::of_table(&stored.outcome.summary.quantities)
     }
 }
 
@@ -252,11 +244,6 @@ fn claims(intended: f64, angle: &dyn Fn(&str, &str) -> Option<f64>) -> Vec<Claim
             0.0,
         ),
     ]
-}
-
-/// A scene the project ships.
-pub(super) fn shipped(name: &str) -> Result<Scene> {
-    Scene::read(scene::resolve(name)?)
 }
 
 fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<Case>> {
@@ -368,7 +355,7 @@ mod tests {
 
     /// The study's table as [`run`] makes it, without solving anything.
     fn unsolved() -> Study {
-        let [initial, improved] = DESIGNS.map(|(_, name)| shipped(name).expect("scene"));
+        let [initial, improved] = DESIGNS.map(|(_, name)| of_project(name).expect("scene"));
         let cases = cases(&initial, &improved).expect("cases");
         let found = SeatQuantities {
             efficiency: 0.1,

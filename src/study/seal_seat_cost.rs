@@ -24,7 +24,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
     let python = reference::python()?;
     let (mut rows, mut claims) = (Vec::new(), Vec::new());
     for name in ["seal-seat-initial", "seal-seat-improved"] {
-        let scene = super::seal_seat::shipped(name)?;
+        let scene = super::of_project(name)?;
         note(&format!("{name}: finite elements"));
         let wish = Wish::default();
         let stored: Stored =

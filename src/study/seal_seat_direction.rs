@@ -3,23 +3,20 @@
 //! An unstructured mesh moves reference and reduced model alike, by more than it moves their difference. So the difference
 //! comes from the meshes of the stored references, and what the mesh does from the reduced model on many others.
 
-use super::seal_seat::{determined, shipped};
-use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
+use super::seal_seat::determined;
+use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study, of_project};
 use crate::body::cache::Cache;
-use crate::comparison::difference_band;
+use crate::comparison::{ORDER, STANDARD_ERRORS, difference_band};
 use crate::error::{Error, Result};
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel, SeatQuantities};
 use crate::numerics::least_squares::fit;
-use crate::reference::{self, COARSER, Lookup, Resolution, Store, make_seat_mesh};
+use crate::reference::{self, COARSER, Resolution, Store, make_seat_mesh};
 use crate::scene::{Model, Scene};
 use std::path::Path;
 
 /// Meshes of each design, their elements over those of the paper's resolution: geometric from `SIZES[0]` to `SIZES[1]`.
 const MESHES: usize = 16;
 const SIZES: [f64; 2] = [0.63, 1.6];
-/// Order in the element size with which the references' bands are made, and standard errors in a band.
-const ORDER: f64 = 1.5;
-const STANDARD_ERRORS: f64 = 2.5;
 
 /// Designs: text, scene, and the half-width of the band that is wanted, rad.
 const DESIGNS: [(&str, &str, f64); 2] =
@@ -54,7 +51,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
     let store = Store::open(settings.store.as_deref());
     let (mut rows, mut claims, mut told) = (Vec::new(), Vec::new(), Vec::new());
     for (design, name, wanted) in DESIGNS {
-        let scene = shipped(name)?;
+        let scene = of_project(name)?;
         let [coarse, paper] = [Resolution::Coarse, Resolution::Paper].map(|resolution| {
             note(&format!("{name}: the stored reference's own mesh, {resolution}"));
             offset(&scene, &store, resolution)
@@ -99,7 +96,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
 
 /// Direction of the stored reference minus that of the reduced model on its mesh, rad, and the reference's own.
 fn offset(scene: &Scene, store: &Store, resolution: Resolution) -> Result<(f64, Direction)> {
-    let Lookup::Found(stored) = store.find(scene, resolution) else {
+    let Some(stored) = store.find(scene, resolution).found() else {
         return Err(Error::Reference(format!(
             "no reference of `{0}` is stored; `impactcheck reference {0} --resolution {resolution}` computes it",
             scene.name

@@ -1,19 +1,20 @@
 //! Section 3.4.2 and Fig. 13 of the paper: the efficiency of repeated impacts on plates of steel that yields.
 
 use super::parameter::{impact, scene, steel};
-use super::{Axis, Cell, Claim, Note, Only, Panel, SCHEMA_VERSION, Settings, Study};
+use super::{Axis, Cell, Claim, Note, Only, Panel, SCHEMA_VERSION, Settings, Study, of_project};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::material::RateHardening;
-use crate::project::project_root;
-use crate::reference::{Lookup, Resolution, Store};
+use crate::reference::{Resolution, Store};
 use crate::result::{Impact, Summary};
-use crate::scene::{Edge, Model, Scene, Series, Spot};
+use crate::scene::{Edge, Model, Series, Spot};
 use rayon::prelude::*;
 
 /// Table 1's plates: text, radius of the spheres in m, speed in m/s, and the scene whose stored reference is shown.
-const PLATES: [(&str, f64, f64, &str); 2] =
-    [("10 mm", 10e-3, 0.55, "repeated-r10"), ("6.35 mm", 6.35e-3, 0.437, "repeated-r6.35")];
+const PLATES: [(&str, f64, f64, &str); 2] = [
+    ("10 mm", 10e-3, 0.55, "validation/repeated-r10"),
+    ("6.35 mm", 6.35e-3, 0.437, "validation/repeated-r6.35"),
+];
 /// Radius and thickness of both, m.
 const PLATE: (f64, f64) = (33e-3, 2e-3);
 /// Text, yield strength in Pa, spot on the spheres, rate.
@@ -144,17 +145,14 @@ fn courses(radius: f64, speed: f64, model: Model) -> Result<Vec<Course>> {
 /// # Errors
 /// [`Error::Reference`] if there is none; as [`Scene::read`].
 fn of_reference(name: &str, store: &Store) -> Result<Course> {
-    let file = format!("scenes/validation/{name}.toml");
-    let scene = Scene::read(project_root()?.join(&file))?;
+    let scene = of_project(name)?;
+    let mut resolutions = [Resolution::Fine, Resolution::Paper, Resolution::Coarse].into_iter();
+    let missing = || {
+        Error::Reference(format!("none is stored; `impactcheck reference scenes/{name}.toml` computes it"))
+    };
     let stored =
-        [Resolution::Fine, Resolution::Paper, Resolution::Coarse].into_iter().find_map(|resolution| {
-            match store.find(&scene, resolution) {
-                Lookup::Found(stored) => Some(stored),
-                _ => None,
-            }
-        });
-    let missing = || Error::Reference(format!("none is stored; `impactcheck reference {file}` computes it"));
-    stored.map(|stored| Course::of(REFERENCE, &stored.outcome.summary.impacts)).ok_or_else(missing)
+        resolutions.find_map(|resolution| store.find(&scene, resolution).found()).ok_or_else(missing)?;
+    Ok(Course::of(REFERENCE, &stored.outcome.summary.impacts))
 }
 
 /// What the paper says of Fig. 13, by `model`; its numbers are in a picture only, so that the bounds are on the signs.

@@ -173,6 +173,7 @@ impl<'a> StepSolver<'a> {
         let (mut contraction, mut earlier) = (self.contraction, f64::INFINITY);
         for _ in 0..max_sweeps {
             let (mut changes, mut largest) = ([0.0_f64; 2], 0.0_f64);
+            let mut kinked = false;
             law.prepare(&unknowns.local);
             for j in 0..STAGES {
                 let visit = Visit {
@@ -188,6 +189,7 @@ impl<'a> StepSolver<'a> {
                 for i in 0..2 {
                     changes[i] = changes[i].max(step[i].abs());
                     largest = largest.max(f[i]);
+                    kinked |= (f[i] > 0.0) != (visit.force[i] > 0.0);
                     unknowns.local[i][j] = d[i];
                     unknowns.force[i][j] = f[i];
                 }
@@ -200,8 +202,9 @@ impl<'a> StepSolver<'a> {
             if earlier.is_finite() {
                 contraction = change / earlier;
             }
+            // Newton's step across a touch knows only the side it comes from;
             // in a very short step any force gives the right impulse, but not the right energy
-            let left = contraction.clamp(BEST_CONTRACTION, 1.0);
+            let left = if kinked { 1.0 } else { contraction.clamp(BEST_CONTRACTION, 1.0) };
             if change * left <= force_error.relative * largest
                 && (0..2).all(|i| changes[i] * left <= force_error.absolute[i])
             {

@@ -15,8 +15,7 @@ use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::choice::{COVERAGE, integration_tolerance};
 use crate::kinds::plate_impact::errors::{COVERED, error_scale, largest_error};
 use crate::kinds::plate_impact::reduced::Reduced;
-use crate::project::project_root;
-use crate::reference::{Lookup, Resolution, Store};
+use crate::reference::{Resolution, Store};
 use crate::result::Summary;
 use crate::sampling::latin_hypercube;
 use crate::scene::{self, Model, Scene};
@@ -211,27 +210,15 @@ fn judged(case: &Case, cache: &Cache) -> Result<Judged> {
 
 /// The plate impacts among the project's scenes that have a stored reference with narrow bands.
 fn references(store: &Store) -> Result<Vec<Case>> {
-    let mut files = scene::shipped()?;
-    let further = project_root()?.join("scenes/validation");
-    if let Ok(folder) = std::fs::read_dir(&further) {
-        let mut more: Vec<_> = folder.filter_map(|entry| Some(entry.ok()?.path())).collect();
-        more.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
-        more.sort();
-        files.extend(more);
-    }
     let mut cases = Vec::new();
-    for file in files {
+    for file in scene::every()? {
         let scene = Scene::read(&file)?;
         if scene.plate_impact().is_err() {
             continue;
         }
-        let found = [Resolution::Fine, Resolution::Paper].into_iter().find_map(|resolution| {
-            match store.find(&scene, resolution) {
-                Lookup::Found(stored) => Some(stored.outcome.summary),
-                _ => None,
-            }
-        });
-        if let Some(reference) = found
+        let mut resolutions = [Resolution::Fine, Resolution::Paper].into_iter();
+        let found = resolutions.find_map(|resolution| store.find(&scene, resolution).found());
+        if let Some(reference) = found.map(|stored| stored.outcome.summary)
             && let Some(exact) = PlateQuantities::of_table(&reference.quantities)
             && is_sharp(&reference, &exact, scene.plate_impact()?.outer.speed)
         {

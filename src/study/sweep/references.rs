@@ -1,7 +1,7 @@
 //! Stored references that lie within a sweep: scenes that differ from the swept one in the varied fields alone.
 
 use super::plan::Plan;
-use crate::reference::{Lookup, Resolution, Store};
+use crate::reference::{Resolution, Store};
 use crate::result::Summary;
 use crate::scene::Template;
 use std::path::{Path, PathBuf};
@@ -48,8 +48,6 @@ fn known(plan: &Plan, file: &Path, store: &Store) -> Option<Known> {
     if !within || here.hash() != other.scene().hash() {
         return None;
     }
-    match store.for_scene_in(file).find_here_or_shipped(other.scene(), Resolution::Paper) {
-        Lookup::Found(stored) => Some(Known { parameters, summary: stored.outcome.summary }),
-        _ => None,
-    }
+    let stored = store.for_scene_in(file).find_here_or_shipped(other.scene(), Resolution::Paper).found()?;
+    Some(Known { parameters, summary: stored.outcome.summary })
 }

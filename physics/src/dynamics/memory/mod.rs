@@ -108,9 +108,9 @@ impl Memory {
     /// # Errors
     /// [`Error::Solver`] for a yield strength far below the contact pressure, [`Error::Internal`] for what no scene may have.
     pub fn new(setup: &PlateImpact, system: &System) -> Result<Option<Self>> {
-        let bodies = [&setup.outer.material, &setup.inner.material];
-        let plate = &setup.plate.material;
-        let all = [bodies[0], bodies[1], plate];
+        let all = setup.materials();
+        let [outer, plate, inner] = all;
+        let bodies = [outer, inner];
         if all.iter().all(|m| m.is_elastic()) {
             return Ok(None);
         }

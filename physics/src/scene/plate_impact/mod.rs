@@ -175,7 +175,7 @@ pub struct PlateImpact {
 
 impl PlateImpact {
     /// Materials of outer body, plate and inner body.
-    fn materials(&self) -> [&Material; 3] {
+    pub fn materials(&self) -> [&Material; 3] {
         [&self.outer.material, &self.plate.material, &self.inner.material]
     }
 

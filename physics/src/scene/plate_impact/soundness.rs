@@ -18,8 +18,7 @@ impl Part for PlateImpact {
     /// A plate that is no plate: its waves and its contacts live on scales that no run brings together.
     fn collisions(&self) -> Vec<Collision> {
         let plate = &self.plate;
-        let materials = [&plate.material, &self.outer.material, &self.inner.material];
-        let elastic = materials.iter().all(|material| material.is_elastic());
+        let elastic = self.materials().iter().all(|material| material.is_elastic());
         let pair = |body: &Material| {
             let yields = body.plasticity().or(plate.material.plasticity()).is_some();
             !(yields && !(body.relaxation.is_empty() && plate.material.relaxation.is_empty()))
@@ -63,9 +62,8 @@ impl Part for PlateImpact {
 
     fn doubts(&self) -> Vec<String> {
         let Self { plate, outer, inner, .. } = self;
-        let bodies = [&plate.material, &outer.material, &inner.material];
         let mut found: Vec<String> = Vec::new();
-        for doubt in bodies.into_iter().flat_map(material) {
+        for doubt in self.materials().into_iter().flat_map(material) {
             if !found.contains(&doubt) {
                 found.push(doubt);
             }
@@ -77,7 +75,7 @@ impl Part for PlateImpact {
             ("inner's tip radius", inner.shape.tip_radius()),
         ];
         found.extend(lengths.into_iter().filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
-        if self.series.is_some() && bodies.iter().all(|material| material.plasticity().is_none()) {
+        if self.series.is_some() && self.materials().iter().all(|material| material.plasticity().is_none()) {
             found.push(
                 "series: no material yields, so that the first impact is the last; give one `yield_strength` and `hardening`".into(),
             );
