@@ -36,9 +36,10 @@ impl Chebyshev {
 }
 
 /// Sum of the `rows` times their `weights`. Shape of a row.
-pub(crate) fn blend(weights: &[f64], rows: &[Vec<f64>]) -> Vec<f64> {
-    let mut sum = vec![0.0; rows.first().map_or(0, Vec::len)];
+pub(crate) fn blend<'a>(weights: &[f64], rows: impl IntoIterator<Item = &'a Vec<f64>>) -> Vec<f64> {
+    let mut sum = Vec::new();
     for (weight, row) in weights.iter().zip(rows) {
+        sum.resize(row.len(), 0.0);
         sum.iter_mut().zip(row).for_each(|(sum, value)| *sum += weight * value);
     }
     sum

@@ -2,7 +2,7 @@
 
 use super::Kind;
 use super::choice::Plan;
-use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate, kirchhoff_system};
+use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate};
 use super::results::{PlateQuantities, quantities, values};
 use super::series::{Done, Impacts};
 use super::shared::{Continua, SharedBodies};
@@ -93,8 +93,7 @@ impl Reduced {
         let built = match model {
             Model::A | Model::B => kirchhoff(setup, modes.unwrap_or(DEFAULT_MODES), &bodies.kirchhoff)?,
             Model::C => {
-                let predictor =
-                    bodies.predictor(&kirchhoff_system(setup, DEFAULT_MODES, &bodies.kirchhoff)?)?;
+                let predictor = bodies.predictor(setup)?;
                 let wanted = modes.map_or(Wanted::Estimate, Wanted::Modes);
                 continuum(setup, wanted, &predictor, bodies.continua())?
             }
