@@ -40,10 +40,12 @@ rust:
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --quiet
 
 python: setup
-	$(VENV)/bin/ruff check fem_reference examples
-	$(VENV)/bin/ruff format --check fem_reference examples
-	$(TOOL) -m mypy fem_reference
+	$(VENV)/bin/ruff check fem_reference examples python
+	$(VENV)/bin/ruff format --check fem_reference examples python
+	$(TOOL) -m mypy
 	$(PYTHON) -m pytest -q fem_reference
+	cargo build --release
+	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck PYTHONPATH=python $(PYTHON) -m pytest -q python
 
 # a live finite-element run on coarse meshes, and the gate on what it gives; the scene is the one whose coarse mesh is
 # good enough for the tolerances (10 mm spheres: the outer contact ends 0.6 us early on it)

@@ -110,6 +110,18 @@ pub struct Case<'a> {
     pub finding: Option<Finding>,
 }
 
+impl<'a> Case<'a> {
+    /// One for each of the findings, or one without any.
+    pub fn of_all(scene: &'a Scene, model: Model, findings: impl Iterator<Item = Finding>) -> Vec<Self> {
+        let mut cases: Vec<Self> =
+            findings.map(|finding| Case { scene, model, finding: Some(finding) }).collect();
+        if cases.is_empty() {
+            cases.push(Case { scene, model, finding: None });
+        }
+        cases
+    }
+}
+
 /// A model beside an independent solution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
@@ -152,8 +164,8 @@ pub fn recorded(scenes: &[Scene], known: &[Validation]) -> Result<Coverage> {
     let mut cases = Vec::new();
     for scene in scenes {
         for &model in kinds::of(scene).models() {
-            let finding = known.iter().find(|v| v.is_of(scene, model)).map(Finding::from);
-            cases.push(Case { scene, model, finding });
+            let found = known.iter().filter(|v| v.is_of(scene, model)).map(Finding::from);
+            cases.extend(Case::of_all(scene, model, found));
         }
         cases.extend(exact(scene)?);
     }

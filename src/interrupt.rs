@@ -61,12 +61,19 @@ pub fn listen() -> io::Result<()> {
 
 #[cfg(unix)]
 mod unix {
-    use rustix::process::{Pid, Signal, kill_process, test_kill_process};
+    use rustix::process::{Pid, Signal, kill_process, kill_process_group, test_kill_process};
     use std::thread::sleep;
     use std::time::{Duration, Instant};
 
     /// How long a child may take to end its own.
     const PATIENCE: Duration = Duration::from_millis(300);
+
+    /// Ends at once what is left of the group that the process with this number leads.
+    pub(super) fn end_group(leader: u32) {
+        if let Some(leader) = i32::try_from(leader).ok().and_then(Pid::from_raw) {
+            let _ = kill_process_group(leader, Signal::KILL);
+        }
+    }
 
     /// Ends the processes with these numbers; their owners take their leave of them.
     pub(super) fn end(children: &[u32]) {
@@ -96,6 +103,23 @@ impl Running {
         let child = command.env("IMPACTCHECK_PARENT", std::process::id().to_string()).spawn()?;
         open.children.push(child.id());
         Ok(Running(child))
+    }
+
+    /// Starts `command` as the leader of a group, which [`Running::end_group`] ends as a whole.
+    ///
+    /// # Errors
+    /// As [`Running::start`].
+    pub fn start_group(command: &mut Command) -> io::Result<Self> {
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(command, 0);
+        Self::start(command)
+    }
+
+    /// Ends the process, and whatever it has started that is still in its group.
+    pub fn end_group(&mut self) {
+        #[cfg(unix)]
+        unix::end_group(self.0.id());
+        let _ = self.0.kill();
     }
 
     /// The process itself.

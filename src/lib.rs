@@ -29,6 +29,7 @@ pub mod cli;
 pub mod comparison;
 pub mod coverage;
 pub mod curves;
+pub mod external;
 pub mod interrupt;
 pub mod measured;
 pub mod movement;

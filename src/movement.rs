@@ -4,7 +4,7 @@ use crate::curves::{CommonAxis, at};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::deflection::deflection;
 use crate::reference::{FieldMesh, Stored};
-use crate::result::Outcome;
+use crate::result::{Outcome, Source};
 use crate::scene::{Geometry, Scene};
 
 /// Instants, as far as the reference's fields don't give them.
@@ -45,7 +45,8 @@ impl Movement {
     /// the model.
     pub fn of(scene: &Scene, stored: &Stored, reduced: &[Outcome]) -> Result<Self> {
         let setup = scene.plate_impact()?;
-        let ranked = reduced.iter().enumerate().max_by(|a, b| a.1.summary.model.cmp(&b.1.summary.model));
+        let own = reduced.iter().enumerate().filter(|(_, outcome)| outcome.summary.source == Source::Reduced);
+        let ranked = own.max_by(|a, b| a.1.summary.model.cmp(&b.1.summary.model));
         let named = |outcome: &Outcome| outcome.summary.model.as_deref().and_then(|name| name.parse().ok());
         let (model, outcome, name) =
             ranked.and_then(|(k, outcome)| Some((k, outcome, named(outcome)?))).ok_or_else(|| {

@@ -14,6 +14,7 @@ from ..common.arrays import Floats, Ints, Mask
 from ..common.bodies import Plate, Relaxation
 from ..explicit.contact import Contact, MatchedContact, RigidBody
 from ..explicit.film import Film
+from ..explicit.parts import Rows
 from ..explicit.plastic import Plasticity
 from .elasticity import BodyMatrices, scatter
 from .mesh import BodyMesh
@@ -92,6 +93,10 @@ class AxisymmetricSystem:
         which = slice(None) if chosen is None else chosen
         nodes, stiffness = self.element_nodes[which], self.element_stiffness[which]
         return scatter(nodes, stiffness, self.mass.size)
+
+    def operator(self) -> Rows:
+        """K for the compiled loop."""
+        return Rows.of(self.part, 2)
 
     def body(self, index: int) -> slice:
         """Rows of a body's displacements."""

@@ -32,9 +32,10 @@ class Fields:
     von_mises: Callable[[Floats], Floats]
     """(m,) from the stress."""
 
-    def write_mesh(self, path: Path) -> None:
+    def write_mesh(self, path: Path, **cell_data: Floats) -> None:
         """All bodies as one uncompressed .vtu; cell data "body" is their number."""
-        meshio.vtu.write(path, self._grid({}, {}), binary=True, compression=None)
+        grid = self._grid({}, {name: [values] for name, values in cell_data.items()})
+        meshio.vtu.write(path, grid, binary=True, compression=None)
 
     def write_frame(self, path: Path, displacements: list[Floats]) -> None:
         """Displacement (nodes), stress and von Mises stress (elements' midpoints) as .vtu.

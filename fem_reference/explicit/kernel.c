@@ -27,8 +27,6 @@
 
 #include "structures.c"
 
-#include "product.c"
-
 #include "contact.c"
 
 #include "tip.c"
@@ -80,43 +78,6 @@ static void correct(const State *s, Pairs *c) {
     record(&c->record, force, s->problem->step);
 }
 
-/* Rows of one group: the impulse of their level over its time step h; the motion of those that move;
- * the support's impulse on those that are held. */
-static inline __attribute__((always_inline)) void group(const State *s, const Part *l, double h,
-                                                        int64_t from, int64_t to, int moves, int held,
-                                                        double *reaction) {
-    double *u = s->u, *v = s->v, *f = s->f;
-    const double *inverse = s->inverse, *effective = s->effective;
-    for (int64_t i = from; i < to; ++i) {
-        const int64_t n = l->node[i];
-        const Vector force = row_product(l, effective, f, i, n);
-        add(v + C * n, -h, inverse + C * n, force);
-        for (int d = 0; held && d < C; ++d)
-            if (inverse[C * n + d] == 0.0) reaction[d] += h * component(force, d);
-        /* No later row reads u of this node any more. */
-        if (moves) shift(u + C * n, h, v + C * n);
-    }
-}
-
-/* Rows at the border: the impulse of their level; they move when all parts are done. */
-static void border(const State *s, const Part *l, double h, double *reaction) {
-    for (int64_t i = 0; i < l->border; ++i) {
-        const int64_t n = l->node[i];
-        const Vector force = row_product(l, s->effective, s->f, i, n) + outer_product(l, s->effective, i);
-        add(s->v + C * n, -h, s->inverse + C * n, force);
-        for (int d = 0; d < C; ++d)
-            if (s->inverse[C * n + d] == 0.0) reaction[d] += h * component(force, d);
-    }
-}
-
-static void sweep(const State *s, const Part *l, double h, double *reaction) {
-    border(s, l, h, reaction);
-    group(s, l, h, l->border, l->shared_free, 0, 0, reaction);
-    group(s, l, h, l->shared_free, l->shared, 0, 1, reaction);
-    group(s, l, h, l->shared, l->free, 1, 0, reaction);
-    group(s, l, h, l->free, l->rows, 1, 1, reaction);
-}
-
 static inline int leads(void) { return omp_get_thread_num() == 0; }
 
 /* Waits for the other threads. */
@@ -128,27 +89,19 @@ static inline void meet(const State *s) {
 
 #include "relaxation.c"
 
-/* Step number ``step`` without contact, each thread its parts. Slower levels come first: they still need u_n of the
- * faster nodes, and do not share a node that moves with them with a faster level. */
+#if COMPONENTS == 2
+#include "rows.c"
+#else
+#include "elements.c"
+#endif
+
+/* Step number ``step`` without contact. */
 static void predict(const State *s, int64_t step, double *reaction) {
-    const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
     if (s->problem->plastic) {
         if (leads()) strain_impulse(s, s->problem->plastic);
         meet(s);
     }
-    for (int64_t k = s->levels - 1; k >= 0; --k) {
-        const int64_t every = (int64_t)1 << k;
-        if (step % every != 0) continue;
-        const Part *part = &s->part[k * s->parts];
-        const double h = s->problem->dt * (double)every;
-        for (int64_t q = thread; q < s->parts; q += threads)
-            sweep(s, &part[q], h, q == 0 ? reaction : s->support + SPACED * q);
-        meet(s);
-        for (int64_t q = thread; q < s->parts; q += threads)
-            for (int64_t i = part[q].border_shared; i < part[q].border; ++i)
-                shift(s->u + C * (int64_t)part[q].node[i], h, s->v + C * (int64_t)part[q].node[i]);
-    }
-    meet(s);
+    move_elastic(s, step, reaction);
 }
 
 /* Takes what the supports gave to the parts but the first. */

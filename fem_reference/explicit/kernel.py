@@ -25,11 +25,11 @@ from ..common.errors import SolverError
 from .structures import (
     DOUBLE,
     INT64,
+    PARTS,
     Carried,
     Contact,
     Film,
     Pairs,
-    Part,
     Plastic,
     Problem,
     Record,
@@ -45,6 +45,8 @@ FACET_NODES = 6
 CORNERS = 3
 LANES = {2: 2, 3: 4}
 """Numbers per node in work space, by components."""
+READ_BEYOND = 3
+"""Numbers behind the last displacement that are read with it."""
 SPACED = 16
 SAMPLED = 8
 """Numbers in a row of ``run``."""
@@ -154,12 +156,11 @@ def load(components: int) -> ctypes.CDLL:
         function.argtypes, function.restype = arguments, None
     kernel.read_all.argtypes, kernel.read_all.restype = (DOUBLE, count, count), ctypes.c_double
     kernel.layout.restype = ctypes.c_int64
-    for number, mirror in enumerate(
-        (
-            *(Record, Pairs, Rigid, Contact, Problem, Part, State, Carried, Tip, Watched, Film),
-            *(Plastic, Relaxing),
-        )
-    ):
+    mirrors: tuple[type[ctypes.Structure], ...] = (
+        *(Record, Pairs, Rigid, Contact, Problem, PARTS[components], State, Carried, Tip, Watched),
+        *(Film, Plastic, Relaxing),
+    )
+    for number, mirror in enumerate(mirrors):
         if kernel.layout(number) != ctypes.sizeof(mirror):
             raise SolverError(
                 f"the compiled time loop and its Python side disagree on {mirror.__name__}"

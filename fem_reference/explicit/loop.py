@@ -7,18 +7,16 @@ from __future__ import annotations
 
 import ctypes
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import scipy.sparse
 
-from ..common.arrays import Floats, Ints, Mask
+from ..common.arrays import Floats, Ints
 from . import kernel, structures
 from .levels import fastest_levels, graded_levels
-from .parts import Blocks, level_parts
 from .problem import ContactProblem
 from .relaxation import Ledger, Springs
+from .stiffness import Divided
 from .system import System
 
 
@@ -38,11 +36,13 @@ class Loop(ABC):
         displacement: u, then that of other processes' nodes that own rows read.
         diagonal: (C n,) of K, N/m.
         levels: nodes that move with each level.
-        threads: among which the rows of a process are divided. For another number of them sums
-            have another order: results differ by rounding.
+        divided: K as the compiled loop reads it.
+        threads: among which the nodes of a process are divided. Of two components sums have
+            another order for another number of them: results differ by rounding.
     """
 
     diagonal: Floats
+    divided: Divided
     threads = 1
 
     def __init__(self, system: System, comm: Any) -> None:
@@ -52,7 +52,9 @@ class Loop(ABC):
         self.mass = system.mass[system.owned]
         self.inverse = system.inverse_mass[self.rows]
         self.body = np.searchsorted(system.first, system.owned, side="right") - 1
-        self.displacement = np.zeros(self.rows.size + self.components * system.ghosts.size)
+        self.displacement = self._readable(
+            np.zeros(self.rows.size + self.components * system.ghosts.size)
+        )
         self.u = self.displacement[: self.rows.size]
         self.v = self.own(system.velocity)
         self.v[self.inverse == 0.0] = 0.0
@@ -63,10 +65,15 @@ class Loop(ABC):
         if any(system.relaxations):
             self.springs = Springs(system.relaxations, self.body, self.components)
             self.ledger = Ledger(self.springs)
-            self.effective = np.zeros_like(self.u)
+            self.effective = self._readable(np.zeros_like(self.u))
         self.problem = ContactProblem(system)
         self._kernel = kernel.load(self.components)
         self.levels: tuple[int, ...] = (system.mass.size,)
+
+    @staticmethod
+    def _readable(x: Floats) -> Floats:
+        """The same numbers with some behind them that the kernel may read with the last ones."""
+        return np.asarray(np.concatenate([x, np.zeros(kernel.READ_BEYOND)])[: x.size])
 
     def element_levels(self, time_step: float, most: int) -> Ints:
         """(m,) level of each element for a time step (s); those that can touch have level 0."""
@@ -205,19 +212,19 @@ class Loop(ABC):
 
 
 class SerialLoop(Loop):
-    """One process: half of K in blocks, product and update in one sweep of compiled code."""
+    """One process: the compiled loop on the stiffness of the system."""
 
     def __init__(self, system: System, comm: Any, threads: int = 1) -> None:
         super().__init__(system, comm)
         self.threads = threads
-        whole, arrays = system.part(None), kernel.Arrays()
-        self.diagonal = whole.diagonal()
+        self._stiffness, arrays = system.operator(), kernel.Arrays()
+        self.diagonal = self._stiffness.diagonal
         state = structures.State()
         state.nodes = system.owned.size
         for name in ("inverse", "u", "effective", "v"):
             setattr(state, name, arrays.pointer(getattr(self, name), np.float64))
         lanes = kernel.LANES[self.components]
-        state.f = arrays.pointer(np.zeros(lanes * system.owned.size), np.float64)
+        state.f = arrays.pointer(np.zeros(lanes * (system.owned.size + threads)), np.float64)
         state.support = arrays.pointer(np.zeros(kernel.SPACED * threads), np.float64)
         state.parts = threads
         local = np.full(system.mass.size, -1, dtype=np.int64)
@@ -225,28 +232,26 @@ class SerialLoop(Loop):
         self.problem.state.map = arrays.pointer(local[self.problem.nodes], np.int32)
         state.problem = ctypes.pointer(self.problem.state)
         self._state, self._arrays = state, arrays
-        self._point_at([(whole, np.ones(system.owned.size, dtype=bool))])
+        self._divide(
+            np.zeros(system.element_nodes.shape[0], dtype=np.int64),
+            np.zeros(system.mass.size, dtype=np.int64),
+        )
 
-    def _point_at(self, matrices: Iterable[tuple[scipy.sparse.csr_matrix, Mask]]) -> None:
-        """Make these the levels: stiffness, and the nodes that move with it."""
-        arrays, held = kernel.Arrays(), self.system.held[self.system.owned]
-        made = [
-            part
-            for matrix, moves in matrices
-            for part in level_parts(
-                Blocks.of(matrix, self.components, moves, held), self.threads, arrays
-            )
-        ]
-        parts = (structures.Part * len(made))(*made)
+    def _divide(self, element: Ints, node: Ints) -> None:
+        """Let elements (m,) act and nodes (N,) move with these levels."""
+        own, arrays = self.system.owned, kernel.Arrays()
+        held = self.system.held[own]
+        self.divided = self._stiffness.divided(element, node[own], held, self.threads, arrays)
+        made = self.divided.parts
+        parts = (structures.PARTS[self.components] * len(made))(*made)
         self._state.levels = len(made) // self.threads
-        self._state.part = ctypes.cast(parts, ctypes.POINTER(structures.Part))
+        self._state.part = ctypes.cast(parts, ctypes.c_void_p)
         self._level_arrays = (parts, arrays)
 
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
         self._state.levels = 0
         del self._level_arrays
-        own = node[self.system.owned]
-        self._point_at((self.system.part(element == k), own == k) for k in range(count))
+        self._divide(element, node)
 
     def _take_springs(self, springs: Springs, node: Ints) -> None:
         arrays, state = kernel.Arrays(), self._state
@@ -256,19 +261,6 @@ class SerialLoop(Loop):
         state.extension = arrays.pointer(springs.extension, np.float64)
         self._spring_arrays = (groups, arrays)
         self.strain()
-
-    @property
-    def acting(self) -> tuple[int, ...]:
-        """Nodes whose elements of each level act."""
-        rows = [int(part.rows) for part in self._level_arrays[0]]
-        return tuple(np.reshape(rows, (-1, self.threads)).sum(axis=1).tolist())
-
-    @property
-    def blocks(self) -> int:
-        """Blocks of K that are stored, of all levels."""
-        return sum(
-            int(part.row[part.rows] + part.outer[part.border]) for part in self._level_arrays[0]
-        )
 
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
@@ -304,7 +296,7 @@ class SerialLoop(Loop):
 
     def _read(self, x: Floats) -> Floats:
         """(C n,) as own rows read it."""
-        return np.ascontiguousarray(x)
+        return self._readable(x)
 
     def _product(self, x: Floats, first: int, end: int) -> Floats:
         y = np.empty(self.rows.size)

@@ -80,7 +80,7 @@ class Exchange:
 
 
 class ParallelLoop(SerialLoop):
-    """Several processes: the rows of each are those of its own nodes, whole.
+    """Several processes: each has all elements at its own nodes.
 
     At the end of each step a node that moved is sent to the processes that read it, once, whatever
     the levels: those that act in the same step do not read what slower ones moved. Nodes that can
@@ -132,7 +132,7 @@ class ParallelLoop(SerialLoop):
 
     def _read(self, x: Floats) -> Floats:
         """(C n,) with the other processes' nodes that own rows read, of all levels."""
-        values = np.zeros(self.displacement.size)
+        values = self._readable(np.zeros(self.displacement.size))
         values[: x.size] = x
         self._exchanges[-1](kernel.doubles(values))
         return values

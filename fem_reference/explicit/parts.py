@@ -1,7 +1,8 @@
-"""The rows of K_l as the compiled loop reads them: in parts for its threads, half of K in each."""
+"""K as the compiled loop of two components reads it: half of it, in parts for threads."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,18 +10,45 @@ import scipy.sparse
 
 from ..common.arrays import Floats, Ints, Mask
 from . import kernel, structures
+from .stiffness import Divided
 
 PADDING = 2
 """Numbers after the last block: the rows of a 3x3 block are read by fours."""
 
-DOFS_PER_THREAD = 5000
-"""Fewer do not pay: threads wait for each other several times a step, which with other work on the
-machine takes longer than the step."""
 
+@dataclass(frozen=True)
+class Rows:
+    """The stiffness of a system in one process, as sparse rows.
 
-def worthwhile(threads: int, dofs: int) -> int:
-    """How many of at most so many threads a process with so many degrees of freedom has."""
-    return max(1, min(threads, dofs // DOFS_PER_THREAD))
+    Attributes:
+        part: K of some elements (m,), or of all.
+        diagonal: (C n,) of K, N/m.
+        components: C.
+    """
+
+    part: Callable[[Mask | None], scipy.sparse.csr_matrix]
+    diagonal: Floats
+    components: int
+
+    @staticmethod
+    def of(part: Callable[[Mask | None], scipy.sparse.csr_matrix], components: int) -> Rows:
+        """From what gives the rows, components C node + direction."""
+        return Rows(part, part(None).diagonal(), components)
+
+    def divided(
+        self, element: Ints, node: Ints, held: Mask, threads: int, arrays: kernel.Arrays
+    ) -> Divided:
+        """See `explicit.stiffness.Stiffness`."""
+        levels = int(element.max()) + 1
+        parts: list[structures.RowPart] = []
+        for level in range(levels):
+            matrix = self.part(None if levels == 1 else element == level)
+            blocks = Blocks.of(matrix, self.components, node == level, held)
+            parts += level_parts(blocks, threads, arrays)
+        rows = np.reshape([int(part.rows) for part in parts], (levels, threads)).sum(axis=1)
+        blocks_stored = sum(int(part.row[part.rows] + part.outer[part.border]) for part in parts)
+        size = self.components**2 * 8 + 4
+        return Divided(list(parts), tuple(rows.tolist()), blocks_stored * size)
 
 
 @dataclass(frozen=True)
@@ -59,7 +87,7 @@ class Blocks:
         return np.concatenate([part, others])
 
 
-def level_parts(blocks: Blocks, parts: int, arrays: kernel.Arrays) -> list[structures.Part]:
+def level_parts(blocks: Blocks, parts: int, arrays: kernel.Arrays) -> list[structures.RowPart]:
     """The parts of a level for so many threads."""
     part = blocks.divided(parts)
     crossing = part[blocks.row] != part[blocks.column]
@@ -70,7 +98,7 @@ def level_parts(blocks: Blocks, parts: int, arrays: kernel.Arrays) -> list[struc
 
 def _part(
     blocks: Blocks, inside: Mask, border: Mask, crossing: Mask, arrays: kernel.Arrays
-) -> structures.Part:
+) -> structures.RowPart:
     """The part of the nodes ``inside``; ``crossing`` are the blocks between two parts."""
     present = np.zeros(inside.size, dtype=bool)
     present[blocks.row] = True
@@ -85,7 +113,7 @@ def _part(
     place = np.full(inside.size, -1)
     place[nodes] = np.arange(nodes.size)
     mine = place[blocks.row] >= 0
-    made = structures.Part()
+    made = structures.RowPart()
     ends = np.cumsum([group.size for group in groups]).tolist()
     made.border_shared, made.border, made.shared_free, made.shared, made.free, made.rows = ends
     made.node = arrays.pointer(nodes, np.int32)

@@ -153,6 +153,7 @@ typedef struct {
     double reaction[3];     /* impulse of the supports on the bodies so far, N s */
 } Problem;
 
+#if COMPONENTS == 2
 /* The elements of one level, and of their rows those of one part: a part is what one thread sums. First come the
  * rows at its border, which also have neighbours outside it: all of these read each other's displacements, so a
  * node at a border moves when every part is done. The other rows come in four groups: nodes that also have faster
@@ -173,6 +174,19 @@ typedef struct {
     const int32_t *outer_column;
     const double *outer_block;
 } Part;
+#else
+/* The elements of one level at the nodes of one part, and what moves with them: a part is what one thread sums. */
+typedef struct {
+    int64_t number;        /* of the part */
+    const int32_t *part;   /* part of each node; -1: of another process */
+    int64_t size;          /* nodes of an element, 4 or 10 */
+    int64_t fours;         /* elements, by fours; the last may be filled up with ones without stiffness */
+    const double *element; /* (fours, 11, 4), see elements.c */
+    const int32_t *node;   /* (fours, size, 4) */
+    int64_t free, moving;  /* ends of the nodes that are free and of those that are held somewhere */
+    const int32_t *moves;  /* (moving) nodes of the part that move with the level */
+} Part;
+#endif
 
 /* Nodes of one body that move with one level, in a system in which some body relaxes; see relaxation.c. */
 typedef struct {
@@ -195,7 +209,7 @@ typedef struct {
     double *u;              /* (C nodes) displacement */
     double *effective;      /* (C nodes) displacement that K acts on: u itself, or see relaxation.c */
     double *v;              /* (C nodes) velocity at half steps */
-    double *f;              /* (LANES nodes) work space, zero between sweeps */
+    double *f;              /* (LANES (nodes + parts)) work space, zero between steps; of two components without those of the parts */
     double *support;        /* (SPACED parts) impulse of the supports on each part, not yet in the problem's, N s */
     int64_t relaxings;      /* 0: all bodies are elastic */
     const Relaxing *relaxing;

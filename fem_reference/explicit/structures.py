@@ -183,8 +183,8 @@ class Problem(ctypes.Structure):
     )
 
 
-class Part(ctypes.Structure):
-    """Mirror of ``Part`` in C."""
+class RowPart(ctypes.Structure):
+    """Mirror of ``Part`` in C, of two components."""
 
     _fields_ = (
         ("border_shared", ctypes.c_int64),
@@ -201,6 +201,26 @@ class Part(ctypes.Structure):
         ("outer_column", INT32),
         ("outer_block", DOUBLE),
     )
+
+
+class ElementPart(ctypes.Structure):
+    """Mirror of ``Part`` in C, of three components."""
+
+    _fields_ = (
+        ("number", ctypes.c_int64),
+        ("part", INT32),
+        ("size", ctypes.c_int64),
+        ("fours", ctypes.c_int64),
+        ("element", DOUBLE),
+        ("node", INT32),
+        ("free", ctypes.c_int64),
+        ("moving", ctypes.c_int64),
+        ("moves", INT32),
+    )
+
+
+PARTS: dict[int, type[ctypes.Structure]] = {2: RowPart, 3: ElementPart}
+"""By components of displacement per node."""
 
 
 class Relaxing(ctypes.Structure):
@@ -225,7 +245,7 @@ class State(ctypes.Structure):
         ("nodes", ctypes.c_int64),
         ("levels", ctypes.c_int64),
         ("parts", ctypes.c_int64),
-        ("part", ctypes.POINTER(Part)),
+        ("part", ctypes.c_void_p),
         ("inverse", DOUBLE),
         ("u", DOUBLE),
         ("effective", DOUBLE),

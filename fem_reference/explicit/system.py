@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Protocol
 
-import scipy.sparse
-
 from ..common.arrays import Floats, Ints, Mask
 from ..common.bodies import Relaxation
 from .contact import Contact, MatchedContact, RigidBody
 from .film import Film
 from .plastic import Plasticity
+from .stiffness import Stiffness
 
 
 class System(Protocol):
@@ -62,11 +61,8 @@ class System(Protocol):
     def element_time_steps(self) -> Floats:
         """(m,) critical time step of each element alone, s."""
 
-    def part(self, chosen: Mask | None) -> scipy.sparse.csr_matrix:
-        """Own rows of the stiffness of some elements (m,), or of all, N/m.
-
-        Columns as `owned`, then `ghosts`.
-        """
+    def operator(self) -> Stiffness:
+        """K at this process' nodes; other processes' nodes have the numbers behind them."""
 
     @property
     def relaxations(self) -> tuple[tuple[Relaxation, ...], ...]:

@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..axisymmetric.elasticity import fields
 from ..axisymmetric.modal import first_frequency
 from ..axisymmetric.system import AxisymmetricSystem
+from ..common.arrays import Floats
 from ..common.errors import SolverError
 from ..common.series import Report
 from ..common.settings import Settings
@@ -60,6 +63,8 @@ class Solution:
     reach: float
     """Radius and depth of the boxes that may yield over that of the matching nodes."""
     recorder: Recorder
+    plastic_strain: Floats | None
+    """(elements,) accumulated, of all bodies one after the other; None if nothing can yield."""
 
     @property
     def run(self) -> Run:
@@ -121,7 +126,8 @@ class Solution:
     def write_fields(self, folder: Path, scene: Scene) -> list[float]:
         """``mesh.vtu`` and the fields kept; their instants, s."""
         writer = fields(self.mesh.bodies, scene.materials)
-        writer.write_mesh(folder / "mesh.vtu")
+        strain = {} if self.plastic_strain is None else {"plastic_strain": self.plastic_strain}
+        writer.write_mesh(folder / "mesh.vtu", **strain)
         numbers = self.system.numbers
         frames = self.recorder.frames()
         return writer.write_frames(folder, [(t, [u[part] for part in numbers]) for t, u in frames])
@@ -241,10 +247,21 @@ def compute(
         )
         found = suits(struck.runs[-1], struck.motion)
         if like is not None or found.accepted:
-            loop = struck.motion.loop
+            loop, dents = struck.motion.loop, struck.motion.dents
+            quads = zip(system.numbers, mesh.bodies, strict=True)
+            cells = np.vstack([number[body.quads] for number, body in quads if body.quads.size])
             return Solution(
-                *(struck.runs, mesh, system, loop.acting, loop.threads, found.resolution, estimate),
+                *(
+                    struck.runs,
+                    mesh,
+                    system,
+                    loop.divided.acting,
+                    loop.threads,
+                    found.resolution,
+                    estimate,
+                ),
                 *(attempt, factor, radii, reach, stepper.recorder),
+                dents.plastic_strain(cells) if dents else None,
             )
         radii = found.radii(sizes.contact_element, radii)
         reach = reach if found.reach_left else 1.4 * reach

@@ -24,7 +24,7 @@ from ..explicit.damping import ModalDamping
 from ..explicit.drag import Drag
 from ..explicit.energies import Energies
 from ..explicit.loop import SerialLoop
-from ..explicit.parts import worthwhile
+from ..explicit.stiffness import worthwhile
 from .dents import Dents, Memory
 from .ending import Ending, Followed, Patch
 from .estimate import WAVE_FREQUENCY

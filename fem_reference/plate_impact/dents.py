@@ -69,6 +69,24 @@ class Dents:
         gained = np.bincount(contact, self.locked_in() - self._before, 2)
         return Yielded((work[0], work[1]), (gained[0], gained[1]))
 
+    def profiles(self) -> Floats:
+        """(n, 5) of the nodes that may touch: radius, and heights at rest over virgin surfaces, m.
+
+        Of outer body, both of the plate's faces and inner body, out of each body; of spheres
+        against their mean displacement.
+        """
+        axial, (outer, inner) = self.at_rest()[1::2], self._system.matched
+        heights = [-axial[outer.candidates], axial[outer.opposite]]
+        heights += [-axial[inner.opposite], axial[inner.candidates]]
+        return np.column_stack([outer.radii, *heights])
+
+    def plastic_strain(self, cells: Ints) -> Floats:
+        """(k,) accumulated, the mean of each of the system's ``cells`` (k, 4 nodes)."""
+        weights, nodes = self._state.plasticity.weights, self._state.plasticity.nodes
+        means = (weights * self._state.accumulated).sum(axis=1) / weights.sum(axis=1)
+        yielding = dict(zip(map(frozenset, nodes.tolist()), means, strict=True))
+        return np.array([yielding.get(frozenset(cell), 0.0) for cell in cells.tolist()])
+
     def memory(self, fresh_spheres: bool) -> Memory:
         """What the next impact has to know, on the same spots or on fresh ones of both spheres."""
         memory = Memory(self._state.strain.copy(), self._state.accumulated.copy())

@@ -45,6 +45,7 @@ QUANTITIES = (
     "inner_contact_end",
     "first_frequency",
 )
+DENTED_SURFACES = ("outer_body", "plate_outer_face", "plate_inner_face", "inner_body")
 MINOR = 0.05
 """Of the impact: what passes on less needs not be known to more digits than the impact itself."""
 TARGETED = (
@@ -234,6 +235,14 @@ def _bender(bender: Bender, summary: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+def write_dents(path: Path, runs: list[Run]) -> None:
+    """The surfaces at rest after each impact, comma-separated; see `Dents.profiles`."""
+    columns = ("impact", "radius", *DENTED_SURFACES)
+    profiles = [run.dents for run in runs if run.dents is not None]
+    rows = [np.insert(profile, 0, k, axis=1) for k, profile in enumerate(profiles, 1)]
+    write_history(path, columns, np.vstack(rows), np.zeros((sum(map(len, rows)), 0)), digits=6)
+
+
 def _write(
     folder: Path,
     scene: Scene,
@@ -268,6 +277,7 @@ def _write(
         summary["losses"] = {name: loss for name, loss in losses.items() if loss is not None}
     if run.yielded is not None:
         summary.update(_of_yielding(run))
+        write_dents(folder / "dents.csv", solution.runs)
     if scene.series is not None:
         summary["impacts"] = _impacts(solution.runs, whole)
         for number, impact in enumerate(solution.runs, 1):

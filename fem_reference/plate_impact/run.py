@@ -56,6 +56,8 @@ class Run:
     """Of the whole bodies; None if nothing loses."""
     yielded: Yielded | None
     """None: nothing that could yield."""
+    dents: Floats | None = None
+    """As `Dents.profiles`; None of bodies that cannot have any."""
 
     def account(self, levels: int) -> Account:
         """For `stable_run`, of a run with so many levels."""

@@ -9,7 +9,7 @@ import hashlib
 import json
 import zipfile
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,9 @@ from .scene import Series
 
 SHAKEN_DOWN = 3e-4
 """Plastic work over the impact's energy below which nothing yields any more."""
+
+ARRAYS = ("times", "rows", "dents")
+"""Of a run."""
 
 Impact = Callable[[int, Memory | None], tuple[Run, AxisymmetricMotion]]
 """Makes the impact of a number, from 0 on, with what the bodies know of those before."""
@@ -58,9 +61,10 @@ class Kept:
         Raises:
             SolverError: the file cannot be written.
         """
-        described = [{**asdict(run), "times": None, "rows": None} for run in runs]
-        arrays = {f"times-{k}": run.times for k, run in enumerate(runs)}
-        arrays |= {f"rows-{k}": run.rows for k, run in enumerate(runs)}
+        described = [{**asdict(run), **dict.fromkeys(ARRAYS)} for run in runs]
+        arrays = {
+            f"{name}-{k}": getattr(run, name) for name in ARRAYS for k, run in enumerate(runs)
+        }
         text = json.dumps({"identity": self._identity, "runs": described})
         write_arrays(self._path, text=np.array(text), **asdict(memory), **arrays)
 
@@ -73,7 +77,7 @@ class Kept:
             if described["identity"] != self._identity:
                 return [], None
             runs = [
-                _run(values, saved[f"times-{k}"], saved[f"rows-{k}"])
+                _run(values, {name: saved[f"{name}-{k}"] for name in ARRAYS})
                 for k, values in enumerate(described["runs"])
             ]
             return runs, Memory(saved["strain"], saved["accumulated"])
@@ -88,12 +92,12 @@ def _tuples(value: Any) -> Any:
     return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
-def _run(described: dict[str, Any], times: Floats, rows: Floats) -> Run:
+def _run(described: dict[str, Any], arrays: dict[str, Floats]) -> Run:
     values = _tuples(described)
     nested = {"energies": Energies, "losses": Losses, "yielded": Yielded}
     made = {name: kind(**values[name]) for name, kind in nested.items() if values[name] is not None}
     contacts = tuple(ContactRecord(**contact) for contact in values["contacts"])
-    return Run(**{**values, **made, "contacts": contacts, "times": times, "rows": rows})
+    return Run(**{**values, **made, "contacts": contacts, **arrays})
 
 
 @dataclass(frozen=True)
@@ -131,7 +135,7 @@ def strike(
     most = count or (series.impacts if series else 1)
     while True:
         run, motion = impact(len(runs), memory)
-        runs.append(run)
+        runs.append(replace(run, dents=motion.dents.profiles()) if motion.dents else run)
         done = len(runs) >= most or (count is None and has_shaken_down(run))
         if done or motion.dents is None or series is None or not accepted(run, motion):
             return Struck(runs, motion)

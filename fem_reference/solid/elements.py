@@ -1,4 +1,4 @@
-"""Stiffness and critical time step of single tetrahedra, for sub-cycling."""
+"""Single tetrahedra: stiffness, critical time step, and what the compiled loop needs of them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Material
+from ..explicit.elements import Tetrahedra
 from .elasticity import LUMPED_SHARES
 from .mesh import EDGES, TetMesh, volumes
 
@@ -64,3 +65,45 @@ def element_time_steps(mesh: TetMesh, material: Material) -> Floats:
         stiffness /= np.sqrt(mass[:, :, None] * mass[:, None, :])
         steps[start : start + CHUNK] = 2.0 / np.sqrt(np.linalg.eigvalsh(stiffness)[:, -1])
     return steps
+
+
+def tetrahedra(
+    points: Floats,
+    elements: Ints,
+    number: Ints,
+    own: int,
+    moduli: tuple[Floats, Floats],
+    which: Ints,
+) -> Tetrahedra:
+    """Elements for the compiled loop.
+
+    Args:
+        points: (N, 3) m.
+        elements: (e, 4 or 10) nodes.
+        number: (N,) of each node in the process.
+        own: nodes of the process, which have the first numbers.
+        moduli: (e,) Lame's constants, Pa.
+        which: (e,) number of each element in the system.
+    """
+    corners = points[elements[:, :4]]
+    gradients = np.linalg.inv(corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1)
+    share = volumes(points, elements[:, :4]) / (1.0 if elements.shape[1] == 4 else 20.0)
+    nodes = number[elements]
+    diagonal = np.zeros((own, 3))
+    for start in range(0, which.size, CHUNK):
+        some = slice(start, start + CHUNK)
+        parts = _diagonal(points, elements[some], *(modulus[some] for modulus in moduli))
+        mine = nodes[some] < own
+        np.add.at(diagonal, nodes[some][mine], parts[mine])
+    lame, shear = (share * modulus for modulus in moduli)
+    return Tetrahedra(nodes, gradients, lame, shear, which, diagonal.ravel())
+
+
+def _diagonal(points: Floats, cells: Ints, lame: Floats, shear: Floats) -> Floats:
+    """(m, n, 3) diagonal of each element's stiffness, N/m."""
+    gradients, volume = _gradients(points, cells)
+    squares = 0.25 * (gradients**2).sum(axis=0)
+    own = (lame + shear)[:, None, None] * squares
+    return np.asarray(
+        volume[:, None, None] * (own + shear[:, None, None] * squares.sum(axis=2, keepdims=True))
+    )

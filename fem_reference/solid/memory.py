@@ -15,11 +15,11 @@ BASE = 0.25e9
 """Interpreter, modules and the compiler of the forms, bytes per process.
 
 Measured: 0.21e9, and 0.22e9 where the forms are not in FEniCSx' cache yet."""
-PER_NODE = {1: 8.2e3, 2: 13.0e3}
-"""Largest use per node by element order, bytes: during assembly, where K exists several times.
+PER_NODE = {1: 6.0e3, 2: 2.5e3}
+"""Largest use per node by element order, bytes.
 
-Measured: 7.4e3 (50 000 and 200 000 nodes) and 10.4e3 to 12.1e3 (10 000 to 106 000 nodes); the
-levels of sub-cycling need no more, they take the place of K."""
+Measured: 4.5e3 while gmsh makes the mesh (98 000 nodes), and 0.8e3 in the loop and the fields
+(10 000 to 137 000 nodes)."""
 SHARE = 0.9
 """Of the free memory that may be used."""
 

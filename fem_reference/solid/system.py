@@ -1,23 +1,22 @@
-"""A model as what the loop steps: dolfinx's numbering, stiffness by dolfinx, lumped masses."""
+"""A model as what the loop steps: numbered for memory and processes, lumped masses."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import scipy.sparse
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from ..common.arrays import Floats, Ints, Mask
-from ..common.fenicsx import petsc_rows
+from ..common.arrays import Floats, Ints
+from ..explicit.elements import Tetrahedra
 from ..explicit.loop import Loop, SerialLoop
 from ..explicit.parallel import ParallelLoop
 from ..explicit.partition import owners
-from ..explicit.parts import worthwhile
 from ..explicit.problem import touching
-from .elasticity import Assembly, lumped_mass
-from .elements import element_time_steps
+from ..explicit.stiffness import worthwhile
+from .elasticity import lumped_mass
+from .elements import element_time_steps, tetrahedra
 from .model import Model
 
 
@@ -45,21 +44,16 @@ class SolidSystem:
         )
         self._steps: Floats | None = None
         self.owner = self._owners()
-        # All elements at own nodes are assembled here, so that own rows are whole.
-        self._near = np.any(self.owner[self.element_nodes] == comm.rank, axis=1)
-        elements = np.split(self._near, np.cumsum([b.mesh.cells.shape[0] for b in bodies])[:-1])
-        meshes = [
-            replace(body.mesh, cells=body.mesh.cells[near])
-            for body, near in zip(bodies, elements, strict=True)
-        ]
-        self._assembly = Assembly(meshes, [body.material for body in bodies])
-        nodes = self._assembly.nodes
-        self._whole: scipy.sparse.csr_matrix | None = petsc_rows(self._assembly.stiffness())
-        mine = self.owner[nodes] == comm.rank
-        own = np.flatnonzero(mine)[_bandwidth_order(self._whole.tobsr((3, 3)), mine)]
-        others = np.flatnonzero(~mine)
-        self.owned, self.ghosts = nodes[own], nodes[others]
-        self._rows, self._columns = _rows_of(own), _rows_of(np.concatenate([own, others]))
+        order = _order(self.element_nodes, self.mass.size)
+        place = np.empty_like(order)
+        place[order] = np.arange(order.size)
+        # All elements at own nodes are summed here, in the same order in every process.
+        near = np.flatnonzero(np.any(self.owner[self.element_nodes] == comm.rank, axis=1))
+        self._near = near[np.argsort(place[self.element_nodes[near]].min(axis=1), kind="stable")]
+        read = np.zeros(order.size, dtype=bool)
+        read[self.element_nodes[near]] = True
+        mine = self.owner == comm.rank
+        self.owned, self.ghosts = order[mine[order]], order[(read & ~mine)[order]]
 
     def _owners(self) -> Ints:
         """(N,) process of each node."""
@@ -76,33 +70,34 @@ class SolidSystem:
             self._steps = np.concatenate(steps)
         return self._steps
 
-    def part(self, chosen: Mask | None) -> scipy.sparse.csr_matrix:
-        """Own rows of the stiffness of some elements (m,), or of all, N/m.
+    def operator(self) -> Tetrahedra:
+        """K at this process' nodes; others have the numbers behind them."""
+        kept = np.concatenate([self.owned, self.ghosts])
+        number = np.empty(self.mass.size, dtype=np.int64)
+        number[kept] = np.arange(kept.size)
+        bodies = np.searchsorted(self._first_element(), self._near, side="right") - 1
+        materials = [body.material for body in self.model.elastic]
+        lame, shear = (
+            np.array([getattr(material, name) for material in materials])[bodies]
+            for name in ("lame_lambda", "shear_modulus")
+        )
+        nodes = self.element_nodes[self._near]
+        return tetrahedra(self.points, nodes, number, self.owned.size, (lame, shear), self._near)
 
-        Columns as `owned`, then `ghosts`.
-        """
-        if chosen is not None:
-            matrix = self._assembly.part(chosen[self._near])
-        else:
-            matrix, self._whole = self._whole, None
-            if matrix is None:
-                matrix = petsc_rows(self._assembly.stiffness())
-        return matrix[self._rows][:, self._columns]
+    def _first_element(self) -> Ints:
+        """(bodies) number of each elastic body's first element."""
+        counts = [body.mesh.cells.shape[0] for body in self.model.elastic]
+        return np.cumsum([0, *counts[:-1]])
 
 
-def _rows_of(nodes: Ints) -> Ints:
-    return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
-
-
-def _bandwidth_order(matrix: scipy.sparse.bsr_matrix, chosen: Mask) -> Ints:
-    """Order of some nodes that keeps neighbours close in memory (reverse Cuthill-McKee)."""
-    pattern = scipy.sparse.csr_matrix(
-        (np.ones(matrix.indices.size, np.int8), matrix.indices, matrix.indptr),
-        shape=(matrix.shape[0] // 3,) * 2,
+def _order(elements: Ints, count: int) -> Ints:
+    """(N,) nodes so that neighbours are close in memory (reverse Cuthill-McKee)."""
+    size = elements.shape[1]
+    at = scipy.sparse.csr_matrix(
+        (np.ones(elements.size, np.int32), elements.ravel(), size * np.arange(len(elements) + 1)),
+        shape=(len(elements), count),
     )
-    if not chosen.all():
-        pattern = pattern[chosen][:, chosen]
-    return np.asarray(reverse_cuthill_mckee(pattern, symmetric_mode=True), dtype=np.int64)
+    return np.asarray(reverse_cuthill_mckee((at.T @ at).tocsr(), symmetric_mode=True), np.int64)
 
 
 def make_loop(model: Model, comm: Any, threads: int = 1) -> Loop:

@@ -39,6 +39,10 @@ MEMORY_NUMBERS = 8_000_000
 """Numbers in each of the triad's three arrays: half a megabyte, and far more than any cache."""
 
 
+BLOCK = 36
+"""Bytes of a block: four numbers and a column."""
+
+
 @dataclass(frozen=True)
 class Point:
     """One mesh with or without sub-cycling."""
@@ -77,10 +81,10 @@ def product_rates(system: AxisymmetricSystem) -> dict[str, float]:
     """Bytes and operations per second of the loop's own product on a system, and its size."""
     loop = SerialLoop(system, alone())
     x = np.random.default_rng(1).standard_normal(loop.u.size)
-    blocks = loop.blocks
     nodes = system.mass.size
-    # A block: 4 numbers and a column; a node: its displacement, and its force read and written.
-    size = blocks * 36 + nodes * (3 * 16 + 8)
+    # A node: its displacement, and its force read and written.
+    size = loop.divided.size + nodes * (3 * 16 + 8)
+    blocks = loop.divided.size // BLOCK
     # 4 products and 4 sums a block, and the same for its mirror image.
     operations = 16 * blocks - 8 * nodes
     repetitions = max(10, 200_000_000 // size)
@@ -122,7 +126,7 @@ def _point(scene: Scene, factor: float, sub_cycling: str, exact: dict[str, float
         most_levels=MOST_LEVELS[sub_cycling],
     )
     nodes = system.mass.size
-    updates = sum(count / 2**level for level, count in enumerate(motion.loop.acting))
+    updates = sum(count / 2**level for level, count in enumerate(motion.loop.divided.acting))
     found = of_run(scene, run)
     scales = {target.name: target.scale(exact) for target in TARGETED}
     errors = {n: (found[n] - exact[n]) / scale for n, scale in scales.items() if scale > 0.0}

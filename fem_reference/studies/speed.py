@@ -43,8 +43,8 @@ Wall time per degree of freedom and step in one run on this machine, every eleme
 much memory, measured in between. `python3 -m fem_reference speed` makes it again.
 
 """
-BLOCK, NODE = 76, 104
-"""Bytes that a step reads and writes per block of K (nine numbers and a column) and per node."""
+NODE = 136
+"""Bytes that a step reads and writes per node."""
 
 
 @dataclass(frozen=True)
@@ -103,10 +103,10 @@ def measure(model: Model, threads: int, comm: Any, most_levels: tuple[int, ...])
         # that of the smallest element is below the critical one
         loop.set_step(0.9 * float(system.element_time_steps().min()), 1, most)
         seconds = _step_seconds(loop, comm)
-        dofs, blocks = 3 * system.mass.size, comm.allreduce(loop.blocks)
-        moved = BLOCK * blocks + NODE * system.mass.size
+        dofs, size = 3 * system.mass.size, comm.allreduce(loop.divided.size)
+        moved = size + NODE * system.mass.size
         comm.barrier()
-        bandwidth = comm.allreduce(read_bandwidth(9 * loop.blocks, threads))
+        bandwidth = comm.allreduce(read_bandwidth(loop.divided.size // 8, threads))
         found.append(
             Speed(
                 *(dofs, threads, comm.size, len(loop.levels), seconds / dofs * 1e9),

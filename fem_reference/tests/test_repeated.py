@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import meshio
 import numpy as np
 import pytest
 
@@ -14,7 +15,7 @@ from fem_reference.common.settings import Settings
 from fem_reference.plate_impact import axisymmetric
 from fem_reference.plate_impact.axisymmetric import Solution, compute
 from fem_reference.plate_impact.dents import Dents
-from fem_reference.plate_impact.result import of_run, quantities
+from fem_reference.plate_impact.result import of_run, quantities, write_dents
 from fem_reference.plate_impact.scene import Scene, parse_scene
 from fem_reference.plate_impact.series import has_shaken_down
 
@@ -64,6 +65,34 @@ def test_efficiency_rises_as_dents_adapt(three: Solution) -> None:
         np.testing.assert_allclose(run.rows[0, [0, 3, 5]], 0.0, atol=1e-12)
 
 
+def test_dents_deepen_and_their_strain_lies_below_the_contacts(
+    three: Solution, tmp_path: Path
+) -> None:
+    profiles = [run.dents for run in three.runs if run.dents is not None]
+    assert [profile.shape for profile in profiles] == 3 * [(profiles[0].shape[0], 5)]
+    centre = np.array([profile[0, 1:] for profile in profiles])
+    assert (np.diff(centre, axis=0) < 0.0).all()
+    # micrometres, beside a rim that piles up
+    assert (centre < -0.5e-6).all() and (centre > -3e-6).all()
+    assert (profiles[-1][-1, 1:] > -0.1e-6).all()
+    write_dents(tmp_path / "dents.csv", three.runs)
+    table = np.loadtxt(tmp_path / "dents.csv", delimiter=",", skiprows=1)
+    np.testing.assert_allclose(table[table[:, 0] == 2, 1:], profiles[1], rtol=1e-5)
+    three.write_fields(tmp_path, repeated(3))
+    mesh = meshio.read(tmp_path / "mesh.vtu")
+    (strain,), middle = (
+        mesh.cell_data["plastic_strain"],
+        mesh.points[mesh.cells[0].data].mean(axis=1),
+    )
+    plastic = three.system.plasticity
+    assert plastic is not None
+    assert np.count_nonzero(strain) <= plastic.nodes.shape[0]
+    # at most some per cent, deepest below the middle of a contact (Johnson 1985, ch. 6.1)
+    place = middle[strain.argmax()]
+    assert 0.001 < strain.max() < 0.05
+    assert place[0] < 4e-4 and 0.5e-4 < abs(abs(place[1]) - 1e-3) < 5e-4
+
+
 def test_every_impact_has_its_quantities(three: Solution) -> None:
     found = quantities(repeated(3), three)
     assert found["efficiency"] == found["3/efficiency"]
@@ -108,6 +137,8 @@ def test_killed_series_goes_on_at_the_last_finished_impact(
         assert run.contacts == other.contacts
         assert run.yielded == other.yielded
         assert np.array_equal(run.rows, other.rows)
+        assert run.dents is not None and other.dents is not None
+        assert np.array_equal(run.dents, other.dents)
     # another scene finds nothing here
     made.clear()
     solved(repeated(2, "fresh"), tmp_path)

@@ -60,6 +60,18 @@ def density_of(mesh: TetMesh) -> Floats:
     return np.full(mesh.cells.shape[0], STEEL.density)
 
 
+def test_products_by_element_are_those_of_the_matrix(mesh: TetMesh) -> None:
+    body = ElasticBody(mesh, STEEL, np.empty(0, dtype=np.int64))
+    loop = make_loop(Model((body,), (), ()), alone())
+    assembled = matrix(mesh)
+    x = np.random.default_rng(3).standard_normal(mesh.points.shape)
+    expected = (assembled @ x.ravel()).reshape(-1, 3)
+    found = loop.gather(loop.product(loop.own(x)))
+    assert np.abs(found - expected).max() < 1e-13 * np.abs(expected).max()
+    diagonal = loop.gather(loop.diagonal).ravel()
+    np.testing.assert_allclose(diagonal, assembled.diagonal(), rtol=1e-12)
+
+
 def test_a_flat_element_is_avoided_by_slightly_smaller_ones(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -64,8 +64,7 @@ pub fn changed(record: &[Acceptance], text: &str) -> Result<Vec<ChangedTolerance
         for (quantity, before) in tolerances {
             let now = standing.get(model).and_then(|of_model| of_model.get(quantity));
             let meant = |scene: &Scene| {
-                let models = scene.tolerances.iter().find(|(m, _)| m.to_string() == *model);
-                models.and_then(|(_, tolerances)| tolerances.get(quantity).copied())
+                scene.tolerances.get(model).and_then(|tolerances| tolerances.get(quantity).copied())
             };
             // one at a time: another that can't be read any more must not hide this one
             let same = now.is_some_and(|now| {

@@ -1,6 +1,6 @@
-//! Reduced models as the command line names them: A, B, C, or `auto`.
+//! Models as the command line names them: A, B, C, `auto`, or `external`.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::kinds::plate_impact::choice;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::result::Choice;
@@ -8,22 +8,28 @@ use crate::scene::{Model, Scene};
 use std::str::FromStr;
 use std::time::Instant;
 
-/// A reduced model, or the program's choice.
+/// A reduced model, the program's choice, or the programs that the scene names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum AskedModel {
     Named(Model),
     Auto,
+    External,
 }
 
 impl FromStr for AskedModel {
     type Err = String;
 
     fn from_str(text: &str) -> std::result::Result<Self, String> {
-        if text == "auto" {
-            return Ok(AskedModel::Auto);
+        let unknown = |_| {
+            format!(
+                "`{text}` is not a model; there are A, B and C, auto, and external for the scene's programs"
+            )
+        };
+        match text {
+            "auto" => Ok(AskedModel::Auto),
+            "external" => Ok(AskedModel::External),
+            _ => text.parse().map(AskedModel::Named).map_err(unknown),
         }
-        let unknown = |_| format!("`{text}` is not a reduced model; there are A, B and C, and auto");
-        text.parse().map(AskedModel::Named).map_err(unknown)
     }
 }
 
@@ -32,8 +38,14 @@ impl std::fmt::Display for AskedModel {
         match self {
             AskedModel::Named(model) => model.fmt(f),
             AskedModel::Auto => f.write_str("auto"),
+            AskedModel::External => f.write_str("external"),
         }
     }
+}
+
+/// That the scene's programs run where they are compared with something.
+pub(super) fn beside_a_reference() -> Error {
+    Error::Usage("--model external: the scene's programs run in `compare` and `gate`".into())
 }
 
 /// Parses a relative error, as a number or in percent.
@@ -97,7 +109,7 @@ pub(super) fn set_up(
                 done.push(model);
                 bodies.push(timed(&|| Reduced::new(scene, model, None))?);
             }
-            AskedModel::Named(_) => {}
+            AskedModel::Named(_) | AskedModel::External => {}
         }
     }
     Ok(bodies)

@@ -2,6 +2,7 @@
 
 use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
+use super::external::{self, Permission};
 use super::film::film;
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument, kinds, validated_scenes};
@@ -28,9 +29,12 @@ const TRENDS: &str = "trends.jsonl";
 pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all shipped scenes]
     scenes: Vec<String>,
-    /// Reduced models to compare; auto stands for the cheapest whose estimated error meets the tolerance
-    #[arg(long, value_delimiter = ',', default_value = "A,B,C")]
+    /// Models to compare; auto stands for the cheapest whose estimated error meets the tolerance, external for the programs that
+    /// the scene names
+    #[arg(long, value_delimiter = ',', default_value = "A,B,C,external")]
     models: Vec<AskedModel>,
+    #[command(flatten)]
+    permission: Permission,
     /// Tolerance of auto: relative error of the efficiency, the outer body's final velocity and both force peaks [default: 1%]
     #[arg(long, value_parser = asked_model::tolerance)]
     tolerance: Option<f64>,
@@ -111,8 +115,8 @@ fn once(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let job = Job::read(context, arguments)?;
     job.check_folders(&[])?;
     let results = job.results(context)?;
-    job.finish(context, job.report(context, &results)?, &Outputs::default())?;
-    Ok(ExitStatus::Pass)
+    let comparison = job.finish(context, job.report(context, &results)?, &Outputs::default())?;
+    Ok(if comparison.lacks_a_result() { ExitStatus::Solver } else { ExitStatus::Pass })
 }
 
 /// Scenes to compare, read and checked.
@@ -185,6 +189,9 @@ impl<'a> Job<'a> {
             let names: Vec<String> = arguments.models.iter().map(AskedModel::to_string).collect();
             return Err(Error::Usage(format!("--models {}: {}", names.join(","), kinds::lacks(scene))));
         }
+        if arguments.models.contains(&AskedModel::External) {
+            arguments.permission.ask(&scenes)?;
+        }
         let records = compare_inputs::records(&arguments.measured, &scenes)?;
         let figures = compare_inputs::figures(arguments.figure.as_ref(), &scenes)?;
         Ok(Job { start, arguments, scenes, records, figures })
@@ -215,7 +222,15 @@ impl<'a> Job<'a> {
         let result = |((file, scene), stored): (&(PathBuf, Scene), Stored)| {
             let asked = (&self.arguments.models[..], self.arguments.tolerance);
             let models = kinds::of(scene);
-            let (reduced, cost) = models.beside(context, scene, &stored, asked)?;
+            let (mut reduced, cost) = models.beside(context, scene, &stored, asked)?;
+            if self.arguments.models.contains(&AskedModel::External) {
+                reduced.extend(external::results(
+                    context,
+                    file,
+                    scene,
+                    stored.outcome.summary.sample_interval,
+                ));
+            }
             let coarser = self.coarser(context, file, scene).map(|stored| -> Result<_> {
                 let (reduced, _) = models.beside(context, scene, &stored, asked)?;
                 Ok((stored, reduced))
@@ -287,7 +302,7 @@ impl<'a> Job<'a> {
         let named = place.and_then(|k| scenes.get(k)).unwrap_or(&scene.name);
         let mut command = format!("impactcheck compare {named}");
         let models: Vec<String> = models.iter().map(AskedModel::to_string).collect();
-        if models != ["A", "B", "C"] {
+        if models != ["A", "B", "C", "external"] {
             command += &format!(" --models {}", models.join(","));
         }
         if let Some(tolerance) = self.arguments.tolerance {

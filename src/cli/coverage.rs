@@ -1,11 +1,13 @@
 //! `impactcheck coverage`: which features of scenes are held against an independent solution.
 
 use super::asked_model::AskedModel;
+use super::external::{self, Permission};
 use super::{Context, JsonArgument, compare_inputs, kinds};
 use crate::comparison::compare_scene;
 use crate::coverage::{CLOSED_FORM, Case, Coverage, Finding, coverage, exact};
 use crate::error::{ExitStatus, Result};
-use crate::reference::{Store, Stored};
+use crate::reference::{Resolution, Store, Stored};
+use crate::result::{Outcome, Source};
 use crate::scene::{self, Model, Scene};
 use crate::validated::{self, Validation};
 use clap::Args;
@@ -14,6 +16,8 @@ use clap::Args;
 pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all scenes of the project, examples and validation too]
     scenes: Vec<String>,
+    #[command(flatten)]
+    permission: Permission,
     /// Write what was found to the project's record of validated scenes; where the reference is elsewhere, the models as they
     /// are now beside what is recorded of it
     #[arg(long)]
@@ -28,18 +32,25 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let scenes = compare_inputs::scenes_or(&arguments.scenes, scene::every)?;
     let (known, mut cases, mut found) = (validated::shipped()?, Vec::new(), Vec::new());
     for (file, scene) in &scenes {
-        let stored = finest(&context.store().for_scene_in(file), scene);
+        let store = context.store().for_scene_in(file);
+        let stored: Vec<Stored> =
+            [finest(&store, scene), imported(&store, scene)].into_iter().flatten().collect();
+        let programs = match arguments.permission.is_given() {
+            true => external::results(context, file, scene, None),
+            false => Vec::new(),
+        };
         for &model in crate::kinds::of(scene).models() {
-            let validation = match &stored {
-                Some(stored) => compared(context, scene, stored, model),
-                None => {
-                    known.iter().find(|v| v.is_of(scene, model)).map(|v| renewed(context, v, scene, model))
-                }
-            };
-            if validation.is_some() || kinds::of(scene).takes(scene, model) {
-                cases.push(Case { scene, model, finding: validation.as_ref().map(Finding::from) });
+            let mut validations: Vec<Validation> =
+                stored.iter().filter_map(|stored| compared(context, scene, stored, model)).collect();
+            if !stored.iter().any(|stored| stored.outcome.summary.source == Source::Reference) {
+                let recorded = known.iter().filter(|v| v.is_of(scene, model));
+                validations.extend(recorded.map(|v| renewed(context, v, scene, model)));
             }
-            found.extend(validation);
+            validations.extend(beside_programs(scene, &programs, model));
+            if !validations.is_empty() || kinds::of(scene).takes(scene, model) {
+                cases.extend(Case::of_all(scene, model, validations.iter().map(Finding::from)));
+            }
+            found.extend(validations);
         }
         cases.extend(exact(scene)?);
     }
@@ -61,8 +72,21 @@ fn finest(store: &Store, scene: &Scene) -> Option<Stored> {
     let dofs = |stored: &Stored| stored.outcome.summary.mesh.as_ref().and_then(|mesh| mesh["dofs"].as_u64());
     [Some(store), shipped.as_ref()].into_iter().flatten().find_map(|store| {
         let resolutions = store.resolutions(scene).into_iter();
-        resolutions.filter_map(|resolution| store.find(scene, resolution).found()).max_by_key(dofs)
+        let own = resolutions.filter(|resolution| *resolution != Resolution::Imported);
+        own.filter_map(|resolution| store.find(scene, resolution).found()).max_by_key(dofs)
     })
+}
+
+/// What was imported of `scene`.
+fn imported(store: &Store, scene: &Scene) -> Option<Stored> {
+    store.find_here_or_shipped(scene, Resolution::Imported).found()
+}
+
+/// `model` against the scene's programs, as far as they have results.
+fn beside_programs(scene: &Scene, programs: &[Outcome], model: Model) -> Vec<Validation> {
+    let sound = programs.iter().filter(|program| program.summary.failure.is_none());
+    let own = kinds::of(scene).alone(scene, (&[AskedModel::Named(model)], None)).unwrap_or_default();
+    sound.flat_map(|program| Validation::of(scene, &compare_scene(scene, program, &own))).collect()
 }
 
 /// `model` against a stored reference; `None` if it does not take the scene, which is told.

@@ -7,6 +7,7 @@ mod compare_inputs;
 mod coverage;
 mod diff;
 mod doctor;
+mod external;
 mod film;
 mod gate;
 mod kinds;

@@ -6,7 +6,7 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::report::format::{prefixed, with_unit};
 use crate::report::{self, TableFormat};
-use crate::result::{ContactPressure, Impact, Outcome, Quantity, Summary};
+use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Summary};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -130,16 +130,21 @@ pub fn table(summary: &Summary) -> String {
         .filter(|(_, loss, _)| *loss != 0.0)
     });
     let patches = summary.contact_pressure.iter().flat_map(ContactPressure::rows);
-    for (name, value, unit) in patches.chain(bender).chain(losses) {
+    let speeds = summary.elastic_limit.iter().flat_map(ElasticLimit::rows);
+    let speeds = speeds.map(|(name, speed)| (name, speed, "m/s"));
+    for (name, value, unit) in patches.chain(speeds).chain(bender).chain(losses) {
         lines.push(format!("  {name:<24} {:>14}", with_unit(value, prefixed(unit, value), 6)));
     }
     lines.extend(series(&summary.impacts));
-    lines.push(format!("  {:<24} {:>14.1e}", "energy_residual", summary.energy_residual));
-    lines.push(format!("  {:<24} {:>14.1e}", "momentum_residual", summary.momentum_residual));
+    let errors = [
+        ("energy_residual", summary.energy_residual),
+        ("momentum_residual", summary.momentum_residual),
+        ("truncation_error", summary.truncation_error),
+    ];
     lines
-        .extend(summary.truncation_error.map(|error| format!("  {:<24} {error:>14.1e}", "truncation_error")));
+        .extend(errors.iter().filter_map(|(name, error)| Some(format!("  {name:<24} {:>14.1e}", (*error)?))));
     let seconds = with_unit(summary.solve_seconds, prefixed("s", summary.solve_seconds), 3);
-    lines.push(format!("  {} steps in {seconds}, set-up apart", summary.steps));
+    lines.extend(summary.steps.map(|steps| format!("  {steps} steps in {seconds}, set-up apart")));
     lines.extend(summary.choice.as_ref().map(asked_model::told));
     lines.join("\n")
 }

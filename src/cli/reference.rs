@@ -6,12 +6,17 @@ use crate::comparison::{self, Verdict};
 use crate::error::{Error, ExitStatus, Result};
 use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
 use crate::scene::{Geometry, Scene};
-use clap::Args;
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
 
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Arguments {
+    #[command(subcommand)]
+    import: Option<Import>,
     /// Scene file, the name of a shipped scene, or `-` for standard input
-    scene: String,
+    #[arg(required = true)]
+    scene: Option<String>,
     /// How fine the mesh is: coarse, paper or fine
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
@@ -37,9 +42,58 @@ pub struct Arguments {
     json: JsonArgument,
 }
 
+#[derive(Debug, Subcommand)]
+enum Import {
+    /// Take another program's result of a scene into the store, as the reference `--resolution imported`
+    #[command(
+        after_help = "Example: impactcheck reference import my-impact.toml --from abaqus.csv --map examples/import/abaqus.toml"
+    )]
+    Import(ImportArguments),
+}
+
+#[derive(Debug, Args)]
+struct ImportArguments {
+    /// Scene file or the name of a shipped scene
+    scene: String,
+    /// The result: a table of text (.csv, .rpt, ...), or CalculiX's .dat or .frd
+    #[arg(long, value_name = "FILE")]
+    from: PathBuf,
+    /// How it is to be read (TOML): columns, units, signs, offsets, program, stated uncertainty [default: headings such as
+    /// `time [us],outer_velocity [mm/s]`]
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// Imports a reference and prints its summary.
+fn import(context: &Context, arguments: &ImportArguments) -> Result<ExitStatus> {
+    let (file, scene) = super::read_scene(&arguments.scene)?;
+    let store = context.store().for_scene_in(&file);
+    let stored = crate::reference::import(&scene, &arguments.from, arguments.map.as_deref(), &store)?;
+    context
+        .note(format_args!("imported {}; compare with it: --resolution imported", stored.folder.display()));
+    if stored.outcome.summary.uncertainty.is_empty() {
+        context.note("its uncertainty is not stated: whatever differs from it may be its own error");
+    }
+    show(&stored, arguments.json)
+}
+
+fn show(stored: &Stored, json: JsonArgument) -> Result<ExitStatus> {
+    if json.json {
+        super::print_json(&stored.outcome.summary)?;
+    } else {
+        super::print(&super::reduced::table(&stored.outcome.summary))?;
+    }
+    Ok(ExitStatus::Pass)
+}
+
 /// Finds or computes the reference and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let (file, scene) = super::read_scene(&arguments.scene)?;
+    if let Some(Import::Import(arguments)) = &arguments.import {
+        return import(context, arguments);
+    }
+    let (file, scene) = super::read_scene(arguments.scene.as_deref().unwrap_or_default())?;
     if arguments.np != 1 && scene.reference.geometry == Geometry::Axisymmetric {
         return Err(Error::Usage(format!(
             "--np {}: an axisymmetric reference runs as one process",
@@ -58,6 +112,11 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         Some(lookup @ Lookup::Damaged { .. }) => {
             let problem = problem(scene, resolution, &lookup);
             return Err(Error::Reference(format!("{problem}; `--fresh` computes it again")));
+        }
+        other if resolution == Resolution::Imported => {
+            let lookup = other.unwrap_or(Lookup::Missing);
+            let problem = problem(scene, resolution, &lookup);
+            return Err(Error::Reference(format!("{problem}; `impactcheck reference import` takes one in")));
         }
         other => {
             if let Some(lookup @ Lookup::Stale { .. }) = &other {
@@ -88,12 +147,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     for warning in &stored.outcome.summary.warnings {
         context.note(format_args!("warning: {warning}"));
     }
-    if arguments.json.json {
-        super::print_json(&stored.outcome.summary)?;
-    } else {
-        super::print(&super::reduced::table(&stored.outcome.summary))?;
-    }
-    Ok(ExitStatus::Pass)
+    show(&stored, arguments.json)
 }
 
 /// That a solution is consistent with itself and its scene, as every comparison asks.
@@ -103,14 +157,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
     let checks = comparison::integrity(scene, &stored.outcome);
     let broken = checks.iter().filter(|check| check.verdict == Verdict::Fail);
-    let broken: Vec<String> = broken
-        .map(|c| {
-            format!(
-                "{}: {:.6e} instead of {:.6e} {} (± {:.1e})",
-                c.check, c.found, c.expected, c.unit, c.bound
-            )
-        })
-        .collect();
+    let broken: Vec<String> = broken.map(ToString::to_string).collect();
     if broken.is_empty() {
         return Ok(());
     }

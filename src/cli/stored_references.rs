@@ -21,7 +21,7 @@ pub(super) fn look_up(
         let store = context.store().for_scene_in(file);
         match store.find_here_or_shipped(scene, resolution) {
             Lookup::Found(stored) => found.push(*stored),
-            Lookup::Missing | Lookup::Stale { .. } if compute => {
+            Lookup::Missing | Lookup::Stale { .. } if compute && resolution != Resolution::Imported => {
                 let wish = Wish::default();
                 found.push(reference::compute(context, scene, resolution, &store, &wish)?);
             }

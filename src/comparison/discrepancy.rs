@@ -143,16 +143,18 @@ impl Discrepancy {
     /// Row of a residual, which is small on both sides or wrong: each is gated by itself.
     pub(super) fn of_residual(
         quantity: &str,
-        (reduced, reference): (f64, f64),
+        (reduced, reference): (Option<f64>, Option<f64>),
         tolerance: Option<&Tolerance>,
     ) -> Self {
-        let scales = Scales { value: reference.abs(), peak: 1.0 };
-        let row = Discrepancy::new((quantity, "1"), (Some(reduced), Some(reference)), scales, None, None);
+        let scales = Scales { value: reference.map_or(f64::NAN, f64::abs), peak: 1.0 };
+        let row = Discrepancy::new((quantity, "1"), (reduced, reference), scales, None, None);
         // A residual is relative already: whatever the bound is called, it is the bound of the number.
         let bound = tolerance.and_then(|t| Bound::of(t, Scales { value: 1.0, peak: 1.0 }));
         let width = bound.map(|b| b.width);
         let verdict = width.map_or(row.verdict, |width| {
-            Verdict::worst([reduced, reference].map(|residual| Verdict::within(residual.abs(), 0.0, width)))
+            let of = |residual: Option<f64>| Verdict::within(residual.map_or(f64::NAN, f64::abs), 0.0, width);
+            // a reference that states none is judged as to that by nobody
+            Verdict::worst([Some(reduced), reference.map(Some)].into_iter().flatten().map(of))
         });
         Discrepancy { tolerance: width, verdict, ..row }
     }
@@ -302,7 +304,7 @@ mod tests {
     #[test]
     fn residuals_are_gated_on_both_sides() {
         let tolerance = Tolerance { absolute: Some(1e-5), ..Tolerance::default() };
-        let verdict = |a, b| Discrepancy::of_residual("r", (a, b), Some(&tolerance)).verdict;
+        let verdict = |a, b| Discrepancy::of_residual("r", (Some(a), Some(b)), Some(&tolerance)).verdict;
         assert_eq!(verdict(1e-6, 1e-6), Verdict::Pass);
         assert_eq!(verdict(1e-4, 1e-6), Verdict::Fail);
         assert_eq!(verdict(1e-6, -1e-4), Verdict::Fail);

@@ -47,7 +47,7 @@ mod tests {
     use super::{bounds, of_impact};
     use crate::comparison::Verdict;
     use crate::result::{Impact, Quantity, Table};
-    use crate::scene::{Model, Scene, Tolerance, Tolerances};
+    use crate::scene::{Scene, Tolerance, Tolerances};
 
     fn impact(efficiency: f64, plastic_work: f64, locked_in_energy: Option<f64>) -> Impact {
         let quantity = Quantity { name: "efficiency", unit: "1", is_count: false, value: Some(efficiency) };
@@ -99,7 +99,7 @@ mod tests {
             Scene::parse("repeated-impacts", &format!("{text}\n[tolerances.C]\n{key} = 0.04\n"))
         };
         let tolerances = &scene("impact_efficiency").unwrap().tolerances;
-        let bounds = tolerances.iter().find(|(model, _)| **model == Model::C).unwrap().1;
+        let bounds = &tolerances["C"];
         assert_eq!(bounds["impact_efficiency"].relative, Some(0.04));
         assert!(scene("impact_inner_contact_end").is_err());
     }

@@ -8,9 +8,12 @@ use super::impacts;
 use super::series;
 use super::verdict::Verdict;
 use crate::kinds::{self, Kind};
-use crate::result::{History, Outcome, Source, Statement, Summary};
+use crate::result::{Curve, History, Outcome, Source, Statement, Summary};
 use crate::scene::{Scene, Tolerances};
 use serde::Serialize;
+
+/// The check that a program which failed does not pass.
+pub const NO_RESULT: &str = "no_result";
 
 /// A statement about one result that must hold whatever the tolerances are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,6 +30,13 @@ pub struct Check {
     pub bound: f64,
     /// Whether it holds; a value that is not a number fails.
     pub verdict: Verdict,
+}
+
+impl std::fmt::Display for Check {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Check { check, unit, found, expected, bound, .. } = self;
+        write!(f, "{check}: {found:.6e} instead of {expected:.6e} {unit} (± {bound:.1e})")
+    }
 }
 
 impl From<Statement> for Check {
@@ -56,8 +66,8 @@ pub fn check(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
     checks.extend(series::contradictions(summary).map(|n| Check::count("contradictions_of_mesh_series", n)));
     if history.can_be_sampled() {
         checks.extend(sampling(summary, history));
-        checks.extend(kind.checks(scene, outcome).into_iter().map(Check::from));
     }
+    checks.extend(kind.checks(scene, outcome).into_iter().map(Check::from));
     checks
 }
 
@@ -73,26 +83,43 @@ pub(super) fn tolerances_are_used(tolerances: &Tolerances, rows: &[Discrepancy])
     Check::count("unknown_tolerances", unused.count())
 }
 
-/// Values are numbers, curves are complete, time increases. What a run has not determined is no value.
+/// Values are numbers, curves are complete, time increases. What a run has not determined is no value, nor is what another
+/// program does not state.
 fn form(kind: &dyn Kind, summary: &Summary, history: &History) -> Vec<Check> {
-    let curves = || kind.curves().iter().map(|curve| history.curve(curve.name).unwrap_or_default());
+    let curves = || kind.curves().iter().filter_map(stated_curve(summary.source, history));
+    // a solver of this program that states no residual has one that is no number
+    let residual = |stated: Option<f64>| match summary.source {
+        Source::External => stated,
+        _ => Some(stated.unwrap_or(f64::NAN)),
+    };
     let not_finite = curves()
         .flatten()
         .chain(&history.time)
         .copied()
         .chain(summary.quantities.iter().filter_map(|quantity| quantity.value))
-        .chain([summary.energy_residual, summary.momentum_residual])
+        .chain([summary.energy_residual, summary.momentum_residual].into_iter().filter_map(residual))
         .chain(summary.uncertainty.values().copied())
         .filter(|x| !x.is_finite())
         .count();
     let incomplete = curves().filter(|c| c.len() != history.len() || c.len() < 2).count();
+    let failed = summary.failure.as_ref().map(|_| Check::count(NO_RESULT, 1));
     let disordered =
         history.time.windows(2).filter(|w| w[0].partial_cmp(&w[1]) != Some(std::cmp::Ordering::Less));
-    vec![
+    let mut checks = vec![
         Check::count("not_finite", not_finite),
         Check::count("incomplete_curves", incomplete),
         Check::count("time_not_increasing", disordered.count()),
-    ]
+    ];
+    checks.extend(failed);
+    checks
+}
+
+/// The values of a curve in a history. Another program need not give all curves.
+fn stated_curve<'h>(source: Source, history: &'h History) -> impl Fn(&Curve) -> Option<&'h [f64]> {
+    move |curve| match history.curve(curve.name) {
+        None if source != Source::External => Some(&[]),
+        found => found,
+    }
 }
 
 /// The history has the samples that the summary states, at the distance it states.

@@ -20,7 +20,7 @@ mod verdict;
 pub use changed_tolerance::ChangedTolerance;
 pub use common_mesh::difference_band;
 pub use discrepancy::{BandVerdict, Discrepancy};
-pub use integrity::{Check, check as integrity};
+pub use integrity::{Check, NO_RESULT, check as integrity};
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
 pub use series::{ORDER, STANDARD_ERRORS};
 pub use verdict::{GateRules, Undecided, Verdict};
@@ -29,7 +29,7 @@ use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, align, peak};
 use crate::error::Result;
 use crate::kinds;
 use crate::measured::Measured;
-use crate::result::{Curve, Outcome, Quantity, SCHEMA_VERSION, Summary};
+use crate::result::{Curve, Outcome, Quantity, SCHEMA_VERSION, Source, Summary};
 use crate::scene::{Model, Scene, Tolerances};
 use budget::QuantityBudget;
 use discrepancy::Scales;
@@ -51,6 +51,11 @@ impl Comparison {
     pub fn new(scenes: Vec<SceneComparison>) -> Self {
         let verdict = Verdict::worst(scenes.iter().map(|s| s.verdict));
         Comparison { schema_version: SCHEMA_VERSION, verdict, scenes }
+    }
+
+    /// Whether a model of a scene has given no result at all.
+    pub fn lacks_a_result(&self) -> bool {
+        self.scenes.iter().flat_map(|scene| &scene.models).any(|model| model.summary.failure.is_some())
     }
 
     /// Name and verdict of every scene.
@@ -141,6 +146,19 @@ pub const AMONG: &str = "Largest discrepancy: the largest relative one among the
     one is 100 %, the distances of curves, and the conservation residuals.";
 
 impl ModelComparison {
+    /// Of a program that has failed: nothing can be compared, and that is a fail.
+    fn without_result(model: String, scene: &Scene, reduced: &Outcome) -> Self {
+        ModelComparison {
+            model,
+            summary: reduced.summary.clone(),
+            verdict: Verdict::Fail,
+            discrepancies: Vec::new(),
+            curves: Vec::new(),
+            integrity: integrity::check(scene, reduced),
+            aligned: Vec::new(),
+        }
+    }
+
     /// The worst of its rows' verdicts and of the soundness of both sides.
     fn judge(&mut self, reference_sound: Verdict) {
         let sound = Verdict::of_soundness(self.integrity.iter().map(|check| check.verdict));
@@ -229,15 +247,18 @@ fn compare_model(
     reference_sound: Verdict,
 ) -> ModelComparison {
     let name = reduced.summary.model.clone().unwrap_or_default();
+    if reduced.summary.failure.is_some() {
+        return ModelComparison::without_result(name, scene, reduced);
+    }
     let none = Tolerances::new();
-    let tolerances = name.parse::<Model>().ok().and_then(|m| scene.tolerances.get(&m)).unwrap_or(&none);
+    let tolerances = scene.tolerances.get(&name).unwrap_or(&none);
     let aligned = window.map_or_else(Vec::new, |w| align(w, &reference.history, &reduced.history));
 
     let kind = kinds::of(scene);
     let (m, c) = (&reference.summary, &reduced.summary);
     let mut discrepancies = quantities(kind, reference, c, tolerances);
     discrepancies.extend(impacts::rows(m, c, tolerances));
-    discrepancies.extend(curve_distances(kind.curves(), m, &aligned, tolerances));
+    discrepancies.extend(curve_distances(kind.curves(), [reference, reduced], &aligned, tolerances));
     discrepancies.extend(residuals(m, c, tolerances));
     undecided::tell(&mut discrepancies, m);
     let mut integrity = integrity::check(scene, reduced);
@@ -275,17 +296,19 @@ fn quantities(
             (name, unit),
             (reduced.value(name), value),
             Scales { value: size, peak },
-            tolerances.get(name),
+            // what another program's result does not state can't be judged by it
+            tolerances.get(name).filter(|_| value.is_some() || reference.summary.source != Source::External),
             reference.summary.band(name),
         )
     };
     kind.quantities().iter().map(row).collect()
 }
 
-/// The rows of root mean square and largest distance of every curve; NaN where it can't be measured.
+/// The rows of root mean square and largest distance of every curve; NaN where it can't be measured, undetermined where
+/// another program does not give the curve.
 fn curve_distances(
     curves: &[Curve],
-    reference: &Summary,
+    sides: [&Outcome; 2],
     aligned: &[AlignedCurve],
     tolerances: &Tolerances,
 ) -> Vec<Discrepancy> {
@@ -293,6 +316,10 @@ fn curve_distances(
     for Curve { name, unit, .. } in curves {
         let found = aligned.iter().find(|a| a.quantity == *name);
         let peak = found.map_or(f64::NAN, AlignedCurve::peak);
+        let lacks =
+            |side: &Outcome| side.summary.source == Source::External && side.history.curve(name).is_none();
+        let is_given = !sides.into_iter().any(lacks);
+        let is_judged = !lacks(sides[0]);
         let distances = [
             ("rms", found.map_or(f64::NAN, AlignedCurve::rms)),
             ("max", found.map_or(f64::NAN, AlignedCurve::largest_difference)),
@@ -301,10 +328,10 @@ fn curve_distances(
             let quantity = format!("{name}_{kind}");
             rows.push(Discrepancy::new(
                 (&quantity, unit),
-                (Some(distance), Some(0.0)),
+                (Some(distance).filter(|_| is_given), Some(0.0)),
                 Scales { value: peak, peak },
-                tolerances.get(&quantity),
-                reference.band(&quantity),
+                tolerances.get(&quantity).filter(|_| is_judged),
+                sides[0].summary.band(&quantity),
             ));
         }
     }

@@ -59,7 +59,7 @@ pub(super) fn contradictions(summary: &Summary) -> Option<usize> {
             || summary.value(name).is_some_and(|value| value != values[0])
             || !summary.band(name).is_some_and(|stated| agree(stated, band(values, &sizes)))
     };
-    let run = |finest: &Mesh| (finest.energy_residual, finest.steps);
+    let run = |finest: &Mesh| (Some(finest.energy_residual), Some(finest.steps));
     let run_differs = meshes.first().map(run) != Some((summary.energy_residual, summary.steps));
     let contradicting = quantities.iter().filter(contradicts).count();
     Some(unfounded + without_series + contradicting + usize::from(run_differs))

@@ -89,7 +89,7 @@ pub(crate) fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |p, v| p.max(v.abs()))
 }
 
-/// Every curve of both histories on the reference's window `axis`; empty if one can't be sampled.
+/// Every curve that both histories have on the reference's window `axis`; none if one can't be sampled.
 ///
 /// Between samples the curves are interpolated by monotone cubics. If the reduced history ends
 /// inside the window with both contacts open, the spheres fly on freely: constant velocity, no
@@ -99,6 +99,7 @@ pub fn align(axis: CommonAxis, reference: &History, reduced: &History) -> Vec<Al
     if !reference.can_be_sampled() || !reduced.can_be_sampled() {
         return Vec::new();
     }
+    let given = |curve: &&Curve| reduced.curve(curve.name).is_some();
     let aligned = |&Curve { name: quantity, unit, .. }: &Curve| {
         let axis = axis.cut(covered_until(quantity, reduced));
         let of = |history: &History| sampled(quantity, history, &axis);
@@ -110,7 +111,7 @@ pub fn align(axis: CommonAxis, reference: &History, reduced: &History) -> Vec<Al
             reduced: of(reduced),
         })
     };
-    reference.curves.iter().filter_map(aligned).collect()
+    reference.curves.iter().filter(given).filter_map(aligned).collect()
 }
 
 /// One curve of a history on a common axis.

@@ -8,6 +8,7 @@ mod interpolation;
 mod iso18571;
 mod russell;
 mod sprague_geers;
+pub mod table;
 
 pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
 pub(crate) use alignment::{at, peak};

@@ -110,8 +110,14 @@ pub fn compare(
     }
     let curves = sampled(first, window);
     let efficiency = Series::of(records.iter().filter_map(|record| record.efficiency).collect());
-    let outcomes = std::iter::once(("reference".to_owned(), reference))
-        .chain(reduced.iter().map(|outcome| (outcome.summary.model.clone().unwrap_or_default(), outcome)));
+    // another program need not give the curves that are measured
+    let shows = |outcome: &&Outcome| SIGNALS.iter().all(|signal| outcome.history.curve(signal).is_some());
+    let outcomes = std::iter::once(("reference".to_owned(), reference)).chain(
+        reduced
+            .iter()
+            .filter(shows)
+            .map(|outcome| (outcome.summary.model.clone().unwrap_or_default(), outcome)),
+    );
     let partners = outcomes
         .map(|(partner, outcome)| {
             let filtered = Filtered::new(&outcome.history, bandwidth)?;

@@ -1,14 +1,14 @@
 //! A record from a CSV file: times and signals with their units in the header.
 
+use super::filter::SIGNALS;
+use crate::curves::table::{self, Columns};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::CURVES;
-use crate::scene::quantity_in;
+use crate::result::Curve;
 use std::path::{Path, PathBuf};
 
 /// Fewest samples of a record.
 const FEWEST: usize = 32;
-/// Most of them: a second at 20 MHz.
-const MOST: usize = 20_000_000;
 
 /// One measured signal.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,10 +29,6 @@ pub struct Record {
     /// The signals, one at least.
     pub channels: Vec<Channel>,
 }
-
-/// What a column can hold.
-const COLUMNS: [&str; 5] =
-    ["time", "outer_displacement", "outer_velocity", "inner_displacement", "inner_velocity"];
 
 impl Record {
     /// Reads a CSV file whose header names quantity and unit, such as `time [us]`, `outer_velocity [mm/s]`; without unit a
@@ -57,53 +53,13 @@ impl Record {
     }
 
     fn parse(path: &Path, bytes: &[u8]) -> std::result::Result<Self, String> {
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(true)
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .from_reader(bytes);
+        let known: Vec<Curve> =
+            CURVES.iter().filter(|curve| SIGNALS.contains(&curve.name)).cloned().collect();
+        let mut reader = table::csv_reader(bytes, b',');
         let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
-        let columns: Vec<(&'static str, f64)> =
-            header.iter().map(column).collect::<std::result::Result<_, _>>()?;
-        for (k, (name, _)) in columns.iter().enumerate() {
-            if columns[..k].iter().any(|(other, _)| other == name) {
-                return Err(format!("two columns are called `{name}`"));
-            }
-        }
-        let Some(clock) = columns.iter().position(|(name, _)| *name == "time") else {
-            return Err("there is no column `time`".into());
-        };
-        if columns.len() < 2 {
-            return Err("there is no signal beside the time".into());
-        }
-        let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
-        for row in reader.records() {
-            let row = row.map_err(|e| e.to_string())?;
-            let line = row.position().map_or(0, csv::Position::line);
-            for ((values, (name, factor)), text) in values.iter_mut().zip(&columns).zip(row.iter()) {
-                let number: f64 = text
-                    .parse()
-                    .ok()
-                    .filter(|n: &f64| n.is_finite())
-                    .ok_or_else(|| format!("line {line}: {name} is `{text}`, not a finite number"))?;
-                values.push(number * factor);
-            }
-            if let [.., before, now] = values[clock][..]
-                && now <= before
-            {
-                return Err(format!("line {line}: time is {now} s, not after {before} s of the line before"));
-            }
-            if values[clock].len() > MOST {
-                return Err(format!("has more than {MOST} samples"));
-            }
-        }
-        let samples = values[clock].len();
-        if samples < FEWEST {
-            return Err(format!("has {samples} samples; at least {FEWEST} are needed"));
-        }
-        let time = std::mem::take(&mut values[clock]);
-        let signals = columns.iter().zip(values).filter(|((name, _), _)| *name != "time");
-        let channels = signals.map(|((quantity, _), values)| Channel { quantity, values }).collect();
+        let columns = table::by_heading(&header, &known)?;
+        let Columns { time, values } = table::read(&mut reader, &columns, FEWEST)?;
+        let channels = values.into_iter().map(|(quantity, values)| Channel { quantity, values }).collect();
         Ok(Record { file: path.to_path_buf(), time, channels })
     }
 
@@ -111,33 +67,6 @@ impl Record {
     pub fn channel(&self, quantity: &str) -> Option<&Channel> {
         self.channels.iter().find(|channel| channel.quantity == quantity)
     }
-}
-
-/// Name and size in SI of the column with this heading.
-fn column(heading: &str) -> std::result::Result<(&'static str, f64), String> {
-    let (name, unit) = match heading.split_once('[') {
-        Some((name, unit)) => {
-            let unit = unit.strip_suffix(']').ok_or_else(|| format!("column `{heading}`: `]` is missing"))?;
-            (name.trim(), Some(unit.trim()))
-        }
-        None => (heading, None),
-    };
-    let Some(known) = COLUMNS.into_iter().find(|column| *column == name) else {
-        let hint = crate::scene::suggestion(name, COLUMNS).map(|near| format!("; did you mean `{near}`?"));
-        return Err(format!(
-            "`{name}` is no column of a measured file{} (there are: {})",
-            hint.unwrap_or_default(),
-            COLUMNS.join(", ")
-        ));
-    };
-    let si = CURVES.iter().find(|curve| curve.name == known).map_or("s", |curve| curve.unit);
-    let factor = match unit {
-        None => 1.0,
-        Some(unit) => {
-            quantity_in(&format!("1 {unit}"), si).map_err(|reason| format!("column `{heading}`: {reason}"))?
-        }
-    };
-    Ok((known, factor))
 }
 
 #[cfg(test)]

@@ -96,7 +96,7 @@ fn next_line(reader: &mut impl BufRead) -> std::io::Result<Option<String>> {
 }
 
 /// The last lines of a stream, read to its end so that the writer never waits.
-fn tail(stream: impl Read) -> String {
+pub(crate) fn tail(stream: impl Read) -> String {
     let mut reader = BufReader::new(stream);
     let mut lines = VecDeque::new();
     while let Ok(Some(line)) = next_line(&mut reader) {

@@ -55,6 +55,8 @@ const MESH_HEAD: u64 = 4096;
 pub(super) enum MeshFiles {
     Required,
     Optional,
+    /// Another program's result has none.
+    None,
 }
 
 /// Verifies the folder's checksums and reads it; what the solver can't know, how near the solution comes to the bounds of its
@@ -62,27 +64,31 @@ pub(super) enum MeshFiles {
 pub(super) fn load(scene: &Scene, folder: &Path, mesh_files: MeshFiles) -> Result<Stored, Damage> {
     verify(folder, mesh_files)?;
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
-    let kind = kinds::of(scene);
+    let (kind, is_imported) = (kinds::of(scene), mesh_files == MeshFiles::None);
     let mut summary = Summary::read(kind.quantities(), &text(folder, SUMMARY)?)
         .map_err(|e| damage(SUMMARY, format!("is not what is expected: {e}")))?;
     let provenance: Value = read_json(folder, PROVENANCE)?;
-    let (history, bands) =
-        history_file::read(kind.curves(), &folder.join(HISTORY)).map_err(|reason| damage(HISTORY, reason))?;
+    let (history, bands) = history_file::read(kind.curves(), &folder.join(HISTORY), is_imported)
+        .map_err(|reason| damage(HISTORY, reason))?;
     if summary.schema_version != SCHEMA_VERSION {
         let reason =
             format!("schema_version is {}; this program reads {SCHEMA_VERSION}", summary.schema_version);
         return Err(damage(SUMMARY, reason));
     }
-    if summary.source != Source::Reference {
-        return Err(damage(SUMMARY, "source is not `reference`".to_owned()));
+    let (source, word) =
+        if is_imported { (Source::External, "external") } else { (Source::Reference, "reference") };
+    if summary.source != source {
+        return Err(damage(SUMMARY, format!("source is not `{word}`")));
     }
     if provenance["scene_hash"] != summary.scene_hash.as_str() {
         let reason =
             format!("scene_hash is {}, but {} in {SUMMARY}", provenance["scene_hash"], summary.scene_hash);
         return Err(damage(PROVENANCE, reason));
     }
-    let dofs = finest_dofs(&summary).ok_or_else(|| damage(SUMMARY, NO_SERIES.to_owned()))?;
-    check_mesh(folder, dofs).map_err(|reason| damage(MESH, reason))?;
+    if !is_imported {
+        let dofs = finest_dofs(&summary).ok_or_else(|| damage(SUMMARY, NO_SERIES.to_owned()))?;
+        check_mesh(folder, dofs).map_err(|reason| damage(MESH, reason))?;
+    }
     check_bands(&summary, bands.as_ref()).map_err(|reason| damage(HISTORY, reason))?;
     kind.judge(scene, &mut summary, Some(&history));
     Ok(Stored {
@@ -156,7 +162,8 @@ fn verify(folder: &Path, mesh_files: MeshFiles) -> Result<(), Damage> {
     let text = std::fs::read_to_string(folder.join(CHECKSUMS))
         .map_err(|e| damage(CHECKSUMS, format!("can't be read: {e}")))?;
     let listed = parse_checksums(&text).map_err(|reason| damage(CHECKSUMS, reason))?;
-    if let Some(name) = REQUIRED.iter().find(|name| !listed.contains_key(**name)) {
+    let needed = |name: &&&str| mesh_files != MeshFiles::None || **name != MESH;
+    if let Some(name) = REQUIRED.iter().filter(needed).find(|name| !listed.contains_key(**name)) {
         return Err(damage(CHECKSUMS, format!("does not list {name}")));
     }
     let left_out = |name: &str| {

@@ -21,6 +21,8 @@ pub struct FieldMesh {
     pub bodies: Vec<usize>,
     /// Von Mises stress at each element's midpoint in Pa, if the file has it. Shape (quads.len()).
     pub von_mises: Option<Vec<f64>>,
+    /// Accumulated plastic strain of each element after the last impact, if the file has it. Shape (quads.len()).
+    pub plastic_strain: Option<Vec<f64>>,
     /// Displacement along r and z of the nodes in m, if the file has it. Shape (points.len()).
     pub displacement: Option<Vec<[f64; 2]>>,
 }
@@ -142,17 +144,19 @@ fn parse(text: &str) -> Result<FieldMesh, String> {
     let quads: Vec<[usize; 4]> = nodes.chunks_exact(4).map(|q| [q[0], q[1], q[2], q[3]]).collect();
     let bodies: Vec<usize> = arrays.needed("CellData", "body")?.iter().map(|b| *b as usize).collect();
     let von_mises = arrays.get("CellData", "von_mises")?;
+    let plastic_strain = arrays.get("CellData", "plastic_strain")?;
     let displacement = arrays.get("PointData", "displacement")?;
     let displacement: Option<Vec<[f64; 2]>> =
         displacement.map(|vectors| vectors.chunks_exact(3).map(|v| [v[0], v[1]]).collect());
-    let lengths = [Some(bodies.len()), von_mises.as_ref().map(Vec::len)];
+    let [stresses, strains] = [&von_mises, &plastic_strain].map(|values| values.as_ref().map(Vec::len));
+    let lengths = [Some(bodies.len()), stresses, strains];
     if quads.is_empty() || lengths.into_iter().flatten().any(|n| n != quads.len()) {
         return Err("the numbers of cells and of their data differ".into());
     }
     if displacement.as_ref().is_some_and(|vectors| vectors.len() != points.len()) {
         return Err("the numbers of points and of their displacements differ".into());
     }
-    Ok(FieldMesh { points, quads, bodies, von_mises, displacement })
+    Ok(FieldMesh { points, quads, bodies, von_mises, plastic_strain, displacement })
 }
 
 /// Values of a `DataArray`.

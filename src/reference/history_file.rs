@@ -39,16 +39,22 @@ fn columns(header: &csv::StringRecord, curves: &[Curve]) -> Option<Vec<Column>> 
 }
 
 /// Reads a history: the time and these curves, finite numbers, strictly increasing time, one row at least; and the bands of
-/// the curves, if the file has them.
+/// the curves, if the file has them. Another program's file may lack curves.
 ///
 /// # Errors
 /// One sentence with line, column and value.
-pub(super) fn read(curves: &[Curve], path: &Path) -> Result<(History, Option<CurveBands>), String> {
+pub(super) fn read(
+    curves: &[Curve],
+    path: &Path,
+    may_lack_curves: bool,
+) -> Result<(History, Option<CurveBands>), String> {
     let mut reader = csv::Reader::from_path(path).map_err(|e| format!("can't be read: {e}"))?;
     let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
     if header.is_empty() {
         return Err("has no sample".to_owned());
     }
+    let given = |curve: &&Curve| !may_lack_curves || header.iter().any(|name| name == curve.name);
+    let curves: &[Curve] = &curves.iter().filter(given).cloned().collect::<Vec<_>>();
     let columns = columns(&header, curves).ok_or_else(|| {
         let found: Vec<&str> = header.iter().take(12).collect();
         let expected: Vec<&str> = curves.iter().map(|curve| curve.name).collect();

@@ -2,23 +2,28 @@
 
 use super::Resolution;
 use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
-use crate::scene::{Scene, Setup, unit_of};
+use crate::scene::{Geometry, Scene, Setup, unit_of};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Counts changes of `fem_reference` that change the results of a kind of scene; raising it makes their stored solutions
+/// Counts changes of `fem_reference` that change the results of a kind of scene and geometry; raising it makes their stored solutions
 /// stale.
 pub fn revision(scene: &Scene) -> u32 {
-    match scene.setup {
-        Setup::PlateImpact(_) => 4,
-        Setup::SealSeat(_) => 3,
+    match (&scene.setup, scene.reference.geometry) {
+        (Setup::PlateImpact(_), Geometry::Axisymmetric) => 4,
+        (Setup::PlateImpact(_), Geometry::Solid) => 5,
+        (Setup::SealSeat(_), _) => 4,
     }
 }
 
 /// SHA-256 (hexadecimal) of how the reference of `scene` is computed: its settings, the
 /// resolution and the revision of the method.
 pub fn settings_hash(scene: &Scene, resolution: Resolution) -> String {
+    if resolution == Resolution::Imported {
+        // whatever this program would do differently, another's result stays
+        return sha256_hex(canonical(&json!({ "resolution": resolution })).as_bytes());
+    }
     let settings = json!({
         "reference": scene.reference, "resolution": resolution, "revision": revision(scene),
     });
@@ -31,7 +36,7 @@ pub(super) fn solver_document(scene: &Scene, resolution: Resolution) -> Result<V
     let mut document = serde_json::to_value(scene).map_err(failed)?;
     let fields =
         document.as_object_mut().ok_or_else(|| Error::Internal("the scene is no JSON object".into()))?;
-    for foreign in ["reduced", "tolerances"] {
+    for foreign in ["reduced", "tolerances", "external"] {
         fields.remove(foreign);
     }
     fields.insert("scene_hash".into(), scene.hash().into());

@@ -5,11 +5,13 @@
 
 mod child;
 mod curve_bands;
+mod dents;
 mod doctor;
 mod entry;
 mod fields;
 mod history_file;
 mod identity;
+mod import;
 mod modes;
 mod python;
 mod seat_mesh;
@@ -19,11 +21,14 @@ mod store;
 mod turn;
 
 pub use child::Progress;
+pub(crate) use child::tail;
 pub use curve_bands::CurveBands;
+pub use dents::Dents;
 pub use doctor::{Check, doctor};
 pub use entry::Stored;
 pub use fields::FieldMesh;
 pub use identity::{revision, settings_hash};
+pub use import::import;
 pub use modes::{plate_modes, seat_frequencies};
 pub use python::python;
 pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_mesh_with, seat_meshes};
@@ -45,6 +50,8 @@ pub enum Resolution {
     Fine,
     /// As many as bring the 95 % band of efficiency and force peaks down to an error.
     Within(TargetError),
+    /// None of this program's: another program's result.
+    Imported,
 }
 
 impl Resolution {
@@ -57,11 +64,17 @@ impl Resolution {
             Resolution::Coarse | Resolution::Within(_) => "coarse",
             Resolution::Paper => "paper",
             Resolution::Fine => "fine",
+            Resolution::Imported => "imported",
         }
     }
 }
 
 impl Resolution {
+    /// The one of a fixed name.
+    fn named(name: &str) -> Option<Self> {
+        Resolution::ALL.into_iter().chain([Resolution::Imported]).find(|r| r.first() == name)
+    }
+
     /// The resolution of the entry called `name` in the store.
     fn of_folder(name: &str) -> Option<Self> {
         let millionths = name.strip_prefix("error-").and_then(|rest| rest.strip_suffix("ppm"));
@@ -70,7 +83,7 @@ impl Resolution {
                 let parts_per_million = number.parse().ok()?;
                 Some(Resolution::Within(TargetError { parts_per_million }))
             }
-            None => Resolution::ALL.into_iter().find(|r| r.first() == name),
+            None => Resolution::named(name),
         }
     }
 
@@ -79,7 +92,7 @@ impl Resolution {
         match self {
             Resolution::Paper => Some(Resolution::Coarse),
             Resolution::Fine => Some(Resolution::Paper),
-            Resolution::Coarse | Resolution::Within(_) => None,
+            Resolution::Coarse | Resolution::Within(_) | Resolution::Imported => None,
         }
     }
 
@@ -112,11 +125,11 @@ impl std::str::FromStr for Resolution {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = Resolution::ALL.into_iter().find(|r| r.first() == text);
+        let found = Resolution::named(text);
         let within = || text.contains('%').then(|| text.parse().map(Resolution::Within));
         let unknown = || {
             format!(
-                "`{text}` is not a resolution; there are coarse, paper, fine, and errors such as 0.2% (as of --target-error)"
+                "`{text}` is not a resolution; there are coarse, paper, fine, errors such as 0.2% (as of --target-error), and imported"
             )
         };
         found.map(Ok).or_else(within).unwrap_or_else(|| Err(unknown()))

@@ -319,7 +319,11 @@ fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
         }
         Ok(_) => {}
     }
-    let stored = match entry::load(scene, folder, entry::MeshFiles::Optional) {
+    let mesh_files = match resolution {
+        Resolution::Imported => entry::MeshFiles::None,
+        _ => entry::MeshFiles::Optional,
+    };
+    let stored = match entry::load(scene, folder, mesh_files) {
         Ok(stored) => stored,
         Err(damage) => return damage.into(),
     };

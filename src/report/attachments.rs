@@ -4,7 +4,7 @@ use super::{Film, presentation};
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
 use crate::coverage::Coverage;
-use crate::reference::{CurveBands, FieldMesh, MeshSection, Stored};
+use crate::reference::{CurveBands, Dents, FieldMesh, MeshSection, Stored};
 use crate::result::History;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -20,6 +20,8 @@ pub struct Attachments {
     pub mesh: Option<FieldMesh>,
     /// Its stress at the instant (s) kept that is nearest to the largest force.
     pub stress: Option<(f64, FieldMesh)>,
+    /// The surfaces that its impacts left, of bodies that yield.
+    pub dents: Vec<Dents>,
     /// Section of a solid reference's mesh in the plane of symmetry.
     pub section: Option<MeshSection>,
     /// Its stress at the instant (s) kept that is nearest to the largest force.

@@ -4,9 +4,10 @@ use super::SceneReport;
 use crate::curves::sample;
 use crate::error::{Error, Result};
 use crate::kinds;
+use crate::result::Curve;
 
 /// CSV, eight significant digits, with the columns `time`, then `<source>_<curve>` for the reference and every model. A cell
-/// is empty where the result doesn't cover the axis; without a common axis there is only the header.
+/// is empty where the result doesn't cover the axis or has no such curve; without a common axis there is only the header.
 ///
 /// # Errors
 /// [`Error::Internal`] if it can't be written.
@@ -26,8 +27,11 @@ pub fn curves_csv(report: &SceneReport) -> Result<String> {
             .iter()
             .flat_map(|(_, history)| {
                 let sampled = sample(axis, history);
-                let missing = if sampled.is_empty() { curves.len() } else { 0 };
-                sampled.into_iter().map(|c| c.values).chain(vec![Vec::new(); missing])
+                let values = move |curve: &Curve| {
+                    let found = sampled.iter().find(|found| found.quantity == curve.name);
+                    found.map_or_else(Vec::new, |found| found.values.clone())
+                };
+                curves.iter().map(values)
             })
             .collect();
         for k in 0..axis.samples {

@@ -1,6 +1,7 @@
 //! All discrepancies of a scene in one picture: quantities in rows, a mark per model on a symmetric logarithmic axis, over the
 //! reference's band and the tolerances. Abscissas are per cents of the row's width, so that type keeps its size on any screen.
 
+use super::colours::{MODELS, class_of};
 use super::format::{minus, model_name, percent, words};
 use super::html::named;
 use super::symmetric_log::SymmetricLog;
@@ -87,10 +88,10 @@ fn row(quantity: &str, comparison: &SceneComparison, axis: &SymmetricLog, grid: 
             @if let Some((row, relative)) = row.and_then(|row| Some((row, row.relative?))) {
                 @if let Some((width, scale)) = row.tolerance.zip(row.scale()) {
                     @let about = row.bias.unwrap_or(0.0);
-                    (bar(&format!("fig-tolerance fig-{}", model.model), axis, [(about - width) / scale, (about + width) / scale], (middle - 2.5, "5")))
+                    (bar(&format!("fig-tolerance {}", class_of(&model.model)), axis, [(about - width) / scale, (about + width) / scale], (middle - 2.5, "5")))
                 }
                 @if let Some(largest) = largest(quantity, model) {
-                    line class=(format!("fig-{}", model.model)) x1=(at(axis, relative)) x2=(at(axis, largest)) y1=(middle) y2=(middle) {}
+                    line class=(class_of(&model.model)) x1=(at(axis, relative)) x2=(at(axis, largest)) y1=(middle) y2=(middle) {}
                 }
                 svg x=(at(axis, relative)) y=(middle) overflow="visible" data-model=(model.model) data-si=(relative) {
                     title { (model.model) ": " (percent(Some(relative))) }
@@ -131,17 +132,18 @@ pub(super) fn bar(
 
 /// The mark of a model: told apart by shape as well as by colour.
 pub(super) fn mark_of(model: &str) -> Markup {
-    let shape = ["A", "B"].iter().position(|name| *name == model);
-    mark(shape.unwrap_or(2), &format!("fig-{model}"))
+    let shape = MODELS.iter().position(|(name, _)| *name == model);
+    mark(shape.unwrap_or(MODELS.len()), class_of(model))
 }
 
-/// A mark about the origin: triangle, square or circle.
+/// A mark about the origin: triangle, square, circle or diamond.
 pub(super) fn mark(shape: usize, class: &str) -> Markup {
     let class = format!("mark {class}");
     match shape {
         0 => html! { path class=(class) d="M-4.5 3.6H4.5L0-4.4Z" {} },
         1 => html! { path class=(class) d="M-3.6-3.6H3.6V3.6H-3.6Z" {} },
-        _ => html! { circle class=(class) r="4" {} },
+        2 => html! { circle class=(class) r="4" {} },
+        _ => html! { path class=(class) d="M0-5L4.2 0L0 5L-4.2 0Z" {} },
     }
 }
 

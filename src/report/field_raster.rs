@@ -259,6 +259,7 @@ mod tests {
             quads: vec![[0, 1, 2, 3]],
             bodies: vec![1],
             von_mises: None,
+            plastic_strain: None,
             displacement: None,
         }
     }

@@ -1,10 +1,11 @@
 //! The curves of a figure, result by result, and how they are drawn.
 
 use super::SceneReport;
+use super::colours::class_of;
 use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::measured::Measured;
-use crate::result::Outcome;
+use crate::result::{Outcome, Summary};
 
 /// Curves of one result, and how they are drawn.
 pub(super) struct Line {
@@ -23,13 +24,19 @@ pub(super) fn dash(model: &str) -> &'static str {
     match model {
         "A" => "2 2.6",
         "B" => "7 3",
-        _ => "9 2.5 2 2.5",
+        "C" => "9 2.5 2 2.5",
+        _ => "3 2",
     }
+}
+
+/// What the reference is called: that of another program by the program's name.
+pub(super) fn reference_name(reference: &Summary) -> String {
+    reference.model.clone().unwrap_or_else(|| "FE reference".into())
 }
 
 pub(super) fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
     let reference = Line {
-        name: "FE reference".into(),
+        name: reference_name(&report.reference.summary),
         short: "FE".into(),
         class: "fig-reference".into(),
         dash: "none",
@@ -38,12 +45,13 @@ pub(super) fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
         curves: sample(axis, &report.reference.history),
         bands: bands(report, axis),
     };
-    let reduced = report.reduced.iter().map(|outcome| {
+    let with_curves = report.reduced.iter().filter(|outcome| outcome.summary.failure.is_none());
+    let reduced = with_curves.map(|outcome| {
         let model = outcome.summary.model.clone().unwrap_or_default();
         Line {
             name: format!("model {}", model_name(&model, outcome.summary.modes)),
             dash: dash(&model),
-            class: format!("fig-{model}"),
+            class: class_of(&model).into(),
             width: 1.7,
             efficiency: efficiency(outcome),
             curves: sample(axis, &outcome.history),
@@ -85,7 +93,7 @@ pub(super) fn measured_lines(measured: &Measured) -> Vec<Line> {
         Line {
             name,
             short: if reference { "FE".into() } else { partner.partner.clone() },
-            class: format!("fig-{}", partner.partner),
+            class: if reference { "fig-reference" } else { class_of(&partner.partner) }.into(),
             dash: if reference { "none" } else { dash(&partner.partner) },
             width: if reference { 2.1 } else { 1.7 },
             efficiency: partner.efficiency.unwrap_or(f64::NAN),

@@ -3,7 +3,7 @@
 
 use super::Report;
 use super::format::{percent, short};
-use crate::comparison::{Check, Discrepancy, GateRules, SceneComparison, Undecided, Verdict};
+use crate::comparison::{Check, Discrepancy, GateRules, NO_RESULT, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, Result};
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
@@ -152,6 +152,9 @@ fn in_unit(number: String, unit: &str) -> String {
 
 /// What is wrong with a check, in one sentence with numbers, unit and bound.
 pub(crate) fn integrity_failure(check: &Check) -> String {
+    if check.check == NO_RESULT {
+        return "there is no result to compare".into();
+    }
     // all digits: many of these bounds are a matter of rounding
     let Check { check, unit, found, expected, bound, .. } = check;
     let [found, expected, bound] = [found, expected, bound].map(|value| in_unit(value.to_string(), unit));

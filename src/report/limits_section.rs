@@ -1,7 +1,7 @@
 //! How near models and reference come to the bounds of the theories behind them.
 
 use super::discrepancy_section::pressures;
-use super::format::{significant, words};
+use super::format::{prefixed, significant, with_unit, words};
 use super::html::scrolled;
 use crate::comparison::SceneComparison;
 use crate::result::{Limit, Summary};
@@ -30,11 +30,26 @@ pub(super) fn limits_html(comparison: &SceneComparison) -> Markup {
                     @for summary in &summaries { (value(summary, &limit.measure)) }
                 } } }
             } }))
-            @if !measures.iter().any(|limit| limit.is_of_yield()) {
+            @for model in models() { (elastic_limit(model)) }
+            @if !measures.iter().any(|limit| limit.is_of_yield()) && models().all(|model| model.elastic_limit.is_none()) {
                 p { "Elastic limit not checked: no yield strength given (" code { "yield_strength" } " of a material)." }
             }
             @if let Some(pressure) = &comparison.reference.contact_pressure { (pressures("Reference", pressure)) }
         }
+    }
+}
+
+/// Up to which speed a model's contacts stay elastic, where it knows.
+fn elastic_limit(model: &Summary) -> Markup {
+    let Some(limit) = &model.elastic_limit else { return html! {} };
+    let told = |speed: Option<f64>| {
+        speed.map_or("at no speed found".into(), |speed| {
+            format!("up to {}", with_unit(speed, prefixed("m/s", speed), 3))
+        })
+    };
+    html! {
+        p { "Elastic limit, model " (model.model.as_deref().unwrap_or_default()) ": nothing yields in the outer contact "
+            (told(limit.outer)) ", in the inner one " (told(limit.inner)) ", of the outer body's speed." }
     }
 }
 

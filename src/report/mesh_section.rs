@@ -3,7 +3,7 @@
 use super::SceneReport;
 use super::field_raster::{Raster, View};
 use super::format::{prefixed, with_unit};
-use super::section_frame::{Bounds, Frame};
+use super::section_frame::{Bounds, Frame, Scale};
 use crate::error::Result;
 use crate::reference::FieldMesh;
 use base64::Engine;
@@ -34,7 +34,7 @@ pub(super) fn mesh_html(report: &SceneReport) -> Result<Markup> {
             let share = if k == 0 { 1.0 } else { SHARE_IN_SCALE };
             let largest = Raster::within(stress, values, share, view, PIXELS);
             let raster = Raster::field(stress, values, largest, view, PIXELS);
-            stresses.push(picture(&raster, view, Some(largest), &format!("stress-{k}"))?);
+            stresses.push(picture(&raster, view, Some(Scale::von_mises(largest)), &format!("stress-{k}"))?);
         }
     }
     Ok(html! {
@@ -59,15 +59,21 @@ pub(super) fn mesh_html(report: &SceneReport) -> Result<Markup> {
     })
 }
 
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+/// z of the plate's lower and upper face, m.
+pub(super) fn face_heights(mesh: &FieldMesh) -> [f64; 2] {
+    let plate = mesh.quads.iter().zip(&mesh.bodies).filter(|(_, body)| **body == PLATE).flat_map(|(q, _)| q);
+    range(plate.map(|n| mesh.points[*n][1]))
+}
+
 /// The contact, and everything.
 fn views(mesh: &FieldMesh, report: &SceneReport) -> Option<[View; 2]> {
-    let range = |values: &mut dyn Iterator<Item = f64>| {
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
-    };
-    let (_, radius) = range(&mut mesh.points.iter().map(|p| p[0]));
-    let (low, high) = range(&mut mesh.points.iter().map(|p| p[1]));
-    let plate = mesh.quads.iter().zip(&mesh.bodies).filter(|(_, body)| **body == PLATE).flat_map(|(q, _)| q);
-    let (bottom, top) = range(&mut plate.map(|n| mesh.points[*n][1]));
+    let [_, radius] = range(mesh.points.iter().map(|p| p[0]));
+    let [low, high] = range(mesh.points.iter().map(|p| p[1]));
+    let [bottom, top] = face_heights(mesh);
     let zone = report.provenance["settings"]["contact_zone"].as_f64().unwrap_or(0.0);
     let half = (1.5 * (top - bottom)).max(3.0 * zone).min(radius);
     let middle = 0.5 * (top + bottom);
@@ -77,11 +83,11 @@ fn views(mesh: &FieldMesh, report: &SceneReport) -> Option<[View; 2]> {
 }
 
 /// A picture with its axes and, for a field, the scale of its colours.
-fn picture(raster: &Raster, view: View, largest: Option<f64>, id: &str) -> Result<Markup> {
-    let image = BASE64_STANDARD.encode(raster.png(largest.is_some())?);
+pub(super) fn picture(raster: &Raster, view: View, scale: Option<Scale>, id: &str) -> Result<Markup> {
+    let image = BASE64_STANDARD.encode(raster.png(scale.is_some())?);
     let bounds = Bounds { across: [-view.radius, view.radius], up: [view.low, view.high] };
-    let name = if largest.is_some() { "Von Mises stress in section" } else { "Mesh in section" };
-    let frame = Frame { bounds, aspect: Some(raster.aspect()), across: "r in mm", largest, name, id };
+    let name = scale.map_or("Mesh in section", |scale| scale.name);
+    let frame = Frame { bounds, aspect: Some(raster.aspect()), across: "r in mm", scale, name, id };
     Ok(frame.around(|place| {
         let [x, y, width, height] = place.rectangle();
         html! {

@@ -14,6 +14,7 @@ mod colour_map;
 pub mod colours;
 mod coverage_page;
 mod curves_csv;
+mod dents_section;
 mod discrepancy_picture;
 mod discrepancy_section;
 mod efficiency_boxes;

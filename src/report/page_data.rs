@@ -1,8 +1,9 @@
 //! What a scene's page carries for its script: the curves on the common axis, and the comparison document of the scene.
 
 use super::SceneReport;
+use super::colours::class_of;
 use super::figure::PanelOf;
-use super::figure_lines::dash;
+use super::figure_lines::{dash, reference_name};
 use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::reference::CurveBands;
@@ -16,9 +17,13 @@ pub(super) fn curves(report: &SceneReport, panels: &[PanelOf]) -> Value {
     let Some(axis) = report.comparison.window else {
         return json!({"time": [], "sources": [], "panels": []});
     };
-    let reference =
-        ("reference".to_owned(), "FE reference".to_owned(), sample(axis, &report.reference.history));
-    let reduced = report.reduced.iter().map(|outcome| {
+    let reference = (
+        "reference".to_owned(),
+        reference_name(&report.reference.summary),
+        sample(axis, &report.reference.history),
+    );
+    let with_curves = report.reduced.iter().filter(|outcome| outcome.summary.failure.is_none());
+    let reduced = with_curves.map(|outcome| {
         let model = outcome.summary.model.clone().unwrap_or_default();
         let name = format!("model {}", model_name(&model, outcome.summary.modes));
         (model, name, sample(axis, &outcome.history))
@@ -30,6 +35,7 @@ pub(super) fn curves(report: &SceneReport, panels: &[PanelOf]) -> Value {
         .collect();
     let of_source = |(id, name, _): &Source| {
         let is_reference = id == "reference";
+        let class = if is_reference { "fig-reference" } else { class_of(id) };
         let dashes: Vec<f64> = if is_reference {
             Vec::new()
         } else {
@@ -38,7 +44,8 @@ pub(super) fn curves(report: &SceneReport, panels: &[PanelOf]) -> Value {
         json!({
             "id": id, "name": name, "short": if is_reference { "FE" } else { id }, "dash": dashes,
             "width": if is_reference { 2.1 } else { 1.7 },
-            "colour": if is_reference { "fg".to_owned() } else { id.to_lowercase() },
+            "class": class,
+            "colour": if is_reference { "fg".to_owned() } else { class.trim_start_matches("fig-").to_lowercase() },
         })
     };
     json!({"time": times(axis), "sources": sources.iter().map(of_source).collect::<Vec<_>>(), "panels": panels})
@@ -57,9 +64,11 @@ fn of_panel(panel: &PanelOf, sources: &[Source], axis: CommonAxis, bands: Option
     let decimals = if peak > 0.0 { (DIGITS - 1 - peak.log10().floor() as i32).clamp(0, 12) } else { 0 };
     let shortened = |values: &[f64]| rounded(values, panel.factor, decimals);
     let curves = panel.curves.iter().map(|(body, name)| {
-        let of_source =
-            |(id, _, curves): &Source| Some((id.clone(), shortened(&named(curves, name)?.values)));
-        let values: serde_json::Map<String, Value> = sources.iter().filter_map(of_source).collect();
+        let of_source = |(id, _, curves): &Source| {
+            let values = named(curves, name).map_or(vec![f64::NAN; axis.samples], |curve| curve.values);
+            (id.clone(), shortened(&values))
+        };
+        let values: serde_json::Map<String, Value> = sources.iter().map(of_source).collect();
         let band = bands.and_then(|bands| bands.sampled(name, &axis)).map(|band| shortened(&band));
         json!({"body": body, "name": name, "values": values, "band": band})
     });

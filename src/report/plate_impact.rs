@@ -64,6 +64,7 @@ impl Presentation for Plate {
         Attachments {
             mesh: stored.mesh().ok(),
             stress: stored.stress_near(peak).ok().flatten(),
+            dents: stored.dents().unwrap_or_default(),
             ..Attachments::default()
         }
     }
@@ -78,7 +79,8 @@ impl Presentation for Plate {
         let efficiencies = efficiencies.map(|svg| drawing("-efficiencies", None, svg));
         let impacts = super::impacts_section::impacts_figure(report)
             .map(|svg| drawing("-impacts", Some("Efficiency over the number of the impact"), svg));
-        [Some(curves), impacts, measured, efficiencies].into_iter().flatten().collect()
+        let dents = super::dents_section::dents_figure(report).map(|svg| drawing("-dents", None, svg));
+        [Some(curves), impacts, dents, measured, efficiencies].into_iter().flatten().collect()
     }
 
     fn scene_drawing(&self, report: &SceneReport) -> Markup {
@@ -92,9 +94,11 @@ impl Presentation for Plate {
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
         let budget = super::budget_section::budget_html(&report.comparison.budget);
         let measured = super::measured_section::measured_html(report);
+        let dents = super::dents_section::dents_html(report).unwrap_or_else(|error| html! { p { (error) } });
         vec![
             Section::new("movement", "The impact moving", super::animation_section::animation_html(report)),
             Section::new("impacts", "Impacts in series", super::impacts_section::impacts_html(report)),
+            Section::new("dents", "Dents", dents),
             Section::new("budget", "Discrepancy budget", budget),
             Section::new("measurement", "Measurement", measured),
         ]

@@ -4,7 +4,7 @@ use super::SceneReport;
 use super::field_raster::cividis;
 use super::figure::x2;
 use super::format::{prefixed, with_unit};
-use super::section_frame::{Bounds, Frame, Place};
+use super::section_frame::{Bounds, Frame, Place, Scale};
 use crate::reference::MeshSection;
 use maud::{Markup, html};
 
@@ -76,8 +76,8 @@ fn covering(section: &MeshSection, values: &[f64]) -> f64 {
 /// Triangles with their edges or, with `field` (values and the end of the scale in Pa), in colours.
 fn picture(section: &MeshSection, bounds: Bounds, field: Option<(&[f64], f64)>, id: &str) -> Markup {
     let name = if field.is_some() { "Von Mises stress in section" } else { "Mesh in section" };
-    let largest = field.map(|(_, largest)| largest);
-    let frame = Frame { bounds, aspect: None, across: "x in mm", largest, name, id };
+    let scale = field.map(|(_, largest)| Scale::von_mises(largest));
+    let frame = Frame { bounds, aspect: None, across: "x in mm", scale, name, id };
     let shown = |t: &&[[f64; 2]; 3]| {
         let outside =
             |c: usize, [low, high]: [f64; 2]| t.iter().all(|p| p[c] < low) || t.iter().all(|p| p[c] > high);

@@ -21,6 +21,32 @@ pub(super) struct Bounds {
     pub(super) up: [f64; 2],
 }
 
+/// Scale of the colours of a field.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scale {
+    /// Value at its end, in the unit of the label.
+    largest: f64,
+    label: &'static str,
+    /// Of a picture with it.
+    pub(super) name: &'static str,
+}
+
+impl Scale {
+    /// Up to `largest` Pa.
+    pub(super) fn von_mises(largest: f64) -> Self {
+        Self {
+            largest: 1e-6 * largest,
+            label: "von Mises stress in MPa",
+            name: "Von Mises stress in section",
+        }
+    }
+
+    /// Up to `largest`.
+    pub(super) fn plastic_strain(largest: f64) -> Self {
+        Self { largest: 1e2 * largest, label: "plastic strain in %", name: "Plastic strain in section" }
+    }
+}
+
 /// What stands around a picture.
 pub(super) struct Frame<'a> {
     pub(super) bounds: Bounds,
@@ -28,8 +54,7 @@ pub(super) struct Frame<'a> {
     pub(super) aspect: Option<f64>,
     /// Label of the horizontal axis.
     pub(super) across: &'static str,
-    /// Value in Pa at the end of the scale of colours; `None` = no scale.
-    pub(super) largest: Option<f64>,
+    pub(super) scale: Option<Scale>,
     pub(super) name: &'static str,
     /// Unique on the page.
     pub(super) id: &'a str,
@@ -69,7 +94,7 @@ impl Frame<'_> {
         let bottom = TOP + height;
         let marks = ticks(left * 1e3, right * 1e3, 5);
         let marks_up = ticks(low * 1e3, high * 1e3, ((height / 50.0) as usize).max(2));
-        let total = bottom + if self.largest.is_some() { 92.0 } else { 44.0 };
+        let total = bottom + if self.scale.is_some() { 92.0 } else { 44.0 };
         let [x, y, w, h] = place.rectangle();
         html! {
             svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {total:.1}")) role="img"
@@ -91,16 +116,16 @@ impl Frame<'_> {
                 text.fig-text transform=(format!("translate(13 {:.2}) rotate(-90)", TOP + 0.5 * height)) text-anchor="middle" {
                     "z in mm"
                 }
-                @if let Some(largest) = self.largest { (colour_scale(largest, bottom + 46.0, self.id)) }
+                @if let Some(scale) = self.scale { (colour_scale(scale, bottom + 46.0, self.id)) }
             }
         }
     }
 }
 
-fn colour_scale(largest: f64, top: f64, id: &str) -> Markup {
+fn colour_scale(scale: Scale, top: f64, id: &str) -> Markup {
     const STOPS: usize = 12;
     let width = WIDTH - LEFT - RIGHT;
-    let to = 1e-6 * largest;
+    let to = scale.largest;
     let marks = ticks(0.0, to, 5);
     html! {
         defs { linearGradient id=(format!("{id}-scale")) {
@@ -115,6 +140,6 @@ fn colour_scale(largest: f64, top: f64, id: &str) -> Markup {
             @let x = LEFT + if to > 0.0 { width * mark / to } else { 0.0 };
             text.fig-text x=(x2(x)) y=(x2(top + 24.0)) text-anchor="middle" { (tick_label(*mark, &marks)) }
         }
-        text.fig-text x=(x2(LEFT + 0.5 * width)) y=(x2(top + 41.0)) text-anchor="middle" { "von Mises stress in MPa" }
+        text.fig-text x=(x2(LEFT + 0.5 * width)) y=(x2(top + 41.0)) text-anchor="middle" { (scale.label) }
     }
 }

@@ -1,5 +1,6 @@
 //! A scene's first contact force as a picture of a few hundred bytes, which outlives the run that made it.
 
+use super::colours::class_of;
 use super::polyline::path;
 use super::{SceneReport, presentation};
 use crate::curves::{CommonAxis, sample};
@@ -35,7 +36,7 @@ pub(super) fn drawn([reference, own]: &[String; 2], model: &str) -> Markup {
         @if !reference.is_empty() {
             svg.thumbnail viewBox=(format!("-0.3 -0.3 {} {}", WIDTH + 0.6, HEIGHT + 0.6)) aria-hidden="true" {
                 path.fig-reference d=(reference) {}
-                path class=(format!("fig-{model}")) d=(own) {}
+                path class=(class_of(model)) d=(own) {}
             }
         }
     }

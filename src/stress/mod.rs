@@ -337,6 +337,12 @@ mod tests {
         assert_eq!(run(1, 7_000_019_122, &|| ()).unwrap().failures, []);
     }
 
+    /// While the outer contact opens, the inner force turns long before its approach does.
+    #[test]
+    fn the_peak_of_a_force_that_the_other_contact_changes_is_found() {
+        assert_eq!(run(1, 8_000_000_530, &|| ()).unwrap().failures, []);
+    }
+
     /// Strong damping lets the inner approach follow the outer force's polynomials, whose defect is not the inner one's; steps of
     /// one length at two tolerances would agree on the wrong peak.
     #[test]

@@ -36,7 +36,7 @@ pub struct Validation {
     pub model: String,
     /// Its number of modes.
     pub modes: Option<usize>,
-    /// Kind of the finite elements: "axisymmetric" or "solid".
+    /// Kind of the finite elements, "axisymmetric" or "solid", or the name of another program.
     pub partner: String,
     /// Degrees of freedom of the reference.
     pub dofs: Option<u64>,
@@ -105,9 +105,10 @@ impl Validation {
             scene_hash: reference.scene_hash.clone(),
             model: model.model.clone(),
             modes: model.summary.modes,
-            partner: match scene.reference.geometry {
-                Geometry::Axisymmetric => "axisymmetric".into(),
-                Geometry::Solid => "solid".into(),
+            partner: match (&reference.model, scene.reference.geometry) {
+                (Some(program), _) => program.clone(),
+                (None, Geometry::Axisymmetric) => "axisymmetric".into(),
+                (None, Geometry::Solid) => "solid".into(),
             },
             dofs: reference.mesh.as_ref().and_then(|mesh| mesh["dofs"].as_u64()),
             revision: revision(scene),
@@ -139,9 +140,9 @@ impl Validation {
         self.scene == scene.name && self.scene_hash == scene.hash() && self.model == model.to_string()
     }
 
-    /// Whether both are of the same scene and model by name.
+    /// Whether both are of the same scene and model by name, held against the same.
     fn is_of_same(&self, other: &Self) -> bool {
-        (&self.scene, &self.model) == (&other.scene, &other.model)
+        (&self.scene, &self.model, &self.partner) == (&other.scene, &other.model, &other.partner)
     }
 }
 

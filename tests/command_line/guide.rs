@@ -38,6 +38,16 @@ fn every_command_runs() {
         let scene = scene.unwrap();
         fs::copy(scene.path(), folder.path().join(scene.file_name())).unwrap();
     }
+    for part in ["external", "import"] {
+        let there = folder.path().join("examples").join(part);
+        fs::create_dir_all(&there).unwrap();
+        for file in fs::read_dir(Path::new(ROOT).join("examples").join(part)).unwrap() {
+            let file = file.unwrap();
+            fs::copy(file.path(), there.join(file.file_name())).unwrap();
+        }
+    }
+    // the system's python3 is the one that has SciPy
+    let path = format!("/usr/bin:{}", std::env::var("PATH").unwrap());
     let mut commands = 0;
     for chapter in chapters() {
         let text = fs::read_to_string(Path::new(ROOT).join("guide/src").join(&chapter)).unwrap();
@@ -51,7 +61,7 @@ fn every_command_runs() {
         for line in consoles.iter().flat_map(|block| block.lines()) {
             let command = line.strip_prefix("$ impactcheck ").unwrap_or_else(|| panic!("{chapter}: {line}"));
             let mut run = Command::new(env!("CARGO_BIN_EXE_impactcheck"));
-            run.args(command.split_whitespace()).current_dir(folder.path());
+            run.args(command.split_whitespace()).current_dir(folder.path()).env("PATH", &path);
             // what a live command solves stays out of the project's own store
             run.env("IMPACTCHECK_STORE", folder.path().join("store")).env_remove("GITHUB_ACTIONS");
             let output = run.output().unwrap();

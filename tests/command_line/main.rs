@@ -6,6 +6,8 @@ mod coverage;
 mod diff;
 #[cfg(unix)]
 mod elsewhere;
+#[cfg(unix)]
+mod external;
 mod first_day;
 mod guide;
 #[cfg(unix)]

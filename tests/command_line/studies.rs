@@ -339,6 +339,46 @@ fn optimum_is_verified_by_the_reference_or_its_lack_is_told() {
     assert_eq!(impactcheck(&twice).status, 2);
 }
 
+/// Sweep and optimum of a series are those of its last impact, the steady state.
+#[test]
+fn sweep_and_optimum_of_a_series_are_those_of_its_steady_state() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = format!("{ROOT}/scenes/examples/repeated-impacts.toml");
+    let at = |thickness: &str| {
+        let changed = fs::read_to_string(&scene)
+            .unwrap()
+            .replace("thickness = \"2 mm\"", &format!("thickness = {thickness}"));
+        let scene = file(folder.path(), "changed.toml", &changed);
+        let document = json(&["reduced", text(&scene), "--model", "B", "--json"]);
+        let [first, steady] =
+            [&document["impacts"][0], &document].map(|of| of["efficiency"].as_f64().unwrap());
+        assert!(
+            steady > first + 0.02 && document["elastic_limit"]["outer"].as_f64().unwrap() < 0.1,
+            "{document}"
+        );
+        steady
+    };
+    let plan = file(
+        folder.path(),
+        "plan.toml",
+        &format!(
+            "scene = '{scene}'\nmodel = \"B\"\n[[vary]]\nfield = \"plate.thickness\"\nvalues = [2e-3, 3e-3]\n"
+        ),
+    );
+    let out = folder.path().join("sweep");
+    assert_eq!(impactcheck(&["study", "sweep", text(&plan), "--out", text(&out)]).status, 0);
+    let mut table = csv::Reader::from_path(out.join("sweep.csv")).unwrap();
+    let column = table.headers().unwrap().iter().position(|name| name == "efficiency").unwrap();
+    let found: Vec<f64> = table.records().map(|row| row.unwrap()[column].parse().unwrap()).collect();
+    for (found, thickness) in found.into_iter().zip(["2e-3", "3e-3"]) {
+        assert!((found - at(thickness)).abs() < 2e-4, "{found} at {thickness}");
+    }
+    let best = json(&["optimise", &scene, "--over", "plate.thickness=1.5mm..3mm", "--model", "B", "--json"]);
+    let [thickness, efficiency] =
+        [&best["variables"][0]["optimum"], &best["efficiency"]].map(|v| v.as_f64().unwrap());
+    assert!((efficiency - at(&thickness.to_string())).abs() < 2e-4, "{best}");
+}
+
 /// A record of model C, without noise, with the clock `shift` us ahead.
 fn measured(folder: &Path, name: &str, shift: f64) -> PathBuf {
     let history = folder.join("history.csv");

@@ -34,7 +34,7 @@ fn a_reduced_model_does_not_report_what_it_has_not_seen() {
         }
         assert!(document.get("contact_pressure").is_none());
         assert!(summary.warnings.iter().any(|w| w.contains("run.end_time")), "{:?}", summary.warnings);
-        assert!(summary.energy_residual < 1e-6 && summary.momentum_residual < 1e-9);
+        assert!(summary.energy_residual.unwrap() < 1e-6 && summary.momentum_residual.unwrap() < 1e-9);
         // in a series of impacts it is a failure
         assert!(model(Some(end)).point(1e-7).is_err());
     }
@@ -51,7 +51,7 @@ fn cut_impact(tolerances: &[&str]) -> (Scene, Outcome, Outcome) {
     let tolerances = tolerances.iter().map(|name| ((*name).to_owned(), half)).collect();
     let scene = Scene {
         run: RunSettings { end_time: Some(END) },
-        tolerances: BTreeMap::from([(Model::B, tolerances)]),
+        tolerances: BTreeMap::from([("B".to_owned(), tolerances)]),
         ..scene()
     };
     let time: Vec<f64> = (0..=320).map(|k| f64::from(k) * SAMPLE_INTERVAL).collect();

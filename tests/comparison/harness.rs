@@ -165,8 +165,8 @@ fn nan_fails_wherever_it_stands() {
     must_fail("NaN in a frequency", |o| alter(&mut o.summary, "first_frequency", |_| f64::NAN));
     must_fail("NaN in a velocity", |o| alter(&mut o.summary, "inner_velocity_final", |_| f64::NAN));
     must_fail("NaN in a contact end", |o| alter(&mut o.summary, "outer_contact_end", |_| f64::NAN));
-    must_fail("NaN in the energy residual", |o| o.summary.energy_residual = f64::NAN);
-    must_fail("NaN in the momentum residual", |o| o.summary.momentum_residual = f64::NAN);
+    must_fail("NaN in the energy residual", |o| o.summary.energy_residual = Some(f64::NAN));
+    must_fail("NaN in the momentum residual", |o| o.summary.momentum_residual = Some(f64::NAN));
     let mut changed = reference();
     changed.summary.uncertainty.insert("efficiency".into(), f64::NAN);
     assert_eq!(verdict(&scene(), &changed, &reduced()), Verdict::Fail);

@@ -65,11 +65,11 @@ fn wide_patches_agree_with_finite_elements_whatever_the_number_of_modes() {
             let run = Reduced::new(&scene, Model::C, Some(modes)).unwrap().run(1e-7).unwrap();
             let ours =
                 ["efficiency", "outer_force_peak", "inner_force_peak"].map(|name| run.value(name).unwrap());
-            println!("{modes} modes: {ours:?}, energy {:e}", run.energy_residual);
+            println!("{modes} modes: {ours:?}, energy {:?}", run.energy_residual);
             for ((ours, expected), bound) in ours.into_iter().zip(expected).zip(bounds) {
                 assert_relative_eq!(ours, expected, max_relative = bound);
             }
-            assert!(run.energy_residual < 1e-5, "{modes}: {:e}", run.energy_residual);
+            assert!(run.energy_residual.is_some_and(|r| r < 1e-5), "{modes}: {:?}", run.energy_residual);
         }
     }
 }
@@ -85,7 +85,7 @@ fn a_contact_much_wider_than_the_plate_is_thick_is_warned_of() {
     assert!(run("\"0.1 mm\"").warnings.is_empty());
     let thin = run("\"0.03 mm\"");
     assert!(thin.warnings.iter().any(|warning| warning.contains("times as wide")), "{:?}", thin.warnings);
-    assert!(thin.value("efficiency").unwrap() > 0.9 && thin.energy_residual < 1e-5);
+    assert!(thin.value("efficiency").unwrap() > 0.9 && thin.energy_residual.is_some_and(|r| r < 1e-5));
 }
 
 /// A patch much smaller than the plate is thick asks for no elements as flat: rounding in their stiffness would move the first

@@ -327,3 +327,74 @@ fn what_is_not_covered_is_refused_and_what_is_open_is_told() {
     let error = Reduced::new(&endless, Model::B, None).unwrap().run(1e-7).unwrap_err();
     assert!(error.to_string().contains("run.end_time"), "{error}");
 }
+
+/// Steel that yields at 600 MPa where `soft` says so, of outer body, plate and inner body, struck once at `speed` m/s.
+fn struck(soft: [bool; 3], plate: &str, speed: f64, model: Model) -> Summary {
+    let [outer, middle, inner] = soft.map(|soft| if soft { "b" } else { "a" });
+    let text = format!(
+        r#"
+        name = "struck"
+        kind = "plate-impact"
+        materials.a = {{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = 7780 }}
+        materials.b = {{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = 7780, yield_strength = 6e8, hardening = 0 }}
+        plate = {{ {plate}, edge = "clamped", material = "{middle}" }}
+        outer = {{ kind = "sphere", radius = "10 mm", material = "{outer}", speed = {speed:e} }}
+        inner = {{ kind = "sphere", radius = "10 mm", material = "{inner}" }}
+        series.impacts = 1
+        "#
+    );
+    Reduced::new(&Scene::parse("struck", &text).unwrap(), model, None).unwrap().run(1e-7).unwrap()
+}
+
+/// Bisection between speeds with and without plastic work in the model itself ends at the elastic limit it tells.
+#[test]
+fn the_elastic_limit_is_where_the_model_begins_to_yield() {
+    let plate = "radius = \"33 mm\", thickness = \"2 mm\"";
+    for (soft, model) in [([true, false, false], Model::C), ([false, false, true], Model::B)] {
+        let limit = struck(soft, plate, 0.55, model).elastic_limit.unwrap();
+        let [told, other] = if soft[0] { [limit.outer, limit.inner] } else { [limit.inner, limit.outer] };
+        assert_eq!(other, None, "{limit:?}");
+        let yields = |speed: f64| struck(soft, plate, speed, model).impacts[0].plastic_work != Some(0.0);
+        let (mut low, mut high) = (0.001, 0.1);
+        assert!(!yields(low) && yields(high));
+        while high - low > 1e-4 * high {
+            let middle = 0.5 * (low + high);
+            if yields(middle) { high = middle } else { low = middle }
+        }
+        assert_relative_eq!(told.unwrap(), high, max_relative = 3e-4);
+    }
+    assert_eq!(struck([false; 3], plate, 0.55, Model::B).elastic_limit, None);
+}
+
+/// On a plate that hardly gives way it is the closed form of a rigid wall (Johnson 1985, eq. 11.39): m V^2/2 = (8/15) E* R^(1/2) d^(5/2),
+/// d = R (pi p/(2 E*))^2, p = 1.615 Y at first yield (Jackson and Green 2005).
+#[test]
+fn the_elastic_limit_on_a_thick_plate_is_that_of_a_rigid_wall() {
+    let found = struck([true; 3], "radius = \"400 mm\", thickness = \"200 mm\"", 0.55, Model::B);
+    let modulus = 0.5 * 210e9 / (1.0 - 0.09);
+    let pressure = 1.295 * (0.736_f64 * 0.3).exp() * 600e6;
+    let approach = 0.01 * (std::f64::consts::PI * pressure / (2.0 * modulus)).powi(2);
+    let energy = 8.0 / 15.0 * modulus * 0.1 * approach.powf(2.5);
+    let mass = 7780.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-6;
+    let wall = (2.0 * energy / mass).sqrt();
+    assert_relative_eq!(found.elastic_limit.unwrap().outer.unwrap(), wall, max_relative = 0.01);
+}
+
+/// A contact that relaxes ends where its force does, wherever the steps lie.
+#[test]
+fn a_relaxing_contact_ends_between_two_steps() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/validation/relaxing-plate.toml");
+    let text = std::fs::read_to_string(scene).unwrap();
+    let ends = [2.0e-4, 2.0005e-4, 2.001e-4].map(|end| {
+        let scene = Scene::parse("relaxing", &format!("run.end_time = {end:e}\n{text}")).unwrap();
+        let outcome = Reduced::new(&scene, Model::A, None).unwrap().run_with_history(1e-4).unwrap();
+        let (time, force) = (&outcome.history.time, outcome.history.curve("inner_force").unwrap());
+        let last = force.iter().rposition(|force| *force > 0.0).unwrap();
+        let end = outcome.summary.value("inner_contact_end").unwrap();
+        assert!(end > time[last] && end < time[last + 1], "{end} {} {}", time[last], time[last + 1]);
+        (end, time[last + 1] - time[last])
+    });
+    for (end, step) in &ends[1..] {
+        assert!((end - ends[0].0).abs() < 0.25 * step, "{ends:?}");
+    }
+}

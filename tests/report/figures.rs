@@ -346,6 +346,7 @@ fn mesh_and_stress_are_shown_where_there_are_any() {
         quads: Vec::new(),
         bodies: Vec::new(),
         von_mises: None,
+        plastic_strain: None,
         displacement: None,
     };
     for (body, (z, radius, height)) in

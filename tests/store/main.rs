@@ -1,5 +1,6 @@
 //! Tests of what is read: scenes, stored solutions, and random input to both.
 
+mod import;
 mod random_input;
 mod scene_reading;
 mod scene_schema;

@@ -124,14 +124,14 @@ fn everything_optional_is_read() {
     assert_eq!((fluid.plate_damping_ratio, fluid.drag_coefficient), (0.03, 0.4));
     assert_eq!(scene.reference.geometry, Geometry::Solid);
     assert_eq!((scene.reference.element_order, scene.reference.rigid), (Some(1), Some(Rigid::Inner)));
-    let bounds = &scene.tolerances[&Model::B];
+    let bounds = &scene.tolerances["B"];
     assert_eq!(bounds["efficiency"].relative, Some(0.01));
     assert_eq!(bounds["outer_contact_end"].absolute, Some(0.5e-6));
     assert_eq!(bounds["outer_contact_end"].bias, Some(2.8e-6));
     assert_eq!(bounds["outer_force_peak"].bias, Some(-0.021));
     assert_eq!(bounds["inner_force_rms"].relative_to_peak, Some(0.03));
     assert_eq!(bounds["energy_residual"].absolute, Some(1e-6));
-    assert_eq!(scene.tolerances[&Model::C]["first_frequency"].absolute, Some(1000.0));
+    assert_eq!(scene.tolerances["C"]["first_frequency"].absolute, Some(1000.0));
 }
 
 #[test]

@@ -98,6 +98,7 @@ pub fn scene() -> Scene {
             rigid: None,
         },
         tolerances: BTreeMap::new(),
+        external: Vec::new(),
     }
 }
 
@@ -114,7 +115,7 @@ pub fn gated_scene() -> Scene {
         };
         tolerances.insert(row.quantity.clone(), tolerance);
     }
-    Scene { tolerances: BTreeMap::from([(Model::B, tolerances)]), ..scene() }
+    Scene { tolerances: BTreeMap::from([("B".to_owned(), tolerances)]), ..scene() }
 }
 
 fn mass() -> f64 {
@@ -163,6 +164,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
     Summary {
         impacts: Vec::new(),
         elastic_efficiency: None,
+        elastic_limit: None,
         schema_version: SCHEMA_VERSION,
         scene: "synthetic".into(),
         scene_hash: "5ce4e".into(),
@@ -182,9 +184,10 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
             first_frequency: 4655.0,
         }
         .table(),
-        energy_residual: 1e-8,
-        momentum_residual: 1e-11,
-        steps: 40_000,
+        energy_residual: Some(1e-8),
+        momentum_residual: Some(1e-11),
+        steps: Some(40_000),
+        failure: None,
         solve_seconds: 1.0,
         uncertainty: BTreeMap::new(),
         convergence: None,

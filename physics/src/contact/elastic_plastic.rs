@@ -125,6 +125,20 @@ impl ElasticPlastic {
         dent.residual + (x_m - dent.residual) * (force / f_m).powf(1.0 / dent.exponent)
     }
 
+    /// Force in N at the approach `x` in m from virgin surfaces with the dent so far, and its slope in N/m.
+    pub fn force(&self, dent: &Dent, x: f64) -> [f64; 2] {
+        let [x_m, f_m] = dent.largest;
+        let past = x - dent.residual;
+        if x >= x_m {
+            return self.loading(x);
+        }
+        if past <= 0.0 {
+            return [0.0; 2];
+        }
+        let force = f_m * (past / (x_m - dent.residual)).powf(dent.exponent);
+        [force, dent.exponent * force / past]
+    }
+
     /// The dent after a `force` in N.
     pub fn dent_after(&self, dent: Dent, force: f64) -> Dent {
         if force <= dent.largest[1].max(self.critical_force) {
@@ -179,6 +193,14 @@ mod tests {
         let dent = law.dent_after(Dent::NONE, 30.0 * law.critical_force);
         let [x_m, f_m] = dent.largest;
         assert_relative_eq!(law.approach(&dent, f_m), x_m, max_relative = 1e-9);
+        for force in [0.1 * f_m, 0.9 * f_m, 1.1 * f_m] {
+            let x = law.approach(&dent, force);
+            let [found, slope] = law.force(&dent, x);
+            assert_relative_eq!(found, force, max_relative = 1e-9);
+            let [above, _] = law.force(&dent, x * (1.0 + 1e-6));
+            assert_relative_eq!((above - force) / (1e-6 * x), slope, max_relative = 1e-4);
+        }
+        assert_eq!(law.force(&dent, dent.depth()), [0.0; 2]);
         assert_relative_eq!(law.approach(&dent, 0.0), dent.depth());
         assert!(dent.depth() > 0.1 * x_m && dent.depth() < x_m);
         // once more with less changes nothing, a little more deepens it

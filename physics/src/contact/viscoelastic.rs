@@ -65,15 +65,30 @@ impl ViscoelasticContact {
         x - distance * distance / self.tip_radius
     }
 
+    /// Deformation in m that a spring in the state `state` has at the end of the step without a force.
+    fn free(&self, state: &[Deformation; 2]) -> f64 {
+        self.halves.iter().zip(state).map(|(half, state)| half.creep.deformation(state, 0.0)).sum()
+    }
+
     /// Force of a spring in N pressed by `w` m at the end of the step, and its stiffness in N/m; none if it would pull.
     fn spring(&self, state: &[Deformation; 2], w: f64) -> [f64; 2] {
-        let halves = || self.halves.iter().zip(state);
-        let free: f64 = halves().map(|(half, state)| half.creep.deformation(state, 0.0)).sum();
+        let free = self.free(state);
         if w <= free {
             return [0.0; 2];
         }
-        let yields: f64 = halves().map(|(half, _)| half.creep.growth() / half.stiffness).sum();
+        let yields: f64 = self.halves.iter().map(|half| half.creep.growth() / half.stiffness).sum();
         [(w - free) / yields, 1.0 / yields]
+    }
+
+    /// Approach in m up to which no spring pushes at the end of the step.
+    pub fn touch(&self) -> f64 {
+        let of = |(k, state)| self.free(state) - self.pressed(k, 0.0);
+        self.springs
+            .iter()
+            .enumerate()
+            .map(of)
+            .fold(f64::INFINITY, f64::min)
+            .min(-self.pressed(self.springs.len(), 0.0))
     }
 
     /// Force in N at the end of a step at the approach `x` in m, and its slope in N/m.
@@ -157,5 +172,10 @@ mod tests {
             .sum();
         assert_relative_eq!(force, hereditary, max_relative = 2e-3);
         assert!(force < 0.8 * hertz.force(4e-6));
+        // unloaded, the surface lags behind the tip
+        let touch = contact.touch();
+        assert!(touch > 0.02 * approach(end) && touch < approach(end), "{touch}");
+        assert_eq!(contact.force(touch)[0], 0.0);
+        assert!(contact.force(touch * (1.0 + 1e-9))[0] > 0.0);
     }
 }

@@ -19,6 +19,9 @@ const QUICK: f64 = 1e-8;
 const PER_RADIAN: f64 = 2.0;
 const PLACES: (f64, f64) = (16.0, 512.0);
 
+/// Second derivatives over those by differences that are believed.
+const LIKELY: std::ops::Range<f64> = 0.8..1.25;
+
 /// How far, over the force, a peak may rise between the points of a step.
 const BETWEEN: f64 = 0.01;
 
@@ -43,6 +46,14 @@ pub(super) struct SolvedStep<'a, const P: usize, M: Fn(f64) -> Motion> {
 
 /// Force in N and its first and second derivative by the place, of the second only what matters where the first is zero.
 type Force = [f64; 3];
+
+/// The second derivative of a force: `bend`, unless the slopes at two places contradict it. It leaves out that the law itself
+/// changes, which counts where the other contact's patch does: there the force turns while its own approach still grows.
+fn turning(bend: f64, before: Option<(f64, f64)>, (place, slope): (f64, f64)) -> f64 {
+    let Some((earlier, steeper)) = before else { return bend };
+    let secant = (slope - steeper) / (place - earlier);
+    if !secant.is_finite() || LIKELY.contains(&(bend / secant)) { bend } else { secant }
+}
 
 impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
     /// Largest force of `contact` in N, if it may exceed `before` N; `rising` tells whether the force rises at the start
@@ -93,10 +104,12 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
 
     /// The peak between the places `low` and `high`, from `place` on, by Newton's method.
     fn climb(&self, contact: usize, mut place: f64, [mut low, mut high]: [f64; 2]) -> f64 {
-        let mut best = 0.0;
+        let (mut best, mut before) = (0.0, None);
         for _ in 0..MAX_ITERATIONS {
             let [force, slope, bend] = self.force_at(contact, place);
             best = force.max(best);
+            let bend = turning(bend, before, (place, slope));
+            before = Some((place, slope));
             if slope * slope <= 2.0 * FOUND.max(self.error) * force * bend.abs() {
                 break;
             }

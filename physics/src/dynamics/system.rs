@@ -96,6 +96,15 @@ pub struct System {
 }
 
 impl System {
+    /// The same with the outer body, which is no bender, at `speed` m/s.
+    #[must_use]
+    pub fn at_speed(&self, speed: f64) -> Self {
+        let mut system = self.clone();
+        system.start[1][OUTER] *= speed / self.speed;
+        system.speed = speed;
+        system
+    }
+
     /// Joins the plate, reduced to `plate`, with rigid outer and inner bodies; `tip_residual` is the residual
     /// flexibility in m/N of the outer and the inner body at their contact points (zero for models A and B).
     ///

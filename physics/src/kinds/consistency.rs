@@ -55,7 +55,7 @@ pub(crate) fn contact(
     let neighbours = [at.checked_sub(1), Some(at + 1).filter(|&k| k < force.len())];
     let drop = neighbours.into_iter().flatten().map(|k| found - force[k]).fold(0.0, f64::max);
     let slack = match source {
-        Source::Reference => REFERENCE_PEAK_SLACK,
+        Source::Reference | Source::External => REFERENCE_PEAK_SLACK,
         Source::Reduced => REDUCED_PEAK_SLACK,
     };
     // A parabola rises above the higher of its samples by at most an eighth of the drop to the

@@ -4,7 +4,7 @@ mod consistency;
 pub mod plate_impact;
 pub mod seal_seat;
 
-use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
+use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table};
 use crate::scene::{Model, Scene, Setup};
 
 /// What everything that compares, shows or keeps results has to know of a kind of scene.
@@ -25,7 +25,12 @@ pub trait Kind: Sync {
     /// theories behind it, and warns where it is beyond. Without `history` some of it is not known.
     fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>);
 
-    /// What must hold of a result of `scene` whose curves can be sampled.
+    /// The quantities that the curves of a `history` show, which another program need not state.
+    fn shown(&self, _: &Scene, _: &History) -> Table {
+        Table::new(self.quantities())
+    }
+
+    /// What must hold of a result of `scene`; of its curves, if they can be sampled.
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement>;
 }
 

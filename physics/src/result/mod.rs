@@ -19,7 +19,7 @@ pub use impact::Impact;
 pub use limit::Limit;
 pub use losses::Losses;
 pub use statement::Statement;
-pub use summary::{BenderSummary, SCHEMA_VERSION, Source, Summary};
+pub use summary::{BenderSummary, ElasticLimit, SCHEMA_VERSION, Source, Summary};
 pub(crate) use table::quantities;
 pub use table::{Quantity, Table};
 

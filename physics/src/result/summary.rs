@@ -16,6 +16,8 @@ pub enum Source {
     Reduced,
     /// Finite-element reference.
     Reference,
+    /// Another program, run or imported.
+    External,
 }
 
 /// What is said about a bender besides the quantities; its eq. (1) efficiency relates to its kinetic energy.
@@ -29,6 +31,24 @@ pub struct BenderSummary {
     pub drive: Drive,
 }
 
+/// Largest speed of the outer body in m/s at which a contact stays elastic, all else being as it is; `None` where no yield strength
+/// is known, or the contact never comes to it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ElasticLimit {
+    /// Between outer body and plate.
+    pub outer: Option<f64>,
+    /// Between plate and inner body.
+    pub inner: Option<f64>,
+}
+
+impl ElasticLimit {
+    /// Name and speed in m/s of each contact.
+    pub fn rows(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
+        let named = [("outer_elastic_speed", self.outer), ("inner_elastic_speed", self.inner)];
+        named.into_iter().filter_map(|(name, speed)| Some((name, speed?)))
+    }
+}
+
 /// Summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -40,21 +60,24 @@ pub struct Summary {
     pub scene_hash: String,
     /// Reduced model or reference.
     pub source: Source,
-    /// Name of the reduced model; `None` for the reference.
+    /// Name of the reduced model or of the other program; `None` for the reference.
     pub model: Option<String>,
     /// Number of elastic modes of the reduced model; `None` for the reference.
     pub modes: Option<usize>,
     /// The physical results; of a stored summary read by [`Summary::read`] alone.
     #[serde(flatten, skip_deserializing)]
     pub quantities: Table,
-    /// |energy at the end + losses - energy at the start| over the energy at the start.
-    pub energy_residual: f64,
-    /// Momentum that no impulse accounts for, over the momentum at the start.
-    pub momentum_residual: f64,
-    /// Time steps taken.
-    pub steps: u64,
-    /// Wall time of the time integration, s.
+    /// |energy at the end + losses - energy at the start| over the energy at the start; `None` if another program states none.
+    pub energy_residual: Option<f64>,
+    /// Momentum that no impulse accounts for, over the momentum at the start; `None` if another program states none.
+    pub momentum_residual: Option<f64>,
+    /// Time steps taken; `None` if another program states none.
+    pub steps: Option<u64>,
+    /// Wall time of the time integration, s; of another program that is run, from its start to its end.
     pub solve_seconds: f64,
+    /// Why there is no result, in one sentence, if another program failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
     /// Reduced models: estimated error for want of modes, the largest of efficiency, outer velocity and force peaks; the
     /// efficiency's relative to at least 0.05, the velocity's to the impact speed. `None` if there is no estimate.
     #[serde(default)]
@@ -75,6 +98,9 @@ pub struct Summary {
     /// Reduced models of a series whose bodies yield: the efficiency if they did not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elastic_efficiency: Option<f64>,
+    /// Reduced models of plate impacts with a yield strength.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elastic_limit: Option<ElasticLimit>,
     /// Energy lost to damping, fluid and materials, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub losses: Option<Losses>,
@@ -155,21 +181,31 @@ impl Summary {
     /// What a reduced model of `scene` says; balances, steps and time are still to be told.
     pub(crate) fn of_reduced(scene: &Scene, model: Model, modes: usize, quantities: Table) -> Self {
         Self {
+            modes: Some(modes),
+            ..Self::new(scene, (Source::Reduced, Some(model.to_string())), quantities)
+        }
+    }
+
+    /// What `model` of `source` says of `scene`; everything else is still to be told.
+    pub fn new(scene: &Scene, (source, model): (Source, Option<String>), quantities: Table) -> Self {
+        Self {
             schema_version: SCHEMA_VERSION,
             scene: scene.name.clone(),
             scene_hash: scene.hash(),
-            source: Source::Reduced,
-            model: Some(model.to_string()),
-            modes: Some(modes),
+            source,
+            model,
+            modes: None,
             quantities,
-            energy_residual: f64::NAN,
-            momentum_residual: f64::NAN,
-            steps: 0,
+            energy_residual: None,
+            momentum_residual: None,
+            steps: None,
             solve_seconds: 0.0,
+            failure: None,
             bender: None,
             contact_pressure: None,
             impacts: Vec::new(),
             elastic_efficiency: None,
+            elastic_limit: None,
             losses: None,
             truncation_error: None,
             integration_error: None,

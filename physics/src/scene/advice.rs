@@ -31,6 +31,10 @@ pub(super) fn needed(kind: &Kind, path: &str) -> (&'static str, String) {
             "a list",
             format!("write a list in square brackets, for example [\"{}\"]", dimension.describe().2),
         ),
+        Kind::Texts(_) => (
+            "a list",
+            "write a list in square brackets, for example [\"python3\", \"my_model.py\"]".to_owned(),
+        ),
         Kind::Tables(..) => ("a list of tables", "write a list like [{ key = value }]".to_owned()),
         Kind::Flag => ("true or false", "write true or false, without quotes".to_owned()),
         Kind::Table(_) | Kind::TableOf(_) | Kind::Tolerances => {
@@ -58,6 +62,7 @@ pub(super) fn example(place: &Place, field: &Field) -> String {
         Kind::Choice(choices) => format!("`{key} = \"{}\"`: {doc}; {}", choices[0].name, alternatives(field)),
         Kind::Count(low, _) => format!("`{key} = {low}`: {doc}"),
         Kind::Flag => format!("`{key} = true`: {doc}"),
+        Kind::Texts(_) => format!("`{key} = [\"...\"]`: {doc}"),
         _ => format!("`{key} = \"...\"`: {doc}"),
     }
 }

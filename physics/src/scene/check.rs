@@ -17,6 +17,7 @@ pub(super) enum Checked {
     Numbers(Vec<f64>),
     Count(u64),
     Text(String),
+    Texts(Vec<String>),
     Flag(bool),
     Table(Values),
     Tables(Vec<Values>),
@@ -177,6 +178,7 @@ impl<'a> Checker<'a> {
             (Kind::Quantities(dimension, bound, most), DeValue::Array(items)) => {
                 self.quantities(place, value, items, (*dimension, *bound), *most)
             }
+            (Kind::Texts(most), DeValue::Array(items)) => self.texts(place, value, items, *most),
             (Kind::Table(fields), DeValue::Table(table)) => {
                 Some(Checked::Table(self.table(place, table, fields)))
             }
@@ -323,6 +325,26 @@ impl<'a> Checker<'a> {
         };
         let numbers: Vec<Option<f64>> = items.iter().map(&mut read).collect();
         Some(Checked::Numbers(numbers.into_iter().collect::<Option<_>>()?))
+    }
+
+    /// Reads a list of texts, the first of which says something.
+    fn texts(
+        &mut self,
+        place: &Place,
+        value: &Spanned<DeValue>,
+        items: &[Spanned<DeValue>],
+        most: usize,
+    ) -> Option<Checked> {
+        let texts: Option<Vec<String>> =
+            items.iter().map(|item| item.get_ref().as_str().map(str::to_owned)).collect();
+        let valid =
+            |texts: &Vec<String>| texts.len() <= most && texts.first().is_some_and(|text| !text.is_empty());
+        if let Some(texts) = texts.filter(valid) {
+            return Some(Checked::Texts(texts));
+        }
+        let message = format!("but it has to be a list of 1 to {most} texts, the first not empty");
+        let help = "write a list in square brackets, for example [\"python3\", \"my_model.py\"]";
+        self.fault(place, value, &message, "wrong entries", help.to_owned())
     }
 
     /// `number` if anybody can mean it.

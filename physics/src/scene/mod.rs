@@ -8,6 +8,7 @@ mod advice;
 mod alternatives;
 mod check;
 mod collision;
+mod external;
 mod fault;
 pub mod hash;
 mod material;
@@ -21,6 +22,7 @@ mod specification;
 mod template;
 mod tolerances;
 
+pub use external::External;
 pub use fault::suggestion;
 pub use fault::{Fault, Faults, faults};
 pub use plate_impact::{
@@ -179,7 +181,7 @@ pub struct Tolerance {
     pub bias: Option<f64>,
 }
 
-/// Tolerances of one reduced model, by quantity.
+/// Tolerances of one model, by quantity.
 pub type Tolerances = BTreeMap<String, Tolerance>;
 
 /// One impact, checked, in SI units.
@@ -198,8 +200,11 @@ pub struct Scene {
     pub reduced: ReducedSettings,
     /// Settings of the reference.
     pub reference: ReferenceSettings,
-    /// Tolerances of the gate, by reduced model.
-    pub tolerances: BTreeMap<Model, Tolerances>,
+    /// Tolerances of the gate, by reduced model or program of the user's.
+    pub tolerances: BTreeMap<String, Tolerances>,
+    /// Programs of the user's that solve the scene too.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub external: Vec<External>,
 }
 
 impl Scene {

@@ -1,6 +1,7 @@
 //! From the text of a scene file to a [`Scene`].
 
 use super::check::{Checked, Checker, Place, Values};
+use super::external::external;
 use super::fault::Collector;
 use super::plate_impact::{plate_impact, reference};
 use super::seal_seat::{seal_seat, seat_reference};
@@ -91,7 +92,7 @@ fn too_large(name: &str, size: String) -> Error {
 ///
 /// # Errors
 /// As [`Scene::parse`].
-pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap<Model, Tolerances>)> {
+pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap<String, Tolerances>)> {
     let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
     let root = tree.get_ref();
     if root.is_empty() {
@@ -214,6 +215,13 @@ impl<'a> Node<'a> {
         }
     }
 
+    pub(super) fn texts(&self, key: &str) -> Result<Vec<String>> {
+        match self.get(key)? {
+            Checked::Texts(texts) => Ok(texts.clone()),
+            other => Err(mismatch(key, other)),
+        }
+    }
+
     pub(super) fn count(&self, key: &str) -> Result<u64> {
         match self.get(key)? {
             Checked::Count(count) => Ok(*count),
@@ -246,7 +254,7 @@ pub(super) fn unknown(key: &str, word: &str) -> Error {
 }
 
 /// The scene that checked values describe.
-pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>) -> Result<Scene> {
+pub(super) fn assemble(values: &Values, tolerances: BTreeMap<String, Tolerances>) -> Result<Scene> {
     let root = &Node(values);
     let materials = root.table("materials")?;
     let settings = root.optional_table("reference")?;
@@ -268,6 +276,7 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<Model, Tolerances>)
         reduced: reduced(root.optional_table("reduced")?)?,
         reference,
         tolerances,
+        external: root.tables("external")?.iter().map(external).collect::<Result<_>>()?,
     })
 }
 

@@ -3,7 +3,7 @@
 use super::alternatives::groups;
 use super::check::MAX_NAME;
 use super::quantity::{Dimension, prefixes, symbols};
-use super::specification::{Alternative, Bound, Field, Kind, SCENE, TOLERANCES};
+use super::specification::{Alternative, Bound, Field, Kind, MODELS, SCENE, TOLERANCES};
 use super::tolerances::{TERMS, gated_names, models};
 use crate::kinds::{self, KINDS};
 use serde_json::{Map, Value, json};
@@ -110,6 +110,9 @@ fn value(kind: &Kind) -> Value {
         Kind::Name => json!({
             "type": "string", "pattern": "^[A-Za-z0-9_-][A-Za-z0-9._-]*$", "maxLength": MAX_NAME,
         }),
+        Kind::Texts(most) => json!({
+            "type": "array", "items": { "type": "string" }, "minItems": 1, "maxItems": most,
+        }),
         Kind::Choice(choices) => {
             let names: Vec<&str> = choices.iter().map(|c| c.name).collect();
             json!({ "enum": names })
@@ -188,7 +191,9 @@ fn tolerances(kind: &dyn kinds::Kind) -> Value {
     ] });
     let quantities: Map<String, Value> = gated_names(kind).map(|n| (n, tolerance.clone())).collect();
     let model = json!({ "type": "object", "properties": quantities, "additionalProperties": false });
-    let models: Map<String, Value> =
-        models(kind).iter().map(|m| (m.name.to_owned(), model.clone())).collect();
-    json!({ "type": "object", "properties": models, "additionalProperties": false })
+    // whatever models the kind has, programs of the user's have names of their own
+    let models: Vec<&str> = models(kind).iter().map(|m| m.name).collect();
+    let foreign = MODELS.iter().map(|m| m.name).filter(|name| !models.contains(name));
+    let refused: Map<String, Value> = foreign.map(|name| (name.to_owned(), json!(false))).collect();
+    json!({ "type": "object", "properties": refused, "additionalProperties": model })
 }

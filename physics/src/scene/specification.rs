@@ -1,5 +1,6 @@
 //! Every key a scene file may have: one table that drives reading, checking and the JSON schema.
 
+use super::external::EXTERNAL;
 use super::material::MATERIAL;
 use super::plate_impact::{FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE, SERIES};
 use super::quantity::Dimension;
@@ -63,6 +64,8 @@ pub(super) enum Kind {
     Text,
     /// A text that can name a folder.
     Name,
+    /// A list of texts, of at least one and at most so many.
+    Texts(usize),
     /// One of a few words.
     Choice(&'static [Choice]),
     /// A number with a unit.
@@ -163,7 +166,7 @@ const OF_PLATE_IMPACT: &[&str] = &[PLATE_IMPACT];
 const OF_SEAL_SEAT: &[&str] = &[SEAL_SEAT];
 
 /// The keys of a scene file. A key whose table depends on the scene's kind stands here once per kind.
-pub(super) static SCENE: [Field; 19] = [
+pub(super) static SCENE: [Field; 20] = [
     required("name", Kind::Name, "Name of the scene in the store and in reports"),
     optional("description", Kind::Text, "One line for people"),
     required("kind", Kind::Choice(&[choice(PLATE_IMPACT), choice(SEAL_SEAT)]), "What strikes what"),
@@ -216,11 +219,16 @@ pub(super) static SCENE: [Field; 19] = [
         OF_SEAL_SEAT,
         optional("reference", Kind::Table(&SEAT_REFERENCE), "Settings of the finite-element reference"),
     ),
+    optional(
+        "external",
+        Kind::Tables(&EXTERNAL, 16),
+        "Programs of one's own that solve the scene too; they run only with --allow-external",
+    ),
 ];
 
 /// Stands apart from [`SCENE`] because its shape is checked by its own reader.
 pub(super) static TOLERANCES: Field =
-    optional("tolerances", Kind::Tolerances, "Tolerances of the gate, by reduced model and quantity");
+    optional("tolerances", Kind::Tolerances, "Tolerances of the gate, by model and quantity");
 
 pub(super) const TIP_RADIUS: Field =
     required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");

@@ -7,7 +7,7 @@ use super::check::{Checked, Values};
 use super::quantity::{self, Dimension, QuantityError};
 use super::read::{assemble, checked, read_text, refuse_collisions};
 use super::specification::{self, Kind, SCENE};
-use super::{Model, Scene, Tolerances, suggestion};
+use super::{Scene, Tolerances, suggestion};
 use crate::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,7 +26,7 @@ use std::path::Path;
 #[derive(Debug, Clone)]
 pub struct Template {
     values: Values,
-    tolerances: BTreeMap<Model, Tolerances>,
+    tolerances: BTreeMap<String, Tolerances>,
     scene: Scene,
     text: String,
 }

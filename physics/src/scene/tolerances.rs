@@ -1,10 +1,10 @@
-//! Reads `[tolerances.<model>]`: bounds by quantity, per reduced model.
+//! Reads `[tolerances.<model>]`: bounds by quantity, per reduced model or program of the user's.
 
 use super::check::{Checker, Place};
 use super::fault::did_you_mean;
 use super::quantity::{Dimension, dimension_of};
 use super::specification::{Bound, Choice, MODELS};
-use super::{Model, Tolerance, Tolerances};
+use super::{Tolerance, Tolerances};
 use crate::kinds::Kind;
 use crate::result::Impact;
 use std::collections::BTreeMap;
@@ -79,8 +79,11 @@ pub(super) fn models(kind: &dyn Kind) -> Vec<&'static Choice> {
 
 impl Checker<'_> {
     /// Reads the table `[tolerances]`, noting every fault.
-    pub(super) fn tolerances(&mut self, root: &DeTable, kind: &dyn Kind) -> BTreeMap<Model, Tolerances> {
-        let known = models(kind);
+    pub(super) fn tolerances(&mut self, root: &DeTable, kind: &dyn Kind) -> BTreeMap<String, Tolerances> {
+        let external = self.external_names(root);
+        let own = models(kind);
+        let known: Vec<&str> =
+            own.iter().map(|m| m.name).chain(external.iter().map(String::as_str)).collect();
         let mut models = BTreeMap::new();
         let Some((key, value)) = root.get_key_value("tolerances") else { return models };
         let place = Place { path: "tolerances", span: key.span() };
@@ -97,22 +100,19 @@ impl Checker<'_> {
         for (key, value) in table {
             let path = place.key(key.get_ref());
             let place = Place { path: &path, span: key.span() };
-            match (known.iter().find(|m| m.name == key.get_ref()), value.get_ref()) {
+            match (known.iter().find(|name| **name == *key.get_ref()), value.get_ref()) {
                 (None, _) => {
-                    let names: Vec<&str> = known.iter().map(|m| m.name).collect();
-                    let example = known[known.len() / 2].name;
+                    let example = own[own.len() / 2].name;
                     self.problems.add(
                         key.span(),
                         format!("`{path}`: `{}` is not a reduced model of this kind of scene", key.get_ref()),
                         "unknown model",
-                        format!("there are {}: write for example [tolerances.{example}]", names.join(", ")),
+                        format!("there are {}: write for example [tolerances.{example}]", known.join(", ")),
                     );
                 }
                 (Some(model), DeValue::Table(quantities)) => {
                     let tolerances = self.model(&place, quantities, kind);
-                    if let Ok(model) = model.name.parse() {
-                        models.insert(model, tolerances);
-                    }
+                    models.insert((*model).to_owned(), tolerances);
                 }
                 (Some(_), _) => {
                     self.fault::<()>(

@@ -67,6 +67,7 @@ pub(super) fn has_one_of(scene: &Scene, asked: &[AskedModel]) -> bool {
     asked.iter().any(|asked| match asked {
         AskedModel::Named(model) => own.contains(model),
         AskedModel::Auto => own.len() > 1,
+        AskedModel::External => !scene.external.is_empty(),
     })
 }
 

@@ -35,6 +35,7 @@ impl Models for Plates {
                 Reduced::new(scene, model, arguments.modes)?,
                 arguments.integration_tolerance(DEFAULT_TOLERANCE)?,
             ),
+            AskedModel::External => return Err(asked_model::beside_a_reference()),
             AskedModel::Auto => {
                 if let Some(modes) = arguments.modes {
                     return Err(Error::Usage(format!(

@@ -3,7 +3,7 @@
 use super::{Compared, Models};
 use crate::body::cache::Cache;
 use crate::cli::Context;
-use crate::cli::asked_model::AskedModel;
+use crate::cli::asked_model::{self, AskedModel};
 use crate::cli::progress::Bar;
 use crate::cli::reduced::Arguments;
 use crate::error::{Error, Result};
@@ -26,6 +26,7 @@ impl Models for Seats {
                     scene.name
                 )));
             }
+            Some(AskedModel::External) => return Err(asked_model::beside_a_reference()),
             None => scene.reduced.model.unwrap_or(Model::C),
         };
         let cache = Cache::from_environment();
@@ -65,8 +66,11 @@ impl Models for Seats {
         context: &Context,
         scene: &Scene,
         stored: &Stored,
-        _: (&[AskedModel], Option<f64>),
+        (models, _): (&[AskedModel], Option<f64>),
     ) -> Result<Compared> {
+        if !models.contains(&AskedModel::Named(Model::C)) {
+            return Ok(Compared::default());
+        }
         let mesh = SeatMesh::open(&stored.folder.join("mesh.vtu"))?;
         let bar = Bar::new(context, &scene.name);
         let cache = Cache::from_environment();

@@ -122,6 +122,7 @@ mod tests {
             quads: vec![[0, 1, 2, 3]],
             bodies: vec![1],
             von_mises: Some(vec![1e6 * k as f64]),
+            plastic_strain: None,
             displacement: Some(vec![[0.0, 1e-5 * k as f64]; 4]),
         }
     }

@@ -244,7 +244,7 @@
     svg.append(path);
     return svg;
   };
-  for (const source of data.sources) controls.append(toggle(source.id, source.name, sample(source.dash.join(" ") || "none", `fig-${source.id}`)));
+  for (const source of data.sources) controls.append(toggle(source.id, source.name, sample(source.dash.join(" ") || "none", source.class)));
   if (data.panels.some((panel) => panel.curves.some((curve) => curve.band))) controls.append(toggle("band", "95 % band", sample("none", "band-sample")));
   for (const body of new Set(data.panels.flatMap((panel) => panel.curves.map((curve) => curve.body)))) controls.append(toggle(body, body));
 

@@ -55,6 +55,14 @@ impl Contact {
         }
     }
 
+    /// Approach in m up to which there is no force at the end of the step.
+    pub(super) fn touch(&self) -> f64 {
+        match self {
+            Contact::Viscoelastic(contact) => contact.touch(),
+            _ => self.depth(),
+        }
+    }
+
     /// Approach in m at which the surfaces touch for good: that of their dents.
     pub(super) fn depth(&self) -> f64 {
         match self {
@@ -98,7 +106,7 @@ impl DentedContact {
     }
 
     /// Force in N up to which the virgin contact is elastic.
-    fn critical_force(&self) -> f64 {
+    pub(super) fn critical_force(&self) -> f64 {
         let of = |surface: &Surface| surface.law.map_or(f64::INFINITY, |law| law.critical_force());
         self.surfaces.iter().map(of).fold(f64::INFINITY, f64::min)
     }
@@ -121,6 +129,14 @@ impl DentedContact {
     fn force(&self, x: f64) -> [f64; 2] {
         if x <= self.depth() {
             return [0.0; 2];
+        }
+        // equal surfaces with equal dents are one law
+        let [one, other] = &self.surfaces;
+        if let Some(law) = one.law
+            && other.law == one.law
+            && other.dent == one.dent
+        {
+            return law.force(&one.dent, x);
         }
         let at = |u: f64| self.approach(self.hertz.force(u)) - x;
         let mut ends = [0.0, x - self.depth()];

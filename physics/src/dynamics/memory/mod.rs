@@ -170,6 +170,17 @@ impl Memory {
     }
 }
 
+/// Forces in N at which outer and inner contact of `setup`, virgin, begin to yield at low rates; `None` where no yield strength is known.
+pub fn onset_of_yield(setup: &PlateImpact, system: &System) -> [Option<f64>; 2] {
+    let plate = &setup.plate.material;
+    let bodies = [&setup.outer.material, &setup.inner.material];
+    [0, 1].map(|i| {
+        let pair = [bodies[i], plate];
+        let contact = DentedContact::new(system.laws[i], pair, pair.map(|m| m.yield_strength));
+        Some(contact.critical_force()).filter(|force| force.is_finite())
+    })
+}
+
 /// Contact `i` as an impact on a rigid plate, both bodies closing: the scale of its load.
 fn hit(setup: &PlateImpact, system: &System, i: usize) -> HertzImpact {
     let speed = setup.outer.speed + setup.inner.speed.max(0.0);

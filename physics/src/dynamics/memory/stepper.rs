@@ -53,6 +53,8 @@ pub(super) struct Stepper<'a> {
     /// Approaches of the surfaces before dents, in m, and what is added to the modal ones for dents there were at the start.
     x: [f64; 2],
     offset: [f64; 2],
+    /// Approaches in m beyond that at which the contacts touch; negative without a force.
+    past: [f64; 2],
     /// Modal approaches in m, forces in N and patches in m.
     y: [f64; 2],
     force: [f64; 2],
@@ -98,6 +100,7 @@ impl<'a> Stepper<'a> {
             deformed: Default::default(),
             x: [y[0] + offset[0], y[1] + offset[1]],
             offset,
+            past: y,
             y,
             force: [0.0; 2],
             patch: [0.0; 2],
@@ -161,12 +164,18 @@ impl<'a> Stepper<'a> {
         for i in 0..2 {
             let mean = 0.5 * (self.force[i] + force[i]);
             // touch and release are where the force begins and ends
-            let past = [(self.x[i], self.force[i]), (x[i], force[i])].map(|(x, f)| {
-                let past = x - self.bodies.contacts[i].depth();
-                if f > 0.0 { past.max(f64::MIN_POSITIVE) } else { past.min(-f64::MIN_POSITIVE) }
-            });
+            let past = x[i] - self.bodies.contacts[i].touch();
+            let past =
+                if force[i] > 0.0 { past.max(f64::MIN_POSITIVE) } else { past.min(-f64::MIN_POSITIVE) };
             let forces = [self.force[i], force[i]];
-            self.contacts[i].book_even(self.time, self.h, forces, past, mean * (y[i] - self.y[i]));
+            self.contacts[i].book_even(
+                self.time,
+                self.h,
+                forces,
+                [self.past[i], past],
+                mean * (y[i] - self.y[i]),
+            );
+            self.past[i] = past;
             self.contact_losses[i] += mean * (x[i] - self.x[i]);
         }
     }

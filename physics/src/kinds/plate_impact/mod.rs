@@ -12,12 +12,13 @@ pub mod reduced;
 mod results;
 mod series;
 pub mod shared;
+mod shown;
 mod trials;
 mod truncation;
 mod validity;
 pub mod variants;
 
-use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
+use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table};
 use crate::scene::{Model, PLATE_IMPACT, Scene, Setup};
 
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
@@ -46,6 +47,12 @@ impl super::Kind for Kind {
         if let Setup::PlateImpact(setup) = &scene.setup {
             limits::judge(setup, summary, history);
         }
+    }
+
+    fn shown(&self, scene: &Scene, history: &History) -> Table {
+        scene
+            .plate_impact()
+            .map_or_else(|_| Table::new(self.quantities()), |setup| shown::shown(setup, history))
     }
 
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {

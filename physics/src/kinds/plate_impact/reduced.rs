@@ -17,7 +17,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
-use crate::result::{BenderSummary, CUT, Choice, Outcome, Summary};
+use crate::result::{BenderSummary, CUT, Choice, ElasticLimit, Outcome, Summary};
 use crate::scene::{self, MAX_MODES, Model, Scene};
 use std::time::Instant;
 
@@ -202,7 +202,21 @@ impl Reduced {
         let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
         summary.warnings.extend(warning);
         let elastic_efficiency = self.impacts().elastic_efficiency(&options);
-        Ok((Summary { impacts, elastic_efficiency, ..summary }, memory))
+        let elastic_limit = self.elastic_limit(&options)?;
+        Ok((Summary { impacts, elastic_efficiency, elastic_limit, ..summary }, memory))
+    }
+
+    /// `None` without yield strengths, and where bodies relax or bend before they strike.
+    fn elastic_limit(&self, options: &Options) -> Result<Option<ElasticLimit>> {
+        let setup = self.scene.plate_impact()?;
+        let onset = memory::onset_of_yield(setup, &self.system);
+        let materials = [&setup.outer.material, &setup.plate.material, &setup.inner.material];
+        let covered = self.system.drive.is_none() && materials.iter().all(|m| m.relaxation.is_empty());
+        if !covered || onset == [None; 2] {
+            return Ok(None);
+        }
+        let [outer, inner] = self.impacts().elastic_speeds(onset, options);
+        Ok(Some(ElasticLimit { outer, inner }))
     }
 
     /// Runs the impact for its results alone, as a series of many needs them.
@@ -296,9 +310,9 @@ impl Reduced {
             warnings.push(CUT.into());
         }
         Ok(Summary {
-            energy_residual: result.energy_residual,
-            momentum_residual: result.momentum_residual,
-            steps: result.steps,
+            energy_residual: Some(result.energy_residual),
+            momentum_residual: Some(result.momentum_residual),
+            steps: Some(result.steps),
             solve_seconds,
             integration_error: result.error_estimate,
             truncation_error: Some(truncation.error),

@@ -15,6 +15,10 @@ use std::collections::BTreeMap;
 /// Plastic work over the impact's energy below which nothing yields any more.
 const SHAKEN_DOWN: f64 = 3e-4;
 
+/// Runs after which no elastic limit is found, and the relative change from one to the next that is in order.
+const MOST_RUNS: usize = 30;
+const SETTLED: f64 = 1e-5;
+
 /// The impacts of a model.
 pub(super) struct Impacts<'a> {
     pub(super) system: &'a System,
@@ -94,6 +98,30 @@ impl Impacts<'_> {
         self.memory.filter(|memory| memory.yields().contains(&true))?;
         let result = self.elastic(options).ok().filter(|result| !result.is_cut())?;
         values(self.system, &result).table().value("efficiency")
+    }
+
+    /// Largest speeds of the outer body in m/s at which outer and inner contact of virgin bodies stay below the forces `onset` in N;
+    /// `None` where there is no such force or speed.
+    ///
+    /// On a rigid wall the peak of Hertz's force grows with the speed to the 6/5 (Johnson 1985, section 11.4), on a plate nearly so:
+    /// that power, again and again.
+    pub(super) fn elastic_speeds(&self, onset: [Option<f64>; 2], options: &Options) -> [Option<f64>; 2] {
+        [0, 1].map(|i| {
+            let mut speed = self.system.speed;
+            for _ in 0..MOST_RUNS {
+                let system = &self.system.at_speed(speed);
+                let peak = Impacts { system, ..*self }.elastic(options).ok()?.contacts[i].force_peak;
+                let growth = (onset[i]? / peak).powf(5.0 / 6.0);
+                speed *= growth;
+                if (growth - 1.0).abs() < SETTLED {
+                    return Some(speed);
+                }
+                if !speed.is_normal() {
+                    return None;
+                }
+            }
+            None
+        })
     }
 
     fn has_shaken_down(&self, impact: &Integration) -> bool {

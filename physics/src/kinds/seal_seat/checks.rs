@@ -8,10 +8,11 @@ use crate::kinds::consistency::{
 use crate::result::{Outcome, Statement};
 use crate::scene::SealSeat;
 
-/// Statements about a result whose curves can be sampled.
+/// Statements about a result whose curves are all there and can be sampled.
 pub(super) fn checks(setup: &SealSeat, outcome: &Outcome) -> Vec<Statement> {
     let summary = &outcome.summary;
-    let Some(history) = SeatCurves::of(&outcome.history) else { return Vec::new() };
+    let whole = Some(&outcome.history).filter(|history| history.can_be_sampled());
+    let Some(history) = whole.and_then(SeatCurves::of) else { return Vec::new() };
     let mut checks = start(setup, &history);
     let of =
         |name, force| contact(name, summary.source, (history.time, force), Stated::of(summary, name), 0.0);

@@ -215,9 +215,9 @@ impl SeatModel {
             warnings.push(CUT.into());
         }
         Ok(Summary {
-            energy_residual: result.energy_residual,
-            momentum_residual: result.momentum_residual,
-            steps: result.tally.steps,
+            energy_residual: Some(result.energy_residual),
+            momentum_residual: Some(result.momentum_residual),
+            steps: Some(result.tally.steps),
             solve_seconds,
             truncation_error: Some(error),
             warnings,

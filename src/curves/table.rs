@@ -1,0 +1,135 @@
+//! Curves from a table: a CSV file whose columns are named by their heading or by a map, each with its unit.
+
+use crate::result::Curve;
+use crate::scene::{quantity_in, suggestion};
+
+/// Most rows: a second at 20 MHz.
+const MOST: usize = 20_000_000;
+
+/// A column that is wanted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Name of the curve, or `time`.
+    pub name: &'static str,
+    /// Its place in a row.
+    pub index: usize,
+    /// Size of its unit in SI, negative if it counts the other way.
+    pub factor: f64,
+    /// What is added afterwards, SI.
+    pub offset: f64,
+}
+
+/// Values by name in SI, strictly increasing over the time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Columns {
+    /// Time in s. Shape (rows).
+    pub time: Vec<f64>,
+    /// The others, in the order asked for. Shapes (rows).
+    pub values: Vec<(&'static str, Vec<f64>)>,
+}
+
+/// The columns of a `header` such as `time [us],outer_velocity [mm/s]`, of the time and the `known` curves; without unit a
+/// column is in SI.
+///
+/// # Errors
+/// One sentence with the heading.
+pub fn by_heading<'h>(
+    header: impl IntoIterator<Item = &'h str>,
+    known: &[Curve],
+) -> Result<Vec<Column>, String> {
+    let named = |(index, heading): (usize, &str)| {
+        let (name, unit) = match heading.split_once('[') {
+            Some((name, unit)) => {
+                let unit = unit.strip_suffix(']');
+                let unit = unit.ok_or_else(|| format!("column `{heading}`: `]` is missing"))?;
+                (name.trim(), Some(unit.trim()))
+            }
+            None => (heading, None),
+        };
+        let (name, si) = known_column(name, known)?;
+        let factor = unit.map_or(Ok(1.0), |unit| in_si(unit, si));
+        let factor = factor.map_err(|reason| format!("column `{heading}`: {reason}"))?;
+        Ok(Column { name, index, factor, offset: 0.0 })
+    };
+    let columns: Vec<Column> = header.into_iter().enumerate().map(named).collect::<Result<_, String>>()?;
+    let twice = |(k, column): (usize, &Column)| columns[..k].iter().any(|other| other.name == column.name);
+    match columns.iter().enumerate().find(|column| twice(*column)) {
+        Some((_, column)) => Err(format!("two columns are called `{}`", column.name)),
+        None => Ok(columns),
+    }
+}
+
+/// The column called `name` among the time and the `known` curves, and its SI unit.
+///
+/// # Errors
+/// One sentence with those there are.
+pub fn known_column(name: &str, known: &[Curve]) -> Result<(&'static str, &'static str), String> {
+    let mut all = std::iter::once(("time", "s")).chain(known.iter().map(|curve| (curve.name, curve.unit)));
+    all.clone().find(|(other, _)| *other == name).ok_or_else(|| {
+        let names: Vec<&str> = all.by_ref().map(|(name, _)| name).collect();
+        let hint = suggestion(name, names.iter().copied()).map(|near| format!("; did you mean `{near}`?"));
+        format!(
+            "`{name}` is no column that is known{} (there are: {})",
+            hint.unwrap_or_default(),
+            names.join(", ")
+        )
+    })
+}
+
+/// Size of `unit` in the SI unit `si`.
+///
+/// # Errors
+/// One sentence.
+pub fn in_si(unit: &str, si: &str) -> Result<f64, String> {
+    quantity_in(&format!("1 {unit}"), si)
+}
+
+/// Reads the `columns` of all rows.
+///
+/// # Errors
+/// One sentence with line, column and value.
+pub fn read(rows: &mut csv::Reader<&[u8]>, columns: &[Column], fewest: usize) -> Result<Columns, String> {
+    let Some(clock) = columns.iter().position(|column| column.name == "time") else {
+        return Err("there is no column `time`".into());
+    };
+    if columns.len() < 2 {
+        return Err("there is no signal beside the time".into());
+    }
+    let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
+    for row in rows.records() {
+        let row = row.map_err(|e| e.to_string())?;
+        let line = row.position().map_or(0, csv::Position::line);
+        for (values, Column { name, index, factor, offset }) in values.iter_mut().zip(columns) {
+            let text = row.get(*index).ok_or_else(|| format!("line {line}: {name} is missing"))?;
+            let number: Option<f64> = text.parse().ok().filter(|n: &f64| n.is_finite());
+            let number =
+                number.ok_or_else(|| format!("line {line}: {name} is `{text}`, not a finite number"))?;
+            values.push(number * factor + offset);
+        }
+        if let [.., before, now] = values[clock][..]
+            && now <= before
+        {
+            return Err(format!("line {line}: time is {now} s, not after {before} s of the line before"));
+        }
+        if values[clock].len() > MOST {
+            return Err(format!("has more than {MOST} samples"));
+        }
+    }
+    let samples = values[clock].len();
+    if samples < fewest {
+        return Err(format!("has {samples} samples; at least {fewest} are needed"));
+    }
+    let time = std::mem::take(&mut values[clock]);
+    let others = columns.iter().map(|column| column.name).zip(values).filter(|(name, _)| *name != "time");
+    Ok(Columns { time, values: others.collect() })
+}
+
+/// A reader of CSV with a header; lines that begin with `#` are skipped.
+pub fn csv_reader(bytes: &[u8], delimiter: u8) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .has_headers(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .delimiter(delimiter)
+        .from_reader(bytes)
+}

@@ -1,0 +1,99 @@
+//! Programs of the user's as models: one run with the scene on its standard input, its answer as a result like any other.
+//!
+//! Whatever a program does, a run of it ends with an [`Outcome`]: one that fails has none of the quantities and says why
+//! in [`Summary::failure`], so that nothing else is stopped by it.
+
+mod answer;
+mod process;
+
+pub use answer::{assembled, summary};
+
+use crate::kinds;
+use crate::result::{History, Outcome, SCHEMA_VERSION, Source, Summary, Table};
+use crate::scene::{External, Scene};
+use process::{MOST_BYTES, Said};
+use serde_json::{Value, json};
+use std::io::ErrorKind;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Lines of a program's standard error that are told.
+const TOLD_LINES: usize = 3;
+
+/// What `program` makes of `scene`, run in `folder`; it is asked for samples at the distance of `sample_interval` s.
+pub fn run(scene: &Scene, program: &External, folder: &Path, sample_interval: f64) -> Outcome {
+    let start = Instant::now();
+    let answered = asked(scene, program, folder, sample_interval);
+    let seconds = start.elapsed().as_secs_f64();
+    match answered {
+        Ok((mut summary, history)) => {
+            summary.solve_seconds = seconds;
+            kinds::of(scene).judge(scene, &mut summary, Some(&history));
+            Outcome { summary, history }
+        }
+        Err(reason) => failed(scene, program, reason, seconds),
+    }
+}
+
+/// The document on the program's standard input.
+///
+/// # Errors
+/// What can't be written as JSON.
+pub fn question(scene: &Scene, sample_interval: f64) -> serde_json::Result<Value> {
+    let mut document = serde_json::to_value(scene)?;
+    if let Some(fields) = document.as_object_mut() {
+        // what other models are and how well this one has to do is none of its business
+        ["reduced", "reference", "tolerances", "external"].iter().for_each(|key| drop(fields.remove(*key)));
+        fields.insert("scene_hash".into(), scene.hash().into());
+    }
+    Ok(json!({ "schema_version": SCHEMA_VERSION, "scene": document, "sample_interval": sample_interval }))
+}
+
+fn asked(
+    scene: &Scene,
+    program: &External,
+    folder: &Path,
+    sample_interval: f64,
+) -> Result<(Summary, History), String> {
+    let question = question(scene, sample_interval).map_err(|e| format!("the scene as JSON: {e}"))?;
+    // no folder in the name of a file means the current one
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let limit = Duration::from_secs_f64(program.timeout);
+    let said = process::run(&program.command, folder, format!("{question}\n").into_bytes(), limit);
+    let Said { output, log, status } = said.map_err(|error| cannot_run(program, folder, &error))?;
+    let whole = output.len() as u64 <= MOST_BYTES;
+    match status {
+        _ if !whole => Err(format!("it wrote more than {} MiB to standard output", MOST_BYTES >> 20)),
+        None => Err(format!("it was not done after {} s (timeout) and was ended", program.timeout)),
+        Some(status) if !status.success() => Err(format!("it failed ({status})")),
+        Some(_) => answer::read(scene, &program.name, &output)
+            .map_err(|why| format!("its answer can't be used: {why}")),
+    }
+    .map_err(|reason| reason + &told(&log))
+}
+
+fn cannot_run(program: &External, folder: &Path, error: &std::io::Error) -> String {
+    let command = program.command.first().map_or("", String::as_str);
+    match error.kind() {
+        ErrorKind::NotFound => {
+            format!("there is no program `{command}` on PATH or in {}", folder.display())
+        }
+        _ => format!("`{command}` can't be run: {error}"),
+    }
+}
+
+/// The end of the program's messages.
+fn told(log: &str) -> String {
+    let lines: Vec<&str> = log.lines().collect();
+    let last = lines[lines.len().saturating_sub(TOLD_LINES)..].join(" | ");
+    if last.is_empty() { last } else { format!("; its last messages: {last}") }
+}
+
+fn failed(scene: &Scene, program: &External, reason: String, seconds: f64) -> Outcome {
+    let name = program.name.clone();
+    let table = Table::new(kinds::of(scene).quantities());
+    let summary = Summary::new(scene, (Source::External, Some(name)), table);
+    let warnings = vec![format!("no result: {reason}")];
+    let summary = Summary { failure: Some(reason), warnings, solve_seconds: seconds, ..summary };
+    Outcome { summary, history: History::default() }
+}

@@ -1,0 +1,76 @@
+//! One run of a program that nobody can vouch for: bounded in time and output, ended with all that it has started.
+
+use crate::interrupt::Running;
+use crate::reference::tail;
+use std::io::{Read, Write};
+use std::path::Path;
+use std::process::{Command, ExitStatus, Stdio};
+use std::thread::{sleep, spawn};
+use std::time::{Duration, Instant};
+
+/// Most bytes of an answer that are read.
+pub(super) const MOST_BYTES: u64 = 64 << 20;
+/// Longest time between two looks at a running program.
+const LONGEST_LOOK: Duration = Duration::from_millis(20);
+
+/// What a program has said and how it ended.
+#[derive(Debug)]
+pub(super) struct Said {
+    /// Its standard output, of which more than [`MOST_BYTES`] is left out.
+    pub(super) output: Vec<u8>,
+    /// The last lines of its standard error.
+    pub(super) log: String,
+    /// How it ended; `None`: it was ended after its time.
+    pub(super) status: Option<ExitStatus>,
+}
+
+/// Runs `command` in `folder` with `input` on its standard input, for at most `limit`.
+///
+/// # Errors
+/// What the system says if the program can't be started or waited for.
+pub(super) fn run(
+    command: &[String],
+    folder: &Path,
+    input: Vec<u8>,
+    limit: Duration,
+) -> std::io::Result<Said> {
+    let (program, arguments) = command.split_first().ok_or(std::io::ErrorKind::InvalidInput)?;
+    // what has a slash is found from the folder it runs in, as in a shell
+    let program = if program.contains('/') { folder.join(program) } else { program.into() };
+    let mut command = Command::new(program);
+    command.args(arguments).current_dir(folder);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut running = Running::start_group(&mut command)?;
+    let (stdin, stdout, stderr) =
+        (running.child().stdin.take(), running.child().stdout.take(), running.child().stderr.take());
+    // a program may answer before it has read its question, or without
+    spawn(move || stdin.map(|mut stdin| stdin.write_all(&input)));
+    let output = spawn(move || {
+        let mut bytes = Vec::new();
+        let read = stdout.map(|stdout| stdout.take(MOST_BYTES + 1).read_to_end(&mut bytes));
+        read.transpose().map(|_| bytes)
+    });
+    let log = spawn(move || stderr.map(tail).unwrap_or_default());
+    let status = wait(&mut running, limit);
+    // what it has left behind would hold its output open
+    running.end_group();
+    let output = output.join().unwrap_or_else(|_| Ok(Vec::new()))?;
+    Ok(Said { output, log: log.join().unwrap_or_default(), status: status? })
+}
+
+/// Waits for the end of a program; `None` if that does not come in time.
+fn wait(running: &mut Running, limit: Duration) -> std::io::Result<Option<ExitStatus>> {
+    let start = Instant::now();
+    let mut look = Duration::from_millis(1);
+    loop {
+        if let Some(status) = running.child().try_wait()? {
+            return Ok(Some(status));
+        }
+        let left = limit.saturating_sub(start.elapsed());
+        if left.is_zero() {
+            return Ok(None);
+        }
+        sleep(look.min(left));
+        look = (2 * look).min(LONGEST_LOOK);
+    }
+}

@@ -1,0 +1,203 @@
+//! Results of other programs as stored references: read once from a file, checked as every reference is, kept with where
+//! they come from.
+
+mod calculix;
+mod mapping;
+
+use super::entry::{self, MeshFiles, Stored};
+use super::store::Installed;
+use super::{Resolution, Store, identity};
+use crate::comparison::{self, Verdict};
+use crate::curves::table::{self, Columns};
+use crate::external;
+use crate::kinds;
+use crate::result::{History, Outcome, Summary, Table};
+use crate::scene::Scene;
+use crate::scene::hash::sha256_hex;
+use crate::{Error, Result};
+use mapping::{Form, Mapping};
+use serde_json::json;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Fewest samples of a reference.
+const FEWEST: usize = 16;
+/// Name of a program that nobody states.
+const UNKNOWN: &str = "another program";
+
+/// Puts the result in `file` into `store` as the imported reference of `scene`; `map` says how it is to be read.
+///
+/// # Errors
+/// [`Error::Io`] if a file can't be read or written, [`Error::Reference`] if it can't be used: the file, line or column at
+/// fault, or what the result contradicts.
+pub fn import(scene: &Scene, file: &Path, map: Option<&Path>, store: &Store) -> Result<Stored> {
+    let read = |path: &Path| std::fs::read(path).map_err(|e| Error::io("reading", path, e));
+    let bytes = read(file)?;
+    let map_text = map.map(read).transpose()?.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    let unusable = |path: &Path, reason: String| Error::Reference(format!("{}: {reason}", path.display()));
+    let of_map = |reason| unusable(map.unwrap_or(file), reason);
+    let mapping = Mapping::parse(map_text.as_deref().unwrap_or_default()).map_err(of_map)?;
+    let stated = mapping.stated(kinds::of(scene)).map_err(of_map)?;
+    let history = history(scene, file, &bytes, &mapping).map_err(|reason| unusable(file, reason))?;
+    let outcome = outcome(scene, &mapping, stated, history);
+    require_sound(scene, file, &outcome)?;
+    let provenance = json!({
+        "scene": identity::solver_document(scene, Resolution::Imported)?,
+        "scene_hash": scene.hash(),
+        "settings_hash": identity::settings_hash(scene, Resolution::Imported),
+        "settings": { "resolution": Resolution::Imported },
+        "created": chrono::Utc::now().to_rfc3339(),
+        "program": outcome.summary.model,
+        "version": mapping.provenance.version,
+        "who": mapping.provenance.who,
+        "mesh": mapping.provenance.mesh,
+        "uncertainty": if outcome.summary.uncertainty.is_empty() { "none stated" } else { "as stated" },
+        "file": file.file_name().map(|name| name.to_string_lossy()),
+        "file_sha256": sha256_hex(&bytes),
+        "map": map_text,
+    });
+    install(scene, store, &outcome, &format!("{provenance:#}\n"))
+}
+
+/// The curves of a file of any of the forms known, from the first touch on.
+fn history(
+    scene: &Scene,
+    file: &Path,
+    bytes: &[u8],
+    mapping: &Mapping,
+) -> std::result::Result<History, String> {
+    let text = std::str::from_utf8(bytes).map_err(|e| format!("is no text in UTF-8: {e}"))?;
+    let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let comma = Form::default();
+    let (text, form) = match ending.as_deref() {
+        Some("dat") => (calculix::dat(text)?, &comma),
+        Some("frd") => (calculix::frd(text, &mapping.headings())?, &comma),
+        _ => plain(text, &mapping.table)?,
+    };
+    let delimiter = if form.delimiter == "spaces" { "," } else { &form.delimiter };
+    let &[delimiter] = delimiter.as_bytes() else {
+        return Err(format!("table.delimiter is `{delimiter}`, but it has to be one character or `spaces`"));
+    };
+    let kind = kinds::of(scene);
+    let mut reader = table::csv_reader(text.as_bytes(), delimiter);
+    let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
+    let columns = mapping.columns(kind, &header.iter().collect::<Vec<_>>())?;
+    external::assembled(kind, from_first_touch(table::read(&mut reader, &columns, FEWEST)?)?)
+}
+
+/// A table of text as CSV with headings, which are numbers where it has none.
+fn plain<'f>(text: &str, form: &'f Form) -> std::result::Result<(String, &'f Form), String> {
+    let rows = text.lines().skip(form.skip).filter(|line| !line.trim().is_empty());
+    let spaces = form.delimiter == "spaces";
+    let separated = |line: &str| match spaces {
+        true => line.split_whitespace().collect::<Vec<_>>().join(","),
+        false => line.trim_end().to_owned(),
+    };
+    let mut lines: Vec<String> = rows.map(separated).collect();
+    if !form.headings {
+        let first = lines.first().ok_or("has no row")?;
+        let separator = if spaces { "," } else { &form.delimiter };
+        let count = first.split(separator).count();
+        lines.insert(0, (1..=count).map(|k| k.to_string()).collect::<Vec<_>>().join(separator));
+    }
+    Ok((lines.join("\n"), form))
+}
+
+/// The columns from t = 0 on, where a sample is put if there is none.
+fn from_first_touch(columns: Columns) -> std::result::Result<Columns, String> {
+    let Columns { time, values } = columns;
+    let first = time.partition_point(|t| *t < 0.0);
+    if first == time.len() || (first == 0 && time[0] > 0.0) {
+        return Err(format!(
+            "its times are from {} s to {} s; t = 0 has to be the first touch (columns.time.offset shifts them)",
+            time[0],
+            time[time.len() - 1]
+        ));
+    }
+    if time[first] == 0.0 {
+        let values = values.into_iter().map(|(name, values)| (name, values[first..].to_vec())).collect();
+        return Ok(Columns { time: time[first..].to_vec(), values });
+    }
+    let share = -time[first - 1] / (time[first] - time[first - 1]);
+    let from_zero =
+        |at_zero: f64, rest: &[f64]| std::iter::once(at_zero).chain(rest.iter().copied()).collect();
+    let cut = |(name, values): (&'static str, Vec<f64>)| {
+        let at_zero = values[first - 1] + share * (values[first] - values[first - 1]);
+        (name, from_zero(at_zero, &values[first..]))
+    };
+    Ok(Columns { time: from_zero(0.0, &time[first..]), values: values.into_iter().map(cut).collect() })
+}
+
+type Numbers = std::collections::BTreeMap<String, f64>;
+
+fn outcome(
+    scene: &Scene,
+    mapping: &Mapping,
+    [quantities, uncertainty]: [Numbers; 2],
+    history: History,
+) -> Outcome {
+    let mut table = Table::new(kinds::of(scene).quantities());
+    for (name, value) in quantities {
+        if let Some(slot) = table.value_mut(&name) {
+            *slot = Some(value);
+        }
+    }
+    let program = mapping.provenance.program.as_deref().unwrap_or(UNKNOWN);
+    let summary = external::summary(scene, program, table, &history);
+    let summary = Summary { uncertainty, samples: Some(history.len()), ..summary };
+    Outcome { summary, history }
+}
+
+/// That the result is consistent with itself and the scene, which a wrong unit, sign or column is not.
+fn require_sound(scene: &Scene, file: &Path, outcome: &Outcome) -> Result<()> {
+    let checks = comparison::integrity(scene, outcome);
+    let broken: Vec<String> =
+        checks.iter().filter(|check| check.verdict == Verdict::Fail).map(ToString::to_string).collect();
+    if broken.is_empty() {
+        return Ok(());
+    }
+    Err(Error::Reference(format!(
+        "{} contradicts the scene or itself, and nothing is stored; check columns, units, signs and offsets\n  {}",
+        file.display(),
+        broken.join("\n  ")
+    )))
+}
+
+/// Writes the entry and puts it into the store.
+fn install(scene: &Scene, store: &Store, outcome: &Outcome, provenance: &str) -> Result<Stored> {
+    let work = store.work_folder(scene)?;
+    let made = work.path().join("result");
+    std::fs::create_dir(&made).map_err(|e| Error::io("creating", &made, e))?;
+    let summary = serde_json::to_string_pretty(&outcome.summary)
+        .map_err(|e| Error::Internal(format!("a summary as JSON: {e}")))?;
+    let files = [
+        ("history.csv", csv(&outcome.history)),
+        ("provenance.json", provenance.to_owned()),
+        ("summary.json", summary),
+    ];
+    let mut sums = String::new();
+    for (name, text) in &files {
+        sums += &format!("{}  {name}\n", sha256_hex(text.as_bytes()));
+    }
+    for (name, text) in files.iter().map(|(name, text)| (*name, text)).chain([("checksums.sha256", &sums)]) {
+        let path = made.join(name);
+        std::fs::write(&path, text).map_err(|e| Error::io("writing", &path, e))?;
+    }
+    let stored = entry::load(scene, &made, MeshFiles::None).map_err(|damage| {
+        Error::Internal(format!("the import's {}: {}", damage.file.display(), damage.reason))
+    })?;
+    let Installed { folder, earlier } = store.install(&work, &made, scene, Resolution::Imported)?;
+    Ok(Stored { folder, earlier, ..stored })
+}
+
+fn csv(history: &History) -> String {
+    let mut text = String::from("time");
+    history.curves.iter().for_each(|curve| text += &format!(",{}", curve.name));
+    for (k, time) in history.time.iter().enumerate() {
+        let _ = write!(text, "\n{time:e}");
+        for curve in &history.curves {
+            let _ = write!(text, ",{:e}", curve.values[k]);
+        }
+    }
+    text + "\n"
+}

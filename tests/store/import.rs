@@ -1,0 +1,93 @@
+//! Results of other programs become references: read with their units and signs, checked, kept with where they come from.
+
+use impactcheck::Error;
+use impactcheck::comparison::{Verdict, compare_scene};
+use impactcheck::kinds::plate_impact::reduced::Reduced;
+use impactcheck::reference::{Lookup, Resolution, Store, import};
+use impactcheck::scene::{Model, Scene};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn recipe(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/import").join(file)
+}
+
+fn scene() -> Scene {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/scaled-plate-r10.toml");
+    Scene::read(file).expect("shipped scene")
+}
+
+/// Every recipe of the guide gives a reference that model C is judged by, and that knows where it comes from.
+#[test]
+fn recipes_give_references_that_models_are_judged_by() {
+    let model = Reduced::new(&scene(), Model::C, None).expect("model").run_with_history(1e-7).expect("run");
+    for (file, map, program) in
+        [("abaqus.rpt", "abaqus.toml", "Abaqus/Explicit"), ("lsprepost.csv", "lsprepost.toml", "LS-DYNA")]
+    {
+        let folder = tempfile::tempdir().expect("folder");
+        let store = Store::open(Some(folder.path()));
+        let imported = import(&scene(), &recipe(file), Some(&recipe(map)), &store).expect(file);
+        let Lookup::Found(stored) = store.find(&scene(), Resolution::Imported) else { panic!("{file}") };
+        assert_eq!(stored.outcome, imported.outcome);
+        assert_eq!(
+            (&stored.provenance["program"], &stored.provenance["file"]),
+            (&program.into(), &file.into())
+        );
+        let hash = impactcheck::scene::hash::sha256_hex(&fs::read(recipe(file)).expect("file"));
+        assert_eq!(stored.provenance["file_sha256"], hash);
+        let is_stated = !stored.outcome.summary.uncertainty.is_empty();
+        assert_eq!(stored.provenance["uncertainty"] == "none stated", !is_stated, "{file}");
+        let comparison = compare_scene(&scene(), &stored.outcome, std::slice::from_ref(&model));
+        let judged = &comparison.models[0];
+        for quantity in ["efficiency", "outer_velocity_final", "outer_force_peak", "outer_velocity_rms"] {
+            let row = judged.discrepancy(quantity).expect(quantity);
+            assert!(matches!(row.verdict, Verdict::Pass | Verdict::Undecided), "{file}: {row:?}");
+        }
+        // what the program does not state, such as the plate's frequency, is not gated
+        assert!(matches!(judged.verdict, Verdict::Pass | Verdict::Undecided), "{file}: {judged:?}");
+        assert_eq!(judged.discrepancy("first_frequency").expect("a row").verdict, Verdict::NotGated);
+        // it is not the reference of any other speed
+        let text = fs::read_to_string(recipe("../../scenes/scaled-plate-r10.toml")).expect("scene");
+        let faster = Scene::parse("faster", &text.replace("550 mm/s", "560 mm/s")).expect("valid");
+        assert!(matches!(store.find(&faster, Resolution::Imported), Lookup::Stale { .. }));
+        // and a changed file is damaged
+        let history = stored.folder.join("history.csv");
+        let text = fs::read_to_string(&history).expect("history");
+        fs::write(&history, text.replacen("0e0", "1e0", 1)).expect("written");
+        assert!(matches!(store.find(&scene(), Resolution::Imported), Lookup::Damaged { .. }));
+    }
+}
+
+/// A wrong sign, unit, column or offset contradicts the scene; nothing is stored.
+#[test]
+fn what_a_map_gets_wrong_is_told_and_nothing_is_stored() {
+    let folder = tempfile::tempdir().expect("folder");
+    let store = Store::open(Some(&folder.path().join("store")));
+    let map = fs::read_to_string(recipe("abaqus.toml")).expect("map");
+    for (from, to, part) in [
+        ("column = 2, unit = \"mm/s\", sign = -1", "column = 2, unit = \"mm/s\"", "outer_velocity_start"),
+        ("column = 2, unit = \"mm/s\"", "column = 2, unit = \"m/s\"", "outer_velocity_start"),
+        ("column = 4, unit = \"N\"", "column = 4, unit = \"kN\"", "outer_momentum_balance"),
+        ("column = 1, unit = \"s\"", "column = 1, unit = \"ms\"", "outer_momentum_balance"),
+        (
+            "column = 1, unit = \"s\"",
+            "column = 1, unit = \"s\", offset = \"1 us\"",
+            "t = 0 has to be the first touch",
+        ),
+        ("column = 4, unit = \"N\"", "column = 4, unit = \"mm\"", "`mm` is the unit of something else"),
+        ("column = 5", "column = 9", "there is no column 9"),
+        ("outer_force    =", "outer_forces   =", "did you mean `outer_force`?"),
+        ("skip      = 3", "skip      = 1", "not a finite number"),
+        ("efficiency       = 0.001", "efficiency       = -0.001", "has to be 0 or more"),
+        ("efficiency       = 0.001", "efficency        = 0.001", "`efficency` is no quantity"),
+        ("delimiter = \"spaces\"", "delimiter = \"spaces\"\nseparator = 1", "unknown field"),
+    ] {
+        assert!(map.contains(from), "{from}");
+        let changed = folder.path().join("map.toml");
+        fs::write(&changed, map.replacen(from, to, 1)).expect("written");
+        let error = import(&scene(), &recipe("abaqus.rpt"), Some(&changed), &store).expect_err(part);
+        assert!(matches!(error, Error::Reference(_)), "{error}");
+        assert!(error.to_string().contains(part), "{part}: {error}");
+    }
+    assert_eq!(store.find(&scene(), Resolution::Imported), Lookup::Missing);
+}
