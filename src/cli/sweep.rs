@@ -16,7 +16,7 @@ pub const EXAMPLE: &str = r#"A sweep file (TOML):
   scene     = "scaled-plate-r10"     # a file beside this one, or a shipped scene
   model     = "B"                    # A, B, C or several, ["B", "C"]; absent = the scene's, else B
   modes     = 16                     # absent = the scene's, else the model's
-  tolerance = 1e-4                   # relative error of the efficiency; absent = 1e-4
+  tolerance = 1e-4                   # relative error of the efficiency; absent = 1e-3 (force peaks: 2e-3)
   sampling  = "grid"                 # or "latin-hypercube", with samples = 10000 and seed = 1
 
   [[vary]]
@@ -39,8 +39,9 @@ the optimum. Several models number the points model after model and have a colum
 An interrupted sweep goes on where it stopped when it is started again. As the array job of a cluster:
   impactcheck study sweep FILE --out DIR --shard $SLURM_ARRAY_TASK_ID/16
   impactcheck study merge FILE --out DIR
-RAYON_NUM_THREADS sets the number of threads. With model C every point meshes its plate (some
-0.1 s) and leaves 4 kB in the cache; IMPACTCHECK_CACHE= (empty) keeps them out."#;
+RAYON_NUM_THREADS sets the number of threads. Bodies of model C are scaled from
+those of one shape; where plate.radius, plate.thickness or a Poisson's ratio varies, from those of
+some shapes, or if the points are few every one meshes its plate (0.1 s, 4 kB in the cache)."#;
 
 /// Points up to which a sweep is drawn: each is a mark of its own.
 const MOST_DRAWN: usize = 100_000;

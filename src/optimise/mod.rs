@@ -19,6 +19,8 @@ use serde::Serialize;
 
 /// Relative error of the efficiency that the time integration may have: far below what tells two points apart.
 const TOLERANCE: f64 = 1e-7;
+/// Impacts that a search may be expected to take.
+const IMPACTS: usize = 100;
 /// Significant digits of the optimum: more are lost in how flat it is, and fewer make a scene one can name.
 const DIGITS: usize = 4;
 /// Length, relative to the bounds' distance, to which the optimum is located.
@@ -141,7 +143,10 @@ impl Problem {
         if let Some(twice) = names.windows(2).find(|w| w[0] == w[1]) {
             return Err(Error::Usage(format!("--over names `{}` twice", twice[0])));
         }
-        let bodies = SharedBodies::for_varied(names.into_iter());
+        let varied = variables.iter().flat_map(|variable| {
+            variable.fields.iter().map(|field| (field.path(), [variable.low, variable.high]))
+        });
+        let bodies = SharedBodies::for_varied(varied, template.scene().plate_impact()?, IMPACTS);
         Ok(Problem { template, variables, model, modes, bodies })
     }
 
@@ -187,7 +192,7 @@ impl Problem {
     /// # Errors
     /// Those of the model.
     fn efficiency_of(&self, model: Model, values: &[f64]) -> Result<f64> {
-        let reduced = Reduced::in_series(self.scene(values)?, model, None, &self.bodies)?;
+        let reduced = Reduced::new(&self.scene(values)?, model, None)?;
         Ok(reduced.point(TOLERANCE)?.quantities.efficiency)
     }
 

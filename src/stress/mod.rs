@@ -190,7 +190,7 @@ impl Solved {
 
 /// Solves an impact until `end_time` s as the program does, and looks at what has to hold; `names` are those of its values.
 fn solve(system: &System, fluid: Option<&FluidForces>, end_time: f64, names: &[&'static str; 5]) -> Solved {
-    let options = Options { tolerance: TOLERANCE, end_time: Some(end_time), sample_interval: None };
+    let options = Options { tolerance: TOLERANCE, end_time: Some(end_time), ..Options::default() };
     match assured(&options, system, |options| integrate(system, fluid, options)) {
         Ok(result) => judge(system, fluid, end_time, names, &result),
         Err(Error::BeyondModel(_)) => Solved { beyond_model: true, ..Solved::default() },
@@ -247,7 +247,7 @@ mod tests {
     }
 
     fn options(case: &Case, tolerance: f64) -> Options {
-        Options { tolerance, end_time: Some(case.end_time), sample_interval: None }
+        Options { tolerance, end_time: Some(case.end_time), ..Options::default() }
     }
 
     /// Largest difference of a velocity to the solution at the tightest tolerance, over the impact speed.

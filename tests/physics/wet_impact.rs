@@ -66,7 +66,7 @@ impl Wet {
     }
 
     fn run_to(&self, tolerance: f64, end_time: Option<f64>) -> Integration {
-        let options = Options { tolerance, end_time, sample_interval: None };
+        let options = Options { tolerance, end_time, ..Options::default() };
         wet::integrate(&self.system, &self.fluid, &options).unwrap()
     }
 

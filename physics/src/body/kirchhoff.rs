@@ -6,13 +6,14 @@
 //! twice integrated Legendre polynomials, which vanish with their slope at both ends.
 
 use super::ModalBody;
+use super::kept::Kept;
 use crate::analytical::circular_plate::rigidity;
 use crate::error::Result;
 use crate::numerics::eigenmodes::lowest;
 use crate::scene::{Edge, Plate};
 use faer::Mat;
 use std::f64::consts::PI;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::Arc;
 
 /// Degree of the polynomials in an element.
 const DEGREE: usize = 9;
@@ -107,9 +108,9 @@ impl UnitPlate {
         1.0 / (plate.radius * (plate.material.density * plate.thickness).sqrt())
     }
 
-    /// The modes in the terms of `plate`, which must have this edge and Poisson's ratio.
+    /// The modes in the terms of `plate`, which must have this edge and (about) this Poisson's ratio.
     pub fn scale(&self, plate: &Plate) -> ModalBody {
-        debug_assert!(plate.edge == self.edge && plate.material.poisson_ratio == self.poisson_ratio);
+        debug_assert!(plate.edge == self.edge);
         let material = &plate.material;
         let mass_per_area = material.density * plate.thickness;
         let bending = rigidity(material.youngs_modulus, material.poisson_ratio, plate.thickness);
@@ -141,13 +142,9 @@ pub fn shapes(plate: &Plate, modes: usize, radii: &[f64]) -> Result<Vec<Vec<f64>
     Ok(UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.shapes(plate, radii))
 }
 
-/// Most unit plates that [`UnitPlates`] keeps: a study of the other numbers needs a few, one of Poisson's ratio a
-/// new one each time.
-const KEPT: usize = 32;
-
 /// The unit plates that a series of impacts has needed so far; shared by its threads.
 #[derive(Debug, Default)]
-pub struct UnitPlates(RwLock<Vec<Arc<UnitPlate>>>);
+pub struct UnitPlates(Kept<UnitPlate>);
 
 impl UnitPlates {
     /// As [`modes`], without solving an eigenproblem again.
@@ -155,7 +152,16 @@ impl UnitPlates {
     /// # Errors
     /// As [`UnitPlate::new`].
     pub fn modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
-        Ok(self.unit(plate, modes)?.scale(plate))
+        Ok(self.unit(plate.edge, plate.material.poisson_ratio, modes)?.scale(plate))
+    }
+
+    /// As [`Self::modes`], of a plate whose Poisson's ratio may be another by 0.05 in its edge's moments, not in its rigidity.
+    ///
+    /// # Errors
+    /// As [`UnitPlate::new`].
+    pub(crate) fn rough_modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
+        let poisson_ratio = (10.0 * plate.material.poisson_ratio).round().min(4.0) / 10.0;
+        Ok(self.unit(plate.edge, poisson_ratio, modes)?.scale(plate))
     }
 
     /// As [`shapes`], without solving an eigenproblem again.
@@ -163,27 +169,15 @@ impl UnitPlates {
     /// # Errors
     /// As [`UnitPlate::new`].
     pub fn shapes(&self, plate: &Plate, modes: usize, radii: &[f64]) -> Result<Vec<Vec<f64>>> {
-        Ok(self.unit(plate, modes)?.shapes(plate, radii))
+        Ok(self.unit(plate.edge, plate.material.poisson_ratio, modes)?.shapes(plate, radii))
     }
 
-    fn unit(&self, plate: &Plate, modes: usize) -> Result<Arc<UnitPlate>> {
-        let (edge, poisson_ratio) = (plate.edge, plate.material.poisson_ratio);
+    fn unit(&self, edge: Edge, poisson_ratio: f64, modes: usize) -> Result<Arc<UnitPlate>> {
         let count = modes + usize::from(edge == Edge::Free);
-        let fits = |unit: &&Arc<UnitPlate>| {
+        let fits = |unit: &UnitPlate| {
             unit.edge == edge && unit.poisson_ratio == poisson_ratio && unit.omega.len() == count
         };
-        // the list is whole after every change, whatever became of the thread that made it
-        let known = self.0.read().unwrap_or_else(PoisonError::into_inner).iter().find(fits).cloned();
-        if let Some(unit) = known {
-            return Ok(unit);
-        }
-        let unit = Arc::new(UnitPlate::new(edge, poisson_ratio, modes)?);
-        let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() >= KEPT {
-            kept.remove(0);
-        }
-        kept.push(Arc::clone(&unit));
-        Ok(unit)
+        self.0.find_or(fits, || UnitPlate::new(edge, poisson_ratio, modes))
     }
 }
 

@@ -12,10 +12,11 @@
 //! the continuum plate to three digits; what is lacking is the effect of shear on the rim, and longitudinal modes.
 
 use super::ModalBody;
+use super::continuum::mirror::axpy;
 use super::continuum::{ContinuumPlate, WEIGHTED};
 use super::free_sphere::patch_transform;
 use crate::analytical::circular_plate::{centre_deflection, deflection, frequency_parameters, rigidity};
-use crate::contact::{PatchTable, RADII, Tabulated};
+use crate::contact::{PatchTable, RADII};
 use crate::numerics::quadrature::gauss_legendre;
 use crate::scene::{Edge, Plate};
 use std::f64::consts::PI;
@@ -38,13 +39,13 @@ pub struct Waves {
 }
 
 /// A wave number with its share in a flexibility.
-struct Share {
+struct Share<W> {
     /// Between patches on the same face, without the half-space, in m/N.
     own: f64,
     /// Between patches on opposite faces, in m/N.
     mutual: f64,
-    /// Transforms of both patches' tabulated radii.
-    weight: [Tabulated; 2],
+    /// Transforms of the patches.
+    weight: W,
 }
 
 impl Waves {
@@ -115,7 +116,8 @@ impl Waves {
             damping_ratio: plate.damping_ratio,
             degrees_of_freedom: 0,
         };
-        for share in self.shares(patch) {
+        let tabulated = |xi: f64| patch.map(|a| RADII.map(|r| patch_transform(xi * r * a)));
+        for share in self.shares(patch[0].max(patch[1]), tabulated) {
             layer.flexibility.add(share.own, share.mutual, share.weight);
         }
         for (k, centre) in self.parameter.iter().zip(&self.centre) {
@@ -126,6 +128,21 @@ impl Waves {
             layer.participation.push(patch.map(|a| WEIGHTED.map(|r| phi * patch_transform(xi * r * a))));
         }
         layer
+    }
+
+    /// Flexibility of the elastic layer in m/N between patches of the `radii` in m, the widest last: of each by its own force without the
+    /// half-space, shape (n), and between any two on opposite faces, shape (n, n).
+    pub(super) fn flexibilities(&self, radii: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let widest = radii.last().copied().unwrap_or(0.0);
+        let (mut own, mut mutual) = (vec![0.0; radii.len()], vec![vec![0.0; radii.len()]; radii.len()]);
+        let all = |xi: f64| radii.iter().map(|a| patch_transform(xi * a)).collect::<Vec<f64>>();
+        for share in self.shares(widest, all) {
+            for (i, weight) in share.weight.iter().enumerate() {
+                own[i] += share.own * weight * weight;
+                axpy(share.mutual * weight, &share.weight, &mut mutual[i]);
+            }
+        }
+        (own, mutual)
     }
 
     /// Frequency in rad/s of the lower wave of Mindlin's plate with the wave number `xi` in 1/m, and the share of its mass that
@@ -146,16 +163,16 @@ impl Waves {
         (lower.sqrt(), 1.0 / (1.0 + ((a - lower) / b).powi(2)))
     }
 
-    /// Shares of all wave numbers in the flexibilities between patches of the radii `patch` in m.
-    fn shares(&self, patch: [f64; 2]) -> Vec<Share> {
+    /// Shares of all wave numbers in the flexibilities between patches that are `widest` m wide at most, of which `weight` gives the
+    /// transforms.
+    fn shares<W>(&self, widest: f64, weight: impl Fn(f64) -> W) -> Vec<Share<W>> {
         let (plate, modes) = (&self.plate, self.modes());
         let half = 0.5 * plate.thickness;
         let half_space = |xi: f64| 1.0 / (plate.material.plane_strain_modulus() * xi);
         let bent = |xi: f64| half_space(xi) * bending_ratio(xi * half);
         let squeezed = |xi: f64| half_space(xi) * squeezing_ratio(xi * half);
-        let weight = |xi: f64| patch.map(|a| RADII.map(|r| patch_transform(xi * r * a)));
         let waves = self.parameter.iter().zip(&self.centre).take(modes);
-        let mut shares: Vec<Share> = waves
+        let mut shares: Vec<Share<W>> = waves
             .map(|(k, centre)| {
                 let xi = k / plate.radius;
                 let bent = centre * centre * self.mass_per_area() * bent(xi);
@@ -164,7 +181,7 @@ impl Waves {
             .collect();
         let cut = self.cut() / plate.radius;
         let rule = gauss_legendre(POINTS);
-        let panel = PANEL * patch[0].max(patch[1]).recip().min(half.recip());
+        let panel = PANEL * widest.recip().min(half.recip());
         let mut integrate = |from: f64, to: f64, continuous: bool| {
             let panels = ((to - from) / panel).ceil().max(0.0) as usize;
             let step = (to - from) / panels as f64;

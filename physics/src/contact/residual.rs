@@ -32,6 +32,9 @@ const MAX_ITERATIONS: usize = 60;
 const FARTHEST: f64 = 9.0;
 /// Places at which the table is tested.
 const TESTED: usize = 360;
+/// Places from one that is looked at to the next while U is convex by [`AMPLE`], of 1 under half-spaces alone.
+const STRIDE: usize = 15;
+const AMPLE: f64 = 0.25;
 
 /// Residual flexibility of two contacts in terms of their approaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,20 +61,27 @@ impl Residual {
         };
         if residual.per_patch.iter().all(|scale| *scale > 0.0) {
             let step = FARTHEST / TESTED as f64;
-            let farthest = (1..=TESTED).take_while(|n| residual.is_convex(laws, *n as f64 * step)).count();
+            let margin = |n: usize| residual.convexity(laws, n as f64 * step);
+            let farthest = farthest_positive(TESTED, margin);
             residual.largest = residual.per_patch.map(|scale| (farthest as f64).max(0.5) * step / scale);
         }
         residual
     }
 
-    /// Whether U is convex where the wider patch has the square `x` in those of the table.
-    fn is_convex(&self, laws: &[Hertz; 2], x: f64) -> bool {
-        [[1.0, 1.0], [1.0, 0.25], [0.25, 1.0], [1.0, 0.0], [0.0, 1.0]].iter().all(|share| {
+    /// How far U is from not being convex where the wider patch has the square `x` in those of the table: 1 as under half-spaces
+    /// alone, 0 or less if it is not.
+    fn convexity(&self, laws: &[Hertz; 2], x: f64) -> f64 {
+        let at = |share: [f64; 2]| {
             let s = self.state(laws, [0, 1].map(|i| share[i] * x / self.per_patch[i]));
             let [[a, b], [c, e]] = s.slopes([0.0; 3]).approach;
             let pressed = (0..2).all(|i| share[i] == 0.0 || s.f[i] > 0.0 && s.c[i] > 0.0);
-            pressed && a > 0.0 && e > 0.0 && a * e > b * c
-        })
+            if !(pressed && a > 0.0 && e > 0.0 && a * e > b * c) {
+                return 0.0;
+            }
+            (0..2).filter(|i| share[*i] > 0.0).fold(1.0 - b * c / (a * e), |least, i| least.min(s.c[i]))
+        };
+        let places = [[1.0, 1.0], [1.0, 0.25], [0.25, 1.0], [1.0, 0.0], [0.0, 1.0]];
+        places.into_iter().map(at).fold(1.0, f64::min)
     }
 
     /// Radii in m of the widest patches before the contacts `laws` become punches; infinite without a table.
@@ -195,6 +205,27 @@ impl Residual {
         }
         None
     }
+}
+
+/// How many numbers from 1 to `most` come before the first that has no positive `margin`; between two that have much of it at most
+/// [`STRIDE`] apart all do.
+fn farthest_positive(most: usize, margin: impl Fn(usize) -> f64) -> usize {
+    let mut known = 0;
+    let mut before = AMPLE;
+    while known < most {
+        let next = (known + STRIDE).min(most);
+        let after = margin(next);
+        if before.min(after) < AMPLE
+            && let Some(first) = (known + 1..next).find(|n| margin(*n) <= 0.0)
+        {
+            return first - 1;
+        }
+        if after <= 0.0 {
+            return next - 1;
+        }
+        (known, before) = (next, after);
+    }
+    most
 }
 
 #[cfg(test)]

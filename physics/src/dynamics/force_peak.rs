@@ -38,6 +38,8 @@ pub(super) struct SolvedStep<'a, const P: usize, M: Fn(f64) -> Motion> {
     pub(super) approach: &'a [[f64; P]; 2],
     /// Forces there, N.
     pub(super) force: &'a [[f64; P]; 2],
+    /// Error that a peak may have, relative.
+    pub(super) error: f64,
     /// The motion at a place from 0 to 1.
     pub(super) motion: M,
 }
@@ -75,7 +77,8 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
         let ends = [low, high];
         let guess = crossing(&slope, ends, ends.map(|u| horner(&slope, u))).clamp(low, high);
         let expected = horner(&polynomial, guess);
-        let quick = ((self.motion)(guess)[0][contact] - expected).abs() > QUICK * expected.abs();
+        let quick =
+            ((self.motion)(guess)[0][contact] - expected).abs() > QUICK.max(self.error) * expected.abs();
         let found = if quick { self.search(contact) } else { self.climb(contact, guess, ends) };
         before.max(largest).max(found)
     }
@@ -107,7 +110,7 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
             best = force.max(best);
             let bend = turning(bend, before, (place, slope));
             before = Some((place, slope));
-            if slope * slope <= 2.0 * FOUND * force * bend.abs() {
+            if slope * slope <= 2.0 * FOUND.max(self.error) * force * bend.abs() {
                 break;
             }
             if slope > 0.0 {

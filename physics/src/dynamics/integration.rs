@@ -14,11 +14,13 @@ pub struct Options {
     pub end_time: Option<f64>,
     /// Largest distance of samples in s; `None` = no history is kept.
     pub sample_interval: Option<f64>,
+    /// Relative error of the force peaks from looking for them within the steps; 0 = as exact as rounding permits.
+    pub peak_error: f64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 1e-7, end_time: None, sample_interval: None }
+        Self { tolerance: 1e-7, end_time: None, sample_interval: None, peak_error: 0.0 }
     }
 }
 

@@ -56,6 +56,8 @@ struct Stepper<'a> {
     energy: EnergyAccount,
     contacts: [ContactLedger; 2],
     steps: u64,
+    /// See [`Options`].
+    peak_error: f64,
     damped: bool,
 }
 
@@ -94,6 +96,7 @@ impl<'a> Stepper<'a> {
             v,
             contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
             steps: 0,
+            peak_error: options.peak_error,
             damped: system.is_damped(),
         }
     }
@@ -282,8 +285,15 @@ impl<'a> Stepper<'a> {
                 acceleration.map(|acceleration| acceleration * (h * h)),
             ]
         };
-        let step =
-            SolvedStep { system, collocation, h, approach: &trial.approach, force: &trial.force, motion };
+        let step = SolvedStep {
+            system,
+            collocation,
+            h,
+            approach: &trial.approach,
+            force: &trial.force,
+            error: self.peak_error,
+            motion,
+        };
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             contact.force_peak = step.peak(i, contact.force_peak, |end| {
                 let v = if end == 0 { &self.v } else { &self.next_v };

@@ -13,6 +13,7 @@ mod force_peak;
 mod free_flight;
 pub mod integration;
 pub mod integrator;
+pub(crate) mod kicks;
 mod ladder;
 mod ledger_check;
 pub mod memory;

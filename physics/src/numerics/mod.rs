@@ -1,5 +1,6 @@
 //! Linear algebra and quadrature that know nothing of mechanics.
 
+pub(crate) mod chebyshev;
 pub(crate) mod cholesky;
 pub(crate) mod eigenmodes;
 pub mod least_squares;

@@ -117,6 +117,20 @@ impl HalfBody {
         f64::EPSILON * alone.sum::<f64>() / omega.powi(2)
     }
 
+    /// [`ShiftInvert::solve`] of several loads, one after the other in `f`.
+    pub fn solve_each(&self, f: &mut [f64]) {
+        if let Some(rigid) = &self.rigid {
+            for f in f.chunks_exact_mut(self.size) {
+                let acceleration = dot(&rigid.shape, f) / rigid.mass;
+                axpy(-acceleration, &rigid.momentum, f);
+                f[rigid.pinned] = 0.0;
+            }
+        }
+        let count = f.len() / self.size;
+        self.stiffness.solve_in_place(MatMut::from_column_major_slice_mut(f, self.size, count));
+        f.chunks_exact_mut(self.size).for_each(|f| self.remove_rigid(f));
+    }
+
     /// Load vector with the nodal axial forces `forces`, given as (node, N).
     pub fn axial_load(&self, forces: &[(usize, f64)]) -> Vec<f64> {
         let mut load = vec![0.0; self.size];
@@ -159,14 +173,7 @@ impl ShiftInvert for HalfBody {
     /// A free body is accelerated by the resultant; its displacement is that under the load and the
     /// inertia forces, with the rigid part (M-orthogonally) taken out: inertia relief.
     fn solve(&self, f: &mut [f64]) {
-        if let Some(rigid) = &self.rigid {
-            let acceleration = dot(&rigid.shape, f) / rigid.mass;
-            axpy(-acceleration, &rigid.momentum, f);
-            f[rigid.pinned] = 0.0;
-        }
-        let n = f.len();
-        self.stiffness.solve_in_place(MatMut::from_column_major_slice_mut(f, n, 1));
-        self.remove_rigid(f);
+        self.solve_each(f);
     }
 
     /// Makes `x` M-orthogonal to the rigid motion, in place.

@@ -10,19 +10,21 @@ mod assembly;
 mod basis;
 pub mod cached;
 mod element;
+mod family;
 mod grading;
 pub(super) mod lanczos;
 mod mesh;
 pub(super) mod mirror;
 mod patch;
 mod plate;
+mod shared;
 mod sphere;
 mod unit;
 
 pub use patch::half_space_flexibility;
 pub use plate::{ContinuumPlate, PlateMode, WEIGHTED, eigenfrequencies, face_shapes, plate};
+pub use shared::{UnitBodies, Varied};
 pub use sphere::sphere_residual;
-pub use unit::UnitBodies;
 
 use crate::error::{Error, Result};
 

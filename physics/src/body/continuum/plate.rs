@@ -258,13 +258,25 @@ impl Halves {
 
     /// The `count` lowest elastic modes of both parities, ascending.
     pub(super) fn spectrum(&self, count: usize) -> Result<Vec<SpectrumEntry>> {
-        let entries = |modes: Modes, parity| {
-            modes.omega.into_iter().zip(modes.shape).map(move |(omega, shape)| SpectrumEntry {
-                omega,
-                parity,
-                shape,
-            })
-        };
+        let bending = self.bending_modes(count)?;
+        let limit = bending.omega.last().copied().unwrap_or(0.0);
+        let longitudinal = lowest_modes(&self.longitudinal, count, limit)?;
+        let mut all = entries(bending, Parity::Bending);
+        all.extend(entries(longitudinal, Parity::Longitudinal));
+        all.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+        all.truncate(count);
+        Ok(all)
+    }
+
+    /// The `count` lowest elastic modes of each parity, all bending first.
+    pub(super) fn spectra(&self, count: usize) -> Result<Vec<SpectrumEntry>> {
+        let mut all = entries(self.bending_modes(count)?, Parity::Bending);
+        let longitudinal = lowest_modes(&self.longitudinal, count, f64::INFINITY)?;
+        all.extend(entries(longitudinal, Parity::Longitudinal));
+        Ok(all)
+    }
+
+    fn bending_modes(&self, count: usize) -> Result<Modes> {
         let bending = lowest_modes(&self.bending, count, f64::INFINITY)?;
         if let (Some(&first), Some(shape)) = (bending.omega.first(), bending.shape.first()) {
             let error = self.bending.rounding_error(first, shape);
@@ -274,14 +286,13 @@ impl Halves {
                 )));
             }
         }
-        let limit = bending.omega.last().copied().unwrap_or(0.0);
-        let longitudinal = lowest_modes(&self.longitudinal, count, limit)?;
-        let mut all: Vec<_> = entries(bending, Parity::Bending).collect();
-        all.extend(entries(longitudinal, Parity::Longitudinal));
-        all.sort_by(|a, b| a.omega.total_cmp(&b.omega));
-        all.truncate(count);
-        Ok(all)
+        Ok(bending)
     }
+}
+
+fn entries(modes: Modes, parity: Parity) -> Vec<SpectrumEntry> {
+    let entry = |(omega, shape)| SpectrumEntry { omega, parity, shape };
+    modes.omega.into_iter().zip(modes.shape).map(entry).collect()
 }
 
 /// Mesh of the upper half, fine at the patch (if any) and at a held rim, and

@@ -269,6 +269,7 @@ impl Stepper<'_> {
             h,
             approach: &approach,
             force: &force,
+            error: 0.0,
             motion: &motion,
         };
         let peaks = [0, 1].map(|i| {

@@ -92,7 +92,7 @@ impl<'a> Plan<'a> {
         let options = Options {
             tolerance: integration_tolerance(tolerance),
             end_time: scene.run.end_time,
-            sample_interval: None,
+            ..Options::default()
         };
         let trials = Trials::new(setup, REFERENCE_SHARE * tolerance, options)?;
         let (patch, thickness) = (trials.predictor.patch_radius, setup.plate.thickness);

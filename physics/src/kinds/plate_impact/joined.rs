@@ -43,7 +43,7 @@ pub(super) enum Wanted {
 }
 
 /// `plate`, immersed if there is a fluid, between the bodies of the scene.
-fn join(setup: &PlateImpact, plate: ModalBody, tips: [f64; 2]) -> Result<System> {
+pub(super) fn join(setup: &PlateImpact, plate: ModalBody, tips: [f64; 2]) -> Result<System> {
     let plate = match &setup.fluid {
         Some(fluid) => immersed(plate, fluid),
         None => plate,

@@ -2,6 +2,7 @@
 
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
+use crate::dynamics::kicks::{self, Kicked};
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::scene::Plate;
@@ -26,17 +27,30 @@ pub(super) struct Predictor {
 impl Predictor {
     pub(super) fn of(system: &System) -> Result<Self> {
         let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
-        let radius = |i: usize| rounded(system.laws[i].contact_radius(run.contacts[i].force_peak));
-        let frequency = |i: usize| 2.0 * run.contacts[i].force_peak / run.contacts[i].impulse;
-        let peak = |i: usize| run.contacts[i].force_peak;
-        let outer = (radius(0), frequency(0), peak(0));
+        let of = |i: usize| (run.contacts[i].force_peak, run.contacts[i].impulse);
+        Ok(Self::from(system, of(0), (run.contacts[1].contacts > 0).then(|| of(1))))
+    }
+
+    /// As [`Predictor::of`], to a few percent: patches that are 3 % wider change no force by more than 3e-4.
+    pub(super) fn rough(system: &System) -> Result<Self> {
+        let Some([outer, inner]) = kicks::run(system) else { return Self::of(system) };
+        let of = |contact: Kicked| (contact.force_peak, contact.impulse);
+        Ok(Self::from(system, of(outer), (inner.impulse > 0.0).then(|| of(inner))))
+    }
+
+    /// From force peaks in N and impulses in N s.
+    fn from(system: &System, outer: (f64, f64), inner: Option<(f64, f64)>) -> Self {
+        let of = |i: usize, (peak, impulse): (f64, f64)| {
+            (rounded(system.laws[i].contact_radius(peak)), 2.0 * peak / impulse, peak)
+        };
+        let outer = of(0, outer);
         // an inner body that is never reached takes the outer one's patch
-        let inner = if run.contacts[1].contacts > 0 { (radius(1), frequency(1), peak(1)) } else { outer };
-        Ok(Self {
+        let inner = inner.map_or(outer, |inner| of(1, inner));
+        Self {
             patch_radius: [outer.0, inner.0],
             force_peak: [outer.2, inner.2],
             contact_frequency: outer.1.max(inner.1),
-        })
+        }
     }
 
     /// Radii in m of the patches that model C meshes `plate` for.

@@ -2,8 +2,7 @@
 
 use super::Kind;
 use super::choice::Plan;
-use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate, kirchhoff_system};
-use super::predictor::Predictor;
+use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate};
 use super::results::{PlateQuantities, quantities, values};
 use super::series::{Done, Impacts};
 use super::shared::{Continua, SharedBodies};
@@ -24,6 +23,8 @@ use std::time::Instant;
 
 /// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
 pub const DEFAULT_MODES: usize = 16;
+/// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
+const PEAK_ERROR: f64 = 0.1;
 /// Samples of a history per duration of a Hertz contact.
 const SAMPLES_PER_CONTACT: f64 = 400.0;
 
@@ -77,24 +78,6 @@ impl Reduced {
         modes: Option<usize>,
         bodies: &SharedBodies,
     ) -> Result<Self> {
-        Self::build(scene, model, modes, bodies, &Cache::from_environment())
-    }
-
-    /// As [`Reduced::new`] with the bodies of model C from `cache`.
-    ///
-    /// # Errors
-    /// As [`Reduced::new`].
-    pub fn new_in(scene: &Scene, model: Model, modes: Option<usize>, cache: &Cache) -> Result<Self> {
-        Self::build(scene.clone(), model, modes, &SharedBodies::default(), cache)
-    }
-
-    fn build(
-        scene: Scene,
-        model: Model,
-        modes: Option<usize>,
-        bodies: &SharedBodies,
-        cache: &Cache,
-    ) -> Result<Self> {
         let setup = scene.plate_impact()?;
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
@@ -110,12 +93,20 @@ impl Reduced {
         let built = match model {
             Model::A | Model::B => kirchhoff(setup, modes.unwrap_or(DEFAULT_MODES), &bodies.kirchhoff)?,
             Model::C => {
-                let predictor = Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, &bodies.kirchhoff)?)?;
+                let predictor = bodies.predictor(setup)?;
                 let wanted = modes.map_or(Wanted::Estimate, Wanted::Modes);
-                continuum(setup, wanted, &predictor, bodies.continua(cache))?
+                continuum(setup, wanted, &predictor, bodies.continua())?
             }
         };
         Self::of(built, model, scene, None)
+    }
+
+    /// As [`Reduced::new`] with the bodies of model C from `cache`.
+    ///
+    /// # Errors
+    /// As [`Reduced::new`].
+    pub fn new_in(scene: &Scene, model: Model, modes: Option<usize>, cache: &Cache) -> Result<Self> {
+        Self::in_series(scene.clone(), model, modes, &SharedBodies::meshed(cache.clone()))
     }
 
     /// The cheapest model and number of modes whose estimated error meets `tolerance`, or what comes nearest; see
@@ -233,7 +224,8 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::run`], [`Error::Solver`] if the run is cut during a contact.
     pub fn point(&self, tolerance: f64) -> Result<Point> {
-        let result = self.impacts().all(&self.options(tolerance))?.last;
+        let options = Options { peak_error: PEAK_ERROR * tolerance, ..self.options(tolerance) };
+        let result = self.impacts().all(&options)?.last;
         ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.kept_tolerance))?;
         Ok(Point {
             quantities: quantities(&self.system, &result)?,
@@ -276,7 +268,7 @@ impl Reduced {
     }
 
     fn options(&self, tolerance: f64) -> Options {
-        Options { tolerance, end_time: self.scene.run.end_time, sample_interval: None }
+        Options { tolerance, end_time: self.scene.run.end_time, ..Options::default() }
     }
 
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {

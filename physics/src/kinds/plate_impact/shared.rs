@@ -1,34 +1,76 @@
 //! What the impacts of a series share, so that only the first of them pays for its bodies.
 
+use super::joined::{join, kirchhoff_system};
+use super::predictor::Predictor;
+use super::reduced::DEFAULT_MODES;
 use crate::body::cache::Cache;
-use crate::body::continuum::{ContinuumPlate, MeshOptions, UnitBodies, cached};
+use crate::body::continuum::{ContinuumPlate, MeshOptions, UnitBodies, Varied, cached};
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::Result;
-use crate::scene::{Material, Plate};
+use crate::scene::{Material, Plate, PlateImpact};
 
 /// Eigenproblems that are not solved again, and, where shapes recur, bodies that are not meshed again.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct SharedBodies {
     pub(super) kirchhoff: UnitPlates,
     continuum: Option<UnitBodies>,
+    /// Of bodies that are not shared.
+    cache: Cache,
+}
+
+impl Default for SharedBodies {
+    /// For an impact alone.
+    fn default() -> Self {
+        Self::meshed(Cache::from_environment())
+    }
 }
 
 impl SharedBodies {
-    /// For a series in which the numbers of `fields` vary: plates and spheres of model C are scaled from those of their shape (edge,
-    /// thickness over radius, Poisson's ratio), unless it varies.
+    /// For a series of so many `impacts` like `setup` in which the numbers of fields vary within the ranges `varied`: plates and spheres
+    /// of model C are scaled from those of their shape (edge, thickness over radius, Poisson's ratio), and where many impacts vary that
+    /// too, these lie between the shapes of a few.
     ///
     /// That is as near to the converged bodies as a mesh for every impact is, and within 3e-4 of it in the forces
     /// (guide, scenes).
-    pub fn for_varied<'a>(mut fields: impl Iterator<Item = &'a str>) -> Self {
-        let shape = |field: &str| {
-            ["plate.radius", "plate.thickness"].contains(&field) || field.ends_with(".poisson_ratio")
+    pub fn for_varied<'a>(
+        varied: impl IntoIterator<Item = (&'a str, [f64; 2])>,
+        setup: &PlateImpact,
+        impacts: usize,
+    ) -> Self {
+        let varied: Vec<(&str, [f64; 2])> = varied.into_iter().collect();
+        let range = |name: &str| varied.iter().find(|(field, _)| *field == name).map(|(_, range)| *range);
+        let Plate { thickness, radius, material, .. } = &setup.plate;
+        let ranges = [range("plate.thickness"), range("plate.radius")];
+        let [t, r] = [ranges[0].unwrap_or([*thickness; 2]), ranges[1].unwrap_or([*radius; 2])];
+        let poisson_ratio = varied.iter().filter_map(|(field, range)| {
+            let material = field.strip_prefix("materials.")?.strip_suffix(".poisson_ratio")?;
+            Some((material.to_owned(), *range))
+        });
+        let shapes = Varied {
+            thickness: (ranges != [None; 2]).then(|| [t[0] / r[1], t[1] / r[0]]),
+            poisson_ratio: poisson_ratio.collect(),
         };
-        Self { continuum: (!fields.any(shape)).then(UnitBodies::default), kirchhoff: UnitPlates::default() }
+        let continuum = shapes.pays(impacts, material).then(|| UnitBodies::new(shapes));
+        Self { continuum, ..Self::default() }
     }
 
-    /// The bodies of model C, from `cache` where they are not shared.
-    pub(super) fn continua<'a>(&'a self, cache: &'a Cache) -> Continua<'a> {
-        Continua { shared: self.continuum.as_ref(), cache }
+    /// Every continuum on a mesh of its own, through `cache`.
+    pub(super) fn meshed(cache: Cache) -> Self {
+        Self { continuum: None, kirchhoff: UnitPlates::default(), cache }
+    }
+
+    /// A first look at the impact of `setup`; where bodies are scaled it may be a rough one.
+    pub(super) fn predictor(&self, setup: &PlateImpact) -> Result<Predictor> {
+        if self.continuum.is_none() {
+            return Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, &self.kirchhoff)?);
+        }
+        let plate = self.kirchhoff.rough_modes(&setup.plate, DEFAULT_MODES)?;
+        Predictor::rough(&join(setup, plate, [0.0; 2])?)
+    }
+
+    /// The bodies of model C.
+    pub(super) fn continua(&self) -> Continua<'_> {
+        Continua { shared: self.continuum.as_ref(), cache: &self.cache }
     }
 }
 

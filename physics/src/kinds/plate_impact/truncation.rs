@@ -48,7 +48,7 @@ pub(super) fn estimate(
     if let Some(fluid) = &mut dry.fluid {
         (fluid.squeeze_film, fluid.drag_coefficient) = (false, 0.0);
     }
-    let options = Options { tolerance: INTEGRATION, end_time, sample_interval: None };
+    let options = Options { tolerance: INTEGRATION, end_time, ..Options::default() };
     let resolution = RESOLUTION[usize::from(model < Model::C)];
     let trials = Trials::new(&dry, resolution, options)?;
     let converged = match model {

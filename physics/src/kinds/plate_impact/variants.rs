@@ -135,7 +135,7 @@ impl<'a> Variants<'a> {
         tolerance: f64,
     ) -> Result<PlateQuantities> {
         let system = self.system(simplification, modes);
-        let options = Options { tolerance, end_time: self.end_time, sample_interval: None };
+        let options = Options { tolerance, end_time: self.end_time, ..Options::default() };
         quantities(&system, &integrate(&system, &options)?)
     }
 }

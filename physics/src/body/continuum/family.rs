@@ -1,0 +1,209 @@
+//! Plates and spheres between shapes: what [`super::unit`] has of one shape, as polynomials of thickness and Poisson's ratio.
+//!
+//! Frequencies, shapes and flexibilities are analytic in both, mode by mode of one parity: those of different parity cross without
+//! knowing of each other and are sorted afterwards. Where modes of one parity avoid each other the polynomials are not good
+//! enough; every family is tried between its nodes.
+
+use super::patch::half_space_flexibility;
+use super::plate::ContinuumPlate;
+use super::unit::{UnitPlate, UnitSphere, patches, widest_patch};
+use crate::contact::WHOLE;
+use crate::error::Result;
+use crate::numerics::chebyshev::{Chebyshev, blend};
+use crate::scene::{Edge, Material, Plate};
+
+/// Nodes over the logarithm of the thickness and over Poisson's ratio: even numbers, so that the middle is between them.
+pub(super) const THICKNESSES: usize = 6;
+pub(super) const POISSON_RATIOS: usize = 4;
+/// Places at which a family is tried, in -1..1 of both ranges.
+const TRIED: [[f64; 2]; 2] = [[0.0, 0.0], [0.86, 0.7]];
+/// Patch over the thickness at which it is tried.
+const TRIED_PATCH: f64 = 0.3;
+/// Error that it may have there: of frequencies, of shapes over the largest, of flexibilities over the half-space's.
+const ENOUGH: f64 = 1e-4;
+
+/// Plates of one edge within a range of thicknesses over radii and one of Poisson's ratios.
+#[derive(Debug)]
+pub(super) struct PlateFamily {
+    /// Of the logarithm.
+    thicknesses: Chebyshev,
+    poisson_ratios: Chebyshev,
+    /// Shape (thicknesses, Poisson's ratios).
+    plates: Vec<UnitPlate>,
+    /// Widest patch over the thickness.
+    widest: f64,
+}
+
+/// Chebyshev's points in a range, one if it is a single value.
+fn nodes([from, to]: [f64; 2], count: usize) -> Chebyshev {
+    Chebyshev::new(from, to, if from < to { count } else { 1 })
+}
+
+impl PlateFamily {
+    /// With `modes` elastic modes; `None` if the polynomials are not good enough.
+    pub(super) fn new(
+        edge: Edge,
+        thickness: [f64; 2],
+        poisson_ratio: [f64; 2],
+        modes: usize,
+    ) -> Result<Option<Self>> {
+        let widest = widest_patch(thickness[1]);
+        let mut family = Self {
+            thicknesses: nodes(thickness.map(f64::ln), THICKNESSES),
+            poisson_ratios: nodes(poisson_ratio, POISSON_RATIOS),
+            plates: Vec::new(),
+            widest,
+        };
+        for x in &family.thicknesses.nodes {
+            for nu in &family.poisson_ratios.nodes {
+                let mut plate = UnitPlate::new(edge, *nu, x.exp(), modes, widest)?;
+                if let Some(before) = family.plates.last() {
+                    align(&mut plate, before);
+                }
+                family.plates.push(plate);
+            }
+        }
+        for place in TRIED {
+            let at = |[from, to]: [f64; 2], s: f64| 0.5 * ((1.0 - s) * from + (1.0 + s) * to);
+            let (t, nu) = (at(thickness.map(f64::ln), place[0]).exp(), at(poisson_ratio, place[1]));
+            let exact = UnitPlate::new(edge, nu, t, modes, widest)?;
+            if family.at(t, nu).largest_miss(&exact).is_none_or(|miss| miss > ENOUGH) {
+                return Ok(None);
+            }
+        }
+        Ok(Some(family))
+    }
+
+    /// The plate of `thickness` radii.
+    pub(super) fn at(&self, thickness: f64, poisson_ratio: f64) -> UnitPlate {
+        let first = &self.plates[0];
+        let (by_thickness, by_ratio) =
+            (self.thicknesses.weights(thickness.ln()), self.poisson_ratios.weights(poisson_ratio));
+        let pairs = |values: &[f64]| -> Vec<f64> {
+            values.iter().flat_map(|value| by_ratio.iter().map(move |w| value * w)).collect()
+        };
+        let weights = pairs(&by_thickness);
+        // nearly all of the flexibility is bending, which goes with the cube of the thickness
+        let cubes: Vec<f64> = by_thickness
+            .iter()
+            .zip(&self.thicknesses.nodes)
+            .map(|(weight, x)| weight * (x.exp() / thickness).powi(3))
+            .collect();
+        let of_cubes = pairs(&cubes);
+        let own = |m: usize| blend(&of_cubes, self.plates.iter().map(|plate| &plate.own[m]));
+        let mutual = |m: usize| {
+            let row = |i: usize| blend(&of_cubes, self.plates.iter().map(|plate| &plate.mutual[m][i]));
+            (0..first.patches.nodes.len()).map(row).collect()
+        };
+        let shape = |i: usize| blend(&weights, self.plates.iter().map(|plate| &plate.shapes[i]));
+        UnitPlate {
+            edge: first.edge,
+            poisson_ratio,
+            thickness,
+            modes: first.modes,
+            patches: patches(self.widest * thickness),
+            omega: blend(&weights, self.plates.iter().map(|plate| &plate.omega)),
+            shapes: (0..first.patches.nodes.len()).map(shape).collect(),
+            own: [own(0), own(1)],
+            mutual: [mutual(0), mutual(1)],
+            degrees_of_freedom: first.degrees_of_freedom,
+        }
+    }
+}
+
+/// Gives the shapes of `plate` the signs they have in `neighbour`.
+fn align(plate: &mut UnitPlate, neighbour: &UnitPlate) {
+    for k in 0..plate.omega.len() {
+        let along: f64 = plate.shapes.iter().zip(&neighbour.shapes).map(|(a, b)| a[k] * b[k]).sum();
+        if along < 0.0 {
+            plate.shapes.iter_mut().for_each(|shape| shape[k] = -shape[k]);
+        }
+    }
+}
+
+impl UnitPlate {
+    /// What it differs by from `exact`, the largest of [`misses`]; `None` if patches as they are tried are too wide for either.
+    fn largest_miss(&self, exact: &Self) -> Option<f64> {
+        let material = Material::elastic("unit", 1.0, exact.poisson_ratio, 1.0);
+        let (radius, thickness) = (1.0, exact.thickness);
+        let patch = TRIED_PATCH.min(0.25 / thickness) * thickness;
+        let half_space = half_space_flexibility(&material, patch);
+        let plate = Plate { radius, thickness, edge: exact.edge, material, damping_ratio: 0.0 };
+        let [ours, theirs] = [self.scaled(&plate, [patch; 2])?, exact.scaled(&plate, [patch; 2])?];
+        Some(misses(&ours, &theirs, half_space).into_iter().fold(0.0, f64::max))
+    }
+}
+
+/// What `of` differs from `exact` by: flexibilities beyond the modes over the half-space's, frequencies, shapes over the largest.
+pub(super) fn misses(of: &ContinuumPlate, exact: &ContinuumPlate, half_space: f64) -> [f64; 3] {
+    let tables = |plate: &ContinuumPlate| {
+        let mut table = plate.flexibility;
+        for (omega, phi) in plate.omega.iter().zip(&plate.participation) {
+            let share = -omega.powi(-2);
+            table.add(share, share, phi.map(|phi| std::array::from_fn(|m| phi[m])));
+        }
+        table.own.iter().chain(&table.mutual).flatten().copied().collect::<Vec<f64>>()
+    };
+    // the sign of a shape is arbitrary
+    let shapes = |plate: &ContinuumPlate| {
+        let turned = plate.participation.iter().map(|phi| {
+            let sign = phi[0][WHOLE].signum();
+            phi.as_flattened().iter().map(move |value| sign * value)
+        });
+        turned.flatten().collect::<Vec<f64>>()
+    };
+    let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+    let scale = shapes(exact).iter().fold(0.0_f64, |m, value| m.max(value.abs()));
+    let frequencies = of.omega.iter().zip(&exact.omega).fold(0.0_f64, |m, (a, b)| m.max((a / b - 1.0).abs()));
+    let flexibility = largest(&tables(of), &tables(exact)) / half_space;
+    [flexibility, frequencies, largest(&shapes(of), &shapes(exact)) / scale]
+}
+
+/// Spheres within a range of Poisson's ratios.
+#[derive(Debug)]
+pub(super) struct SphereFamily {
+    poisson_ratios: Chebyshev,
+    spheres: Vec<UnitSphere>,
+}
+
+impl SphereFamily {
+    pub(super) fn new(poisson_ratio: [f64; 2]) -> Result<Self> {
+        let poisson_ratios = nodes(poisson_ratio, POISSON_RATIOS);
+        let spheres = poisson_ratios.nodes.iter().map(|nu| UnitSphere::new(*nu)).collect::<Result<_>>()?;
+        Ok(Self { poisson_ratios, spheres })
+    }
+
+    /// The sphere of this Poisson's ratio.
+    pub(super) fn at(&self, poisson_ratio: f64) -> UnitSphere {
+        let weights = self.poisson_ratios.weights(poisson_ratio);
+        UnitSphere {
+            poisson_ratio,
+            patches: self.spheres[0].patches.clone(),
+            residual: blend(&weights, self.spheres.iter().map(|sphere| &sphere.residual)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Between its nodes, and at the ends, a family is as near to a plate of that shape as neighbouring meshes are to each other.
+    #[test]
+    fn a_plate_between_shapes_is_that_of_its_shape() {
+        let (thickness, ratio, modes) = ([0.045, 0.079], [0.25, 0.35], 8);
+        let family = PlateFamily::new(Edge::Clamped, thickness, ratio, modes).unwrap().expect("good enough");
+        for (t, nu) in [(0.045, 0.35), (0.052, 0.27), (0.067, 0.31)] {
+            let exact = UnitPlate::new(Edge::Clamped, nu, t, modes, family.widest).unwrap();
+            let miss = family.at(t, nu).largest_miss(&exact).unwrap();
+            assert!(miss < 2.0 * ENOUGH, "{t} {nu}: {miss:e}");
+        }
+    }
+
+    /// Thick plates: modes of one parity avoid each other within the range.
+    #[test]
+    fn a_range_in_which_modes_avoid_each_other_is_told() {
+        let family = PlateFamily::new(Edge::Free, [0.6, 1.1], [0.3; 2], 12).unwrap();
+        assert!(family.is_none());
+    }
+}

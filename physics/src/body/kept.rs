@@ -1,0 +1,48 @@
+//! What a series of impacts has made so far, for its other threads and impacts.
+
+use crate::error::Result;
+use std::sync::{Arc, PoisonError, RwLock};
+
+/// Most entries that are kept: a series that needs many more is better off without.
+const MOST: usize = 64;
+
+/// A list of dear things, each made when it is first asked for.
+#[derive(Debug)]
+pub(super) struct Kept<T>(RwLock<Vec<Arc<T>>>);
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self(RwLock::default())
+    }
+}
+
+impl<T> Kept<T> {
+    /// The entry that `fits`, made if there is none. Threads that want it at the same time make it each: so nobody waits for
+    /// one that somebody else wants.
+    pub(super) fn find_or(
+        &self,
+        fits: impl Fn(&T) -> bool,
+        make: impl FnOnce() -> Result<T>,
+    ) -> Result<Arc<T>> {
+        let find = |list: &[Arc<T>]| list.iter().find(|entry| fits(entry)).cloned();
+        // the list is whole after every change, whatever became of the thread that made it
+        if let Some(known) = find(&self.0.read().unwrap_or_else(PoisonError::into_inner)) {
+            return Ok(known);
+        }
+        let made = Arc::new(make()?);
+        let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = find(&kept) {
+            return Ok(known);
+        }
+        if kept.len() >= MOST {
+            kept.remove(0);
+        }
+        kept.push(Arc::clone(&made));
+        Ok(made)
+    }
+
+    #[cfg(test)]
+    pub(super) fn len(&self) -> usize {
+        self.0.read().unwrap_or_else(PoisonError::into_inner).len()
+    }
+}
