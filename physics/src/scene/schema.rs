@@ -19,7 +19,13 @@ pub fn schema() -> Value {
     // What can have a tolerance depends on the scene's kind.
     schema["properties"][TOLERANCES.key] = described(json!({}), TOLERANCES.doc);
     for kind in KINDS {
-        let then = json!({ "properties": { TOLERANCES.key: tolerances(kind) } });
+        let own: Map<String, Value> = models(kind).iter().map(|m| (m.name.to_owned(), json!(true))).collect();
+        let own = json!({ "properties": own, "additionalProperties": false });
+        let then = json!({
+            "properties": { TOLERANCES.key: tolerances(kind) },
+            // names of the user's programs come with them
+            "anyOf": [{ "required": ["external"] }, { "properties": { TOLERANCES.key: own } }],
+        });
         if let Some(rules) = schema["allOf"].as_array_mut() {
             rules.push(json!({
                 "if": { "properties": { "kind": { "const": kind.name() } }, "required": ["kind"] },
