@@ -277,7 +277,7 @@ fn what_makes_no_sense_with_auto_is_refused_in_a_sentence() {
             "--model auto takes larger ones",
         ),
         (&["compare", "scaled-plate-r10", "--tolerance", "1%"], "not among --models"),
-        (&["reduced", "scaled-plate-r10", "--model", "D"], "there are A, B and C, and auto"),
+        (&["reduced", "scaled-plate-r10", "--model", "D"], "there are A, B and C, auto, and external"),
     ] {
         let (status, _, error) = program(arguments);
         assert!(status == 2 && error.contains(said), "{arguments:?}: {error}");
