@@ -282,7 +282,9 @@
     for (const plot of [...plots, ...residuals]) if (plot.width !== width) plot.setSize({ width, height: plot.height });
   };
   fit();
-  new ResizeObserver(fit).observe(root);
+  // the tables beside the plots grow with their numbers, and the plots give way
+  const watch = new ResizeObserver(fit);
+  for (const part of [root, root.querySelector(".plot")]) watch.observe(part);
   // the tables begin with the instant of the largest force
   const force = data.panels[data.panels.length - 1].curves[0].values[reference.id];
   const peak = force.indexOf(Math.max(...force.filter((v) => v != null)));
