@@ -6,16 +6,8 @@
  * element takes 11 numbers, its half of K's blocks some 70 (Kronbichler & Kormann 2012, Computers & Fluids 63, 135, of the
  * same for hexahedra). Forces on a node are added in the order of the elements, whatever the threads and processes. */
 
-typedef double four __attribute__((vector_size(32)));
+typedef Lanes four;
 typedef int64_t four_mask __attribute__((vector_size(32)));
-
-static inline four load(const double *x) {
-    four value;
-    memcpy(&value, x, sizeof value);
-    return value;
-}
-
-static inline void store(double *x, four value) { memcpy(x, &value, sizeof value); }
 
 /* Rows of four nodes (the last number says nothing) as three components of four elements; and back. */
 static inline void read_nodes(const double *x, const int32_t *node, four *u) {

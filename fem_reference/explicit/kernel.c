@@ -89,6 +89,17 @@ static inline void meet(const State *s) {
 
 #include "relaxation.c"
 
+/* What the processor handles at once; of three components the last number of a node's in work space says nothing. */
+typedef double Lanes __attribute__((vector_size(8 * LANES)));
+
+static inline Lanes load(const double *x) {
+    Lanes value;
+    memcpy(&value, x, sizeof value);
+    return value;
+}
+
+static inline void store(double *x, Lanes value) { memcpy(x, &value, sizeof value); }
+
 #if COMPONENTS == 2
 #include "rows.c"
 #else

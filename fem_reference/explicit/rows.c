@@ -3,16 +3,8 @@
 /* Row i of K_l x for node n, complete once the rows before it have been done: the node's own and later
  * neighbours' part, and what earlier rows left in y, which is taken out of it; passes on to later rows
  * what they need (K_l is symmetric, only its upper half is stored and read). */
-typedef double pair __attribute__((vector_size(16)));
+typedef Lanes pair;
 typedef int64_t pair_mask __attribute__((vector_size(16)));
-
-static inline pair load(const double *x) {
-    pair value;
-    memcpy(&value, x, sizeof value);
-    return value;
-}
-
-static inline void store(double *x, pair value) { memcpy(x, &value, sizeof value); }
 
 /* One block above the diagonal, in row i: adds its part to the row's sum and passes its mirror
  * image on to the later row j. */
