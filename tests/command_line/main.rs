@@ -12,11 +12,14 @@ mod first_day;
 mod guide;
 #[cfg(unix)]
 mod interruption;
+mod measured;
+mod optimise;
+mod program;
 mod scene_files;
 mod snapshots;
 #[path = "../support/store_fixture.rs"]
 mod store_fixture;
-mod studies;
 mod sweep_figures;
+mod sweeps;
 #[cfg(unix)]
 mod watch;

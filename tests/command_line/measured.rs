@@ -1,0 +1,93 @@
+//! Measured files as a third partner of a comparison.
+
+use super::program::{file, flat, impactcheck, json, text};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A record of model C, without noise, with the clock `shift` us ahead.
+fn measured(folder: &Path, name: &str, shift: f64) -> PathBuf {
+    let history = folder.join("history.csv");
+    let arguments = ["reduced", "scaled-plate-r10", "--model", "C", "--history", text(&history), "--json"];
+    let summary = json(&arguments);
+    let mut rows = vec!["time [us],outer_velocity [mm/s],inner_velocity [mm/s]".to_owned()];
+    rows.extend((0..200).map(|k| format!("{},-550,0", f64::from(k) - 200.0 + shift)));
+    let mut reader = csv::Reader::from_path(&history).unwrap();
+    let headers = reader.headers().unwrap().clone();
+    let column = |name: &str| headers.iter().position(|h| h == name).unwrap();
+    let (time, outer, inner) = (column("time"), column("outer_velocity"), column("inner_velocity"));
+    let mut last = 0.0;
+    for row in reader.records().step_by(4) {
+        let row = row.unwrap();
+        let number = |k: usize| row[k].parse::<f64>().unwrap();
+        last = 1e6 * number(time);
+        rows.push(format!("{},{},{}", last + shift, 1e3 * number(outer), 1e3 * number(inner)));
+    }
+    let finals = ["outer_velocity_final", "inner_velocity_final"].map(|q| 1e3 * summary[q].as_f64().unwrap());
+    rows.extend((1..200).map(|k| format!("{},{},{}", last + f64::from(k) + shift, finals[0], finals[1])));
+    file(folder, name, &rows.join("\n"))
+}
+
+#[test]
+fn compare_takes_measured_files_as_a_third_partner() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, second) =
+        (measured(folder.path(), "first.csv", 5.0), measured(folder.path(), "second.csv", -3.0));
+    let out = folder.path().join("report");
+    let both = format!("{},{}", text(&first), text(&second));
+    let document = json(&[
+        "compare",
+        "scaled-plate-r10",
+        "--models",
+        "B,C",
+        "--measured",
+        &both,
+        "--out",
+        text(&out),
+        "--json",
+    ]);
+    let found = &document["scenes"][0]["measured"];
+    for (record, shift) in found["records"].as_array().unwrap().iter().zip([5e-6, -3e-6]) {
+        assert!((record["shift"].as_f64().unwrap() - shift).abs() < 0.1e-6, "{record}");
+        assert!((record["efficiency"].as_f64().unwrap() - 0.6946).abs() < 0.001, "{record}");
+    }
+    assert_eq!(found["efficiency"]["count"], 2);
+    assert!(found["rule"].as_str().unwrap().contains("free flight"));
+    let partners: Vec<&str> =
+        found["partners"].as_array().unwrap().iter().map(|p| p["partner"].as_str().unwrap()).collect();
+    assert_eq!(partners, ["reference", "B", "C"]);
+    for kind in ["measured", "efficiencies"] {
+        for extension in ["svg", "png"] {
+            assert!(out.join(format!("scaled-plate-r10-{kind}.{extension}")).is_file());
+        }
+    }
+    let page = fs::read_to_string(out.join("scaled-plate-r10.html")).unwrap();
+    assert!(page.contains("Measurement") && page.contains("first.csv") && page.contains("free flight"));
+    assert!(fs::read_to_string(out.join("comparison.md")).unwrap().contains("### Measurement"));
+}
+
+#[test]
+fn bad_measured_files_end_with_2_or_3_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = measured(folder.path(), "good.csv", 0.0);
+    let wrong = file(folder.path(), "wrong.csv", "time [kg],outer_velocity\n1,2\n");
+    let late: Vec<String> = (0..90).map(|k| format!("{k},{},{}", -500 + 3 * k, 5 * k)).collect();
+    let header = "time [us],outer_velocity [mm/s],inner_velocity [mm/s]\n";
+    let late = file(folder.path(), "late.csv", &(header.to_owned() + &late.join("\n")));
+    let out = folder.path().join("report");
+    for (arguments, status, part) in [
+        (vec!["scaled-plate-r10", "--measured", "no-such.csv"], 2, "no-such.csv"),
+        (vec!["scaled-plate-r10", "--measured", text(&wrong)], 3, "wrong.csv"),
+        (vec!["scaled-plate-r10", "--measured", text(&late)], 3, "late.csv"),
+        (vec!["--measured", text(&good)], 2, "exactly one plate impact"),
+        (vec!["scaled-plate-r10", "--measured", text(&good), "--bandwidth", "3 mm"], 2, "bandwidth"),
+        (vec!["scaled-plate-r10", "--measured", text(&good), "--bandwidth", "1 Hz"], 2, "bandwidth"),
+        (vec!["scaled-plate-r10", "--measured", text(&good), "--speed", "guess"], 2, "speed"),
+    ] {
+        let all: Vec<&str> =
+            ["compare"].into_iter().chain(arguments).chain(["--out", text(&out), "--models", "B"]).collect();
+        let ended = impactcheck(&all);
+        assert_eq!(ended.status, status, "{all:?}: {}", ended.error);
+        assert!(flat(&ended.error).contains(&flat(part)), "{all:?}: {}", ended.error);
+        assert!(ended.out.is_empty() && !out.exists(), "{all:?}");
+    }
+}
