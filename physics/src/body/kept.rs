@@ -6,7 +6,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 /// Most entries that are kept: a series that needs many more is better off without.
 const MOST: usize = 64;
 
-/// A list of dear things, each made when it is first asked for.
+/// A list of values that take long to make, each made when it is first asked for.
 #[derive(Debug)]
 pub(super) struct Kept<T>(RwLock<Vec<Arc<T>>>);
 
