@@ -40,8 +40,8 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with every fault, its place and what would be valid.
     pub fn parse(source_name: &str, text: &str) -> Result<Scene> {
-        let (values, tolerances) = checked(source_name, text)?;
-        let scene = assemble(&values, tolerances)?;
+        let (values, beside) = checked(source_name, text)?;
+        let scene = assemble(&values, beside)?;
         refuse_collisions(&scene, source_name, text)?;
         Ok(scene)
     }
@@ -88,11 +88,18 @@ fn too_large(name: &str, size: String) -> Error {
     )
 }
 
-/// The checked values of a scene file and its tolerances.
+/// What a scene file says beside the impact; its tables have readers of their own.
+#[derive(Debug, Clone)]
+pub(super) struct Beside {
+    pub(super) tolerances: BTreeMap<String, Tolerances>,
+    pub(super) uncertainty: Option<Uncertainty>,
+}
+
+/// The checked values of a scene file, and what stands beside them.
 ///
 /// # Errors
 /// As [`Scene::parse`].
-pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap<String, Tolerances>)> {
+pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, Beside)> {
     let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
     let root = tree.get_ref();
     if root.is_empty() {
@@ -109,8 +116,9 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap
         _ => None,
     });
     let tolerances = checker.tolerances(root, kind.unwrap_or(kinds::KINDS[0]));
+    let uncertainty = checker.uncertainty(root, &values);
     match checker.problems.is_empty() {
-        true => Ok((values, tolerances)),
+        true => Ok((values, Beside { tolerances, uncertainty })),
         false => Err(Error::Scene(checker.problems.into_report())),
     }
 }
@@ -254,7 +262,7 @@ pub(super) fn unknown(key: &str, word: &str) -> Error {
 }
 
 /// The scene that checked values describe.
-pub(super) fn assemble(values: &Values, tolerances: BTreeMap<String, Tolerances>) -> Result<Scene> {
+pub(super) fn assemble(values: &Values, beside: Beside) -> Result<Scene> {
     let root = &Node(values);
     let materials = root.table("materials")?;
     let settings = root.optional_table("reference")?;
@@ -275,7 +283,8 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<String, Tolerances>
         run: RunSettings { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
         reduced: reduced(root.optional_table("reduced")?)?,
         reference,
-        tolerances,
+        tolerances: beside.tolerances,
+        uncertainty: beside.uncertainty,
         external: root.tables("external")?.iter().map(external).collect::<Result<_>>()?,
     })
 }
