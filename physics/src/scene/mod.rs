@@ -26,8 +26,8 @@ mod uncertainty;
 
 pub use external::External;
 pub use fault::suggestion;
-pub use field::{Field, Rejected};
 pub use fault::{Fault, Faults, faults};
+pub use field::{Field, Rejected};
 pub use plate_impact::{
     Bender, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape, ShearThinning, Spot,
 };

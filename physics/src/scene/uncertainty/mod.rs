@@ -124,7 +124,9 @@ impl UncertainInput {
     pub fn about(&self, nominal: f64) -> Self {
         let shift = nominal - self.nominal;
         let distribution = match self.distribution {
-            Distribution::Uniform { low, high } => Distribution::Uniform { low: low + shift, high: high + shift },
+            Distribution::Uniform { low, high } => {
+                Distribution::Uniform { low: low + shift, high: high + shift }
+            }
             other => other,
         };
         Self { nominal, distribution, ..self.clone() }
@@ -159,7 +161,13 @@ impl Uncertainty {
                 let rest: f64 = matrix[i][j] - (0..j).map(|k| factor[i][k] * factor[j][k]).sum::<f64>();
                 factor[i][j] = match (i == j, factor[j][j]) {
                     (true, _) if rest < -PIVOT => return None,
-                    (true, _) => if rest < PIVOT { 0.0 } else { rest.sqrt() },
+                    (true, _) => {
+                        if rest < PIVOT {
+                            0.0
+                        } else {
+                            rest.sqrt()
+                        }
+                    }
                     // an input that those before it fix already has nothing of its own
                     (false, 0.0) if rest.abs() > PIVOT.sqrt() => return None,
                     (false, 0.0) => 0.0,
@@ -218,14 +226,18 @@ mod tests {
 
     fn of_three(correlations: &[(usize, usize, f64)]) -> Uncertainty {
         let one = input(1.0, Distribution::Normal(Spread::Relative(0.1)));
-        let correlation =
-            |(a, b, coefficient): &(usize, usize, f64)| Correlation { between: [*a, *b], coefficient: *coefficient };
+        let correlation = |(a, b, coefficient): &(usize, usize, f64)| Correlation {
+            between: [*a, *b],
+            coefficient: *coefficient,
+        };
         Uncertainty { inputs: vec![one; 3], correlations: correlations.iter().map(correlation).collect() }
     }
 
     #[test]
     fn the_factor_gives_the_correlations_back() {
-        for given in [&[(0, 2, 0.5), (1, 2, -0.7)][..], &[(0, 1, 1.0), (1, 2, 0.3), (0, 2, 0.3)], &[(0, 1, -1.0)]] {
+        for given in
+            [&[(0, 2, 0.5), (1, 2, -0.7)][..], &[(0, 1, 1.0), (1, 2, 0.3), (0, 2, 0.3)], &[(0, 1, -1.0)]]
+        {
             let of = of_three(given);
             let factor = of.factor().expect("consistent");
             let product = |i: usize, j: usize| (0..3).map(|k| factor[i][k] * factor[j][k]).sum::<f64>();

@@ -30,8 +30,11 @@ static PAIR: [specification::Field; 2] = [
 ];
 
 /// The entry for correlations.
-pub(in crate::scene) static CORRELATIONS: specification::Field =
-    specification::optional(CORRELATED, Kind::Tables(&PAIR, MOST_PAIRS), "Pairs of inputs that do not scatter independently");
+pub(in crate::scene) static CORRELATIONS: specification::Field = specification::optional(
+    CORRELATED,
+    Kind::Tables(&PAIR, MOST_PAIRS),
+    "Pairs of inputs that do not scatter independently",
+);
 
 /// A value of the table: under the name it has there, which dots may take apart.
 struct Entry<'t> {
@@ -68,13 +71,16 @@ impl Checker<'_> {
         let fields = fields_of(values);
         let mut found = Vec::new();
         entries(table, "", &fields, &mut found);
-        let (pairs, entries): (Vec<_>, Vec<_>) = found.into_iter().partition(|entry| entry.field == CORRELATED);
+        let (pairs, entries): (Vec<_>, Vec<_>) =
+            found.into_iter().partition(|entry| entry.field == CORRELATED);
         let mut inputs = Vec::new();
         for entry in &entries {
             inputs.extend(self.input(entry, &fields, values));
         }
         if entries.is_empty() {
-            let help = format!("name a field and how it scatters, for example \"plate.thickness\" = \"1 %\"; {HELP}");
+            let help = format!(
+                "name a field and how it scatters, for example \"plate.thickness\" = \"1 %\"; {HELP}"
+            );
             self.problems.add(key.span(), "[uncertainty] names no input".into(), "empty", help);
         }
         inputs.sort_by(|a, b| a.field.cmp(&b.field));
@@ -92,7 +98,8 @@ impl Checker<'_> {
         let Some(nominal) = number_in(values, field) else {
             // a number that is there and wrong is told of at its own place
             if self.problems.is_empty() {
-                let message = format!("`{path}`: the scene file has no `{}` about which it could scatter", entry.field);
+                let message =
+                    format!("`{path}`: the scene file has no `{}` about which it could scatter", entry.field);
                 let help = format!("state `{}` too", entry.field);
                 self.problems.add(entry.place.clone(), message, "no nominal value", help);
             }
@@ -100,14 +107,20 @@ impl Checker<'_> {
         };
         let distribution = self.distribution(&place, entry.value, field)?;
         let input = UncertainInput { field: entry.field.clone(), unit: field.unit(), nominal, distribution };
-        if input.standard_deviation() <= 0.0 || (matches!(distribution, Distribution::Lognormal(_)) && nominal <= 0.0) {
-            let message = format!("which is no scatter about a nominal value of {nominal}{}", field.dimension().suffix());
+        if input.standard_deviation() <= 0.0
+            || (matches!(distribution, Distribution::Lognormal(_)) && nominal <= 0.0)
+        {
+            let message = format!(
+                "which is no scatter about a nominal value of {nominal}{}",
+                field.dimension().suffix()
+            );
             let help = "give a standard deviation with its unit; a lognormal number is positive";
             return self.fault(&place, entry.value, &message, "no scatter", help.to_owned());
         }
         let [low, high] = input.range();
         if !(low..=high).contains(&nominal) {
-            let message = format!("which leaves out the nominal value {nominal}{}", field.dimension().suffix());
+            let message =
+                format!("which leaves out the nominal value {nominal}{}", field.dimension().suffix());
             let help = "the bounds have to lie on either side of what the scene file says";
             return self.fault(&place, entry.value, &message, "not about the nominal value", help.to_owned());
         }
@@ -128,12 +141,17 @@ impl Checker<'_> {
         let (message, help) = match fields.iter().find(|field| field.path() == name) {
             Some(field) if !field.is_count() => return Some(field),
             Some(_) => ("takes whole numbers, which have no scatter".to_owned(), "leave it out".to_owned()),
-            None if is_of_reference(name) => {
-                ("changes no reduced model: it is the reference's alone".to_owned(), "leave it out".to_owned())
-            }
+            None if is_of_reference(name) => (
+                "changes no reduced model: it is the reference's alone".to_owned(),
+                "leave it out".to_owned(),
+            ),
             None => {
                 let names = || fields.iter().filter(|field| !field.is_count()).map(Field::path);
-                let help = format!("{}there are: {}", did_you_mean(name, names()), names().collect::<Vec<_>>().join(", "));
+                let help = format!(
+                    "{}there are: {}",
+                    did_you_mean(name, names()),
+                    names().collect::<Vec<_>>().join(", ")
+                );
                 ("is no numeric field of the scene".to_owned(), help)
             }
         };
@@ -142,14 +160,20 @@ impl Checker<'_> {
         None
     }
 
-    fn distribution(&mut self, place: &Place, value: &Spanned<DeValue>, field: &Field) -> Option<Distribution> {
+    fn distribution(
+        &mut self,
+        place: &Place,
+        value: &Spanned<DeValue>,
+        field: &Field,
+    ) -> Option<Distribution> {
         let table = match value.get_ref() {
             DeValue::String(text) if text.trim_end().ends_with('%') => {
                 return self.spread(place, value, field).map(Distribution::Normal);
             }
             DeValue::Table(table) => table,
             found => {
-                let message = format!("but it has to be a percentage or a distribution; found: {}", found.type_str());
+                let message =
+                    format!("but it has to be a percentage or a distribution; found: {}", found.type_str());
                 return self.fault(place, value, &message, "not a distribution", HELP.to_owned());
             }
         };
@@ -186,8 +210,16 @@ impl Checker<'_> {
             }
         }
         let sample = field.dimension().describe().2;
-        let help = format!("write the lower bound and a higher one, for example {{ uniform = [\"{sample}\", ...] }}");
-        self.fault(place, value, "but a uniform distribution has two bounds, the lower one first", "no bounds", help)
+        let help = format!(
+            "write the lower bound and a higher one, for example {{ uniform = [\"{sample}\", ...] }}"
+        );
+        self.fault(
+            place,
+            value,
+            "but a uniform distribution has two bounds, the lower one first",
+            "no bounds",
+            help,
+        )
     }
 
     fn correlations(&mut self, entry: &Entry, uncertainty: &mut Uncertainty) {
@@ -195,11 +227,19 @@ impl Checker<'_> {
         let place = entry.place(&path);
         let Some(items) = entry.value.get_ref().as_array() else {
             let help = "write correlations = [{ between = [\"plate.thickness\", \"plate.radius\"], coefficient = 0.5 }]";
-            self.fault::<()>(&place, entry.value, "but it has to be a list of tables", "wrong type", help.to_owned());
+            self.fault::<()>(
+                &place,
+                entry.value,
+                "but it has to be a list of tables",
+                "wrong type",
+                help.to_owned(),
+            );
             return;
         };
         let before = self.problems.is_empty();
-        let Some(Checked::Tables(pairs)) = self.list(&place, entry.value, items, &PAIR, MOST_PAIRS) else { return };
+        let Some(Checked::Tables(pairs)) = self.list(&place, entry.value, items, &PAIR, MOST_PAIRS) else {
+            return;
+        };
         if before != self.problems.is_empty() {
             return;
         }
@@ -221,14 +261,23 @@ impl Checker<'_> {
                 }
                 _ => {
                     let there: Vec<&str> = uncertainty.inputs.iter().map(|input| &*input.field).collect();
-                    let help = format!("name two different inputs of [uncertainty], each pair once; there are: {}", there.join(", "));
+                    let help = format!(
+                        "name two different inputs of [uncertainty], each pair once; there are: {}",
+                        there.join(", ")
+                    );
                     self.fault::<()>(&place, item, "which is no pair of uncertain inputs", "no pair", help);
                 }
             }
         }
         if uncertainty.factor().is_none() {
             let help = "two inputs that go with a third go with each other: lower the coefficients or add the missing pair";
-            self.fault::<()>(&place, entry.value, "which contradict each other", "no such inputs", help.to_owned());
+            self.fault::<()>(
+                &place,
+                entry.value,
+                "which contradict each other",
+                "no such inputs",
+                help.to_owned(),
+            );
         }
     }
 }

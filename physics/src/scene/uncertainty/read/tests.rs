@@ -14,7 +14,9 @@ fn read(table: &str) -> Uncertainty {
 
 /// Message and help of the only fault, and its line in the table.
 fn refused(table: &str) -> (String, usize) {
-    let Err(Error::Scene(report)) = Scene::parse("scene.toml", &with(table)) else { panic!("{table} is taken") };
+    let Err(Error::Scene(report)) = Scene::parse("scene.toml", &with(table)) else {
+        panic!("{table} is taken")
+    };
     let all = faults(&report);
     assert_eq!(all.len(), 1, "{table}: {all:?}");
     let line = all[0].line - BASE.lines().count() - 2;
@@ -41,14 +43,24 @@ fn every_form_is_read_in_si() {
 fn correlations_are_of_two_inputs_of_the_table() {
     let inputs = "\"plate.thickness\" = \"1 %\"\n\"plate.radius\" = \"1 %\"\n\"outer.speed\" = \"1 %\"\n";
     let correlation = |pairs: &str| format!("{inputs}correlations = [{pairs}]");
-    let found = read(&correlation("{ between = [\"plate.radius\", \"plate.thickness\"], coefficient = -0.5 }"));
+    let found =
+        read(&correlation("{ between = [\"plate.radius\", \"plate.thickness\"], coefficient = -0.5 }"));
     let names = found.correlations[0].between.map(|at| &*found.inputs[at].field);
     assert_eq!((names, found.correlations[0].coefficient), (["plate.radius", "plate.thickness"], -0.5));
     for (pairs, part) in [
-        ("{ between = [\"plate.radius\", \"inner.radius\"], coefficient = 0.5 }", "no pair of uncertain inputs"),
-        ("{ between = [\"plate.radius\", \"plate.radius\"], coefficient = 0.5 }", "no pair of uncertain inputs"),
+        (
+            "{ between = [\"plate.radius\", \"inner.radius\"], coefficient = 0.5 }",
+            "no pair of uncertain inputs",
+        ),
+        (
+            "{ between = [\"plate.radius\", \"plate.radius\"], coefficient = 0.5 }",
+            "no pair of uncertain inputs",
+        ),
         ("{ between = [\"plate.radius\", \"plate.thickness\"], coefficient = 1.5 }", "at most 1"),
-        ("{ between = [\"plate.radius\", \"plate.thickness\"] }", "`uncertainty.correlations[1].coefficient` is missing"),
+        (
+            "{ between = [\"plate.radius\", \"plate.thickness\"] }",
+            "`uncertainty.correlations[1].coefficient` is missing",
+        ),
         (
             "{ between = [\"plate.radius\", \"plate.thickness\"], coefficient = 1.0 }, \
             { between = [\"plate.radius\", \"outer.speed\"], coefficient = 1.0 }, \
@@ -64,7 +76,10 @@ fn correlations_are_of_two_inputs_of_the_table() {
 #[test]
 fn what_is_no_distribution_is_told_with_its_place() {
     for (table, parts) in [
-        ("\n\"plate.thicknes\" = \"1 %\"", ["`uncertainty.plate.thicknes`", "did you mean `plate.thickness`?"]),
+        (
+            "\n\"plate.thicknes\" = \"1 %\"",
+            ["`uncertainty.plate.thicknes`", "did you mean `plate.thickness`?"],
+        ),
         ("\nplate.thicknes = \"1 %\"", ["`uncertainty.plate.thicknes`", "did you mean `plate.thickness`?"]),
         ("\n\"plate.thickness\" = \"20 um\"", ["is \"20 um\"", "{ normal = \"20 um\" }"]),
         ("\n\"plate.thickness\" = 0.01", ["is 0.01", "has to be a percentage or a distribution"]),
@@ -73,10 +88,16 @@ fn what_is_no_distribution_is_told_with_its_place() {
         ("\n\"plate.thickness\" = \"0 %\"", ["0 %", "greater than 0"]),
         ("\n\"plate.thickness\" = { gaussian = \"1 %\" }", ["one distribution", "{ normal = \"20 um\" }"]),
         ("\n\"plate.thickness\" = { norml = \"1 %\" }", ["one distribution", "did you mean `normal`?"]),
-        ("\n\"plate.thickness\" = { normal = \"1 %\", uniform = [1, 2] }", ["one distribution", "`uncertainty.plate.thickness`"]),
+        (
+            "\n\"plate.thickness\" = { normal = \"1 %\", uniform = [1, 2] }",
+            ["one distribution", "`uncertainty.plate.thickness`"],
+        ),
         ("\n\"plate.thickness\" = { uniform = [\"2.1 mm\", \"1.9 mm\"] }", ["lower one first", "2.1 mm"]),
         ("\n\"plate.thickness\" = { uniform = [\"1.9 mm\"] }", ["two bounds", "1.9 mm"]),
-        ("\n\"plate.thickness\" = { uniform = [\"2.1 mm\", \"2.2 mm\"] }", ["leaves out the nominal value 0.002 m", "either side"]),
+        (
+            "\n\"plate.thickness\" = { uniform = [\"2.1 mm\", \"2.2 mm\"] }",
+            ["leaves out the nominal value 0.002 m", "either side"],
+        ),
         ("\n\"inner.gap\" = { normal = \"1 um\" }", ["no `inner.gap` about which", "state `inner.gap` too"]),
         ("\n\"reduced.modes\" = \"1 %\"", ["takes whole numbers", "leave it out"]),
         ("\nfriction = \"1 %\"", ["it is the reference's alone", "leave it out"]),
@@ -93,8 +114,14 @@ fn what_is_no_distribution_is_told_with_its_place() {
 #[test]
 fn a_distribution_that_reaches_out_of_bounds_is_refused() {
     for (table, part) in [
-        ("\"plate.thickness\" = \"25 %\"", "reaches too far: `plate.thickness` is -0.0005 m, but it has to be greater than 0 m"),
-        ("\"plate.thickness\" = { uniform = [\"-1 um\", \"3 mm\"] }", "reaches too far: `plate.thickness` is -0.000001 m"),
+        (
+            "\"plate.thickness\" = \"25 %\"",
+            "reaches too far: `plate.thickness` is -0.0005 m, but it has to be greater than 0 m",
+        ),
+        (
+            "\"plate.thickness\" = { uniform = [\"-1 um\", \"3 mm\"] }",
+            "reaches too far: `plate.thickness` is -0.000001 m",
+        ),
         ("\"materials.steel.poisson_ratio\" = { lognormal = \"20 %\" }", "less than 0.5"),
     ] {
         let (said, _) = refused(table);
@@ -115,7 +142,10 @@ fn a_scene_that_is_uncertain_is_the_same_scene() {
 
 #[test]
 fn a_written_scene_keeps_its_scatter_about_the_new_numbers() {
-    for table in ["plate.thickness = { uniform = [\"1.9 mm\", \"2.2 mm\"] }", "\"plate.thickness\" = { uniform = [\"1.9 mm\", \"2.2 mm\"] }"] {
+    for table in [
+        "plate.thickness = { uniform = [\"1.9 mm\", \"2.2 mm\"] }",
+        "\"plate.thickness\" = { uniform = [\"1.9 mm\", \"2.2 mm\"] }",
+    ] {
         let template = Template::parse("scene.toml", &with(table)).expect("scene");
         let thickness = template.field("plate.thickness").expect("there");
         let text = template.text_with("thicker", &[(&thickness, 3e-3)]).expect("text");
