@@ -91,13 +91,16 @@ class Sum(Exchange):
         for _, places in shared:
             mine[places] = True
         self._mine, _ = self._end(np.flatnonzero(mine))
-        before = sum(rank < comm.rank for rank, _ in shared)
         self._terms = [end for end, _ in self._coming]
-        self._terms.insert(before, self._mine)
+        # Two numbers have one sum, whatever their order.
+        self._ordered = len(shared) > 1
+        if self._ordered:
+            self._terms.insert(sum(rank < comm.rank for rank, _ in shared), self._mine)
 
     def __call__(self, x: Any) -> None:
         """Add; ``x`` points to the vectors."""
         self._pass(x)
-        self._library.take(x, *self._mine)
+        if self._ordered:
+            self._library.take(x, *self._mine)
         for term in self._terms:
             self._library.put(x, *term)

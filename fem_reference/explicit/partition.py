@@ -9,6 +9,8 @@ from .levels import MOST_LEVELS, graded_levels
 
 EXPECTED = 1.2
 """Critical time step of a system over the smallest of its elements, about."""
+CONTACT = 1.0
+"""Work of contact per element at nodes that can touch, over that of an element."""
 SLACK = 0.02
 """Share of a level that a part may have more or less of, so that its border is smoother."""
 
@@ -67,18 +69,18 @@ def _halve(
 
 
 def _lower(field: Floats, groups: Ints, share: float) -> Mask:
-    """The ``share`` with the lower values; of every group as much, but for `SLACK`.
+    """The ``share`` with the lower values; of every level as much, but for `SLACK`.
 
-    What group -1 takes more is taken from the next ones.
+    What group -1 costs more, at every step, the next levels have less, which act less often.
     """
     lower = groups < 0
-    owed = (1.0 - share) * np.count_nonzero(lower)
+    owed = (1.0 - share) * (1.0 + CONTACT) * np.count_nonzero(lower)
     cut = float(np.quantile(field, share))
     for number in np.unique(groups[groups >= 0]):
         members = groups == number
         size = np.count_nonzero(members)
-        given = min(owed, share * size)
-        owed -= given
+        given = min(2.0**number * owed, share * size)
+        owed -= given / 2.0**number
         wanted = share - given / size
         least, most = np.quantile(
             field[members], [max(0.0, wanted - SLACK), min(1.0, wanted + SLACK)]
