@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SHOWN = ("efficiency", "outer_force_peak", "inner_force_peak", "sphere_angle", "sphere_force_peak")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Result:
     """A run of a model or a reference: summary, whose entries are attributes too, and curves.
 
@@ -29,7 +29,7 @@ class Result:
     """
 
     summary: dict[str, Any]
-    curves: dict[str, NDArray[np.float64]] = field(default_factory=dict, repr=False)
+    curves: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, summary: str, curves: list[tuple[str, _core.Samples]]) -> Result:
@@ -55,19 +55,25 @@ class Result:
         plain = {k: v for k, v in self.summary.items() if isinstance(v, (int, float, str))}
         return xarray.Dataset(curves, coords={"time": self.curves["time"]}, attrs=plain)
 
+    @property
+    def _who(self) -> str:
+        model = self.summary["model"]
+        return f"model {model}" if model else "reference"
+
+    def __repr__(self) -> str:
+        return f"<impactcheck.Result {self.summary['scene']}, {self._who}>"
+
     def _repr_html_(self) -> str:
         rows = [(name, self.summary[name]) for name in SHOWN if name in self.summary]
-        model = self.summary.get("model")
-        who = f"model {model}" if model else "reference"
-        parts = [table_html((who, "SI"), rows), warnings_html(who, self.summary)]
+        parts = [table_html((self._who, "SI"), rows), warnings_html(self._who, self.summary)]
         if self.curves:
             curves = list(self.curves.items())
-            title = f"{self.summary['scene']}: {who}"
+            title = f"{self.summary['scene']}: {self._who}"
             parts.append(_core.figure(title, self.curves["time"], curves))
         return "".join(parts)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison:
     """Models beside references, judged by the scenes' tolerances.
 
@@ -77,7 +83,7 @@ class Comparison:
     """
 
     document: dict[str, Any]
-    figures: dict[str, str] = field(default_factory=dict, repr=False)
+    figures: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, document: str, figures: list[str]) -> Comparison:
@@ -85,6 +91,9 @@ class Comparison:
         read = json.loads(document)
         names = [scene["scene"] for scene in read["scenes"]]
         return cls(read, dict(zip(names, figures, strict=True)))
+
+    def __repr__(self) -> str:
+        return f"<impactcheck.Comparison {', '.join(self.figures)}: {self.verdict}>"
 
     @property
     def verdict(self) -> str:

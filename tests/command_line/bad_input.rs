@@ -177,7 +177,7 @@ fn a_reader_of_standard_error_that_has_gone_away_changes_no_status() {
     let folder = tempfile::tempdir().unwrap();
     let report = folder.path().join("report");
     for (arguments, status) in [
-        (&["compare", "scaled-plate-r10", "--models", "A", "--out", text(&report)][..], 0),
+        (&["compare", "scaled-plate-r10", "--models", "A", "--out", report.to_str().unwrap()][..], 0),
         (&["reduced", "no-such-scene"], 2),
         (&["reduced"], 2),
     ] {
