@@ -73,7 +73,9 @@ fn reduced(
     let run_all = || match threads {
         // threads of their own only for who asks for another number
         None => Ok(all()),
-        Some(threads) => rayon::ThreadPoolBuilder::new().num_threads(threads).build().map(|own| own.install(all)),
+        Some(threads) => {
+            rayon::ThreadPoolBuilder::new().num_threads(threads).build().map(|own| own.install(all))
+        }
     };
     let outcomes = detached(py, || stopped.store(true, Relaxed), run_all)?.map_err(usage)?;
     outcomes.into_iter().map(|outcome| run(outcome.map_err(raised)?)).collect()
@@ -98,7 +100,8 @@ fn compare(
     allow_external: bool,
     out: Option<PathBuf>,
 ) -> PyResult<(String, Vec<String>)> {
-    let models = models.iter().map(|name| name.parse()).collect::<std::result::Result<_, _>>().map_err(usage)?;
+    let models =
+        models.iter().map(|name| name.parse()).collect::<std::result::Result<_, _>>().map_err(usage)?;
     let resolution = resolution.parse().map_err(usage)?;
     let asked = Comparing { models, resolution, compute, allow_external, out };
     let scenes: Vec<_> = scenes.iter().map(|scene| scene.get().placed()).collect();

@@ -62,8 +62,10 @@ pub(super) fn tolerance(text: &str) -> std::result::Result<f64, String> {
 
 /// A relative error that models can be asked for, `text` to whoever asked.
 pub(super) fn within_bounds(error: f64, text: &str) -> std::result::Result<f64, String> {
-    let bounds = 1e-12..=0.3;
-    bounds.contains(&error).then_some(error).ok_or_else(|| format!("{text} is not within 1e-12 to 0.3 (30 %)"))
+    match (1e-12..=0.3).contains(&error) {
+        true => Ok(error),
+        false => Err(format!("{text} is not within 1e-12 to 0.3 (30 %)")),
+    }
 }
 
 /// What was chosen, from what, and why, in lines.

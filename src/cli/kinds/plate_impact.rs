@@ -22,13 +22,7 @@ const COMPARISON_TOLERANCE: f64 = 1e-7;
 pub(super) struct Plates;
 
 impl Models for Plates {
-    fn reduced(
-        &self,
-        _: &Context,
-        scene: &Scene,
-        asked: &Asked,
-        bodies: &SharedBodies,
-    ) -> Result<Outcome> {
+    fn reduced(&self, _: &Context, scene: &Scene, asked: &Asked, bodies: &SharedBodies) -> Result<Outcome> {
         if let Some(mesh) = &asked.mesh {
             return Err(Error::Usage(format!(
                 "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",

@@ -18,13 +18,7 @@ use crate::scene::{Model, Scene};
 pub(super) struct Seats;
 
 impl Models for Seats {
-    fn reduced(
-        &self,
-        context: &Context,
-        scene: &Scene,
-        asked: &Asked,
-        _: &SharedBodies,
-    ) -> Result<Outcome> {
+    fn reduced(&self, context: &Context, scene: &Scene, asked: &Asked, _: &SharedBodies) -> Result<Outcome> {
         let model = match asked.model {
             Some(AskedModel::Named(model)) => model,
             Some(AskedModel::Auto) => {
@@ -45,10 +39,9 @@ impl Models for Seats {
                 SeatMesh::open(&reference::seat_mesh_with(scene, Resolution::Paper, &cache, show)?)?
             }
         };
-        let reduced =
-            SeatModel::new_with(scene, model, asked.modes, &mesh, &cache, &mut |part, done| {
-                bar.part(part, done)
-            })?;
+        let reduced = SeatModel::new_with(scene, model, asked.modes, &mesh, &cache, &mut |part, done| {
+            bar.part(part, done)
+        })?;
         drop(bar);
         context.note(format_args!(
             "mesh {}, {} degrees of freedom; set up in {:.2} s",
