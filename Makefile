@@ -84,7 +84,7 @@ solutions: setup
 	$(RUN) reference scaled-plate-r6.35 --stress-at 25.3e-6
 	for seat in seal-seat-improved seal-seat-initial; do $(RUN) reference $$seat --stress-at 20e-6 || exit 1; done
 
-evidence: setup
+evidence: setup wheel
 	for scene in $(PLATES); do for resolution in coarse paper fine; do \
 	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution $$resolution || exit 1; done; done
 	for scene in scenes/validation/*.toml; do \
@@ -104,6 +104,8 @@ evidence: setup
 	cargo build --release --manifest-path benches/diffsol/Cargo.toml
 	$(RUN) bench --peer benches/diffsol/target/release/diffsol-peer --out $(OUT)/bench
 	$(RUN) stress --cases 100000
+	$(WHEEL)/bin/python -m pip install --quiet nbclient ipykernel
+	$(WHEEL)/bin/jupyter execute --inplace examples/impact.ipynb
 	$(PYTHON) benches/unneeded.py target/release/impactcheck $(addprefix --before ,$(BEFORE)) --out $(OUT)/unneeded
 	python3 benches/kills.py target/release/impactcheck --out reports/kills.md
 	fuzz/run.sh scene 1800
