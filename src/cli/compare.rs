@@ -272,7 +272,10 @@ impl<'a> Job<'a> {
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
             found.push((stored, Validation::of(scene, &comparison)));
             scatters.push(scatter(context, file, scene, &comparison).unwrap_or_else(|error| {
-                context.note(format_args!("scene `{}` is compared as if its inputs were certain: {error}", scene.name));
+                context.note(format_args!(
+                    "scene `{}` is compared as if its inputs were certain: {error}",
+                    scene.name
+                ));
                 BTreeMap::new()
             }));
             let asked = self.figures.iter().any(|(_, format)| *format == FigureFile::Animation);

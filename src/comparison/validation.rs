@@ -83,9 +83,13 @@ impl Shown {
     }
 }
 
-/// Standard numerical uncertainty of the quantity called `name` in `summary`; `None` if it is not known.
+/// Standard numerical uncertainty of the quantity called `name` in `summary`; `None` if it is not known. That model A has one mode is its error,
+/// not one of the solution.
 pub fn numerical(summary: &Summary, name: &str) -> Option<f64> {
     let value = summary.value(name)?;
+    if summary.model.as_deref() == Some("A") {
+        return None;
+    }
     let truncated =
         || summary.truncation_error.filter(|_| TRUNCATED.contains(&name)).map(|error| error * value.abs());
     summary.band(name).or_else(truncated).map(|band| band / COVERAGE)
@@ -137,7 +141,7 @@ impl Assessment {
 fn decisive(error: f64, u_val: f64, inputs: &BTreeMap<String, f64>) -> Option<String> {
     let needed = (error / COVERAGE).powi(2);
     let (name, part) = inputs.iter().max_by(|a, b| a.1.total_cmp(b.1))?;
-    let share = 100.0 * (part / u_val).powi(2);
+    let share = (100.0 * (part / u_val).powi(2)).min(100.0);
     let others = u_val * u_val - part * part;
     if others < needed {
         let ratio = ((needed - others).sqrt() / part).min(1.0);

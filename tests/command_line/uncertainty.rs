@@ -59,13 +59,15 @@ fn differences_are_held_against_what_the_inputs_leave_open() {
         json(&["compare", scene, "--models", "B", "--json", "--out", text(&folder.path().join(out))])
     };
     let (plain, uncertain) = (compared("scaled-plate-r10", "plain"), compared(SCENE, "uncertain"));
-    let rows = |document: &Value| document["scenes"][0]["models"][0]["discrepancies"].as_array().unwrap().clone();
+    let rows =
+        |document: &Value| document["scenes"][0]["models"][0]["discrepancies"].as_array().unwrap().clone();
     let (plain, uncertain) = (rows(&plain), rows(&uncertain));
     for (plain, uncertain) in plain.iter().zip(&uncertain) {
         assert!(plain.get("validation").is_none(), "{plain}");
         assert_eq!(plain["difference"], uncertain["difference"]);
     }
-    let row = |name: &str| uncertain.iter().find(|row| row["quantity"] == name).expect(name)["validation"].clone();
+    let row =
+        |name: &str| uncertain.iter().find(|row| row["quantity"] == name).expect(name)["validation"].clone();
     // B is off by 10 % in the inner force and by 0.2 % in the efficiency; the inputs scatter them by 1.7 % and 0.7 %
     assert_eq!(row("inner_force_peak")["verdict"], "model error shown");
     assert_eq!(row("efficiency")["verdict"], "within");
