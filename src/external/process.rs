@@ -85,3 +85,23 @@ fn wait(running: &mut Running, limit: Duration) -> std::io::Result<Option<ExitSt
         look = (2 * look).min(LONGEST_LOOK);
     }
 }
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use std::io::ErrorKind;
+
+    fn shell(line: &str) -> std::io::Result<Said> {
+        run(&["sh", "-c", line].map(String::from), Path::new("."), Vec::new(), Duration::from_secs(20))
+    }
+
+    /// What is in the program's group ends with it; what is not can hold its output, and nobody waits for that.
+    #[test]
+    fn whatever_a_program_leaves_behind_is_not_waited_for() {
+        let start = Instant::now();
+        assert_eq!(shell("sleep 600 & echo done").expect("an answer").output, b"done\n");
+        let held = shell("setsid sleep 60 & echo done").expect_err("its output is open");
+        assert_eq!(held.kind(), ErrorKind::TimedOut);
+        assert!(start.elapsed() < Duration::from_secs(50));
+    }
+}

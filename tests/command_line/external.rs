@@ -117,7 +117,6 @@ fn a_program_that_misbehaves_is_told_of_and_stops_nothing() {
         ("silent", "true", "its answer can't be used: it is empty"),
         ("version", "echo '{\"schema_version\": 2}'", "its schema_version is 2; this program reads 1"),
         ("killed", "kill -9 $$", "it failed (signal: 9"),
-        ("daemon", "setsid sleep 30 & echo '{}'", "in a session of its own holds its output open"),
         ("missing", "", "there is no program `no-such-program` on PATH"),
     ];
     // nothing is wrong with their form, but they contradict the scene or themselves
