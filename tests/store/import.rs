@@ -93,7 +93,7 @@ fn what_a_map_gets_wrong_is_told_and_nothing_is_stored() {
     // one heading over two columns
     let text = fs::read_to_string(recipe("lsprepost.csv")).expect("file");
     let twice = folder.path().join("twice.csv");
-    fs::write(&twice, text.replacen("Mat-3", "Mat-1", 1)).expect("written");
+    fs::write(&twice, text.replacen("Mat-1", "Mat-3", 1)).expect("written");
     let error = import(&scene(), &twice, Some(&recipe("lsprepost.toml")), &store).expect_err("which one?");
     assert!(error.to_string().contains("several columns are called"), "{error}");
     assert_eq!(store.find(&scene(), Resolution::Imported), Lookup::Missing);
