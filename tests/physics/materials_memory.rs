@@ -323,9 +323,28 @@ fn what_is_not_covered_is_refused_and_what_is_open_is_told() {
     assert!(summary.contact_pressure.is_none());
     let chosen = Reduced::auto(&scene, 0.01).unwrap();
     assert!(!chosen.choice().unwrap().met);
-    let endless = scene_of(plastic, "b", "b", "run.end_time = \"10 s\"").unwrap();
-    let error = Reduced::new(&endless, Model::B, None).unwrap().run(1e-7).unwrap_err();
-    assert!(error.to_string().contains("run.end_time"), "{error}");
+}
+
+/// Where nothing touches time passes in long steps, before the first contact and after the last one.
+#[test]
+fn a_flight_is_a_few_steps() {
+    let slow = "materials.c = { youngs_modulus = 210e9, poisson_ratio = 0.3, density = 7780, relaxation = [{ ratio = 0.1, time = 1e3 }] }";
+    let run = |outer: &str, more: &str| {
+        let scene = scene_of(slow, outer, "a", more).unwrap();
+        Reduced::new(&scene, Model::B, None).unwrap().run(1e-7).unwrap()
+    };
+    for more in ["inner.gap = \"20 mm\"", "run.end_time = \"10 s\""] {
+        let [elastic, ours] = ["a", "c"].map(|outer| run(outer, more));
+        for name in ["efficiency", "outer_velocity_final", "inner_force_peak", "inner_contact_end"] {
+            let [exact, found] = [&elastic, &ours].map(|summary| summary.value(name).unwrap());
+            assert_relative_eq!(found, exact, max_relative = 1e-3);
+        }
+        assert!(
+            ours.energy_residual.unwrap() < 5e-5 && ours.steps.unwrap() < 4000,
+            "{more} {:?}",
+            ours.steps
+        );
+    }
 }
 
 /// Steel that yields at 600 MPa where `soft` says so, of outer body, plate and inner body, struck once at `speed` m/s.
