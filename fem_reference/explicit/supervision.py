@@ -14,6 +14,7 @@ import numpy as np
 from ..common.arrays import Floats
 from ..common.errors import DivergedError, SolverError
 from ..common.settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
+from . import structures
 from .checkpoint import Checkpoint
 from .energies import Energies, energies_of
 from .frames import Frames
@@ -183,8 +184,9 @@ def _sampled(
     """``samples`` rows in parts between which the ledger of what relaxes looks."""
     if loop.ledger is None:
         return [sample(samples, stride)]
-    if loop.problem.film is not None:
-        return _sampled_beside_film(loop, sample, samples, stride)
+    film = loop.problem.film
+    if film is not None:
+        return _sampled_beside_film(loop, film, sample, samples, stride)
     rows, part = [], max(1, round(duration / RELAXATION_LOOKS / (stride * loop.dt)))
     for first in range(0, samples, part):
         rows.append(sample(min(part, samples - first), stride))
@@ -192,12 +194,14 @@ def _sampled(
     return rows
 
 
-def _sampled_beside_film(loop: Loop, sample: Sample, samples: int, stride: int) -> list[Floats]:
+def _sampled_beside_film(
+    loop: Loop, film: structures.Film, sample: Sample, samples: int, stride: int
+) -> list[Floats]:
     """``samples`` rows; where the film pushes the ledger looks whenever all levels meet.
 
     A film moves its nodes within less than the interval of a sample.
     """
-    film, rows, every = loop.problem.film, [], loop.meeting
+    rows, every = [], loop.meeting
     for _ in range(samples):
         before = film.impulse
         taken = []
