@@ -67,14 +67,14 @@ pub(super) struct Stepper<'a> {
     force: [f64; 2],
     patch: [f64; 2],
     contacts: [ContactLedger; 2],
-    /// What plate and tips have yielded at each contact for having crept, m.
-    crept: [f64; 2],
+    /// What plate and tips have yielded at each contact for having crept, m. Shape (contact; plate, tip).
+    crept: [[f64; 2]; 2],
     /// Energy lost in each contact, J.
     contact_losses: [f64; 2],
     /// What their laws had taken at the start, J.
     taken: [f64; 2],
-    /// Energy lost beneath the contacts by creep, and by the modes, J; the power that the modes lose, W.
-    creep_loss: f64,
+    /// Energy lost beneath the contacts by creep of plate and tips, and by the modes, J; the power that the modes lose, W.
+    creep_losses: [[f64; 2]; 2],
     modal_loss: f64,
     power: f64,
     /// What the contacts add to the displacement of the plate's centre, m.
@@ -115,10 +115,10 @@ impl<'a> Stepper<'a> {
             force: [0.0; 2],
             patch: [0.0; 2],
             contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
-            crept: [0.0; 2],
+            crept: Default::default(),
             contact_losses: [0.0; 2],
             taken: [0, 1].map(|i| bodies.contacts[i].taken(0.0)),
-            creep_loss: 0.0,
+            creep_losses: Default::default(),
             modal_loss: 0.0,
             power: 0.0,
             centre: 0.0,
@@ -242,15 +242,14 @@ impl<'a> Stepper<'a> {
         let (elastic, ..) = self.bodies.elastic(self.system, force, patch);
         for i in 0..2 {
             self.bodies.contacts[i].advance(x[i]);
-            let mut crept = 0.0;
             for part in 0..2 {
                 let state = &mut self.deformed[i][part];
                 self.bodies.creep(i, part).advance(state, elastic[i][part]);
-                crept += state.depth() - elastic[i][part];
+                let crept = state.depth() - elastic[i][part];
+                let mean = 0.5 * (self.force[i] + force[i]);
+                self.creep_losses[i][part] += mean * (crept - self.crept[i][part]);
+                self.crept[i][part] = crept;
             }
-            // what yields elastically gives its energy back, to the other contact also; so creep is the plate's as a whole
-            self.creep_loss += 0.5 * (self.force[i] + force[i]) * (crept - self.crept[i]);
-            self.crept[i] = crept;
         }
     }
 
@@ -360,7 +359,11 @@ impl<'a> Stepper<'a> {
         // each law's own account of what it took; what yields elastically beneath gives all of it back once nothing is loaded
         let law =
             |i: usize| self.bodies.contacts[i].taken(self.force[i]) - self.taken[i] - self.contact_losses[i];
-        let beneath = work[0] + work[1] - self.contact_losses[0] - self.contact_losses[1] - self.creep_loss;
+        // what yields elastically gives its energy back, to the other contact also: so creep is the plate's as a whole, a tip's its contact's
+        let [[outer_plate, outer_tip], [inner_plate, inner_tip]] = self.creep_losses;
+        let contact_losses = [self.contact_losses[0] + outer_tip, self.contact_losses[1] + inner_tip];
+        let plate_loss = outer_plate + inner_plate;
+        let beneath = work[0] + work[1] - contact_losses[0] - contact_losses[1] - plate_loss;
         let beneath = if self.force == [0.0; 2] { -beneath } else { 0.0 };
         eprintln!(
             "DBG modes {:e} laws {:e} {:e} beneath {:e} steps {}",
@@ -380,8 +383,8 @@ impl<'a> Stepper<'a> {
             momentum_residual: unexplained_momentum(system, &v, &self.contacts, &FluidAccount::default())
                 / (system.masses[0] * system.speed),
             losses: Losses {
-                plate_damping: self.modal_loss + self.creep_loss,
-                contacts: Some(self.contact_losses),
+                plate_damping: self.modal_loss + plate_loss,
+                contacts: Some(contact_losses),
                 ..Losses::default()
             },
             steps: self.steps,
