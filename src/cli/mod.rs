@@ -91,7 +91,7 @@ enum Command {
     Study(study::Arguments),
     /// Tell how the results of a reduced model scatter with the inputs of a scene, and which input makes how much of it
     #[command(
-        after_help = "Example: impactcheck uncertainty scaled-plate-tolerances --samples 10000 --out my-scatter"
+        after_help = "Example: impactcheck uncertainty examples/uncertainty/table1-r10.toml --out my-scatter"
     )]
     Uncertainty(uncertainty::Arguments),
     /// Find the numbers of a scene, within bounds, that transmit most energy

@@ -9,7 +9,7 @@ use crate::kinds::plate_impact::PlateQuantities;
 use crate::report::format::{percent, prefixed, with_unit};
 use crate::report::{self, FigureFormat, TableFormat};
 use crate::scene::{self, Model, Template, suggestion};
-use crate::uncertainty::{QuantityScatter, Request, Samples, Scatter, Share, WANTED, study, uncertainty_of};
+use crate::uncertainty::{QuantityScatter, Request, Samples, Scatter, Share, study, uncertainty_of};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -32,7 +32,7 @@ pub struct Arguments {
     #[arg(long, default_value = "2%", value_name = "SHARE", value_parser = asked_model::tolerance)]
     accuracy: f64,
     /// Quantities that auto and the tables are about
-    #[arg(long = "quantity", value_delimiter = ',', default_values = WANTED, value_name = "NAME,…", value_parser = quantity)]
+    #[arg(long = "quantity", value_delimiter = ',', default_value = "efficiency,outer_force_peak,inner_force_peak", value_name = "NAME,…", value_parser = quantity)]
     quantities: Vec<String>,
     /// Another one gives other samples
     #[arg(long, default_value_t = 1)]

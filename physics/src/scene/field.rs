@@ -101,16 +101,37 @@ impl Field {
     }
 }
 
-/// Whether no reduced model has the field called `path`.
-pub(super) fn is_of_reference(path: &str) -> bool {
-    path == "friction" || path.starts_with("reference.")
+/// Why the field called `path` changes no reduced model of a scene with these checked `values`, if it does not.
+pub(super) fn without_effect(values: &Values, path: &str) -> Option<&'static str> {
+    let of_material = |key: &str| path.strip_suffix(key).filter(|rest| rest.starts_with("materials."));
+    if path == "friction" || path.starts_with("reference.") {
+        return Some("it is the reference's alone");
+    }
+    if of_material(".hardening").is_some() {
+        return Some("their contact law knows no hardening, which is the reference's alone");
+    }
+    let material = of_material(".yield_strength")?;
+    (!has(values, &format!("{material}.hardening")))
+        .then_some("without `hardening` the material stays elastic")
+}
+
+/// Whether checked `values` have something at `path`.
+fn has(values: &Values, path: &str) -> bool {
+    let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
+    tables
+        .split_terminator('.')
+        .try_fold(values, |values, table| match values.get(table) {
+            Some(Checked::Table(inner)) => Some(inner),
+            _ => None,
+        })
+        .is_some_and(|values| values.contains_key(key))
 }
 
 /// Every numeric field that a scene with these checked `values` has or may have and a reduced model knows.
 pub(super) fn fields_of(values: &Values) -> Vec<Field> {
     let mut fields = Vec::new();
     collect(&SCENE, Some(values), &mut Vec::new(), &mut fields);
-    fields.retain(|field: &Field| !is_of_reference(&field.path));
+    fields.retain(|field: &Field| without_effect(values, &field.path).is_none());
     fields
 }
 

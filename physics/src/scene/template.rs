@@ -4,8 +4,10 @@
 //! costs a few microseconds.
 
 use super::check::{Checked, Values};
-use super::field::{fields_of, index, is_of_reference, number_in};
-use super::read::{Beside, assemble, checked, read_text, refuse_collisions};
+use super::collision::Collision;
+use super::field::{fields_of, index, number_in, without_effect};
+use super::material;
+use super::read::{Beside, Node, assemble, checked, read_text, refuse_collisions};
 use super::{Distribution, Field, Rejected, Scene, suggestion};
 use crate::{Error, Result};
 use std::path::Path;
@@ -65,10 +67,8 @@ impl Template {
         if let Some(field) = fields.iter().find(|field| field.path == path) {
             return Ok(field.clone());
         }
-        if is_of_reference(path) {
-            return Err(Error::Usage(format!(
-                "`{path}` changes no reduced model: it is the reference's alone"
-            )));
+        if let Some(why) = without_effect(&self.values, path) {
+            return Err(Error::Usage(format!("`{path}` changes no reduced model: {why}")));
         }
         let names: Vec<&str> = fields.iter().map(|field| field.path.as_str()).collect();
         let hint = suggestion(path, names.iter().copied()).map(|s| format!("; did you mean `{s}`?"));
@@ -102,11 +102,15 @@ impl Template {
                 if field.is_count() { Checked::Count(*value as u64) } else { Checked::Number(*value + 0.0) };
             set(&mut values, &field.keys, checked);
         }
-        let scene = assemble(&values, self.beside.clone()).map_err(|e| Rejected(e.to_string()))?;
-        match scene.setup.part().collisions().into_iter().next() {
+        let fault = |e: Error| Rejected(e.to_string());
+        let refused = |collisions: Vec<Collision>| match collisions.into_iter().next() {
             Some(collision) => Err(Rejected(collision.message)),
-            None => Ok(scene),
-        }
+            None => Ok(()),
+        };
+        refused(material::collisions(&Node(&values)).map_err(fault)?)?;
+        let scene = assemble(&values, self.beside.clone()).map_err(fault)?;
+        refused(scene.setup.part().collisions())?;
+        Ok(scene)
     }
 
     /// The bounds between which `field` scatters if it is `value`, and the keys they stand under; `None` if it has none.
@@ -244,11 +248,17 @@ mod tests {
             ("fluid.viscosity", "no numeric field"),
             ("plate.edge", "no numeric field"),
             ("friction", "it is the reference's alone"),
+            ("materials.steel.hardening", "knows no hardening"),
+            ("materials.steel.yield_strength", "without `hardening`"),
             ("reference.elements_per_contact_radius", "it is the reference's alone"),
         ] {
             let said = template.field(path).expect_err("refused").to_string();
             assert!(said.contains(part), "{said}");
         }
+        let yielding = BASE.replace("density ", "yield_strength = 6e8\nhardening = 0\ndensity ");
+        let yielding = Template::parse("yielding", &yielding).expect("valid");
+        let strength = yielding.field("materials.steel.yield_strength").expect("now it counts");
+        assert!(yielding.with(&[(&strength, 5e8)]).is_ok());
         let field = template.field("plate.radius").expect("there");
         assert_eq!(field.parse("33mm").expect("a length"), 0.033);
         let said = field.parse("33 kg").expect_err("a mass").to_string();

@@ -3,7 +3,7 @@
 use super::{Correlation, Distribution, Spread, UncertainInput, Uncertainty};
 use crate::scene::check::{Checked, Checker, Place, Values};
 use crate::scene::fault::did_you_mean;
-use crate::scene::field::{Field, fields_of, is_of_reference, number_in};
+use crate::scene::field::{Field, fields_of, number_in, without_effect};
 use crate::scene::quantity::Dimension;
 use crate::scene::specification::{self, Bound, Kind, pure, required};
 use toml::Spanned;
@@ -94,7 +94,7 @@ impl Checker<'_> {
     fn input(&mut self, entry: &Entry, fields: &[Field], values: &Values) -> Option<UncertainInput> {
         let path = format!("uncertainty.{}", entry.field);
         let place = entry.place(&path);
-        let field = self.field(entry, fields)?;
+        let field = self.field(entry, fields, values)?;
         let Some(nominal) = number_in(values, field) else {
             // a number that is there and wrong is told of at its own place
             if self.problems.is_empty() {
@@ -136,15 +136,15 @@ impl Checker<'_> {
     }
 
     /// The field that an entry names.
-    fn field<'f>(&mut self, entry: &Entry, fields: &'f [Field]) -> Option<&'f Field> {
+    fn field<'f>(&mut self, entry: &Entry, fields: &'f [Field], values: &Values) -> Option<&'f Field> {
         let name = &entry.field;
         let (message, help) = match fields.iter().find(|field| field.path() == name) {
             Some(field) if !field.is_count() => return Some(field),
             Some(_) => ("takes whole numbers, which have no scatter".to_owned(), "leave it out".to_owned()),
-            None if is_of_reference(name) => (
-                "changes no reduced model: it is the reference's alone".to_owned(),
-                "leave it out".to_owned(),
-            ),
+            None if without_effect(values, name).is_some() => {
+                let why = without_effect(values, name).unwrap_or_default();
+                (format!("changes no reduced model: {why}"), "leave it out".to_owned())
+            }
             None => {
                 let names = || fields.iter().filter(|field| !field.is_count()).map(Field::path);
                 let help = format!(
