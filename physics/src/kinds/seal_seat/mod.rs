@@ -17,6 +17,8 @@ mod limits;
 mod model;
 pub mod nodes;
 mod results;
+mod series;
+mod shape;
 mod survey;
 pub mod system;
 mod truncation;
@@ -29,6 +31,7 @@ pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
 pub use model::{DEFAULT_TOLERANCE, SeatModel, quantities};
 pub use results::{CURVES, SeatCurves, SeatQuantities};
+pub use series::SeatSeries;
 pub use survey::Survey;
 
 /// The registry's entry.
