@@ -29,6 +29,9 @@ pub struct Arguments {
     /// the intended direction [default: efficiency; of a seal seat intended_speed]
     #[arg(long, value_name = "NAME")]
     objective: Option<String>,
+    /// How far from the intended direction the sphere of a seal seat may fly
+    #[arg(long, value_name = "ANGLE")]
+    within: Option<String>,
     /// Mesh (.vtu) of the seat of a seal-seat scene, which follows its dimensions [default: a coarse one]
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
@@ -89,7 +92,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let mesh = seat_mesh(context, arguments, template.scene())?;
     let usual = if mesh.is_some() { Model::C } else { Model::B };
     let model = arguments.model.or(template.scene().reduced.model).unwrap_or(usual);
-    let objective = Objective::of(arguments.objective.as_deref(), template.scene())?;
+    let within =
+        arguments.within.as_ref().map(|text| template.field("intended.angle")?.parse(text)).transpose()?;
+    let objective = Objective::of(arguments.objective.as_deref(), within, template.scene())?;
     let variables =
         arguments.over.iter().map(|text| Variable::parse(text, &template)).collect::<Result<Vec<_>>>()?;
     if let Some(folder) = &arguments.out {

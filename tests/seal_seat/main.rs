@@ -5,3 +5,4 @@ mod reduced;
 mod reference;
 mod scaling;
 mod scene;
+mod series;
