@@ -99,6 +99,11 @@ impl SceneComparison {
         self.integrity.extend(checks);
     }
 
+    /// The names of its models.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.models.iter().map(|model| &*model.model)
+    }
+
     /// Verdicts of the rows of all models that have a tolerance.
     pub fn gated_verdicts(&self) -> impl Iterator<Item = Verdict> {
         self.models.iter().flat_map(ModelComparison::gated_verdicts)

@@ -3,6 +3,7 @@
 mod compared;
 mod reduced;
 mod reference;
+mod relaxing;
 mod scaling;
 mod scene;
 mod series;

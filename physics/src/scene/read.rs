@@ -1,6 +1,7 @@
 //! From the text of a scene file to a [`Scene`].
 
 use super::check::{Checked, Checker, Place, Values};
+use super::collision::Collision;
 use super::external::external;
 use super::fault::Collector;
 use super::plate_impact::{plate_impact, reference};
@@ -109,6 +110,9 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap
         _ => None,
     });
     let tolerances = checker.tolerances(root, kind.unwrap_or(kinds::KINDS[0]));
+    if checker.problems.is_empty() {
+        note(material::collisions(&Node(&values))?, root, &mut checker.problems);
+    }
     match checker.problems.is_empty() {
         true => Ok((values, tolerances)),
         false => Err(Error::Scene(checker.problems.into_report())),
@@ -126,11 +130,16 @@ pub(super) fn refuse_collisions(scene: &Scene, source_name: &str, text: &str) ->
     }
     let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
     let mut problems = Collector::new(source_name, text);
+    note(collisions, tree.get_ref(), &mut problems);
+    Err(Error::Scene(problems.into_report()))
+}
+
+/// Notes `collisions` at the first of their fields that the file has.
+fn note(collisions: Vec<Collision>, root: &DeTable, problems: &mut Collector) {
     for collision in collisions {
-        let place = collision.fields.iter().find_map(|field| span_of(tree.get_ref(), field));
+        let place = collision.fields.iter().find_map(|field| span_of(root, field));
         problems.add(place.unwrap_or(0..0), collision.message, "collides", collision.help.to_owned());
     }
-    Err(Error::Scene(problems.into_report()))
 }
 
 /// Where the key `path` ("seat.tilt") stands in the file.

@@ -4,8 +4,10 @@
 //! costs a few microseconds.
 
 use super::check::{Checked, Values};
+use super::collision::Collision;
+use super::material;
 use super::quantity::{self, Dimension, QuantityError};
-use super::read::{assemble, checked, read_text, refuse_collisions};
+use super::read::{Node, assemble, checked, read_text, refuse_collisions};
 use super::specification::{self, Kind, SCENE};
 use super::{Scene, Tolerances, suggestion};
 use crate::{Error, Result};
@@ -126,9 +128,17 @@ impl Field {
     }
 }
 
-/// Whether no reduced model has the field called `path`.
-fn is_of_reference(path: &str) -> bool {
-    path == "friction" || path.starts_with("reference.")
+/// Why the field called `path` changes no reduced model, if it does not; `there` says whether the scene file has a field.
+fn without_effect(path: &str, there: impl Fn(&str) -> bool) -> Option<&'static str> {
+    let of_material = |key: &str| path.strip_suffix(key).filter(|rest| rest.starts_with("materials."));
+    if path == "friction" || path.starts_with("reference.") {
+        return Some("it is the reference's alone");
+    }
+    if of_material(".hardening").is_some() {
+        return Some("their contact law knows no hardening, which is the reference's alone");
+    }
+    let material = of_material(".yield_strength")?;
+    (!there(&format!("{material}.hardening"))).then_some("without `hardening` the material stays elastic")
 }
 
 impl Template {
@@ -166,10 +176,8 @@ impl Template {
         if let Some(field) = fields.iter().find(|field| field.path == path) {
             return Ok(field.clone());
         }
-        if is_of_reference(path) {
-            return Err(Error::Usage(format!(
-                "`{path}` changes no reduced model: it is the reference's alone"
-            )));
+        if let Some(why) = without_effect(path, |key| self.has(key)) {
+            return Err(Error::Usage(format!("`{path}` changes no reduced model: {why}")));
         }
         let names: Vec<&str> = fields.iter().map(|field| field.path.as_str()).collect();
         let hint = suggestion(path, names.iter().copied()).map(|s| format!("; did you mean `{s}`?"));
@@ -185,8 +193,20 @@ impl Template {
     pub fn fields(&self) -> Vec<Field> {
         let mut fields = Vec::new();
         collect(&SCENE, Some(&self.values), &mut Vec::new(), &mut fields);
-        fields.retain(|field: &Field| !is_of_reference(&field.path));
+        fields.retain(|field: &Field| without_effect(&field.path, |key| self.has(key)).is_none());
         fields
+    }
+
+    /// Whether the scene file has a value at `path`.
+    fn has(&self, path: &str) -> bool {
+        let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
+        tables
+            .split_terminator('.')
+            .try_fold(&self.values, |values, table| match values.get(table) {
+                Some(Checked::Table(inner)) => Some(inner),
+                _ => None,
+            })
+            .is_some_and(|values| values.contains_key(key))
     }
 
     /// What the scene file has in `field`, in SI; `None` if it says nothing there.
@@ -219,11 +239,15 @@ impl Template {
                 if field.is_count() { Checked::Count(*value as u64) } else { Checked::Number(*value + 0.0) };
             set(&mut values, &field.keys, checked);
         }
-        let scene = assemble(&values, self.tolerances.clone()).map_err(|e| Rejected(e.to_string()))?;
-        match scene.setup.part().collisions().into_iter().next() {
+        let fault = |e: Error| Rejected(e.to_string());
+        let refused = |collisions: Vec<Collision>| match collisions.into_iter().next() {
             Some(collision) => Err(Rejected(collision.message)),
-            None => Ok(scene),
-        }
+            None => Ok(()),
+        };
+        refused(material::collisions(&Node(&values)).map_err(fault)?)?;
+        let scene = assemble(&values, self.tolerances.clone()).map_err(fault)?;
+        refused(scene.setup.part().collisions())?;
+        Ok(scene)
     }
 
     /// The scene file with another name and other numbers, in SI. Comments are lost.
@@ -411,11 +435,17 @@ mod tests {
             ("fluid.viscosity", "no numeric field"),
             ("plate.edge", "no numeric field"),
             ("friction", "it is the reference's alone"),
+            ("materials.steel.hardening", "knows no hardening"),
+            ("materials.steel.yield_strength", "without `hardening`"),
             ("reference.elements_per_contact_radius", "it is the reference's alone"),
         ] {
             let said = template.field(path).expect_err("refused").to_string();
             assert!(said.contains(part), "{said}");
         }
+        let yielding = BASE.replace("density ", "yield_strength = 6e8\nhardening = 0\ndensity ");
+        let yielding = Template::parse("yielding", &yielding).expect("valid");
+        let strength = yielding.field("materials.steel.yield_strength").expect("now it counts");
+        assert!(yielding.with(&[(&strength, 5e8)]).is_ok());
         let field = template.field("plate.radius").expect("there");
         assert_eq!(field.parse("33mm").expect("a length"), 0.033);
         let said = field.parse("33 kg").expect_err("a mass").to_string();

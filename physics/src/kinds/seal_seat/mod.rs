@@ -11,6 +11,7 @@ mod checks;
 pub mod contact;
 mod contact_set;
 mod doubts;
+mod drift;
 pub mod integrate;
 pub mod integration;
 mod limits;
@@ -21,6 +22,7 @@ mod series;
 mod shape;
 mod survey;
 pub mod system;
+pub mod traces;
 mod truncation;
 mod watch;
 
