@@ -6,4 +6,3 @@ mod reference;
 mod relaxing;
 mod scaling;
 mod scene;
-mod series;
