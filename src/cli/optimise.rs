@@ -7,7 +7,7 @@ use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::kinds::seal_seat::SeatMesh;
-use crate::optimise::{Confirmation, Objective, Optimum, Problem, Variable, confirm};
+use crate::optimise::{Confirmation, Objective, Optimum, Problem, Robust, Variable, confirm};
 use crate::reference::{self, Resolution, Stored, Wish};
 use crate::report;
 use crate::report::format::words;
@@ -47,6 +47,9 @@ pub struct Arguments {
     /// Number of these samples [default: by the number of variables]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=100_000))]
     samples: Option<u32>,
+    /// Maximise this quantile of the efficiency instead, over what the scene's [uncertainty] makes of every design [default quantile: 5%]
+    #[arg(long, value_name = "QUANTILE", num_args = 0..=1, default_missing_value = "5%", value_parser = probability)]
+    robust: Option<f64>,
     /// Hold the optimum against the finite-element reference: the stored one, else computed (needs FEniCSx)
     #[arg(long)]
     verify: bool,
@@ -86,6 +89,12 @@ struct Verification {
     model: Option<Box<ModelComparison>>,
 }
 
+/// Parses the probability of a quantile, as a number or in percent.
+fn probability(text: &str) -> std::result::Result<f64, String> {
+    let value = scene::quantity_in(text, "1")?;
+    if (0.01..=0.99).contains(&value) { Ok(value) } else { Err(format!("{text} is not within 1 % to 99 %")) }
+}
+
 /// Searches the optimum, verifies it if asked to, prints it.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let template = Template::read(scene::resolve(&arguments.scene)?)?;
@@ -100,7 +109,10 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     if let Some(folder) = &arguments.out {
         report::check_writable(folder)?;
     }
-    let problem = Problem::new(template, variables, objective, (model, arguments.modes), mesh.as_ref())?;
+    let robust =
+        arguments.robust.map(|quantile| Robust::new(&template, quantile, arguments.seed)).transpose()?;
+    let models = (model, arguments.modes);
+    let problem = Problem::new(template, variables, objective, models, mesh.as_ref(), robust)?;
     let optimum = problem.solve(arguments.seed, arguments.samples.map(|n| n as usize))?;
     let confirmation = confirm(&problem, &optimum).unwrap_or_else(|error| {
         context.note(format_args!("warning: model C can't confirm the optimum: {error}"));
@@ -221,6 +233,15 @@ fn table(document: &Document) -> String {
         optimum.evaluations,
         if optimum.failures > 0 { format!(", {} without result", optimum.failures) } else { String::new() }
     )];
+    if let Some(robust) = &optimum.robust {
+        lines.push(format!(
+            "  {} % quantile of the {} under scatter: {:.5} ({} samples of every design)",
+            100.0 * robust.probability,
+            words(optimum.objective).to_lowercase(),
+            robust.quantile,
+            robust.samples
+        ));
+    }
     for variable in &optimum.variables {
         let unit = if variable.unit == "1" { "" } else { variable.unit };
         let [low, high] = variable.range_within_1_percent;

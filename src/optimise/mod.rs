@@ -3,11 +3,13 @@
 mod confirmation;
 mod neighbourhood;
 mod objective;
+mod robust;
 pub mod search;
 
 pub use confirmation::{Confirmation, Rival, confirm};
 pub use neighbourhood::{DEAR_POINTS, Neighbourhood, PROFILE_POINTS};
 pub use objective::Objective;
+pub use robust::{Robust, RobustOptimum};
 
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
@@ -106,6 +108,8 @@ pub struct Problem {
     model: Model,
     modes: Option<usize>,
     bodies: Bodies,
+    /// If a quantile of the objective is maximised.
+    robust: Option<Robust>,
 }
 
 /// What the impacts of a search share, by the kind of scene.
@@ -122,7 +126,7 @@ pub struct Evaluation {
     pub climb: usize,
     /// Values of the variables, SI.
     pub values: Vec<f64>,
-    /// The objective there; `None` without result.
+    /// The objective there, or its quantile; `None` without result.
     pub objective: Option<f64>,
 }
 
@@ -143,6 +147,9 @@ pub struct Optimum {
     pub objective_unit: &'static str,
     /// Its value at the optimum.
     pub objective_value: f64,
+    /// If a quantile of the efficiency was maximised: which, and how much it is there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub robust: Option<RobustOptimum>,
     /// The variables: optimum and neighbourhood.
     pub variables: Vec<Neighbourhood>,
     /// Impacts that were run.
@@ -156,7 +163,8 @@ pub struct Optimum {
 }
 
 impl Problem {
-    /// The problem of the scene in `template`; a seal seat needs a `mesh` of it.
+    /// The problem of the scene in `template`; a seal seat needs a `mesh` of it. With `robust` a quantile of the objective is maximised,
+    /// under the scatter of what is made.
     ///
     /// # Errors
     /// [`Error::Usage`] if there is no variable, or a field is in two of them, or the kind of scene has no such model.
@@ -166,6 +174,7 @@ impl Problem {
         objective: Objective,
         (model, modes): (Model, Option<usize>),
         mesh: Option<&SeatMesh>,
+        robust: Option<Robust>,
     ) -> Result<Self> {
         let mut names: Vec<&str> = variables.iter().flat_map(|v| &v.fields).map(Field::path).collect();
         names.sort_unstable();
@@ -180,15 +189,19 @@ impl Problem {
         let varied = variables.iter().flat_map(|variable| {
             variable.fields.iter().map(|field| (field.path(), [variable.low, variable.high]))
         });
+        let scattered = robust.as_ref().map_or_else(Vec::new, |robust| robust.ranges(&variables));
+        let impacts = if robust.is_some() { IMPACTS * robust::SAMPLES } else { IMPACTS };
+        // the first that names a field is believed
+        let ranges = scattered.into_iter().chain(varied);
         let scene = template.scene();
         let bodies = match mesh {
             Some(_) if model != Model::C => {
                 return Err(Error::Usage(format!("--model {model}: a seal seat has model C only")));
             }
             Some(mesh) => Bodies::Seats(Box::new(SeatSeries::new(scene, mesh)?)),
-            None => Bodies::Plates(SharedBodies::for_varied(varied, scene.plate_impact()?, IMPACTS)),
+            None => Bodies::Plates(SharedBodies::for_varied(ranges, scene.plate_impact()?, impacts)),
         };
-        Ok(Problem { template, variables, objective, model, modes, bodies })
+        Ok(Problem { template, variables, objective, model, modes, bodies, robust })
     }
 
     fn numbers<'a>(&'a self, values: &[f64]) -> Vec<(&'a Field, f64)> {
@@ -218,12 +231,13 @@ impl Problem {
         self.template.text_with(&scene.name, &self.numbers(values))
     }
 
-    /// The objective with `values` for the variables; `None` where there is no result.
-    fn value(&self, values: &[f64]) -> Option<f64> {
-        let scene = self.scene(values).ok()?;
+    /// The objective of the scene with these `numbers`; `None` where there is no result.
+    fn value(&self, numbers: &[(&Field, f64)]) -> Option<f64> {
+        let scene = self.template.with(numbers).ok()?;
         match &self.bodies {
             Bodies::Plates(bodies) => {
-                let point = self.plate(bodies, values).ok()?.point(TOLERANCE).ok()?;
+                let reduced = Reduced::in_series(scene.clone(), self.model, self.modes, bodies).ok()?;
+                let point = reduced.point(TOLERANCE).ok()?;
                 self.objective.value(&scene, |name| point.quantities.get(name))
             }
             Bodies::Seats(series) => {
@@ -246,6 +260,13 @@ impl Problem {
             Bodies::Plates(bodies) => self.plate(bodies, values)?.run(TOLERANCE),
             Bodies::Seats(series) => self.seat(series, values)?.run(SEAT_TOLERANCE),
         }
+    }
+
+    /// What is maximised, with `values` for the variables: the objective or its quantile; `None` where there is no result.
+    fn worth(&self, values: &[f64]) -> Option<f64> {
+        let numbers = self.numbers(values);
+        let value = |numbers: &[(&Field, f64)]| self.value(numbers);
+        self.robust.as_ref().map_or_else(|| value(&numbers), |robust| robust.quantile(&numbers, value))
     }
 
     /// The efficiency by `model`, with as many modes as it takes by itself.
@@ -282,7 +303,7 @@ impl Problem {
         let place = |s: &[f64]| -> Vec<f64> {
             self.variables.iter().zip(s).map(|(variable, s)| variable.between(*s)).collect()
         };
-        let maximum = maximise(dimensions, &search, |s| self.value(&place(s)))?;
+        let maximum = maximise(dimensions, &search, |s| self.worth(&place(s)))?;
         let exact = place(&maximum.at);
         let evaluation = |tried: &Tried| Evaluation {
             climb: tried.climb,
@@ -294,11 +315,22 @@ impl Problem {
         let summary = self.summary(&values)?;
         let cut = || Error::Solver(CUT.into());
         let efficiency = summary.value("efficiency").ok_or_else(cut)?;
-        let best = self.objective.value(&self.scene(&values)?, |name| summary.value(name)).ok_or_else(cut)?;
+        let nominal =
+            self.objective.value(&self.scene(&values)?, |name| summary.value(name)).ok_or_else(cut)?;
+        let robust = match &self.robust {
+            Some(robust) => {
+                let quantile = self
+                    .worth(&values)
+                    .ok_or_else(|| Error::Solver("a sample of the optimum has no result".into()))?;
+                Some(robust.found(quantile))
+            }
+            None => None,
+        };
+        let best = robust.map_or(nominal, |robust| robust.quantile);
         let at = |k: usize, x: f64| {
             let mut there = values.clone();
             there[k] = x;
-            self.value(&there)
+            self.worth(&there)
         };
         let points = match self.bodies {
             Bodies::Plates(_) => PROFILE_POINTS,
@@ -315,7 +347,8 @@ impl Problem {
             efficiency,
             objective: self.objective.name(),
             objective_unit: self.objective.unit(),
-            objective_value: best,
+            objective_value: nominal,
+            robust,
             variables,
             evaluations: maximum.history.len(),
             failures: maximum.history.iter().filter(|tried| tried.value.is_none()).count(),
@@ -338,6 +371,10 @@ impl Optimum {
             (name, "1") => (words(name), 1.0),
             (name, unit) => (format!("{} in {unit}", words(name)), 1.0),
         };
+        let label = self
+            .robust
+            .map_or(label.clone(), |robust| format!("{} % quantile: {label}", 100.0 * robust.probability));
+        let best = self.robust.map_or(self.objective_value, |robust| robust.quantile);
         let name = words(self.objective).to_lowercase();
         let panel = |variable: &Neighbourhood| ChartPanel {
             x_label: match variable.unit {
@@ -353,17 +390,17 @@ impl Optimum {
                 },
                 Series {
                     name: "optimum".into(),
-                    points: vec![(variable.optimum, factor * self.objective_value)],
+                    points: vec![(variable.optimum, factor * best)],
                     marks: true,
                     ..Series::default()
                 },
             ],
             ..ChartPanel::default()
         };
-        let mut best = f64::NEG_INFINITY;
+        let mut highest = f64::NEG_INFINITY;
         let so_far = self.history.iter().enumerate().filter_map(|(k, tried)| {
-            best = best.max(tried.objective?);
-            Some((k as f64 + 1.0, factor * best))
+            highest = highest.max(tried.objective?);
+            Some((k as f64 + 1.0, factor * highest))
         });
         let way = ChartPanel {
             x_label: "Impacts tried".into(),
