@@ -41,8 +41,8 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with every fault, its place and what would be valid.
     pub fn parse(source_name: &str, text: &str) -> Result<Scene> {
-        let (values, tolerances) = checked(source_name, text)?;
-        let scene = assemble(&values, tolerances)?;
+        let (values, beside) = checked(source_name, text)?;
+        let scene = assemble(&values, beside)?;
         refuse_collisions(&scene, source_name, text)?;
         Ok(scene)
     }
@@ -89,11 +89,18 @@ fn too_large(name: &str, size: String) -> Error {
     )
 }
 
-/// The checked values of a scene file and its tolerances.
+/// What a scene file says beside the impact; its tables have readers of their own.
+#[derive(Debug, Clone)]
+pub(super) struct Beside {
+    pub(super) tolerances: BTreeMap<String, Tolerances>,
+    pub(super) uncertainty: Option<Uncertainty>,
+}
+
+/// The checked values of a scene file, and what stands beside them.
 ///
 /// # Errors
 /// As [`Scene::parse`].
-pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap<String, Tolerances>)> {
+pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, Beside)> {
     let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
     let root = tree.get_ref();
     if root.is_empty() {
@@ -110,11 +117,12 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap
         _ => None,
     });
     let tolerances = checker.tolerances(root, kind.unwrap_or(kinds::KINDS[0]));
+    let uncertainty = checker.uncertainty(root, &values);
     if checker.problems.is_empty() {
         note(material::collisions(&Node(&values))?, root, &mut checker.problems);
     }
     match checker.problems.is_empty() {
-        true => Ok((values, tolerances)),
+        true => Ok((values, Beside { tolerances, uncertainty })),
         false => Err(Error::Scene(checker.problems.into_report())),
     }
 }
@@ -263,7 +271,7 @@ pub(super) fn unknown(key: &str, word: &str) -> Error {
 }
 
 /// The scene that checked values describe.
-pub(super) fn assemble(values: &Values, tolerances: BTreeMap<String, Tolerances>) -> Result<Scene> {
+pub(super) fn assemble(values: &Values, beside: Beside) -> Result<Scene> {
     let root = &Node(values);
     let materials = root.table("materials")?;
     let settings = root.optional_table("reference")?;
@@ -284,7 +292,8 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<String, Tolerances>
         run: RunSettings { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
         reduced: reduced(root.optional_table("reduced")?)?,
         reference,
-        tolerances,
+        tolerances: beside.tolerances,
+        uncertainty: beside.uncertainty,
         external: root.tables("external")?.iter().map(external).collect::<Result<_>>()?,
     })
 }
