@@ -365,14 +365,6 @@ impl<'a> Stepper<'a> {
         let plate_loss = outer_plate + inner_plate;
         let beneath = work[0] + work[1] - contact_losses[0] - contact_losses[1] - plate_loss;
         let beneath = if self.force == [0.0; 2] { -beneath } else { 0.0 };
-        eprintln!(
-            "DBG modes {:e} laws {:e} {:e} beneath {:e} steps {}",
-            unaccounted / initial,
-            law(0) / initial,
-            law(1) / initial,
-            beneath / initial,
-            self.steps
-        );
         let gained = unaccounted + law(0) + law(1) + beneath;
         let residual = unaccounted.abs() + law(0).abs() + law(1).abs() + beneath.abs();
         let integration = Integration {
