@@ -19,6 +19,7 @@ mod optimise;
 mod progress;
 mod reduced;
 mod reference;
+mod scatter;
 mod schema;
 mod shell;
 mod stored_references;
