@@ -85,7 +85,14 @@ fn solve(
     if fastest * end_time / 3.0 * 12.0 > max_evaluations as f64 {
         return None;
     }
-    let (mut state, scale) = equations.start(system.hertz_impact().duration());
+    let (mut state, mut scale) = equations.start(system.hertz_impact().duration());
+    // a light body's contact feels motions that the outer one would not
+    for k in 0..n {
+        let moves = system.approach[0][k].abs().max(system.approach[1][k].abs());
+        let share = (system.speed / (moves * scale[n + k])).min(1.0);
+        scale[k] *= share;
+        scale[n + k] *= share;
+    }
     let tolerances = Tolerances { relative: tolerance, absolute: tolerance, max_evaluations };
     let mut load = FluidLoad::default();
     let rate = |y: &[f64], dy: &mut [f64]| {

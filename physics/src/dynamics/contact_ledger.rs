@@ -27,8 +27,11 @@ pub struct ContactLedger {
     pub work: f64,
     /// Largest force so far in N.
     pub force_peak: f64,
-    /// Largest distance in N between the force at the end of a step and the step's polynomial, where the force is smooth.
+    /// Distances in N between the force at the end of a step and the step's polynomial, where the force is smooth: the largest
+    /// one, and the sum of all.
     pub force_defect: f64,
+    /// See `force_defect`.
+    pub force_defects: f64,
     /// Time of the latest release in s.
     pub end: f64,
     /// Number of separate contacts so far.
@@ -69,6 +72,13 @@ impl ContactLedger {
             let released = || course.time + course.h * release(collocation, course, point);
             self.pass(course.local_approach[point] > 0.0, before, released);
         }
+    }
+
+    /// Books the `defect` in N of a step's force.
+    #[inline]
+    pub fn book_defect(&mut self, defect: f64) {
+        self.force_defect = self.force_defect.max(defect);
+        self.force_defects += defect;
     }
 
     /// Counts touches and releases; `before` is the impulse when the step began in N s, `released` gives the time of a release in s.
