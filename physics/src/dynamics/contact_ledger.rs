@@ -27,11 +27,10 @@ pub struct ContactLedger {
     pub work: f64,
     /// Largest force so far in N.
     pub force_peak: f64,
-    /// Distances in N between the force at the end of a step and the step's polynomial, where the force is smooth: the largest
-    /// one, and the sum of all.
+    /// Largest distance in N between the force at the end of a step and the step's polynomial, where the force is smooth.
     pub force_defect: f64,
-    /// See `force_defect`.
-    pub force_defects: f64,
+    /// Sum of these distances over all steps, N.
+    pub force_defect_sum: f64,
     /// Time of the latest release in s.
     pub end: f64,
     /// Number of separate contacts so far.
@@ -78,7 +77,7 @@ impl ContactLedger {
     #[inline]
     pub fn book_defect(&mut self, defect: f64) {
         self.force_defect = self.force_defect.max(defect);
-        self.force_defects += defect;
+        self.force_defect_sum += defect;
     }
 
     /// Counts touches and releases; `before` is the impulse when the step began in N s, `released` gives the time of a release in s.
