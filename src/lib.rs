@@ -22,6 +22,8 @@
 //! # Ok::<(), impactcheck::Error>(())
 //! ```
 #![warn(missing_docs)]
+// `cli::tell` survives a reader that has gone away
+#![warn(clippy::print_stderr)]
 
 pub mod bench;
 pub mod ci;
@@ -41,6 +43,7 @@ pub mod sampling;
 pub mod scene;
 pub mod stress;
 pub mod study;
+pub mod uncertainty;
 pub mod validated;
 
 pub use impactcheck_physics::{Error, ExitStatus, Result};

@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import Any
 
-from ..common.errors import SolverError
+from ..common.errors import SceneError, SolverError
 from .scene import parse_seat_scene
 
 
@@ -37,6 +37,11 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
     from ..common.processes import in_processes
 
     scene = parse_seat_scene(document)
+    if arguments.np > 1 and scene.seat.material.relaxation:
+        raise SceneError(
+            "seat.material.relaxation is given; solid geometry relaxes in one process, "
+            f"--np is {arguments.np}; it must be 1"
+        )
 
     def work(comm: Any) -> None:
         from ..common.settings import Options

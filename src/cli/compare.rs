@@ -4,6 +4,7 @@ use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
 use super::external::{self, Permission};
 use super::film::film;
+use super::progress::Counter;
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument, kinds, validated_scenes};
 use crate::ci::commit::Commit;
@@ -15,35 +16,39 @@ use crate::measured::{self, Record, Speed};
 use crate::reference::{COARSER, Resolution, Stored};
 use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
 use crate::result::Outcome;
-use crate::scene::Scene;
+use crate::scene::{Model, Scene, Template};
+use crate::uncertainty::{Request, Scatter, study};
 use crate::validated::Validation;
 use clap::Args;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+/// Half width of the intervals of mean and standard deviation, over the latter, of what scatters: u_input to 5 %.
+const SCATTER_ACCURACY: f64 = 0.05;
 /// Results over commits, beside the report.
 const TRENDS: &str = "trends.jsonl";
 
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all shipped scenes]
-    scenes: Vec<String>,
+    pub(super) scenes: Vec<String>,
     /// Models to compare; auto stands for the cheapest whose estimated error meets the tolerance, external for the programs that
     /// the scene names
     #[arg(long, value_delimiter = ',', default_value = "A,B,C,external")]
-    models: Vec<AskedModel>,
+    pub(super) models: Vec<AskedModel>,
     #[command(flatten)]
-    permission: Permission,
+    pub(super) permission: Permission,
     /// Tolerance of auto: relative error of the efficiency, the outer body's final velocity and both force peaks [default: 1%]
     #[arg(long, value_parser = asked_model::tolerance)]
-    tolerance: Option<f64>,
+    pub(super) tolerance: Option<f64>,
     /// Resolution of the reference: coarse, paper, fine, or the error of one computed with --target-error, such as 0.2%
     #[arg(long, default_value = "paper")]
-    resolution: Resolution,
+    pub(super) resolution: Resolution,
     /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
     #[arg(long)]
-    compute: bool,
+    pub(super) compute: bool,
     /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
     /// repeated impacts, with commas or spaces between them
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
@@ -67,7 +72,7 @@ pub struct Arguments {
     trends: Option<PathBuf>,
     /// Folder the report is written to
     #[arg(long, default_value = "reports", value_name = "DIR")]
-    out: PathBuf,
+    pub(super) out: PathBuf,
     #[command(flatten)]
     json: JsonArgument,
 }
@@ -163,7 +168,23 @@ impl Arguments {
 
 impl<'a> Job<'a> {
     pub(super) fn read(context: &Context, arguments: &'a Arguments) -> Result<Self> {
+        let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
+        // of all shipped scenes those are compared that have one of the models
+        if arguments.scenes.is_empty() {
+            let (kept, left_out) =
+                scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
+            scenes = kept;
+            for (_, scene) in left_out {
+                context.note(format_args!("{}", kinds::lacks(&scene)));
+            }
+        }
+        Self::of(arguments, scenes)
+    }
+
+    /// The comparison of these scenes. What can't be done is refused before anything is computed.
+    pub(super) fn of(arguments: &'a Arguments, scenes: Vec<(PathBuf, Scene)>) -> Result<Self> {
         let start = Instant::now();
+        compare_inputs::named_apart(&scenes)?;
         if let (Some(tolerance), false) = (arguments.tolerance, arguments.models.contains(&AskedModel::Auto))
         {
             return Err(Error::Usage(format!(
@@ -172,16 +193,6 @@ impl<'a> Job<'a> {
         }
         if let Some(file) = arguments.trends.as_ref().filter(|file| !file.is_file()) {
             return Err(Error::Usage(format!("--trends: there is no file {}", file.display())));
-        }
-        let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
-        // refused before anything is computed; of all shipped scenes those are compared that have one of the models
-        if arguments.scenes.is_empty() {
-            let (kept, left_out) =
-                scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
-            scenes = kept;
-            for (_, scene) in left_out {
-                context.note(format_args!("{}", kinds::lacks(&scene)));
-            }
         }
         if let Some((_, scene)) =
             scenes.iter().find(|(_, scene)| !kinds::has_one_of(scene, &arguments.models))
@@ -248,7 +259,7 @@ impl<'a> Job<'a> {
 
     /// The comparison of all scenes, and what is shown with it.
     pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
-        let (mut scenes, mut found) = (Vec::new(), Vec::new());
+        let (mut scenes, mut found, mut scatters) = (Vec::new(), Vec::new(), Vec::new());
         for ((file, scene), Results { stored, reduced, cost, coarser }) in self.scenes.iter().zip(results) {
             let acceptances = acceptance::read(file)?;
             let mut comparison = compared(context, scene, &stored.outcome, reduced);
@@ -260,6 +271,13 @@ impl<'a> Job<'a> {
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
             found.push((stored, Validation::of(scene, &comparison)));
+            scatters.push(scatter(context, file, scene, &comparison).unwrap_or_else(|error| {
+                context.note(format_args!(
+                    "scene `{}` is compared as if its inputs were certain: {error}",
+                    scene.name
+                ));
+                BTreeMap::new()
+            }));
             let asked = self.figures.iter().any(|(_, format)| *format == FigureFile::Animation);
             let film = film(context, scene, (stored, reduced), asked)?;
             scenes.push(SceneReport {
@@ -292,6 +310,11 @@ impl<'a> Job<'a> {
             let files = self.arguments.measured.iter().map(|f| format!(" --measured {}", f.display()));
             report.command += &files.collect::<String>();
         }
+        for (report, scatters) in
+            scenes.iter_mut().zip(&scatters).filter(|(_, scatters)| !scatters.is_empty())
+        {
+            report.comparison.add_validation(scatters);
+        }
         Ok(Report { scenes, rules: GateRules::default() })
     }
 
@@ -321,23 +344,7 @@ impl<'a> Job<'a> {
         mut report: Report,
         outputs: &Outputs,
     ) -> Result<Comparison> {
-        let comparison = report.comparison();
-        let entries = match &outputs.record {
-            Some((file, commit)) => trend::record(file, &comparison, commit)?,
-            None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
-        };
-        let now = chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string();
-        for scene in &mut report.scenes {
-            scene.attachments.compared = Some(now.clone());
-            scene.attachments.trends = trend::trends(&entries, &scene.comparison);
-        }
-        report::write(&report, &self.arguments.out)?;
-        for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
-            write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
-        }
-        if let Some(file) = &outputs.junit {
-            write_file(file, report::junit(&report)?.as_bytes())?;
-        }
+        let comparison = self.write(&mut report, outputs)?;
         if self.arguments.json.json {
             super::print_json(&comparison)?;
         } else {
@@ -352,6 +359,58 @@ impl<'a> Job<'a> {
         ));
         Ok(comparison)
     }
+
+    /// Writes the report and `outputs`.
+    pub(super) fn write(&self, report: &mut Report, outputs: &Outputs) -> Result<Comparison> {
+        let comparison = report.comparison();
+        let entries = match &outputs.record {
+            Some((file, commit)) => trend::record(file, &comparison, commit)?,
+            None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
+        };
+        let now = chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string();
+        for scene in &mut report.scenes {
+            scene.attachments.compared = Some(now.clone());
+            scene.attachments.trends = trend::trends(&entries, &scene.comparison);
+        }
+        report::write(report, &self.arguments.out)?;
+        for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
+            write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
+        }
+        if let Some(file) = &outputs.junit {
+            write_file(file, report::junit(report)?.as_bytes())?;
+        }
+        Ok(comparison)
+    }
+}
+
+/// How the results of the models that are compared, and of model C, scatter if the scene says how uncertain its inputs are; by name.
+fn scatter(
+    context: &Context,
+    file: &Path,
+    scene: &Scene,
+    comparison: &SceneComparison,
+) -> Result<BTreeMap<String, Scatter>> {
+    if scene.uncertainty.is_none() {
+        return Ok(BTreeMap::new());
+    }
+    let template = Template::read(file)?;
+    let mut scatters = BTreeMap::new();
+    for model in [Model::A, Model::B, Model::C] {
+        let name = model.to_string();
+        let compared = comparison.models.iter().find(|compared| compared.model == name);
+        if compared.is_none() && model != Model::C {
+            continue;
+        }
+        let counter = Counter::new(context, &format!("{}: scatter of model {name}", scene.name));
+        let request = Request {
+            modes: compared.and_then(|model| model.summary.modes),
+            ..Request::new(model, SCATTER_ACCURACY)
+        };
+        let found = study((file, &template), &request, None, &|progress| counter.show(progress))?;
+        counter.finish();
+        scatters.insert(name, found);
+    }
+    Ok(scatters)
 }
 
 /// The comparison with its discrepancy budget. A budget that can't be drawn up is said to be missing: the comparison

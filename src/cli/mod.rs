@@ -10,6 +10,7 @@ mod doctor;
 mod external;
 mod film;
 mod gate;
+pub mod in_process;
 mod kinds;
 mod mesh;
 mod new;
@@ -23,6 +24,7 @@ mod stored_references;
 mod stress;
 mod study;
 mod sweep;
+mod uncertainty;
 mod validated_scenes;
 mod watch;
 
@@ -87,6 +89,11 @@ enum Command {
         after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
     )]
     Study(study::Arguments),
+    /// Tell how the results of a reduced model scatter with the inputs of a scene, and which input makes how much of it
+    #[command(
+        after_help = "Example: impactcheck uncertainty examples/uncertainty/table1-r10.toml --out my-scatter"
+    )]
+    Uncertainty(uncertainty::Arguments),
     /// Find the numbers of a scene, within bounds, that transmit most energy
     #[command(
         after_help = "Example: impactcheck optimise scaled-plate-r10 --over plate.radius=15mm..60mm --over plate.thickness=1mm..3mm"
@@ -144,16 +151,24 @@ impl Context {
     /// A line for people, on standard error.
     fn note(&self, text: impl std::fmt::Display) {
         if !self.quiet {
-            eprintln!("{text}");
+            tell(text);
         }
     }
 
     /// A line for people who want to know everything, on standard error.
     fn detail(&self, text: impl std::fmt::Display) {
         if self.verbose {
-            eprintln!("{text}");
+            tell(text);
         }
     }
+}
+
+/// The program: listens to Ctrl-C, runs with `arguments` (the first is its name) and gives the exit status.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    if let Err(error) = crate::interrupt::listen() {
+        tell(format_args!("warning: Ctrl-C may leave files behind: {error}"));
+    }
+    run(arguments) as u8
 }
 
 /// Runs the program with `arguments` (the first is its name) and gives the exit status.
@@ -179,6 +194,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             gate::run(&context, &arguments)
         }
         Command::Study(arguments) => study::run(&context, &arguments),
+        Command::Uncertainty(arguments) => uncertainty::run(&context, &arguments),
         Command::Optimise(arguments) => optimise::run(&context, &arguments),
         Command::Bench(arguments) => bench::run(&context, &arguments),
         Command::Diff(arguments) => diff::run(&arguments),
@@ -190,7 +206,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Man(arguments) => shell::man(&arguments),
     };
     result.unwrap_or_else(|error| {
-        eprintln!("{}", describe(&error));
+        tell(describe(&error));
         error.exit_status()
     })
 }
@@ -213,6 +229,12 @@ fn describe(error: &Error) -> String {
         Error::Scene(report) => format!("{report:?}"),
         other => format!("error: {other}"),
     }
+}
+
+/// A line on standard error, its colours only where they can be seen; a reader that has gone away is no error.
+fn tell(text: impl std::fmt::Display) {
+    use std::io::Write;
+    let _ = writeln!(anstream::stderr(), "{text}");
 }
 
 /// Prints `document` as JSON on standard output.

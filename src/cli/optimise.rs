@@ -4,7 +4,7 @@ use super::{Context, JsonArgument, reference};
 use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::optimise::{Confirmation, Optimum, Problem, Variable, confirm};
+use crate::optimise::{Confirmation, Optimum, Problem, Robust, Variable, confirm};
 use crate::reference::{Resolution, Stored, Wish};
 use crate::report;
 use crate::result::Summary;
@@ -30,6 +30,9 @@ pub struct Arguments {
     /// Seed of the samples of a search over several variables
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Maximise this quantile of the efficiency instead, over what the scene's [uncertainty] makes of every design [default quantile: 5%]
+    #[arg(long, value_name = "QUANTILE", num_args = 0..=1, default_missing_value = "5%", value_parser = probability)]
+    robust: Option<f64>,
     /// Hold the optimum against the finite-element reference: the stored one, else computed (needs FEniCSx)
     #[arg(long)]
     verify: bool,
@@ -69,6 +72,12 @@ struct Verification {
     model: Option<Box<ModelComparison>>,
 }
 
+/// Parses the probability of a quantile, as a number or in percent.
+fn probability(text: &str) -> std::result::Result<f64, String> {
+    let value = scene::quantity_in(text, "1")?;
+    if (0.01..=0.99).contains(&value) { Ok(value) } else { Err(format!("{text} is not within 1 % to 99 %")) }
+}
+
 /// Searches the optimum, verifies it if asked to, prints it.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let template = Template::read(scene::resolve(&arguments.scene)?)?;
@@ -80,7 +89,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     if let Some(folder) = &arguments.out {
         report::check_writable(folder)?;
     }
-    let problem = Problem::new(template, variables, model, arguments.modes)?;
+    let robust =
+        arguments.robust.map(|quantile| Robust::new(&template, quantile, arguments.seed)).transpose()?;
+    let problem = Problem::new(template, variables, model, arguments.modes, robust)?;
     let optimum = problem.solve(arguments.seed)?;
     let confirmation = confirm(&problem, &optimum).unwrap_or_else(|error| {
         context.note(format_args!("warning: model C can't confirm the optimum: {error}"));
@@ -166,6 +177,14 @@ fn table(document: &Document) -> String {
         optimum.evaluations,
         if optimum.failures > 0 { format!(", {} without result", optimum.failures) } else { String::new() }
     )];
+    if let Some(robust) = &optimum.robust {
+        lines.push(format!(
+            "  {} % quantile of the efficiency under scatter: {:.5} ({} samples of every design)",
+            100.0 * robust.probability,
+            robust.quantile,
+            robust.samples
+        ));
+    }
     for variable in &optimum.variables {
         let unit = if variable.unit == "1" { "" } else { variable.unit };
         let [low, high] = variable.range_within_1_percent;

@@ -2,10 +2,12 @@
 
 mod confirmation;
 mod neighbourhood;
+mod robust;
 pub mod search;
 
 pub use confirmation::{Confirmation, Rival, confirm};
 pub use neighbourhood::{Neighbourhood, PROFILE_POINTS};
+pub use robust::{Robust, RobustOptimum};
 
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
@@ -99,6 +101,8 @@ pub struct Problem {
     model: Model,
     modes: Option<usize>,
     bodies: SharedBodies,
+    /// If a quantile of the efficiency is maximised.
+    robust: Option<Robust>,
 }
 
 /// The optimum; part of the document of `optimise --json`.
@@ -112,6 +116,9 @@ pub struct Optimum {
     pub model: String,
     /// Efficiency at the optimum.
     pub efficiency: f64,
+    /// If a quantile of the efficiency was maximised: which, and how much it is there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub robust: Option<RobustOptimum>,
     /// The variables: optimum and neighbourhood.
     pub variables: Vec<Neighbourhood>,
     /// Impacts that were run.
@@ -123,7 +130,7 @@ pub struct Optimum {
 }
 
 impl Problem {
-    /// The problem of the scene in `template`.
+    /// The problem of the scene in `template`; with `robust` a quantile of the efficiency is maximised, under the scatter of what is made.
     ///
     /// # Errors
     /// [`Error::Usage`] if there is no variable, or a field is in two of them.
@@ -132,6 +139,7 @@ impl Problem {
         variables: Vec<Variable>,
         model: Model,
         modes: Option<usize>,
+        robust: Option<Robust>,
     ) -> Result<Self> {
         let mut names: Vec<&str> = variables.iter().flat_map(|v| &v.fields).map(Field::path).collect();
         names.sort_unstable();
@@ -146,8 +154,12 @@ impl Problem {
         let varied = variables.iter().flat_map(|variable| {
             variable.fields.iter().map(|field| (field.path(), [variable.low, variable.high]))
         });
-        let bodies = SharedBodies::for_varied(varied, template.scene().plate_impact()?, IMPACTS);
-        Ok(Problem { template, variables, model, modes, bodies })
+        let scattered = robust.as_ref().map_or_else(Vec::new, |robust| robust.ranges(&variables));
+        let impacts = if robust.is_some() { IMPACTS * robust::SAMPLES } else { IMPACTS };
+        // the first that names a field is believed
+        let ranges = scattered.into_iter().chain(varied);
+        let bodies = SharedBodies::for_varied(ranges, template.scene().plate_impact()?, impacts);
+        Ok(Problem { template, variables, model, modes, bodies, robust })
     }
 
     fn numbers<'a>(&'a self, values: &[f64]) -> Vec<(&'a Field, f64)> {
@@ -182,9 +194,17 @@ impl Problem {
         Reduced::in_series(self.scene(values)?, self.model, self.modes, &self.bodies)
     }
 
-    /// The efficiency with `values` for the variables; `None` where there is no result.
-    fn efficiency(&self, values: &[f64]) -> Option<f64> {
-        Some(self.reduced(values).ok()?.point(TOLERANCE).ok()?.quantities.efficiency)
+    /// What is maximised, with `values` for the variables: the efficiency or its quantile; `None` where there is no result.
+    fn worth(&self, values: &[f64]) -> Option<f64> {
+        let numbers = self.numbers(values);
+        let efficiency = |numbers: &[(&Field, f64)]| {
+            let scene = self.template.with(numbers).ok()?;
+            let reduced = Reduced::in_series(scene, self.model, self.modes, &self.bodies).ok()?;
+            Some(reduced.point(TOLERANCE).ok()?.quantities.efficiency)
+        };
+        self.robust
+            .as_ref()
+            .map_or_else(|| efficiency(&numbers), |robust| robust.quantile(&numbers, efficiency))
     }
 
     /// The efficiency by `model`, with as many modes as it takes by itself.
@@ -214,26 +234,37 @@ impl Problem {
         let place = |s: &[f64]| -> Vec<f64> {
             self.variables.iter().zip(s).map(|(variable, s)| variable.between(*s)).collect()
         };
-        let maximum = maximise(dimensions, &search, |s| self.efficiency(&place(s)))?;
+        let maximum = maximise(dimensions, &search, |s| self.worth(&place(s)))?;
         let exact = place(&maximum.at);
         let values: Vec<f64> =
             self.variables.iter().zip(&exact).map(|(v, x)| rounded(*x).clamp(v.low, v.high)).collect();
         let summary = self.reduced(&values)?.run(TOLERANCE)?;
         let efficiency = summary.value("efficiency").ok_or_else(|| Error::Solver(CUT.into()))?;
+        let robust = match &self.robust {
+            Some(robust) => {
+                let quantile = self
+                    .worth(&values)
+                    .ok_or_else(|| Error::Solver("a sample of the optimum has no result".into()))?;
+                Some(robust.found(quantile))
+            }
+            None => None,
+        };
+        let best = robust.map_or(efficiency, |robust| robust.quantile);
         let at = |k: usize, x: f64| {
             let mut there = values.clone();
             there[k] = x;
-            self.efficiency(&there)
+            self.worth(&there)
         };
         let variables = (0..dimensions)
             .into_par_iter()
-            .map(|k| Neighbourhood::of(&self.variables[k], values[k], efficiency, |x| at(k, x)))
+            .map(|k| Neighbourhood::of(&self.variables[k], values[k], best, |x| at(k, x)))
             .collect();
         Ok(Optimum {
             schema_version: SCHEMA_VERSION,
             scene: self.template.scene().name.clone(),
             model: self.model.to_string(),
             efficiency,
+            robust,
             variables,
             evaluations: maximum.evaluations,
             failures: maximum.failures,
@@ -250,12 +281,16 @@ impl Optimum {
 
     /// Efficiency along every variable through the optimum, as a stand-alone SVG.
     pub fn figure(&self) -> String {
+        let best = self.robust.map_or(self.efficiency, |robust| robust.quantile);
+        let of = self.robust.map_or("Efficiency in %".to_owned(), |robust| {
+            format!("{} % quantile of the efficiency in %", 100.0 * robust.probability)
+        });
         let panel = |variable: &Neighbourhood| ChartPanel {
             x_label: match variable.unit {
                 "1" => variable.field.clone(),
                 unit => format!("{} in {unit}", variable.field),
             },
-            y_label: "Efficiency in %".into(),
+            y_label: of.clone(),
             series: vec![
                 Series {
                     name: "efficiency, other variables at the optimum".into(),
@@ -264,7 +299,7 @@ impl Optimum {
                 },
                 Series {
                     name: "optimum".into(),
-                    points: vec![(variable.optimum, 100.0 * self.efficiency)],
+                    points: vec![(variable.optimum, 100.0 * best)],
                     marks: true,
                     ..Series::default()
                 },

@@ -21,5 +21,6 @@ mod snapshots;
 mod store_fixture;
 mod sweep_figures;
 mod sweeps;
+mod uncertainty;
 #[cfg(unix)]
 mod watch;

@@ -11,6 +11,7 @@ mod checks;
 pub mod contact;
 mod contact_set;
 mod doubts;
+mod drift;
 pub mod integrate;
 pub mod integration;
 mod limits;
@@ -19,6 +20,7 @@ pub mod nodes;
 mod results;
 mod survey;
 pub mod system;
+pub mod traces;
 mod truncation;
 mod watch;
 

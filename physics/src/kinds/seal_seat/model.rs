@@ -14,7 +14,8 @@ use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
 use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
-use crate::result::{CUT, History, Outcome, Summary};
+use crate::material::vibration_frequency;
+use crate::result::{CUT, History, Losses, Outcome, Summary};
 use crate::scene::{Model, Scene, SealSeat};
 use std::time::Instant;
 
@@ -220,6 +221,8 @@ impl SeatModel {
             steps: Some(result.tally.steps),
             solve_seconds,
             truncation_error: Some(error),
+            losses: (!self.system.relaxation.is_empty())
+                .then(|| Losses { bodies: Some([0.0, result.relaxed, 0.0]), ..Losses::default() }),
             warnings,
             ..Summary::of_reduced(&self.scene, Model::C, self.system.omega.len(), table)
         })
@@ -243,7 +246,9 @@ pub fn quantities(system: &System, result: &Integration) -> SeatQuantities {
         actuator_contact_end: tally.contact_end[1],
         left_flank_impulse: tally.flank_impulse[0],
         right_flank_impulse: tally.flank_impulse[1],
-        first_frequency: system.omega.first().map_or(0.0, |omega| omega / (2.0 * std::f64::consts::PI)),
+        first_frequency: system.omega.first().map_or(0.0, |omega| {
+            vibration_frequency(&system.relaxation, omega / (2.0 * std::f64::consts::PI))
+        }),
     }
 }
 
