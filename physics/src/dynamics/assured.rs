@@ -70,9 +70,10 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
         system.oscillators.iter().any(|o| o.omega > 0.0 && o.alpha >= STRONG_DAMPING * o.omega);
     let share = if strongly_damped { SMALL_DAMPED_DEFECT } else { SMALL_DEFECT };
     let bound = Bounds::new(tolerance).force_defect;
-    let all = if system.is_damped() { SMALL_DEFECTS } else { f64::INFINITY };
+    let damped = system.is_damped();
     let small = |c: &ContactLedger| {
-        c.force_defect <= share * bound * c.force_peak && c.force_defect_sum <= all * bound * c.force_peak
+        let over = |defect: f64, share: f64| defect > share * bound * c.force_peak;
+        !over(c.force_defect, share) && !(damped && over(c.force_defect_sum, SMALL_DEFECTS))
     };
     outer.contacts + inner.contacts <= FEW_TOUCHES
         && result.steps <= FEW_STEPS
