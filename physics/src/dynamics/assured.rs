@@ -72,8 +72,8 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
     let bound = Bounds::new(tolerance).force_defect;
     let damped = system.is_damped();
     let small = |c: &ContactLedger| {
-        let over = |defect: f64, share: f64| defect > share * bound * c.force_peak;
-        !over(c.force_defect, share) && !(damped && over(c.force_defect_sum, SMALL_DEFECTS))
+        let within = |defect: f64, share: f64| defect <= share * bound * c.force_peak;
+        within(c.force_defect, share) && (!damped || within(c.force_defect_sum, SMALL_DEFECTS))
     };
     outer.contacts + inner.contacts <= FEW_TOUCHES
         && result.steps <= FEW_STEPS
