@@ -9,7 +9,7 @@ use crate::dynamics::wet::{FluidForces, FluidLoad};
 
 /// Evaluations times state entries that the solution of a case may cost; dearer cases (high modes, long runs) go without
 /// one and are counted. In a fluid an evaluation costs as much as [`FILM_ENTRIES`] entries more.
-const WORK: f64 = 3e6;
+const WORK: f64 = 4e6;
 const FILM_ENTRIES: usize = 300;
 /// Relative tolerance of the solution, and that of a second one where the first contradicts.
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
