@@ -1,4 +1,4 @@
-//! An optimum under scatter: not the efficiency of a design is maximised but a quantile of it, over what is made of the design.
+//! An optimum under scatter: not the objective of a design is maximised but a quantile of it, over what is made of the design.
 
 use super::Variable;
 use crate::error::{Error, Result};
@@ -25,7 +25,7 @@ pub struct Robust {
 pub struct RobustOptimum {
     /// Probability of the quantile.
     pub probability: f64,
-    /// The quantile of the efficiency at the optimum.
+    /// The quantile of the objective at the optimum.
     pub quantile: f64,
     /// Samples of every design.
     pub samples: usize,
@@ -60,11 +60,11 @@ impl Robust {
         inputs.map(|(field, input)| (field.path(), range((field, input)))).collect()
     }
 
-    /// The quantile of `efficiency` over the samples of the design with these `numbers`; `None` if one of them has no result.
+    /// The quantile of `objective` over the samples of the design with these `numbers`; `None` if one of them has no result.
     pub(super) fn quantile<'a>(
         &'a self,
         numbers: &[(&'a Field, f64)],
-        efficiency: impl Fn(&[(&'a Field, f64)]) -> Option<f64>,
+        objective: impl Fn(&[(&'a Field, f64)]) -> Option<f64>,
     ) -> Option<f64> {
         let designed =
             |name: &str| numbers.iter().find(|(field, _)| field.path() == name).map(|(_, value)| *value);
@@ -74,7 +74,7 @@ impl Robust {
             let scattered = inputs.place(&inputs.design().at(k * REPLICATES, Point::A));
             let all: Vec<(&Field, f64)> =
                 numbers.iter().copied().chain(self.fields.iter().zip(scattered)).collect();
-            efficiency(&all)
+            objective(&all)
         };
         let mut values = (0..SAMPLES).map(sample).collect::<Option<Vec<f64>>>()?;
         values.sort_by(f64::total_cmp);

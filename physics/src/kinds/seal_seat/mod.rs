@@ -18,6 +18,8 @@ mod limits;
 mod model;
 pub mod nodes;
 mod results;
+mod series;
+mod shape;
 mod survey;
 pub mod system;
 pub mod traces;
@@ -31,6 +33,7 @@ pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
 pub use model::{DEFAULT_TOLERANCE, SeatModel, quantities};
 pub use results::{CURVES, SeatCurves, SeatQuantities};
+pub use series::SeatSeries;
 pub use survey::Survey;
 
 /// The registry's entry.

@@ -15,8 +15,9 @@ use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
 use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
 use crate::material::vibration_frequency;
-use crate::result::{CUT, History, Losses, Outcome, Summary};
+use crate::result::{CUT, History, Losses, Outcome, Point, Summary};
 use crate::scene::{Model, Scene, SealSeat};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Relative error of the sphere's velocity from the time integration when the caller names none.
@@ -80,6 +81,23 @@ impl SeatModel {
         cache: &Cache,
         watch: &mut Watch,
     ) -> Result<Self> {
+        let setup = scene.seal_seat()?;
+        let build = &mut |zones: &Zones, modes: usize| {
+            let seat = mesh.body_with(setup, zones, modes, cache, watch)?;
+            watch("impact", 0.95);
+            Ok(Arc::new(seat))
+        };
+        Self::in_zones(scene, (model, modes), mesh, Zones::expected(setup), build)
+    }
+
+    /// With the bodies that `build` gives for zones of contact candidates, from the `zones` on, and modes.
+    pub(super) fn in_zones(
+        scene: &Scene,
+        (model, modes): (Model, Option<usize>),
+        mesh: &SeatMesh,
+        mut zones: Zones,
+        build: &mut dyn FnMut(&Zones, usize) -> Result<Arc<SeatBody>>,
+    ) -> Result<Self> {
         let started = Instant::now();
         let setup = scene.seal_seat()?;
         if model != Model::C {
@@ -91,11 +109,9 @@ impl SeatModel {
         if modes == 0 {
             return Err(Error::Usage("--modes 0: at least one mode is needed".into()));
         }
-        let mut zones = Zones::expected(setup);
         for _ in 0..WIDENINGS {
-            let seat = mesh.body_with(setup, &zones, modes, cache, watch)?;
+            let seat = build(&zones, modes)?;
             let built = Self::with(scene, setup, mesh, &seat, modes)?;
-            watch("impact", 0.95);
             let predictor = built.integrate(built.first_step, false)?;
             let wider = zones.widened(predictor.tally.reach).map_or(zones, |wider| wider.at_most(setup));
             if wider == zones {
@@ -201,6 +217,24 @@ impl SeatModel {
         Err(Error::Solver(format!(
             "the sphere's velocity does not reach a relative error of {tolerance} with steps down to {step:e} s"
         )))
+    }
+
+    /// Runs the impact for its results alone, as a series of many needs them.
+    ///
+    /// # Errors
+    /// As [`SeatModel::run`], [`Error::Solver`] if the run is cut during a contact.
+    pub fn point(&self, tolerance: f64) -> Result<Point<SeatQuantities>> {
+        let (result, _) = self.converged(tolerance)?;
+        ledger_check(result.energy_residual, result.momentum_residual, tolerance)?;
+        if result.is_cut() {
+            return Err(Error::Solver(CUT.into()));
+        }
+        Ok(Point {
+            quantities: quantities(&self.system, &result),
+            energy_residual: result.energy_residual,
+            momentum_residual: result.momentum_residual,
+            steps: result.tally.steps,
+        })
     }
 
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
