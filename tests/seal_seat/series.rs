@@ -44,7 +44,8 @@ fn a_seat_with_all_lengths_scaled_launches_as_the_first_one() {
 #[test]
 fn the_direction_is_smooth_in_the_dimensions() {
     let series = series();
-    let changes: [(&str, fn(&mut SealSeat, f64)); 2] = [
+    type Change = fn(&mut SealSeat, f64);
+    let changes: [(&str, Change); 2] = [
         ("notch", |setup, s| setup.seat.notch.as_mut().expect("a notch").width *= 1.0 + 0.1 * s),
         ("aperture", |setup, s| setup.seat.aperture_angle += 0.05 * s),
     ];
