@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import Any
 
-from ..common.errors import SolverError
+from ..common.errors import SceneError, SolverError
 from .scene import parse_seat_scene
 
 
@@ -39,10 +39,13 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
     scene = parse_seat_scene(document)
 
     def work(comm: Any) -> None:
-        from ..common.settings import Options
+        from ..common.settings import SOLVERS, Options
         from .result import solve
 
-        solve(scene, arguments.out, arguments.resolution, comm, Options.of(arguments))
+        options = Options.of(arguments)
+        if options.solver != SOLVERS[0]:
+            raise SceneError("kind is 'seal-seat': --solver calculix has plate impacts only")
+        solve(scene, arguments.out, arguments.resolution, comm, options)
 
     in_processes(arguments, work)
 

@@ -8,11 +8,11 @@ use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument, kinds, validated_scenes};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
-use crate::comparison::{Comparison, GateRules, SceneComparison, compare_scene};
+use crate::comparison::{Comparison, GateRules, ReferenceCheck, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
-use crate::reference::{COARSER, Resolution, Stored};
+use crate::reference::{COARSER, Resolution, Stored, calculix_takes};
 use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
 use crate::result::Outcome;
 use crate::scene::Scene;
@@ -44,6 +44,10 @@ pub struct Arguments {
     /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
     #[arg(long)]
     compute: bool,
+    /// CalculiX's solution of each scene beside the reference has to be there (`--compute` computes it) and within the bands of
+    /// both, or the exit status is 10; without this it is shown where it is stored. Scenes that CalculiX does not take are left out
+    #[arg(long)]
+    reference_check: bool,
     /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
     /// repeated impacts, with commas or spaces between them
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
@@ -116,7 +120,11 @@ fn once(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     job.check_folders(&[])?;
     let results = job.results(context)?;
     let comparison = job.finish(context, job.report(context, &results)?, &Outputs::default())?;
-    Ok(if comparison.lacks_a_result() { ExitStatus::Solver } else { ExitStatus::Pass })
+    Ok(match comparison.lacks_a_result() {
+        true => ExitStatus::Solver,
+        false if job.refuses(&comparison) => ExitStatus::ToleranceExceeded,
+        false => ExitStatus::Pass,
+    })
 }
 
 /// Scenes to compare, read and checked.
@@ -137,6 +145,8 @@ pub(super) struct Results {
     cost: Vec<Cost>,
     /// Reference and models on the next coarser mesh, if they share their mesh and the reference is stored.
     coarser: Option<(Stored, Vec<Outcome>)>,
+    /// CalculiX's solution.
+    other: Option<Stored>,
 }
 
 /// What is written besides the report.
@@ -235,9 +245,28 @@ impl<'a> Job<'a> {
                 let (reduced, _) = models.beside(context, scene, &stored, asked)?;
                 Ok((stored, reduced))
             });
-            Ok(Results { stored, reduced, cost, coarser: coarser.transpose()? })
+            let other = self.by_calculix(context, file, scene)?;
+            Ok(Results { stored, reduced, cost, coarser: coarser.transpose()?, other })
         };
         self.scenes.iter().zip(references).map(result).collect()
+    }
+
+    /// CalculiX's solution as fine as the reference: where it is stored, or, if it has to be there, computed.
+    fn by_calculix(&self, context: &Context, file: &Path, scene: &Scene) -> Result<Option<Stored>> {
+        let Some(resolution) = self.resolution().by_calculix().filter(|_| calculix_takes(scene)) else {
+            return Ok(None);
+        };
+        if !self.arguments.reference_check {
+            let store = context.store().for_scene_in(file);
+            return Ok(store.find_here_or_shipped(scene, resolution).found());
+        }
+        let scenes = [(file.to_path_buf(), scene.clone())];
+        Ok(look_up(context, resolution, self.arguments.compute, &scenes)?.pop())
+    }
+
+    /// Whether the references had to agree with CalculiX's solutions and do not.
+    pub(super) fn refuses(&self, comparison: &Comparison) -> bool {
+        self.arguments.reference_check && comparison.references_disagree()
     }
 
     /// The reference on the next coarser mesh, if it is stored and the models solve on the reference's mesh.
@@ -249,13 +278,15 @@ impl<'a> Job<'a> {
     /// The comparison of all scenes, and what is shown with it.
     pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
         let (mut scenes, mut found) = (Vec::new(), Vec::new());
-        for ((file, scene), Results { stored, reduced, cost, coarser }) in self.scenes.iter().zip(results) {
+        for ((file, scene), Results { stored, reduced, cost, coarser, other }) in self.scenes.iter().zip(results) {
             let acceptances = acceptance::read(file)?;
             let mut comparison = compared(context, scene, &stored.outcome, reduced);
             if let Some((stored, reduced)) = coarser {
                 let coarser = compare_scene(scene, &stored.outcome, reduced);
                 comparison.judge_on_common_mesh(&coarser, COARSER);
             }
+            let beside = |other: &Stored| ReferenceCheck::of(&stored.outcome.summary, &other.outcome.summary);
+            comparison.reference_check = other.as_ref().map(beside);
             let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
@@ -307,6 +338,9 @@ impl<'a> Job<'a> {
         }
         if let Some(tolerance) = self.arguments.tolerance {
             command += &format!(" --tolerance {tolerance}");
+        }
+        if self.arguments.reference_check {
+            command += " --reference-check";
         }
         if *resolution != Resolution::Paper {
             command += &format!(" --resolution {}", resolution.argument());

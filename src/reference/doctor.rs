@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::process::{Command, Stdio};
 
+/// Environment variable that names CalculiX's program.
+const CALCULIX_VARIABLE: &str = "IMPACTCHECK_CCX";
+
 /// One thing that is needed, and whether it is there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
@@ -37,6 +40,12 @@ pub fn doctor(store: &Store) -> Vec<Check> {
         found: version_of("mpirun"),
         needed_for: "several processes (`reference --np`)".to_owned(),
         install: "sudo apt-get install openmpi-bin".to_owned(),
+    });
+    checks.push(Check {
+        name: "CalculiX".to_owned(),
+        found: calculix(),
+        needed_for: "a second program's references (`reference --solver calculix`); nothing else".to_owned(),
+        install: "sudo apt-get install calculix-ccx".to_owned(),
     });
     checks.push(store_folder(store));
     for path in shipped().unwrap_or_default() {
@@ -109,6 +118,15 @@ fn version_of(program: &str) -> Option<String> {
     let output = Command::new(program).arg("--version").stdin(Stdio::null()).output().ok()?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     output.status.success().then(|| text.lines().next().unwrap_or("unknown version").to_owned())
+}
+
+/// What CalculiX says about itself.
+fn calculix() -> Option<String> {
+    let named = std::env::var(CALCULIX_VARIABLE).ok().filter(|program| !program.is_empty());
+    let program = named.unwrap_or_else(|| "ccx".to_owned());
+    let output = Command::new(program).arg("-v").stdin(Stdio::null()).output().ok()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.lines().find(|line| line.contains("Version")).map(|line| line.trim().to_owned())
 }
 
 fn store_folder(store: &Store) -> Check {

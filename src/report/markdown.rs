@@ -67,6 +67,7 @@ fn section(scene: &SceneReport) -> String {
     text += &failures("the reference", &comparison.integrity);
     text += &super::budget_section::budget_markdown(&comparison.budget);
     text += &super::measured_section::measured_markdown(scene);
+    text += &super::reference_check_section::reference_check_markdown(comparison.reference_check.as_ref());
     for model in &comparison.models {
         text += &model_section(model);
     }
