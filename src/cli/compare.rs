@@ -278,7 +278,9 @@ impl<'a> Job<'a> {
     /// The comparison of all scenes, and what is shown with it.
     pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
         let (mut scenes, mut found) = (Vec::new(), Vec::new());
-        for ((file, scene), Results { stored, reduced, cost, coarser, other }) in self.scenes.iter().zip(results) {
+        for ((file, scene), Results { stored, reduced, cost, coarser, other }) in
+            self.scenes.iter().zip(results)
+        {
             let acceptances = acceptance::read(file)?;
             let mut comparison = compared(context, scene, &stored.outcome, reduced);
             if let Some((stored, reduced)) = coarser {

@@ -168,7 +168,10 @@ fn resolution(arguments: &Arguments) -> Result<Resolution> {
     match arguments.solver {
         Solver::Fenicsx => Ok(own),
         Solver::Calculix => own.by_calculix().ok_or_else(|| {
-            Error::Usage(format!("--solver calculix has the resolutions coarse, paper and fine, not {}", own.argument()))
+            Error::Usage(format!(
+                "--solver calculix has the resolutions coarse, paper and fine, not {}",
+                own.argument()
+            ))
         }),
     }
 }

@@ -65,7 +65,11 @@ impl ReferenceCheck {
 }
 
 impl ReferenceRow {
-    fn of((quantity, unit): (&'static str, &'static str), reference: &Summary, other: &Summary) -> Option<Self> {
+    fn of(
+        (quantity, unit): (&'static str, &'static str),
+        reference: &Summary,
+        other: &Summary,
+    ) -> Option<Self> {
         let (value, uncertainty) = (reference.value(quantity)?, reference.band(quantity)?);
         let (second, other_uncertainty) = (other.value(quantity)?, other.band(quantity)?);
         let difference = second - value;
@@ -114,7 +118,10 @@ mod tests {
         set(&mut other, "outer_force_peak", 104.9, 4.0);
         let within = ReferenceCheck::of(&own, &other);
         let row = within.rows.iter().find(|row| row.quantity == "outer_force_peak").expect("a row");
-        assert_eq!((row.joint_band, row.verdict, within.verdict), (5.0, BandVerdict::Within, BandVerdict::Within));
+        assert_eq!(
+            (row.joint_band, row.verdict, within.verdict),
+            (5.0, BandVerdict::Within, BandVerdict::Within)
+        );
         set(&mut other, "outer_force_peak", 94.9, 4.0);
         let beyond = ReferenceCheck::of(&own, &other);
         assert_eq!((beyond.verdict, beyond.words()), (BandVerdict::Beyond, "beyond the joint bands"));

@@ -79,7 +79,9 @@ impl Resolution {
     /// The resolution the solver begins with, by its name on the command line.
     pub fn first(self) -> &'static str {
         match self {
-            Resolution::Coarse | Resolution::Within(_) | Resolution::Calculix(CalculixMesh::Coarse) => "coarse",
+            Resolution::Coarse | Resolution::Within(_) | Resolution::Calculix(CalculixMesh::Coarse) => {
+                "coarse"
+            }
             Resolution::Paper | Resolution::Calculix(CalculixMesh::Paper) => "paper",
             Resolution::Fine | Resolution::Calculix(CalculixMesh::Fine) => "fine",
             Resolution::Imported => "imported",
@@ -129,10 +131,9 @@ impl Resolution {
         match self {
             Resolution::Paper => Some(Resolution::Coarse),
             Resolution::Fine => Some(Resolution::Paper),
-            Resolution::Coarse
-            | Resolution::Within(_)
-            | Resolution::Calculix(_)
-            | Resolution::Imported => None,
+            Resolution::Coarse | Resolution::Within(_) | Resolution::Calculix(_) | Resolution::Imported => {
+                None
+            }
         }
     }
 

@@ -59,7 +59,9 @@ pub(super) fn reference_check_markdown(check: Option<&ReferenceCheck>) -> String
     let Some(check) = check else { return String::new() };
     let rows = check.rows.iter().map(|row| {
         let to = prefixed(row.unit, row.reference.abs().max(row.other.abs()));
-        let value = |value: f64, band: f64| format!("{} ± {}", with_unit(value, to, 5), significant(band * to.factor, 2));
+        let value = |value: f64, band: f64| {
+            format!("{} ± {}", with_unit(value, to, 5), significant(band * to.factor, 2))
+        };
         let ReferenceRow { reference, uncertainty, other, other_uncertainty, joint_band, .. } = *row;
         format!(
             "| {} | {} | {} | {} | {} | {} |\n",
