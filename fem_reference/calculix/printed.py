@@ -71,7 +71,7 @@ class Printed:
         except (IndexError, ValueError) as error:
             raise SolverError(f"CalculiX printed no values under {heading.strip()!r}") from error
         if not np.isfinite(values).all():
-            raise SolverError(f"CalculiX diverged: {heading.strip()!r} has a value that is no number")
+            raise SolverError(f"CalculiX diverged: {heading.strip()!r} is not a number")
         if not self.times or time > self.times[-1]:
             self.times.append(time)
         self.rows.setdefault((what, found["of"]), []).append(values)

@@ -113,7 +113,9 @@ def run(deck: str, folder: Path, watch: Callable[[Path], bool], threads: int = 1
     return printed
 
 
-def _watched(process: subprocess.Popen[bytes], printed: Path, watch: Callable[[Path], bool]) -> bool:
+def _watched(
+    process: subprocess.Popen[bytes], printed: Path, watch: Callable[[Path], bool]
+) -> bool:
     """Whether ``watch`` ended it, before it ended by itself."""
     size, since = -1, time.monotonic()
     while process.poll() is None:

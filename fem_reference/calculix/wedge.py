@@ -158,7 +158,9 @@ def wedge(plane: Quadratic, node: int, element: int) -> Wedge:
             continue
         if len(touching) != 1:
             r, z = plane.points[quad[:4]].mean(axis=0)
-            raise SolverError(f"the element at r = {r:.4g} m, z = {z:.4g} m has no edge on the axis")
+            raise SolverError(
+                f"the element at r = {r:.4g} m, z = {z:.4g} m has but one corner on the axis"
+            )
         # From the axis' lower node on: bottom a b, outer side b c, top c d.
         turn = [(touching[0] + 1 + j) % 4 for j in range(4)]
         a, b, c, d = quad[turn]

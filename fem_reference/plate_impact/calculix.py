@@ -176,6 +176,7 @@ class Solution:
         """For the provenance."""
         return {
             "resolution_factor": self.factor,
+            "program": f"{NAME} {self.version}",
             "quadratic_elements": QUADRATIC,
             "steps_per_contact": STEPS,
             "damping": DAMPING,

@@ -50,9 +50,9 @@ def require_supported(scene: Scene, options: Options) -> None:
         ),
     }
     for name, body in (("outer", scene.outer), ("inner", scene.inner)):
-        asked[f"{name}.kind is '{type(body).__name__.lower()}'; it must be 'sphere'"] = (
-            not isinstance(body, Sphere)
-        )
+        asked[
+            f"{name}.kind is '{type(body).__name__.lower()}'; it must be 'sphere'"
+        ] = not isinstance(body, Sphere)
     for reason, refused in asked.items():
         if refused:
             raise SceneError(f"{reason}: --solver calculix has dry elastic spheres on a plate only")

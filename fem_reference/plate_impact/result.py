@@ -170,6 +170,7 @@ def solver(scene: Scene, resolution: str, comm: Any, options: Options) -> MeshSo
             "fields are asked for, but a material yields: the stress they show is the elastic one"
         )
     compute: Callable[[float, Settings, Report, Any], Any]
+    leads: Callable[[Any], list[Any]] | None
     if options.solver == "calculix":
         from . import calculix
         from .calculix_model import require_supported

@@ -66,9 +66,8 @@ def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
     printed = re.findall(r" total mass for set E(\w+) and time[^\n]*\n\s*(\S+)", text)
     found = {name: 1e-3 * float(mass) / SHARE for name, mass in printed}
     plate = scene.plate
-    assert found["PLATE"] == pytest.approx(
-        STEEL["density"] * math.pi * plate.radius**2 * plate.thickness, rel=1e-6
-    )
+    volume = math.pi * plate.radius**2 * plate.thickness
+    assert found["PLATE"] == pytest.approx(plate.material.density * volume, rel=1e-6)
     assert found["OUTER"] == pytest.approx(scene.outer.mass, rel=2e-4)
     assert found["INNER"] == pytest.approx(scene.inner.mass, rel=2e-4)
     assert made.masses == pytest.approx([found[n] for n in ("OUTER", "PLATE", "INNER")], rel=1e-4)
@@ -79,8 +78,7 @@ def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
 def test_a_thin_plate_vibrates_as_kirchhoff_says(
     tmp_path: Path, edge: str, eigenvalue: float
 ) -> None:
-    """Leissa, Vibration of Plates, tables 2.1 and 2.5 (free: nu = 0.3; its own table says 9.084 at
-    0.33): omega R^2 sqrt(rho h / D), lowest axisymmetric mode."""
+    """Lowest axisymmetric mode, omega R^2 sqrt(rho h / D) of a Kirchhoff plate with nu = 0.3."""
     steel = parse_scene(document()).plate.material
     plate = Plate(0.04, 0.0008, edge, steel)
     mesh = mesh_plate(plate, MeshSettings(0.0008, 1, 0.0008, 0.0004, 1.0, 1.0))
@@ -108,9 +106,12 @@ def test_a_coarse_impact_keeps_its_balances_and_agrees_with_explicit_elements(
     assert not run.in_contact_at_end
     explicit = of_run(scene, solve_once(small(reference__elements_per_contact_radius=6)).run)
     found = of_run(scene, run)
-    assert found["efficiency"] == pytest.approx(explicit["efficiency"], rel=0.01)
-    for name in ("outer_force_peak", "inner_force_peak", "outer_contact_end", "inner_contact_end"):
+    # One quadratic element per contact radius: the meshes of a real series begin where this ends.
+    for name in set(found) - {"outer_velocity_final"}:
         assert found[name] == pytest.approx(explicit[name], rel=0.02), name
+    assert found["outer_velocity_final"] == pytest.approx(
+        explicit["outer_velocity_final"], abs=0.005 * scene.speed
+    )
 
 
 @with_calculix
