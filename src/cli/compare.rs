@@ -4,6 +4,7 @@ use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
 use super::external::{self, Permission};
 use super::film::film;
+use super::reference::require_sound;
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument, kinds, validated_scenes};
 use crate::ci::commit::Commit;
@@ -258,10 +259,13 @@ impl<'a> Job<'a> {
         };
         if !self.arguments.reference_check {
             let store = context.store().for_scene_in(file);
-            return Ok(store.find_here_or_shipped(scene, resolution).found());
+            let found = store.find_here_or_shipped(scene, resolution).found();
+            return Ok(found.filter(|stored| require_sound(scene, stored).is_ok()));
         }
         let scenes = [(file.to_path_buf(), scene.clone())];
-        Ok(look_up(context, resolution, self.arguments.compute, &scenes)?.pop())
+        let found = look_up(context, resolution, self.arguments.compute, &scenes)?.pop();
+        found.iter().try_for_each(|stored| require_sound(scene, stored))?;
+        Ok(found)
     }
 
     /// Whether the references had to agree with CalculiX's solutions and do not.

@@ -180,7 +180,7 @@ fn resolution(arguments: &Arguments) -> Result<Resolution> {
 ///
 /// # Errors
 /// [`Error::Reference`] that names what is not.
-fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
+pub(super) fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
     let checks = comparison::integrity(scene, &stored.outcome);
     let broken = checks.iter().filter(|check| check.verdict == Verdict::Fail);
     let broken: Vec<String> = broken.map(ToString::to_string).collect();
