@@ -1,6 +1,7 @@
 # make test      installs what is missing (Debian, root or sudo) and runs every check
 # make setup     only the installation
 # make report    the report of the shipped scenes, into reports/
+# make wheel    the Python package, into target/wheels, and a clean environment with it: target/wheel-python
 # make solutions computes the stored references of the shipped scenes again
 # make evidence  slow evidence: references of all scenes and the truth of their bands, model C on the validation scenes,
 #                studies, run time against error, random impacts, killed runs, FEniCSx 0.9 (an hour or more; the last
@@ -12,6 +13,7 @@ SUDO   := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc openmpi-bin calculix-ccx chromium git
 VENV   := target/python-tools
 TOOL   := $(VENV)/bin/python
+WHEEL  := target/wheel-python
 # a program built before a change, that `make evidence` is to hold this one's instructions against
 BEFORE :=
 RUN    := cargo run --release --quiet --
@@ -22,7 +24,7 @@ PLATES := $(filter-out seal-seat-%,$(SCENES))
 # dry impacts of elastic spheres that CalculiX solves too; its solutions come with the project
 SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-light polymer-plate supported-plate titanium-sapphire)
 
-.PHONY: test setup rust python live gate report solutions evidence
+.PHONY: test setup rust wheel python live gate report solutions evidence
 
 test: setup rust python live gate
 	@echo "all checks passed"
@@ -30,8 +32,8 @@ test: setup rust python live gate
 setup:
 	@{ $(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" && command -v mpirun && command -v ccx && command -v chromium && command -v git; } >/dev/null 2>&1 || \
 	    { $(SUDO) apt-get update && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y $(DEBIAN); }
-	@[ -x $(VENV)/bin/ruff ] && [ -x $(VENV)/bin/mypy ] && ls $(VENV)/lib/*/site-packages/axe_playwright_python >/dev/null 2>&1 || \
-	    { $(PYTHON) -m venv --system-site-packages $(VENV) && $(TOOL) -m pip install --quiet ruff mypy && \
+	@[ -x $(VENV)/bin/ruff ] && [ -x $(VENV)/bin/mypy ] && [ -x $(VENV)/bin/maturin ] && ls $(VENV)/lib/*/site-packages/axe_playwright_python >/dev/null 2>&1 || \
+	    { $(PYTHON) -m venv --system-site-packages $(VENV) && $(TOOL) -m pip install --quiet ruff mypy maturin && \
 	    $(TOOL) -m pip install --quiet --no-deps axe-playwright-python; }
 
 rust:
@@ -41,13 +43,21 @@ rust:
 	cargo test --release --workspace --doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --quiet
 
-python: setup
+# only the package's own crate is compiled for it, the rest serves tests and program too
+wheel: setup
+	rm -rf target/wheels
+	$(VENV)/bin/maturin build --release --locked --quiet --interpreter $(PYTHON) --out target/wheels
+	@[ -x $(WHEEL)/bin/pytest ] || { $(PYTHON) -m venv $(WHEEL) && $(WHEEL)/bin/python -m pip install --quiet mypy numpy pytest xarray; }
+	$(WHEEL)/bin/python -m pip install --quiet --force-reinstall --no-deps target/wheels/*.whl
+
+python: setup wheel
 	$(VENV)/bin/ruff check fem_reference examples python
 	$(VENV)/bin/ruff format --check fem_reference examples python
 	$(TOOL) -m mypy
 	$(PYTHON) -m pytest -q fem_reference
 	cargo build --release
-	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck PYTHONPATH=python $(PYTHON) -m pytest -q python
+	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck $(WHEEL)/bin/python -m pytest -q python
+	$(WHEEL)/bin/python -m mypy.stubtest impactcheck._core
 
 # a live finite-element run on coarse meshes, and the gate on what it gives; the scene is the one whose coarse mesh is
 # good enough for the tolerances (10 mm spheres: the outer contact ends 0.6 us early on it)
@@ -76,7 +86,7 @@ solutions: setup
 	$(RUN) reference scaled-plate-r6.35 --stress-at 25.3e-6
 	for seat in seal-seat-improved seal-seat-initial; do $(RUN) reference $$seat --stress-at 20e-6 || exit 1; done
 
-evidence: setup
+evidence: setup wheel
 	for scene in $(PLATES); do for resolution in coarse paper fine; do \
 	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution $$resolution || exit 1; done; done
 	for scene in scenes/validation/*.toml; do \
@@ -99,6 +109,8 @@ evidence: setup
 	cargo build --release --manifest-path benches/diffsol/Cargo.toml
 	$(RUN) bench --peer benches/diffsol/target/release/diffsol-peer --out $(OUT)/bench
 	$(RUN) stress --cases 100000
+	$(WHEEL)/bin/python -m pip install --quiet nbclient ipykernel
+	$(WHEEL)/bin/jupyter execute --inplace examples/impact.ipynb
 	$(PYTHON) benches/unneeded.py target/release/impactcheck $(addprefix --before ,$(BEFORE)) --out $(OUT)/unneeded
 	python3 benches/kills.py target/release/impactcheck --out reports/kills.md
 	fuzz/run.sh scene 1800

@@ -48,6 +48,16 @@ pub fn listen() -> io::Result<()> {
     std::thread::Builder::new().name("signals".into()).spawn(end).map(drop)
 }
 
+/// Ends the children that run now; whoever waits for one is told that it failed. For an interruption that does not end the
+/// program.
+pub fn end_children() {
+    #[cfg(unix)]
+    {
+        let children = open().children.clone();
+        unix::end(&children);
+    }
+}
+
 /// From now on an interruption is how the program is meant to end, with `status`.
 pub fn ends_with(status: u8) {
     open().status = Some(status);

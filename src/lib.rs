@@ -22,6 +22,8 @@
 //! # Ok::<(), impactcheck::Error>(())
 //! ```
 #![warn(missing_docs)]
+// `cli::tell` survives a reader that has gone away
+#![warn(clippy::print_stderr)]
 
 pub mod bench;
 pub mod ci;

@@ -1,13 +1,10 @@
 //! The program: parse, call, exit status.
 
-use impactcheck::{cli, interrupt, project};
+use impactcheck::{cli, project};
 
 static FILES: project::Embedded = impactcheck_embedded::files!();
 
 fn main() -> std::process::ExitCode {
     project::embed(FILES);
-    if let Err(error) = interrupt::listen() {
-        eprintln!("warning: Ctrl-C may leave files behind: {error}");
-    }
-    std::process::ExitCode::from(cli::run(std::env::args_os()) as u8)
+    std::process::ExitCode::from(cli::main(std::env::args_os()))
 }

@@ -12,10 +12,12 @@ use std::path::Path;
 /// project, with their contents.
 #[proc_macro]
 pub fn files(_: TokenStream) -> TokenStream {
-    let root = std::env::var("CARGO_MANIFEST_DIR").expect("cargo tells where the project is");
+    let package = std::env::var("CARGO_MANIFEST_DIR").expect("cargo tells where the package is");
+    let root = Path::new(&package).ancestors().find(|folder| folder.join("scenes").is_dir());
+    let root = root.and_then(Path::to_str).expect("a package of the project");
     let mut found = BTreeMap::new();
     for folder in ["scenes", "meshes", "fem_reference"] {
-        collect(Path::new(&root), folder, &mut found);
+        collect(Path::new(root), folder, &mut found);
     }
     let shipped = |name: &str| found.contains_key(&format!("scenes/{name}.toml"));
     let wanted: Vec<_> = found.iter().filter(|(path, _)| is_wanted(path, shipped)).collect();

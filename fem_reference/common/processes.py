@@ -44,6 +44,8 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
         "OMPI_MCA_odls_base_sigkill_timeout": "0",
         # Two runs side by side would be bound to the same cores, threads of a process to one.
         "OMPI_MCA_hwloc_base_binding_policy": "none",
+        # Forces of a step on shared nodes pass at once: a handshake takes four times as long.
+        "OMPI_MCA_btl_vader_eager_limit": "262144",
     }
     if processes >= (os.cpu_count() or 1):
         # Somebody else needs a processor too: waiting must not keep it busy.

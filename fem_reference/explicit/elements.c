@@ -4,7 +4,7 @@
  * the edge), the gradient of a quadratic displacement is linear, sum_b G_b p_kb at corner k, and so is the stress s_k. The
  * integral of two linear functions over a tetrahedron is V/20 (sum_k a_k b_k + sum_k a_k sum_k b_k). K is never stored: an
  * element takes 11 numbers, its half of K's blocks some 70 (Kronbichler & Kormann 2012, Computers & Fluids 63, 135, of the
- * same for hexahedra). Forces on a node are added in the order of the elements, whatever the threads and processes. */
+ * same for hexahedra). Forces on a node are added in the order of the elements, whatever the threads. */
 
 typedef Lanes four;
 typedef int64_t four_mask __attribute__((vector_size(32)));
@@ -166,9 +166,9 @@ static inline void move(const State *s, const Part *l, double h, double *reactio
     }
 }
 
-/* The elastic bodies' step number ``step``, each thread its parts. A level that acts at every 2^k-th step does so with 2^k
- * times the impulse; a node moves with its fastest level, so all nodes that forces act on move. */
-static void move_elastic(const State *s, int64_t step, double *reaction) {
+/* The forces of the levels that act in step number ``step``, each thread its parts. One that acts at every 2^k-th step does
+ * so with 2^k times the impulse. */
+static void act(const State *s, int64_t step) {
     const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
     for (int64_t q = thread; q < s->parts; q += threads)
         for (int64_t k = s->levels - 1; k >= 0; --k)
@@ -176,9 +176,20 @@ static void move_elastic(const State *s, int64_t step, double *reaction) {
                 add_product(&s->part[k * s->parts + q], (double)((int64_t)1 << k), s->effective, s->f,
                             s->nodes + q);
     meet(s);
+}
+
+/* What they move: a node moves with its fastest level, so all nodes that forces act on. */
+static void follow(const State *s, int64_t step, double *reaction) {
+    const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
     for (int64_t q = thread; q < s->parts; q += threads)
         for (int64_t k = 0; k < s->levels && step % ((int64_t)1 << k) == 0; ++k)
             move(s, &s->part[k * s->parts + q], s->problem->dt * (double)((int64_t)1 << k),
                  q == 0 ? reaction : s->support + SPACED * q);
     meet(s);
+}
+
+/* The elastic bodies' step number ``step``. */
+static void move_elastic(const State *s, int64_t step, double *reaction) {
+    act(s, step);
+    follow(s, step, reaction);
 }

@@ -16,17 +16,16 @@ LANES = 4
 
 @dataclass(frozen=True)
 class Tetrahedra:
-    """The elements at this process' nodes, with straight edges, linear or quadratic.
+    """The elements of a process, with straight edges, linear or quadratic.
 
-    Forces on a node are added in their order: where all processes have the same order, the same
-    bits are found by any number of threads and processes.
+    Forces on a node are added in their order: any number of threads finds the same bits.
 
     Attributes:
-        nodes: (e, 4 or 10) numbers from 0 on, this process' own first.
+        nodes: (e, 4 or 10) numbers from 0 on.
         gradients: (e, 3, 3) of the barycentric coordinates 1, 2, 3, 1/m.
         lame, shear: (e,) Lame's constants times what `elements.c` has of the volume, N m.
         element: (e,) number of each in the system.
-        diagonal: (3 n,) of K, N/m; of own nodes.
+        diagonal: (3 n,) of K, N/m.
     """
 
     nodes: Ints
@@ -59,13 +58,13 @@ class Tetrahedra:
         size = (8 * 11 + 4 * self.nodes.shape[1]) * LANES
         return Divided(
             parts,
-            tuple(int(np.count_nonzero(nodes < node.size)) for nodes in acting),
+            tuple(nodes.size for nodes in acting),
             size * sum(int(part.fours) for part in parts),
         )
 
     def _shares(self, node: Ints, threads: int) -> Ints:
-        """Part of each node, -1 for other processes': stretches of each level with as much work."""
-        part = np.full(max(node.size, int(self.nodes.max()) + 1), -1)
+        """(n,) part of each node: stretches of each level with as much work."""
+        part = np.zeros(node.size, dtype=np.int64)
         work = np.bincount(self.nodes.ravel(), minlength=node.size)
         for level in range(int(node.max()) + 1):
             nodes = np.flatnonzero(node == level)

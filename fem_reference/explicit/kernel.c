@@ -290,15 +290,9 @@ void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64
     }
 }
 
-/* Takes the vectors of some nodes out of x. */
-void pack(const double *restrict x, const int64_t *restrict node, int64_t count, double *restrict packed) {
-    for (int64_t i = 0; i < count; ++i) memcpy(packed + C * i, x + C * node[i], C * sizeof *x);
-}
-
-/* And puts them in. */
-void unpack(double *restrict x, const int64_t *restrict node, int64_t count, const double *restrict packed) {
-    for (int64_t i = 0; i < count; ++i) memcpy(x + C * node[i], packed + C * i, C * sizeof *x);
-}
+#if COMPONENTS == 3
+#include "exchange.c"
+#endif
 
 #include "bandwidth.c"
 

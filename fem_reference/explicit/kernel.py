@@ -142,16 +142,20 @@ def load(components: int) -> ctypes.CDLL:
     """
     kernel = _compiled(components)
     state, count = ctypes.POINTER(State), ctypes.c_int64
-    for name, arguments in {
+    functions: dict[str, tuple[Any, ...]] = {
         "advance": (state, count),
         "drift": (state, count, count),
         "contact_step": (ctypes.POINTER(Problem),),
         "run": (state, ctypes.POINTER(Carried), ctypes.POINTER(Watched), count, count, DOUBLE),
         "stiffness_product": (state, count, count, DOUBLE, DOUBLE),
-        "pack": (DOUBLE, INT64, count, DOUBLE),
-        "unpack": (DOUBLE, INT64, count, DOUBLE),
         "triad": (DOUBLE, DOUBLE, DOUBLE, count, count),
-    }.items():
+    }
+    if components == 3:
+        vectors = (DOUBLE, count, INT64, count, DOUBLE)
+        functions |= dict.fromkeys(("pack", "unpack", "take", "put"), vectors)
+        functions |= {"process_follows": (state,)}
+        functions |= dict.fromkeys(("process_acts", "process_drifts"), (state, count))
+    for name, arguments in functions.items():
         function = getattr(kernel, name)
         function.argtypes, function.restype = arguments, None
     kernel.read_all.argtypes, kernel.read_all.restype = (DOUBLE, count, count), ctypes.c_double

@@ -58,9 +58,9 @@ def _fill(level: Ints) -> Ints:
         level = np.where(level > gaps[0], level - 1, level)
 
 
-def fastest_levels(level: Ints, nodes: Ints, count: int) -> Ints:
-    """(count,) level with which each node moves: that of its fastest element."""
-    fastest = np.full(count, np.iinfo(np.int64).max)
+def least_at_nodes(values: Ints, nodes: Ints, count: int) -> Ints:
+    """(count,) least of the values (m,) of the elements at each node: of levels, the fastest."""
+    least = np.full(count, np.iinfo(np.int64).max)
     for corner in range(nodes.shape[1]):
-        np.minimum.at(fastest, nodes[:, corner], level)
-    return fastest
+        np.minimum.at(least, nodes[:, corner], values)
+    return least

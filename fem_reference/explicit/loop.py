@@ -13,7 +13,7 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from . import kernel, structures
-from .levels import fastest_levels, graded_levels
+from .levels import graded_levels, least_at_nodes
 from .problem import ContactProblem
 from .relaxation import Ledger, Springs
 from .stiffness import Divided
@@ -33,7 +33,8 @@ class Loop(ABC):
         u, v: (C n,) displacement, and velocity half a step later.
         springs, ledger: of bodies that relax; None: all are elastic.
         effective: (C n,) displacement that K acts on: u itself unless there are springs.
-        displacement: u, then that of other processes' nodes that own rows read.
+        displacement, velocity: u and v, then those of other processes' nodes at this one's
+            elements.
         diagonal: (C n,) of K, N/m.
         levels: nodes that move with each level.
         divided: K as the compiled loop reads it.
@@ -48,16 +49,16 @@ class Loop(ABC):
     def __init__(self, system: System, comm: Any) -> None:
         self.system, self.comm = system, comm
         self.components = system.points.shape[1]
-        self.rows = (self.components * system.owned[:, None] + np.arange(self.components)).ravel()
         self.mass = system.mass[system.owned]
-        self.inverse = system.inverse_mass[self.rows]
+        kept = np.concatenate([system.owned, system.ghosts])
+        rows = (self.components * kept[:, None] + np.arange(self.components)).ravel()
+        own = slice(self.components * system.owned.size)
+        self._inverse = system.inverse_mass[rows]
+        self.rows, self.inverse = rows[own], self._inverse[own]
         self.body = np.searchsorted(system.first, system.owned, side="right") - 1
-        self.displacement = self._readable(
-            np.zeros(self.rows.size + self.components * system.ghosts.size)
-        )
-        self.u = self.displacement[: self.rows.size]
-        self.v = self.own(system.velocity)
-        self.v[self.inverse == 0.0] = 0.0
+        self.displacement = self._readable(np.zeros(rows.size))
+        self.velocity = np.where(self._inverse == 0.0, 0.0, system.velocity.ravel()[rows])
+        self.u, self.v = self.displacement[own], self.velocity[own]
         self.springs: Springs | None = None
         self.ledger: Ledger | None = None
         self._looked = 0
@@ -102,7 +103,7 @@ class Loop(ABC):
         self.problem.set_step(time_step, split)
         element = self.element_levels(time_step, most_levels)
         count = int(element.max()) + 1
-        node = fastest_levels(element, self.system.element_nodes, self.system.mass.size)
+        node = least_at_nodes(element, self.system.element_nodes, self.system.mass.size)
         if count > 1 or len(self.levels) > 1:
             self._take_levels(element, node, count)
             self.levels = tuple(np.bincount(node, minlength=count).tolist())
@@ -220,11 +221,13 @@ class SerialLoop(Loop):
         self._stiffness, arrays = system.operator(), kernel.Arrays()
         self.diagonal = self._stiffness.diagonal
         state = structures.State()
-        state.nodes = system.owned.size
-        for name in ("inverse", "u", "effective", "v"):
-            setattr(state, name, arrays.pointer(getattr(self, name), np.float64))
+        state.nodes = system.owned.size + system.ghosts.size
+        state.inverse = arrays.pointer(self._inverse, np.float64)
+        state.u = arrays.pointer(self.displacement, np.float64)
+        state.effective = arrays.pointer(self.effective, np.float64)
+        state.v = arrays.pointer(self.velocity, np.float64)
         lanes = kernel.LANES[self.components]
-        state.f = arrays.pointer(np.zeros(lanes * (system.owned.size + threads)), np.float64)
+        state.f = arrays.pointer(np.zeros(lanes * (state.nodes + threads)), np.float64)
         state.support = arrays.pointer(np.zeros(kernel.SPACED * threads), np.float64)
         state.parts = threads
         local = np.full(system.mass.size, -1, dtype=np.int64)
@@ -239,9 +242,11 @@ class SerialLoop(Loop):
 
     def _divide(self, element: Ints, node: Ints) -> None:
         """Let elements (m,) act and nodes (N,) move with these levels."""
-        own, arrays = self.system.owned, kernel.Arrays()
-        held = self.system.held[own]
-        self.divided = self._stiffness.divided(element, node[own], held, self.threads, arrays)
+        system, arrays = self.system, kernel.Arrays()
+        kept = np.concatenate([system.owned, system.ghosts])
+        # The supports' share of a node is its own process'.
+        held = system.held[kept] & (np.arange(kept.size) < system.owned.size)
+        self.divided = self._stiffness.divided(element, node[kept], held, self.threads, arrays)
         made = self.divided.parts
         parts = (structures.PARTS[self.components] * len(made))(*made)
         self._state.levels = len(made) // self.threads
@@ -294,13 +299,8 @@ class SerialLoop(Loop):
         """K x."""
         return self._product(x, 0, len(self.levels))
 
-    def _read(self, x: Floats) -> Floats:
-        """(C n,) as own rows read it."""
-        return self._readable(x)
-
     def _product(self, x: Floats, first: int, end: int) -> Floats:
-        y = np.empty(self.rows.size)
-        x = self._read(x)
+        y, x = np.empty(x.size), self._readable(x)
         state = ctypes.byref(self._state)
         self._kernel.stiffness_product(state, first, end, kernel.doubles(x), kernel.doubles(y))
         return y

@@ -1,4 +1,4 @@
-"""A run in several processes: each steps its own nodes and tells its neighbours of them."""
+"""A run in several processes: each has elements of its own, and nodes in common with others."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
-from mpi4py import MPI
 
-from ..common.arrays import Floats, Ints
+from ..common.arrays import Floats, Ints, Mask
 from ..common.errors import SolverError
 from . import kernel, structures
+from .exchange import COMPONENTS, Exchange, Sum
+from .levels import least_at_nodes
 from .loop import SerialLoop
 from .problem import ContactProblem
 from .relaxation import Springs
@@ -22,106 +23,81 @@ FIRST = 0
 
 
 class DistributedSystem(System, Protocol):
-    """A system whose nodes lie in several processes."""
+    """A system whose elements lie in several processes."""
 
     @property
-    def owner(self) -> Ints:
-        """(N,) process of each node."""
-
-
-class Exchange:
-    """Values of some nodes, from the processes that own them to those that read them.
-
-    Args:
-        library: the compiled kernel.
-        comm: of the processes.
-        tag: of the messages.
-        partners: other processes, with the places in this one's vectors of what goes there and of
-            what comes from there; both sides have the nodes in the same order.
-        components: values per node.
-    """
-
-    def __init__(
-        self,
-        library: ctypes.CDLL,
-        comm: Any,
-        tag: int,
-        partners: list[tuple[int, Ints, Ints]],
-        components: int,
-    ) -> None:
-        self._library, self._arrays = library, kernel.Arrays()
-        self._going: list[tuple[Any, ...]] = []
-        self._coming: list[tuple[Any, ...]] = []
-        self._requests: list[Any] = []
-        for rank, sent, got in partners:
-            for places, ends, prepare in (
-                (got, self._coming, comm.Recv_init),
-                (sent, self._going, comm.Send_init),
-            ):
-                values = np.zeros(components * places.size)
-                where = self._arrays.pointer(places, np.int64)
-                ends.append((where, places.size, self._arrays.pointer(values, np.float64)))
-                self._requests.append(prepare(values, rank, tag))
-
-    def __call__(self, x: Any) -> None:
-        """Send and take over; ``x`` points to the components of own and others' nodes."""
-        for end in self._going:
-            self._library.pack(x, *end)
-        MPI.Prequest.Startall(self._requests)
-        MPI.Request.Waitall(self._requests)
-        for end in self._coming:
-            self._library.unpack(x, *end)
-
-    def free(self) -> None:
-        """Give back what MPI has prepared."""
-        for request in self._requests:
-            request.Free()
-        self._requests = []
+    def element_owner(self) -> Ints:
+        """(m,) process of each element."""
 
 
 class ParallelLoop(SerialLoop):
-    """Several processes: each has all elements at its own nodes.
+    """Several processes: each has elements of its own and moves all nodes at them.
 
-    At the end of each step a node that moved is sent to the processes that read it, once, whatever
-    the levels: those that act in the same step do not read what slower ones moved. Nodes that can
-    touch are all the first process', which alone solves their problem.
+    In each step they tell each other the forces on the nodes they share, once, whatever the
+    levels: those that act in the same step do not read what slower ones moved. All move a shared
+    node by the same sum, to the same bits; it belongs to the first of them. Nodes that can touch
+    are not shared: all their elements are the first process', which alone solves their problem.
     """
 
     def __init__(self, system: DistributedSystem, comm: Any, threads: int = 1) -> None:
         super().__init__(system, comm, threads)
-        self._owner = system.owner
         if comm.rank != FIRST:
             self._idle = structures.Problem()
             self._state.problem = ctypes.pointer(self._idle)
         self._told = _told(self.problem)
-        self._exchanges: list[Exchange] = []
-        self._meet(np.zeros(system.mass.size, dtype=np.int64), 1)
+        count = system.mass.size
+        self._present = [np.zeros(count, dtype=bool) for _ in range(comm.size)]
+        for rank, present in enumerate(self._present):
+            present[system.element_nodes[system.element_owner == rank]] = True
+        self._owner = least_at_nodes(system.element_owner, system.element_nodes, count)
+        self._sums: list[Sum] = []
+        self._meet(np.zeros(count, dtype=np.int64), 1)
+        self._copies = self._copied()
+        self._product_sum = self._sum(np.ones(count, dtype=bool), COMPONENTS)
+        diagonal = self._stiffness.diagonal.copy()
+        self._product_sum(kernel.doubles(diagonal))
+        self.diagonal = diagonal[: self.u.size]
 
-    def _meet(self, node: Ints, count: int) -> None:
-        """Prepare an exchange of all nodes that move with each level, or a faster one."""
-        for exchange in self._exchanges:
-            exchange.free()
-        elements, rank = self.system.element_nodes, self.comm.rank
-        place = np.full(node.size, -1, dtype=np.int64)
+    def _place(self) -> Ints:
+        """(N,) place of each node in this process' vectors, -1: none."""
+        place = np.full(self.system.mass.size, -1, dtype=np.int64)
         kept = np.concatenate([self.system.owned, self.system.ghosts])
         place[kept] = np.arange(kept.size)
-        processes = self._owner[elements]
-        read = [np.unique(elements[(processes == p).any(axis=1)]) for p in range(self.comm.size)]
+        return place
 
-        def partners(level: int) -> list[tuple[int, Ints, Ints]]:
-            moving = [nodes[node[nodes] <= level] for nodes in read]
-            both = [
-                (p, moving[p][self._owner[moving[p]] == rank], mine)
-                for p in range(self.comm.size)
-                for mine in [moving[rank][self._owner[moving[rank]] == p]]
-                if p != rank
-            ]
-            return [(p, place[sent], place[got]) for p, sent, got in both if sent.size + got.size]
-
-        self._exchanges = [
-            Exchange(self._kernel, self.comm, level, partners(level), self.components)
-            for level in range(count)
+    def _sum(self, moves: Mask, stride: int) -> Sum:
+        """The sum at those of the shared nodes that move (N,)."""
+        place, mine = self._place(), self._present[self.comm.rank] & moves
+        shared = [
+            (rank, place[np.flatnonzero(mine & present)])
+            for rank, present in enumerate(self._present)
+            if rank != self.comm.rank
         ]
+        used = [(rank, places) for rank, places in shared if places.size]
+        number = self.system.owned.size + self.system.ghosts.size
+        return Sum(self._kernel, self.comm, used, stride, number)
+
+    def _copied(self) -> Exchange:
+        """Values of shared nodes from the processes to which they belong."""
+        place, here = self._place(), self.comm.rank
+        others = [rank for rank in range(self.comm.size) if rank != here]
+        sent = [
+            (rank, place[np.flatnonzero(self._present[rank] & (self._owner == here))])
+            for rank in others
+        ]
+        got = [
+            (rank, place[np.flatnonzero(self._present[here] & (self._owner == rank))])
+            for rank in others
+        ]
+        going, coming = ([end for end in ends if end[1].size] for ends in (sent, got))
+        return Exchange(self._kernel, self.comm, going, coming, COMPONENTS)
+
+    def _meet(self, node: Ints, count: int) -> None:
+        """Prepare the sums at nodes that move with each level, or a faster one."""
+        for exchange in self._sums:
+            exchange.free()
+        stride = kernel.LANES[COMPONENTS]
+        self._sums = [self._sum(node <= level, stride) for level in range(count)]
 
     def _take_levels(self, element: Ints, node: Ints, count: int) -> None:
         super()._take_levels(element, node, count)
@@ -130,23 +106,25 @@ class ParallelLoop(SerialLoop):
     def _take_springs(self, springs: Springs, node: Ints) -> None:
         raise SolverError("materials that relax are for one process: run without --np")
 
-    def _read(self, x: Floats) -> Floats:
-        """(C n,) with the other processes' nodes that own rows read, of all levels."""
-        values = self._readable(np.zeros(self.displacement.size))
+    def _product(self, x: Floats, first: int, end: int) -> Floats:
+        values = np.zeros(self.displacement.size)
         values[: x.size] = x
-        self._exchanges[-1](kernel.doubles(values))
-        return values
+        self._copies.replace(kernel.doubles(values))
+        y = super()._product(values, first, end)
+        self._product_sum(kernel.doubles(y))
+        return y[: x.size]
 
-    def _moved(self, step: int) -> Exchange:
-        """The exchange of what moves in a step."""
-        slowest = len(self._exchanges) - 1
+    def _summed(self, step: int) -> Sum:
+        """Of the nodes that move in a step."""
+        slowest = len(self._sums) - 1
         while step % (1 << slowest):
             slowest -= 1
-        return self._exchanges[slowest]
+        return self._sums[slowest]
 
     def _begin(self) -> Any:
         """Take over what was changed from outside; this process' problem."""
-        self.displacement[:] = self._read(self.u)
+        self._copies.replace(kernel.doubles(self.displacement))
+        self._copies.replace(kernel.doubles(self.velocity))
         problem = self._state.problem.contents
         problem.dt, problem.step = self.dt, self.problem.state.step
         return problem
@@ -154,18 +132,20 @@ class ParallelLoop(SerialLoop):
     def drift(self, steps: int) -> None:
         """Move the elastic bodies alone, without contact and ledger; all levels meet before."""
         self._begin()
-        state, u = ctypes.byref(self._state), kernel.doubles(self.displacement)
+        library, state, f = self._kernel, ctypes.byref(self._state), self._state.f
         for step in range(steps):
-            self._kernel.drift(state, step, 1)
-            self._moved(step)(u)
+            library.process_acts(state, step)
+            self._summed(step)(f)
+            library.process_drifts(state, step)
 
     def advance(self, steps: int) -> None:
         """Take a number of steps."""
         first = self._begin().step
-        state, u = ctypes.byref(self._state), kernel.doubles(self.displacement)
+        library, state, f = self._kernel, ctypes.byref(self._state), self._state.f
         for step in range(first, first + steps):
-            self._kernel.advance(state, 1)
-            self._moved(step)(u)
+            library.process_acts(state, step)
+            self._summed(step)(f)
+            library.process_follows(state)
         self._tell()
 
     def _tell(self) -> None:

@@ -36,7 +36,7 @@ class Divided:
 
 
 class Stiffness(Protocol):
-    """K at this process' nodes; C components of displacement per node."""
+    """K of this process' elements, at n nodes; C components of displacement per node."""
 
     @property
     def diagonal(self) -> Floats:
@@ -49,7 +49,7 @@ class Stiffness(Protocol):
 
         Args:
             element: (m,) level of each element of the system.
-            node: (n,) level of this process' nodes, that of their fastest element.
+            node: (n,) level of each node, that of its fastest element.
             held: (n,) nodes that are held somewhere.
             threads: that sum one part of every level each.
             arrays: keeps what the parts point to.

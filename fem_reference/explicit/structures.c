@@ -178,7 +178,7 @@ typedef struct {
 /* The elements of one level at the nodes of one part, and what moves with them: a part is what one thread sums. */
 typedef struct {
     int64_t number;        /* of the part */
-    const int32_t *part;   /* part of each node; -1: of another process */
+    const int32_t *part;   /* part of each node */
     int64_t size;          /* nodes of an element, 4 or 10 */
     int64_t fours;         /* elements, by fours; the last may be filled up with ones without stiffness */
     const double *element; /* (fours, 11, 4), see elements.c */

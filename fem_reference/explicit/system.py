@@ -44,7 +44,7 @@ class System(Protocol):
 
     @property
     def ghosts(self) -> Ints:
-        """Nodes of other processes that have an element in common with own ones."""
+        """Nodes of other processes at this one's elements."""
 
     @property
     def held(self) -> Mask:
@@ -62,7 +62,7 @@ class System(Protocol):
         """(m,) critical time step of each element alone, s."""
 
     def operator(self) -> Stiffness:
-        """K at this process' nodes; other processes' nodes have the numbers behind them."""
+        """K of this process' elements, at `owned` nodes and, behind them, `ghosts`."""
 
     @property
     def relaxations(self) -> tuple[tuple[Relaxation, ...], ...]:

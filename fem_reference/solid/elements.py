@@ -71,7 +71,6 @@ def tetrahedra(
     points: Floats,
     elements: Ints,
     number: Ints,
-    own: int,
     moduli: tuple[Floats, Floats],
     which: Ints,
 ) -> Tetrahedra:
@@ -80,8 +79,7 @@ def tetrahedra(
     Args:
         points: (N, 3) m.
         elements: (e, 4 or 10) nodes.
-        number: (N,) of each node in the process.
-        own: nodes of the process, which have the first numbers.
+        number: (N,) of each node in the process, from 0 on.
         moduli: (e,) Lame's constants, Pa.
         which: (e,) number of each element in the system.
     """
@@ -89,12 +87,11 @@ def tetrahedra(
     gradients = np.linalg.inv(corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1)
     share = volumes(points, elements[:, :4]) / (1.0 if elements.shape[1] == 4 else 20.0)
     nodes = number[elements]
-    diagonal = np.zeros((own, 3))
+    diagonal = np.zeros((int(nodes.max()) + 1, 3))
     for start in range(0, which.size, CHUNK):
         some = slice(start, start + CHUNK)
         parts = _diagonal(points, elements[some], *(modulus[some] for modulus in moduli))
-        mine = nodes[some] < own
-        np.add.at(diagonal, nodes[some][mine], parts[mine])
+        np.add.at(diagonal, nodes[some], parts)
     lame, shear = (share * modulus for modulus in moduli)
     return Tetrahedra(nodes, gradients, lame, shear, which, diagonal.ravel())
 

@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ..common.arrays import Floats, Ints
 from ..explicit.elements import Tetrahedra
+from ..explicit.levels import least_at_nodes
 from ..explicit.loop import Loop, SerialLoop
 from ..explicit.parallel import ParallelLoop
 from ..explicit.partition import owners
@@ -43,22 +44,22 @@ class SolidSystem:
             [body.mesh.cells + offset for body, offset in zip(bodies, self.first, strict=False)]
         )
         self._steps: Floats | None = None
-        self.owner = self._owners()
+        self.element_owner = self._owners()
+        owner = least_at_nodes(self.element_owner, self.element_nodes, self.mass.size)
         order = _order(self.element_nodes, self.mass.size)
         place = np.empty_like(order)
         place[order] = np.arange(order.size)
-        # All elements at own nodes are summed here, in the same order in every process.
-        near = np.flatnonzero(np.any(self.owner[self.element_nodes] == comm.rank, axis=1))
-        self._near = near[np.argsort(place[self.element_nodes[near]].min(axis=1), kind="stable")]
-        read = np.zeros(order.size, dtype=bool)
-        read[self.element_nodes[near]] = True
-        mine = self.owner == comm.rank
-        self.owned, self.ghosts = order[mine[order]], order[(read & ~mine)[order]]
+        mine = np.flatnonzero(self.element_owner == comm.rank)
+        self._mine = mine[np.argsort(place[self.element_nodes[mine]].min(axis=1), kind="stable")]
+        present = np.zeros(order.size, dtype=bool)
+        present[self.element_nodes[mine]] = True
+        own = owner == comm.rank
+        self.owned, self.ghosts = order[own[order]], order[(present & ~own)[order]]
 
     def _owners(self) -> Ints:
-        """(N,) process of each node."""
+        """(m,) process of each element."""
         if self.comm.size == 1:
-            return np.zeros(self.mass.size, dtype=np.int64)
+            return np.zeros(self.element_nodes.shape[0], dtype=np.int64)
         near = touching(self.contacts, self.first)
         steps = self.element_time_steps()
         return owners(self.points, self.element_nodes, steps, near, self.comm.size)
@@ -71,18 +72,18 @@ class SolidSystem:
         return self._steps
 
     def operator(self) -> Tetrahedra:
-        """K at this process' nodes; others have the numbers behind them."""
+        """K of this process' elements."""
         kept = np.concatenate([self.owned, self.ghosts])
         number = np.empty(self.mass.size, dtype=np.int64)
         number[kept] = np.arange(kept.size)
-        bodies = np.searchsorted(self._first_element(), self._near, side="right") - 1
+        bodies = np.searchsorted(self._first_element(), self._mine, side="right") - 1
         materials = [body.material for body in self.model.elastic]
         lame, shear = (
             np.array([getattr(material, name) for material in materials])[bodies]
             for name in ("lame_lambda", "shear_modulus")
         )
-        nodes = self.element_nodes[self._near]
-        return tetrahedra(self.points, nodes, number, self.owned.size, (lame, shear), self._near)
+        nodes = self.element_nodes[self._mine]
+        return tetrahedra(self.points, nodes, number, (lame, shear), self._mine)
 
     def _first_element(self) -> Ints:
         """(bodies) number of each elastic body's first element."""

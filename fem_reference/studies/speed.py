@@ -23,6 +23,7 @@ from ..explicit import kernel
 from ..explicit.levels import MOST_LEVELS
 from ..explicit.loop import SerialLoop
 from ..explicit.parallel import ParallelLoop
+from ..explicit.spectrum import critical_time_step
 from ..plate_impact.estimate import estimate_contact, shortest_wavelengths
 from ..plate_impact.scene import Scene, read_scene
 from ..plate_impact.solid_model import plate_model
@@ -98,10 +99,9 @@ def measure(model: Model, threads: int, comm: Any, most_levels: tuple[int, ...])
     system = SolidSystem(model, comm)
     kind = SerialLoop if comm.size == 1 else ParallelLoop
     loop = kind(system, comm, threads)
-    found = []
+    found, time_step = [], 0.9 * critical_time_step(loop)
     for most in most_levels:
-        # that of the smallest element is below the critical one
-        loop.set_step(0.9 * float(system.element_time_steps().min()), 1, most)
+        loop.set_step(time_step, 1, most)
         seconds = _step_seconds(loop, comm)
         dofs, size = 3 * system.mass.size, comm.allreduce(loop.divided.size)
         moved = size + NODE * system.mass.size

@@ -15,7 +15,7 @@ from fem_reference.axisymmetric.system import AxisymmetricSystem, critical_time_
 from fem_reference.common.arrays import Floats, Ints
 from fem_reference.common.fenicsx import alone
 from fem_reference.explicit import levels as levels_module
-from fem_reference.explicit.levels import LEVEL_MARGIN, MOST_LEVELS, fastest_levels
+from fem_reference.explicit.levels import LEVEL_MARGIN, MOST_LEVELS, least_at_nodes
 from fem_reference.explicit.spectrum import critical_time_step as solid_critical_time_step
 from fem_reference.plate_impact.scene import parse_scene
 from fem_reference.seal_seat.meshing import seat_mesh
@@ -53,7 +53,7 @@ def level_parts(
     the predictor does. Its sphere's component is then the plate's.
     """
     level = make_loop(system, step).element_levels(step, MOST_LEVELS)
-    node = fastest_levels(level, system.element_nodes, system.mass.size)
+    node = least_at_nodes(level, system.element_nodes, system.mass.size)
     size = 2 * system.mass.size
     stands_for = np.arange(size)
     for pairs, count in zip(system.matched, closed, strict=True):

@@ -15,7 +15,7 @@ from fem_reference.common.errors import DivergedError
 from fem_reference.common.fenicsx import alone
 from fem_reference.explicit.checkpoint import Checkpoint
 from fem_reference.explicit.energies import energies_of
-from fem_reference.explicit.levels import BUFFER, LEVEL_MARGIN, MOST_LEVELS, fastest_levels
+from fem_reference.explicit.levels import BUFFER, LEVEL_MARGIN, MOST_LEVELS, least_at_nodes
 from fem_reference.explicit.loop import Loop
 from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.explicit.supervision import LARGEST_ENERGY_RESIDUAL, Account, stable_run
@@ -94,7 +94,7 @@ def test_levels_keep_their_distance_and_sum_up(seat: SeatModel) -> None:
     whole = loop.product
     step = 0.9 * critical_time_step(loop)
     level = loop.element_levels(step, MOST_LEVELS)
-    node = fastest_levels(level, cells, body.mesh.points.shape[0])
+    node = least_at_nodes(level, cells, body.mesh.points.shape[0])
     assert level.max() >= 1
     steps = element_time_steps(body.mesh, body.material)
     assert np.all(2.0**level * step <= np.maximum(LEVEL_MARGIN * steps, step))

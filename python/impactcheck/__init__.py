@@ -1,4 +1,4 @@
-"""How far can a fast reduced model of an impact be trusted? The program, from Python.
+"""How far can a fast reduced model of an impact be trusted? The program, in Python's process.
 
 Five lines judge the paper's Table 1::
 
@@ -9,27 +9,34 @@ Five lines judge the paper's Table 1::
         print(name, comparison.verdict, comparison.model("C").efficiency)
 
 Every number is in SI and signed along z, which points from the inner to the outer body. What the
-program refuses is an :class:`Error` with its sentence and its exit status. Each call runs the
-program once (some 10 ms) and leaves the interpreter free meanwhile.
+program refuses is an :class:`Error` with its sentence and its exit status. Other threads go on
+while anything is computed. The finite elements are `impactcheck.fem_reference`.
 """
 
 from __future__ import annotations
 
-from impactcheck._program import Error, run
+from impactcheck import _core
+from impactcheck._core import Scene
+from impactcheck._error import Error
 from impactcheck._results import Comparison, Result
-from impactcheck._scene import Scene
 
-__all__ = ["Comparison", "Error", "Result", "Scene", "compare", "reduced", "run", "sweep"]
+__all__ = [
+    "Comparison",
+    "Error",
+    "Model",
+    "Result",
+    "Scene",
+    "compare",
+    "reduced",
+    "reference",
+    "sweep",
+]
 
-import json
-import tempfile
-from concurrent.futures import ThreadPoolExecutor
-from os import PathLike, cpu_count, fspath
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from os import PathLike
 
 Model = Literal["A", "B", "C", "auto"]
 
@@ -52,15 +59,9 @@ def reduced(
         Summary and curves.
 
     Raises:
-        Error: If the program refuses the scene or the model fails.
+        Error: If the model fails, or is none of the scene's.
     """
-    options = {"--model": model, "--modes": modes, "--tolerance": tolerance}
-    given = [f"{key}={value}" for key, value in options.items() if value is not None]
-    with tempfile.TemporaryDirectory() as folder:
-        history = Path(folder) / "history.csv"
-        file = scene.file(folder)
-        summary = run("reduced", file, "--json", f"--history={history}", *given)
-        return Result.of(json.loads(summary), history.read_text())
+    return Result.of(*_core.reduced([scene], model, modes, tolerance, None)[0])
 
 
 def sweep(
@@ -72,20 +73,40 @@ def sweep(
 ) -> list[Result]:
     """Run a reduced model of many scenes side by side, in their order.
 
-    For more than some thousands of them ``impactcheck study sweep`` is the way.
+    Each result is what :func:`reduced` gives; plates that were solved once serve all of the same
+    shape. More than some ten thousands fill the memory with curves: `impactcheck study sweep`
+    keeps the quantities alone, in files, and goes on where it was ended.
 
     Args:
         scenes: The impacts.
         model: As in :func:`reduced`.
         modes: As in :func:`reduced`.
         tolerance: As in :func:`reduced`.
-        threads: Programs at a time; as many as there are cores.
+        threads: As many as there are cores unless told.
 
     Raises:
         Error: Of the first scene that fails.
     """
-    with ThreadPoolExecutor(threads or cpu_count()) as pool:
-        return list(pool.map(lambda scene: reduced(scene, model, modes, tolerance), scenes))
+    runs = _core.reduced(list(scenes), model, modes, tolerance, threads)
+    return [Result.of(*run) for run in runs]
+
+
+def reference(scene: Scene, resolution: str = "paper", compute: bool = False) -> Result:
+    """Find the stored finite-element reference of exactly this scene.
+
+    Args:
+        scene: The impact.
+        resolution: coarse, paper, fine, an error such as 0.2%, or imported.
+        compute: Whether one that is missing is computed and stored (needs FEniCSx; seconds to
+            minutes).
+
+    Returns:
+        Summary, with 95 % bands in `uncertainty`, and curves.
+
+    Raises:
+        Error: If there is none, or it can't be computed.
+    """
+    return Result.of(*_core.reference(scene, resolution, compute))
 
 
 def compare(
@@ -96,29 +117,21 @@ def compare(
     allow_external: bool = False,
     out: str | PathLike[str] | None = None,
 ) -> Comparison:
-    """Compare models with the stored reference of each scene, and judge them by its tolerances.
+    """Compare models with the reference of each scene, and judge them by its tolerances.
+
+    A program of the user's that fails stops nothing: its verdict is fail, and its summary says why
+    in `failure`.
 
     Args:
         scenes: The impacts; without any, those shipped.
         models: A, B, C, auto, and external for the programs that the scenes name.
-        resolution: Of the reference: coarse, paper, fine, an error such as 0.2%, or imported.
-        compute: Whether references that are missing are computed (needs FEniCSx).
+        resolution: Of the reference, as in :func:`reference`.
+        compute: As in :func:`reference`.
         allow_external: Whether the programs that scenes name may run.
-        out: Folder of the report; without one the report is not kept.
+        out: Folder of the report; none is written without.
 
     Raises:
-        Error: If a scene is not valid, a reference is missing or a model fails.
+        Error: If a reference is missing or a model fails.
     """
-    flags = {"--compute": compute, "--allow-external": allow_external}
-    with tempfile.TemporaryDirectory() as folder:
-        report = Path(fspath(out)) if out is not None else Path(folder) / "report"
-        document = run(
-            "compare",
-            *(scene.file(folder) for scene in scenes),
-            f"--models={','.join(models)}",
-            f"--resolution={resolution}",
-            f"--out={report}",
-            "--json",
-            *(flag for flag, is_set in flags.items() if is_set),
-        )
-        return Comparison.of(json.loads(document), report)
+    document, figures = _core.compare(scenes, models, resolution, compute, allow_external, out)
+    return Comparison.of(document, figures)

@@ -1,8 +1,14 @@
-"""`python -m impactcheck`: the program itself."""
+"""`python -m impactcheck`, and the command `impactcheck`: the program itself."""
 
-import subprocess
 import sys
 
-from impactcheck._program import program
+from impactcheck import _core
 
-sys.exit(subprocess.run([program(), *sys.argv[1:]]).returncode)
+
+def main() -> None:
+    """Run the program with this process' arguments, and end as it ends."""
+    sys.exit(_core.main(["impactcheck", *sys.argv[1:]]))
+
+
+if __name__ == "__main__":
+    main()

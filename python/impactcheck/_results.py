@@ -2,39 +2,42 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
+from impactcheck import _core
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
+    import numpy as np
     import xarray
     from numpy.typing import NDArray
 
 SHOWN = ("efficiency", "outer_force_peak", "inner_force_peak", "sphere_angle", "sphere_force_peak")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Result:
-    """A run of a model: its summary, the quantities of which are attributes too, and its curves.
+    """A run of a model or a reference: summary, whose entries are attributes too, and curves.
 
     Attributes:
-        summary: As `impactcheck reduced --json` prints it, SI.
-        curves: Arrays by the curve's name, SI, shape (samples); `time` in s among them.
+        summary: As `impactcheck reduced --json` prints it, SI: velocities in m/s, forces in N,
+            times in s, `first_frequency` in Hz, the efficiency as a share of 1.
+        curves: Arrays by the curve's name, shape (samples): `time` in s, displacements in m,
+            velocities in m/s, forces in N.
     """
 
     summary: dict[str, Any]
-    curves: dict[str, NDArray[np.float64]] = field(default_factory=dict, repr=False)
+    curves: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, summary: dict[str, Any], history: str) -> Result:
-        """A result with the curves of a CSV text."""
-        heading, *rows = history.splitlines()
-        table = np.loadtxt(rows, delimiter=",", ndmin=2).T
-        return cls(summary, dict(zip(heading.split(","), np.ascontiguousarray(table), strict=True)))
+    def of(cls, summary: str, curves: list[tuple[str, _core.Samples]]) -> Result:
+        """What the program gives; the curves are not copied."""
+        # the program itself, which imports this module too, starts without
+        import numpy as np
+
+        return cls(json.loads(summary), {name: np.asarray(samples) for name, samples in curves})
 
     def __getattr__(self, name: str) -> Any:
         """A quantity of the summary; None if the run has not determined it."""
@@ -52,12 +55,25 @@ class Result:
         plain = {k: v for k, v in self.summary.items() if isinstance(v, (int, float, str))}
         return xarray.Dataset(curves, coords={"time": self.curves["time"]}, attrs=plain)
 
+    @property
+    def _who(self) -> str:
+        model = self.summary["model"]
+        return f"model {model}" if model else "reference"
+
+    def __repr__(self) -> str:
+        return f"<impactcheck.Result {self.summary['scene']}, {self._who}>"
+
     def _repr_html_(self) -> str:
         rows = [(name, self.summary[name]) for name in SHOWN if name in self.summary]
-        return table_html((f"model {self.summary.get('model')}", "SI"), rows)
+        parts = [table_html((self._who, "SI"), rows), warnings_html(self._who, self.summary)]
+        if self.curves:
+            curves = list(self.curves.items())
+            title = f"{self.summary['scene']}: {self._who}"
+            parts.append(_core.figure(title, self.curves["time"], curves))
+        return "".join(parts)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison:
     """Models beside references, judged by the scenes' tolerances.
 
@@ -67,14 +83,17 @@ class Comparison:
     """
 
     document: dict[str, Any]
-    figures: dict[str, str] = field(default_factory=dict, repr=False)
+    figures: dict[str, str] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, document: dict[str, Any], report: Path) -> Comparison:
-        """A comparison with the drawings of its report."""
-        names = [scene["scene"] for scene in document["scenes"]]
-        drawings = {name: report / f"{name}.svg" for name in names}
-        return cls(document, {n: f.read_text("utf-8") for n, f in drawings.items() if f.is_file()})
+    def of(cls, document: str, figures: list[str]) -> Comparison:
+        """What the program gives."""
+        read = json.loads(document)
+        names = [scene["scene"] for scene in read["scenes"]]
+        return cls(read, dict(zip(names, figures, strict=True)))
+
+    def __repr__(self) -> str:
+        return f"<impactcheck.Comparison {', '.join(self.figures)}: {self.verdict}>"
 
     @property
     def verdict(self) -> str:
@@ -105,8 +124,14 @@ class Comparison:
             shown = [name for name in SHOWN if name in scene["reference"]]
             rows = [(side, *(s[name] for name in shown), v) for side, s, v in sides]
             parts.append(table_html((scene["scene"], *shown, "verdict"), rows))
-            parts.append(self.figures.get(scene["scene"], ""))
+            parts += [warnings_html(side, summary) for side, summary, _ in sides]
+            parts.append(self.figures[scene["scene"]])
         return "".join(parts)
+
+
+def warnings_html(who: str, summary: dict[str, Any]) -> str:
+    """What has to be known before the result is relied on."""
+    return "".join(f"<p>{escape(f'{who}: {warning}')}</p>" for warning in summary["warnings"])
 
 
 def table_html(heading: tuple[str, ...], rows: list[tuple[Any, ...]]) -> str:

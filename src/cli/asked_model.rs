@@ -10,9 +10,12 @@ use std::time::Instant;
 
 /// A reduced model, the program's choice, or the programs that the scene names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum AskedModel {
+pub enum AskedModel {
+    /// This one.
     Named(Model),
+    /// The cheapest that is good enough.
     Auto,
+    /// The programs that the scene names.
     External,
 }
 
@@ -54,10 +57,14 @@ pub(super) fn tolerance(text: &str) -> std::result::Result<f64, String> {
         Some(number) => (number.trim_end(), 0.01),
         None => (text, 1.0),
     };
-    match number.parse::<f64>().map(|value| value * unit) {
-        Ok(value) if (1e-12..=0.3).contains(&value) => Ok(value),
-        Ok(_) => Err(format!("{text} is not within 1e-12 to 0.3 (30 %)")),
-        Err(e) => Err(e.to_string()),
+    number.parse::<f64>().map_err(|e| e.to_string()).and_then(|value| within_bounds(value * unit, text))
+}
+
+/// A relative error that models can be asked for, `text` to whoever asked.
+pub(super) fn within_bounds(error: f64, text: &str) -> std::result::Result<f64, String> {
+    match (1e-12..=0.3).contains(&error) {
+        true => Ok(error),
+        false => Err(format!("{text} is not within 1e-12 to 0.3 (30 %)")),
     }
 }
 

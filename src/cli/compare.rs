@@ -4,7 +4,7 @@ use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
 use super::external::{self, Permission};
 use super::film::film;
-use super::reference::require_sound;
+use super::second_program::{self, Asked};
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument, kinds, validated_scenes};
 use crate::ci::commit::Commit;
@@ -13,7 +13,7 @@ use crate::comparison::{Comparison, GateRules, ReferenceCheck, SceneComparison, 
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
-use crate::reference::{COARSER, Resolution, Stored, calculix_takes};
+use crate::reference::{COARSER, Resolution, Stored};
 use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
 use crate::result::Outcome;
 use crate::scene::Scene;
@@ -29,26 +29,26 @@ const TRENDS: &str = "trends.jsonl";
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all shipped scenes]
-    scenes: Vec<String>,
+    pub(super) scenes: Vec<String>,
     /// Models to compare; auto stands for the cheapest whose estimated error meets the tolerance, external for the programs that
     /// the scene names
     #[arg(long, value_delimiter = ',', default_value = "A,B,C,external")]
-    models: Vec<AskedModel>,
+    pub(super) models: Vec<AskedModel>,
     #[command(flatten)]
-    permission: Permission,
+    pub(super) permission: Permission,
     /// Tolerance of auto: relative error of the efficiency, the outer body's final velocity and both force peaks [default: 1%]
     #[arg(long, value_parser = asked_model::tolerance)]
-    tolerance: Option<f64>,
+    pub(super) tolerance: Option<f64>,
     /// Resolution of the reference: coarse, paper, fine, or the error of one computed with --target-error, such as 0.2%
     #[arg(long, default_value = "paper")]
-    resolution: Resolution,
+    pub(super) resolution: Resolution,
     /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
     #[arg(long)]
-    compute: bool,
+    pub(super) compute: bool,
     /// CalculiX's solution of each scene beside the reference has to be there (`--compute` computes it) and within the bands of
     /// both, or the exit status is 10; without this it is shown where it is stored. Scenes that CalculiX does not take are left out
     #[arg(long)]
-    reference_check: bool,
+    pub(super) reference_check: bool,
     /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
     /// repeated impacts, with commas or spaces between them
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
@@ -72,7 +72,7 @@ pub struct Arguments {
     trends: Option<PathBuf>,
     /// Folder the report is written to
     #[arg(long, default_value = "reports", value_name = "DIR")]
-    out: PathBuf,
+    pub(super) out: PathBuf,
     #[command(flatten)]
     json: JsonArgument,
 }
@@ -174,7 +174,23 @@ impl Arguments {
 
 impl<'a> Job<'a> {
     pub(super) fn read(context: &Context, arguments: &'a Arguments) -> Result<Self> {
+        let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
+        // of all shipped scenes those are compared that have one of the models
+        if arguments.scenes.is_empty() {
+            let (kept, left_out) =
+                scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
+            scenes = kept;
+            for (_, scene) in left_out {
+                context.note(format_args!("{}", kinds::lacks(&scene)));
+            }
+        }
+        Self::of(arguments, scenes)
+    }
+
+    /// The comparison of these scenes. What can't be done is refused before anything is computed.
+    pub(super) fn of(arguments: &'a Arguments, scenes: Vec<(PathBuf, Scene)>) -> Result<Self> {
         let start = Instant::now();
+        compare_inputs::named_apart(&scenes)?;
         if let (Some(tolerance), false) = (arguments.tolerance, arguments.models.contains(&AskedModel::Auto))
         {
             return Err(Error::Usage(format!(
@@ -183,16 +199,6 @@ impl<'a> Job<'a> {
         }
         if let Some(file) = arguments.trends.as_ref().filter(|file| !file.is_file()) {
             return Err(Error::Usage(format!("--trends: there is no file {}", file.display())));
-        }
-        let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
-        // refused before anything is computed; of all shipped scenes those are compared that have one of the models
-        if arguments.scenes.is_empty() {
-            let (kept, left_out) =
-                scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
-            scenes = kept;
-            for (_, scene) in left_out {
-                context.note(format_args!("{}", kinds::lacks(&scene)));
-            }
         }
         if let Some((_, scene)) =
             scenes.iter().find(|(_, scene)| !kinds::has_one_of(scene, &arguments.models))
@@ -246,26 +252,11 @@ impl<'a> Job<'a> {
                 let (reduced, _) = models.beside(context, scene, &stored, asked)?;
                 Ok((stored, reduced))
             });
-            let other = self.by_calculix(context, file, scene)?;
+            let asked = Asked::of(self.arguments.reference_check, self.arguments.compute);
+            let other = second_program::beside(context, file, scene, self.resolution(), asked)?;
             Ok(Results { stored, reduced, cost, coarser: coarser.transpose()?, other })
         };
         self.scenes.iter().zip(references).map(result).collect()
-    }
-
-    /// CalculiX's solution as fine as the reference: where it is stored, or, if it has to be there, computed.
-    fn by_calculix(&self, context: &Context, file: &Path, scene: &Scene) -> Result<Option<Stored>> {
-        let Some(resolution) = self.resolution().by_calculix().filter(|_| calculix_takes(scene)) else {
-            return Ok(None);
-        };
-        if !self.arguments.reference_check {
-            let store = context.store().for_scene_in(file);
-            let found = store.find_here_or_shipped(scene, resolution).found();
-            return Ok(found.filter(|stored| require_sound(scene, stored).is_ok()));
-        }
-        let scenes = [(file.to_path_buf(), scene.clone())];
-        let found = look_up(context, resolution, self.arguments.compute, &scenes)?.pop();
-        found.iter().try_for_each(|stored| require_sound(scene, stored))?;
-        Ok(found)
     }
 
     /// Whether the references had to agree with CalculiX's solutions and do not.
@@ -361,23 +352,7 @@ impl<'a> Job<'a> {
         mut report: Report,
         outputs: &Outputs,
     ) -> Result<Comparison> {
-        let comparison = report.comparison();
-        let entries = match &outputs.record {
-            Some((file, commit)) => trend::record(file, &comparison, commit)?,
-            None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
-        };
-        let now = chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string();
-        for scene in &mut report.scenes {
-            scene.attachments.compared = Some(now.clone());
-            scene.attachments.trends = trend::trends(&entries, &scene.comparison);
-        }
-        report::write(&report, &self.arguments.out)?;
-        for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
-            write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
-        }
-        if let Some(file) = &outputs.junit {
-            write_file(file, report::junit(&report)?.as_bytes())?;
-        }
+        let comparison = self.write(&mut report, outputs)?;
         if self.arguments.json.json {
             super::print_json(&comparison)?;
         } else {
@@ -390,6 +365,28 @@ impl<'a> Job<'a> {
             self.start.elapsed().as_secs_f64(),
             self.arguments.out.join("index.html").display()
         ));
+        Ok(comparison)
+    }
+
+    /// Writes the report and `outputs`.
+    pub(super) fn write(&self, report: &mut Report, outputs: &Outputs) -> Result<Comparison> {
+        let comparison = report.comparison();
+        let entries = match &outputs.record {
+            Some((file, commit)) => trend::record(file, &comparison, commit)?,
+            None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
+        };
+        let now = chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string();
+        for scene in &mut report.scenes {
+            scene.attachments.compared = Some(now.clone());
+            scene.attachments.trends = trend::trends(&entries, &scene.comparison);
+        }
+        report::write(report, &self.arguments.out)?;
+        for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
+            write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
+        }
+        if let Some(file) = &outputs.junit {
+            write_file(file, report::junit(report)?.as_bytes())?;
+        }
         Ok(comparison)
     }
 }

@@ -28,6 +28,12 @@ pub(super) fn scenes_or(
     let paths = if names.is_empty() { all()? } else { files(names)? };
     let read = |path: PathBuf| Scene::read(&path).map(|scene| (path, scene));
     let scenes = paths.into_iter().map(read).collect::<Result<Vec<_>>>()?;
+    named_apart(&scenes)?;
+    Ok(scenes)
+}
+
+/// Refuses two scenes of one name.
+pub(super) fn named_apart(scenes: &[(PathBuf, Scene)]) -> Result<()> {
     for (i, (_, scene)) in scenes.iter().enumerate() {
         if scenes[..i].iter().any(|(_, other)| other.name == scene.name) {
             return Err(Error::Usage(format!(
@@ -36,7 +42,7 @@ pub(super) fn scenes_or(
             )));
         }
     }
-    Ok(scenes)
+    Ok(())
 }
 
 /// The file of every scene's figure; none if none is asked for. Refused before anything is computed.
@@ -113,6 +119,10 @@ pub(super) fn bandwidth(text: &str) -> std::result::Result<f64, String> {
 
 /// Tolerances in the scene `file` that are not those accepted last.
 pub(super) fn changed_tolerances(file: &Path, record: &[Acceptance]) -> Result<Vec<ChangedTolerance>> {
+    if record.is_empty() {
+        // a scene without a file has none
+        return Ok(Vec::new());
+    }
     let text = std::fs::read_to_string(file).map_err(|e| Error::io("reading", file, e))?;
     tolerance_watch::changed(record, &text)
 }

@@ -19,7 +19,7 @@ pub(super) struct Permission {
     /// Run the programs that the scenes name under [[external]]; so does IMPACTCHECK_ALLOW_EXTERNAL=1. A scene from elsewhere
     /// can name any program
     #[arg(long)]
-    allow_external: bool,
+    pub(super) allow_external: bool,
 }
 
 impl Permission {
@@ -66,7 +66,10 @@ pub(super) fn results(
         context.detail(format_args!("{}: {} answered in {solve_seconds:.2} s", scene.name, program.name));
         match failure {
             // not a note: --quiet must not hide that a model is missing
-            Some(why) => eprintln!("error: {}: model `{}` has no result: {why}", scene.name, program.name),
+            Some(why) => super::tell(format_args!(
+                "error: {}: model `{}` has no result: {why}",
+                scene.name, program.name
+            )),
             None => warnings.iter().for_each(|warning| {
                 context.note(format_args!("{}: {}: {warning}", scene.name, program.name));
             }),

@@ -73,7 +73,7 @@ fn conclude(
     tell_verdicts(job, &report);
     for changed in report.changed_tolerances() {
         // not a note: --quiet must not hide that the gate is another one
-        eprintln!("warning: {changed}");
+        super::tell(format_args!("warning: {changed}"));
     }
     if github::is_running() {
         tell_github(context, job, &report)?;
@@ -101,14 +101,14 @@ fn tell_verdicts(job: &Job, report: &Report) {
             Verdict::NotGated => {
                 let file =
                     job.scenes.iter().find(|(_, s)| s.name == scene).map_or(Path::new(""), |(file, _)| file);
-                eprintln!(
+                super::tell(format_args!(
                     "{word}: nothing of scene `{scene}` is gated: {} has no tolerances of the models compared; add for example tolerances.C = {{ efficiency = {{ relative = 0.01 }} }}",
                     file.display()
-                );
+                ));
             }
-            Verdict::Undecided if rules.undecided != Undecided::Pass => eprintln!(
+            Verdict::Undecided if rules.undecided != Undecided::Pass => super::tell(format_args!(
                 "{word}: scene `{scene}` is undecided: the band of its reference leaves tolerances open; each such quantity says what would decide it"
-            ),
+            )),
             _ => {}
         }
     }
@@ -130,7 +130,7 @@ fn tell_github(context: &Context, job: &Job, report: &Report) -> Result<()> {
     };
     for command in github::annotations(report, place) {
         // not a note: --quiet must not hide it
-        eprintln!("{command}");
+        super::tell(command);
     }
     let Some(file) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|file| !file.is_empty()) else {
         return Ok(());

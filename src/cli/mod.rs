@@ -10,6 +10,7 @@ mod doctor;
 mod external;
 mod film;
 mod gate;
+pub mod in_process;
 mod kinds;
 mod mesh;
 mod new;
@@ -18,6 +19,7 @@ mod progress;
 mod reduced;
 mod reference;
 mod schema;
+mod second_program;
 mod shell;
 mod stored_references;
 mod stress;
@@ -144,16 +146,24 @@ impl Context {
     /// A line for people, on standard error.
     fn note(&self, text: impl std::fmt::Display) {
         if !self.quiet {
-            eprintln!("{text}");
+            tell(text);
         }
     }
 
     /// A line for people who want to know everything, on standard error.
     fn detail(&self, text: impl std::fmt::Display) {
         if self.verbose {
-            eprintln!("{text}");
+            tell(text);
         }
     }
+}
+
+/// The program: listens to Ctrl-C, runs with `arguments` (the first is its name) and gives the exit status.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    if let Err(error) = crate::interrupt::listen() {
+        tell(format_args!("warning: Ctrl-C may leave files behind: {error}"));
+    }
+    run(arguments) as u8
 }
 
 /// Runs the program with `arguments` (the first is its name) and gives the exit status.
@@ -190,7 +200,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Man(arguments) => shell::man(&arguments),
     };
     result.unwrap_or_else(|error| {
-        eprintln!("{}", describe(&error));
+        tell(describe(&error));
         error.exit_status()
     })
 }
@@ -213,6 +223,12 @@ fn describe(error: &Error) -> String {
         Error::Scene(report) => format!("{report:?}"),
         other => format!("error: {other}"),
     }
+}
+
+/// A line on standard error, its colours only where they can be seen; a reader that has gone away is no error.
+fn tell(text: impl std::fmt::Display) {
+    use std::io::Write;
+    let _ = writeln!(anstream::stderr(), "{text}");
 }
 
 /// Prints `document` as JSON on standard output.

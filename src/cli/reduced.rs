@@ -4,6 +4,7 @@ use super::asked_model::{self, AskedModel};
 use super::{Context, JsonArgument, kinds};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
+use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::report::format::{prefixed, with_unit};
 use crate::report::{self, TableFormat};
 use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Summary};
@@ -14,32 +15,39 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Scene file, the name of a shipped scene, or `-` for standard input
     scene: String,
+    #[command(flatten)]
+    asked: Asked,
+    /// Write displacement, velocity and force over time to this file (.csv or .parquet)
+    #[arg(long, value_name = "FILE")]
+    history: Option<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// The model that is asked for; what is left out is the scene's or the program's choice.
+#[derive(Debug, Clone, Default, Args)]
+pub struct Asked {
     /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility), or auto, the cheapest whose
     /// estimated error meets the tolerance [default: the scene's, else C]
     #[arg(long)]
-    pub(super) model: Option<AskedModel>,
+    pub model: Option<AskedModel>,
     /// Number of modes [default: the scene's, else 16 for B and as many as needed for C]
     #[arg(long, value_name = "N")]
-    pub(super) modes: Option<usize>,
+    pub modes: Option<usize>,
     /// Relative error that the time integration may have: of the efficiency, of a seal seat's sphere of its velocity [default: 1e-7,
     /// of a seal seat 1e-3]; with --model auto the error of the model itself: of the efficiency, the outer body's final velocity
     /// and both force peaks [default: 1%]
     #[arg(long, value_parser = asked_model::tolerance)]
-    pub(super) tolerance: Option<f64>,
+    pub tolerance: Option<f64>,
     /// Mesh of the seat (.vtu, tetrahedra), for seal-seat scenes [default: that in meshes/ or the cache, else a new one]
     #[arg(long, value_name = "FILE")]
-    pub(super) mesh: Option<PathBuf>,
-    /// Write displacement, velocity and force over time to this file (.csv or .parquet)
-    #[arg(long, value_name = "FILE")]
-    pub(super) history: Option<PathBuf>,
-    #[command(flatten)]
-    json: JsonArgument,
+    pub mesh: Option<PathBuf>,
 }
 
 /// Largest tolerance of a time integration.
 const LARGEST_INTEGRATION: f64 = 1e-2;
 
-impl Arguments {
+impl Asked {
     /// The tolerance of the time integration of a model that is named, `default` if the user names none.
     ///
     /// # Errors
@@ -61,7 +69,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         TableFormat::of(file)?;
     }
     let (_, scene) = super::read_scene(&arguments.scene)?;
-    let outcome = kinds::of(&scene).reduced(context, &scene, arguments)?;
+    let outcome = kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default())?;
     finish(context, arguments, &outcome)
 }
 

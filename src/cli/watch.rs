@@ -26,7 +26,7 @@ pub(super) fn watch(files: &[PathBuf], job: impl Fn() -> Result<ExitStatus>) -> 
         let status = match job() {
             Err(error @ Error::Usage(_)) if first => return Err(error),
             Err(error) => {
-                eprintln!("{}", describe(&error));
+                super::tell(describe(&error));
                 error.exit_status()
             }
             Ok(status) => status,

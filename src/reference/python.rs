@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
 /// Environment variable that names the interpreter to use.
 const PYTHON_VARIABLE: &str = "IMPACTCHECK_PYTHON";
@@ -42,8 +43,16 @@ impl Interpreter {
     }
 }
 
+/// The interpreter that this library has been loaded into.
+static OWN: OnceLock<PathBuf> = OnceLock::new();
+
+/// From now on `interpreter` is looked at before others that nobody has named. For Python packages, called once.
+pub fn prefer_python(interpreter: PathBuf) {
+    OWN.get_or_init(|| interpreter);
+}
+
 /// The Python that runs `fem_reference`: the one the environment variable `IMPACTCHECK_PYTHON`
-/// names, else the first of `/usr/bin/python3` and every `python3` on `PATH` that can import it with all that it needs.
+/// names, else the first of the one that [`prefer_python`] was told, `/usr/bin/python3` and every `python3` on `PATH` that can import it with all that it needs.
 ///
 /// # Errors
 /// [`Error::Solver`] if there is none; it says where was looked and what was missing. As [`project_root`].
@@ -107,7 +116,8 @@ fn candidates(asked: Option<PathBuf>, path: &OsStr) -> Vec<PathBuf> {
     let on_path = std::env::split_paths(path).map(|folder| folder.join("python3"));
     let mut found: Vec<PathBuf> = Vec::new();
     let mut seen: Vec<PathBuf> = Vec::new();
-    for candidate in std::iter::once(PathBuf::from("/usr/bin/python3")).chain(on_path) {
+    let first = OWN.get().cloned().into_iter().chain([PathBuf::from("/usr/bin/python3")]);
+    for candidate in first.chain(on_path) {
         // /bin is often a link to /usr/bin: the same program is asked once. The file name stays,
         // because a virtual environment is told by the path it is started from.
         let Some(folder) = candidate.parent().and_then(|f| f.canonicalize().ok()) else { continue };

@@ -170,3 +170,21 @@ fn json_is_the_only_thing_on_standard_output() {
         serde_json::from_str::<serde_json::Value>(&ended.out).unwrap();
     }
 }
+
+/// `impactcheck ... 2>&1 | head -1`: what is said for people goes nowhere, the status stays.
+#[test]
+fn a_reader_of_standard_error_that_has_gone_away_changes_no_status() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = folder.path().join("report");
+    for (arguments, status) in [
+        (&["compare", "scaled-plate-r10", "--models", "A", "--out", report.to_str().unwrap()][..], 0),
+        (&["reduced", "no-such-scene"], 2),
+        (&["reduced"], 2),
+    ] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_impactcheck"));
+        let ended = program.args(arguments).current_dir(ROOT).stderr(writer).output().unwrap();
+        assert_eq!(ended.status.code(), Some(status), "{arguments:?}");
+    }
+}

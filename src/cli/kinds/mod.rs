@@ -5,9 +5,10 @@ mod seal_seat;
 
 use super::Context;
 use super::asked_model::AskedModel;
-use super::reduced::Arguments;
+use super::reduced::Asked;
 use crate::error::Result;
 use crate::kinds;
+use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::reference::Stored;
 use crate::report::Cost;
 use crate::result::Outcome;
@@ -18,11 +19,17 @@ pub(super) type Compared = (Vec<Outcome>, Vec<Cost>);
 
 /// The reduced models of a kind of scene.
 pub(super) trait Models: Sync {
-    /// Runs the model that `reduced` is asked for.
+    /// Runs the model that is `asked` for, one of a series of impacts that share `bodies`.
     ///
     /// # Errors
     /// Those of the arguments and of the model.
-    fn reduced(&self, context: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome>;
+    fn reduced(
+        &self,
+        context: &Context,
+        scene: &Scene,
+        asked: &Asked,
+        bodies: &SharedBodies,
+    ) -> Result<Outcome>;
 
     /// Whether [`Models::beside`] solves on the very mesh of the reference.
     fn shares_mesh(&self) -> bool {

@@ -3,11 +3,12 @@
 use super::{Compared, Models};
 use crate::cli::Context;
 use crate::cli::asked_model::{self, AskedModel};
-use crate::cli::reduced::Arguments;
+use crate::cli::reduced::Asked;
 use crate::curves::CommonAxis;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::choice;
 use crate::kinds::plate_impact::reduced::Reduced;
+use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::reference::Stored;
 use crate::result::Outcome;
 use crate::scene::{Model, Scene};
@@ -21,8 +22,8 @@ const COMPARISON_TOLERANCE: f64 = 1e-7;
 pub(super) struct Plates;
 
 impl Models for Plates {
-    fn reduced(&self, _: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
-        if let Some(mesh) = &arguments.mesh {
+    fn reduced(&self, _: &Context, scene: &Scene, asked: &Asked, bodies: &SharedBodies) -> Result<Outcome> {
+        if let Some(mesh) = &asked.mesh {
             return Err(Error::Usage(format!(
                 "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
                 mesh.display(),
@@ -30,19 +31,19 @@ impl Models for Plates {
             )));
         }
         let default = AskedModel::Named(scene.reduced.model.unwrap_or(Model::C));
-        let (reduced, tolerance) = match arguments.model.unwrap_or(default) {
+        let (reduced, tolerance) = match asked.model.unwrap_or(default) {
             AskedModel::Named(model) => (
-                Reduced::new(scene, model, arguments.modes)?,
-                arguments.integration_tolerance(DEFAULT_TOLERANCE)?,
+                Reduced::in_series(scene.clone(), model, asked.modes, bodies)?,
+                asked.integration_tolerance(DEFAULT_TOLERANCE)?,
             ),
             AskedModel::External => return Err(asked_model::beside_a_reference()),
             AskedModel::Auto => {
-                if let Some(modes) = arguments.modes {
+                if let Some(modes) = asked.modes {
                     return Err(Error::Usage(format!(
                         "--modes {modes}: --model auto chooses the number of modes"
                     )));
                 }
-                let tolerance = arguments.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
+                let tolerance = asked.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
                 (Reduced::auto(scene, tolerance)?, choice::integration_tolerance(tolerance))
             }
         };

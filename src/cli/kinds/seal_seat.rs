@@ -5,8 +5,9 @@ use crate::body::cache::Cache;
 use crate::cli::Context;
 use crate::cli::asked_model::{self, AskedModel};
 use crate::cli::progress::Bar;
-use crate::cli::reduced::Arguments;
+use crate::cli::reduced::Asked;
 use crate::error::{Error, Result};
+use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
 use crate::reference::{self, Resolution, Stored};
 use crate::report::Cost;
@@ -17,8 +18,8 @@ use crate::scene::{Model, Scene};
 pub(super) struct Seats;
 
 impl Models for Seats {
-    fn reduced(&self, context: &Context, scene: &Scene, arguments: &Arguments) -> Result<Outcome> {
-        let model = match arguments.model {
+    fn reduced(&self, context: &Context, scene: &Scene, asked: &Asked, _: &SharedBodies) -> Result<Outcome> {
+        let model = match asked.model {
             Some(AskedModel::Named(model)) => model,
             Some(AskedModel::Auto) => {
                 return Err(Error::Usage(format!(
@@ -31,17 +32,16 @@ impl Models for Seats {
         };
         let cache = Cache::from_environment();
         let bar = Bar::new(context, &scene.name);
-        let mesh = match &arguments.mesh {
+        let mesh = match &asked.mesh {
             Some(path) => SeatMesh::open(path)?,
             None => {
                 let show = &mut |step: &_| bar.show(step);
                 SeatMesh::open(&reference::seat_mesh_with(scene, Resolution::Paper, &cache, show)?)?
             }
         };
-        let reduced =
-            SeatModel::new_with(scene, model, arguments.modes, &mesh, &cache, &mut |part, done| {
-                bar.part(part, done)
-            })?;
+        let reduced = SeatModel::new_with(scene, model, asked.modes, &mesh, &cache, &mut |part, done| {
+            bar.part(part, done)
+        })?;
         drop(bar);
         context.note(format_args!(
             "mesh {}, {} degrees of freedom; set up in {:.2} s",
@@ -49,7 +49,7 @@ impl Models for Seats {
             reduced.dofs,
             reduced.setup_seconds
         ));
-        let tolerance = arguments.integration_tolerance(DEFAULT_TOLERANCE)?;
+        let tolerance = asked.integration_tolerance(DEFAULT_TOLERANCE)?;
         reduced.run_with_history(tolerance)
     }
 

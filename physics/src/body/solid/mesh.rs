@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::path::Path;
-use vtkio::model::{CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk};
+use vtkio::model::{Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk};
 
 /// The edges of a tetrahedron between its corners, in VTK's order of the midside nodes 4 to 9.
 pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
@@ -43,7 +43,8 @@ impl TetMesh {
         Ok(mesh)
     }
 
-    /// Reads an unstructured grid of tetrahedra (VTK cell type 10 or 24) from a `.vtu` file, in m.
+    /// Reads an unstructured grid of tetrahedra (VTK cell type 10 or 24) from a `.vtu` file, in m. Of several bodies, which a
+    /// cell array `body` tells apart, it is the first.
     ///
     /// # Errors
     /// [`Error::Solver`] if the file can't be read as VTK or its mesh is unusable.
@@ -53,7 +54,7 @@ impl TetMesh {
         let piece = grid(vtk).map_err(&failed)?;
         let points =
             piece.points.cast_into::<f64>().ok_or_else(|| failed("its points are no numbers".into()))?;
-        let points = points.chunks_exact(3).map(Vector3::from_column_slice).collect();
+        let mut points: Vec<_> = points.chunks_exact(3).map(Vector3::from_column_slice).collect();
         let order = match piece.cells.types.first() {
             Some(CellType::Tetra) => 1,
             Some(CellType::QuadraticTetra) => 2,
@@ -62,8 +63,13 @@ impl TetMesh {
         if piece.cells.types.iter().any(|t| *t != piece.cells.types[0]) {
             return Err(failed("mixes cells of different types".into()));
         }
-        let cells = connectivity(piece.cells.cell_verts, nodes_per_cell(order))
+        let of_first = cells_of_first_body(&piece.data.cell);
+        let mut cells = connectivity(piece.cells.cell_verts, nodes_per_cell(order))
             .ok_or_else(|| failed("has cells with a wrong number of nodes".into()))?;
+        if let Some(count) = of_first {
+            cells.truncate(count * nodes_per_cell(order));
+            points.truncate(cells.iter().max().map_or(0, |last| last + 1));
+        }
         Self::new(points, cells, order).map_err(failed)
     }
 
@@ -156,6 +162,15 @@ fn grid(vtk: Vtk) -> std::result::Result<UnstructuredGridPiece, String> {
         Ok([Piece::Inline(piece)]) => Ok(*piece),
         _ => Err("does not consist of one piece".into()),
     }
+}
+
+/// How many cells the first body has, where an array `body` says which one each belongs to; bodies stand one after the other.
+fn cells_of_first_body(arrays: &[Attribute]) -> Option<usize> {
+    let bodies = arrays.iter().find_map(|array| match array {
+        Attribute::DataArray(array) if array.name == "body" => array.data.cast_into::<i64>(),
+        _ => None,
+    })?;
+    Some(bodies.iter().take_while(|body| **body == bodies[0]).count())
 }
 
 /// Node numbers of cells that have `per_cell` nodes each.
@@ -259,6 +274,31 @@ mod tests {
                 assert!(faces.iter().all(on_edges));
             }
         }
+    }
+
+    /// A reference's mesh of a seat with an elastic sphere has both.
+    #[test]
+    fn of_several_bodies_the_first_is_read() {
+        let array = |kind: &str, name: &str, numbers: &str| {
+            let columns = if name == "Points" { " NumberOfComponents=\"3\"" } else { "" };
+            format!(r#"<DataArray type="{kind}" Name="{name}"{columns} format="ascii">{numbers}</DataArray>"#)
+        };
+        let corner = "0 0 0 1 0 0 0 1 0 0 0 1";
+        let text = format!(
+            r#"<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>
+<Piece NumberOfPoints="8" NumberOfCells="2"><Points>{}</Points><Cells>{}{}{}</Cells><CellData>{}</CellData>
+</Piece></UnstructuredGrid></VTKFile>"#,
+            array("Float64", "Points", &format!("{corner} {}", corner.replace('1', "3"))),
+            array("Int64", "connectivity", "0 1 2 3 4 5 6 7"),
+            array("Int64", "offsets", "4 8"),
+            array("Int64", "types", "10 10"),
+            array("Int32", "body", "0 1"),
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("two.vtu");
+        std::fs::write(&path, text).unwrap();
+        let mesh = TetMesh::read(&path).unwrap();
+        assert_eq!((mesh.points.len(), mesh.cells), (4, vec![0, 1, 2, 3]));
     }
 
     #[test]

@@ -1,0 +1,92 @@
+//! Scenes: files, shipped ones, dictionaries.
+
+use crate::raised;
+use impactcheck::cli::in_process::Placed;
+use impactcheck::scene;
+use impactcheck::{Error, scene::Scene as Checked};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyList, PyMapping, PyString, PyTuple};
+use std::path::PathBuf;
+use toml::{Table, Value};
+
+/// One impact, read and checked.
+#[pyclass(frozen, module = "impactcheck")]
+pub struct Scene {
+    /// Empty of a dictionary.
+    file: PathBuf,
+    pub scene: Checked,
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    fn new(content: &Bound<'_, PyMapping>) -> PyResult<Self> {
+        let text = toml::to_string_pretty(&table(content, "")?)
+            .map_err(|e| raised(Error::Usage(format!("the dictionary can't be a scene file: {e}"))))?;
+        let scene = Checked::parse("dictionary", &text).map_err(raised)?;
+        Ok(Self { file: PathBuf::new(), scene })
+    }
+
+    #[staticmethod]
+    fn read(path: PathBuf) -> PyResult<Self> {
+        let named = path.to_str().map_or_else(|| Ok(path.clone()), scene::resolve);
+        let file = named.map_err(raised)?;
+        let scene = Checked::read(&file).map_err(raised)?;
+        Ok(Self { file, scene })
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.scene.name
+    }
+
+    #[getter]
+    fn hash(&self) -> String {
+        self.scene.hash()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<impactcheck.Scene {}>", self.scene.name)
+    }
+}
+
+impl Scene {
+    pub fn placed(&self) -> Placed {
+        (self.file.clone(), self.scene.clone())
+    }
+}
+
+/// A mapping as TOML; `place` is its key ("plate.").
+fn table(mapping: &Bound<'_, PyMapping>, place: &str) -> PyResult<Table> {
+    let entry = |entry: Bound<'_, PyAny>| {
+        let (key, content): (Bound<'_, PyAny>, Bound<'_, PyAny>) = entry.extract()?;
+        let key = key.str()?.to_string();
+        let content = value(&content, &format!("{place}{key}"))?;
+        Ok((key, content))
+    };
+    mapping.items()?.iter().map(entry).collect()
+}
+
+/// A value as TOML. Whatever counts or measures is a number, NumPy's scalars too.
+fn value(content: &Bound<'_, PyAny>, place: &str) -> PyResult<Value> {
+    if content.is_instance_of::<PyBool>() {
+        return content.extract().map(Value::Boolean);
+    }
+    if content.is_instance_of::<PyString>() {
+        return content.extract().map(Value::String);
+    }
+    if let Ok(mapping) = content.cast::<PyMapping>() {
+        return table(mapping, &format!("{place}.")).map(Value::Table);
+    }
+    if content.is_instance_of::<PyList>() || content.is_instance_of::<PyTuple>() {
+        let elements = content.try_iter()?.map(|element| value(&element?, place));
+        return elements.collect::<PyResult<_>>().map(Value::Array);
+    }
+    let number = content.extract().map(Value::Integer).or_else(|_| content.extract().map(Value::Float));
+    number.map_err(|_| {
+        let found = content.get_type();
+        raised(Error::Scene(miette::miette!(
+            "`{place}` is a {found}, but a scene has texts, numbers, lists and dictionaries only"
+        )))
+    })
+}

@@ -1,0 +1,103 @@
+//! What the commands compute, for programs that hold scenes in memory, as the Python package does: the same models, defaults,
+//! bounds and sentences; nothing is printed.
+
+pub use super::asked_model::AskedModel;
+pub use super::reduced::Asked;
+
+use super::asked_model::within_bounds;
+use super::compare::{Arguments, Job, Outputs};
+use super::{Context, kinds, stored_references};
+use crate::comparison::Comparison;
+use crate::error::{Error, Result};
+use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::reference::Resolution;
+use crate::report::{self, Theme};
+use crate::result::Outcome;
+use crate::scene::Scene;
+use clap::Args;
+use std::path::PathBuf;
+
+const QUIET: Context = Context { store: None, quiet: true, verbose: false };
+
+/// What `impactcheck reduced` computes of `scene`, one of a series of impacts that share `bodies`.
+///
+/// # Errors
+/// Those of the command.
+pub fn reduced(scene: &Scene, asked: &Asked, bodies: &SharedBodies) -> Result<Outcome> {
+    if let Some(tolerance) = asked.tolerance {
+        within_bounds(tolerance, &format!("tolerance {tolerance}")).map_err(Error::Usage)?;
+    }
+    kinds::of(scene).reduced(&QUIET, scene, asked, bodies)
+}
+
+/// A scene and its file, which is empty if there is none.
+pub type Placed = (PathBuf, Scene);
+
+/// The stored reference of a scene; if it is missing and may be computed, a new one.
+///
+/// # Errors
+/// Those of `impactcheck reference`.
+pub fn reference(scene: Placed, resolution: Resolution, compute: bool) -> Result<Outcome> {
+    let mut found = stored_references::look_up(&QUIET, resolution, compute, &[scene])?;
+    found.pop().map(|stored| stored.outcome).ok_or_else(|| Error::Internal("a reference was found".into()))
+}
+
+/// What a comparison may differ in from that of `impactcheck compare` without options.
+#[derive(Debug)]
+pub struct Comparing {
+    /// The models.
+    pub models: Vec<AskedModel>,
+    /// The reference's.
+    pub resolution: Resolution,
+    /// Whether references that are missing are computed.
+    pub compute: bool,
+    /// Whether the programs that scenes name may run.
+    pub allow_external: bool,
+    /// Folder of the report; `None` = none is written.
+    pub out: Option<PathBuf>,
+}
+
+/// A comparison, and the figure of each of its scenes as SVG.
+#[derive(Debug)]
+pub struct Compared {
+    /// As `impactcheck compare --json` prints it.
+    pub comparison: Comparison,
+    /// Shape (scenes).
+    pub figures: Vec<String>,
+}
+
+/// What `impactcheck compare` does with `scenes`; with none, with those shipped.
+///
+/// # Errors
+/// Those of the command.
+pub fn compare(scenes: Vec<Placed>, asked: Comparing) -> Result<Compared> {
+    let Comparing { models, resolution, compute, allow_external, out } = asked;
+    let is_written = out.is_some();
+    let mut arguments: Arguments = defaults()?;
+    arguments.permission.allow_external = allow_external;
+    (arguments.models, arguments.resolution, arguments.compute) = (models, resolution, compute);
+    arguments.out = out.unwrap_or_default();
+    let job = if scenes.is_empty() { Job::read(&QUIET, &arguments)? } else { Job::of(&arguments, scenes)? };
+    if is_written {
+        job.check_folders(&[])?;
+    }
+    let results = job.results(&QUIET)?;
+    let mut report = job.report(&QUIET, &results)?;
+    let figures = report.scenes.iter().map(|scene| report::figure(scene, Theme::Standalone)).collect();
+    let comparison =
+        if is_written { job.write(&mut report, &Outputs::default())? } else { report.comparison() };
+    Ok(Compared { comparison, figures })
+}
+
+/// The arguments of a command that is given none.
+fn defaults<A: Args>() -> Result<A> {
+    let command = A::augment_args(clap::Command::new("impactcheck").no_binary_name(true));
+    let found = command.try_get_matches_from([""; 0]).and_then(|found| A::from_arg_matches(&found));
+    found.map_err(|e| Error::Internal(e.to_string()))
+}
+
+/// What the program says of an error, without its colours.
+pub fn told(error: &Error) -> String {
+    let text = super::describe(error);
+    anstream::adapter::strip_str(text.strip_prefix("error: ").unwrap_or(&text)).to_string().trim().to_owned()
+}
