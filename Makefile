@@ -61,12 +61,13 @@ python: setup wheel
 
 # a live finite-element run on coarse meshes, and the gate on what it gives; the scene is the one whose coarse mesh is
 # good enough for the tolerances (10 mm spheres: the outer contact ends 0.6 us early on it)
-live: setup
+live: setup wheel
 	rm -rf $(OUT)/live
 	$(RUN) doctor
 	$(RUN) --store $(OUT)/live/store reference scaled-plate-r6.35 --resolution coarse
 	$(RUN) --store $(OUT)/live/store gate scaled-plate-r6.35 --resolution coarse --out $(OUT)/live/report
 	IMPACTCHECK_LIVE=1 cargo test --release --test command_line guide
+	IMPACTCHECK_LIVE=1 $(WHEEL)/bin/python -m pytest -q python -k computed
 
 # the gate on the stored references
 gate:

@@ -43,6 +43,7 @@ pub mod sampling;
 pub mod scene;
 pub mod stress;
 pub mod study;
+pub mod uncertainty;
 pub mod validated;
 
 pub use impactcheck_physics::{Error, ExitStatus, Result};

@@ -58,13 +58,17 @@ class Springs:
             nodes = np.flatnonzero((self.body == body) & (level == of_level))
             terms = slice(self.counts[body])
             exponent = dt * 2.0**of_level / self.time[body, terms]
-            group.level, group.count, group.terms = of_level, nodes.size, self.counts[body]
+            components = self.extension.shape[2]
+            group.level, group.count = of_level, nodes.size
+            group.entries = components * self.counts[body]
             group.node = arrays.pointer(nodes, np.int32)
             group.lasting = self.lasting[body]
-            group.ratio = arrays.pointer(self.ratio[body, terms], np.float64)
-            group.decay = arrays.pointer(np.exp(-exponent), np.float64)
-            growth = -self.time[body, terms] * np.expm1(-exponent)
-            group.growth = arrays.pointer(growth, np.float64)
+            for name, values in {
+                "ratio": self.ratio[body, terms],
+                "decay": np.exp(-exponent),
+                "growth": -self.time[body, terms] * np.expm1(-exponent),
+            }.items():
+                setattr(group, name, arrays.pointer(np.repeat(values, components), np.float64))
         return made
 
 
@@ -96,14 +100,15 @@ class Ledger:
         once, twice = -tau * np.expm1(-time / tau), -0.5 * tau * np.expm1(-2.0 * time / tau)
         stays, meets, comes = twice, once - twice, time - 2.0 * once + twice
         body = springs.body
-        for k in range(tau.shape[1]):
-            d, q = self._extension[:, k], self._forces[:, k]
-            of_node = [(share * x)[body, k] for x in (stays, 2.0 * tau * meets, tau**2 * comes)]
-            powers = [(a * b).sum(axis=1) for a, b in ((d, q), (speed, q), (speed, rate))]
-            self._lost += sum(x * y for x, y in zip(of_node, powers, strict=True))
-            for x, v in ((d, speed), (q, rate)):
-                x *= decay[body, k, None]
-                x += once[body, k, None] * v
+        stays, meets, comes = share * stays, 2.0 * share * tau * meets, share * tau**2 * comes
+        self._lost += (
+            stays[body] * np.einsum("nkd,nkd->nk", self._extension, self._forces)
+            + meets[body] * np.einsum("nd,nkd->nk", speed, self._forces)
+            + comes[body] * np.einsum("nd,nd->n", speed, rate)[:, None]
+        ).sum(axis=1)
+        for x, v in ((self._extension, speed), (self._forces, rate)):
+            x *= decay[body, :, None]
+            x += once[body, :, None] * v[:, None, :]
 
     def energies(self, time: float, moved: Floats) -> tuple[Floats, Floats]:
         """(n,) stored in the springs and lost so far, J, ``time``/2 s from now.

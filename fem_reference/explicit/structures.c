@@ -192,12 +192,12 @@ typedef struct {
 typedef struct {
     int64_t level;
     int64_t count;
-    int64_t terms;         /* of the body, 0: elastic */
+    int64_t entries;       /* extensions of a node, C of each term of the body; 0: elastic */
     const int32_t *node;   /* (count) */
     double lasting;        /* 1 - sum of the ratios: share of the modulus that does not relax */
-    const double *ratio;   /* (terms) share g of each spring */
-    const double *decay;   /* (terms) exp(-h / tau) over the level's time step h */
-    const double *growth;  /* (terms) tau (1 - exp(-h / tau)), s */
+    const double *ratio;   /* (entries) share g of each spring */
+    const double *decay;   /* (entries) exp(-h / tau) over the level's time step h */
+    const double *growth;  /* (entries) tau (1 - exp(-h / tau)), s */
 } Relaxing;
 
 typedef struct {

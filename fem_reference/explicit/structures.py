@@ -229,7 +229,7 @@ class Relaxing(ctypes.Structure):
     _fields_ = (
         ("level", ctypes.c_int64),
         ("count", ctypes.c_int64),
-        ("terms", ctypes.c_int64),
+        ("entries", ctypes.c_int64),
         ("node", INT32),
         ("lasting", ctypes.c_double),
         ("ratio", DOUBLE),

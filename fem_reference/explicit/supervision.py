@@ -14,6 +14,7 @@ import numpy as np
 from ..common.arrays import Floats
 from ..common.errors import DivergedError, SolverError
 from ..common.settings import CHATTER_FRACTION, PEAK_WINDOW_FRACTION
+from . import structures
 from .checkpoint import Checkpoint
 from .energies import Energies, energies_of
 from .frames import Frames
@@ -30,6 +31,8 @@ LEDGER_ERROR = 2e-3
 """What the ledger of relaxing bodies may miss of the energy they lose: it looks at intervals."""
 RELAXATION_LOOKS = 400
 """Looks of the ledger of what relaxes in the contact's duration."""
+LEAST_PUSH = 1e-4
+"""Share of the film's impulse so far that it gives within a sample, if it pushes."""
 
 Sample = Callable[[int, int], Floats]
 """Advances by samples (first) of a stride of steps (second); a row of the first step of each."""
@@ -181,10 +184,33 @@ def _sampled(
     """``samples`` rows in parts between which the ledger of what relaxes looks."""
     if loop.ledger is None:
         return [sample(samples, stride)]
+    film = loop.problem.film
+    if film is not None:
+        return _sampled_beside_film(loop, film, sample, samples, stride)
     rows, part = [], max(1, round(duration / RELAXATION_LOOKS / (stride * loop.dt)))
     for first in range(0, samples, part):
         rows.append(sample(min(part, samples - first), stride))
         loop.look()
+    return rows
+
+
+def _sampled_beside_film(
+    loop: Loop, film: structures.Film, sample: Sample, samples: int, stride: int
+) -> list[Floats]:
+    """``samples`` rows; where the film pushes the ledger looks whenever all levels meet.
+
+    A film moves its nodes within less than the interval of a sample.
+    """
+    rows, every = [], loop.meeting
+    for _ in range(samples):
+        before = film.impulse
+        taken = []
+        for _ in range(stride // every):
+            taken.append(sample(1, every))
+            loop.look()
+        rows.append(taken[0])
+        pushed = abs(film.impulse - before) > LEAST_PUSH * abs(film.impulse)
+        every = loop.meeting if pushed else stride
     return rows
 
 

@@ -37,6 +37,11 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
     from ..common.processes import in_processes
 
     scene = parse_seat_scene(document)
+    if arguments.np > 1 and scene.seat.material.relaxation:
+        raise SceneError(
+            "seat.material.relaxation is given; solid geometry relaxes in one process, "
+            f"--np is {arguments.np}; it must be 1"
+        )
 
     def work(comm: Any) -> None:
         from ..common.settings import SOLVERS, Options

@@ -67,8 +67,12 @@ class Ending:
         self.axis = np.array(ring.axis)[[0, 2]]
         self.across = np.array([self.axis[1], -self.axis[0]])
         self.sin, self.cos = math.sin(ring.half_angle), math.cos(ring.half_angle)
-        self.ring_flexibility = max(flexibility(loop, seat.patches[k]) for k in (LEFT, RIGHT))
-        self.tip_flexibility = max(flexibility(loop, seat.patches[k]) for k in seat.tips)
+        # The stiffness that lasts bounds what an energy can displace.
+        lasting = scene.seat.material.lasting
+        self.ring_flexibility, self.tip_flexibility = (
+            max(flexibility(loop, seat.patches[k]) for k in which) / lasting
+            for which in ((LEFT, RIGHT), seat.tips)
+        )
 
         self.sphere_flexibility = 0.0
         if seat.sphere_facets is not None:

@@ -95,9 +95,15 @@ def _write(
         sample_interval=interval,
         stress_times=write_fields(folder, model, solution.recorder),
     )
+    losses: dict[str, Any] = {}
     if scene.friction > 0.0:
+        losses["contacts"] = run.rubbed
+    if run.relaxed is not None:
+        # Of actuator, seat and sphere.
+        losses["bodies"] = (0.0, run.relaxed, 0.0)
+    if losses:
         none = {"plate_damping": 0.0, "squeeze_film": 0.0, "drag": 0.0}
-        summary["losses"] = {**none, "contacts": run.rubbed}
+        summary["losses"] = {**none, **losses}
     record_geometry(folder / "mesh.vtu", scene)
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(

@@ -15,7 +15,7 @@ from ..explicit.levels import MOST_LEVELS
 from ..explicit.loop import Loop
 from ..explicit.records import intervals
 from ..explicit.spectrum import critical_time_step
-from ..explicit.supervision import Course, Plan, supervise
+from ..explicit.supervision import Account, Course, Plan, supervise
 from .ending import Ending
 from .model import FRACTION, LEFT, RIGHT, SEAT, SeatModel
 from .motion import pair_again, sphere_motion
@@ -61,11 +61,18 @@ class SeatRun:
     contact_loss: float
     rubbed: tuple[float, float]
     """Lost to friction at the tips and on the flanks, J."""
+    relaxed: float | None
+    """Lost in the seat to relaxation, J; None: it is elastic."""
     momentum_residual: float
     support_impulse: float
     """Along z, N s."""
     unconverged: int
     """Steps whose contact solver did not converge."""
+
+
+def account(run: SeatRun, scene: SeatScene, levels: int) -> Account:
+    """For `stable_run`, of a run with so many levels."""
+    return Account(levels, run.energy_residual, (run.relaxed or 0.0) / scene.initial_energy)
 
 
 def contact_duration(scene: SeatScene) -> float:
@@ -206,6 +213,7 @@ def momentum_misses(loop: Loop, seat: SeatModel, scene: SeatScene) -> list[float
 def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows: Floats) -> SeatRun:
     problem = loop.problem
     energies: Energies = energies_of(loop)
+    relaxed = sum(energies.lost)
     work = sum(record.work for record in problem.records())
     places = (seat.tips, (LEFT, RIGHT))
     rubbed = [sum(problem.contacts[k].rubbed for k in which) for which in places]
@@ -229,9 +237,10 @@ def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows:
         actuator_contacts=_intervals(loop, tuple(seat.tips)),
         flank_impulses=(flanks[0], flanks[1]),
         in_contact_at_end=loop.touching,
-        energy_residual=abs(energies.total - initial - work - sum(rubbed)) / initial,
+        energy_residual=abs(energies.total + relaxed - initial - work - sum(rubbed)) / initial,
         contact_loss=-work / initial,
         rubbed=(-rubbed[0] / FRACTION, -rubbed[1] / FRACTION),
+        relaxed=None if loop.ledger is None else relaxed / FRACTION,
         momentum_residual=max(abs(m) for m in momentum_misses(loop, seat, scene)) / momentum,
         support_impulse=problem.state.reaction[2] / FRACTION,
         unconverged=problem.state.unconverged,

@@ -263,9 +263,11 @@ def parse_seat_scene(document: Any) -> SeatScene:
         if run.node.get("end_time") is not None:
             end_time = run.number("end_time", "s")
     seat, sphere = _seat(root.child("seat")), root.child("sphere")
-    if seat.material.relaxation or "relaxation" in sphere.child("material").node:
-        raise SceneError("a material relaxes; the bodies of a seal seat are elastic")
     sphere.allow("radius", "material", "mass", "body")
+    if "relaxation" in sphere.child("material").node:
+        raise SceneError(
+            "sphere.material.relaxation is given; of a seal seat the seat alone relaxes"
+        )
     return SeatScene(
         name=root.text("name"),
         scene_hash=root.text("scene_hash"),

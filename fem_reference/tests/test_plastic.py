@@ -264,13 +264,18 @@ def test_first_yield_lies_where_hertz_pressure_puts_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("ratio", "restitution"), [(2.1, 0.975), (26.0, 0.730), (53.0, 0.654), (105.0, 0.572)]
+    ("ratio", "restitution", "within"),
+    [(2.1, 0.975, 0.003), (26.0, 0.730, 0.003), (53.0, 0.654, 0.003), (105.0, 0.572, 0.008)],
 )
-def test_rebound_from_a_rigid_wall(ratio: float, restitution: float) -> None:
+def test_rebound_from_a_rigid_wall(ratio: float, restitution: float, within: float) -> None:
+    """As other finite elements, made without this program, have it.
+
+    The last differs by 0.007 at 5, 0.009 at 10 and 0.007 at 15 elements: not by the mesh.
+    """
     found = rebound(Wall(ratio), 5)
     assert found.energy_residual < 1e-5
     assert found.inside
-    assert found.restitution == pytest.approx(restitution, abs=0.008)
+    assert found.restitution == pytest.approx(restitution, abs=within)
 
 
 def test_fully_developed_dent_has_the_pressure_of_a_hardness_test() -> None:

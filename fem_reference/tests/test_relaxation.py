@@ -157,6 +157,7 @@ def test_damping_and_relaxation_together() -> None:
     [
         {"friction": 0.3},
         {"fluid": WATER},
+        {"fluid": {**WATER, "viscosity": 0.05}},
         {
             "fluid": {
                 **WATER,
@@ -167,7 +168,7 @@ def test_damping_and_relaxation_together() -> None:
             }
         },
     ],
-    ids=["friction", "film", "drag, mass and damping"],
+    ids=["friction", "film", "viscous film", "drag, mass and damping"],
 )
 def test_ledger_closes_beside_another_loss(beside: dict[str, Any]) -> None:
     coarse: dict[str, Any] = {

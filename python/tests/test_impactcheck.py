@@ -92,6 +92,30 @@ def test_the_reference_has_bands() -> None:
     )
 
 
+@pytest.mark.skipif("IMPACTCHECK_LIVE" not in os.environ, reason="needs FEniCSx, and some seconds")
+def test_a_reference_is_computed_where_the_package_is_installed(tmp_path: Path) -> None:
+    script = """
+import impactcheck as ic
+from test_impactcheck import SPHERE, TABLE_1
+small = {**SPHERE, "radius": "5 mm"}
+plate = {**TABLE_1["plate"], "radius": "20 mm"}
+outer = {**small, "speed": "400 mm/s"}
+scene = ic.Scene({**TABLE_1, "name": "mine", "plate": plate, "outer": outer, "inner": small})
+reference = ic.reference(scene, "coarse", compute=True)
+found = ic.compare(scene, models=["C"], resolution="coarse").model("C")
+print(abs(found.efficiency - reference.efficiency), reference.uncertainty["efficiency"])
+"""
+    paths = {"XDG_DATA_HOME": str(tmp_path / "data"), "PYTHONPATH": str(Path(__file__).parent)}
+    command = [sys.executable, "-c", script]
+    ended = subprocess.run(
+        command, cwd=tmp_path, env={**os.environ, **paths}, capture_output=True, text=True
+    )
+    assert ended.returncode == 0, ended.stderr
+    difference, band = map(float, ended.stdout.split())
+    assert difference < 2 * band < 0.01
+    assert (tmp_path / "data/impactcheck/solutions/mine/coarse/summary.json").is_file()
+
+
 def test_a_program_that_fails_stops_nothing(tmp_path: Path) -> None:
     programs = [{"name": "gone", "command": ["no-such-program"]}]
     scene = ic.Scene({**TABLE_1, "external": programs})

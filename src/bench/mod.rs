@@ -1,4 +1,4 @@
-//! Run time against error: integrators with their peers, models over their number of modes, meshes of the reference.
+//! Run time against error: integrators with their peers, models over their number of modes, meshes of the reference, impacts in series.
 //!
 //! Everything is measured in one run of one program on one machine, so that ratios mean something. Every solver
 //! is run over its own tolerances; at each error the quickest run that is at least that good counts.
@@ -6,8 +6,10 @@
 mod figure;
 mod integrators;
 mod models;
+mod series;
 
 pub use figure::figure;
+pub use series::Series;
 
 use crate::error::Result;
 use crate::reference::Store;
@@ -67,6 +69,8 @@ pub struct Bench {
     pub work_precision: Vec<WorkPrecision>,
     /// What follows from them.
     pub ratios: Vec<Ratio>,
+    /// Impacts in series.
+    pub series: Vec<Series>,
     /// Peers that could not be run, and why.
     pub notes: Vec<String>,
 }
@@ -86,6 +90,8 @@ pub struct Settings {
     pub peers: Vec<PathBuf>,
     /// Whether models over their modes, and the reference's meshes, are compared as well.
     pub models: bool,
+    /// Impacts in each series; 0 = none.
+    pub series: usize,
 }
 
 impl Default for Settings {
@@ -102,6 +108,7 @@ impl Default for Settings {
             scipy: true,
             peers: Vec::new(),
             models: true,
+            series: 1000,
         }
     }
 }
@@ -120,6 +127,7 @@ pub fn run(settings: &Settings, store: &Store, note: &dyn Fn(&str)) -> Result<Be
         machine: machine(),
         work_precision: Vec::new(),
         ratios: Vec::new(),
+        series: Vec::new(),
         notes: Vec::new(),
     };
     for &modes in &settings.modes {
@@ -129,6 +137,10 @@ pub fn run(settings: &Settings, store: &Store, note: &dyn Fn(&str)) -> Result<Be
     if settings.models {
         note("models and meshes");
         models::run(store, &mut bench)?;
+    }
+    if settings.series > 0 {
+        note("impacts in series");
+        series::run(settings, &mut bench)?;
     }
     bench.ratios.splice(0..0, integrator_ratios(&bench.work_precision));
     Ok(bench)

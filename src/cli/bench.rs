@@ -16,6 +16,12 @@ pub struct Arguments {
     /// Also run these programs that solve the same equations, as benches/diffsol does: one JSON document in, one line per run out
     #[arg(long = "peer", value_name = "PROGRAM")]
     peers: Vec<PathBuf>,
+    /// Random impacts in each series (models B and C, with and without other shapes), each held against an exact set-up
+    #[arg(long, default_value_t = 1000, value_name = "N")]
+    series: usize,
+    /// Measure series alone
+    #[arg(long)]
+    series_alone: bool,
     /// Write the document and the diagrams (JSON, SVG, PNG) into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -29,8 +35,13 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         // refused before anything is computed
         report::check_writable(folder)?;
     }
-    let settings =
-        Settings { modes: arguments.modes.clone(), peers: arguments.peers.clone(), ..Settings::default() };
+    let (modes, peers, series) = (arguments.modes.clone(), arguments.peers.clone(), arguments.series);
+    let settings = Settings { modes, peers, series, ..Settings::default() };
+    let settings = if arguments.series_alone {
+        Settings { modes: Vec::new(), models: false, ..settings }
+    } else {
+        settings
+    };
     let bench = bench::run(&settings, &context.store(), &|text| context.note(text))?;
     if let Some(folder) = &arguments.out {
         let svg = bench::figure(&bench);
@@ -63,6 +74,32 @@ fn table(bench: &Bench) -> String {
             ratio.relative_error,
             ratio.seconds,
             ratio.ratio
+        ));
+    }
+    if !bench.series.is_empty() {
+        lines.push(format!(
+            "{:<64} {:>8} {:>8} {:>21} {:>21}",
+            "series of impacts on one core: impacts per second",
+            "cold",
+            "warm",
+            "all errors 99 %, max",
+            "efficiency 99 %, max"
+        ));
+    }
+    for series in &bench.series {
+        let errors = |[most, largest]: [f64; 2]| format!("{most:.1e}, {largest:.1e}");
+        lines.push(format!(
+            "{:<64} {:>8.0} {:>8.0} {:>21} {:>21}",
+            format!(
+                "model {}, {} fields vary, {} impacts",
+                series.model,
+                series.varied.len(),
+                series.impacts
+            ),
+            series.per_second_cold,
+            series.per_second_warm,
+            errors(series.error),
+            errors(series.efficiency_error)
         ));
     }
     lines.extend(bench.notes.iter().map(|note| format!("note: {note}")));

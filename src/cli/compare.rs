@@ -4,6 +4,7 @@ use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
 use super::external::{self, Permission};
 use super::film::film;
+use super::progress::Counter;
 use super::second_program::{self, Asked};
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument, kinds, validated_scenes};
@@ -16,13 +17,17 @@ use crate::measured::{self, Record, Speed};
 use crate::reference::{COARSER, Resolution, Stored};
 use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
 use crate::result::Outcome;
-use crate::scene::Scene;
+use crate::scene::{Model, Scene, Template};
+use crate::uncertainty::{Request, Scatter, study};
 use crate::validated::Validation;
 use clap::Args;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+/// Half width of the intervals of mean and standard deviation, over the latter, of what scatters: u_input to 5 %.
+const SCATTER_ACCURACY: f64 = 0.05;
 /// Results over commits, beside the report.
 const TRENDS: &str = "trends.jsonl";
 
@@ -272,7 +277,7 @@ impl<'a> Job<'a> {
 
     /// The comparison of all scenes, and what is shown with it.
     pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
-        let (mut scenes, mut found) = (Vec::new(), Vec::new());
+        let (mut scenes, mut found, mut scatters) = (Vec::new(), Vec::new(), Vec::new());
         for ((file, scene), Results { stored, reduced, cost, coarser, other }) in
             self.scenes.iter().zip(results)
         {
@@ -288,6 +293,13 @@ impl<'a> Job<'a> {
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
             found.push((stored, Validation::of(scene, &comparison)));
+            scatters.push(scatter(context, file, scene, &comparison).unwrap_or_else(|error| {
+                context.note(format_args!(
+                    "scene `{}` is compared as if its inputs were certain: {error}",
+                    scene.name
+                ));
+                BTreeMap::new()
+            }));
             let asked = self.figures.iter().any(|(_, format)| *format == FigureFile::Animation);
             let film = film(context, scene, (stored, reduced), asked)?;
             scenes.push(SceneReport {
@@ -319,6 +331,11 @@ impl<'a> Job<'a> {
             report.comparison.measured = Some(measured);
             let files = self.arguments.measured.iter().map(|f| format!(" --measured {}", f.display()));
             report.command += &files.collect::<String>();
+        }
+        for (report, scatters) in
+            scenes.iter_mut().zip(&scatters).filter(|(_, scatters)| !scatters.is_empty())
+        {
+            report.comparison.add_validation(scatters);
         }
         Ok(Report { scenes, rules: GateRules::default() })
     }
@@ -389,6 +406,36 @@ impl<'a> Job<'a> {
         }
         Ok(comparison)
     }
+}
+
+/// How the results of the models that are compared, and of model C, scatter if the scene says how uncertain its inputs are; by name.
+fn scatter(
+    context: &Context,
+    file: &Path,
+    scene: &Scene,
+    comparison: &SceneComparison,
+) -> Result<BTreeMap<String, Scatter>> {
+    if scene.uncertainty.is_none() {
+        return Ok(BTreeMap::new());
+    }
+    let template = Template::read(file)?;
+    let mut scatters = BTreeMap::new();
+    for model in [Model::A, Model::B, Model::C] {
+        let name = model.to_string();
+        let compared = comparison.models.iter().find(|compared| compared.model == name);
+        if compared.is_none() && model != Model::C {
+            continue;
+        }
+        let counter = Counter::new(context, &format!("{}: scatter of model {name}", scene.name));
+        let request = Request {
+            modes: compared.and_then(|model| model.summary.modes),
+            ..Request::new(model, SCATTER_ACCURACY)
+        };
+        let found = study((file, &template), &request, None, &|progress| counter.show(progress))?;
+        counter.finish();
+        scatters.insert(name, found);
+    }
+    Ok(scatters)
 }
 
 /// The comparison with its discrepancy budget. A budget that can't be drawn up is said to be missing: the comparison

@@ -25,6 +25,7 @@ mod stored_references;
 mod stress;
 mod study;
 mod sweep;
+mod uncertainty;
 mod validated_scenes;
 mod watch;
 
@@ -89,6 +90,11 @@ enum Command {
         after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
     )]
     Study(study::Arguments),
+    /// Tell how the results of a reduced model scatter with the inputs of a scene, and which input makes how much of it
+    #[command(
+        after_help = "Example: impactcheck uncertainty examples/uncertainty/table1-r10.toml --out my-scatter"
+    )]
+    Uncertainty(uncertainty::Arguments),
     /// Find the numbers of a scene, within bounds, that transmit most energy
     #[command(
         after_help = "Example: impactcheck optimise scaled-plate-r10 --over plate.radius=15mm..60mm --over plate.thickness=1mm..3mm"
@@ -189,6 +195,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
             gate::run(&context, &arguments)
         }
         Command::Study(arguments) => study::run(&context, &arguments),
+        Command::Uncertainty(arguments) => uncertainty::run(&context, &arguments),
         Command::Optimise(arguments) => optimise::run(&context, &arguments),
         Command::Bench(arguments) => bench::run(&context, &arguments),
         Command::Diff(arguments) => diff::run(&arguments),

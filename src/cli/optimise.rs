@@ -1,14 +1,18 @@
-//! `impactcheck optimise`: the numbers of a scene that transmit most.
+//! `impactcheck optimise`: the numbers of a scene with which most is transmitted, or another result is largest.
 
-use super::{Context, JsonArgument, reference};
+use super::reference::compute;
+use super::{Context, JsonArgument};
+use crate::body::cache::Cache;
 use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::optimise::{Confirmation, Optimum, Problem, Variable, confirm};
-use crate::reference::{Resolution, Stored, Wish};
+use crate::kinds::seal_seat::SeatMesh;
+use crate::optimise::{Confirmation, Objective, Optimum, Problem, Robust, Variable, confirm};
+use crate::reference::{self, Resolution, Stored, Wish};
 use crate::report;
+use crate::report::format::words;
 use crate::result::Summary;
-use crate::scene::{self, Model, Scene, Template};
+use crate::scene::{self, Model, Scene, Setup, Template};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -21,6 +25,16 @@ pub struct Arguments {
     /// for several variables
     #[arg(long, required = true, value_name = "FIELD=LOW..HIGH")]
     over: Vec<String>,
+    /// The result that is to be largest: a quantity of `reduced --json`, or intended_speed, a seal seat's velocity of the sphere along
+    /// the intended direction [default: efficiency; of a seal seat intended_speed]
+    #[arg(long, value_name = "NAME")]
+    objective: Option<String>,
+    /// How far from the intended direction the sphere of a seal seat may fly
+    #[arg(long, value_name = "ANGLE")]
+    within: Option<String>,
+    /// Mesh (.vtu) of the seat of a seal-seat scene, which follows its dimensions [default: a coarse one]
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
     /// Reduced model [default: the scene's, else B, which needs no mesh at every point]
     #[arg(long)]
     model: Option<Model>,
@@ -30,6 +44,12 @@ pub struct Arguments {
     /// Seed of the samples of a search over several variables
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Number of these samples [default: by the number of variables]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=100_000))]
+    samples: Option<u32>,
+    /// Maximise this quantile of the efficiency instead, over what the scene's [uncertainty] makes of every design [default quantile: 5%]
+    #[arg(long, value_name = "QUANTILE", num_args = 0..=1, default_missing_value = "5%", value_parser = probability)]
+    robust: Option<f64>,
     /// Hold the optimum against the finite-element reference: the stored one, else computed (needs FEniCSx)
     #[arg(long)]
     verify: bool,
@@ -69,19 +89,31 @@ struct Verification {
     model: Option<Box<ModelComparison>>,
 }
 
+/// Parses the probability of a quantile, as a number or in percent.
+fn probability(text: &str) -> std::result::Result<f64, String> {
+    let value = scene::quantity_in(text, "1")?;
+    if (0.01..=0.99).contains(&value) { Ok(value) } else { Err(format!("{text} is not within 1 % to 99 %")) }
+}
+
 /// Searches the optimum, verifies it if asked to, prints it.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let template = Template::read(scene::resolve(&arguments.scene)?)?;
-    // only plate impacts are searched
-    template.scene().plate_impact()?;
-    let model = arguments.model.or(template.scene().reduced.model).unwrap_or(Model::B);
+    let mesh = seat_mesh(context, arguments, template.scene())?;
+    let usual = if mesh.is_some() { Model::C } else { Model::B };
+    let model = arguments.model.or(template.scene().reduced.model).unwrap_or(usual);
+    let within =
+        arguments.within.as_ref().map(|text| template.field("intended.angle")?.parse(text)).transpose()?;
+    let objective = Objective::of(arguments.objective.as_deref(), within, template.scene())?;
     let variables =
         arguments.over.iter().map(|text| Variable::parse(text, &template)).collect::<Result<Vec<_>>>()?;
     if let Some(folder) = &arguments.out {
         report::check_writable(folder)?;
     }
-    let problem = Problem::new(template, variables, model, arguments.modes)?;
-    let optimum = problem.solve(arguments.seed)?;
+    let robust =
+        arguments.robust.map(|quantile| Robust::new(&template, quantile, arguments.seed)).transpose()?;
+    let models = (model, arguments.modes);
+    let problem = Problem::new(template, variables, objective, models, mesh.as_ref(), robust)?;
+    let optimum = problem.solve(arguments.seed, arguments.samples.map(|n| n as usize))?;
     let confirmation = confirm(&problem, &optimum).unwrap_or_else(|error| {
         context.note(format_args!("warning: model C can't confirm the optimum: {error}"));
         None
@@ -112,6 +144,28 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     Ok(failure.unwrap_or(ExitStatus::Pass))
 }
 
+/// The mesh of a seal seat that is to follow its dimensions; none of other scenes.
+fn seat_mesh(context: &Context, arguments: &Arguments, scene: &Scene) -> Result<Option<SeatMesh>> {
+    if matches!(scene.setup, Setup::PlateImpact(_)) {
+        return match &arguments.mesh {
+            Some(mesh) => Err(Error::Usage(format!(
+                "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
+                mesh.display(),
+                scene.name
+            ))),
+            None => Ok(None),
+        };
+    }
+    let cache = Cache::from_environment();
+    let of = |resolution| reference::seat_mesh(scene, resolution, &cache);
+    let path = match &arguments.mesh {
+        Some(path) => path.clone(),
+        None => of(Resolution::Coarse).or_else(|_| of(Resolution::Paper))?,
+    };
+    context.note(format_args!("mesh {}", path.display()));
+    SeatMesh::open(&path).map(Some)
+}
+
 fn verify(
     context: &Context,
     arguments: &Arguments,
@@ -135,7 +189,7 @@ fn reference_of(context: &Context, arguments: &Arguments, scene: &Scene) -> Resu
     let store = context.store();
     match store.find_here_or_shipped(scene, arguments.resolution).found() {
         Some(stored) => Ok(stored),
-        None => reference::compute(context, scene, arguments.resolution, &store, &Wish::default()),
+        None => compute(context, scene, arguments.resolution, &store, &Wish::default()),
     }
 }
 
@@ -145,6 +199,7 @@ fn write(context: &Context, folder: &Path, problem: &Problem, document: &Documen
         .map_err(|e| Error::Internal(format!("writing the optimum as JSON: {e}")))?;
     let files = [
         ("optimum.json", (json + "\n").into_bytes()),
+        ("history.csv", document.optimum.history_csv()?),
         ("optimum.toml", problem.scene_text(&document.optimum.values())?.into_bytes()),
         ("optimum.png", report::png(&svg, 3.0)?),
         ("optimum.svg", svg.into_bytes()),
@@ -156,23 +211,47 @@ fn write(context: &Context, folder: &Path, problem: &Problem, document: &Documen
     Ok(())
 }
 
+/// The best in words.
+fn reached(optimum: &Optimum) -> String {
+    let Optimum { efficiency, objective, objective_unit, objective_value, summary, .. } = optimum;
+    if *objective == "efficiency" {
+        return format!("efficiency {efficiency:.5}");
+    }
+    let unit = if *objective_unit == "1" { String::new() } else { format!(" {objective_unit}") };
+    let angle = summary.value("sphere_angle").map(|angle| format!(", direction {:.2}°", angle.to_degrees()));
+    let name = words(objective).to_lowercase();
+    format!("{name} {objective_value:.5}{unit}{}, efficiency {efficiency:.5}", angle.unwrap_or_default())
+}
+
 fn table(document: &Document) -> String {
     let optimum = &document.optimum;
     let mut lines = vec![format!(
-        "{}: efficiency {:.5} (model {}, {} impacts{})",
+        "{}: {} (model {}, {} impacts{})",
         optimum.scene,
-        optimum.efficiency,
+        reached(optimum),
         optimum.model,
         optimum.evaluations,
         if optimum.failures > 0 { format!(", {} without result", optimum.failures) } else { String::new() }
     )];
+    if let Some(robust) = &optimum.robust {
+        lines.push(format!(
+            "  {} % quantile of the {} under scatter: {:.5} ({} samples of every design)",
+            100.0 * robust.probability,
+            words(optimum.objective).to_lowercase(),
+            robust.quantile,
+            robust.samples
+        ));
+    }
     for variable in &optimum.variables {
         let unit = if variable.unit == "1" { "" } else { variable.unit };
         let [low, high] = variable.range_within_1_percent;
         lines.push(format!("  {} = {:e} {unit}", variable.field, variable.optimum));
         lines.push(format!("    within 1 % of the best from {low:.4e} to {high:.4e} {unit}"));
         if let Some(curvature) = variable.curvature {
-            lines.push(format!("    second derivative of the efficiency {curvature:.3e} per ({unit})^2"));
+            lines.push(format!(
+                "    second derivative of the {} {curvature:.3e} per ({unit})^2",
+                words(optimum.objective).to_lowercase()
+            ));
         }
         if variable.on_bound {
             lines.push("    on a bound: there may be a better one beyond".into());

@@ -119,9 +119,9 @@ pub fn table(summary: &Summary) -> String {
             ("strike_delay", drive.strike_delay, "s"),
         ])
     });
-    let [striker, struck] = match summary.quantities.get("actuator_force_peak") {
-        Some(_) => ["lost in actuator contact", "lost in sphere contact"],
-        None => ["lost in outer contact", "lost in inner contact"],
+    let [striker, struck, middle] = match summary.quantities.get("actuator_force_peak") {
+        Some(_) => ["lost in actuator contact", "lost in sphere contact", "lost in seat"],
+        None => ["lost in outer contact", "lost in inner contact", "lost in plate"],
     };
     let losses = summary.losses.iter().flat_map(|losses| {
         [
@@ -131,7 +131,7 @@ pub fn table(summary: &Summary) -> String {
             (striker, losses.contacts.map_or(0.0, |loss| loss[0]), "J"),
             (struck, losses.contacts.map_or(0.0, |loss| loss[1]), "J"),
             ("lost in outer body", losses.bodies.map_or(0.0, |loss| loss[0]), "J"),
-            ("lost in plate", losses.bodies.map_or(0.0, |loss| loss[1]), "J"),
+            (middle, losses.bodies.map_or(0.0, |loss| loss[1]), "J"),
             ("lost in inner body", losses.bodies.map_or(0.0, |loss| loss[2]), "J"),
         ]
         .into_iter()

@@ -153,7 +153,7 @@ fn finish(
     complete: bool,
 ) -> Result<ExitStatus> {
     if complete {
-        context.note(format_args!("wrote {}", table.write(dir, arguments.format)?.display()));
+        context.note(format_args!("wrote {}", table.write(dir, "sweep", arguments.format)?.display()));
         if is_drawn(plan) {
             draw(context, arguments, plan, dir, table)?;
         }

@@ -1,5 +1,6 @@
 //! The difference of one quantity between reduced model and reference, against its bound.
 
+use super::validation::Assessment;
 use super::verdict::Verdict;
 use crate::scene::Tolerance;
 use serde::Serialize;
@@ -42,6 +43,9 @@ pub struct Discrepancy {
     /// If it is undecided: what would decide it, in one sentence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub would_decide: Option<String>,
+    /// What it shows if the inputs are as uncertain as the scene says; not gated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub validation: Option<Assessment>,
 }
 
 /// Comparison error |E| against the uncertainty u of the comparison (ASME V&V 20-2009, section 1-6). Here u is
@@ -137,6 +141,7 @@ impl Discrepancy {
             bias,
             verdict,
             would_decide: None,
+            validation: None,
         }
     }
 

@@ -16,6 +16,7 @@ mod moved;
 mod reference_check;
 mod series;
 mod undecided;
+pub mod validation;
 mod verdict;
 
 pub use changed_tolerance::ChangedTolerance;
@@ -33,9 +34,12 @@ use crate::kinds;
 use crate::measured::Measured;
 use crate::result::{Curve, Outcome, Quantity, SCHEMA_VERSION, Source, Summary};
 use crate::scene::{Model, Scene, Tolerances};
+use crate::uncertainty::Scatter;
 use budget::QuantityBudget;
 use discrepancy::Scales;
 use serde::Serialize;
+use std::collections::BTreeMap;
+use validation::{Assessment, numerical};
 
 /// The document of `compare` and `gate`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -110,9 +114,48 @@ impl SceneComparison {
         self.integrity.extend(checks);
     }
 
+    /// The names of its models.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.models.iter().map(|model| &*model.model)
+    }
+
     /// Verdicts of the rows of all models that have a tolerance.
     pub fn gated_verdicts(&self) -> impl Iterator<Item = Verdict> {
         self.models.iter().flat_map(ModelComparison::gated_verdicts)
+    }
+
+    /// Holds every difference against what uncertain inputs leave open (see [`validation`]); `scatters` are those of the models, by name. Another
+    /// program's result scatters as model C's.
+    pub fn add_validation(&mut self, scatters: &BTreeMap<String, Scatter>) {
+        let of = |name: &str| scatters.get(name).or_else(|| scatters.get(&Model::C.to_string()));
+        for model in &mut self.models {
+            let Some(scatter) = of(&model.model) else { continue };
+            for row in &mut model.discrepancies {
+                let sides = (
+                    numerical(&model.summary, &row.quantity),
+                    row.band().map(|band| band / validation::COVERAGE),
+                );
+                row.validation = row
+                    .difference
+                    .zip(scatter.quantities.get(&*row.quantity))
+                    .and_then(|(error, scatter)| Assessment::of(error, sides, scatter));
+            }
+        }
+        if let Some(measured) = &mut self.measured {
+            let summaries: BTreeMap<&str, &Summary> =
+                self.models.iter().map(|m| (&*m.model, &m.summary)).collect();
+            measured.add_validation(of, |partner| {
+                numerical(summaries.get(partner).unwrap_or(&&self.reference), "efficiency")
+            });
+        }
+    }
+
+    /// What uncertain inputs leave open of model B's differences: 2 u_val by quantity; empty if they are certain.
+    pub fn open(&self) -> BTreeMap<&str, f64> {
+        let rows =
+            self.models.iter().filter(|model| model.model == "B").flat_map(|model| &model.discrepancies);
+        rows.filter_map(|row| Some((&*row.quantity, validation::COVERAGE * row.validation.as_ref()?.u_val)))
+            .collect()
     }
 
     /// Adds the discrepancy budget (see [`mod@budget`]) if models B and C are both compared.

@@ -78,6 +78,10 @@ fn cannot_run(program: &External, folder: &Path, error: &std::io::Error) -> Stri
         ErrorKind::NotFound => {
             format!("there is no program `{command}` on PATH or in {}", folder.display())
         }
+        ErrorKind::TimedOut => {
+            "its output does not end with it: what it has started in a session of its own holds it open"
+                .into()
+        }
         _ => format!("`{command}` can't be run: {error}"),
     }
 }

@@ -3,13 +3,16 @@
 
 use super::RULE;
 use super::align::{AlignedRecord, Speed, align};
+use super::area::Area;
 use super::filter::{Filtered, SIGNALS};
 use super::record::Record;
+use crate::comparison::validation::{Assessment, COVERAGE};
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::{CURVES, PlateQuantities};
 use crate::result::{CUT, Outcome};
 use crate::scene::Scene;
+use crate::uncertainty::Scatter;
 use serde::Serialize;
 
 /// Measured records of one scene beside its models; part of the comparison document.
@@ -61,6 +64,40 @@ impl Series {
     }
 }
 
+impl Measured {
+    /// Standard uncertainty of the mean of the measured efficiencies: their scatter and the noise of each, both over the root of their number.
+    /// `None` if nothing is known of it.
+    pub fn standard_uncertainty(&self) -> Option<f64> {
+        let series = self.efficiency.as_ref()?;
+        let count = series.count as f64;
+        let bands = self.records.iter().filter_map(|record| record.efficiency_uncertainty);
+        let noise = bands.map(|band| (band / COVERAGE).powi(2)).sum::<f64>() / count;
+        let scatter = series.standard_deviation.map_or(0.0, |deviation| deviation.powi(2));
+        // the scatter has the noise in it already
+        Some((scatter.max(noise) / count).sqrt()).filter(|u| *u > 0.0)
+    }
+
+    /// Holds the partners' efficiencies against what uncertain inputs leave open; `scatter` gives that of a partner, `numerical` its
+    /// standard numerical uncertainty, by its name.
+    pub fn add_validation<'s>(
+        &mut self,
+        scatter: impl Fn(&str) -> Option<&'s Scatter>,
+        numerical: impl Fn(&str) -> Option<f64>,
+    ) {
+        let u_d = self.standard_uncertainty();
+        let values = self.efficiency.as_ref().map_or(&[][..], |series| &series.values);
+        for partner in &mut self.partners {
+            let of = scatter(&partner.partner).and_then(|scatter| scatter.quantities.get("efficiency"));
+            let Some((error, of)) = partner.efficiency_difference.zip(of) else { continue };
+            partner.validation = Assessment::of(error, (numerical(&partner.partner), u_d), of);
+            // the distribution about the partner's own result
+            let shift = partner.efficiency.unwrap_or(f64::NAN) - of.nominal.unwrap_or(f64::NAN);
+            let moved: Vec<f64> = of.values.iter().map(|value| value + shift).collect();
+            partner.area = Area::between(&moved, values).filter(|area| area.area.is_finite());
+        }
+    }
+}
+
 /// The reference or a model against the measurement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Partner {
@@ -70,6 +107,12 @@ pub struct Partner {
     pub efficiency: Option<f64>,
     /// Its efficiency less the mean of the measured ones.
     pub efficiency_difference: Option<f64>,
+    /// What that difference shows if the inputs are as uncertain as the scene says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub validation: Option<Assessment>,
+    /// Area between the distributions of its efficiency, inputs being as uncertain as that, and of the measured ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub area: Option<Area>,
     /// Curve metrics, the measurement as reference, the partner filtered.
     pub curves: Vec<CurveMetrics>,
     /// Its filtered curves on the window.
@@ -134,6 +177,8 @@ pub fn compare(
                 partner,
                 efficiency: own,
                 efficiency_difference: efficiency.as_ref().and_then(|series| Some(own? - series.mean)),
+                validation: None,
+                area: None,
                 curves: metrics(&curves, &filtered, window),
                 filtered,
             })

@@ -5,11 +5,13 @@
 //! the record is laid over the models is [`RULE`]; the report states it too.
 
 mod align;
+mod area;
 mod compare;
 mod filter;
 mod record;
 
 pub use align::{AlignedRecord, ChannelCorrection, Speed, align};
+pub use area::Area;
 pub use compare::{Measured, Partner, Series, compare};
 pub use filter::{Filtered, low_pass};
 pub use record::{Channel, Record};

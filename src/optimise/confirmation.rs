@@ -37,12 +37,12 @@ pub struct Rival {
     pub efficiency: f64,
 }
 
-/// Runs model C at the optimum and its rivals; `None` if C itself was searching.
+/// Runs model C at the optimum and its rivals; `None` if C itself was searching, or for a quantile, which takes too many meshes.
 ///
 /// # Errors
 /// If model C has no result at the optimum.
 pub fn confirm(problem: &Problem, optimum: &Optimum) -> Result<Option<Confirmation>> {
-    if problem.model == Model::C {
+    if problem.model == Model::C || problem.robust.is_some() {
         return Ok(None);
     }
     let values = optimum.values();

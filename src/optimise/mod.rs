@@ -1,24 +1,32 @@
-//! Optimisation: the numbers of a scene, within bounds, with which most energy is transmitted.
+//! Optimisation: the numbers of a scene, within bounds, with which most energy is transmitted, or another result is largest.
 
 mod confirmation;
 mod neighbourhood;
+mod objective;
+mod robust;
 pub mod search;
 
 pub use confirmation::{Confirmation, Rival, confirm};
-pub use neighbourhood::{Neighbourhood, PROFILE_POINTS};
+pub use neighbourhood::{DEAR_POINTS, Neighbourhood, PROFILE_POINTS};
+pub use objective::Objective;
+pub use robust::{Robust, RobustOptimum};
 
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::kinds::seal_seat::{SeatMesh, SeatModel, SeatSeries};
+use crate::report::format::words;
 use crate::report::{ChartPanel, Series, chart};
 use crate::result::{CUT, Outcome, SCHEMA_VERSION, Summary};
 use crate::scene::{Field, Model, Scene, Template};
 use rayon::prelude::*;
-use search::{Search, maximise};
+use search::{Search, Tried, maximise};
 use serde::Serialize;
 
 /// Relative error of the efficiency that the time integration may have: far below what tells two points apart.
 const TOLERANCE: f64 = 1e-7;
+/// The same of a seal seat's velocity.
+const SEAT_TOLERANCE: f64 = 1e-4;
 /// Impacts that a search may be expected to take.
 const IMPACTS: usize = 100;
 /// Significant digits of the optimum: more are lost in how flat it is, and fewer make a scene one can name.
@@ -91,14 +99,35 @@ impl Variable {
     }
 }
 
-/// What to maximise the efficiency of, over what.
+/// What to maximise, over what.
 #[derive(Debug)]
 pub struct Problem {
     template: Template,
     variables: Vec<Variable>,
+    objective: Objective,
     model: Model,
     modes: Option<usize>,
-    bodies: SharedBodies,
+    bodies: Bodies,
+    /// If a quantile of the objective is maximised.
+    robust: Option<Robust>,
+}
+
+/// What the impacts of a search share, by the kind of scene.
+#[derive(Debug)]
+enum Bodies {
+    Plates(SharedBodies),
+    Seats(Box<SeatSeries>),
+}
+
+/// What was tried, in order; part of [`Optimum`].
+#[derive(Debug, Clone, Serialize)]
+pub struct Evaluation {
+    /// 0 for the samples, then the number of the hill that was climbed.
+    pub climb: usize,
+    /// Values of the variables, SI.
+    pub values: Vec<f64>,
+    /// The objective there, or its quantile; `None` without result.
+    pub objective: Option<f64>,
 }
 
 /// The optimum; part of the document of `optimise --json`.
@@ -112,26 +141,40 @@ pub struct Optimum {
     pub model: String,
     /// Efficiency at the optimum.
     pub efficiency: f64,
+    /// What was maximised.
+    pub objective: &'static str,
+    /// Its SI unit.
+    pub objective_unit: &'static str,
+    /// Its value at the optimum.
+    pub objective_value: f64,
+    /// If a quantile of the efficiency was maximised: which, and how much it is there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub robust: Option<RobustOptimum>,
     /// The variables: optimum and neighbourhood.
     pub variables: Vec<Neighbourhood>,
     /// Impacts that were run.
     pub evaluations: usize,
     /// How many of them had no result.
     pub failures: usize,
+    /// Everything that was tried on the way.
+    pub history: Vec<Evaluation>,
     /// Result of the reduced model at the optimum.
     pub summary: Summary,
 }
 
 impl Problem {
-    /// The problem of the scene in `template`.
+    /// The problem of the scene in `template`; a seal seat needs a `mesh` of it. With `robust` a quantile of the objective is maximised,
+    /// under the scatter of what is made.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there is no variable, or a field is in two of them.
+    /// [`Error::Usage`] if there is no variable, or a field is in two of them, or the kind of scene has no such model.
     pub fn new(
         template: Template,
         variables: Vec<Variable>,
-        model: Model,
-        modes: Option<usize>,
+        objective: Objective,
+        (model, modes): (Model, Option<usize>),
+        mesh: Option<&SeatMesh>,
+        robust: Option<Robust>,
     ) -> Result<Self> {
         let mut names: Vec<&str> = variables.iter().flat_map(|v| &v.fields).map(Field::path).collect();
         names.sort_unstable();
@@ -146,8 +189,19 @@ impl Problem {
         let varied = variables.iter().flat_map(|variable| {
             variable.fields.iter().map(|field| (field.path(), [variable.low, variable.high]))
         });
-        let bodies = SharedBodies::for_varied(varied, template.scene().plate_impact()?, IMPACTS);
-        Ok(Problem { template, variables, model, modes, bodies })
+        let scattered = robust.as_ref().map_or_else(Vec::new, |robust| robust.ranges(&variables));
+        let impacts = if robust.is_some() { IMPACTS * robust::SAMPLES } else { IMPACTS };
+        // the first that names a field is believed
+        let ranges = scattered.into_iter().chain(varied);
+        let scene = template.scene();
+        let bodies = match mesh {
+            Some(_) if model != Model::C => {
+                return Err(Error::Usage(format!("--model {model}: a seal seat has model C only")));
+            }
+            Some(mesh) => Bodies::Seats(Box::new(SeatSeries::new(scene, mesh)?)),
+            None => Bodies::Plates(SharedBodies::for_varied(ranges, scene.plate_impact()?, impacts)),
+        };
+        Ok(Problem { template, variables, objective, model, modes, bodies, robust })
     }
 
     fn numbers<'a>(&'a self, values: &[f64]) -> Vec<(&'a Field, f64)> {
@@ -177,14 +231,42 @@ impl Problem {
         self.template.text_with(&scene.name, &self.numbers(values))
     }
 
-    /// The reduced model with `values` for the variables.
-    fn reduced(&self, values: &[f64]) -> Result<Reduced> {
-        Reduced::in_series(self.scene(values)?, self.model, self.modes, &self.bodies)
+    /// The objective of the scene with these `numbers`; `None` where there is no result.
+    fn value(&self, numbers: &[(&Field, f64)]) -> Option<f64> {
+        let scene = self.template.with(numbers).ok()?;
+        match &self.bodies {
+            Bodies::Plates(bodies) => {
+                let reduced = Reduced::in_series(scene.clone(), self.model, self.modes, bodies).ok()?;
+                let point = reduced.point(TOLERANCE).ok()?;
+                self.objective.value(&scene, |name| point.quantities.get(name))
+            }
+            Bodies::Seats(series) => {
+                let point = series.model(&scene, self.modes).ok()?.point(SEAT_TOLERANCE).ok()?;
+                self.objective.value(&scene, |name| point.quantities.get(name))
+            }
+        }
     }
 
-    /// The efficiency with `values` for the variables; `None` where there is no result.
-    fn efficiency(&self, values: &[f64]) -> Option<f64> {
-        Some(self.reduced(values).ok()?.point(TOLERANCE).ok()?.quantities.efficiency)
+    fn plate(&self, bodies: &SharedBodies, values: &[f64]) -> Result<Reduced> {
+        Reduced::in_series(self.scene(values)?, self.model, self.modes, bodies)
+    }
+
+    fn seat(&self, series: &SeatSeries, values: &[f64]) -> Result<SeatModel> {
+        series.model(&self.scene(values)?, self.modes)
+    }
+
+    fn summary(&self, values: &[f64]) -> Result<Summary> {
+        match &self.bodies {
+            Bodies::Plates(bodies) => self.plate(bodies, values)?.run(TOLERANCE),
+            Bodies::Seats(series) => self.seat(series, values)?.run(SEAT_TOLERANCE),
+        }
+    }
+
+    /// What is maximised, with `values` for the variables: the objective or its quantile; `None` where there is no result.
+    fn worth(&self, values: &[f64]) -> Option<f64> {
+        let numbers = self.numbers(values);
+        let value = |numbers: &[(&Field, f64)]| self.value(numbers);
+        self.robust.as_ref().map_or_else(|| value(&numbers), |robust| robust.quantile(&numbers, value))
     }
 
     /// The efficiency by `model`, with as many modes as it takes by itself.
@@ -201,42 +283,76 @@ impl Problem {
     /// # Errors
     /// As [`Reduced::run_with_history`].
     pub fn outcome(&self, values: &[f64]) -> Result<Outcome> {
-        self.reduced(values)?.run_with_history(TOLERANCE)
+        match &self.bodies {
+            Bodies::Plates(bodies) => self.plate(bodies, values)?.run_with_history(TOLERANCE),
+            Bodies::Seats(series) => self.seat(series, values)?.run_with_history(SEAT_TOLERANCE),
+        }
     }
 
-    /// Searches the optimum; `seed` chooses the samples of a search over several variables.
+    /// Searches the optimum; `seed` chooses the samples of a search over several variables, whose number is `samples` if given.
     ///
     /// # Errors
     /// [`Error::Solver`] if no scene within the bounds has a result.
-    pub fn solve(&self, seed: u64) -> Result<Optimum> {
+    pub fn solve(&self, seed: u64, samples: Option<usize>) -> Result<Optimum> {
         let dimensions = self.variables.len();
-        let search = Search { seed, resolution: RESOLUTION, ..Search::of_dimensions(dimensions) };
+        let search = match self.bodies {
+            Bodies::Plates(_) => Search { resolution: RESOLUTION, ..Search::of_dimensions(dimensions) },
+            Bodies::Seats(_) => Search::of_dear(dimensions),
+        };
+        let search = Search { seed, samples: samples.unwrap_or(search.samples), ..search };
         let place = |s: &[f64]| -> Vec<f64> {
             self.variables.iter().zip(s).map(|(variable, s)| variable.between(*s)).collect()
         };
-        let maximum = maximise(dimensions, &search, |s| self.efficiency(&place(s)))?;
+        let maximum = maximise(dimensions, &search, |s| self.worth(&place(s)))?;
         let exact = place(&maximum.at);
+        let evaluation = |tried: &Tried| Evaluation {
+            climb: tried.climb,
+            values: place(&tried.at),
+            objective: tried.value,
+        };
         let values: Vec<f64> =
             self.variables.iter().zip(&exact).map(|(v, x)| rounded(*x).clamp(v.low, v.high)).collect();
-        let summary = self.reduced(&values)?.run(TOLERANCE)?;
-        let efficiency = summary.value("efficiency").ok_or_else(|| Error::Solver(CUT.into()))?;
+        let summary = self.summary(&values)?;
+        let cut = || Error::Solver(CUT.into());
+        let efficiency = summary.value("efficiency").ok_or_else(cut)?;
+        let nominal =
+            self.objective.value(&self.scene(&values)?, |name| summary.value(name)).ok_or_else(cut)?;
+        let robust = match &self.robust {
+            Some(robust) => {
+                let quantile = self
+                    .worth(&values)
+                    .ok_or_else(|| Error::Solver("a sample of the optimum has no result".into()))?;
+                Some(robust.found(quantile))
+            }
+            None => None,
+        };
+        let best = robust.map_or(nominal, |robust| robust.quantile);
         let at = |k: usize, x: f64| {
             let mut there = values.clone();
             there[k] = x;
-            self.efficiency(&there)
+            self.worth(&there)
+        };
+        let points = match self.bodies {
+            Bodies::Plates(_) => PROFILE_POINTS,
+            Bodies::Seats(_) => DEAR_POINTS,
         };
         let variables = (0..dimensions)
             .into_par_iter()
-            .map(|k| Neighbourhood::of(&self.variables[k], values[k], efficiency, |x| at(k, x)))
+            .map(|k| Neighbourhood::of(&self.variables[k], values[k], best, points, |x| at(k, x)))
             .collect();
         Ok(Optimum {
             schema_version: SCHEMA_VERSION,
             scene: self.template.scene().name.clone(),
             model: self.model.to_string(),
             efficiency,
+            objective: self.objective.name(),
+            objective_unit: self.objective.unit(),
+            objective_value: nominal,
+            robust,
             variables,
-            evaluations: maximum.evaluations,
-            failures: maximum.failures,
+            evaluations: maximum.history.len(),
+            failures: maximum.history.iter().filter(|tried| tried.value.is_none()).count(),
+            history: maximum.history.iter().map(evaluation).collect(),
             summary,
         })
     }
@@ -248,30 +364,80 @@ impl Optimum {
         self.variables.iter().map(|variable| variable.optimum).collect()
     }
 
-    /// Efficiency along every variable through the optimum, as a stand-alone SVG.
+    /// The objective along every variable through the optimum, and on the way there, as a stand-alone SVG.
     pub fn figure(&self) -> String {
+        let (label, factor) = match (self.objective, self.objective_unit) {
+            ("efficiency", _) => ("Efficiency in %".to_owned(), 100.0),
+            (name, "1") => (words(name), 1.0),
+            (name, unit) => (format!("{} in {unit}", words(name)), 1.0),
+        };
+        let label = self
+            .robust
+            .map_or(label.clone(), |robust| format!("{} % quantile: {label}", 100.0 * robust.probability));
+        let best = self.robust.map_or(self.objective_value, |robust| robust.quantile);
+        let name = words(self.objective).to_lowercase();
         let panel = |variable: &Neighbourhood| ChartPanel {
             x_label: match variable.unit {
                 "1" => variable.field.clone(),
                 unit => format!("{} in {unit}", variable.field),
             },
-            y_label: "Efficiency in %".into(),
+            y_label: label.clone(),
             series: vec![
                 Series {
-                    name: "efficiency, other variables at the optimum".into(),
-                    points: variable.profile.iter().map(|[x, e]| (*x, 100.0 * e)).collect(),
+                    name: format!("{name}, other variables at the optimum"),
+                    points: variable.profile.iter().map(|[x, e]| (*x, factor * e)).collect(),
                     ..Series::default()
                 },
                 Series {
                     name: "optimum".into(),
-                    points: vec![(variable.optimum, 100.0 * self.efficiency)],
+                    points: vec![(variable.optimum, factor * best)],
                     marks: true,
                     ..Series::default()
                 },
             ],
             ..ChartPanel::default()
         };
-        chart(&format!("{}: optimum", self.scene), &self.variables.iter().map(panel).collect::<Vec<_>>())
+        let mut highest = f64::NEG_INFINITY;
+        let so_far = self.history.iter().enumerate().filter_map(|(k, tried)| {
+            highest = highest.max(tried.objective?);
+            Some((k as f64 + 1.0, factor * highest))
+        });
+        let way = ChartPanel {
+            x_label: "Impacts tried".into(),
+            y_label: label.clone(),
+            series: vec![Series {
+                name: "best so far".into(),
+                points: so_far.collect(),
+                ..Series::default()
+            }],
+            ..ChartPanel::default()
+        };
+        let panels: Vec<ChartPanel> = self.variables.iter().map(panel).chain([way]).collect();
+        chart(&format!("{}: optimum", self.scene), &panels)
+    }
+
+    /// What was tried as a table: its number, the climb, the variables with their units, the objective, empty without result.
+    ///
+    /// # Errors
+    /// None but a defect of this program.
+    pub fn history_csv(&self) -> Result<Vec<u8>> {
+        let failed = |e: csv::Error| Error::Internal(format!("writing CSV: {e}"));
+        let heading = |name: &str, unit: &str| match unit {
+            "1" => name.to_owned(),
+            unit => format!("{name} [{unit}]"),
+        };
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let columns = self.variables.iter().map(|variable| heading(&variable.field, variable.unit));
+        let objective = heading(self.objective, self.objective_unit);
+        let first = ["number".to_owned(), "climb".to_owned()];
+        writer.write_record(first.into_iter().chain(columns).chain([objective])).map_err(failed)?;
+        for (k, tried) in self.history.iter().enumerate() {
+            let values = tried.values.iter().map(f64::to_string);
+            let objective = tried.objective.map_or(String::new(), |value| value.to_string());
+            let first = [(k + 1).to_string(), tried.climb.to_string()];
+            writer.write_record(first.into_iter().chain(values).chain([objective])).map_err(failed)?;
+        }
+        writer.into_inner().map_err(|e| Error::Internal(format!("writing CSV: {e}")))
     }
 }
 

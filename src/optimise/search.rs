@@ -11,7 +11,7 @@ use argmin::solver::brent::BrentOpt;
 use argmin::solver::neldermead::NelderMead;
 use rayon::prelude::*;
 use std::cmp::Ordering;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
 
 /// How thoroughly to search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,13 +24,30 @@ pub struct Search {
     pub starts: usize,
     /// Length, relative to the cube's edge, to which the maximum is located.
     pub resolution: f64,
+    /// Most iterations of a simplex, per coordinate.
+    pub iterations: u64,
+    /// How often a simplex is set up, each smaller than the one before.
+    pub simplices: usize,
 }
 
 impl Search {
     /// Enough for a function with some ten hills along each coordinate.
     pub fn of_dimensions(dimensions: usize) -> Self {
         let samples = [0, 49, 225, 512].get(dimensions).copied().unwrap_or(1024);
-        Search { samples, seed: 1, starts: if dimensions == 1 { 3 } else { 6 }, resolution: 1e-5 }
+        let starts = if dimensions == 1 { 3 } else { 6 };
+        Search { samples, seed: 1, starts, resolution: 1e-5, iterations: 60, simplices: 3 }
+    }
+
+    /// For a function that takes a second, and has a hill or two.
+    pub fn of_dear(dimensions: usize) -> Self {
+        Search {
+            samples: 12 * dimensions,
+            seed: 1,
+            starts: 2,
+            resolution: 1e-3,
+            iterations: 12,
+            simplices: 1,
+        }
     }
 }
 
@@ -41,27 +58,43 @@ pub struct Maximum {
     pub at: Vec<f64>,
     /// Value there.
     pub value: f64,
-    /// Evaluations of the function.
-    pub evaluations: usize,
-    /// How many of the evaluations gave no value.
-    pub failures: usize,
+    /// All evaluations of the function: the samples, then climb after climb.
+    pub history: Vec<Tried>,
 }
 
-/// The function, counted and made safe: places outside the cube are mirrored into it, failures are deep valleys.
+/// An evaluation of the function.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tried {
+    /// 0 for the samples, then the number of the climb.
+    pub climb: usize,
+    /// Place in the unit cube. Shape (dimensions).
+    pub at: Vec<f64>,
+    /// Value there; `None` if there is none.
+    pub value: Option<f64>,
+}
+
+/// The function, recorded and made safe: places outside the cube are mirrored into it, failures are deep valleys.
 struct Cost<'a, F> {
     function: &'a F,
     penalty: f64,
-    evaluations: &'a AtomicUsize,
-    failures: &'a AtomicUsize,
+    climb: usize,
+    history: Mutex<Vec<Tried>>,
 }
 
-impl<F: Fn(&[f64]) -> Option<f64>> Cost<'_, F> {
+impl<'a, F: Fn(&[f64]) -> Option<f64>> Cost<'a, F> {
+    fn new(function: &'a F, penalty: f64, climb: usize) -> Self {
+        Self { function, penalty, climb, history: Mutex::default() }
+    }
+
+    fn into_history(self) -> Vec<Tried> {
+        self.history.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn at(&self, place: &[f64]) -> f64 {
-        self.evaluations.fetch_add(1, Relaxed);
-        let value = (self.function)(&mirrored(place)).filter(|value| value.is_finite());
-        if value.is_none() {
-            self.failures.fetch_add(1, Relaxed);
-        }
+        let at = mirrored(place);
+        let value = (self.function)(&at).filter(|value| value.is_finite());
+        let tried = Tried { climb: self.climb, at, value };
+        self.history.lock().unwrap_or_else(PoisonError::into_inner).push(tried);
         value.map_or(self.penalty, |value| -value)
     }
 }
@@ -105,21 +138,21 @@ pub fn maximise<F>(dimensions: usize, search: &Search, function: F) -> Result<Ma
 where
     F: Fn(&[f64]) -> Option<f64> + Sync,
 {
-    let (evaluations, failures) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let sampler =
-        Cost { function: &function, penalty: f64::INFINITY, evaluations: &evaluations, failures: &failures };
     let places = if dimensions == 1 {
         (0..search.samples).map(|k| vec![k as f64 / (search.samples - 1).max(1) as f64]).collect()
     } else {
         latin_hypercube(search.samples, dimensions, search.seed)
     };
-    let sampled: Vec<(Vec<f64>, f64)> = places
+    let sampled: Vec<(Vec<f64>, f64, Tried)> = places
         .into_par_iter()
         .map(|place| {
+            let sampler = Cost::new(&function, f64::INFINITY, 0);
             let cost = sampler.at(&place);
-            (place, cost)
+            (place, cost, sampler.into_history().remove(0))
         })
         .collect();
+    let mut history: Vec<Tried> = sampled.iter().map(|(.., tried)| tried.clone()).collect();
+    let sampled: Vec<(Vec<f64>, f64)> = sampled.into_iter().map(|(place, cost, _)| (place, cost)).collect();
     let finite = sampled.iter().map(|(_, cost)| *cost).filter(|cost| cost.is_finite());
     let (low, high) =
         finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), cost| (l.min(cost), h.max(cost)));
@@ -129,26 +162,33 @@ where
             search.samples
         )));
     }
-    let cost = Cost { penalty: high + (high - low).max(1.0), ..sampler };
-    let polished: Vec<(Vec<f64>, f64)> = if dimensions == 1 {
+    let cost = |k: usize| Cost::new(&function, high + (high - low).max(1.0), k + 1);
+    let polished: Vec<((Vec<f64>, f64), Vec<Tried>)> = if dimensions == 1 {
         brackets(&sampled, search.starts)
             .into_par_iter()
-            .map(|ends| brent(&cost, ends, search))
+            .enumerate()
+            .map(|(k, ends)| {
+                let cost = cost(k);
+                Ok((brent(&cost, ends, search)?, cost.into_history()))
+            })
             .collect::<Result<_>>()?
     } else {
         hills(&sampled, search.starts)
             .into_par_iter()
-            .map(|top| simplex(&cost, top, search))
+            .enumerate()
+            .map(|(k, top)| {
+                let cost = cost(k);
+                Ok((simplex(&cost, top, search)?, cost.into_history()))
+            })
             .collect::<Result<_>>()?
     };
-    let best = sampled.into_iter().chain(polished).min_by(|a, b| a.1.total_cmp(&b.1));
+    history.extend(polished.iter().flat_map(|(_, tried)| tried.iter().cloned()));
+    let best = sampled
+        .into_iter()
+        .chain(polished.into_iter().map(|(found, _)| found))
+        .min_by(|a, b| a.1.total_cmp(&b.1));
     let (at, cost) = best.ok_or_else(|| Error::Internal("no sample".into()))?;
-    Ok(Maximum {
-        at: mirrored(&at),
-        value: -cost,
-        evaluations: evaluations.into_inner(),
-        failures: failures.into_inner(),
-    })
+    Ok(Maximum { at: mirrored(&at), value: -cost, history })
 }
 
 /// The intervals around the highest local maxima of samples along a line.
@@ -201,7 +241,7 @@ where
     let edge = 0.5 * (search.samples as f64).powf(-1.0 / top.len() as f64);
     let mut best = (top, f64::INFINITY);
     // a simplex that has collapsed on a ridge is set up again, smaller, where it stopped
-    for shrink in [1.0, 0.2, 0.04] {
+    for shrink in [1.0, 0.2, 0.04].into_iter().take(search.simplices) {
         let mut corners = vec![best.0.clone()];
         for axis in 0..best.0.len() {
             let mut corner = best.0.clone();
@@ -212,7 +252,7 @@ where
             .with_sd_tolerance(1e-10)
             .map_err(|e| Error::Internal(format!("simplex: {e}")))?;
         let result = Executor::new(cost, solver)
-            .configure(|state| state.max_iters(60 * best.0.len() as u64))
+            .configure(|state| state.max_iters(search.iterations * best.0.len() as u64))
             .run()
             .map_err(|e| Error::Internal(format!("simplex: {e}")))?;
         let state = result.state();
@@ -273,7 +313,8 @@ mod tests {
     fn places_without_a_value_are_avoided_and_counted() {
         let found =
             maximise(1, &Search::of_dimensions(1), |x| (x[0] < 0.61).then_some(x[0])).expect("maximum");
-        assert!((0.6..0.61).contains(&found.at[0]) && found.failures > 10, "{found:?}");
+        let failures = found.history.iter().filter(|tried| tried.value.is_none()).count();
+        assert!((0.6..0.61).contains(&found.at[0]) && failures > 10, "{found:?}");
         assert!(maximise(1, &Search::of_dimensions(1), |_| None).is_err());
     }
 }

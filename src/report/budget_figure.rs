@@ -4,6 +4,7 @@ use super::format::{percent, words};
 use super::polyline::Point;
 use crate::comparison::budget::QuantityBudget;
 use maud::{Markup, html};
+use std::collections::BTreeMap;
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 186.0;
@@ -37,8 +38,8 @@ struct Bar {
     bound: Option<f64>,
 }
 
-/// The bars of one quantity from top to bottom; none if the reference is 0.
-fn bars(row: &QuantityBudget) -> Vec<Bar> {
+/// The bars of one quantity from top to bottom, with what uncertain inputs leave `open` last; none if the reference is 0.
+fn bars(row: &QuantityBudget, open: Option<f64>) -> Vec<Bar> {
     let scale = row.reference.abs();
     if scale.is_nan() || scale == 0.0 {
         return Vec::new();
@@ -53,19 +54,21 @@ fn bars(row: &QuantityBudget) -> Vec<Bar> {
     let mut bars = vec![bar("fig-total", row.difference, 0.0)];
     bars.extend(row.parts.iter().map(|part| bar("fig-part", part.value, part.uncertainty)));
     bars.push(Bar { bound: Some(row.bound / scale), ..bar(remainder, row.remainder, 0.0) });
+    bars.extend(open.map(|open| Bar { bound: Some(open / scale), ..bar("fig-part", 0.0, 0.0) }));
     bars
 }
 
-/// The chart as SVG, coloured by the page it stands in.
-pub(super) fn budget_figure(rows: &[QuantityBudget]) -> Markup {
+/// The chart as SVG, coloured by the page it stands in. `open` is 2 u_val of model B by quantity, if inputs are uncertain.
+pub(super) fn budget_figure(rows: &[QuantityBudget], open: &BTreeMap<&str, f64>) -> Markup {
     let names: Vec<String> = rows.first().map_or_else(Vec::new, |row| {
         let causes = row.parts.iter().map(|part| cause_name(&part.cause));
         std::iter::once("model B − reference".to_owned())
             .chain(causes)
             .chain(["remainder and its bound".into()])
+            .chain((!open.is_empty()).then(|| "2 u_val, inputs included".into()))
             .collect()
     });
-    let panels: Vec<Vec<Bar>> = rows.iter().map(bars).collect();
+    let panels: Vec<Vec<Bar>> = rows.iter().map(|row| bars(row, open.get(&*row.quantity).copied())).collect();
     let ends = panels.iter().flatten().flat_map(|bar| {
         let reach = bar.uncertainty.max(bar.bound.unwrap_or(0.0));
         [bar.value - bar.uncertainty, bar.value + bar.uncertainty, reach, -reach]

@@ -3,6 +3,7 @@
 use super::budget_figure::{budget_figure, cause_name};
 use super::format::{Prefixed, minus, prefixed, prose, with_unit, words};
 use super::html::{detailed, scrolled};
+use crate::comparison::SceneComparison;
 use crate::comparison::budget::{Part, QuantityBudget};
 use maud::{Markup, html};
 
@@ -13,14 +14,16 @@ const EXPLANATION: &str = "What each simplification of model B adds to its diffe
     of model C, added as independent. Reported, not gated.";
 
 /// Section of the page; nothing if there is no budget.
-pub(super) fn budget_html(rows: &[QuantityBudget]) -> Markup {
+pub(super) fn budget_html(comparison: &SceneComparison) -> Markup {
+    let rows = &comparison.budget;
     let Some(first) = rows.first() else { return html! {} };
+    let open = comparison.open();
     html! {
         p.soft { (EXPLANATION) }
         figure.budget {
-            (detailed("Discrepancy budget, drawn", &html! { (budget_figure(rows)) }))
+            (detailed("Discrepancy budget, drawn", &html! { (budget_figure(rows, &open)) }))
             figcaption { "Relative to the reference, one scale for all. Thin line: uncertainty of a part. "
-                "Grey: bound of the remainder." }
+                "Grey: bound of the remainder" @if !open.is_empty() { ", and 2 u_val with uncertain inputs" } "." }
         }
         (scrolled("Discrepancy budget", &html! { table.budget {
             thead { tr {

@@ -5,14 +5,38 @@ pub const MODELS: [(&str, [u8; 3]); 3] = [("A", [213, 94, 0]), ("B", [0, 114, 17
 /// Of the outer body, plate and inner body.
 pub(super) const BODIES: [[u8; 3]; 3] = [[191, 216, 236], [226, 226, 220], [244, 217, 178]];
 
-/// The class of what is drawn of the model called `name`.
-pub(super) fn class_of(name: &str) -> &'static str {
-    match name {
-        "A" => "fig-A",
-        "B" => "fig-B",
-        "C" => "fig-C",
-        _ => "fig-other",
+/// How a model is drawn: colour, dashes and the shape of its marks each tell it apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Look {
+    /// Class of its colour.
+    pub(super) class: &'static str,
+    /// As SVG has them.
+    pub(super) dash: &'static str,
+    /// Number of its mark.
+    pub(super) shape: usize,
+}
+
+const OWN: [Look; 3] = [
+    Look { class: "fig-A", dash: "2 2.6", shape: 0 },
+    Look { class: "fig-B", dash: "7 3", shape: 1 },
+    Look { class: "fig-C", dash: "9 2.5 2 2.5", shape: 2 },
+];
+/// Of the user's programs, in turn.
+const OTHERS: [Look; 4] = [
+    Look { class: "fig-other", dash: "3 2", shape: 3 },
+    Look { class: "fig-other-2", dash: "12 3", shape: 4 },
+    Look { class: "fig-other-3", dash: "6 2 2 2 2 2", shape: 5 },
+    Look { class: "fig-other-4", dash: "1.5 1.5", shape: 6 },
+];
+
+/// That of the model called `name`: a program of the user's has it by its place among the `models` that are shown together.
+pub(super) fn look<'m>(name: &str, models: impl IntoIterator<Item = &'m str>) -> Look {
+    let own = |name: &str| MODELS.iter().position(|(model, _)| *model == name);
+    if let Some(place) = own(name) {
+        return OWN[place];
     }
+    let place = models.into_iter().filter(|model| own(model).is_none()).position(|other| other == name);
+    OTHERS[place.unwrap_or(0) % OTHERS.len()]
 }
 
 /// As SVG has it.
@@ -23,4 +47,23 @@ pub fn hex([r, g, b]: [u8; 3]) -> String {
 /// Of the model called `name`; of any other that of C.
 pub(super) fn of_model(name: &str) -> [u8; 3] {
     MODELS.iter().find(|(model, _)| *model == name).unwrap_or(&MODELS[2]).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::look;
+
+    #[test]
+    fn models_that_are_shown_together_are_told_apart_by_colour_dashes_and_marks() {
+        let models = ["A", "mine", "B", "yours", "C", "hers", "theirs"];
+        let looks = models.map(|model| look(model, models));
+        for (k, one) in looks.iter().enumerate() {
+            for other in &looks[..k] {
+                let same = [one.class == other.class, one.dash == other.dash, one.shape == other.shape];
+                assert_eq!(same, [false; 3], "{one:?} {other:?}");
+            }
+        }
+        // whoever else is there does not change the looks of the program's own
+        assert_eq!((look("B", []), look("mine", ["mine"])), (looks[2], looks[1]));
+    }
 }

@@ -1,7 +1,7 @@
 //! All discrepancies of a scene in one picture: quantities in rows, a mark per model on a symmetric logarithmic axis, over the
 //! reference's band and the tolerances. Abscissas are per cents of the row's width, so that type keeps its size on any screen.
 
-use super::colours::{MODELS, class_of};
+use super::colours::{Look, look};
 use super::format::{minus, model_name, percent, words};
 use super::html::named;
 use super::symmetric_log::SymmetricLog;
@@ -16,7 +16,10 @@ const LEAST: f64 = 20.0;
 
 /// The picture, in two tables: single numbers with their sign, and curves by the distance from the reference's.
 pub(super) fn discrepancy_picture(comparison: &SceneComparison) -> Markup {
-    let Some(first) = comparison.models.first() else { return html! {} };
+    // a program that has failed has no rows
+    let Some(first) = comparison.models.iter().find(|model| !model.discrepancies.is_empty()) else {
+        return html! {};
+    };
     let is_number =
         |row: &Discrepancy| first.summary.quantities.get(&row.quantity).is_some_and(|q| !q.is_count);
     let names = |wanted: &dyn Fn(&Discrepancy) -> bool| -> Vec<&str> {
@@ -33,7 +36,7 @@ pub(super) fn discrepancy_picture(comparison: &SceneComparison) -> Markup {
         }
         p.soft.note {
             "Reduced minus reference over the reference, in %. "
-            @for model in &comparison.models { (key(&model.model)) " " (model_name(&model.model, model.summary.modes)) ", " }
+            @for model in &comparison.models { (key(look(&model.model, comparison.names()))) " " (model_name(&model.model, model.summary.modes)) ", " }
             "each over its tolerance (bar in its colour; about the known discrepancy, where one is stated). Grey: 95 % band of the "
             @if first.is_on_common_mesh() { "difference, as both are solutions on the same mesh. " } @else { "reference. " }
             "Curves: root mean square of the distance over the reference's peak, with a line to the largest distance."
@@ -84,18 +87,19 @@ fn row(quantity: &str, comparison: &SceneComparison, axis: &SymmetricLog, grid: 
         @if let Some(band) = band { (bar("fig-band", axis, [-band, band], (1.0, "100%"))) }
         use href=(format!("#{grid}")) {}
         @for (lane, (model, row)) in rows().enumerate() {
+            @let look = look(&model.model, comparison.names());
             @let middle = 0.5 * height(comparison.models.len()) + LANE * (lane as f64 - 0.5 * (comparison.models.len() as f64 - 1.0));
             @if let Some((row, relative)) = row.and_then(|row| Some((row, row.relative?))) {
                 @if let Some((width, scale)) = row.tolerance.zip(row.scale()) {
                     @let about = row.bias.unwrap_or(0.0);
-                    (bar(&format!("fig-tolerance {}", class_of(&model.model)), axis, [(about - width) / scale, (about + width) / scale], (middle - 2.5, "5")))
+                    (bar(&format!("fig-tolerance {}", look.class), axis, [(about - width) / scale, (about + width) / scale], (middle - 2.5, "5")))
                 }
                 @if let Some(largest) = largest(quantity, model) {
-                    line class=(class_of(&model.model)) x1=(at(axis, relative)) x2=(at(axis, largest)) y1=(middle) y2=(middle) {}
+                    line class=(look.class) x1=(at(axis, relative)) x2=(at(axis, largest)) y1=(middle) y2=(middle) {}
                 }
                 svg x=(at(axis, relative)) y=(middle) overflow="visible" data-model=(model.model) data-si=(relative) {
                     title { (model.model) ": " (percent(Some(relative))) }
-                    (mark_of(&model.model))
+                    (mark(look.shape, look.class))
                 }
             }
         }
@@ -130,26 +134,23 @@ pub(super) fn bar(
     html! { rect class=(class) x=(format!("{left:.3}%")) width=(format!("{width:.3}%")) y=(top) height=(height) {} }
 }
 
-/// The mark of a model: told apart by shape as well as by colour.
-pub(super) fn mark_of(model: &str) -> Markup {
-    let shape = MODELS.iter().position(|(name, _)| *name == model);
-    mark(shape.unwrap_or(MODELS.len()), class_of(model))
-}
-
-/// A mark about the origin: triangle, square, circle or diamond.
+/// A mark about the origin: triangle, square, circle, diamond, triangle on its tip, cross or flat hexagon.
 pub(super) fn mark(shape: usize, class: &str) -> Markup {
     let class = format!("mark {class}");
     match shape {
         0 => html! { path class=(class) d="M-4.5 3.6H4.5L0-4.4Z" {} },
         1 => html! { path class=(class) d="M-3.6-3.6H3.6V3.6H-3.6Z" {} },
         2 => html! { circle class=(class) r="4" {} },
-        _ => html! { path class=(class) d="M0-5L4.2 0L0 5L-4.2 0Z" {} },
+        3 => html! { path class=(class) d="M0-5L4.2 0L0 5L-4.2 0Z" {} },
+        4 => html! { path class=(class) d="M-4.5-3.6H4.5L0 4.4Z" {} },
+        5 => html! { path class=(class) d="M-1.5-4.5H1.5V-1.5H4.5V1.5H1.5V4.5H-1.5V1.5H-4.5V-1.5H-1.5Z" {} },
+        _ => html! { path class=(class) d="M-5 0L-2.5-3H2.5L5 0L2.5 3H-2.5Z" {} },
     }
 }
 
 /// The mark in the key.
-fn key(model: &str) -> Markup {
-    html! { svg.key viewBox="-6 -6 12 12" aria-hidden="true" { (mark_of(model)) } }
+fn key(look: Look) -> Markup {
+    html! { svg.key viewBox="-6 -6 12 12" aria-hidden="true" { (mark(look.shape, look.class)) } }
 }
 
 pub(super) fn at(axis: &SymmetricLog, value: f64) -> String {

@@ -121,7 +121,7 @@ pub enum Theme {
 const STYLE: &str = "\
 .fig-text{fill:#1a1a1a}.fig-frame{stroke:#444;fill:none}.fig-grid{stroke:#e3e3e3}\
 .fig-box{fill:#ececec;stroke:#bdbdbd}.fig-band{fill:#d0d0d0}.fig-halo{stroke:#fff}\
-.fig-reference{stroke:#1a1a1a}.fig-A{stroke:#d55e00}.fig-B{stroke:#0072b2}.fig-C{stroke:#009e73}.fig-measured{stroke:#cc79a7}.fig-other{stroke:#8a6d00}";
+.fig-reference{stroke:#1a1a1a}.fig-A{stroke:#d55e00}.fig-B{stroke:#0072b2}.fig-C{stroke:#009e73}.fig-measured{stroke:#cc79a7}.fig-other{stroke:#8a6d00}.fig-other-2{stroke:#6a3d9a}.fig-other-3{stroke:#9e1b4f}.fig-other-4{stroke:#5c5c5c}";
 
 /// A panel: curves of one quantity over time.
 pub(super) struct PanelOf {

@@ -1,7 +1,7 @@
 //! The curves of a figure, result by result, and how they are drawn.
 
 use super::SceneReport;
-use super::colours::class_of;
+use super::colours::look;
 use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::measured::Measured;
@@ -18,15 +18,6 @@ pub(super) struct Line {
     pub(super) curves: Vec<SampledCurve>,
     /// Half widths of the curves' bands, if they are known.
     pub(super) bands: Vec<SampledCurve>,
-}
-
-pub(super) fn dash(model: &str) -> &'static str {
-    match model {
-        "A" => "2 2.6",
-        "B" => "7 3",
-        "C" => "9 2.5 2 2.5",
-        _ => "3 2",
-    }
 }
 
 /// What the reference is called: that of another program by the program's name.
@@ -48,10 +39,11 @@ pub(super) fn lines(report: &SceneReport, axis: CommonAxis) -> Vec<Line> {
     let with_curves = report.reduced.iter().filter(|outcome| outcome.summary.failure.is_none());
     let reduced = with_curves.map(|outcome| {
         let model = outcome.summary.model.clone().unwrap_or_default();
+        let look = look(&model, report.comparison.names());
         Line {
             name: format!("model {}", model_name(&model, outcome.summary.modes)),
-            dash: dash(&model),
-            class: class_of(&model).into(),
+            dash: look.dash,
+            class: look.class.into(),
             width: 1.7,
             efficiency: efficiency(outcome),
             curves: sample(axis, &outcome.history),
@@ -89,12 +81,14 @@ pub(super) fn measured_lines(measured: &Measured) -> Vec<Line> {
     };
     let partners = measured.partners.iter().map(|partner| {
         let reference = partner.partner == "reference";
+        let names = measured.partners.iter().map(|partner| &*partner.partner);
+        let look = look(&partner.partner, names.filter(|name| *name != "reference"));
         let name = if reference { "FE reference".into() } else { format!("model {}", partner.partner) };
         Line {
             name,
             short: if reference { "FE".into() } else { partner.partner.clone() },
-            class: if reference { "fig-reference" } else { class_of(&partner.partner) }.into(),
-            dash: if reference { "none" } else { dash(&partner.partner) },
+            class: if reference { "fig-reference" } else { look.class }.into(),
+            dash: if reference { "none" } else { look.dash },
             width: if reference { 2.1 } else { 1.7 },
             efficiency: partner.efficiency.unwrap_or(f64::NAN),
             curves: partner.filtered.clone(),

@@ -1,6 +1,7 @@
 //! The page of all scenes: a row per scene and model, by folder, which sorts and can be searched.
 
 use super::Report;
+use super::colours::look;
 use super::coverage_page;
 use super::format::{percent, prefixed, significant, words};
 use super::html::{EFFICIENCY, badge, named, number, page, scrolled, worded};
@@ -150,7 +151,7 @@ fn row(scene: &Standing, model: &ModelOverview) -> Markup {
     let [drifting, recorded] = overview.drift;
     html! {
         tr data-scene=(overview.scene) data-model=(model.model) {
-            td.left { (thumbnail::drawn(&model.thumbnail, &model.model)) }
+            td.left { (thumbnail::drawn(&model.thumbnail, look(&model.model, overview.models.iter().map(|m| &*m.model)))) }
             th.left scope="row" { (link(overview)) }
             td.left title=(model.name) { (model.model) }
             td.left data-sort=[severity] { (worded(model.verdict, &model.verdict_in_words)) }

@@ -105,6 +105,34 @@ fn metrics(measured: &Measured) -> Rows {
     rows
 }
 
+/// What the partners' efficiencies show; nothing if the inputs are certain.
+fn validation(measured: &Measured) -> Option<Rows> {
+    let heading = ["partner", "E", "u_val", "u_num", "u_input", "u_D", "shows", "area", "above, below"];
+    let points = |value: f64| format!("{} points", significant(100.0 * value, 3));
+    let row = |partner: &Partner| {
+        let of = partner.validation.as_ref()?;
+        let known = |u: Option<f64>| u.map_or("–".into(), points);
+        Some(vec![
+            partner.partner.clone(),
+            points(of.error),
+            points(of.u_val),
+            known(of.parts.u_num),
+            points(of.parts.u_input),
+            known(of.parts.u_d),
+            format!("{}: {}", of.verdict.words(), of.sentence),
+            partner.area.map_or("–".into(), |area| points(area.area)),
+            partner
+                .area
+                .map_or("–".into(), |area| format!("{}, {}", points(area.above), points(area.below))),
+        ])
+    };
+    let rows: Rows = measured.partners.iter().filter_map(row).collect();
+    (!rows.is_empty()).then(|| std::iter::once(heading.map(str::to_owned).into()).chain(rows).collect())
+}
+
+/// What the columns of [`validation`] are.
+const VALIDATION: &str = "Efficiency with the inputs as uncertain as the scene says: E is the partner's less the mean of the measured ones;     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the partner's efficiency and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the partner's is larger and smaller.";
+
 /// Mean and scatter in a sentence.
 pub(super) fn sentence(measured: &Measured) -> String {
     let Some(series) = &measured.efficiency else {
@@ -159,6 +187,7 @@ pub(super) fn measured_html(report: &SceneReport) -> Markup {
         }
         (table(alignment(measured)))
         (table(metrics(measured)))
+        @if let Some(rows) = validation(measured) { (table(rows)) p.soft { (VALIDATION) } }
         p.soft { (prose(measured.rule)) }
     }
 }
@@ -178,8 +207,10 @@ pub(super) fn measured_markdown(report: &SceneReport) -> String {
         }
         text
     };
+    let validation =
+        validation(measured).map_or_else(String::new, |rows| format!("{}\n{VALIDATION}\n\n", table(rows)));
     format!(
-        "\n### Measurement\n\n{} {}\n\n![Measured displacement and velocity]({}-measured.svg)\n\n{}\n{}\n{}\n",
+        "\n### Measurement\n\n{} {}\n\n![Measured displacement and velocity]({}-measured.svg)\n\n{}\n{}\n{validation}{}\n",
         sentence(measured),
         bandwidth(measured),
         report.comparison.scene,

@@ -1,6 +1,7 @@
 //! The page of `diff`: what moved between two comparisons, the largest move first.
 
-use super::discrepancy_picture::{at, bar, mark_of, scale};
+use super::colours::look;
+use super::discrepancy_picture::{at, bar, mark, scale};
 use super::format::{percent, prefixed, with_unit, words};
 use super::html::{page, scrolled};
 use super::index_page;
@@ -125,7 +126,7 @@ fn number_row(row: &Moved, axis: &SymmetricLog, class: &str) -> Markup {
                 @if let Some(band) = band { (bar("fig-band", axis, [-band, band], (1.0, "100%"))) }
                 use href=(format!("#grid-{class}")) {}
                 @if let Some(share) = row.relative {
-                    svg x=(at(axis, share)) y=(0.5 * HEIGHT) overflow="visible" data-si=(share) { (mark_of(&row.model)) }
+                    svg x=(at(axis, share)) y=(0.5 * HEIGHT) overflow="visible" data-si=(share) { @let look = look(&row.model, []); (mark(look.shape, look.class)) }
                 }
             } }
         }

@@ -1,9 +1,9 @@
 //! What a scene's page carries for its script: the curves on the common axis, and the comparison document of the scene.
 
 use super::SceneReport;
-use super::colours::class_of;
+use super::colours::look;
 use super::figure::PanelOf;
-use super::figure_lines::{dash, reference_name};
+use super::figure_lines::reference_name;
 use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::reference::CurveBands;
@@ -35,11 +35,12 @@ pub(super) fn curves(report: &SceneReport, panels: &[PanelOf]) -> Value {
         .collect();
     let of_source = |(id, name, _): &Source| {
         let is_reference = id == "reference";
-        let class = if is_reference { "fig-reference" } else { class_of(id) };
+        let look = look(id, report.comparison.names());
+        let class = if is_reference { "fig-reference" } else { look.class };
         let dashes: Vec<f64> = if is_reference {
             Vec::new()
         } else {
-            dash(id).split(' ').filter_map(|d| d.parse().ok()).collect()
+            look.dash.split(' ').filter_map(|d| d.parse().ok()).collect()
         };
         json!({
             "id": id, "name": name, "short": if is_reference { "FE" } else { id }, "dash": dashes,

@@ -92,7 +92,7 @@ impl Presentation for Plate {
     }
 
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
-        let budget = super::budget_section::budget_html(&report.comparison.budget);
+        let budget = super::budget_section::budget_html(&report.comparison);
         let measured = super::measured_section::measured_html(report);
         let dents = super::dents_section::dents_html(report).unwrap_or_else(|error| html! { p { (error) } });
         vec![

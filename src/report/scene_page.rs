@@ -34,6 +34,11 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
     let mut all = vec![
         Section::new("discrepancies", "Discrepancies", discrepancy_picture::discrepancy_picture(comparison)),
         Section::new("over-time", "Curves", curves(report)),
+        Section::new(
+            "validation",
+            "Uncertain inputs",
+            super::validation_section::validation_html(comparison),
+        ),
     ];
     all.extend(comparison.models.iter().map(|model| {
         let title = format!("Model {}", model_name(&model.model, model.summary.modes));

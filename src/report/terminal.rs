@@ -88,6 +88,7 @@ pub fn terminal(report: &Report) -> String {
             text += &format!("  {}\n", super::measured_section::sentence(measured));
         }
         text += &findings(comparison);
+        text += &super::validation_section::validation_text(comparison);
         text.push('\n');
     }
     text

@@ -1,6 +1,6 @@
 //! A scene's first contact force as a picture of a few hundred bytes, which outlives the run that made it.
 
-use super::colours::class_of;
+use super::colours::Look;
 use super::polyline::path;
 use super::{SceneReport, presentation};
 use crate::curves::{CommonAxis, sample};
@@ -31,12 +31,12 @@ fn drawn_path(axis: CommonAxis, values: &[f64], peak: f64) -> String {
 }
 
 /// The picture; decoration beside the numbers.
-pub(super) fn drawn([reference, own]: &[String; 2], model: &str) -> Markup {
+pub(super) fn drawn([reference, own]: &[String; 2], look: Look) -> Markup {
     html! {
         @if !reference.is_empty() {
             svg.thumbnail viewBox=(format!("-0.3 -0.3 {} {}", WIDTH + 0.6, HEIGHT + 0.6)) aria-hidden="true" {
                 path.fig-reference d=(reference) {}
-                path class=(class_of(model)) d=(own) {}
+                path class=(look.class) d=(own) {}
             }
         }
     }

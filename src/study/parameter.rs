@@ -60,6 +60,7 @@ pub fn scene(name: &str, setup: PlateImpact) -> Scene {
             rigid: None,
         },
         tolerances: BTreeMap::new(),
+        uncertainty: None,
         external: Vec::new(),
     }
 }

@@ -38,7 +38,7 @@ fn every_command_runs() {
         let scene = scene.unwrap();
         fs::copy(scene.path(), folder.path().join(scene.file_name())).unwrap();
     }
-    for part in ["external", "import"] {
+    for part in ["external", "import", "uncertainty"] {
         let there = folder.path().join("examples").join(part);
         fs::create_dir_all(&there).unwrap();
         for file in fs::read_dir(Path::new(ROOT).join("examples").join(part)).unwrap() {

@@ -22,5 +22,6 @@ mod snapshots;
 mod store_fixture;
 mod sweep_figures;
 mod sweeps;
+mod uncertainty;
 #[cfg(unix)]
 mod watch;

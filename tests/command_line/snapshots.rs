@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "reduced",
     "reference",
     "compare",
@@ -17,6 +17,7 @@ const COMMANDS: [&str; 17] = [
     "diff",
     "mesh",
     "study",
+    "uncertainty",
     "optimise",
     "bench",
     "stress",

@@ -12,6 +12,7 @@ fn errors_of_every_integrator_fall_with_its_tolerance_and_ratios_follow_from_the
         scipy: false,
         peers: vec!["false".into()],
         models: false,
+        series: 12,
     };
     let bench = run(&settings, &Store::open(None), &|_| ()).unwrap();
     let mut solvers: Vec<&str> = bench.work_precision.iter().map(|run| run.solver.as_str()).collect();
@@ -48,6 +49,13 @@ fn errors_of_every_integrator_fall_with_its_tolerance_and_ratios_follow_from_the
             good.fold(f64::INFINITY, f64::min)
         };
         assert_eq!(ratio.ratio, best(&ratio.peer) / best(OURS), "{ratio:?}");
+    }
+    assert_eq!(bench.series.iter().map(|s| s.model.as_str()).collect::<Vec<_>>(), ["B", "C", "B", "C"]);
+    for series in &bench.series {
+        let [most, largest] = series.error;
+        assert!(most <= largest && series.efficiency_error[1] <= largest && series.per_second_cold > 0.0);
+        // Hertz's half-spaces are off by percents where bodies scaled from others are not
+        assert_eq!(largest > 0.02, series.model == "B", "{series:?}");
     }
     assert!(figure(&bench).matches("<polyline").count() == 3);
 }

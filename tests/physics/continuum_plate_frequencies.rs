@@ -96,6 +96,7 @@ fn frequencies_of_a_free_plate_converge_with_twice_the_order_of_the_elements() {
             order,
             patch_elements: refinement,
             growth: 1.001,
+            depth_growth: 1.001,
             nodes_per_wavelength: 2.0,
             thickness_elements: refinement,
         };

@@ -323,9 +323,31 @@ fn what_is_not_covered_is_refused_and_what_is_open_is_told() {
     assert!(summary.contact_pressure.is_none());
     let chosen = Reduced::auto(&scene, 0.01).unwrap();
     assert!(!chosen.choice().unwrap().met);
-    let endless = scene_of(plastic, "b", "b", "run.end_time = \"10 s\"").unwrap();
-    let error = Reduced::new(&endless, Model::B, None).unwrap().run(1e-7).unwrap_err();
-    assert!(error.to_string().contains("run.end_time"), "{error}");
+}
+
+/// Where nothing touches time passes in long steps, before the first contact and after the last one.
+#[test]
+fn a_flight_is_a_few_steps() {
+    let ending = |end_time: Option<f64>| Options { end_time, ..Options::default() };
+    for (gap, end_time) in [(0.02, None), (0.0, Some(10.0))] {
+        let mut setup = common::scaled_plate(0.01, 0.55);
+        setup.inner.gap = gap;
+        setup.outer.material.relaxation = vec![Relaxation { ratio: 0.1, time: 1e3 }];
+        let system = System::new(&setup, &kirchhoff::modes(&setup.plate, 16).unwrap(), [0.0; 2]);
+        let exact = integrator::integrate(&system, &ending(end_time)).unwrap();
+        let memory = Memory::new(&setup, &system).unwrap().unwrap();
+        let ours = integrate(&system, &memory, &ending(end_time)).unwrap().0;
+        for i in 0..2 {
+            assert_relative_eq!(ours.velocity[i], exact.velocity[i], epsilon = 1e-4 * system.speed);
+            assert_eq!(ours.contacts[i].contacts, exact.contacts[i].contacts);
+        }
+        assert!(
+            ours.energy_residual < 5e-5 && ours.steps < 8000,
+            "{gap} {} {}",
+            ours.energy_residual,
+            ours.steps
+        );
+    }
 }
 
 /// Steel that yields at 600 MPa where `soft` says so, of outer body, plate and inner body, struck once at `speed` m/s.

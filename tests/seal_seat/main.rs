@@ -3,5 +3,6 @@
 mod compared;
 mod reduced;
 mod reference;
+mod relaxing;
 mod scaling;
 mod scene;

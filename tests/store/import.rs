@@ -76,6 +76,7 @@ fn what_a_map_gets_wrong_is_told_and_nothing_is_stored() {
         ),
         ("column = 4, unit = \"N\"", "column = 4, unit = \"mm\"", "`mm` is the unit of something else"),
         ("column = 5", "column = 9", "there is no column 9"),
+        ("sign = -1", "sign = -1000", "has to be 1 or -1"),
         ("outer_force    =", "outer_forces   =", "did you mean `outer_force`?"),
         ("skip      = 3", "skip      = 1", "not a finite number"),
         ("efficiency       = 0.001", "efficiency       = -0.001", "has to be 0 or more"),
@@ -89,5 +90,11 @@ fn what_a_map_gets_wrong_is_told_and_nothing_is_stored() {
         assert!(matches!(error, Error::Reference(_)), "{error}");
         assert!(error.to_string().contains(part), "{part}: {error}");
     }
+    // one heading over two columns
+    let text = fs::read_to_string(recipe("lsprepost.csv")).expect("file");
+    let twice = folder.path().join("twice.csv");
+    fs::write(&twice, text.replacen("Mat-1", "Mat-3", 1)).expect("written");
+    let error = import(&scene(), &twice, Some(&recipe("lsprepost.toml")), &store).expect_err("which one?");
+    assert!(error.to_string().contains("several columns are called"), "{error}");
     assert_eq!(store.find(&scene(), Resolution::Imported), Lookup::Missing);
 }

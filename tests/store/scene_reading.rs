@@ -411,9 +411,11 @@ fn materials_that_contradict_themselves_are_refused() {
         ("relaxation = [{ ratio = 0.6, time = 1e-5 }, { ratio = 0.4, time = 1e-4 }]", "below 1"),
         ("loss_factor = 0.99\nmodulus_frequency = 1e4", "0.99"),
     ] {
-        let error = Scene::parse("scene.toml", &material_with(keys)).unwrap_err();
-        assert_eq!(error.exit_status(), ExitStatus::InvalidScene, "{keys}");
-        assert!(error.to_string().contains(words), "{keys}: {error}");
+        let text = material_with(keys);
+        let [fault] = &refused(&text)[..] else { panic!("{keys}") };
+        assert!(fault.message.contains(words), "{keys}: {fault}");
+        let at = text.lines().nth(fault.line - 1).expect("a line");
+        assert!(fault.message.contains(&format!(".{}", at.split(' ').next().unwrap())), "{at}: {fault}");
     }
     for keys in [
         "relaxation = []",

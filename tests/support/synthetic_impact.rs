@@ -98,6 +98,7 @@ pub fn scene() -> Scene {
             rigid: None,
         },
         tolerances: BTreeMap::new(),
+        uncertainty: None,
         external: Vec::new(),
     }
 }

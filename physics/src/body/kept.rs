@@ -8,7 +8,7 @@ const MOST: usize = 64;
 
 /// A list of values that take long to make, each made when it is first asked for.
 #[derive(Debug)]
-pub(super) struct Kept<T>(RwLock<Vec<Arc<T>>>);
+pub(crate) struct Kept<T>(RwLock<Vec<Arc<T>>>);
 
 impl<T> Default for Kept<T> {
     fn default() -> Self {
@@ -19,7 +19,7 @@ impl<T> Default for Kept<T> {
 impl<T> Kept<T> {
     /// The entry that `fits`, made if there is none. Threads that want it at the same time make it each: so nobody waits for
     /// one that somebody else wants.
-    pub(super) fn find_or(
+    pub(crate) fn find_or(
         &self,
         fits: impl Fn(&T) -> bool,
         make: impl FnOnce() -> Result<T>,
@@ -39,6 +39,11 @@ impl<T> Kept<T> {
         }
         kept.push(Arc::clone(&made));
         Ok(made)
+    }
+
+    /// All that there are.
+    pub(crate) fn all(&self) -> Vec<Arc<T>> {
+        self.0.read().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     #[cfg(test)]

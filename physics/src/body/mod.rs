@@ -4,7 +4,7 @@
 pub mod cache;
 pub mod continuum;
 pub mod free_sphere;
-mod kept;
+pub(crate) mod kept;
 pub mod kirchhoff;
 pub mod layer;
 pub mod solid;

@@ -6,6 +6,7 @@
 //! Struct. 42 (2005) 3716, eqs. (13) and (15). The law knows no hardening.
 
 use super::Hertz;
+use crate::numerics::quadrature::gauss_legendre;
 use std::f64::consts::PI;
 
 /// Exponent with which the force of a dent grows (Etsion et al., eq. 15).
@@ -15,6 +16,9 @@ fn unloading_exponent(w: f64) -> f64 {
 
 /// Steps of Newton's method after which the inverse of the loading curve is taken as found.
 const MAX_ITERATIONS: usize = 40;
+
+/// Gauss points of the work of loading.
+const LOADING_POINTS: usize = 32;
 
 /// Loading curve of a tip and a flat of which one yields.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -125,6 +129,24 @@ impl ElasticPlastic {
         dent.residual + (x_m - dent.residual) * (force / f_m).powf(1.0 / dent.exponent)
     }
 
+    /// Energy in J taken under the `force` in N that has made the dent so far: what unloading would give back, and what it would not.
+    pub fn taken(&self, dent: &Dent, force: f64) -> f64 {
+        let [x_m, f_m] = dent.largest;
+        if f_m == 0.0 {
+            return 0.4 * force * self.hertz.approach(force);
+        }
+        let (points, weights) = gauss_legendre(LOADING_POINTS);
+        // Hertz's law up to the critical approach
+        let (elastic, middle) =
+            (0.4 * self.critical_force * self.critical_approach, 0.5 * (x_m + self.critical_approach));
+        let half = x_m - middle;
+        let at = |p: &f64| self.loading(middle + half * p)[0];
+        let loaded = elastic + half * points.iter().zip(weights).map(|(p, w)| w * at(p)).sum::<f64>();
+        let n = dent.exponent;
+        let given_back = f_m * (x_m - dent.residual) / (n + 1.0);
+        loaded - given_back * (1.0 - (force / f_m).powf((n + 1.0) / n))
+    }
+
     /// Force in N at the approach `x` in m from virgin surfaces with the dent so far, and its slope in N/m.
     pub fn force(&self, dent: &Dent, x: f64) -> [f64; 2] {
         let [x_m, f_m] = dent.largest;
@@ -170,6 +192,26 @@ mod tests {
     fn yield_begins_at_the_pressure_of_hertz_and_tresca() {
         let law = steel();
         assert_relative_eq!(law.hertz.maximum_pressure(law.critical_force) / 600e6, 1.6, max_relative = 0.02);
+    }
+
+    /// What was taken is the work done along the way: loaded, unloaded in part, loaded further, unloaded.
+    #[test]
+    fn what_is_taken_is_the_work_done() {
+        let law = steel();
+        let (mut dent, mut x, mut work) = (Dent::NONE, 0.0, 0.0);
+        for turn in [0.5, 12.0, 11.0, 40.0, 0.0] {
+            let (from, to) = (x, turn * law.critical_approach);
+            let n = 20_000;
+            for k in 1..=n {
+                let next = from + (to - from) * f64::from(k) / f64::from(n);
+                work += 0.5 * (law.force(&dent, x)[0] + law.force(&dent, next)[0]) * (next - x);
+                dent = law.dent_after(dent, law.force(&dent, next)[0]);
+                x = next;
+            }
+            let taken = law.taken(&dent, law.force(&dent, x)[0]);
+            assert_relative_eq!(taken, work, max_relative = 1e-3);
+        }
+        assert!(work > 20.0 * 0.4 * law.critical_force * law.critical_approach);
     }
 
     /// Full plasticity: the mean pressure of Jackson and Green's own contact area is at most 2.84 Y.

@@ -23,6 +23,10 @@ pub struct ViscoelasticContact {
     width: f64,
     halves: [Half; 2],
     springs: Vec<[Deformation; 2]>,
+    /// Length of a step in s, the power that the springs lose in W, and what they have lost in J.
+    step: f64,
+    power: f64,
+    lost: f64,
 }
 
 impl ViscoelasticContact {
@@ -32,11 +36,16 @@ impl ViscoelasticContact {
             stiffness: 2.0 * material.plane_strain_modulus() * width,
             creep: Creep::new(&material.relaxation),
         };
-        Self { tip_radius, width, halves: materials.map(half), springs: Vec::new() }
+        Self::virgin_springs(tip_radius, width, materials.map(half))
+    }
+
+    fn virgin_springs(tip_radius: f64, width: f64, halves: [Half; 2]) -> Self {
+        Self { tip_radius, width, halves, springs: Vec::new(), step: 0.0, power: 0.0, lost: 0.0 }
     }
 
     /// Prepares steps of `h` s.
     pub fn prepare(&mut self, h: f64) {
+        self.step = h;
         self.halves.iter_mut().for_each(|half| half.creep.prepare(h));
     }
 
@@ -51,12 +60,7 @@ impl ViscoelasticContact {
     pub fn with_springs_every(&self, width: f64) -> Self {
         let half =
             |half: &Half| Half { stiffness: half.stiffness * width / self.width, creep: half.creep.clone() };
-        Self {
-            tip_radius: self.tip_radius,
-            width,
-            halves: [half(&self.halves[0]), half(&self.halves[1])],
-            springs: Vec::new(),
-        }
+        Self::virgin_springs(self.tip_radius, width, [half(&self.halves[0]), half(&self.halves[1])])
     }
 
     /// Deformation in m of spring `k`, positive into the bodies, if the tip has approached by `x` m.
@@ -101,10 +105,8 @@ impl ViscoelasticContact {
                 break;
             }
             let [force, slope] = self.spring(self.springs.get(k).unwrap_or(&virgin), w);
-            // both sides of the axis are one spring, whose stiffness has the factor 2 E*; on the axis there is but one
-            let sides = if k == 0 { 0.5 } else { 1.0 };
-            sum[0] += sides * force;
-            sum[1] += sides * slope;
+            sum[0] += sides(k) * force;
+            sum[1] += sides(k) * slope;
         }
         sum
     }
@@ -120,7 +122,30 @@ impl ViscoelasticContact {
                 half.creep.advance(state, force / half.stiffness);
             }
         }
+        let power = self.sum(Creep::power);
+        self.lost += 0.5 * self.step * (self.power + power);
+        self.power = power;
     }
+
+    /// Energy in J that the springs store and have lost.
+    pub fn taken(&self) -> f64 {
+        self.sum(Creep::stored) + self.lost
+    }
+
+    /// Sum over all springs of what `of` gives per stiffness.
+    fn sum(&self, of: impl Fn(&Creep, &Deformation) -> f64) -> f64 {
+        let spring = |(k, state): (usize, &[Deformation; 2])| {
+            let halves =
+                self.halves.iter().zip(state).map(|(half, state)| half.stiffness * of(&half.creep, state));
+            sides(k) * halves.sum::<f64>()
+        };
+        self.springs.iter().enumerate().map(spring).sum()
+    }
+}
+
+/// Share of spring `k`: both sides of the axis are one spring, whose stiffness has the factor 2 E*; on the axis there is but one.
+fn sides(k: usize) -> f64 {
+    if k == 0 { 0.5 } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -172,7 +197,19 @@ mod tests {
             .sum();
         assert_relative_eq!(force, hereditary, max_relative = 2e-3);
         assert!(force < 0.8 * hertz.force(4e-6));
-        // unloaded, the surface lags behind the tip
+        // unloaded, the surface lags behind the tip, and what the springs took is what was done to them
+        let mut work = 0.0;
+        let (mut pressed, mut x) = (contact.clone(), approach(end));
+        for k in 1..=n {
+            let next = approach(end) * (1.0 - f64::from(k) / f64::from(n));
+            let before = pressed.force(x)[0];
+            work += 0.5 * (before + pressed.force(next)[0]) * (next - x);
+            pressed.advance(next);
+            x = next;
+        }
+        let stored = contact.taken();
+        assert!(-work > 0.3 * stored && -work < 0.9 * stored, "{work} {stored}");
+        assert_relative_eq!(pressed.taken(), stored + work, max_relative = 5e-3);
         let touch = contact.touch();
         assert!(touch > 0.02 * approach(end) && touch < approach(end), "{touch}");
         assert_eq!(contact.force(touch)[0], 0.0);

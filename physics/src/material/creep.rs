@@ -67,6 +67,23 @@ impl Creep {
         1.0 / (1.0 - self.at_once)
     }
 
+    /// Energy stored in `state` per instantaneous stiffness, m^2: the modulus after a long time, and a Maxwell element per term.
+    pub fn stored(&self, state: &Deformation) -> f64 {
+        let w = state.depth;
+        0.5 * self.extensions(state).fold(w * w, |sum, (term, d)| sum + term.ratio * (d * d - w * w))
+    }
+
+    /// Power lost in `state` per instantaneous stiffness, m^2/s.
+    pub fn power(&self, state: &Deformation) -> f64 {
+        self.extensions(state).map(|(term, d)| term.ratio * d * d / term.time).sum()
+    }
+
+    /// Terms and the extension of the spring of each, w - xi in m.
+    fn extensions<'a>(&'a self, state: &'a Deformation) -> impl Iterator<Item = (&'a Relaxation, f64)> {
+        let of = |k| state.depth - state.relaxed.get(k).unwrap_or(&0.0);
+        self.terms.iter().enumerate().map(move |(k, term)| (term, of(k)))
+    }
+
     /// Ends the step with `elastic` m.
     pub fn advance(&self, state: &mut Deformation, elastic: f64) {
         let depth = self.deformation(state, elastic);

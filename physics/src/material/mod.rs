@@ -4,7 +4,7 @@ mod creep;
 mod relaxation;
 
 pub use creep::{Creep, Deformation};
-pub use relaxation::{Relaxation, fit_loss_factor, modulus_ratio};
+pub use relaxation::{Relaxation, fit_loss_factor, modulus_ratio, vibration_frequency};
 
 use serde::Serialize;
 

@@ -16,6 +16,9 @@ pub struct Relaxation {
     pub time: f64,
 }
 
+/// Iterations for the frequency of a relaxing mode.
+const FIXED_POINT: usize = 100;
+
 /// Decades on either side of the frequency of a loss factor over which it is fitted.
 const DECADES: i32 = 2;
 /// Terms on either side, and their distance in decades: with a whole decade the loss factor would swing by 5 %.
@@ -33,6 +36,12 @@ pub fn modulus_ratio(terms: &[Relaxation], frequency: f64) -> [f64; 2] {
         let share = term.ratio / (1.0 + x * x);
         [storage - share, loss + share * x]
     })
+}
+
+/// Frequency in Hz at which a body vibrates in a mode of `instantaneous` Hz: the fixed point of the storage modulus.
+pub fn vibration_frequency(terms: &[Relaxation], instantaneous: f64) -> f64 {
+    let at = |frequency: f64| instantaneous * modulus_ratio(terms, frequency)[0].sqrt();
+    (0..FIXED_POINT).fold(instantaneous, |frequency, _| at(frequency))
 }
 
 /// Terms whose loss factor is `loss_factor` over two decades on either side of `frequency` Hz, and the largest relative error of it

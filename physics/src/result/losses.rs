@@ -15,7 +15,8 @@ pub struct Losses {
     /// materials or friction, J; `None` where nothing of it is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contacts: Option<[f64; 2]>,
-    /// In outer body, plate and inner body to relaxation, contacts included, J: of references, which know no contact apart.
+    /// In outer body, plate and inner body to relaxation, contacts included, J: of what knows no contact apart, references and seal
+    /// seats (actuator, seat and sphere).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bodies: Option<[f64; 3]>,
 }

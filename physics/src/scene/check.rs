@@ -186,6 +186,8 @@ impl<'a> Checker<'a> {
                 self.list(place, value, items, fields, *most)
             }
             (Kind::TableOf(fields), DeValue::Table(tables)) => self.tables(place, tables, fields),
+            // has a reader of its own, once the numbers are known
+            (Kind::Uncertainty, DeValue::Table(_)) => None,
             (kind, found) => {
                 let (needed, help) = needed(kind, place.path);
                 let message = format!("but it has to be {needed}; found: {}", found.type_str());
@@ -234,7 +236,7 @@ impl<'a> Checker<'a> {
         Some(Checked::Table(values))
     }
 
-    fn list(
+    pub(super) fn list(
         &mut self,
         place: &Place,
         value: &Spanned<DeValue>,

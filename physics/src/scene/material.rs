@@ -1,10 +1,11 @@
 //! Materials in a scene file: their keys, and what they say together.
 
+use super::collision::Collision;
 use super::quantity::Dimension;
-use super::read::{Node, refused};
+use super::read::Node;
 use super::specification::{Bound, Field, Kind, optional, positive, pure, required};
-use crate::Result;
 use crate::material::{Material, RateHardening, Relaxation, fit_loss_factor, modulus_ratio};
+use crate::{Error, Result};
 
 const POISSON: Bound = Bound { low: Some((-1.0, false)), high: Some((0.5, false)) };
 const SHARE: Bound = Bound { low: Some((0.0, false)), high: Some((1.0, false)) };
@@ -62,33 +63,30 @@ static RELAXATION: [Field; 2] = [
     required("time", positive(Dimension::TIME), "Time constant"),
 ];
 
-/// The material `name` of `materials`.
-///
-/// # Errors
-/// [`crate::Error::Scene`] for keys that contradict or need each other.
-pub(super) fn material(materials: &Node, name: &str) -> Result<Material> {
-    let keys = materials.table(name)?;
-    refuse_contradictions(&keys, name)?;
-    let relaxation = relaxation(&keys, name)?;
-    let modulus = keys.number("youngs_modulus")?;
-    let storage =
-        keys.optional_number("modulus_frequency")?.map_or(1.0, |f| modulus_ratio(&relaxation, f)[0]);
-    let rate = |rate: Node| {
-        Ok::<_, crate::Error>(RateHardening {
-            reference_rate: rate.number("D")?,
-            exponent: rate.number("q")?,
-        })
-    };
-    Ok(Material {
-        yield_strength: keys.optional_number("yield_strength")?,
-        hardening: keys.optional_number("hardening")?,
-        rate: keys.optional_table("rate")?.map(rate).transpose()?,
-        relaxation,
-        ..Material::elastic(name, modulus / storage, keys.number("poisson_ratio")?, keys.number("density")?)
-    })
+/// What the materials of a scene (its checked values) say that contradicts or needs another key.
+pub(super) fn collisions(root: &Node) -> Result<Vec<Collision>> {
+    let materials = root.table("materials")?;
+    let mut found = Vec::new();
+    for name in materials.0.keys() {
+        let keys = materials.table(name)?;
+        let fault = match contradiction(&keys) {
+            None => unsound_relaxation(&keys, name)?,
+            Some((key, message)) => Some((key, format!("`materials.{name}.{key}` {message}"), TOGETHER)),
+        };
+        found.extend(fault.map(|(key, message, help)| Collision {
+            fields: vec![format!("materials.{name}.{key}").into()],
+            message,
+            help,
+        }));
+    }
+    Ok(found)
 }
 
-fn refuse_contradictions(keys: &Node, name: &str) -> Result<()> {
+/// What goes together in a material.
+const TOGETHER: &str = "viscoelastic: `relaxation`, or `loss_factor` and `modulus_frequency`; plastic: `yield_strength` and `hardening`";
+
+/// The key of a material that contradicts or lacks another, and what it does.
+fn contradiction(keys: &Node) -> Option<(&'static str, &'static str)> {
     let has = |key: &str| keys.0.contains_key(key);
     let viscoelastic = has("relaxation") || has("loss_factor");
     let rules = [
@@ -123,33 +121,49 @@ fn refuse_contradictions(keys: &Node, name: &str) -> Result<()> {
             "and a relaxation together are not covered: a material is viscoelastic or plastic",
         ),
     ];
-    match rules.into_iter().find(|(broken, ..)| *broken) {
-        Some((_, key, message)) => Err(refused(
-            &format!("`materials.{name}.{key}` {message}"),
-            "viscoelastic: `relaxation`, or `loss_factor` and `modulus_frequency`; plastic: `yield_strength` and `hardening`",
-        )),
-        None => Ok(()),
-    }
+    rules.into_iter().find(|(broken, ..)| *broken).map(|(_, key, message)| (key, message))
 }
 
-fn relaxation(keys: &Node, name: &str) -> Result<Vec<Relaxation>> {
+/// The key that gives the material `name` a relaxation which no material has, what is said of it and what to do.
+fn unsound_relaxation(keys: &Node, name: &str) -> Result<Option<(&'static str, String, &'static str)>> {
+    let Some(terms) = relaxation(keys)? else {
+        let loss_factor = keys.number("loss_factor")?;
+        let message = format!(
+            "`materials.{name}.loss_factor` is {loss_factor}, which no relaxation with a modulus above 0 holds over four decades"
+        );
+        return Ok(Some(("loss_factor", message, "give the material's own `relaxation`")));
+    };
+    let sum: f64 = terms.iter().map(|term| term.ratio).sum();
+    let message =
+        || format!("the ratios of `materials.{name}.relaxation` add up to {sum}, but have to stay below 1");
+    Ok((sum >= 1.0).then(|| ("relaxation", message(), "what is left is the modulus after a long time")))
+}
+
+/// The terms by which a material relaxes; `None` if no terms have its loss factor.
+fn relaxation(keys: &Node) -> Result<Option<Vec<Relaxation>>> {
     if let Some(loss_factor) = keys.optional_number("loss_factor")? {
-        let fitted = fit_loss_factor(loss_factor, keys.number("modulus_frequency")?);
-        return fitted.map(|(terms, _)| terms).ok_or_else(|| {
-            refused(
-                &format!("`materials.{name}.loss_factor` is {loss_factor}, which no relaxation with a modulus above 0 holds over four decades"),
-                "give the material's own `relaxation`",
-            )
-        });
+        return Ok(fit_loss_factor(loss_factor, keys.number("modulus_frequency")?).map(|(terms, _)| terms));
     }
     let term = |term: Node| Ok(Relaxation { ratio: term.number("ratio")?, time: term.number("time")? });
-    let terms: Vec<Relaxation> = keys.tables("relaxation")?.into_iter().map(term).collect::<Result<_>>()?;
-    let sum: f64 = terms.iter().map(|term| term.ratio).sum();
-    if sum >= 1.0 {
-        return Err(refused(
-            &format!("the ratios of `materials.{name}.relaxation` add up to {sum}, but have to stay below 1"),
-            "what is left is the modulus after a long time",
-        ));
-    }
-    Ok(terms)
+    keys.tables("relaxation")?.into_iter().map(term).collect::<Result<_>>().map(Some)
+}
+
+/// The material `name` of `materials`, without [`collisions`].
+pub(super) fn material(materials: &Node, name: &str) -> Result<Material> {
+    let keys = materials.table(name)?;
+    let relaxation = relaxation(&keys)?
+        .ok_or_else(|| Error::Internal(format!("the loss factor of `materials.{name}` was not checked")))?;
+    let modulus = keys.number("youngs_modulus")?;
+    let storage =
+        keys.optional_number("modulus_frequency")?.map_or(1.0, |f| modulus_ratio(&relaxation, f)[0]);
+    let rate = |rate: Node| {
+        Ok::<_, Error>(RateHardening { reference_rate: rate.number("D")?, exponent: rate.number("q")? })
+    };
+    Ok(Material {
+        yield_strength: keys.optional_number("yield_strength")?,
+        hardening: keys.optional_number("hardening")?,
+        rate: keys.optional_table("rate")?.map(rate).transpose()?,
+        relaxation,
+        ..Material::elastic(name, modulus / storage, keys.number("poisson_ratio")?, keys.number("density")?)
+    })
 }

@@ -10,6 +10,7 @@ mod check;
 mod collision;
 mod external;
 mod fault;
+mod field;
 pub mod hash;
 mod material;
 mod plate_impact;
@@ -21,10 +22,12 @@ mod seal_seat;
 mod specification;
 mod template;
 mod tolerances;
+mod uncertainty;
 
 pub use external::External;
 pub use fault::suggestion;
 pub use fault::{Fault, Faults, faults};
+pub use field::{Field, Rejected};
 pub use plate_impact::{
     Bender, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape, ShearThinning, Spot,
 };
@@ -34,7 +37,8 @@ pub use read::MAX_FILE_BYTES;
 pub use schema::schema;
 pub use seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
 pub use specification::unit_of;
-pub use template::{Field, Rejected, Template};
+pub use template::Template;
+pub use uncertainty::{Correlation, Distribution, Spread, UncertainInput, Uncertainty};
 
 pub use crate::material::{Material, RateHardening, Relaxation};
 
@@ -202,6 +206,9 @@ pub struct Scene {
     pub reference: ReferenceSettings,
     /// Tolerances of the gate, by reduced model or program of the user's.
     pub tolerances: BTreeMap<String, Tolerances>,
+    /// How uncertain its numbers are; no solver is told of it.
+    #[serde(skip)]
+    pub uncertainty: Option<Uncertainty>,
     /// Programs of the user's that solve the scene too.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub external: Vec<External>,

@@ -1,6 +1,7 @@
 //! From the text of a scene file to a [`Scene`].
 
 use super::check::{Checked, Checker, Place, Values};
+use super::collision::Collision;
 use super::external::external;
 use super::fault::Collector;
 use super::plate_impact::{plate_impact, reference};
@@ -40,8 +41,8 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with every fault, its place and what would be valid.
     pub fn parse(source_name: &str, text: &str) -> Result<Scene> {
-        let (values, tolerances) = checked(source_name, text)?;
-        let scene = assemble(&values, tolerances)?;
+        let (values, beside) = checked(source_name, text)?;
+        let scene = assemble(&values, beside)?;
         refuse_collisions(&scene, source_name, text)?;
         Ok(scene)
     }
@@ -88,11 +89,18 @@ fn too_large(name: &str, size: String) -> Error {
     )
 }
 
-/// The checked values of a scene file and its tolerances.
+/// What a scene file says beside the impact; its tables have readers of their own.
+#[derive(Debug, Clone)]
+pub(super) struct Beside {
+    pub(super) tolerances: BTreeMap<String, Tolerances>,
+    pub(super) uncertainty: Option<Uncertainty>,
+}
+
+/// The checked values of a scene file, and what stands beside them.
 ///
 /// # Errors
 /// As [`Scene::parse`].
-pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap<String, Tolerances>)> {
+pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, Beside)> {
     let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
     let root = tree.get_ref();
     if root.is_empty() {
@@ -109,8 +117,12 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, BTreeMap
         _ => None,
     });
     let tolerances = checker.tolerances(root, kind.unwrap_or(kinds::KINDS[0]));
+    let uncertainty = checker.uncertainty(root, &values);
+    if checker.problems.is_empty() {
+        note(material::collisions(&Node(&values))?, root, &mut checker.problems);
+    }
     match checker.problems.is_empty() {
-        true => Ok((values, tolerances)),
+        true => Ok((values, Beside { tolerances, uncertainty })),
         false => Err(Error::Scene(checker.problems.into_report())),
     }
 }
@@ -126,11 +138,16 @@ pub(super) fn refuse_collisions(scene: &Scene, source_name: &str, text: &str) ->
     }
     let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
     let mut problems = Collector::new(source_name, text);
+    note(collisions, tree.get_ref(), &mut problems);
+    Err(Error::Scene(problems.into_report()))
+}
+
+/// Notes `collisions` at the first of their fields that the file has.
+fn note(collisions: Vec<Collision>, root: &DeTable, problems: &mut Collector) {
     for collision in collisions {
-        let place = collision.fields.iter().find_map(|field| span_of(tree.get_ref(), field));
+        let place = collision.fields.iter().find_map(|field| span_of(root, field));
         problems.add(place.unwrap_or(0..0), collision.message, "collides", collision.help.to_owned());
     }
-    Err(Error::Scene(problems.into_report()))
 }
 
 /// Where the key `path` ("seat.tilt") stands in the file.
@@ -254,7 +271,7 @@ pub(super) fn unknown(key: &str, word: &str) -> Error {
 }
 
 /// The scene that checked values describe.
-pub(super) fn assemble(values: &Values, tolerances: BTreeMap<String, Tolerances>) -> Result<Scene> {
+pub(super) fn assemble(values: &Values, beside: Beside) -> Result<Scene> {
     let root = &Node(values);
     let materials = root.table("materials")?;
     let settings = root.optional_table("reference")?;
@@ -275,7 +292,8 @@ pub(super) fn assemble(values: &Values, tolerances: BTreeMap<String, Tolerances>
         run: RunSettings { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
         reduced: reduced(root.optional_table("reduced")?)?,
         reference,
-        tolerances,
+        tolerances: beside.tolerances,
+        uncertainty: beside.uncertainty,
         external: root.tables("external")?.iter().map(external).collect::<Result<_>>()?,
     })
 }

@@ -5,6 +5,7 @@ use super::check::MAX_NAME;
 use super::quantity::{Dimension, prefixes, symbols};
 use super::specification::{Alternative, Bound, Field, Kind, MODELS, SCENE, TOLERANCES};
 use super::tolerances::{TERMS, gated_names, models};
+use super::uncertainty::{CORRELATIONS, DISTRIBUTIONS};
 use crate::kinds::{self, KINDS};
 use serde_json::{Map, Value, json};
 
@@ -135,6 +136,7 @@ fn value(kind: &Kind) -> Value {
             "type": "array", "items": table(fields), "minItems": 1, "maxItems": most,
         }),
         Kind::Tolerances => json!({}),
+        Kind::Uncertainty => uncertainty(),
     }
 }
 
@@ -171,6 +173,26 @@ fn units(dimension: Dimension) -> String {
         ways.push(r"1\s*/.*".to_owned());
     }
     ways.join("|")
+}
+
+/// Names of fields, with dots, and how each scatters; tables within are names without quotes.
+fn uncertainty() -> Value {
+    let percentage = json!({ "type": "string", "pattern": r"^\s*\+?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?\s*%\s*$" });
+    let number = json!({ "type": ["number", "string"] });
+    let bounds = json!({ "type": "array", "items": number, "minItems": 2, "maxItems": 2 });
+    let form = |(name, doc): (&str, &str)| {
+        let value = if name == "uniform" { &bounds } else { &number };
+        let properties = json!({ name: described(value.clone(), doc) });
+        json!({ "type": "object", "properties": properties, "required": [name], "additionalProperties": false })
+    };
+    let names: Vec<&str> = DISTRIBUTIONS.iter().map(|(name, _)| *name).collect();
+    let within = json!({ "type": "object", "propertyNames": { "not": { "enum": names } } });
+    let forms = [percentage].into_iter().chain(DISTRIBUTIONS.map(form)).chain([within]);
+    json!({
+        "type": "object",
+        "properties": { CORRELATIONS.key: described(value(&CORRELATIONS.kind), CORRELATIONS.doc) },
+        "additionalProperties": { "anyOf": forms.collect::<Vec<_>>() },
+    })
 }
 
 fn tolerances(kind: &dyn kinds::Kind) -> Value {

@@ -86,6 +86,8 @@ pub(super) enum Kind {
     Tables(&'static [Field], usize),
     /// `[tolerances.<model>]`, see `tolerances.rs`.
     Tolerances,
+    /// `[uncertainty]`, see `uncertainty/read.rs`.
+    Uncertainty,
 }
 
 /// One key.
@@ -166,7 +168,7 @@ const OF_PLATE_IMPACT: &[&str] = &[PLATE_IMPACT];
 const OF_SEAL_SEAT: &[&str] = &[SEAL_SEAT];
 
 /// The keys of a scene file. A key whose table depends on the scene's kind stands here once per kind.
-pub(super) static SCENE: [Field; 20] = [
+pub(super) static SCENE: [Field; 21] = [
     required("name", Kind::Name, "Name of the scene in the store and in reports"),
     optional("description", Kind::Text, "One line for people"),
     required("kind", Kind::Choice(&[choice(PLATE_IMPACT), choice(SEAL_SEAT)]), "What strikes what"),
@@ -218,6 +220,14 @@ pub(super) static SCENE: [Field; 20] = [
     only(
         OF_SEAL_SEAT,
         optional("reference", Kind::Table(&SEAT_REFERENCE), "Settings of the finite-element reference"),
+    ),
+    only(
+        OF_PLATE_IMPACT,
+        optional(
+            "uncertainty",
+            Kind::Uncertainty,
+            "How uncertain the scene's numbers are, by the names of their fields; changes no result",
+        ),
     ),
     optional(
         "external",

@@ -4,12 +4,12 @@
 //! costs a few microseconds.
 
 use super::check::{Checked, Values};
-use super::quantity::{self, Dimension, QuantityError};
-use super::read::{assemble, checked, read_text, refuse_collisions};
-use super::specification::{self, Kind, SCENE};
-use super::{Scene, Tolerances, suggestion};
+use super::collision::Collision;
+use super::field::{fields_of, index, number_in, without_effect};
+use super::material;
+use super::read::{Beside, Node, assemble, checked, read_text, refuse_collisions};
+use super::{Distribution, Field, Rejected, Scene, suggestion};
 use crate::{Error, Result};
-use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A checked scene file, open to variation.
@@ -26,109 +26,9 @@ use std::path::Path;
 #[derive(Debug, Clone)]
 pub struct Template {
     values: Values,
-    tolerances: BTreeMap<String, Tolerances>,
+    beside: Beside,
     scene: Scene,
     text: String,
-}
-
-/// A numeric field of a scene file, such as `plate.thickness` or `materials.steel.density`.
-#[derive(Debug, Clone)]
-pub struct Field {
-    path: String,
-    keys: Vec<String>,
-    kind: &'static Kind,
-}
-
-/// Why a value can't stand in a field.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rejected(pub String);
-
-impl std::fmt::Display for Rejected {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl Field {
-    /// Its name, keys joined by dots.
-    pub fn path(&self) -> &str {
-        &self.path
-    }
-
-    /// Its SI unit; "1" for a pure number.
-    pub fn unit(&self) -> &'static str {
-        self.dimension().describe().1
-    }
-
-    /// Whether it takes whole numbers only.
-    pub fn is_count(&self) -> bool {
-        matches!(self.kind, Kind::Count(..))
-    }
-
-    fn dimension(&self) -> Dimension {
-        match self.kind {
-            Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..) => *dimension,
-            _ => Dimension::NONE,
-        }
-    }
-
-    /// Reads a number with unit, or a bare one in SI.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] with the text and what is needed.
-    pub fn parse(&self, text: &str) -> Result<f64> {
-        let (what, _, sample) = self.dimension().describe();
-        let fault = |reason: String| {
-            let like =
-                if self.dimension() == Dimension::NONE { sample.to_owned() } else { format!("\"{sample}\"") };
-            Error::Usage(format!("`{}` = `{text}`: {reason}; write {what}, for example {like}", self.path))
-        };
-        let number = quantity::parse(text, self.dimension()).map_err(|error| {
-            fault(match error {
-                QuantityError::NotANumber => "that is not a number with a unit".into(),
-                QuantityError::UnknownUnit(u) => format!("`{u}` is not a known unit"),
-                QuantityError::MalformedUnit(u) => format!("`{u}` is not a product of units"),
-                QuantityError::WrongDimension(u) => {
-                    format!("`{u}` is not the unit of {}", self.dimension().in_words())
-                }
-                QuantityError::OutOfRange => "double precision can't hold it".into(),
-            })
-        })?;
-        Ok(number)
-    }
-
-    /// Whether `value`, in SI, may stand in the field.
-    ///
-    /// # Errors
-    /// [`Rejected`] with field, value, bound and unit.
-    pub fn check(&self, value: f64) -> std::result::Result<(), Rejected> {
-        let unit = self.unit();
-        let shown = self.dimension().suffix();
-        let rejected =
-            |range: String| Rejected(format!("`{}` is {value}{shown}, but it has to be {range}", self.path));
-        match self.kind {
-            Kind::Quantity(_, bound) | Kind::Quantities(_, bound, _) if !bound.holds(value) => {
-                Err(rejected(bound.describe(unit)))
-            }
-            Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..)
-                if !dimension.is_plausible(value) =>
-            {
-                let [low, high] = dimension.span();
-                Err(rejected(format!("between {low:e} and {high:e}{shown}")))
-            }
-            Kind::Quantity(..) | Kind::Quantities(..) => Ok(()),
-            Kind::Count(low, high) => {
-                let whole = value.fract() == 0.0 && value >= *low as f64 && value <= *high as f64;
-                if whole { Ok(()) } else { Err(rejected(format!("a whole number from {low} to {high}"))) }
-            }
-            _ => Err(rejected("a number".into())),
-        }
-    }
-}
-
-/// Whether no reduced model has the field called `path`.
-fn is_of_reference(path: &str) -> bool {
-    path == "friction" || path.starts_with("reference.")
 }
 
 impl Template {
@@ -146,10 +46,11 @@ impl Template {
     /// # Errors
     /// As [`Scene::parse`].
     pub fn parse(source_name: &str, text: &str) -> Result<Self> {
-        let (values, tolerances) = checked(source_name, text)?;
-        let scene = assemble(&values, tolerances.clone())?;
+        let (values, beside) = checked(source_name, text)?;
+        let scene = assemble(&values, beside.clone())?;
         refuse_collisions(&scene, source_name, text)?;
-        Ok(Template { values, tolerances, scene, text: text.to_owned() })
+        let beside = Beside { uncertainty: None, ..beside };
+        Ok(Template { values, beside, scene, text: text.to_owned() })
     }
 
     /// The scene as it stands in the file.
@@ -166,10 +67,8 @@ impl Template {
         if let Some(field) = fields.iter().find(|field| field.path == path) {
             return Ok(field.clone());
         }
-        if is_of_reference(path) {
-            return Err(Error::Usage(format!(
-                "`{path}` changes no reduced model: it is the reference's alone"
-            )));
+        if let Some(why) = without_effect(&self.values, path) {
+            return Err(Error::Usage(format!("`{path}` changes no reduced model: {why}")));
         }
         let names: Vec<&str> = fields.iter().map(|field| field.path.as_str()).collect();
         let hint = suggestion(path, names.iter().copied()).map(|s| format!("; did you mean `{s}`?"));
@@ -183,31 +82,15 @@ impl Template {
 
     /// Every numeric field that the scene has or may have and a reduced model knows.
     pub fn fields(&self) -> Vec<Field> {
-        let mut fields = Vec::new();
-        collect(&SCENE, Some(&self.values), &mut Vec::new(), &mut fields);
-        fields.retain(|field: &Field| !is_of_reference(&field.path));
-        fields
+        fields_of(&self.values)
     }
 
     /// What the scene file has in `field`, in SI; `None` if it says nothing there.
     pub fn number(&self, field: &Field) -> Option<f64> {
-        let (last, tables) = field.keys.split_last()?;
-        let mut values = &self.values;
-        for key in tables {
-            match values.get(key)? {
-                Checked::Table(inner) => values = inner,
-                Checked::Numbers(list) => return list.get(index(std::slice::from_ref(last))?).copied(),
-                _ => return None,
-            }
-        }
-        match values.get(last)? {
-            Checked::Number(number) => Some(*number),
-            Checked::Count(count) => Some(*count as f64),
-            _ => None,
-        }
+        number_in(&self.values, field)
     }
 
-    /// The scene with other numbers, in SI; later ones win.
+    /// The scene with other numbers, in SI; later ones win. It is one of those that the file's uncertainties speak of, and has none itself.
     ///
     /// # Errors
     /// [`Rejected`] for the first number that is out of bounds, or the first two features that collide.
@@ -219,14 +102,30 @@ impl Template {
                 if field.is_count() { Checked::Count(*value as u64) } else { Checked::Number(*value + 0.0) };
             set(&mut values, &field.keys, checked);
         }
-        let scene = assemble(&values, self.tolerances.clone()).map_err(|e| Rejected(e.to_string()))?;
-        match scene.setup.part().collisions().into_iter().next() {
+        let fault = |e: Error| Rejected(e.to_string());
+        let refused = |collisions: Vec<Collision>| match collisions.into_iter().next() {
             Some(collision) => Err(Rejected(collision.message)),
-            None => Ok(scene),
-        }
+            None => Ok(()),
+        };
+        refused(material::collisions(&Node(&values)).map_err(fault)?)?;
+        let scene = assemble(&values, self.beside.clone()).map_err(fault)?;
+        refused(scene.setup.part().collisions())?;
+        Ok(scene)
     }
 
-    /// The scene file with another name and other numbers, in SI. Comments are lost.
+    /// The bounds between which `field` scatters if it is `value`, and the keys they stand under; `None` if it has none.
+    fn moved_bounds(&self, field: &Field, value: f64) -> Option<(Vec<String>, toml::Value)> {
+        let inputs = &self.scene.uncertainty.as_ref()?.inputs;
+        let moved = inputs.iter().find(|input| input.field == field.path)?.about(value);
+        let Distribution::Uniform { low, high } = moved.distribution else { return None };
+        let table: toml::Table = self.text.parse().ok()?;
+        let quoted = table.get("uncertainty").is_some_and(|table| table.get(&field.path).is_some());
+        let names = if quoted { std::slice::from_ref(&field.path) } else { &field.keys[..] };
+        let keys = ["uncertainty"].into_iter().chain(names.iter().map(String::as_str)).chain(["uniform"]);
+        Some((keys.map(str::to_owned).collect(), vec![low, high].into()))
+    }
+
+    /// The scene file with another name and other numbers, in SI; bounds of what is uncertain move along. Comments are lost.
     ///
     /// # Errors
     /// [`Error::Internal`] if it can't be written.
@@ -237,6 +136,9 @@ impl Template {
         for (field, value) in numbers {
             let number = if field.is_count() { (*value as i64).into() } else { (*value).into() };
             write(&mut table, &field.keys, number);
+            if let Some(moved) = self.moved_bounds(field, *value) {
+                write(&mut table, &moved.0, moved.1);
+            }
         }
         toml::to_string(&table).map_err(|e| failed(e.to_string()))
     }
@@ -280,71 +182,6 @@ fn set(values: &mut Values, keys: &[String], value: Checked) {
                 _ => {}
             }
         }
-    }
-}
-
-/// The place in a list that the last key names, counted from 1.
-fn index(keys: &[String]) -> Option<usize> {
-    let [key] = keys else { return None };
-    key.parse::<usize>().ok()?.checked_sub(1)
-}
-
-/// The numeric fields below a table with the keys of `specification`; `values` is what the file has there.
-fn collect(
-    specification: &'static [specification::Field],
-    values: Option<&Values>,
-    keys: &mut Vec<String>,
-    found: &mut Vec<Field>,
-) {
-    let text = |key: &str| match values.and_then(|v| v.get(key)) {
-        Some(Checked::Text(text)) => Some(text.as_str()),
-        _ => None,
-    };
-    let table = |values: Option<&'_ Values>, key: &str| match values.and_then(|v| v.get(key)) {
-        Some(Checked::Table(inner)) => Some(inner.clone()),
-        _ => None,
-    };
-    let kind = text("kind").map(str::to_owned);
-    for field in specification {
-        // of several ways to say a thing only the one the file takes
-        let absent = !values.is_some_and(|v| v.contains_key(field.key));
-        if !field.belongs_to(kind.as_deref()) || (field.alternative(kind.as_deref()).is_some() && absent) {
-            continue;
-        }
-        keys.push(field.key.to_owned());
-        match &field.kind {
-            Kind::Quantity(..) | Kind::Count(..) => {
-                found.push(Field { path: keys.join("."), keys: keys.clone(), kind: &field.kind });
-            }
-            // the entries of a list that the file has, counted from 1
-            Kind::Quantities(..) => {
-                let list = values.and_then(|v| v.get(field.key));
-                let count = if let Some(Checked::Numbers(list)) = list { list.len() } else { 0 };
-                for entry in 1..=count {
-                    keys.push(entry.to_string());
-                    found.push(Field { path: keys.join("."), keys: keys.clone(), kind: &field.kind });
-                    keys.pop();
-                }
-            }
-            Kind::Table(inner) => {
-                let there = table(values, field.key);
-                // one number alone does not make a table that has to have others
-                if there.is_some() || inner.iter().all(|f| !f.required) {
-                    collect(inner, there.as_ref(), keys, found);
-                }
-            }
-            Kind::TableOf(inner) => {
-                for (name, entry) in table(values, field.key).unwrap_or_default() {
-                    if let Checked::Table(entry) = entry {
-                        keys.push(name);
-                        collect(inner, Some(&entry), keys, found);
-                        keys.pop();
-                    }
-                }
-            }
-            _ => {}
-        }
-        keys.pop();
     }
 }
 
@@ -411,11 +248,17 @@ mod tests {
             ("fluid.viscosity", "no numeric field"),
             ("plate.edge", "no numeric field"),
             ("friction", "it is the reference's alone"),
+            ("materials.steel.hardening", "knows no hardening"),
+            ("materials.steel.yield_strength", "without `hardening`"),
             ("reference.elements_per_contact_radius", "it is the reference's alone"),
         ] {
             let said = template.field(path).expect_err("refused").to_string();
             assert!(said.contains(part), "{said}");
         }
+        let yielding = BASE.replace("density ", "yield_strength = 6e8\nhardening = 0\ndensity ");
+        let yielding = Template::parse("yielding", &yielding).expect("valid");
+        let strength = yielding.field("materials.steel.yield_strength").expect("now it counts");
+        assert!(yielding.with(&[(&strength, 5e8)]).is_ok());
         let field = template.field("plate.radius").expect("there");
         assert_eq!(field.parse("33mm").expect("a length"), 0.033);
         let said = field.parse("33 kg").expect_err("a mass").to_string();

@@ -125,6 +125,9 @@ impl Mapping {
                 mapped.column.index(headings).map_err(|reason| format!("columns.{name}: {reason}"))?;
             let unit = mapped.unit.as_deref().map_or(Ok(1.0), |unit| table::in_si(unit, si));
             let unit = unit.map_err(|reason| format!("columns.{name}: {reason}"))?;
+            if mapped.sign.abs() != 1.0 {
+                return Err(format!("columns.{name}.sign is {}, but it has to be 1 or -1", mapped.sign));
+            }
             let offset = mapped.offset.as_ref().map_or(Ok(0.0), |offset| offset.in_si(name, si))?;
             Ok(Column { name, index, factor: mapped.sign * unit, offset })
         };
@@ -168,8 +171,14 @@ impl Place {
             Place::Number(number @ 1..) if *number <= headings.len() => Ok(number - 1),
             Place::Number(number) => Err(absent(number.to_string())),
             Place::Heading(heading) => {
-                let found = headings.iter().position(|other| other.trim() == heading.trim());
-                found.ok_or_else(|| absent(format!("`{heading}`")))
+                let found = headings.iter().enumerate().filter(|(_, other)| other.trim() == heading.trim());
+                match found.map(|(place, _)| place).collect::<Vec<_>>()[..] {
+                    [place] => Ok(place),
+                    [] => Err(absent(format!("`{heading}`"))),
+                    _ => Err(format!(
+                        "several columns are called `{heading}`; name the one that is meant by its number"
+                    )),
+                }
             }
         }
     }

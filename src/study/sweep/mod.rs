@@ -13,8 +13,8 @@ mod run;
 mod table;
 
 pub use drawing::{Drawn, figure};
-pub use plan::{DEFAULT_TOLERANCE, Plan};
+pub use plan::{DEFAULT_TOLERANCE, Draw, Plan};
 pub use record::{Outcome, Record};
 pub use references::{Known, references};
-pub use run::{Progress, Shard, run};
+pub use run::{Progress, Shard, in_memory, run};
 pub use table::Table;

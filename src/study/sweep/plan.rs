@@ -9,7 +9,7 @@ use crate::sampling::latin_hypercube;
 use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
 use crate::scene::{self, Field, Model, Template};
 use serde::Deserialize;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
@@ -54,10 +54,26 @@ pub struct Plan {
     modes: Option<usize>,
     tolerance: f64,
     axes: Vec<Axis>,
-    /// Points of the unit cube; `None` = a grid.
-    samples: Option<Vec<Vec<f64>>>,
+    points: Points,
     hash: String,
     bodies: SharedBodies,
+}
+
+/// Where the numbers of a point come from.
+#[derive(Debug)]
+enum Points {
+    /// Every combination of the axes' values.
+    Grid,
+    /// Points of the unit cube of the axes.
+    Samples(Vec<Vec<f64>>),
+    /// So many draws of fields without axes.
+    Draws(Vec<Field>, Box<dyn Draw>, usize),
+}
+
+/// Numbers for the fields of a plan that come from elsewhere than its axes. What it prints for debugging tells it from any other.
+pub trait Draw: std::fmt::Debug + Send + Sync {
+    /// The numbers of point `index`, in SI, one per field; they don't depend on how many points there are.
+    fn numbers(&self, index: usize) -> Vec<f64>;
 }
 
 impl Plan {
@@ -126,7 +142,7 @@ impl Plan {
             modes: file.modes,
             tolerance,
             axes,
-            samples,
+            points: samples.map_or(Points::Grid, Points::Samples),
             hash: String::new(),
             bodies: SharedBodies::default(),
         };
@@ -139,19 +155,63 @@ impl Plan {
         Ok(plan)
     }
 
+    /// Impacts of the scene in `template`, read from `scene_file`, whose `fields`, each with the range it varies in, take what `draw` says;
+    /// about so many `impacts` will be run, none as yet.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if the scene is no plate impact.
+    pub fn drawn(
+        (scene_file, template): (PathBuf, Template),
+        (model, modes, tolerance): (Model, Option<usize>, f64),
+        fields: Vec<(Field, [f64; 2])>,
+        draw: Box<dyn Draw>,
+        impacts: usize,
+    ) -> Result<Self> {
+        let ranges = fields.iter().map(|(field, range)| (field.path(), *range));
+        let bodies = SharedBodies::for_varied(ranges, template.scene().plate_impact()?, impacts);
+        let fields: Vec<Field> = fields.into_iter().map(|(field, _)| field).collect();
+        let mut plan = Plan {
+            scene_file,
+            template,
+            models: vec![model],
+            modes,
+            tolerance,
+            axes: Vec::new(),
+            points: Points::Draws(fields, draw, 0),
+            hash: String::new(),
+            bodies,
+        };
+        plan.hash = plan.identified(&json!({ "draws": format!("{:?}", plan.points) }));
+        Ok(plan)
+    }
+
+    /// Has `count` points from now on, the first of which are those it had; only of a plan that is [drawn](Self::drawn).
+    pub fn grow(&mut self, count: usize) {
+        if let Points::Draws(.., points) = &mut self.points {
+            *points = count;
+        }
+    }
+
     /// SHA-256 over everything the results depend on.
     fn identity(&self, file: &File) -> String {
         let axis = |a: &Axis| {
             let fields: Vec<&str> = a.fields.iter().map(Field::path).collect();
             json!([fields, format!("{:?}", a.values)])
         };
+        let axes: Vec<_> = self.axes.iter().map(axis).collect();
+        self.identified(&json!({ "samples": file.samples, "seed": file.seed, "axes": axes }))
+    }
+
+    /// SHA-256 over the scene, the models and what the table `points` says of the points.
+    fn identified(&self, points: &Value) -> String {
         let mut identity = json!({
             "version": env!("CARGO_PKG_VERSION"), "method": METHOD, "setup": self.template.scene().setup,
             "run": self.template.scene().run, "reduced": self.template.scene().reduced,
             "model": if let [one] = self.models[..] { json!(one) } else { json!(self.models) }, "modes": self.modes, "tolerance": self.tolerance,
-            "samples": file.samples, "seed": file.seed,
-            "axes": self.axes.iter().map(axis).collect::<Vec<_>>(),
         });
+        for (key, value) in points.as_object().into_iter().flatten() {
+            identity[key] = value.clone();
+        }
         drop_inelastic(&mut identity);
         sha256_hex(canonical(&identity).as_bytes())
     }
@@ -163,8 +223,11 @@ impl Plan {
 
     /// Number of points of one model.
     fn places(&self) -> usize {
-        let grid = || self.axes.iter().map(|axis| axis.values.len()).product();
-        self.samples.as_ref().map_or_else(grid, Vec::len)
+        match &self.points {
+            Points::Grid => self.axes.iter().map(|axis| axis.values.len()).product(),
+            Points::Samples(samples) => samples.len(),
+            Points::Draws(.., count) => *count,
+        }
     }
 
     /// Whether there is no point; never so for a plan that was read.
@@ -217,7 +280,7 @@ impl Plan {
 
     /// Whether an axis has more than one value.
     fn is_varied(&self, axis: &Axis) -> bool {
-        axis.values.len() > 1 || self.samples.is_some()
+        axis.values.len() > 1 || !self.is_grid()
     }
 
     /// Lowest and highest value of each of the [`Plan::parameters`], SI.
@@ -227,25 +290,27 @@ impl Plan {
 
     /// Whether the points are all of a grid.
     pub fn is_grid(&self) -> bool {
-        self.samples.is_none()
+        matches!(self.points, Points::Grid)
     }
 
     /// The fields that are varied, in the order of [`Plan::numbers`].
     pub fn fields(&self) -> impl Iterator<Item = &Field> {
-        self.axes.iter().flat_map(|axis| &axis.fields)
+        let drawn = if let Points::Draws(fields, ..) = &self.points { &fields[..] } else { &[] };
+        self.axes.iter().flat_map(|axis| &axis.fields).chain(drawn)
     }
 
     /// The numbers of point `index` in SI, one per field. The last axis of a grid changes fastest.
     pub fn numbers(&self, index: usize) -> Vec<f64> {
         let mut values = vec![0.0; self.axes.len()];
         let index = index % self.places();
-        match &self.samples {
-            Some(samples) => {
+        match &self.points {
+            Points::Draws(_, draw, _) => return draw.numbers(index),
+            Points::Samples(samples) => {
                 for ((value, axis), s) in values.iter_mut().zip(&self.axes).zip(&samples[index]) {
                     *value = axis.values.of_sample(*s);
                 }
             }
-            None => {
+            Points::Grid => {
                 let mut rest = index;
                 for (value, axis) in values.iter_mut().zip(&self.axes).rev() {
                     *value = axis.values.of_grid(rest % axis.values.len());

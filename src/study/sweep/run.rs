@@ -96,6 +96,17 @@ pub fn run(plan: &Plan, dir: &Path, shard: Shard, tell: &(dyn Fn(Progress) + Syn
     log.close()
 }
 
+/// Runs points number `from` and later, and keeps their records in memory alone.
+pub fn in_memory(plan: &Plan, from: usize, tell: &(dyn Fn(Progress) + Sync)) -> Vec<Record> {
+    tell(Progress::Start { points: plan.len(), done: from });
+    let run = |index| {
+        let record = plan.evaluate(index);
+        tell(Progress::Recorded(1));
+        record
+    };
+    (from..plan.len()).into_par_iter().map(run).collect()
+}
+
 /// The records in all logs of `dir`, by index; the first of each point. Shape (points).
 ///
 /// # Errors

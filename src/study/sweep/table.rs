@@ -71,7 +71,7 @@ impl<'a> Table<'a> {
     }
 
     /// The points and their results.
-    pub(super) fn records(&self) -> &[Record] {
+    pub fn records(&self) -> &[Record] {
         &self.records
     }
 
@@ -157,12 +157,12 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Writes `sweep.csv` or `sweep.parquet` into `dir` by way of a temporary file and returns its path.
+    /// Writes it into `dir`, called `name` with the ending of the format, by way of a temporary file and returns its path.
     ///
     /// # Errors
     /// [`Error::Io`] naming the file.
-    pub fn write(&self, dir: &Path, format: TableFormat) -> Result<PathBuf> {
-        let path = dir.join(format!("sweep.{}", format.extension()));
+    pub fn write(&self, dir: &Path, name: &str, format: TableFormat) -> Result<PathBuf> {
+        let path = dir.join(format!("{name}.{}", format.extension()));
         let bytes = match format {
             TableFormat::Csv => self.csv()?,
             TableFormat::Parquet => {

@@ -212,6 +212,7 @@ mod tests {
             MeshOptions { order: 4, ..mesh },
             MeshOptions { patch_elements: next(mesh.patch_elements), ..mesh },
             MeshOptions { growth: next(mesh.growth), ..mesh },
+            MeshOptions { depth_growth: next(mesh.depth_growth), ..mesh },
             MeshOptions { nodes_per_wavelength: next(mesh.nodes_per_wavelength), ..mesh },
             MeshOptions { thickness_elements: next(mesh.thickness_elements), ..mesh },
         ];
@@ -245,7 +246,7 @@ mod tests {
         add(plate_inputs(&p, PATCH, 15, &mesh));
         add(sphere_inputs(next(10e-3), &steel(), PATCH[0], &mesh));
         add(sphere_inputs(10e-3, &steel(), next(PATCH[0]), &mesh));
-        assert_eq!(count, 12 + 6 + 5 + 6);
+        assert_eq!(count, 14 + 6 + 5 + 6);
 
         let renamed = Material { name: "other".into(), ..steel() };
         assert_eq!(

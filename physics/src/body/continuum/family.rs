@@ -12,15 +12,18 @@ use crate::error::Result;
 use crate::numerics::chebyshev::{Chebyshev, blend};
 use crate::scene::{Edge, Material, Plate};
 
-/// Nodes over the logarithm of the thickness and over Poisson's ratio: even numbers, so that the middle is between them.
-pub(super) const THICKNESSES: usize = 6;
-pub(super) const POISSON_RATIOS: usize = 4;
-/// Places at which a family is tried, in -1..1 of both ranges.
-const TRIED: [[f64; 2]; 2] = [[0.0, 0.0], [0.86, 0.7]];
+/// Nodes over the logarithm of the thickness and over Poisson's ratio: first few, then more if those are not good enough.
+pub(super) const NODES: [[usize; 2]; 2] = [[4, 3], [6, 4]];
+/// Places at which a family is tried, in -1..1 of both ranges: between the nodes, and at the ends, where polynomials are worst.
+const TRIED: [[f64; 2]; 2] = [[0.0, 0.5], [1.0, 1.0]];
 /// Patch over the thickness at which it is tried.
 const TRIED_PATCH: f64 = 0.3;
+/// Nodes of spheres over Poisson's ratio.
+const SPHERE_RATIOS: usize = 4;
 /// Error that it may have there: of frequencies, of shapes over the largest, of flexibilities over the half-space's.
 const ENOUGH: f64 = 1e-4;
+/// Error beyond which more nodes are of no use: modes of one parity avoid each other.
+const HOPELESS: f64 = 1e-2;
 
 /// Plates of one edge within a range of thicknesses over radii and one of Poisson's ratios.
 #[derive(Debug)]
@@ -48,30 +51,50 @@ impl PlateFamily {
         modes: usize,
     ) -> Result<Option<Self>> {
         let widest = widest_patch(thickness[1]);
+        let at = |[from, to]: [f64; 2], s: f64| 0.5 * ((1.0 - s) * from + (1.0 + s) * to);
+        let exact = |[s, r]: [f64; 2]| {
+            let (t, nu) = (at(thickness.map(f64::ln), s).exp(), at(poisson_ratio, r));
+            UnitPlate::new(edge, nu, t, modes, widest)
+        };
+        let tried = TRIED.map(exact).into_iter().collect::<Result<Vec<UnitPlate>>>()?;
+        for counts in NODES {
+            let family = Self::through(edge, (thickness, poisson_ratio), counts, modes)?;
+            let miss =
+                |exact: &UnitPlate| family.at(exact.thickness, exact.poisson_ratio).largest_miss(exact);
+            let worst = tried.iter().map(|exact| miss(exact).unwrap_or(f64::INFINITY)).fold(0.0, f64::max);
+            if worst <= ENOUGH {
+                return Ok(Some(family));
+            }
+            if worst > HOPELESS {
+                break;
+            }
+        }
+        Ok(None)
+    }
+
+    /// Through so many nodes over the ranges of both.
+    fn through(
+        edge: Edge,
+        (thickness, poisson_ratio): ([f64; 2], [f64; 2]),
+        counts: [usize; 2],
+        modes: usize,
+    ) -> Result<Self> {
         let mut family = Self {
-            thicknesses: nodes(thickness.map(f64::ln), THICKNESSES),
-            poisson_ratios: nodes(poisson_ratio, POISSON_RATIOS),
+            thicknesses: nodes(thickness.map(f64::ln), counts[0]),
+            poisson_ratios: nodes(poisson_ratio, counts[1]),
             plates: Vec::new(),
-            widest,
+            widest: widest_patch(thickness[1]),
         };
         for x in &family.thicknesses.nodes {
             for nu in &family.poisson_ratios.nodes {
-                let mut plate = UnitPlate::new(edge, *nu, x.exp(), modes, widest)?;
+                let mut plate = UnitPlate::new(edge, *nu, x.exp(), modes, family.widest)?;
                 if let Some(before) = family.plates.last() {
                     align(&mut plate, before);
                 }
                 family.plates.push(plate);
             }
         }
-        for place in TRIED {
-            let at = |[from, to]: [f64; 2], s: f64| 0.5 * ((1.0 - s) * from + (1.0 + s) * to);
-            let (t, nu) = (at(thickness.map(f64::ln), place[0]).exp(), at(poisson_ratio, place[1]));
-            let exact = UnitPlate::new(edge, nu, t, modes, widest)?;
-            if family.at(t, nu).largest_miss(&exact).is_none_or(|miss| miss > ENOUGH) {
-                return Ok(None);
-            }
-        }
-        Ok(Some(family))
+        Ok(family)
     }
 
     /// The plate of `thickness` radii.
@@ -83,26 +106,37 @@ impl PlateFamily {
             values.iter().flat_map(|value| by_ratio.iter().map(move |w| value * w)).collect()
         };
         let weights = pairs(&by_thickness);
-        // nearly all of the flexibility is bending, which goes with the cube of the thickness
-        let cubes: Vec<f64> = by_thickness
+        // What is interpolated hardly changes: the speed of bending waves is taken out of the frequencies, the mass out of the
+        // shapes, and what yields beyond the lowest modes goes with a power of the thickness between bending's 3 and a half-space's 1.
+        let scaled = |power: i32, stiffening: f64| -> Vec<f64> {
+            let stiffness = |nu: f64| (1.0 - nu * nu).powf(stiffening);
+            let of = |plate: &UnitPlate| {
+                (thickness / plate.thickness).powi(power) * stiffness(plate.poisson_ratio)
+                    / stiffness(poisson_ratio)
+            };
+            self.plates.iter().zip(&weights).map(|(plate, weight)| weight * of(plate)).collect()
+        };
+        let (of_speeds, of_flexibilities) = (scaled(1, 0.5), scaled(-2, 0.0));
+        let of_shapes: Vec<f64> = self
+            .plates
             .iter()
-            .zip(&self.thicknesses.nodes)
-            .map(|(weight, x)| weight * (x.exp() / thickness).powi(3))
+            .zip(&weights)
+            .map(|(plate, w)| w * (plate.thickness / thickness).sqrt())
             .collect();
-        let of_cubes = pairs(&cubes);
-        let own = |m: usize| blend(&of_cubes, self.plates.iter().map(|plate| &plate.own[m]));
+        let own = |m: usize| blend(&of_flexibilities, self.plates.iter().map(|plate| &plate.own[m]));
         let mutual = |m: usize| {
-            let row = |i: usize| blend(&of_cubes, self.plates.iter().map(|plate| &plate.mutual[m][i]));
+            let row =
+                |i: usize| blend(&of_flexibilities, self.plates.iter().map(|plate| &plate.mutual[m][i]));
             (0..first.patches.nodes.len()).map(row).collect()
         };
-        let shape = |i: usize| blend(&weights, self.plates.iter().map(|plate| &plate.shapes[i]));
+        let shape = |i: usize| blend(&of_shapes, self.plates.iter().map(|plate| &plate.shapes[i]));
         UnitPlate {
             edge: first.edge,
             poisson_ratio,
             thickness,
             modes: first.modes,
             patches: patches(self.widest * thickness),
-            omega: blend(&weights, self.plates.iter().map(|plate| &plate.omega)),
+            omega: blend(&of_speeds, self.plates.iter().map(|plate| &plate.omega)),
             shapes: (0..first.patches.nodes.len()).map(shape).collect(),
             own: [own(0), own(1)],
             mutual: [mutual(0), mutual(1)],
@@ -168,7 +202,7 @@ pub(super) struct SphereFamily {
 
 impl SphereFamily {
     pub(super) fn new(poisson_ratio: [f64; 2]) -> Result<Self> {
-        let poisson_ratios = nodes(poisson_ratio, POISSON_RATIOS);
+        let poisson_ratios = nodes(poisson_ratio, SPHERE_RATIOS);
         let spheres = poisson_ratios.nodes.iter().map(|nu| UnitSphere::new(*nu)).collect::<Result<_>>()?;
         Ok(Self { poisson_ratios, spheres })
     }

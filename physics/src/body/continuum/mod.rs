@@ -37,6 +37,8 @@ pub struct MeshOptions {
     pub patch_elements: f64,
     /// Size ratio of adjacent elements away from the patch, above 1, at most 3.
     pub growth: f64,
+    /// The same of a plate's elements away from its faces.
+    pub depth_growth: f64,
     /// Nodes per wavelength of the highest mode wanted, at least.
     pub nodes_per_wavelength: f64,
     /// Elements over half the plate's thickness, at least.
@@ -49,6 +51,7 @@ impl Default for MeshOptions {
             order: 3,
             patch_elements: 3.0,
             growth: 1.6,
+            depth_growth: 1.6,
             nodes_per_wavelength: 10.0,
             thickness_elements: 1.0,
         }
@@ -61,6 +64,7 @@ impl MeshOptions {
         Self {
             patch_elements: self.patch_elements * factor,
             growth: self.growth.powf(1.0 / factor),
+            depth_growth: self.depth_growth.powf(1.0 / factor),
             nodes_per_wavelength: self.nodes_per_wavelength * factor,
             thickness_elements: self.thickness_elements * factor,
             ..self
@@ -72,6 +76,7 @@ impl MeshOptions {
             ("order", self.order as f64, 1.0, 8.0),
             ("patch_elements", self.patch_elements, 0.5, 1e3),
             ("growth", self.growth, 1.0 + 1e-3, 3.0),
+            ("depth_growth", self.depth_growth, 1.0 + 1e-3, 3.0),
             ("nodes_per_wavelength", self.nodes_per_wavelength, 2.0, 1e3),
             ("thickness_elements", self.thickness_elements, 0.5, 1e3),
         ];

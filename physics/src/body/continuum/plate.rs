@@ -328,6 +328,6 @@ pub(super) fn plate_mesh(
         _ => radial_grading(largest).breakpoints(plate.radius),
     };
     let start = size.unwrap_or(f64::INFINITY).min(rim_size);
-    let depth = Grading { start, end: f64::INFINITY, largest: thick, growth: options.growth };
+    let depth = Grading { start, end: f64::INFINITY, largest: thick, growth: options.depth_growth };
     mesh::plate(options.order, &radial, &depth.breakpoints(half_thickness))
 }

@@ -1,6 +1,6 @@
 //! Continuum bodies of a series of impacts: scaled from those of their shape, and these between the shapes of a few.
 
-use super::family::{POISSON_RATIOS, PlateFamily, SphereFamily, THICKNESSES};
+use super::family::{NODES, PlateFamily, SphereFamily};
 use super::plate::ContinuumPlate;
 use super::unit::{UnitPlate, UnitSphere};
 use crate::body::kept::Kept;
@@ -9,7 +9,7 @@ use crate::scene::{Edge, Material, Plate};
 use std::sync::OnceLock;
 
 /// Largest ratio of thicknesses and difference of Poisson's ratios in a family.
-const THICKEST: f64 = 1.8;
+const THICKEST: f64 = 1.9;
 const POISSON_RANGE: f64 = 0.15;
 /// Impacts that a plate of a family has to serve: fewer are quicker with a mesh each.
 const SERVED: usize = 4;
@@ -34,8 +34,9 @@ impl Varied {
         let plates = |range: Option<[f64; 2]>, largest: f64, nodes: usize| {
             range.map_or(1, |range| parts(range, largest) * nodes)
         };
-        let thickness = plates(self.thickness.map(|t| t.map(f64::ln)), THICKEST.ln(), THICKNESSES);
-        impacts >= SERVED * thickness * plates(self.poisson_ratio(material), POISSON_RANGE, POISSON_RATIOS)
+        let [thicknesses, ratios] = NODES[0];
+        let thickness = plates(self.thickness.map(|t| t.map(f64::ln)), THICKEST.ln(), thicknesses);
+        impacts >= SERVED * thickness * plates(self.poisson_ratio(material), POISSON_RANGE, ratios)
     }
 }
 

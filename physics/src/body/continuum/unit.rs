@@ -23,10 +23,13 @@ const SPHERE_NODES: usize = 12;
 const WIDEST: f64 = 1.1;
 /// Patches of a sphere over its radius.
 const SPHERE_PATCHES: [f64; 2] = [1e-3, 0.45];
+/// Modes whose share of the static flexibility stands apart.
+const APART: usize = 6;
 /// Thicknesses over radii that differ by less are the same.
 const ROUNDING: f64 = 1e-14;
-/// Size ratio of adjacent elements: no patch's rim is among their ends, as it is where a mesh is made for one patch.
-const GROWTH: f64 = 1.15;
+/// Size ratio of adjacent elements along the face, where no patch's rim is among their ends, as it is where a mesh is made for one
+/// patch; and away from the face.
+const GROWTH: [f64; 2] = [1.15, 1.4];
 
 /// Plates of one shape.
 #[derive(Debug)]
@@ -42,7 +45,7 @@ pub(super) struct UnitPlate {
     pub(super) omega: Vec<f64>,
     /// Mass-normalised, of the face turned outwards. Shape (nodes, 2 (modes + 1)).
     pub(super) shapes: Vec<Vec<f64>>,
-    /// Static flexibility of a face without the half-space, by finite elements and of the layer. Shape (2, nodes).
+    /// Static flexibility of a face without the half-space and the modes [`Self::apart`], by finite elements and of the layer. Shape (2, nodes).
     pub(super) own: [Vec<f64>; 2],
     /// The same between the faces. Shape (2, nodes, nodes).
     pub(super) mutual: [Vec<Vec<f64>>; 2],
@@ -68,14 +71,15 @@ impl UnitPlate {
         let unit = Plate { radius: 1.0, thickness, edge, material, damping_ratio: 0.0 };
         let patches = patches(widest * thickness);
         let radii: Vec<f64> = patches.nodes.iter().map(|square| square.sqrt()).collect();
-        let options = MeshOptions { growth: GROWTH, ..MeshOptions::default() };
+        let [growth, depth_growth] = GROWTH;
+        let options = MeshOptions { growth, depth_growth, ..MeshOptions::default() };
         let mesh = plate_mesh(&unit, Some(radii[0]), modes, &options);
         let halves = Halves::new(&unit, &mesh)?;
         let forces: Vec<_> = radii.iter().map(|a| nodal_forces(&mesh, *a)).collect();
         let loads = halves.each().map(|(_, half)| forces.iter().map(|f| half.axial_load(f)).collect());
         let spectra = halves.spectra(modes + 1)?;
         let (own, mutual) = static_flexibility(&unit, &radii, &halves, &loads);
-        Ok(Self {
+        let mut plate = Self {
             edge,
             poisson_ratio,
             thickness,
@@ -86,7 +90,29 @@ impl UnitPlate {
             mutual,
             degrees_of_freedom: halves.degrees_of_freedom(),
             patches,
-        })
+        };
+        plate.take_out_modes();
+        Ok(plate)
+    }
+
+    /// Leaves the flexibilities what they are beyond the modes that make most of them.
+    fn take_out_modes(&mut self) {
+        let nodes = 0..self.patches.nodes.len();
+        for (i, j) in nodes.clone().flat_map(|i| nodes.clone().map(move |j| (i, j))) {
+            let term = |k: usize| self.shapes[i][k] * self.shapes[j][k] / self.omega[k].powi(2);
+            let yielded: f64 = self.apart().map(term).sum();
+            for (own, mutual) in self.own.iter_mut().zip(&mut self.mutual) {
+                mutual[i][j] -= yielded;
+                if i == j {
+                    own[i] -= yielded;
+                }
+            }
+        }
+    }
+
+    /// The modes whose yielding is not among the flexibilities: some in bending, which are nearly all of it.
+    fn apart(&self) -> std::ops::Range<usize> {
+        0..APART.min(self.modes + 1)
     }
 
     pub(super) fn is_of(&self, plate: &Plate, modes: usize) -> bool {
@@ -111,13 +137,18 @@ impl UnitPlate {
             let parity = if k <= self.modes { Parity::Bending } else { Parity::Longitudinal };
             [0, 1].map(|i| shapes[i].each_ref().map(|shape| amplitude * sign(parity, i) * shape[k]))
         };
+        let mut flexibility = self.flexibility(&weights, 1.0 / (material.youngs_modulus * radius));
+        for k in self.apart() {
+            let share = (self.omega[k] * speed).powi(-2);
+            flexibility.add(share, share, shape(k).map(|phi| std::array::from_fn(|m| phi[m])));
+        }
         let mut order: Vec<usize> = (0..self.omega.len()).collect();
         order.sort_by(|i, j| self.omega[*i].total_cmp(&self.omega[*j]));
         order.truncate(self.modes + 1);
         Some(ContinuumPlate {
             omega: order.iter().map(|k| self.omega[*k] * speed).collect(),
             participation: order.iter().map(|k| shape(*k)).collect(),
-            flexibility: self.flexibility(&weights, 1.0 / (material.youngs_modulus * radius)),
+            flexibility,
             patch_radius,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
             damping_ratio: plate.damping_ratio,
@@ -125,7 +156,7 @@ impl UnitPlate {
         })
     }
 
-    /// By the weights of every radius of both patches; `unit` in m/N.
+    /// Beyond the modes [`Self::apart`], by the weights of every radius of both patches; `unit` in m/N.
     fn flexibility(&self, weights: &[[Vec<f64>; WEIGHTED.len()]; 2], unit: f64) -> PatchTable {
         let own = |which: usize, i: usize, m: usize| unit * dot(&weights[i][m], &self.own[which]);
         let radii: [usize; RADII.len()] = std::array::from_fn(|m| m);

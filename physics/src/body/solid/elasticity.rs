@@ -3,7 +3,7 @@
 use super::mesh::{EDGES, TetMesh, volume};
 use crate::scene::Material;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 /// Number of a displacement component that is held at zero.
@@ -46,6 +46,18 @@ impl Matrices {
             }
         }
         Self { start, column, stiffness, mass: lumped_mass(mesh, material.density) }
+    }
+
+    /// Largest diagonal element of the stiffness, N/m.
+    pub fn stiffest(&self) -> f64 {
+        self.stiffness.iter().flat_map(|block| [block[0], block[4], block[8]]).fold(0.0, f64::max)
+    }
+
+    /// Ties `node` to the ground by springs of the symmetric stiffness `spring`, N/m.
+    pub fn stiffen(&mut self, node: usize, spring: Matrix3<f64>) {
+        let own = self.start[node]..self.start[node + 1];
+        let entry = own.start + self.column[own].partition_point(|column| *column < node);
+        self.stiffness[entry].iter_mut().zip(spring.iter()).for_each(|(sum, part)| *sum += part);
     }
 
     /// Nodes coupled to `node`, ascending, with their blocks.
@@ -181,7 +193,6 @@ mod tests {
     use super::super::mesh::boxes;
     use super::*;
     use approx::assert_relative_eq;
-    use nalgebra::Matrix3;
 
     fn material() -> Material {
         Material::elastic("m", 2.6e9, 0.38, 1320.0)

@@ -7,8 +7,11 @@
 mod elasticity;
 mod factor;
 mod mesh;
+mod morph;
+mod surface;
 
 pub use mesh::TetMesh;
+pub use surface::Surface;
 
 use super::continuum::lanczos::{ShiftInvert, lowest_modes};
 use crate::error::{Error, Result};
@@ -18,11 +21,13 @@ use factor::Factor;
 use serde::{Deserialize, Serialize};
 
 /// Sources of the method, for the cache's sake.
-pub const SOURCES: [&[u8]; 5] = [
+pub const SOURCES: [&[u8]; 7] = [
     include_bytes!("elasticity.rs"),
     include_bytes!("factor.rs"),
     include_bytes!("mesh.rs"),
     include_bytes!("mod.rs"),
+    include_bytes!("morph.rs"),
+    include_bytes!("surface.rs"),
     include_bytes!("../continuum/lanczos.rs"),
 ];
 

@@ -38,6 +38,15 @@ impl Contact {
         }
     }
 
+    /// Energy in J that it has taken under `force` N: what it stores and what it has lost, by its law alone.
+    pub(super) fn taken(&self, force: f64) -> f64 {
+        match self {
+            Contact::Elastic(hertz) => 0.4 * force * hertz.approach(force),
+            Contact::Dented(contact) => contact.taken(force),
+            Contact::Viscoelastic(contact) => contact.taken(),
+        }
+    }
+
     /// Force in N up to which the contact is elastic; negative if it is not even without one.
     pub(super) fn critical_force(&self) -> f64 {
         match self {
@@ -109,6 +118,13 @@ impl DentedContact {
     pub(super) fn critical_force(&self) -> f64 {
         let of = |surface: &Surface| surface.law.map_or(f64::INFINITY, |law| law.critical_force());
         self.surfaces.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// As [`Contact::taken`].
+    fn taken(&self, force: f64) -> f64 {
+        let elastic = 0.4 * force * self.hertz.approach(force);
+        let of = |s: &Surface| s.share * s.law.map_or(elastic, |law| law.taken(&s.dent, force));
+        self.surfaces.iter().map(of).sum()
     }
 
     /// Approach from the virgin surfaces in m under `force` N.

@@ -1,12 +1,14 @@
 //! Impacts of materials with memory: viscoelastic bodies, and contacts that yield.
 //!
 //! Modes with internal variables move exactly under forces that change evenly over a step; the contacts are laws of the approach at its
-//! end, whose memory moves from step to step. All steps are of one length, of second order; runs with half the length follow until the
-//! result stands. Elastic impacts know nothing of this: they take [`super::integrator`].
+//! end, whose memory moves from step to step. All steps are of one length, of second order, but for flights, in which nothing touches; runs
+//! with half the length follow until the result stands. Elastic impacts know nothing of this: they take [`super::integrator`].
 
 mod contact;
 mod modes;
 mod stepper;
+
+pub(crate) use self::modes::Mode;
 
 use self::contact::{Contact, DentedContact};
 use self::stepper::Stepper;
@@ -16,7 +18,7 @@ use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::contact::{Dent, Hertz, ViscoelasticContact};
 use crate::error::{Error, Result};
-use crate::material::{Creep, Material, Relaxation, modulus_ratio};
+use crate::material::{Creep, Material, Relaxation, vibration_frequency};
 use crate::scene::{PlateImpact, Spot};
 
 /// Steps of the first run per duration of the outer body's impact on a rigid wall.
@@ -26,8 +28,6 @@ const MAX_STEPS: u64 = 4_000_000;
 /// Springs of a viscoelastic contact across its radius in the first run, and their distance over that of the run before.
 const SPRINGS: f64 = 64.0;
 const FINER: f64 = 0.8;
-/// Iterations for the frequency of a relaxing plate.
-const FIXED_POINT: usize = 100;
 /// Most halvings of the step.
 const MAX_HALVINGS: usize = 7;
 /// Change of velocities, over the impact speed, and force peaks, relative, from one run to the next that is in order: of second order,
@@ -158,10 +158,9 @@ impl Memory {
         self
     }
 
-    /// Frequency in Hz at which the plate vibrates in a mode of `instantaneous` Hz: the fixed point of the storage modulus.
+    /// Frequency in Hz at which the plate vibrates in a mode of `instantaneous` Hz.
     pub fn frequency(&self, instantaneous: f64) -> f64 {
-        let at = |frequency: f64| instantaneous * modulus_ratio(&self.plate, frequency)[0].sqrt();
-        (0..FIXED_POINT).fold(instantaneous, |frequency, _| at(frequency))
+        vibration_frequency(&self.plate, instantaneous)
     }
 
     /// Whether outer and inner contact can yield.
@@ -249,12 +248,6 @@ fn yield_strength(material: &Material, strain_rate: f64) -> Option<f64> {
 /// [`Error::Solver`] if a contact has no equilibrium or the run does not end.
 pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<(Integration, Memory)> {
     let base = system.hertz_impact().duration() / FIRST_STEPS;
-    if let Some(end) = options.end_time.filter(|end| *end > base * MAX_STEPS as f64) {
-        return Err(Error::Solver(format!(
-            "reduced model: `run.end_time` is {end} s, but materials with memory take even steps, of which {MAX_STEPS} reach to {:.3e} s",
-            base * MAX_STEPS as f64
-        )));
-    }
     let run = |halvings: usize, peaks: Option<[f64; 2]>| -> Result<(Integration, [Contact; 2])> {
         let h = base * 0.5_f64.powi(halvings as i32);
         let mut bodies = memory.bodies.clone();

@@ -8,9 +8,11 @@ use crate::dynamics::duhamel::Oscillator;
 use crate::dynamics::system::System;
 use crate::material::Relaxation;
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// One mode: its flow over a step.
-struct Mode {
+#[derive(Debug)]
+pub(crate) struct Mode {
     oscillator: Oscillator,
     /// Displacement, velocity and internal variables at the end per each at the start, row by row. Shape (n, n).
     flow: Vec<f64>,
@@ -25,6 +27,8 @@ pub(super) struct Modes<'a> {
     system: &'a System,
     terms: &'a [Relaxation],
     modes: Vec<Mode>,
+    /// Flows of the modes without a force over 2, 4, 8, ... steps, those that have been asked for.
+    longer: Vec<Vec<Vec<f64>>>,
     /// Approaches lost at the end of a step per force there, m/N.
     pub(super) coupling: [[f64; 2]; 2],
 }
@@ -47,7 +51,7 @@ impl<'a> Modes<'a> {
                 }
             }
         }
-        Self { system, terms, modes, coupling }
+        Self { system, terms, modes, longer: Vec::new(), coupling }
     }
 
     /// The state in which the impact begins.
@@ -76,6 +80,26 @@ impl<'a> Modes<'a> {
         }
     }
 
+    /// The state `state` after 2^`doublings` steps without a force.
+    pub(super) fn fly(&mut self, state: &[f64], doublings: usize, next: &mut [f64]) {
+        while self.longer.len() < doublings {
+            let twice = |flow: &Vec<f64>| {
+                let n = flow.len().isqrt();
+                let entry = |at: usize| (0..n).map(|k| flow[at / n * n + k] * flow[k * n + at % n]).sum();
+                (0..n * n).map(entry).collect()
+            };
+            let flows = match self.longer.last() {
+                Some(flows) => flows.iter().map(twice).collect(),
+                None => self.modes.iter().map(|mode| twice(&mode.flow)).collect(),
+            };
+            self.longer.push(flows);
+        }
+        for (k, mode) in self.modes.iter().enumerate() {
+            let flow = doublings.checked_sub(1).map_or(&mode.flow, |at| &self.longer[at][k]);
+            move_by(flow, &state[mode.own()], &mut next[mode.own()]);
+        }
+    }
+
     /// Displacements and velocities of the modes in `state`. Shapes (modes).
     pub(super) fn motion(&self, state: &[f64]) -> [Vec<f64>; 2] {
         [0, 1].map(|entry| self.modes.iter().map(|mode| state[mode.first + entry]).collect())
@@ -85,44 +109,28 @@ impl<'a> Modes<'a> {
     pub(super) fn energy(&self, state: &[f64]) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for mode in &self.modes {
-            let [q, v] = [state[mode.first], state[mode.first + 1]];
-            let stiffness = mode.oscillator.omega.powi(2);
-            sum[0] += 0.5 * (v * v + stiffness * q * q);
-            sum[1] += 2.0 * mode.oscillator.alpha * v * v;
-            for (xi, term) in state[mode.first + 2..mode.first + mode.size()].iter().zip(self.terms) {
-                // the modulus after a long time, and a Maxwell element per term
-                sum[0] += 0.5 * stiffness * term.ratio * ((q - xi).powi(2) - q * q);
-                sum[1] += stiffness * term.ratio * (q - xi).powi(2) / term.time;
-            }
+            let [energy, power] = mode.energy(&state[mode.own()], self.terms);
+            (sum[0], sum[1]) = (sum[0] + energy, sum[1] + power);
         }
         sum
     }
 
     /// Largest displacement that every mode can still reach by itself, m kg^(1/2); none of a rigid motion.
     pub(super) fn reach(&self, state: &[f64]) -> Vec<f64> {
-        let relaxed = 1.0 - self.terms.iter().map(|term| term.ratio).sum::<f64>();
-        let of = |mode: &Mode| {
-            let omega = mode.oscillator.omega;
-            if omega == 0.0 {
-                return 0.0;
-            }
-            let [q, v] = [state[mode.first], state[mode.first + 1]];
-            let elastic = q.hypot(v / omega);
-            if mode.size() == 2 {
-                return elastic;
-            }
-            let maxwell = state[mode.first + 2..mode.first + mode.size()].iter().zip(self.terms);
-            let energy = (v / omega).powi(2)
-                + relaxed * q * q
-                + maxwell.map(|(xi, term)| term.ratio * (q - xi).powi(2)).sum::<f64>();
-            (energy / relaxed).sqrt()
-        };
-        self.modes.iter().map(of).collect()
+        self.modes.iter().map(|mode| mode.reach(&state[mode.own()], self.terms)).collect()
+    }
+}
+
+/// `next` as the flow `flow` has it from `now`.
+fn move_by(flow: &[f64], now: &[f64], next: &mut [f64]) {
+    for (row, next) in flow.chunks(now.len()).zip(next) {
+        *next = row.iter().zip(now).map(|(a, x)| a * x).sum();
     }
 }
 
 impl Mode {
-    fn new(oscillator: Oscillator, terms: &[Relaxation], h: f64, first: usize) -> Self {
+    /// Relaxing by `terms`, for steps of `h` s; its state (displacement, velocity, internal variables) begins at `first` of all states.
+    pub(crate) fn new(oscillator: Oscillator, terms: &[Relaxation], h: f64, first: usize) -> Self {
         let Oscillator { omega, alpha } = oscillator;
         let n = 2 + terms.len();
         // velocities in units that keep the matrix balanced; the force and its change over the step stand behind the state
@@ -152,6 +160,45 @@ impl Mode {
 
     fn size(&self) -> usize {
         self.forced[0].len()
+    }
+
+    /// Where its state stands.
+    fn own(&self) -> Range<usize> {
+        self.first..self.first + self.size()
+    }
+
+    /// The state `now` of this mode after a step without a force.
+    pub(crate) fn fly(&self, now: &[f64], next: &mut [f64]) {
+        move_by(&self.flow, now, next);
+    }
+
+    /// Energy in J in its state, and the power in W that it loses.
+    pub(crate) fn energy(&self, state: &[f64], terms: &[Relaxation]) -> [f64; 2] {
+        let [q, v] = [state[0], state[1]];
+        let stiffness = self.oscillator.omega.powi(2);
+        let mut sum = [0.5 * (v * v + stiffness * q * q), 2.0 * self.oscillator.alpha * v * v];
+        for (xi, term) in state[2..].iter().zip(terms) {
+            // the modulus after a long time, and a Maxwell element per term
+            sum[0] += 0.5 * stiffness * term.ratio * ((q - xi).powi(2) - q * q);
+            sum[1] += stiffness * term.ratio * (q - xi).powi(2) / term.time;
+        }
+        sum
+    }
+
+    /// Largest displacement that it can still reach from its state by itself, m kg^(1/2); none of a rigid motion.
+    pub(crate) fn reach(&self, state: &[f64], terms: &[Relaxation]) -> f64 {
+        let omega = self.oscillator.omega;
+        if omega == 0.0 {
+            return 0.0;
+        }
+        let [q, v] = [state[0], state[1]];
+        if state.len() == 2 {
+            return q.hypot(v / omega);
+        }
+        let relaxed = 1.0 - terms.iter().map(|term| term.ratio).sum::<f64>();
+        let maxwell = state[2..].iter().zip(terms).map(|(xi, term)| term.ratio * (q - xi).powi(2));
+        let energy = (v / omega).powi(2) + relaxed * q * q + maxwell.sum::<f64>();
+        (energy / relaxed).sqrt()
     }
 }
 

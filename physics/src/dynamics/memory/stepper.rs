@@ -18,6 +18,11 @@ const LEAST_FRACTION: f64 = 1e-4;
 const SETTLED: f64 = 1e-13;
 const ROUNDING: f64 = 1e-10;
 
+/// Part of the time since the last contact that a flight takes in one go: what recovers, recovers the slower the later.
+const GRADED: f64 = 0.1;
+/// Most doublings of a step in flight.
+const MAX_DOUBLINGS: usize = 40;
+
 /// Approaches tried for the end of a step.
 struct Trial {
     x: [f64; 2],
@@ -46,6 +51,8 @@ pub(super) struct Stepper<'a> {
     h: f64,
     time: f64,
     steps: u64,
+    /// When a contact had a force last, s.
+    loaded: Option<f64>,
     /// States of the modes, now and next.
     state: [Vec<f64>; 2],
     /// What plate and tips give way beyond half-spaces. Shape (contact; plate, tip).
@@ -60,12 +67,14 @@ pub(super) struct Stepper<'a> {
     force: [f64; 2],
     patch: [f64; 2],
     contacts: [ContactLedger; 2],
-    /// What plate and tips have yielded at each contact for having crept, m.
-    crept: [f64; 2],
+    /// What plate and tips have yielded at each contact for having crept, m. Shape (contact; plate, tip).
+    crept: [[f64; 2]; 2],
     /// Energy lost in each contact, J.
     contact_losses: [f64; 2],
-    /// Energy lost beneath the contacts by creep, and by the modes, J; the power that the modes lose, W.
-    creep_loss: f64,
+    /// What their laws had taken at the start, J.
+    taken: [f64; 2],
+    /// Energy lost beneath the contacts by creep of plate and tips, and by the modes, J; the power that the modes lose, W.
+    creep_losses: [[f64; 2]; 2],
     modal_loss: f64,
     power: f64,
     /// What the contacts add to the displacement of the plate's centre, m.
@@ -96,6 +105,7 @@ impl<'a> Stepper<'a> {
             h,
             time: 0.0,
             steps: 0,
+            loaded: None,
             state: [start.clone(), start],
             deformed: Default::default(),
             x: [y[0] + offset[0], y[1] + offset[1]],
@@ -105,9 +115,10 @@ impl<'a> Stepper<'a> {
             force: [0.0; 2],
             patch: [0.0; 2],
             contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
-            crept: [0.0; 2],
+            crept: Default::default(),
             contact_losses: [0.0; 2],
-            creep_loss: 0.0,
+            taken: [0, 1].map(|i| bodies.contacts[i].taken(0.0)),
+            creep_losses: Default::default(),
             modal_loss: 0.0,
             power: 0.0,
             centre: 0.0,
@@ -122,7 +133,10 @@ impl<'a> Stepper<'a> {
     /// Runs to `end_time` s, or until no further contact is possible; gives also the contacts as they are then.
     pub(super) fn go(mut self, end_time: Option<f64>) -> Result<(Integration, [Contact; 2])> {
         while end_time.map_or_else(|| !self.is_over(), |end| self.time < end * (1.0 - 1e-12)) {
-            self.step()?;
+            match self.flight(end_time) {
+                0 => self.step()?,
+                doublings => self.fly(doublings),
+            }
             if self.steps > MAX_STEPS {
                 return Err(Error::Solver(format!(
                     "reduced model: no end after {MAX_STEPS} steps, at t = {:.6e} s; set `run.end_time`",
@@ -131,6 +145,46 @@ impl<'a> Stepper<'a> {
             }
         }
         Ok(self.finish())
+    }
+
+    /// Doublings of a step for which nothing can touch, and within which what recovers does so evenly.
+    fn flight(&self, end_time: Option<f64>) -> usize {
+        if self.force != [0.0; 2] {
+            return 0;
+        }
+        let closing = |[gap, rate]: [f64; 2]| {
+            if rate >= 0.0 { if gap >= 0.0 { f64::INFINITY } else { 0.0 } } else { -gap / rate }
+        };
+        let [outer, inner] = self.clearances().map(closing);
+        let recovering = self.loaded.map_or(f64::INFINITY, |loaded| GRADED * (self.time - loaded));
+        let kept = self.history.as_ref().map_or(f64::INFINITY, |_| self.sample_interval);
+        let end = end_time.map_or(f64::INFINITY, |end| end - self.time);
+        let steps = outer.min(inner).min(recovering).min(kept).min(end) / self.h * (1.0 + 1e-12);
+        if steps < 2.0 { 0 } else { (steps.log2() as usize).min(MAX_DOUBLINGS) }
+    }
+
+    /// Takes 2^`doublings` steps at once, in which nothing touches.
+    fn fly(&mut self, doublings: usize) {
+        let time = self.h * 2.0_f64.powi(doublings as i32);
+        let [now, next] = &mut self.state;
+        self.modes.fly(now, doublings, next);
+        // the modes' motion is exact, and so is what they lose
+        let [before, _] = self.modes.energy(now);
+        let [energy, power] = self.modes.energy(next);
+        (self.modal_loss, self.power) = (self.modal_loss + before - energy, power);
+        self.bodies.prepare(time);
+        self.y = self.system.modal_approach(&self.modes.motion(next)[0]);
+        for i in 0..2 {
+            let beneath = |part| self.bodies.creep(i, part).deformation(&self.deformed[i][part], 0.0);
+            self.x[i] = self.y[i] + self.offset[i] - beneath(0) - beneath(1);
+        }
+        self.remember(self.x, [0.0; 2], self.patch);
+        self.past = [0, 1].map(|i| (self.x[i] - self.bodies.contacts[i].touch()).min(-f64::MIN_POSITIVE));
+        self.bodies.prepare(self.h);
+        self.state.swap(0, 1);
+        self.steps += 1;
+        self.time += time;
+        self.record();
     }
 
     fn step(&mut self) -> Result<()> {
@@ -155,6 +209,9 @@ impl<'a> Stepper<'a> {
         self.state.swap(0, 1);
         self.steps += 1;
         self.time += self.h;
+        if self.force != [0.0; 2] {
+            self.loaded = Some(self.time);
+        }
         self.record();
         Ok(())
     }
@@ -185,15 +242,14 @@ impl<'a> Stepper<'a> {
         let (elastic, ..) = self.bodies.elastic(self.system, force, patch);
         for i in 0..2 {
             self.bodies.contacts[i].advance(x[i]);
-            let mut crept = 0.0;
             for part in 0..2 {
                 let state = &mut self.deformed[i][part];
                 self.bodies.creep(i, part).advance(state, elastic[i][part]);
-                crept += state.depth() - elastic[i][part];
+                let crept = state.depth() - elastic[i][part];
+                let mean = 0.5 * (self.force[i] + force[i]);
+                self.creep_losses[i][part] += mean * (crept - self.crept[i][part]);
+                self.crept[i][part] = crept;
             }
-            // what yields elastically gives its energy back, to the other contact also; so creep is the plate's as a whole
-            self.creep_loss += 0.5 * (self.force[i] + force[i]) * (crept - self.crept[i]);
-            self.crept[i] = crept;
         }
     }
 
@@ -255,9 +311,14 @@ impl<'a> Stepper<'a> {
         if self.force != [0.0; 2] {
             return false;
         }
+        self.clearances().iter().all(|[gap, rate]| *gap >= 0.0 && *rate >= 0.0)
+    }
+
+    /// Least gap of each contact in m that the modes leave by themselves, without forces, and the rate in m/s at which rigid motions open it.
+    fn clearances(&self) -> [[f64; 2]; 2] {
         let reach = self.modes.reach(&self.state[0]);
         let [q, v] = self.modes.motion(&self.state[0]);
-        (0..2).all(|i| {
+        [0, 1].map(|i| {
             let (mut gap, mut rate) =
                 (self.system.gap[i] - self.offset[i] + self.bodies.contacts[i].depth(), 0.0);
             for (k, oscillator) in self.system.oscillators.iter().enumerate() {
@@ -269,7 +330,7 @@ impl<'a> Stepper<'a> {
                     gap -= b.abs() * reach[k];
                 }
             }
-            gap >= 0.0 && rate >= 0.0
+            [gap, rate]
         })
     }
 
@@ -295,19 +356,27 @@ impl<'a> Stepper<'a> {
         let [end, _] = self.modes.energy(&self.state[0]);
         let work = self.contacts.map(|contact| contact.work);
         let unaccounted = end + self.modal_loss + work[0] + work[1] - initial;
-        // a law that gave more than it took made energy
-        let made: f64 = self.contact_losses.iter().map(|loss| (-loss).max(0.0)).sum();
-        let gained = unaccounted + if self.force == [0.0; 2] { made } else { 0.0 };
+        // each law's own account of what it took; what yields elastically beneath gives all of it back once nothing is loaded
+        let law =
+            |i: usize| self.bodies.contacts[i].taken(self.force[i]) - self.taken[i] - self.contact_losses[i];
+        // what yields elastically gives its energy back, to the other contact also: so creep is the plate's as a whole, a tip's its contact's
+        let [[outer_plate, outer_tip], [inner_plate, inner_tip]] = self.creep_losses;
+        let contact_losses = [self.contact_losses[0] + outer_tip, self.contact_losses[1] + inner_tip];
+        let plate_loss = outer_plate + inner_plate;
+        let beneath = work[0] + work[1] - contact_losses[0] - contact_losses[1] - plate_loss;
+        let beneath = if self.force == [0.0; 2] { -beneath } else { 0.0 };
+        let gained = unaccounted + law(0) + law(1) + beneath;
+        let residual = unaccounted.abs() + law(0).abs() + law(1).abs() + beneath.abs();
         let integration = Integration {
             velocity,
             contacts: self.contacts,
-            energy_residual: gained.abs() / initial,
+            energy_residual: residual / initial,
             energy_gained: gained / initial,
             momentum_residual: unexplained_momentum(system, &v, &self.contacts, &FluidAccount::default())
                 / (system.masses[0] * system.speed),
             losses: Losses {
-                plate_damping: self.modal_loss + self.creep_loss,
-                contacts: Some(self.contact_losses),
+                plate_damping: self.modal_loss + plate_loss,
+                contacts: Some(contact_losses),
                 ..Losses::default()
             },
             steps: self.steps,

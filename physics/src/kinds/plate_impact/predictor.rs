@@ -12,6 +12,8 @@ use crate::scene::Plate;
 /// a matter of rounding.
 const SMALLEST_PATCH: f64 = 0.05;
 
+/// Widest patch, over the tip's radius, of a body that is never reached.
+const NEVER_REACHED: f64 = 0.25;
 /// Peak of the inner contact over the outer one's below which kicks do not tell it.
 const WEAK: f64 = 0.15;
 
@@ -51,8 +53,9 @@ impl Predictor {
             (rounded(system.laws[i].contact_radius(peak)), 2.0 * peak / impulse, peak)
         };
         let outer = of(0, outer);
-        // an inner body that is never reached takes the outer one's patch
-        let inner = inner.map_or(outer, |inner| of(1, inner));
+        // an inner body that is never reached takes the outer one's patch, as far as it is wide enough for it
+        let widest = NEVER_REACHED * system.laws[1].tip_radius;
+        let inner = inner.map_or((outer.0.min(widest), outer.1, outer.2), |inner| of(1, inner));
         Self {
             patch_radius: [outer.0, inner.0],
             force_peak: [outer.2, inner.2],

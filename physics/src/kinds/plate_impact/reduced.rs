@@ -45,18 +45,8 @@ pub struct Reduced {
     scene: Scene,
 }
 
-/// What one impact of a series gives: the results without what only identifies them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Point {
-    /// The physical results.
-    pub quantities: PlateQuantities,
-    /// As in [`Summary`].
-    pub energy_residual: f64,
-    /// As in [`Summary`].
-    pub momentum_residual: f64,
-    /// Time steps taken.
-    pub steps: u64,
-}
+/// What one impact of a series gives.
+pub type Point = crate::result::Point<PlateQuantities>;
 
 impl Reduced {
     /// Builds `model` of `scene`; `modes` overrides the scene's number of modes (model A always has one); if

@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// See [`revision`].
 const REVISION: u64 =
@@ -31,6 +32,8 @@ pub struct SeatMesh {
     path: PathBuf,
     content_hash: String,
     geometry_hash: Option<String>,
+    /// Where its nodes have been moved to, if they have.
+    moved: Option<Arc<TetMesh>>,
 }
 
 /// Half a seat, seen from its contact candidates.
@@ -57,7 +60,27 @@ impl SeatMesh {
             path: path.to_path_buf(),
             content_hash: sha256_hex(&content),
             geometry_hash: recorded_geometry(&content),
+            moved: None,
         })
+    }
+
+    /// The nodes and elements.
+    ///
+    /// # Errors
+    /// As [`TetMesh::read`].
+    pub(super) fn read(&self) -> Result<Arc<TetMesh>> {
+        self.moved.clone().map_or_else(|| TetMesh::read(&self.path).map(Arc::new), Ok)
+    }
+
+    /// The same with its nodes at those of `mesh`, which is one of the seat of `scene`.
+    pub(super) fn moved_to(&self, mesh: TetMesh, scene: &SealSeat) -> Self {
+        let geometry = scene.geometry_hash();
+        Self {
+            path: self.path.clone(),
+            content_hash: sha256_hex(format!("{}{geometry}", self.content_hash).as_bytes()),
+            geometry_hash: Some(geometry),
+            moved: Some(Arc::new(mesh)),
+        }
     }
 
     /// The file.
@@ -108,7 +131,7 @@ impl SeatMesh {
     /// Shares of the time before each part are those of a mesh with 30 000 degrees of freedom.
     fn build(&self, scene: &SealSeat, zones: &Zones, modes: usize, watch: &mut Watch) -> Result<SeatBody> {
         watch("reading the mesh", 0.0);
-        let mesh = TetMesh::read(&self.path)?;
+        let mesh = self.read()?;
         let held = supports(scene, &mesh);
         if !held.contains(&[true; 3]) {
             return Err(self.of_another("it has no face on the rim of the membrane"));

@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 /// corners on the surfaces up to rounding, in files of a few digits too.
 const ON_SURFACE: f64 = 1e-6;
 
+/// Ratio of neighbouring zones of a series.
+const SERIES: f64 = 1.5;
+
 /// Share of a zone that contact may fill.
 const ROOM: f64 = 0.85;
 
@@ -62,6 +65,12 @@ impl Zones {
         let line_load = force / (length * (0.5 * scene.seat.aperture_angle).sin());
         let half_width = (4.0 * line_load * scene.sphere.radius / (std::f64::consts::PI * modulus)).sqrt();
         Self { ring: rounded(5.0 * half_width), tip: rounded(patch) }.at_most(scene)
+    }
+
+    /// The next of some few zones that are not smaller: so that launches of a series that differ a little share a body.
+    pub fn of_series(self) -> Self {
+        let next = |zone: f64| SERIES.powf((zone.ln() / SERIES.ln() - 1e-9).ceil());
+        Self { ring: next(self.ring), tip: next(self.tip) }
     }
 
     /// These, but no wider than the radii of what touches there: farther out nothing can.

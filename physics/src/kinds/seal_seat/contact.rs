@@ -14,6 +14,7 @@
 //! whether one has been missed.
 
 use super::nodes::{Ball, Nodes};
+use super::traces::{Push, Traces};
 use super::watch::Watch;
 use crate::error::{Error, Result};
 use crate::numerics::cholesky::Cholesky;
@@ -38,6 +39,8 @@ pub struct Loads {
     pub(super) force: Vec<f64>,
     /// Normals from the balls to the candidates. Shape (n).
     pub(super) normal: Vec<Vector3<f64>>,
+    /// What a body that relaxes remembers of the forces before.
+    pub(super) traces: Option<Traces>,
 }
 
 /// The contact problem and its last solution.
@@ -62,11 +65,13 @@ pub struct Contact<'a> {
     pub(super) previous: Vec<usize>,
     pub(super) step: Vec<f64>,
     /// Contact set with the forces on the body in N.
-    pub(super) push: Vec<(usize, Vector3<f64>)>,
+    pub(super) push: Vec<Push>,
     /// Gaps at the last survey, 0 in contact. Shape (n).
     pub(super) surveyed: Vec<f64>,
     /// Displacements of all candidates at a survey in m. Shape (3, n).
     pub(super) displaced: Vec<f64>,
+    /// Largest displacement by the residual of any candidate at the last survey, m; of a body that relaxes.
+    pub(super) lag: f64,
     /// Room for a choice of candidates.
     pub(super) chosen: Vec<usize>,
     /// What it has cost so far.
@@ -89,9 +94,9 @@ pub struct Work {
 }
 
 impl<'a> Contact<'a> {
-    /// The problem of `nodes`, without forces, where contacts indent by about `indentation` in m: what is small goes by that. Before
-    /// the first solution there has to be a survey.
-    pub fn new(nodes: &'a Nodes, indentation: f64) -> Self {
+    /// The problem of `nodes`, without forces, where contacts indent by about `indentation` in m: what is small goes by that. A body
+    /// that relaxes remembers `traces`. Before the first solution there has to be a survey.
+    pub fn new(nodes: &'a Nodes, indentation: f64, traces: Option<Traces>) -> Self {
         let n = nodes.len();
         Self {
             nodes,
@@ -100,6 +105,7 @@ impl<'a> Contact<'a> {
                 active: Vec::with_capacity(n),
                 force: vec![0.0; n],
                 normal: vec![Vector3::zeros(); n],
+                traces,
             },
             watch: Watch::none(n),
             gap: vec![0.0; n],
@@ -113,6 +119,7 @@ impl<'a> Contact<'a> {
             push: Vec::with_capacity(n),
             surveyed: vec![0.0; n],
             displaced: vec![0.0; 3 * n],
+            lag: 0.0,
             chosen: Vec::with_capacity(n),
             work: Work::default(),
         }
@@ -138,10 +145,44 @@ impl<'a> Contact<'a> {
         self.loads.force[candidate] * self.loads.normal[candidate]
     }
 
-    /// Elastic energy in J that the residual flexibility holds.
+    /// Elastic energy in J that the residual flexibility holds; of one that relaxes, with what it has lost.
     pub fn energy(&self) -> f64 {
+        if let Some(traces) = &self.loads.traces {
+            return traces.work;
+        }
         let work = |&i: &usize| self.force_vector(i).dot(&self.watch.yielded(i));
         0.5 * self.loads.active.iter().map(work).sum::<f64>()
+    }
+
+    /// Energy in J that contact nodes that relax have taken; all of it is lost once they carry no force and have recovered.
+    pub fn relaxed(&self) -> f64 {
+        self.loads.traces.as_ref().map_or(0.0, |traces| traces.work)
+    }
+
+    /// Largest displacement in m that forces have left to any candidate; 0 of an elastic body.
+    pub fn lag(&self) -> f64 {
+        self.lag
+    }
+
+    /// Begins a step: a body that relaxes remembers the present forces.
+    pub fn pass(&mut self) {
+        if self.loads.traces.is_some() {
+            self.collect_push();
+        }
+        if let Some(traces) = &mut self.loads.traces {
+            traces.pass(&self.push);
+            self.watch.keep_yielded();
+        }
+    }
+
+    /// Ends a step whose forces have been found: a body that relaxes books their work.
+    pub fn book(&mut self) {
+        if self.loads.traces.is_some() {
+            self.collect_push();
+        }
+        if let Some(traces) = &mut self.loads.traces {
+            traces.book(&self.push, |i| self.watch.yielded_further(i));
+        }
     }
 
     /// Copies the present solution.
@@ -163,6 +204,10 @@ impl<'a> Contact<'a> {
         self.work.watched += self.watch.len() as u64;
         let (mut fewest, mut patience, mut last) = (usize::MAX, PATIENCE, f64::INFINITY);
         self.watch.place(modal, balls);
+        if let Some(traces) = &self.loads.traces {
+            self.watch.remember(self.nodes, traces.forces());
+            self.watch.displace();
+        }
         // The slots in which the residual yields under the present forces: at first all, the last instant's forces still do
         // what they did.
         let mut known = self.watch.len();
@@ -311,7 +356,7 @@ mod tests {
         let mut touching = 0;
         for n in [1, 2, 5, 12, 40] {
             let (nodes, residual) = nodes(n, &mut random);
-            let mut contact = Contact::new(&nodes, INDENTATION);
+            let mut contact = Contact::new(&nodes, INDENTATION, None);
             let far = [Ball { centre: Vector3::new(0.0, 0.0, -20.0), radius: 10.0 }];
             contact.survey(&vec![0.0; 3 * n], &far, f64::INFINITY);
             // one sequence of instants: each starts from the last, deeper or shallower
@@ -344,7 +389,7 @@ mod tests {
     fn a_survey_finds_what_was_not_watched() {
         let mut random = fastrand::Rng::with_seed(5);
         let (nodes, _) = nodes(20, &mut random);
-        let mut contact = Contact::new(&nodes, INDENTATION);
+        let mut contact = Contact::new(&nodes, INDENTATION, None);
         let modal = vec![0.0; 60];
         let ball = |height: f64| [Ball { centre: Vector3::new(0.0, 0.0, height - 10.0), radius: 10.0 }];
         contact.survey(&modal, &ball(-0.1), f64::INFINITY);

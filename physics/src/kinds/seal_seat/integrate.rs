@@ -10,8 +10,10 @@
 
 use super::candidates::in_plane;
 use super::contact::Loads;
+use super::drift::Drift;
 use super::integration::{Integration, Sample, Tally};
 use super::system::{Forces, State, System, Workspace};
+use super::traces::Traces;
 use crate::error::{Error, Result};
 use nalgebra::Vector3;
 
@@ -34,31 +36,15 @@ pub struct Options {
     pub history: bool,
 }
 
-/// Exact motion of the modes over one step.
-struct Rotation {
-    cos: Vec<f64>,
-    /// sin(omega h) / omega
-    sinc: Vec<f64>,
-    /// -omega sin(omega h)
-    back: Vec<f64>,
-}
-
-impl Rotation {
-    fn over(omega: &[f64], step: f64) -> Self {
-        Self {
-            cos: omega.iter().map(|w| (w * step).cos()).collect(),
-            sinc: omega.iter().map(|w| (w * step).sin() / w).collect(),
-            back: omega.iter().map(|w| -(w * step).sin() * w).collect(),
-        }
-    }
-}
-
 /// Runs the impact.
 ///
 /// # Errors
 /// [`Error::Solver`] if the contact forces do not converge, or contact does not end.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
-    let mut run = Running::new(system, options);
+    let traces = (!system.relaxation.is_empty()).then(|| Traces::new(&system.relaxation, options.step));
+    let softer = traces.as_ref().map(|traces| system.nodes.softer(traces.growth()));
+    let workspace = Workspace::new(system, softer.as_ref().unwrap_or(&system.nodes), traces);
+    let mut run = Running::new(system, options, workspace);
     run.workspace.survey(system, &run.state, run.margin());
     run.workspace.forces(system, &run.state, options.step, &mut run.forces)?;
     run.sample();
@@ -77,7 +63,7 @@ pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
 struct Running<'a> {
     system: &'a System,
     options: Options,
-    rotation: Rotation,
+    drift: Drift<'a>,
     workspace: Workspace<'a>,
     state: State,
     forces: Forces,
@@ -97,12 +83,12 @@ struct Kept {
 }
 
 impl<'a> Running<'a> {
-    fn new(system: &'a System, options: &Options) -> Self {
-        let (workspace, state) = (Workspace::new(system), system.start());
+    fn new(system: &'a System, options: &Options, workspace: Workspace<'a>) -> Self {
+        let state = system.start();
         Self {
             system,
             options: *options,
-            rotation: Rotation::over(&system.omega, options.step),
+            drift: Drift::over(system, options.step),
             start_energy: workspace.energy(system, &state),
             workspace,
             forces: Forces::default(),
@@ -166,6 +152,7 @@ impl<'a> Running<'a> {
         let step = self.options.step;
         self.kick(0.5 * step);
         self.drift(step);
+        self.workspace.contact.pass();
         self.workspace.forces(self.system, &self.state, step, &mut self.forces)?;
         self.kick(0.5 * step);
         self.tally.steps += 1;
@@ -188,10 +175,7 @@ impl<'a> Running<'a> {
     }
 
     fn drift(&mut self, step: f64) {
-        let r = &self.rotation;
-        for (k, (q, v)) in self.state.modal.iter_mut().zip(&mut self.state.modal_velocity).enumerate() {
-            (*q, *v) = (*q * r.cos[k] + *v * r.sinc[k], *q * r.back[k] + *v * r.cos[k]);
-        }
+        self.tally.modal_loss += self.drift.apply(&mut self.state);
         for (x, v) in self.state.sphere.iter_mut().zip(self.state.sphere_velocity) {
             *x += step * v;
         }
@@ -241,9 +225,9 @@ impl<'a> Running<'a> {
         if self.tally.steps == 0 || !self.workspace.contact.active().is_empty() {
             return false;
         }
-        let state = &self.state;
-        let modes = self.system.omega.iter().zip(&state.modal).zip(&state.modal_velocity);
-        let amplitude: Vec<f64> = modes.map(|((omega, q), v)| q.hypot(v / omega)).collect();
+        let amplitude = self.drift.reach(self.system, &self.state);
+        // what recovers from its forces does so within where it is now
+        let lag = self.workspace.contact.lag();
         self.system.candidates.iter().enumerate().all(|(i, candidate)| {
             let room: f64 = self
                 .system
@@ -256,7 +240,7 @@ impl<'a> Running<'a> {
             let from = self.system.balls[ball].centre + moved - candidate.place;
             let square = velocity.norm_squared();
             let nearest = if square > 0.0 { (-from.dot(&velocity) / square).max(0.0) } else { 0.0 };
-            (from + nearest * velocity).norm() - self.system.balls[ball].radius > room
+            (from + nearest * velocity).norm() - self.system.balls[ball].radius > room + lag
         })
     }
 
@@ -276,10 +260,11 @@ impl<'a> Running<'a> {
         let start = system.actuator_mass * system.speed;
         let left =
             system.actuator_mass * state.actuator_velocity + system.sphere_mass * state.sphere_velocity[1];
-        let energy = self.workspace.energy(system, state);
+        let energy = self.workspace.energy(system, state) + self.tally.modal_loss;
         Integration {
             momentum_residual: (left + self.tally.seat_impulse - start).abs() / start,
             energy_residual: (energy - self.start_energy).abs() / self.start_energy,
+            relaxed: 2.0 * (self.tally.modal_loss + self.workspace.contact.relaxed()),
             time: self.time(),
             work: self.workspace.contact.work,
             state: self.state,
@@ -294,6 +279,7 @@ mod tests {
     use super::super::nodes::{Ball, Nodes};
     use super::super::{Candidate, Partner};
     use super::*;
+    use crate::material::Relaxation;
     use std::f64::consts::PI;
 
     const MASS: f64 = 2e-3;
@@ -310,6 +296,7 @@ mod tests {
             nodes: Nodes::new(vec![place], vec![1], &participation, &residual),
             omega: modes.iter().map(|m| m.0).collect(),
             participation,
+            relaxation: vec![],
             candidates: vec![Candidate {
                 node: 0,
                 place,
@@ -343,6 +330,63 @@ mod tests {
         assert!((result.tally.contact_end[1] / duration - 1.0).abs() < 1e-3);
         assert!(result.momentum_residual < 1e-12 && result.energy_residual < 1e-4);
         assert_eq!(result.state.sphere_velocity, [0.0; 2]);
+    }
+
+    fn relaxing(modes: &[(f64, f64)], ratio: f64, time: f64) -> System {
+        System { relaxation: vec![Relaxation { ratio, time }], ..spring(modes) }
+    }
+
+    /// m y'' = -k (y - g xi), xi' = (y - xi)/tau until the force would pull: velocity at the end and energy of the half body that is lost.
+    fn zener(ratio: f64, time: f64) -> [f64; 2] {
+        let (stiffness, h) = (1.0 / FLEXIBILITY, 1e-4 * (MASS * FLEXIBILITY).sqrt());
+        let force = |s: &[f64; 3]| stiffness * (s[0] - ratio * s[2]);
+        let rates = |s: [f64; 3]| [s[1], -force(&s) / MASS, (s[0] - s[2]) / time];
+        let add = |s: [f64; 3], h: f64, k: [f64; 3]| std::array::from_fn(|i| s[i] + h * k[i]);
+        let mut s = [0.0, SPEED, 0.0];
+        while s[0] == 0.0 || force(&s) > 0.0 {
+            let a = rates(s);
+            let b = rates(add(s, 0.5 * h, a));
+            let c = rates(add(s, 0.5 * h, b));
+            let d = rates(add(s, h, c));
+            s = std::array::from_fn(|i| s[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+        }
+        [s[1], 0.5 * MASS * (SPEED * SPEED - s[1] * s[1])]
+    }
+
+    #[test]
+    fn an_actuator_on_a_spring_that_relaxes_leaves_as_the_closed_system_has_it() {
+        let duration = PI * (MASS * FLEXIBILITY).sqrt();
+        for (ratio, time) in [(0.3, 0.1 * duration), (0.5, duration), (0.2, 10.0 * duration)] {
+            let [velocity, lost] = zener(ratio, time);
+            let [coarse, fine] = [400.0, 800.0].map(|steps| run(&relaxing(&[], ratio, time), steps, None));
+            for (result, bound) in [(coarse, 1e-4), (fine, 3e-5)] {
+                assert!((result.state.actuator_velocity / velocity - 1.0).abs() < bound, "{ratio} {time}");
+                // of whole bodies
+                assert!((result.relaxed / (2.0 * lost) - 1.0).abs() < 2e-3, "{} {lost}", result.relaxed);
+                assert!(result.energy_residual < 1e-4 && result.momentum_residual < 1e-12);
+            }
+        }
+    }
+
+    /// What relaxes long after the contact is elastic, and what relaxes at once is softer, modes and residual alike.
+    #[test]
+    fn a_very_slow_term_does_nothing_and_a_very_fast_one_softens() {
+        let modes = [(4e4, 12.0), (1.1e5, -9.0)];
+        let of = |system: &System| run(system, 400.0, None);
+        let close = |a: &Integration, b: &Integration, bound: f64| {
+            let velocity = a.state.actuator_velocity / b.state.actuator_velocity - 1.0;
+            let end = a.tally.contact_end[1] / b.tally.contact_end[1] - 1.0;
+            velocity.abs() < bound && end.abs() < bound
+        };
+        let slow = of(&relaxing(&modes, 0.3, 1e4));
+        assert!(close(&slow, &of(&spring(&modes)), 1e-5), "{slow:?}");
+        let fast = of(&relaxing(&modes, 0.3, 1e-14));
+        // frequencies as the root of the modulus, the residual as its inverse
+        let softer = modes.map(|(omega, shape)| (omega * 0.7_f64.sqrt(), shape));
+        let mut softer = spring(&softer);
+        softer.nodes = softer.nodes.softer(1.0 / 0.7);
+        assert!(close(&fast, &of(&softer), 1e-4), "{fast:?}");
+        assert!(!close(&fast, &slow, 0.1), "{fast:?}");
     }
 
     #[test]

@@ -37,6 +37,8 @@ pub struct Tally {
     pub steps: u64,
     /// Impulse along z on the seat in N s, from the nodal forces.
     pub(super) seat_impulse: f64,
+    /// Energy in J that the half seat's modes have lost.
+    pub(super) modal_loss: f64,
     /// Magnitudes of the forces of sphere and actuator at the last sample and the one before.
     pub(super) before: [[f64; 2]; 2],
 }
@@ -59,6 +61,8 @@ pub struct Integration {
     pub energy_residual: f64,
     /// Momentum of sphere and actuator that the impulse on the seat does not account for, over that at the start.
     pub momentum_residual: f64,
+    /// Energy in J that the seat has lost to relaxation.
+    pub relaxed: f64,
     /// End of the run in s.
     pub time: f64,
     /// Samples, if asked for.

@@ -11,14 +11,18 @@ mod checks;
 pub mod contact;
 mod contact_set;
 mod doubts;
+mod drift;
 pub mod integrate;
 pub mod integration;
 mod limits;
 mod model;
 pub mod nodes;
 mod results;
+mod series;
+mod shape;
 mod survey;
 pub mod system;
+pub mod traces;
 mod truncation;
 mod watch;
 
@@ -29,6 +33,7 @@ pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
 pub use model::{DEFAULT_TOLERANCE, SeatModel, quantities};
 pub use results::{CURVES, SeatCurves, SeatQuantities};
+pub use series::SeatSeries;
 pub use survey::Survey;
 
 /// The registry's entry.

@@ -14,8 +14,10 @@ use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
 use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
-use crate::result::{CUT, History, Outcome, Summary};
+use crate::material::vibration_frequency;
+use crate::result::{CUT, History, Losses, Outcome, Point, Summary};
 use crate::scene::{Model, Scene, SealSeat};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Relative error of the sphere's velocity from the time integration when the caller names none.
@@ -79,6 +81,23 @@ impl SeatModel {
         cache: &Cache,
         watch: &mut Watch,
     ) -> Result<Self> {
+        let setup = scene.seal_seat()?;
+        let build = &mut |zones: &Zones, modes: usize| {
+            let seat = mesh.body_with(setup, zones, modes, cache, watch)?;
+            watch("impact", 0.95);
+            Ok(Arc::new(seat))
+        };
+        Self::in_zones(scene, (model, modes), mesh, Zones::expected(setup), build)
+    }
+
+    /// With the bodies that `build` gives for zones of contact candidates, from the `zones` on, and modes.
+    pub(super) fn in_zones(
+        scene: &Scene,
+        (model, modes): (Model, Option<usize>),
+        mesh: &SeatMesh,
+        mut zones: Zones,
+        build: &mut dyn FnMut(&Zones, usize) -> Result<Arc<SeatBody>>,
+    ) -> Result<Self> {
         let started = Instant::now();
         let setup = scene.seal_seat()?;
         if model != Model::C {
@@ -90,11 +109,9 @@ impl SeatModel {
         if modes == 0 {
             return Err(Error::Usage("--modes 0: at least one mode is needed".into()));
         }
-        let mut zones = Zones::expected(setup);
         for _ in 0..WIDENINGS {
-            let seat = mesh.body_with(setup, &zones, modes, cache, watch)?;
+            let seat = build(&zones, modes)?;
             let built = Self::with(scene, setup, mesh, &seat, modes)?;
-            watch("impact", 0.95);
             let predictor = built.integrate(built.first_step, false)?;
             let wider = zones.widened(predictor.tally.reach).map_or(zones, |wider| wider.at_most(setup));
             if wider == zones {
@@ -202,6 +219,24 @@ impl SeatModel {
         )))
     }
 
+    /// Runs the impact for its results alone, as a series of many needs them.
+    ///
+    /// # Errors
+    /// As [`SeatModel::run`], [`Error::Solver`] if the run is cut during a contact.
+    pub fn point(&self, tolerance: f64) -> Result<Point<SeatQuantities>> {
+        let (result, _) = self.converged(tolerance)?;
+        ledger_check(result.energy_residual, result.momentum_residual, tolerance)?;
+        if result.is_cut() {
+            return Err(Error::Solver(CUT.into()));
+        }
+        Ok(Point {
+            quantities: quantities(&self.system, &result),
+            energy_residual: result.energy_residual,
+            momentum_residual: result.momentum_residual,
+            steps: result.tally.steps,
+        })
+    }
+
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
         let mut table = quantities(&self.system, result).table();
         let mut warnings = self.warnings.clone();
@@ -220,6 +255,8 @@ impl SeatModel {
             steps: Some(result.tally.steps),
             solve_seconds,
             truncation_error: Some(error),
+            losses: (!self.system.relaxation.is_empty())
+                .then(|| Losses { bodies: Some([0.0, result.relaxed, 0.0]), ..Losses::default() }),
             warnings,
             ..Summary::of_reduced(&self.scene, Model::C, self.system.omega.len(), table)
         })
@@ -243,7 +280,9 @@ pub fn quantities(system: &System, result: &Integration) -> SeatQuantities {
         actuator_contact_end: tally.contact_end[1],
         left_flank_impulse: tally.flank_impulse[0],
         right_flank_impulse: tally.flank_impulse[1],
-        first_frequency: system.omega.first().map_or(0.0, |omega| omega / (2.0 * std::f64::consts::PI)),
+        first_frequency: system.omega.first().map_or(0.0, |omega| {
+            vibration_frequency(&system.relaxation, omega / (2.0 * std::f64::consts::PI))
+        }),
     }
 }
 

@@ -39,6 +39,13 @@ impl Nodes {
         }
     }
 
+    /// The same, yielding `growth` times as much.
+    #[must_use]
+    pub(super) fn softer(&self, growth: f64) -> Self {
+        let columns = self.columns.iter().map(|r| (growth * f64::from(*r)) as f32).collect();
+        Self { columns, ..self.clone() }
+    }
+
     /// Number of candidates.
     pub fn len(&self) -> usize {
         self.place.len()

@@ -27,7 +27,16 @@ impl Contact<'_> {
     pub fn survey(&mut self, modal: &[f64], balls: &[Ball], margin: f64) -> Survey {
         let (nodes, n) = (self.nodes, self.nodes.len());
         self.collect_push();
+        let loaded = self.push.len();
+        if let Some(traces) = &self.loads.traces {
+            self.push.extend_from_slice(traces.forces());
+        }
         yield_under(&mut self.displaced, 0..n, |j| nodes.column(j), &self.push);
+        self.push.truncate(loaded);
+        if self.loads.traces.is_some() {
+            let square = |i: usize| (0..3).map(|c| self.displaced[c * n + i].powi(2)).sum::<f64>();
+            self.lag = (0..n).map(square).fold(0.0, f64::max).sqrt();
+        }
         add_modes(&mut self.displaced, &nodes.shapes, modal);
         let mut survey = Survey { missed: false, needed: 0.0 };
         let mut active = 0;
@@ -62,5 +71,8 @@ impl Contact<'_> {
             self.watch.choose(self.nodes, &self.chosen);
         }
         self.watch.yield_under(self.nodes, &self.push, 0..self.watch.len());
+        if let Some(traces) = &self.loads.traces {
+            self.watch.remember(self.nodes, traces.forces());
+        }
     }
 }

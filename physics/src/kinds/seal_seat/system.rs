@@ -6,8 +6,10 @@ use super::candidates::{Candidate, Partner, on_half_space};
 use super::contact::Contact;
 use super::nodes::{Ball, Nodes};
 use super::survey::Survey;
+use super::traces::Traces;
 use crate::body::solid::InterfaceBody;
 use crate::error::{Error, Result};
+use crate::material::Relaxation;
 use crate::scene::SealSeat;
 use nalgebra::Vector3;
 
@@ -18,6 +20,8 @@ pub struct System {
     pub omega: Vec<f64>,
     /// Mass-normalised shapes at the candidates in kg^(-1/2), x, y, z of each. Shape (N, 3 n).
     pub participation: Vec<Vec<f64>>,
+    /// How the seat relaxes; empty if it is elastic.
+    pub relaxation: Vec<Relaxation>,
     /// Nodes that may be touched. Shape (n).
     pub candidates: Vec<Candidate>,
     /// Half the sphere's mass in kg.
@@ -67,6 +71,7 @@ impl System {
         Ok(Self {
             omega: body.omega[..modes].to_vec(),
             participation: body.participation[..modes].to_vec(),
+            relaxation: scene.seat.material.relaxation.clone(),
             candidates: candidates.to_vec(),
             sphere_mass: 0.5 * scene.sphere.mass,
             actuator_mass: 0.5 * scene.actuator.mass,
@@ -82,12 +87,20 @@ impl System {
         })
     }
 
+    /// What the elastic energy in J of mode `k` at `q` lacks for its internal variables `xi`.
+    fn relaxed_energy(&self, k: usize, q: f64, xi: &[f64]) -> f64 {
+        let terms = self.relaxation.iter().zip(xi);
+        0.5 * self.omega[k].powi(2)
+            * terms.map(|(term, xi)| term.ratio * ((q - xi).powi(2) - q * q)).sum::<f64>()
+    }
+
     /// The state at t = 0: the actuator arrives, everything else rests.
     pub fn start(&self) -> State {
         let modes = self.omega.len();
         State {
             modal: vec![0.0; modes],
             modal_velocity: vec![0.0; modes],
+            relaxed: vec![0.0; modes * self.relaxation.len()],
             sphere: [0.0; 2],
             sphere_velocity: [0.0; 2],
             actuator: 0.0,
@@ -103,6 +116,8 @@ pub struct State {
     pub modal: Vec<f64>,
     /// Their rates. Shape (N).
     pub modal_velocity: Vec<f64>,
+    /// Internal variables of the material, as q. Shape (N, terms), empty of an elastic seat.
+    pub relaxed: Vec<f64>,
     /// Displacement of the sphere along x and z in m.
     pub sphere: [f64; 2],
     /// Its velocity in m/s.
@@ -167,10 +182,10 @@ pub struct Workspace<'a> {
 }
 
 impl<'a> Workspace<'a> {
-    /// Room for `system`.
-    pub fn new(system: &'a System) -> Self {
+    /// Room for `system`, which yields within a step as `nodes` do, and remembers `traces` if it relaxes.
+    pub fn new(system: &System, nodes: &'a Nodes, traces: Option<Traces>) -> Self {
         Self {
-            contact: Contact::new(&system.nodes, system.indentation),
+            contact: Contact::new(nodes, system.indentation, traces),
             accelerations: Vec::new(),
             balls: system.balls.clone(),
         }
@@ -185,6 +200,7 @@ impl<'a> Workspace<'a> {
     pub fn forces(&mut self, system: &System, state: &State, step: f64, forces: &mut Forces) -> Result<()> {
         self.place(system, state);
         self.contact.solve(&state.modal, &self.balls)?;
+        self.contact.book();
         forces.clear(system.omega.len());
         for &i in self.contact.active() {
             let (normal, force) = (self.contact.normal(i), self.contact.force(i));
@@ -237,12 +253,15 @@ impl<'a> Workspace<'a> {
         }
     }
 
-    /// Energy in J of the half bodies.
+    /// Energy in J of the half bodies, with what contact nodes that relax have lost.
     pub fn energy(&self, system: &System, state: &State) -> f64 {
         let modes = system.omega.iter().zip(&state.modal).zip(&state.modal_velocity);
         let modal: f64 = modes.map(|((omega, q), v)| 0.5 * (v * v + (omega * q).powi(2))).sum();
+        let relaxed = state.relaxed.chunks(system.relaxation.len().max(1));
+        let relaxing: f64 =
+            relaxed.enumerate().map(|(k, xi)| system.relaxed_energy(k, state.modal[k], xi)).sum();
         let sphere = 0.5 * system.sphere_mass * state.sphere_velocity.iter().map(|v| v * v).sum::<f64>();
         let actuator = 0.5 * system.actuator_mass * state.actuator_velocity.powi(2);
-        modal + sphere + actuator + self.contact.energy()
+        modal + relaxing + sphere + actuator + self.contact.energy()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::accumulate::{add_modes, yield_under};
 use super::nodes::{Ball, Nodes};
+use super::traces::Push;
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -23,12 +24,15 @@ pub(super) struct Watch {
     shapes: Vec<f64>,
     /// Columns of the residual as in [`Nodes::column`], of candidates that have been loaded. Shape (.., 3, 3, w).
     columns: Vec<f32>,
-    /// Number of the column of each slot, or [`NONE`]. Shape (w).
+    /// Number of the column of each candidate, or [`NONE`]. Shape (n).
     gathered: Vec<usize>,
     /// From the balls' centres to the candidates without the residual's part in m. Shape (3, w).
     base: Vec<f64>,
     /// Displacements by the residual in m. Shape (3, w).
     yielding: Vec<f64>,
+    /// What forces of the past still displace, and the sum of both before the present step, in m. Shape (3, w), of a body that relaxes.
+    remembered: Vec<f64>,
+    before: Vec<f64>,
     /// Displacements under a unit force, see [`Watch::under`]. Shape (3, w).
     unit: Vec<f64>,
 }
@@ -43,9 +47,11 @@ impl Watch {
             place: Vec::with_capacity(3 * n),
             shapes: Vec::new(),
             columns: Vec::new(),
-            gathered: Vec::with_capacity(n),
+            gathered: vec![NONE; n],
             base: Vec::with_capacity(3 * n),
             yielding: Vec::with_capacity(3 * n),
+            remembered: Vec::new(),
+            before: Vec::new(),
             unit: Vec::with_capacity(3 * n),
         }
     }
@@ -70,11 +76,12 @@ impl Watch {
             self.shapes.extend(chosen.iter().map(|&i| component[i]));
         }
         self.columns.clear();
-        self.gathered.clear();
-        self.gathered.resize(w, NONE);
+        self.gathered.fill(NONE);
         self.base.resize(3 * w, 0.0);
         self.yielding.clear();
         self.yielding.resize(3 * w, 0.0);
+        self.remembered.clear();
+        self.before.clear();
         self.unit.resize(3 * w, 0.0);
     }
 
@@ -109,11 +116,11 @@ impl Watch {
         add_modes(&mut self.base, &self.shapes, modal);
     }
 
-    /// Makes sure that the column of the watched candidate `j` is at hand.
+    /// Makes sure that the column of the candidate `j` is at hand.
     fn gather(&mut self, nodes: &Nodes, j: usize) {
-        let (slot, size) = (self.slot[j], 9 * self.len());
-        if self.gathered[slot] == NONE {
-            self.gathered[slot] = self.columns.len() / size;
+        let size = 9 * self.len();
+        if self.gathered[j] == NONE {
+            self.gathered[j] = self.columns.len() / size;
             for component in nodes.column(j).chunks(nodes.len()) {
                 self.columns.extend(self.nodes.iter().map(|&i| component[i]));
             }
@@ -121,18 +128,50 @@ impl Watch {
     }
 
     /// Lets the residual yield in the slots `part` under forces in N on watched candidates.
-    pub fn yield_under(&mut self, nodes: &Nodes, push: &[(usize, Vector3<f64>)], part: Range<usize>) {
+    pub fn yield_under(&mut self, nodes: &Nodes, push: &[Push], part: Range<usize>) {
         push.iter().for_each(|(j, _)| self.gather(nodes, *j));
         let (size, columns) = (9 * self.len(), &self.columns);
-        let column = |j: usize| &columns[self.gathered[self.slot[j]] * size..][..size];
+        let column = |j: usize| &columns[self.gathered[j] * size..][..size];
         yield_under(&mut self.yielding, part, column, push);
+    }
+
+    /// Lets the residual yield under `forces` in N of the past.
+    pub fn remember(&mut self, nodes: &Nodes, forces: &[Push]) {
+        if self.len() == 0 {
+            return;
+        }
+        forces.iter().for_each(|(j, _)| self.gather(nodes, *j));
+        let (w, columns) = (self.len(), &self.columns);
+        self.remembered.resize(3 * w, 0.0);
+        let column = |j: usize| &columns[self.gathered[j] * 9 * w..][..9 * w];
+        yield_under(&mut self.remembered, 0..w, column, forces);
+    }
+
+    /// Moves the candidates on by what is remembered.
+    pub fn displace(&mut self) {
+        self.base.iter_mut().zip(&self.remembered).for_each(|(at, moved)| *at += moved);
+    }
+
+    /// Keeps what the residual yields by now.
+    pub fn keep_yielded(&mut self) {
+        self.before.clear();
+        self.before.extend(self.yielding.iter().zip(&self.remembered).map(|(now, past)| now + past));
+    }
+
+    /// Displacement in m of the watched candidate `i` by the residual since [`Watch::keep_yielded`], all of it if nothing was kept.
+    pub fn yielded_further(&self, i: usize) -> Vector3<f64> {
+        let (w, slot) = (self.len(), self.slot[i]);
+        let at = |entry: usize| {
+            self.yielding[entry] + self.remembered[entry] - self.before.get(entry).unwrap_or(&0.0)
+        };
+        Vector3::from_fn(|c, _| at(c * w + slot))
     }
 
     /// Keeps the displacements under a unit force on `j` along `normal`, for [`Watch::compliance`].
     pub fn under(&mut self, nodes: &Nodes, j: usize, normal: Vector3<f64>) {
         self.gather(nodes, j);
         let (w, columns) = (self.len(), &self.columns);
-        let column = |j: usize| &columns[self.gathered[self.slot[j]] * 9 * w..][..9 * w];
+        let column = |j: usize| &columns[self.gathered[j] * 9 * w..][..9 * w];
         yield_under(&mut self.unit, 0..w, column, &[(j, normal)]);
     }
 

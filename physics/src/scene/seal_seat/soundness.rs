@@ -3,7 +3,7 @@
 use super::SealSeat;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::material;
-use crate::scene::{Material, Part, SEAL_SEAT};
+use crate::scene::{Part, SEAL_SEAT};
 use std::f64::consts::FRAC_PI_2;
 
 /// Least thickness of a wall between two features, over the island's height: what a mesh can follow.
@@ -24,28 +24,29 @@ impl Part for SealSeat {
             found.extend(ring_and_walls(self));
         }
         found.extend(tips(self));
+        let [seat, sphere] = [&self.seat.material, &self.sphere.material];
         found.extend(broken(vec![
-            elastic("seat.material", &self.seat.material),
-            elastic("sphere.material", &self.sphere.material),
+            Rule {
+                fields: vec!["seat.material"],
+                holds: seat.plasticity().is_none(),
+                message: format!("`seat.material` is `{}`, which yields, but a seal seat is elastic or relaxes", seat.name),
+                help: "leave `hardening` out of the material",
+            },
+            Rule {
+                fields: vec!["sphere.material"],
+                holds: sphere.is_elastic(),
+                message: format!(
+                    "`sphere.material` is `{}`, which yields or relaxes, but the sphere in a seal seat has to be elastic",
+                    sphere.name
+                ),
+                help: "leave `hardening`, `relaxation` and `loss_factor` out of the material",
+            },
         ]));
         found
     }
 
     fn doubts(&self) -> Vec<String> {
         [&self.seat.material, &self.sphere.material].into_iter().flat_map(material).collect()
-    }
-}
-
-/// That a material is elastic: no model of a seal seat knows another.
-fn elastic(field: &'static str, material: &Material) -> Rule {
-    Rule {
-        fields: vec![field],
-        holds: material.is_elastic(),
-        message: format!(
-            "`{field}` is `{}`, which yields or relaxes, but a seal seat has to be elastic",
-            material.name
-        ),
-        help: "leave `hardening`, `relaxation` and `loss_factor` out of the material",
     }
 }
 

@@ -1,0 +1,219 @@
+//! The numeric fields of a scene file: their names, bounds and places.
+
+use super::check::{Checked, Values};
+use super::quantity::{self, Dimension, QuantityError};
+use super::specification::{self, Kind, SCENE};
+use crate::{Error, Result};
+
+/// A numeric field of a scene file, such as `plate.thickness` or `materials.steel.density`.
+#[derive(Debug, Clone)]
+pub struct Field {
+    pub(super) path: String,
+    pub(super) keys: Vec<String>,
+    kind: &'static Kind,
+}
+
+/// Why a value can't stand in a field.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rejected(pub String);
+
+impl std::fmt::Display for Rejected {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl Field {
+    /// Its name, keys joined by dots.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// Its SI unit; "1" for a pure number.
+    pub fn unit(&self) -> &'static str {
+        self.dimension().describe().1
+    }
+
+    /// Whether it takes whole numbers only.
+    pub fn is_count(&self) -> bool {
+        matches!(self.kind, Kind::Count(..))
+    }
+
+    /// Dimension of its numbers.
+    pub(super) fn dimension(&self) -> Dimension {
+        match self.kind {
+            Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..) => *dimension,
+            _ => Dimension::NONE,
+        }
+    }
+
+    /// Reads a number with unit, or a bare one in SI.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with the text and what is needed.
+    pub fn parse(&self, text: &str) -> Result<f64> {
+        let (what, _, sample) = self.dimension().describe();
+        let fault = |reason: String| {
+            let like =
+                if self.dimension() == Dimension::NONE { sample.to_owned() } else { format!("\"{sample}\"") };
+            Error::Usage(format!("`{}` = `{text}`: {reason}; write {what}, for example {like}", self.path))
+        };
+        let number = quantity::parse(text, self.dimension()).map_err(|error| {
+            fault(match error {
+                QuantityError::NotANumber => "that is not a number with a unit".into(),
+                QuantityError::UnknownUnit(u) => format!("`{u}` is not a known unit"),
+                QuantityError::MalformedUnit(u) => format!("`{u}` is not a product of units"),
+                QuantityError::WrongDimension(u) => {
+                    format!("`{u}` is not the unit of {}", self.dimension().in_words())
+                }
+                QuantityError::OutOfRange => "double precision can't hold it".into(),
+            })
+        })?;
+        Ok(number)
+    }
+
+    /// Whether `value`, in SI, may stand in the field.
+    ///
+    /// # Errors
+    /// [`Rejected`] with field, value, bound and unit.
+    pub fn check(&self, value: f64) -> std::result::Result<(), Rejected> {
+        let unit = self.unit();
+        let shown = self.dimension().suffix();
+        let rejected =
+            |range: String| Rejected(format!("`{}` is {value}{shown}, but it has to be {range}", self.path));
+        match self.kind {
+            Kind::Quantity(_, bound) | Kind::Quantities(_, bound, _) if !bound.holds(value) => {
+                Err(rejected(bound.describe(unit)))
+            }
+            Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..)
+                if !dimension.is_plausible(value) =>
+            {
+                let [low, high] = dimension.span();
+                Err(rejected(format!("between {low:e} and {high:e}{shown}")))
+            }
+            Kind::Quantity(..) | Kind::Quantities(..) => Ok(()),
+            Kind::Count(low, high) => {
+                let whole = value.fract() == 0.0 && value >= *low as f64 && value <= *high as f64;
+                if whole { Ok(()) } else { Err(rejected(format!("a whole number from {low} to {high}"))) }
+            }
+            _ => Err(rejected("a number".into())),
+        }
+    }
+}
+
+/// Why the field called `path` changes no reduced model of a scene with these checked `values`, if it does not.
+pub(super) fn without_effect(values: &Values, path: &str) -> Option<&'static str> {
+    let of_material = |key: &str| path.strip_suffix(key).filter(|rest| rest.starts_with("materials."));
+    if path == "friction" || path.starts_with("reference.") {
+        return Some("it is the reference's alone");
+    }
+    if of_material(".hardening").is_some() {
+        return Some("their contact law knows no hardening, which is the reference's alone");
+    }
+    let material = of_material(".yield_strength")?;
+    (!has(values, &format!("{material}.hardening")))
+        .then_some("without `hardening` the material stays elastic")
+}
+
+/// Whether checked `values` have something at `path`.
+fn has(values: &Values, path: &str) -> bool {
+    let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
+    tables
+        .split_terminator('.')
+        .try_fold(values, |values, table| match values.get(table) {
+            Some(Checked::Table(inner)) => Some(inner),
+            _ => None,
+        })
+        .is_some_and(|values| values.contains_key(key))
+}
+
+/// Every numeric field that a scene with these checked `values` has or may have and a reduced model knows.
+pub(super) fn fields_of(values: &Values) -> Vec<Field> {
+    let mut fields = Vec::new();
+    collect(&SCENE, Some(values), &mut Vec::new(), &mut fields);
+    fields.retain(|field: &Field| without_effect(values, &field.path).is_none());
+    fields
+}
+
+/// What checked `values` have in `field`, in SI; `None` if they say nothing there.
+pub(super) fn number_in(values: &Values, field: &Field) -> Option<f64> {
+    let (last, tables) = field.keys.split_last()?;
+    let mut values = values;
+    for key in tables {
+        match values.get(key)? {
+            Checked::Table(inner) => values = inner,
+            Checked::Numbers(list) => return list.get(index(std::slice::from_ref(last))?).copied(),
+            _ => return None,
+        }
+    }
+    match values.get(last)? {
+        Checked::Number(number) => Some(*number),
+        Checked::Count(count) => Some(*count as f64),
+        _ => None,
+    }
+}
+
+/// The place in a list that the last key names, counted from 1.
+pub(super) fn index(keys: &[String]) -> Option<usize> {
+    let [key] = keys else { return None };
+    key.parse::<usize>().ok()?.checked_sub(1)
+}
+
+/// The numeric fields below a table with the keys of `specification`; `values` is what the file has there.
+fn collect(
+    specification: &'static [specification::Field],
+    values: Option<&Values>,
+    keys: &mut Vec<String>,
+    found: &mut Vec<Field>,
+) {
+    let text = |key: &str| match values.and_then(|v| v.get(key)) {
+        Some(Checked::Text(text)) => Some(text.as_str()),
+        _ => None,
+    };
+    let table = |values: Option<&'_ Values>, key: &str| match values.and_then(|v| v.get(key)) {
+        Some(Checked::Table(inner)) => Some(inner.clone()),
+        _ => None,
+    };
+    let kind = text("kind").map(str::to_owned);
+    for field in specification {
+        // of several ways to say a thing only the one the file takes
+        let absent = !values.is_some_and(|v| v.contains_key(field.key));
+        if !field.belongs_to(kind.as_deref()) || (field.alternative(kind.as_deref()).is_some() && absent) {
+            continue;
+        }
+        keys.push(field.key.to_owned());
+        match &field.kind {
+            Kind::Quantity(..) | Kind::Count(..) => {
+                found.push(Field { path: keys.join("."), keys: keys.clone(), kind: &field.kind });
+            }
+            // the entries of a list that the file has, counted from 1
+            Kind::Quantities(..) => {
+                let list = values.and_then(|v| v.get(field.key));
+                let count = if let Some(Checked::Numbers(list)) = list { list.len() } else { 0 };
+                for entry in 1..=count {
+                    keys.push(entry.to_string());
+                    found.push(Field { path: keys.join("."), keys: keys.clone(), kind: &field.kind });
+                    keys.pop();
+                }
+            }
+            Kind::Table(inner) => {
+                let there = table(values, field.key);
+                // one number alone does not make a table that has to have others
+                if there.is_some() || inner.iter().all(|f| !f.required) {
+                    collect(inner, there.as_ref(), keys, found);
+                }
+            }
+            Kind::TableOf(inner) => {
+                for (name, entry) in table(values, field.key).unwrap_or_default() {
+                    if let Checked::Table(entry) = entry {
+                        keys.push(name);
+                        collect(inner, Some(&entry), keys, found);
+                        keys.pop();
+                    }
+                }
+            }
+            _ => {}
+        }
+        keys.pop();
+    }
+}

@@ -1,0 +1,195 @@
+//! `impactcheck uncertainty`: how the results scatter with the inputs.
+
+use super::asked_model;
+use super::progress::Counter;
+use super::{Context, JsonArgument};
+use crate::error::{Error, ExitStatus, Result};
+use crate::file::write_file;
+use crate::kinds::plate_impact::PlateQuantities;
+use crate::report::format::{percent, prefixed, with_unit};
+use crate::report::{self, FigureFormat, TableFormat};
+use crate::scene::{self, Model, Template, suggestion};
+use crate::uncertainty::{QuantityScatter, Request, Samples, Scatter, Share, study, uncertainty_of};
+use clap::Args;
+use std::path::PathBuf;
+use std::time::Instant;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file with a table [uncertainty], or the name of a shipped scene
+    scene: String,
+    /// Reduced model [default: C]
+    #[arg(long, default_value = "C", hide_default_value = true)]
+    model: Model,
+    /// Number of modes [default: as `reduced`]
+    #[arg(long, value_name = "N")]
+    modes: Option<usize>,
+    /// Samples of the inputs, or auto: twice as many again and again until --accuracy is reached. Each takes an impact per input, and
+    /// two more
+    #[arg(long, default_value = "auto", value_name = "N|auto", value_parser = samples)]
+    samples: Asked,
+    /// How well auto has to know mean and standard deviation: half width of their 95 % intervals over the standard deviation
+    #[arg(long, default_value = "2%", value_name = "SHARE", value_parser = asked_model::tolerance)]
+    accuracy: f64,
+    /// Quantities that auto and the tables are about
+    #[arg(long = "quantity", value_delimiter = ',', default_value = "efficiency,outer_force_peak,inner_force_peak", value_name = "NAME,…", value_parser = quantity)]
+    quantities: Vec<String>,
+    /// Another one gives other samples
+    #[arg(long, default_value_t = 1)]
+    seed: u32,
+    /// Folder of the samples, the results (JSON) and the figure (SVG, PNG); a study that was interrupted goes on there
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Format of the samples: csv or parquet
+    #[arg(long, default_value = "parquet")]
+    format: TableFormat,
+    /// Write the figure to this file (.svg, .pdf or .png)
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// What `--samples` says.
+#[derive(Debug, Clone, Copy)]
+enum Asked {
+    Auto,
+    Rows(usize),
+}
+
+fn samples(text: &str) -> std::result::Result<Asked, String> {
+    match text {
+        "auto" => Ok(Asked::Auto),
+        _ => text.parse().map(Asked::Rows).map_err(|_| format!("`{text}` is neither a number nor auto")),
+    }
+}
+
+/// A result that scatters.
+fn quantity(name: &str) -> std::result::Result<String, String> {
+    let names =
+        || PlateQuantities::ALL.iter().filter(|quantity| !quantity.is_count).map(|quantity| quantity.name);
+    if names().any(|known| known == name) {
+        return Ok(name.to_owned());
+    }
+    let hint = suggestion(name, names()).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+    Err(format!("there is no quantity `{name}`{hint} (there: {})", names().collect::<Vec<_>>().join(", ")))
+}
+
+/// Samples, and prints how the results scatter.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    let start = Instant::now();
+    let file = scene::resolve(&arguments.scene)?;
+    let template = Template::read(&file)?;
+    uncertainty_of(template.scene())?;
+    let figure =
+        arguments.figure.as_ref().map(|file| Ok::<_, Error>((file, FigureFormat::of(file)?))).transpose()?;
+    if let Some(folder) = &arguments.out {
+        report::check_writable(folder)?;
+    }
+    let request = Request {
+        model: arguments.model,
+        modes: arguments.modes,
+        samples: match arguments.samples {
+            Asked::Auto => Samples::Until(arguments.accuracy),
+            Asked::Rows(rows) => Samples::Rows(rows),
+        },
+        wanted: arguments.quantities.clone(),
+        seed: arguments.seed,
+    };
+    let counter = Counter::new(context, &template.scene().name);
+    let folder = arguments.out.as_deref().map(|dir| (dir, arguments.format));
+    let scatter = study((&file, &template), &request, folder, &|progress| counter.show(progress))?;
+    let (_, fresh) = counter.finish();
+    let seconds = start.elapsed().as_secs_f64();
+    context.note(format_args!(
+        "{} samples, {} impacts, {fresh} of them run now, in {seconds:.2} s",
+        scatter.samples, scatter.impacts
+    ));
+    for note in &scatter.notes {
+        context.note(format_args!("note: {note}"));
+    }
+    let drawn = (figure.is_some() || arguments.out.is_some())
+        .then(|| report::scatter_figure(&scatter, &request.wanted));
+    if let (Some((file, format)), Some(svg)) = (figure, &drawn) {
+        write_file(file, &format.of_svg(svg.clone(), &scatter.scene)?)?;
+    }
+    if let (Some(folder), Some(svg)) = (&arguments.out, drawn) {
+        let json = serde_json::to_string_pretty(&scatter)
+            .map_err(|e| Error::Internal(format!("writing the scatter as JSON: {e}")))?;
+        write_file(&folder.join("uncertainty.json"), (json + "\n").as_bytes())?;
+        write_file(&folder.join("uncertainty.png"), &report::png(&svg, 2.0)?)?;
+        write_file(&folder.join("uncertainty.svg"), svg.as_bytes())?;
+        context.note(format_args!("wrote {}", folder.join("uncertainty.svg").display()));
+    }
+    if arguments.json.json {
+        super::print_json(&scatter)?;
+    } else {
+        super::print(&table(&scatter, &request.wanted))?;
+    }
+    Ok(ExitStatus::Pass)
+}
+
+fn table(scatter: &Scatter, wanted: &[String]) -> String {
+    let mut lines = vec![format!(
+        "{} (model {}): {} samples of {} inputs",
+        scatter.scene,
+        scatter.model,
+        scatter.samples,
+        scatter.inputs.len()
+    )];
+    for (name, input) in &scatter.inputs {
+        let to = prefixed(input.unit, input.nominal);
+        let [nominal, deviation] =
+            [(input.nominal, 6), (input.standard_deviation, 3)].map(|(v, n)| with_unit(v, to, n));
+        lines.push(format!("  {name:<36} {nominal:>14} ± {deviation}"));
+    }
+    for name in wanted {
+        if let Some(of) = scatter.quantities.get(&**name) {
+            lines.extend(of_quantity(name, of));
+        }
+    }
+    lines.join("\n")
+}
+
+fn of_quantity(name: &str, of: &QuantityScatter) -> Vec<String> {
+    let to = prefixed(of.unit, of.mean);
+    let shown = |value: f64, digits| with_unit(value, to, digits);
+    let [low, high] = of.interval();
+    let half = |[low, high]: [f64; 2]| 0.5 * (high - low);
+    let mut lines = vec![
+        name.to_owned(),
+        format!(
+            "  mean {} ± {}, standard deviation {} ± {} ({} of the mean)",
+            shown(of.mean, 6),
+            shown(half(of.mean_interval), 2),
+            shown(of.standard_deviation, 4),
+            shown(half(of.standard_deviation_interval), 2),
+            percent(Some(of.standard_deviation / of.mean.abs())).trim_start_matches('+')
+        ),
+        format!(
+            "  nominal {}, median {}, 95 % between {} and {}",
+            of.nominal.map_or("not determined".into(), |value| shown(value, 6)),
+            shown(of.quantiles.get("0.5").copied().unwrap_or(f64::NAN), 6),
+            shown(low, 6),
+            shown(high, 6)
+        ),
+        format!(
+            "  {:<36}{:>20}{:>20}{:>26}",
+            "share of the variance", "alone", "with interactions", "± one deviation"
+        ),
+    ];
+    let share = |value: f64, interval| format!("{:.3} ± {:.3}", value, half(interval));
+    for (inputs, Share { first, first_interval, total, total_interval }) in of.ranking() {
+        let moved = of.local.get(inputs).map_or(String::new(), |local| {
+            let [low, high] =
+                local.results.map(|result| of.nominal.map_or(f64::NAN, |nominal| result / nominal - 1.0));
+            format!("{} / {}", percent(Some(low)), percent(Some(high)))
+        });
+        lines.push(format!(
+            "  {inputs:<36}{:>20}{:>20}{moved:>26}",
+            share(*first, *first_interval),
+            share(*total, *total_interval)
+        ));
+    }
+    lines
+}

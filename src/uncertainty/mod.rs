@@ -1,0 +1,14 @@
+//! Uncertain inputs: how the results of a reduced model scatter with the inputs of a scene, and what that means for a comparison.
+//!
+//! [`study`] runs the model at quasi-random inputs ([`design`]), in the logs of a sweep; [`estimate`] has the estimators, which know
+//! nothing of impacts; [`Scatter`] is what comes out.
+
+pub mod design;
+mod draw;
+pub mod estimate;
+mod scatter;
+mod study;
+
+pub use draw::Inputs;
+pub use scatter::{Correlated, Input, Local, QuantityScatter, Scatter, Share};
+pub use study::{Request, Samples, WANTED, study, uncertainty_of};

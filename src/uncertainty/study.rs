@@ -1,0 +1,220 @@
+//! A study: impacts until mean and scatter of the wanted quantities are known well enough.
+
+use super::design::{MOST_INPUTS, MOST_ROWS, REPLICATES};
+use super::draw::Inputs;
+use super::estimate::{Row, mean, standard_deviation};
+use super::scatter::{Impacts, Scatter};
+use crate::error::{Error, Result};
+use crate::kinds::plate_impact::PlateQuantities;
+use crate::report::TableFormat;
+use crate::scene::{Field, Model, Scene, Template, Uncertainty};
+use crate::study::sweep::{Outcome, Plan, Progress, Record, Shard, Table, in_memory, run};
+use std::path::{Path, PathBuf};
+
+/// Rows of the first look: 16 of each sequence.
+const FIRST_ROWS: usize = 16 * REPLICATES;
+/// Rows up to which accuracy is looked for.
+const MOST_WANTED: usize = 1 << 16;
+/// Relative error of the efficiency that the time integration may have: far below any scatter worth a study.
+const TOLERANCE: f64 = 1e-4;
+/// Quantities whose scatter is wanted when nobody names others.
+pub const WANTED: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
+
+/// How much to sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Samples {
+    /// So many rows.
+    Rows(usize),
+    /// Twice as many again and again, until the 95 % intervals of mean and standard deviation of the wanted quantities are no wider than
+    /// this share of the standard deviation to either side.
+    Until(f64),
+}
+
+/// What is asked of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// The reduced model.
+    pub model: Model,
+    /// Its number of modes; `None` = as `reduced`.
+    pub modes: Option<usize>,
+    /// How much to sample.
+    pub samples: Samples,
+    /// The quantities that `samples` is about.
+    pub wanted: Vec<String>,
+    /// Another one gives other samples.
+    pub seed: u32,
+}
+
+impl Request {
+    /// Of `model`, as [`WANTED`], to an `accuracy`.
+    pub fn new(model: Model, accuracy: f64) -> Self {
+        let wanted = WANTED.map(str::to_owned).into();
+        Request { model, modes: None, samples: Samples::Until(accuracy), wanted, seed: 1 }
+    }
+}
+
+/// What `scene` says of its inputs.
+///
+/// # Errors
+/// [`Error::Usage`] if it says nothing or names too many.
+pub fn uncertainty_of(scene: &Scene) -> Result<&Uncertainty> {
+    let uncertainty = scene.uncertainty.as_ref().ok_or_else(|| {
+        Error::Usage(format!(
+            "scene `{}` does not say how uncertain its inputs are: add a table such as [uncertainty] \"plate.thickness\" = \"1 %\"",
+            scene.name
+        ))
+    })?;
+    match uncertainty.inputs.len() {
+        count if count > MOST_INPUTS => Err(Error::Usage(format!(
+            "scene `{}` has {count} uncertain inputs; at most {MOST_INPUTS} can be sampled",
+            scene.name
+        ))),
+        _ => Ok(uncertainty),
+    }
+}
+
+/// The impacts of a study, which grow.
+#[derive(Debug)]
+struct Growing<'a> {
+    plan: Plan,
+    inputs: Inputs,
+    /// Folder of the log; `None` = in memory.
+    dir: Option<&'a Path>,
+    records: Vec<Record>,
+}
+
+impl Growing<'_> {
+    fn grow(&mut self, rows: usize, tell: &(dyn Fn(Progress) + Sync)) -> Result<()> {
+        self.plan.grow(self.inputs.sampled(rows, 0));
+        match self.dir {
+            None => self.records.extend(in_memory(&self.plan, self.records.len(), tell)),
+            Some(dir) => {
+                run(&self.plan, dir, Shard::WHOLE, tell)?;
+                self.records = Table::join(&self.plan, dir, Shard::WHOLE)?.records().to_vec();
+            }
+        }
+        Ok(())
+    }
+
+    fn value(&self, index: usize, quantity: &str) -> Option<f64> {
+        match &self.records[index].outcome {
+            Outcome::Done(point) => point.quantities.get(quantity).filter(|value| value.is_finite()),
+            _ => None,
+        }
+    }
+
+    /// The rows of which every impact has a result.
+    fn rows(&self, rows: usize, quantity: &str) -> Vec<Row> {
+        let row = |number| {
+            let value = |k| self.value(self.inputs.sampled(number, k), quantity);
+            let mixed = (2..self.inputs.design.points()).map(value).collect::<Option<_>>()?;
+            Some(Row { number, own: [value(0)?, value(1)?], mixed })
+        };
+        (0..rows).filter_map(row).collect()
+    }
+
+    /// Half width of the widest interval of mean and deviation of the wanted quantities, over the deviation.
+    fn accuracy(&self, rows: usize, wanted: &[String]) -> f64 {
+        let of = |quantity: &String| {
+            let rows = self.rows(rows, quantity);
+            let (mean, deviation) = (mean(&rows), standard_deviation(&rows));
+            let width = mean.half_width.max(deviation.half_width);
+            if width == 0.0 { 0.0 } else { width / deviation.value }
+        };
+        // what is no number is as wide as can be
+        wanted
+            .iter()
+            .map(of)
+            .fold(0.0, |widest, width| if width > widest || width.is_nan() { width } else { widest })
+    }
+}
+
+/// Runs the study that `request` asks for of the scene file `file`, in memory or in a `folder`, where its impacts are logged, so that it goes on if it
+/// was interrupted, and become the table `samples`; `tell` hears of the progress.
+///
+/// # Errors
+/// As [`uncertainty_of`]; [`Error::Usage`] for a number of rows that can't be, or a folder of another study; [`Error::Solver`] if the nominal
+/// impact or most of the others have no result.
+pub fn study(
+    (file, template): (&Path, &Template),
+    request: &Request,
+    folder: Option<(&Path, TableFormat)>,
+    tell: &(dyn Fn(Progress) + Sync),
+) -> Result<Scatter> {
+    let scene = template.scene();
+    let uncertainty = uncertainty_of(scene)?;
+    let inputs = Inputs::new(uncertainty, request.seed)
+        .ok_or_else(|| Error::Internal("correlations that were checked contradict each other".into()))?;
+    let first = match request.samples {
+        Samples::Rows(rows) if (REPLICATES..=MOST_ROWS).contains(&rows) => rows,
+        Samples::Rows(rows) => {
+            return Err(Error::Usage(format!(
+                "{rows} samples: {REPLICATES} to {MOST_ROWS} are possible, in {REPLICATES} independent sequences"
+            )));
+        }
+        Samples::Until(_) => FIRST_ROWS,
+    };
+    let mut fields: Vec<(Field, [f64; 2])> = Vec::new();
+    for input in &uncertainty.inputs {
+        fields.push((template.field(&input.field)?, input.range()));
+    }
+    let plan = Plan::drawn(
+        (PathBuf::from(file), template.clone()),
+        (request.model, request.modes, TOLERANCE),
+        fields,
+        Box::new(inputs.clone()),
+        inputs.sampled(first, 0),
+    )?;
+    let mut growing = Growing { plan, inputs, dir: folder.map(|(dir, _)| dir), records: Vec::new() };
+    let mut rows = first;
+    growing.grow(rows, tell)?;
+    let reached = loop {
+        let Samples::Until(accuracy) = request.samples else { break None };
+        let reached = growing.accuracy(rows, &request.wanted);
+        if reached <= accuracy || 2 * rows > MOST_WANTED {
+            break Some(reached <= accuracy);
+        }
+        rows *= 2;
+        growing.grow(rows, tell)?;
+    };
+    let Growing { inputs, records, plan, .. } = &growing;
+    if let Outcome::Invalid(reason) | Outcome::Failed(reason) = &records[0].outcome {
+        return Err(Error::Solver(format!("the impact with nominal inputs has no result: {reason}")));
+    }
+    let failure = records.iter().find(|record| record.outcome.status() != "ok");
+    let lost = records.iter().filter(|record| record.outcome.status() != "ok").count();
+    if 2 * lost > records.len() {
+        let reason = failure.map_or("", |record| record.outcome.reason());
+        return Err(Error::Solver(format!(
+            "{lost} of {} impacts have no result, the first of them because: {reason}",
+            records.len()
+        )));
+    }
+    let of = |quantity: &str| Impacts {
+        nominal: growing.value(0, quantity),
+        moved: (0..inputs.uncertainty.inputs.len())
+            .map(|k| {
+                [0, 1].map(|side| (inputs.shifted(k, side), growing.value(Inputs::moved(k, side), quantity)))
+            })
+            .collect(),
+        rows: growing.rows(rows, quantity),
+    };
+    let quantities = PlateQuantities::ALL.iter().filter(|quantity| !quantity.is_count);
+    let mut scatter = Scatter::of(scene, request, inputs, quantities.map(|q| (q.name, q.unit, of(q.name))));
+    (scatter.samples, scatter.impacts, scatter.failures, scatter.accurate) =
+        (rows, plan.len(), lost, reached);
+    scatter.notes.extend(failure.map(|record| {
+        let reason = record.outcome.reason();
+        format!(
+            "{lost} of {} impacts have no result and their rows are left out; the first: {reason}",
+            plan.len()
+        )
+    }));
+    if reached == Some(false) {
+        scatter.notes.push(format!("{rows} rows don't give the accuracy asked for; more are not tried"));
+    }
+    if let Some((dir, format)) = folder {
+        Table::join(plan, dir, Shard::WHOLE)?.write(dir, "samples", format)?;
+    }
+    Ok(scatter)
+}
