@@ -26,6 +26,7 @@
 #![warn(clippy::print_stderr)]
 
 pub mod bench;
+pub mod calibration;
 pub mod ci;
 pub mod cli;
 pub mod comparison;

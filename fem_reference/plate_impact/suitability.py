@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..axisymmetric.mesh import edge_lengths
+from ..common.bodies import Body
 from ..common.hertz import effective_modulus, hertz_contact_radius
+from ..explicit.records import ContactRecord
 from .estimate import ACCEPTED_SHARE, MINOR_FORCE, shortest_wavelengths
 from .meshing import ImpactMesh
 from .run import Run
@@ -43,16 +45,20 @@ def elements_per_wavelength(scene: Scene, mesh: ImpactMesh, duration: float) -> 
     )
 
 
+def _contact_radius(scene: Scene, contact: ContactRecord, body: Body) -> float:
+    """Largest radius of a contact, m: Hertz's, which no discretisation rounds, where he holds."""
+    if scene.yields:
+        return contact.outermost_radius
+    modulus = effective_modulus(body.material, scene.plate.material)
+    hertz = hertz_contact_radius(contact.force_peak, modulus, body.tip_radius)
+    # What relaxes is pressed wider by the same force.
+    return max(hertz, contact.outermost_radius) if scene.relaxing else hertz
+
+
 def resolution_of(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Resolution:
     """What a mesh resolves of a run, by the contact radii found."""
     found = [
-        hertz_contact_radius(
-            contact.force_peak,
-            effective_modulus(body.material, scene.plate.material),
-            body.tip_radius,
-        )
-        if not scene.yields
-        else contact.outermost_radius
+        _contact_radius(scene, contact, body)
         for contact, body in zip(run.contacts, (scene.outer, scene.inner), strict=True)
     ]
     edges = np.concatenate([edge_lengths(body.points, body.quads) for body in mesh.bodies])

@@ -4,7 +4,7 @@ use super::asked_model::{self, AskedModel};
 use super::compare_inputs;
 use super::external::{self, Permission};
 use super::film::film;
-use super::progress::Counter;
+use super::scatter::scatter;
 use super::second_program::{self, Asked};
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument, kinds, validated_scenes};
@@ -17,8 +17,7 @@ use crate::measured::{self, Record, Speed};
 use crate::reference::{COARSER, Resolution, Stored};
 use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
 use crate::result::Outcome;
-use crate::scene::{Model, Scene, Template};
-use crate::uncertainty::{Request, Scatter, study};
+use crate::scene::Scene;
 use crate::validated::Validation;
 use clap::Args;
 use std::collections::BTreeMap;
@@ -26,8 +25,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Half width of the intervals of mean and standard deviation, over the latter, of what scatters: u_input to 5 %.
-const SCATTER_ACCURACY: f64 = 0.05;
 /// Results over commits, beside the report.
 const TRENDS: &str = "trends.jsonl";
 
@@ -406,36 +403,6 @@ impl<'a> Job<'a> {
         }
         Ok(comparison)
     }
-}
-
-/// How the results of the models that are compared, and of model C, scatter if the scene says how uncertain its inputs are; by name.
-fn scatter(
-    context: &Context,
-    file: &Path,
-    scene: &Scene,
-    comparison: &SceneComparison,
-) -> Result<BTreeMap<String, Scatter>> {
-    if scene.uncertainty.is_none() {
-        return Ok(BTreeMap::new());
-    }
-    let template = Template::read(file)?;
-    let mut scatters = BTreeMap::new();
-    for model in [Model::A, Model::B, Model::C] {
-        let name = model.to_string();
-        let compared = comparison.models.iter().find(|compared| compared.model == name);
-        if compared.is_none() && model != Model::C {
-            continue;
-        }
-        let counter = Counter::new(context, &format!("{}: scatter of model {name}", scene.name));
-        let request = Request {
-            modes: compared.and_then(|model| model.summary.modes),
-            ..Request::new(model, SCATTER_ACCURACY)
-        };
-        let found = study((file, &template), &request, None, &|progress| counter.show(progress))?;
-        counter.finish();
-        scatters.insert(name, found);
-    }
-    Ok(scatters)
 }
 
 /// The comparison with its discrepancy budget. A budget that can't be drawn up is said to be missing: the comparison

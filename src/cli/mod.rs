@@ -2,6 +2,7 @@
 
 mod asked_model;
 mod bench;
+mod calibrate;
 mod compare;
 mod compare_inputs;
 mod coverage;
@@ -18,6 +19,7 @@ mod optimise;
 mod progress;
 mod reduced;
 mod reference;
+mod scatter;
 mod schema;
 mod second_program;
 mod shell;
@@ -95,6 +97,11 @@ enum Command {
         after_help = "Example: impactcheck uncertainty examples/uncertainty/table1-r10.toml --out my-scatter"
     )]
     Uncertainty(uncertainty::Arguments),
+    /// Find inputs of a scene from measured histories, by least squares on a reduced model, and what these don't tell
+    #[command(
+        after_help = "Example: impactcheck calibrate my-impact.toml --over plate.thickness --measured run1.csv,run2.csv"
+    )]
+    Calibrate(calibrate::Arguments),
     /// Find the numbers of a scene, within bounds, that transmit most energy
     #[command(
         after_help = "Example: impactcheck optimise scaled-plate-r10 --over plate.radius=15mm..60mm --over plate.thickness=1mm..3mm"
@@ -196,6 +203,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         }
         Command::Study(arguments) => study::run(&context, &arguments),
         Command::Uncertainty(arguments) => uncertainty::run(&context, &arguments),
+        Command::Calibrate(arguments) => calibrate::run(&context, &arguments),
         Command::Optimise(arguments) => optimise::run(&context, &arguments),
         Command::Bench(arguments) => bench::run(&context, &arguments),
         Command::Diff(arguments) => diff::run(&arguments),

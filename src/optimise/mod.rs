@@ -115,7 +115,7 @@ pub struct Problem {
 /// What the impacts of a search share, by the kind of scene.
 #[derive(Debug)]
 enum Bodies {
-    Plates(SharedBodies),
+    Plates(Box<SharedBodies>),
     Seats(Box<SeatSeries>),
 }
 
@@ -199,7 +199,7 @@ impl Problem {
                 return Err(Error::Usage(format!("--model {model}: a seal seat has model C only")));
             }
             Some(mesh) => Bodies::Seats(Box::new(SeatSeries::new(scene, mesh)?)),
-            None => Bodies::Plates(SharedBodies::for_varied(ranges, scene.plate_impact()?, impacts)),
+            None => Bodies::Plates(SharedBodies::for_varied(ranges, scene.plate_impact()?, impacts).into()),
         };
         Ok(Problem { template, variables, objective, model, modes, bodies, robust })
     }

@@ -13,6 +13,9 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::sync::{Mutex, PoisonError};
 
+/// A place in the unit cube, and its cost.
+type Found = (Vec<f64>, f64);
+
 /// How thoroughly to search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
@@ -163,7 +166,7 @@ where
         )));
     }
     let cost = |k: usize| Cost::new(&function, high + (high - low).max(1.0), k + 1);
-    let polished: Vec<((Vec<f64>, f64), Vec<Tried>)> = if dimensions == 1 {
+    let polished: Vec<(Found, Vec<Tried>)> = if dimensions == 1 {
         brackets(&sampled, search.starts)
             .into_par_iter()
             .enumerate()

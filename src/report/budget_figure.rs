@@ -114,6 +114,7 @@ fn draw(bar: &Bar, zero: Point, x_of: impl Fn(f64) -> f64, middle: f64) -> Marku
     let (from, to) = (zero.0.min(x_of(bar.value)), zero.0.max(x_of(bar.value)));
     let (low, high) = (x_of(bar.value - bar.uncertainty), x_of(bar.value + bar.uncertainty));
     let number = match bar.bound {
+        Some(bound) if bar.value == 0.0 => format!("±{:.2} %", 100.0 * bound),
         Some(bound) => format!("{} (±{:.2})", signed_percent(bar.value), 100.0 * bound),
         None => signed_percent(bar.value),
     };

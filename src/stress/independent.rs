@@ -9,7 +9,7 @@ use crate::dynamics::wet::{FluidForces, FluidLoad};
 
 /// Evaluations times state entries that the solution of a case may cost; dearer cases (high modes, long runs) go without
 /// one and are counted. In a fluid an evaluation costs as much as [`FILM_ENTRIES`] entries more.
-const WORK: f64 = 3e6;
+const WORK: f64 = 4e6;
 const FILM_ENTRIES: usize = 300;
 /// Relative tolerance of the solution, and that of a second one where the first contradicts.
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
@@ -85,7 +85,14 @@ fn solve(
     if fastest * end_time / 3.0 * 12.0 > max_evaluations as f64 {
         return None;
     }
-    let (mut state, scale) = equations.start(system.hertz_impact().duration());
+    let (mut state, mut scale) = equations.start(system.hertz_impact().duration());
+    // a light body's contact feels motions that the outer one would not
+    for k in 0..n {
+        let moves = system.approach[0][k].abs().max(system.approach[1][k].abs());
+        let share = (system.speed / (moves * scale[n + k])).min(1.0);
+        scale[k] *= share;
+        scale[n + k] *= share;
+    }
     let tolerances = Tolerances { relative: tolerance, absolute: tolerance, max_evaluations };
     let mut load = FluidLoad::default();
     let rate = |y: &[f64], dy: &mut [f64]| {

@@ -278,6 +278,31 @@ mod tests {
         assert!(error(&case, &sure) <= estimate && estimate <= 1e-6, "{estimate:e}");
     }
 
+    /// 106 lightly damped modes: of 127 steps none is wrong by much, but together the inner peak is 1.8e-5 off.
+    #[test]
+    fn defects_of_many_steps_add_up() {
+        let case = draw(30_000_004_755);
+        let (system, asked) = (&case.system, options(&case, 1e-7));
+        let exact = integrate(system, None, &options(&case, 1e-11)).unwrap();
+        let apart = |result: &Integration| {
+            let peaks = [result, &exact].map(|result| result.contacts.map(|c| c.force_peak));
+            crate::dynamics::assured::differences(system, [result.velocity, exact.velocity], peaks)[1]
+        };
+        assert!(apart(&integrate(system, None, &asked).unwrap()) > 1e-5);
+        let sure = assured(&asked, system, |options| integrate(system, None, options)).unwrap();
+        assert!(apart(&sure) < 1e-6, "{:e}", apart(&sure));
+    }
+
+    /// The inner body has a thousandth of the outer one's mass: an error that the outer one's scale permits is a hundred thousandth of
+    /// its force.
+    #[test]
+    fn the_independent_solution_knows_light_bodies() {
+        for (seed, name) in [(9_200_000_494, "force_difference"), (9_100_000_592, "wet_force_difference")] {
+            let report = run(1, seed, &|| ()).unwrap();
+            assert!(report.worst[name].value < 1e-6, "{seed}: {:?}", report.worst[name]);
+        }
+    }
+
     /// 113 damped modes, of which every step makes a little energy.
     #[test]
     fn energy_made_by_many_steps_is_bounded() {

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 19] = [
     "reduced",
     "reference",
     "compare",
@@ -18,6 +18,7 @@ const COMMANDS: [&str; 18] = [
     "mesh",
     "study",
     "uncertainty",
+    "calibrate",
     "optimise",
     "bench",
     "stress",

@@ -6,3 +6,4 @@ mod reference;
 mod relaxing;
 mod scaling;
 mod scene;
+mod series;

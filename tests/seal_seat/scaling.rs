@@ -48,7 +48,7 @@ fn slow_impacts_are_proportional_to_their_speed() {
 }
 
 /// The scene with all lengths times `scale`, its materials and its speed as they are.
-fn scaled(scale: f64) -> SealSeat {
+pub fn scaled(scale: f64) -> SealSeat {
     let mut setup = scene().seal_seat().expect("seat").clone();
     let seat = &mut setup.seat;
     let notch = seat.notch.as_mut().expect("notch");

@@ -6,21 +6,25 @@
 //! single steps can't know that. Two solutions with tolerances apart can: their difference is the error of the less exact of
 //! the two.
 
+use super::contact_ledger::ContactLedger;
 use super::integration::{Integration, Options};
 use super::step_bounds::{Bounds, least_force, least_impulse};
 use super::system::System;
 use crate::error::Result;
 
 /// Touches of both contacts, steps and defects of the forces, over what they may be, up to which, and share of the outer impulse from
-/// which on that the inner body takes, an impact amplifies no errors: of random ones none was then off by more than
-/// ten times the tolerance.
+/// which on that the inner body takes, an impact amplifies no errors: of 3 700 random ones none was then off by more than
+/// 31 times the tolerance, one in 150 by more than ten times.
 const FEW_TOUCHES: u32 = 2;
 const FEW_STEPS: u64 = 200;
 const SMALL_DEFECT: f64 = 1.0 / 6.0;
-/// The same where modes are damped by this share of the critical or more: approaches that follow the forces at once hide a part of the
+/// The same for the sum of all defects where modes are damped: there the energy, which else betrays forces that are a little wrong step
+/// after step, says nothing of vibrations quicker than the step.
+const SMALL_DEFECTS: f64 = 0.8;
+/// The largest one where modes are damped by this share of the critical or more: approaches that follow the forces at once hide a part of the
 /// defect.
 const SMALL_DAMPED_DEFECT: f64 = 1.0 / 20.0;
-const STRONG_DAMPING: f64 = 0.3;
+const STRONG_DAMPING: f64 = 0.1;
 const FULL_SHARE: f64 = 0.2;
 /// Factor between the tolerances of two solutions.
 const TIGHTER: f64 = 0.1;
@@ -65,10 +69,15 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
     let strongly_damped =
         system.oscillators.iter().any(|o| o.omega > 0.0 && o.alpha >= STRONG_DAMPING * o.omega);
     let share = if strongly_damped { SMALL_DAMPED_DEFECT } else { SMALL_DEFECT };
-    let small = share * Bounds::new(tolerance).force_defect;
+    let bound = Bounds::new(tolerance).force_defect;
+    let damped = system.is_damped();
+    let small = |c: &ContactLedger| {
+        let within = |defect: f64, share: f64| defect <= share * bound * c.force_peak;
+        within(c.force_defect, share) && (!damped || within(c.force_defect_sum, SMALL_DEFECTS))
+    };
     outer.contacts + inner.contacts <= FEW_TOUCHES
         && result.steps <= FEW_STEPS
-        && result.contacts.iter().all(|c| c.force_defect <= small * c.force_peak)
+        && result.contacts.iter().all(small)
         && (inner.contacts == 0 || inner.impulse >= FULL_SHARE * outer.impulse)
 }
 

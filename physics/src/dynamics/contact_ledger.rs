@@ -29,6 +29,8 @@ pub struct ContactLedger {
     pub force_peak: f64,
     /// Largest distance in N between the force at the end of a step and the step's polynomial, where the force is smooth.
     pub force_defect: f64,
+    /// Sum of these distances over all steps, N.
+    pub force_defect_sum: f64,
     /// Time of the latest release in s.
     pub end: f64,
     /// Number of separate contacts so far.
@@ -69,6 +71,13 @@ impl ContactLedger {
             let released = || course.time + course.h * release(collocation, course, point);
             self.pass(course.local_approach[point] > 0.0, before, released);
         }
+    }
+
+    /// Books the `defect` in N of a step's force.
+    #[inline]
+    pub fn book_defect(&mut self, defect: f64) {
+        self.force_defect = self.force_defect.max(defect);
+        self.force_defect_sum += defect;
     }
 
     /// Counts touches and releases; `before` is the impulse when the step began in N s, `released` gives the time of a release in s.

@@ -203,7 +203,7 @@ impl<'a> Stepper<'a> {
                 continue;
             }
             for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
-                contact.force_defect = contact.force_defect.max(defect);
+                contact.book_defect(defect);
             }
             self.energy.book(energy_error);
             self.accept(trial)?;

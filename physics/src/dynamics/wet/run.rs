@@ -197,7 +197,7 @@ impl Stepper<'_> {
             }
             self.accept(h, &account)?;
             for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
-                contact.force_defect = contact.force_defect.max(defect);
+                contact.book_defect(defect);
             }
             // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
             if excess < 0.5_f64.powi(STAGES as i32 + 2) {

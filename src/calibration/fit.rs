@@ -1,0 +1,206 @@
+//! Parameters of a function from data, by least squares, and what the data can't tell of them.
+
+use crate::error::{Error, Result};
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn};
+use serde::Serialize;
+
+/// Half the step of the differences from which slopes come, in scales of the parameters.
+const STEP: f64 = 1e-4;
+/// Standard deviation along a direction, in scales of the parameters, from which on the data don't tell it.
+const UNTOLD: f64 = 0.5;
+/// Smallest singular value over the largest that is more than rounding.
+const ROUNDING: f64 = 1e-6;
+/// Differences where the model has no result, over the largest at the start.
+const FAR: f64 = 1e3;
+/// Component from which on a parameter takes part in a direction.
+const PART: f64 = 0.1;
+
+/// The parameters that fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Fitted {
+    /// Their values. Shape (parameters).
+    pub values: Vec<f64>,
+    /// Their standard deviations; `None` of those that the data don't tell. Shape (parameters).
+    pub standard_deviations: Vec<Option<f64>>,
+    /// Their correlations, along what the data tell. Shape (parameters, parameters).
+    pub correlations: Vec<Vec<f64>>,
+    /// Standard deviation of the data about the fit.
+    pub scatter: f64,
+    /// Singular values of the slopes of the data over the parameters in their scales, over that scatter; the largest first. A direction's
+    /// standard deviation is the inverse of its value.
+    pub singular_values: Vec<f64>,
+    /// Parameters that can't be told apart, or not at all, by their numbers: one entry per direction that the data don't tell.
+    pub untold: Vec<Vec<usize>>,
+}
+
+/// Differences of a model from data as a function of its parameters in their scales.
+struct Problem<'a, F> {
+    residuals: &'a F,
+    scales: &'a [f64],
+    at: DVector<f64>,
+    /// What stands for differences where there are none: so large that a step there is taken back.
+    far_off: DVector<f64>,
+}
+
+impl<F: Fn(&[f64]) -> Option<Vec<f64>>> Problem<'_, F> {
+    fn of(&self, at: &DVector<f64>) -> Option<DVector<f64>> {
+        let values: Vec<f64> = at.iter().zip(self.scales).map(|(x, scale)| x * scale).collect();
+        (self.residuals)(&values).map(DVector::from_vec)
+    }
+
+    fn slopes(&self) -> Option<DMatrix<f64>> {
+        let moved = |k: usize, step: f64| {
+            let mut there = self.at.clone();
+            there[k] += step;
+            self.of(&there)
+        };
+        let column = |k| Some((moved(k, STEP)? - moved(k, -STEP)?) / (2.0 * STEP));
+        Some(DMatrix::from_columns(&(0..self.at.len()).map(column).collect::<Option<Vec<_>>>()?))
+    }
+}
+
+impl<F: Fn(&[f64]) -> Option<Vec<f64>>> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, F> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, at: &DVector<f64>) {
+        self.at.copy_from(at);
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.at.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        self.of(&self.at).or_else(|| Some(self.far_off.clone()))
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        self.slopes()
+    }
+}
+
+/// Minimises the sum of the squares of `residuals` from `start` on (Levenberg and Marquardt, as in MINPACK); `scales` are the sizes of
+/// the parameters: a direction in which they are uncertain by half of these is not told by the data.
+///
+/// # Errors
+/// [`Error::Solver`] if the residuals are not defined at the start, are fewer than the parameters, or no minimum is found.
+pub fn fit(start: &[f64], scales: &[f64], residuals: impl Fn(&[f64]) -> Option<Vec<f64>>) -> Result<Fitted> {
+    let undefined = || Error::Solver("the model has no result at the inputs that the fit tries".into());
+    let first = residuals(start).ok_or_else(undefined)?;
+    let largest = first.iter().fold(1.0_f64, |most, r| most.max(r.abs()));
+    let far_off = DVector::from_element(first.len(), FAR * largest);
+    let at = DVector::from_iterator(start.len(), start.iter().zip(scales).map(|(x, scale)| x / scale));
+    let problem = Problem { residuals: &residuals, scales, at, far_off };
+    let (problem, report) =
+        LevenbergMarquardt::new().with_ftol(1e-12).with_xtol(1e-10).with_gtol(1e-12).minimize(problem);
+    if !report.termination.was_successful()
+        && !matches!(report.termination, levenberg_marquardt::TerminationReason::NoImprovementPossible(_))
+    {
+        return Err(Error::Solver(format!("the least squares found no minimum: {:?}", report.termination)));
+    }
+    let (left, slopes) = problem.of(&problem.at).zip(problem.slopes()).ok_or_else(undefined)?;
+    let (count, unknowns) = (left.len(), start.len());
+    if count <= unknowns {
+        return Err(Error::Solver(format!("{count} data don't determine {unknowns} inputs")));
+    }
+    let scatter = (left.norm_squared() / (count - unknowns) as f64).sqrt();
+    Ok(told(&problem.at, scales, scatter, slopes))
+}
+
+/// What the `slopes` at the solution `at` tell, the data scattering by `scatter`.
+fn told(at: &DVector<f64>, scales: &[f64], scatter: f64, slopes: DMatrix<f64>) -> Fitted {
+    let unknowns = at.len();
+    let parts = slopes.svd(false, true);
+    let singular: Vec<f64> = parts.singular_values.iter().copied().collect();
+    let largest = singular.iter().copied().fold(0.0, f64::max);
+    let mut order: Vec<usize> = (0..singular.len()).collect();
+    order.sort_by(|a, b| singular[*b].total_cmp(&singular[*a]));
+    let mut covariance = DMatrix::<f64>::zeros(unknowns, unknowns);
+    let mut untold = Vec::new();
+    let directions = parts.v_t.unwrap_or_else(|| DMatrix::zeros(singular.len(), unknowns));
+    for k in &order {
+        let direction = directions.row(*k);
+        if singular[*k] > ROUNDING * largest && scatter / singular[*k] < UNTOLD {
+            covariance += direction.transpose() * direction * (scatter / singular[*k]).powi(2);
+        } else {
+            untold.push((0..unknowns).filter(|j| direction[*j].abs() > PART).collect::<Vec<usize>>());
+        }
+    }
+    let deviation = |j: usize| covariance[(j, j)].sqrt();
+    let is_told = |j: &usize| !untold.iter().any(|direction| direction.contains(j));
+    let correlation =
+        |i: usize, j: usize| covariance[(i, j)] / (deviation(i) * deviation(j)).max(f64::MIN_POSITIVE);
+    Fitted {
+        values: at.iter().zip(scales).map(|(x, scale)| x * scale).collect(),
+        standard_deviations: (0..unknowns).map(|j| is_told(&j).then(|| deviation(j) * scales[j])).collect(),
+        correlations: (0..unknowns).map(|i| (0..unknowns).map(|j| correlation(i, j)).collect()).collect(),
+        scatter,
+        singular_values: order.iter().map(|k| singular[*k] / scatter.max(f64::MIN_POSITIVE)).collect(),
+        untold,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRUTH: [f64; 3] = [2.0, 30.0, 0.4];
+
+    /// A decaying oscillation with noise of a standard deviation of 0.05.
+    fn noisy(seed: u64) -> Vec<(f64, f64)> {
+        let mut random = fastrand::Rng::with_seed(seed);
+        // sum of twelve (Irwin and Hall): normal enough for standard deviations
+        let mut noise = || 0.05 * ((0..12).map(|_| random.f64()).sum::<f64>() - 6.0);
+        (0..200).map(|k| 0.01 * f64::from(k)).map(|t| (t, model(&TRUTH, t) + noise())).collect()
+    }
+
+    fn model(p: &[f64], t: f64) -> f64 {
+        p[0] * (-t * p[2]).exp() * (p[1] * t).sin()
+    }
+
+    #[test]
+    fn inputs_come_back_within_what_is_stated() {
+        let mut inside = [0; 3];
+        for seed in 0..200 {
+            let data = noisy(seed);
+            let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) - y).collect());
+            let found = fit(&[1.8, 29.8, 0.5], &[2.0, 30.0, 0.5], residuals).expect("a minimum");
+            assert!(found.untold.is_empty(), "{found:?}");
+            assert!((found.scatter / 0.05 - 1.0).abs() < 0.25, "{found:?}");
+            for (k, inside) in inside.iter_mut().enumerate() {
+                let deviation = found.standard_deviations[k].expect("told");
+                *inside += u32::from((found.values[k] - TRUTH[k]).abs() <= 1.972 * deviation);
+            }
+        }
+        // 95 % of 200
+        assert!(inside.iter().all(|count| (178..=199).contains(count)), "{inside:?}");
+    }
+
+    #[test]
+    fn inputs_that_act_through_their_product_are_not_told_apart() {
+        let data = noisy(7);
+        let product = |p: &[f64], t: f64| model(&[p[0] * p[3], p[1], p[2]], t);
+        let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
+        let found = fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals).expect("a minimum");
+        assert_eq!(found.untold, [[0, 3]], "{found:?}");
+        assert_eq!(
+            found.standard_deviations.iter().map(Option::is_some).collect::<Vec<_>>(),
+            [false, true, true, false]
+        );
+        assert!((found.values[0] * found.values[3] - 2.0).abs() < 0.1, "{found:?}");
+        // what does not act at all is not told either
+        let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) - y).collect());
+        let found = fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals).expect("a minimum");
+        assert_eq!(found.untold, [[3]], "{found:?}");
+    }
+
+    #[test]
+    fn too_few_data_are_told() {
+        let few = |p: &[f64]| Some(vec![p[0] - 1.0]);
+        assert!(matches!(fit(&[2.0, 1.0], &[1.0, 1.0], few), Err(Error::Solver(_))));
+    }
+}

@@ -1,0 +1,259 @@
+//! Calibration: inputs of a scene from measured histories, by least squares on a reduced model.
+
+pub mod fit;
+
+use crate::error::{Error, Result};
+use crate::kinds::plate_impact::PlateQuantities;
+use crate::kinds::plate_impact::reduced::Reduced;
+use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::measured::{AlignedRecord, Filtered, Record, Speed, align};
+use crate::result::{CUT, SCHEMA_VERSION};
+use crate::scene::{Field, Model, Template};
+use fit::{Fitted, fit};
+use serde::Serialize;
+
+/// Relative error of the efficiency that the time integration may have: far below what slopes are taken over.
+const TOLERANCE: f64 = 1e-8;
+/// Samples that are compared per period of the bandwidth: closer ones are not independent of each other.
+const PER_PERIOD: f64 = 2.0;
+/// Range, over the nominal value, in which inputs are looked for.
+const REACH: f64 = 0.3;
+/// Impacts that a fit may be expected to take.
+const IMPACTS: usize = 200;
+
+/// The document of `calibrate --json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Calibration {
+    /// [`SCHEMA_VERSION`].
+    pub schema_version: u32,
+    /// Name of the scene.
+    pub scene: String,
+    /// Name of the reduced model.
+    pub model: String,
+    /// The inputs.
+    pub inputs: Vec<Calibrated>,
+    /// Coefficients of correlation of the inputs, along what the records tell. Shape (inputs, inputs).
+    pub correlations: Vec<Vec<f64>>,
+    /// Number of samples compared.
+    pub samples: usize,
+    /// Root mean square of the differences before and after, over the span of the signals.
+    pub misfit: [f64; 2],
+    /// What the records don't tell, in sentences.
+    pub untold: Vec<String>,
+}
+
+/// One input.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Calibrated {
+    /// Name of its field.
+    pub field: String,
+    /// SI unit.
+    pub unit: &'static str,
+    /// What the scene says.
+    pub nominal: f64,
+    /// What fits.
+    pub value: f64,
+    /// Its standard deviation; `None` if the records don't tell it.
+    pub standard_deviation: Option<f64>,
+}
+
+/// A sample of a record.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    record: usize,
+    quantity: &'static str,
+    time: f64,
+    value: f64,
+    /// What its difference is measured by: the span of the signal.
+    span: f64,
+}
+
+/// The fields named `names` of the scene in `template`, from `records` taken with a `bandwidth` in Hz. Every record may be shifted in time besides.
+///
+/// # Errors
+/// [`Error::Usage`] for fields that can't be calibrated, those of the model, of [`align`] and of [`fit`].
+pub fn calibrate(
+    template: &Template,
+    names: &[String],
+    records: &[Record],
+    model: Model,
+    (bandwidth, speed): (f64, Speed),
+) -> Result<Calibration> {
+    let fields = names.iter().map(|name| template.field(name)).collect::<Result<Vec<Field>>>()?;
+    let nominal = fields.iter().map(|field| nominal(template, field)).collect::<Result<Vec<f64>>>()?;
+    let ranges =
+        fields.iter().zip(&nominal).map(|(field, x)| (field.path(), [x * (1.0 - REACH), x * (1.0 + REACH)]));
+    let bodies = SharedBodies::for_varied(ranges, template.scene().plate_impact()?, IMPACTS);
+    let run = |values: &[f64]| {
+        let numbers: Vec<(&Field, f64)> = fields.iter().zip(values.iter().copied()).collect();
+        let scene = template.with(&numbers).map_err(|e| Error::Usage(e.to_string()))?;
+        Reduced::in_series(scene, model, None, &bodies)?.run_with_history(TOLERANCE)
+    };
+    let start = run(&nominal)?;
+    let quantities =
+        PlateQuantities::of_table(&start.summary.quantities).ok_or_else(|| Error::Solver(CUT.into()))?;
+    let filtered = Filtered::new(&start.history, bandwidth)?;
+    let setup = template.scene().plate_impact()?;
+    let aligned = records
+        .iter()
+        .map(|record| align(record, &filtered, &quantities, setup, (bandwidth, speed)))
+        .collect::<Result<Vec<AlignedRecord>>>()?;
+    let end = start.history.time.last().copied().unwrap_or(0.0) + 2.0 / bandwidth;
+    let samples: Vec<Sample> =
+        aligned.iter().enumerate().flat_map(|(k, record)| thinned(k, record, end, bandwidth)).collect();
+    let differences = |all: &[f64]| {
+        let (values, shifts) = all.split_at(fields.len());
+        let filtered = Filtered::new(&run(values).ok()?.history, bandwidth).ok()?;
+        let difference =
+            |s: &Sample| Some((filtered.curve(s.quantity)?(s.time - shifts[s.record]) - s.value) / s.span);
+        samples.iter().map(difference).collect::<Option<Vec<f64>>>()
+    };
+    let root_mean_square = |all: &[f64]| {
+        differences(all).map_or(f64::NAN, |d| (d.iter().map(|d| d * d).sum::<f64>() / d.len() as f64).sqrt())
+    };
+    let shifts = |scale: f64| std::iter::repeat_n(scale, aligned.len());
+    let first: Vec<f64> = nominal.iter().copied().chain(shifts(0.0)).collect();
+    let scales: Vec<f64> = nominal.iter().map(|x| x.abs()).chain(shifts(1.0 / bandwidth)).collect();
+    let found = fit(&first, &scales, differences)?;
+    let misfit = [root_mean_square(&first), root_mean_square(&found.values)];
+    Ok(document(template, (&fields, &nominal), model, &found, (samples.len(), misfit)))
+}
+
+/// What the scene has in `field`, about which it is looked for.
+fn nominal(template: &Template, field: &Field) -> Result<f64> {
+    let refused = |reason: &str| Error::Usage(format!("`{}` can't be calibrated: {reason}", field.path()));
+    if field.is_count() {
+        return Err(refused("it takes whole numbers"));
+    }
+    let value = template.number(field).ok_or_else(|| refused("the scene file does not state it"))?;
+    if value == 0.0 { Err(refused("it is 0, which has no size to look about")) } else { Ok(value) }
+}
+
+/// The samples of record number `k` around the impact, as many as are independent.
+fn thinned(k: usize, record: &AlignedRecord, end: f64, bandwidth: f64) -> Vec<Sample> {
+    let of = |channel: &crate::measured::Channel| {
+        let inside =
+            record.time.iter().zip(&channel.values).filter(|(t, _)| (-1.0 / bandwidth..end).contains(*t));
+        let pairs: Vec<(f64, f64)> = inside.map(|(t, v)| (*t, *v)).collect();
+        let (low, high) =
+            pairs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (_, v)| (l.min(*v), h.max(*v)));
+        let span = (high - low).max(f64::MIN_POSITIVE);
+        let step = 1.0 / (PER_PERIOD * bandwidth);
+        let mut next = f64::NEG_INFINITY;
+        let mut kept = Vec::new();
+        for (time, value) in pairs {
+            if time >= next {
+                kept.push(Sample { record: k, quantity: channel.quantity, time, value, span });
+                next = time + step;
+            }
+        }
+        kept
+    };
+    record.signals.iter().flat_map(of).collect()
+}
+
+fn document(
+    template: &Template,
+    (fields, nominal): (&[Field], &[f64]),
+    model: Model,
+    found: &Fitted,
+    (samples, misfit): (usize, [f64; 2]),
+) -> Calibration {
+    let count = fields.len();
+    let name = |k: &usize| {
+        fields
+            .get(*k)
+            .map_or_else(|| format!("the time of record {}", k - count + 1), |f| format!("`{}`", f.path()))
+    };
+    let sentence = |direction: &Vec<usize>| match &direction[..] {
+        [one] => format!("the records don't tell {}", name(one)),
+        several => format!(
+            "the records don't tell {} apart: other values of them together fit as well",
+            several.iter().map(name).collect::<Vec<_>>().join(" and ")
+        ),
+    };
+    let input = |k: usize| Calibrated {
+        field: fields[k].path().to_owned(),
+        unit: fields[k].unit(),
+        nominal: nominal[k],
+        value: found.values[k],
+        standard_deviation: found.standard_deviations[k],
+    };
+    Calibration {
+        schema_version: SCHEMA_VERSION,
+        scene: template.scene().name.clone(),
+        model: model.to_string(),
+        inputs: (0..count).map(input).collect(),
+        correlations: found.correlations[..count].iter().map(|row| row[..count].to_vec()).collect(),
+        samples,
+        misfit,
+        untold: found.untold.iter().map(sentence).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measured::{BANDWIDTH, Channel};
+    use std::path::PathBuf;
+
+    const SCENE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
+
+    /// A record of the scene with other numbers, as an instrument shows it, with noise of a share of the largest value.
+    fn record(template: &Template, numbers: &[(&Field, f64)], noise: f64, seed: u64) -> Record {
+        let scene = template.with(numbers).expect("valid");
+        let outcome = Reduced::new(&scene, Model::B, None).unwrap().run_with_history(TOLERANCE).unwrap();
+        let filtered = Filtered::new(&outcome.history, BANDWIDTH).unwrap();
+        let time: Vec<f64> = (0..2000).map(|k| -150e-6 + 0.25e-6 * f64::from(k)).collect();
+        let mut random = fastrand::Rng::with_seed(seed);
+        let mut normal = || (0..12).map(|_| random.f64()).sum::<f64>() - 6.0;
+        let mut channel = |quantity: &'static str| {
+            let curve = filtered.curve(quantity).expect("measurable");
+            let clean: Vec<f64> = time.iter().map(|t| curve(*t)).collect();
+            let largest = clean.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+            Channel { quantity, values: clean.iter().map(|v| v + noise * largest * normal()).collect() }
+        };
+        let channels = vec![channel("outer_velocity"), channel("inner_velocity")];
+        // the instrument's clock begins with the record
+        let time = time.iter().map(|t| t + 150e-6).collect();
+        Record { file: PathBuf::from("synthetic.csv"), time, channels }
+    }
+
+    #[test]
+    fn inputs_are_recovered_from_noisy_records_within_what_is_stated() {
+        let template = Template::parse("scene", SCENE).expect("shipped scene");
+        let fields = ["plate.thickness", "plate.radius"].map(|name| template.field(name).expect("there"));
+        let truth = [2.04e-3, 32.7e-3];
+        let numbers: Vec<(&Field, f64)> = fields.iter().zip(truth).collect();
+        let records = [1, 2].map(|seed| record(&template, &numbers, 0.01, seed));
+        let names = fields.each_ref().map(|field| field.path().to_owned());
+        let found =
+            calibrate(&template, &names, &records, Model::B, (BANDWIDTH, Speed::Scene)).expect("a fit");
+        assert!(found.untold.is_empty() && found.misfit[1] < found.misfit[0], "{found:?}");
+        for (input, truth) in found.inputs.iter().zip(truth) {
+            let deviation = input.standard_deviation.expect("told");
+            assert!((input.value - truth).abs() < 3.5 * deviation, "{found:?}");
+            assert!(deviation < 0.01 * truth, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn what_the_records_don_t_tell_is_said() {
+        let template = Template::parse("scene", SCENE).expect("shipped scene");
+        let records = [record(&template, &[], 0.01, 3)];
+        // undamped: a damping ratio can't be looked for about nothing; a count neither
+        for name in ["plate.damping_ratio", "reduced.modes"] {
+            let refused =
+                calibrate(&template, &[name.to_owned()], &records, Model::B, (BANDWIDTH, Speed::Scene));
+            assert!(matches!(refused, Err(Error::Usage(_))), "{name}");
+        }
+        // one material and model B: all that is seen is E / ((1 - nu^2) rho), so that two of three directions are not told
+        let names =
+            ["materials.steel.poisson_ratio", "materials.steel.youngs_modulus", "materials.steel.density"];
+        let names = names.map(str::to_owned);
+        let found =
+            calibrate(&template, &names, &records, Model::B, (BANDWIDTH, Speed::Scene)).expect("a fit");
+        assert_eq!(found.untold.len(), 2, "{found:?}");
+        assert!(found.inputs.iter().all(|input| input.standard_deviation.is_none()), "{found:?}");
+    }
+}

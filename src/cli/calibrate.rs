@@ -1,0 +1,80 @@
+//! `impactcheck calibrate`: inputs from measured histories.
+
+use super::{Context, JsonArgument, compare_inputs};
+use crate::calibration::{Calibration, calibrate};
+use crate::error::{Error, ExitStatus, Result};
+use crate::measured::{Record, Speed};
+use crate::report::format::{percent, prefixed, with_unit};
+use crate::scene::{self, Model, Template};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Scene file, or the name of a shipped scene
+    scene: String,
+    /// Fields to find
+    #[arg(long, value_delimiter = ',', required = true, value_name = "FIELD,…")]
+    over: Vec<String>,
+    /// Measured histories of the scene, as `compare` takes them
+    #[arg(long, value_delimiter = ',', required = true, value_name = "FILE,…")]
+    measured: Vec<PathBuf>,
+    /// Reduced model [default: C]
+    #[arg(long, default_value = "C", hide_default_value = true)]
+    model: Model,
+    /// Bandwidth of the instrument, to which the model's curves are filtered
+    #[arg(long, default_value = "100 kHz", value_name = "FREQUENCY", value_parser = compare_inputs::bandwidth)]
+    bandwidth: f64,
+    /// Where the outer body's measured speed comes from: scene (the signal may have an offset) or measured (it has none)
+    #[arg(long, default_value = "scene", value_name = "SOURCE")]
+    speed: Speed,
+    #[command(flatten)]
+    json: JsonArgument,
+}
+
+/// Fits, and prints what the records tell.
+pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
+    let template = Template::read(scene::resolve(&arguments.scene)?)?;
+    template.scene().plate_impact()?;
+    let mut names = arguments.over.clone();
+    names.sort();
+    if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(Error::Usage(format!("--over names `{}` twice", twice[0])));
+    }
+    let records = arguments.measured.iter().map(|file| Record::read(file)).collect::<Result<Vec<_>>>()?;
+    let how = (arguments.bandwidth, arguments.speed);
+    let found = calibrate(&template, &arguments.over, &records, arguments.model, how)?;
+    for sentence in &found.untold {
+        context.note(format_args!("note: {sentence}"));
+    }
+    if arguments.json.json {
+        super::print_json(&found)?;
+    } else {
+        super::print(&table(&found))?;
+    }
+    Ok(ExitStatus::Pass)
+}
+
+fn table(found: &Calibration) -> String {
+    let mut lines = vec![format!(
+        "{} (model {}): {} samples, misfit {:.2} % of their span, {:.2} % before",
+        found.scene,
+        found.model,
+        found.samples,
+        100.0 * found.misfit[1],
+        100.0 * found.misfit[0]
+    )];
+    for input in &found.inputs {
+        let to = prefixed(input.unit, input.value);
+        let deviation = input
+            .standard_deviation
+            .map_or(" (not told by the records)".to_owned(), |u| format!(" ± {}", with_unit(u, to, 2)));
+        let off = percent(Some(input.value / input.nominal - 1.0));
+        lines.push(format!(
+            "  {:<36} {:>16}{deviation}  ({off} of the scene's)",
+            input.field,
+            with_unit(input.value, to, 6)
+        ));
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,43 @@
+//! How results scatter with the inputs of a scene that is compared.
+
+use super::Context;
+use super::progress::Counter;
+use crate::comparison::SceneComparison;
+use crate::error::Result;
+use crate::scene::{Model, Scene, Template};
+use crate::uncertainty::{Request, Scatter, study};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Half width of the intervals of mean and standard deviation, over the latter, of what scatters: u_input to 5 %.
+const SCATTER_ACCURACY: f64 = 0.05;
+
+/// How the results of the models that are compared, and of model C, scatter if the scene says how uncertain its inputs are; by name.
+pub(super) fn scatter(
+    context: &Context,
+    file: &Path,
+    scene: &Scene,
+    comparison: &SceneComparison,
+) -> Result<BTreeMap<String, Scatter>> {
+    if scene.uncertainty.is_none() {
+        return Ok(BTreeMap::new());
+    }
+    let template = Template::read(file)?;
+    let mut scatters = BTreeMap::new();
+    for model in [Model::A, Model::B, Model::C] {
+        let name = model.to_string();
+        let compared = comparison.models.iter().find(|compared| compared.model == name);
+        if compared.is_none() && model != Model::C {
+            continue;
+        }
+        let counter = Counter::new(context, &format!("{}: scatter of model {name}", scene.name));
+        let request = Request {
+            modes: compared.and_then(|model| model.summary.modes),
+            ..Request::new(model, SCATTER_ACCURACY)
+        };
+        let found = study((file, &template), &request, None, &|progress| counter.show(progress))?;
+        counter.finish();
+        scatters.insert(name, found);
+    }
+    Ok(scatters)
+}
