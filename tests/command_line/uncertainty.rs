@@ -21,7 +21,10 @@ fn the_scatter_of_a_scene_is_found_and_a_study_goes_on_where_it_stopped() {
     assert!((slopes - 1.0).abs() < 0.05, "{efficiency}");
     let shares = efficiency["sobol"].as_object().expect("inputs");
     let sum: f64 = shares.values().map(|share| share["first"].as_f64().unwrap()).sum();
-    assert!(shares.len() == 7 && (sum - 1.0).abs() < 0.1, "{efficiency}");
+    // of 64 samples the indices are known as far as their intervals say
+    let half = |share: &Value| 0.5 * (share[1].as_f64().unwrap() - share[0].as_f64().unwrap());
+    let known: f64 = shares.values().map(|share| half(&share["first_interval"]).powi(2)).sum::<f64>().sqrt();
+    assert!(shares.len() == 7 && (sum - 1.0).abs() < known && known < 0.5, "{efficiency}");
     let quantile = |name: &str| efficiency["quantiles"][name].as_f64().unwrap();
     assert!(quantile("0.025") < quantile("0.5") && quantile("0.5") < quantile("0.975"));
     for file in ["samples.parquet", "uncertainty.json", "uncertainty.svg", "uncertainty.png"] {
@@ -56,7 +59,7 @@ fn what_can_t_be_sampled_is_refused() {
 fn differences_are_held_against_what_the_inputs_leave_open() {
     let folder = tempfile::tempdir().unwrap();
     let compared = |scene: &str, out: &str| {
-        json(&["compare", scene, "--models", "B", "--json", "--out", text(&folder.path().join(out))])
+        json(&["compare", scene, "--models", "B,C", "--json", "--out", text(&folder.path().join(out))])
     };
     let (plain, uncertain) = (compared("scaled-plate-r10", "plain"), compared(SCENE, "uncertain"));
     let rows =
