@@ -45,12 +45,10 @@ pub struct Arguments {
     json: JsonArgument,
 }
 
-/// The programs that make references.
+/// The programs that make references: `fem_reference` on FEniCSx, and `ccx`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Solver {
-    /// `fem_reference`, on FEniCSx
     Fenicsx,
-    /// CalculiX
     Calculix,
 }
 
