@@ -98,7 +98,7 @@ mod tests {
     use crate::scene::{Scene, resolve};
 
     fn stored() -> Summary {
-        let scene = Scene::read(&resolve("scaled-plate-r6.35").expect("shipped")).expect("valid");
+        let scene = Scene::read(resolve("scaled-plate-r6.35").expect("shipped")).expect("valid");
         let found = Store::shipped().expect("a project").find(&scene, Resolution::Paper).found();
         found.expect("stored").outcome.summary
     }
