@@ -12,7 +12,7 @@ FROM debian:bookworm-slim
 # hadolint ignore=DL3008
 RUN apt-get update \
     && DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends \
-        gcc libc6-dev openmpi-bin python3-cffi python3-dolfinx python3-gmsh python3-meshio \
+        calculix-ccx gcc libc6-dev openmpi-bin python3-cffi python3-dolfinx python3-gmsh python3-meshio \
     && rm -rf /var/lib/apt/lists/*
 COPY --from=build /source/target/release/impactcheck /usr/local/bin/
 COPY scenes /usr/local/share/impactcheck/scenes

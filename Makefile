@@ -10,7 +10,7 @@
 # The python that has (or gets) FEniCSx; Debian's packages belong to /usr/bin/python3.
 PYTHON := $(or $(IMPACTCHECK_PYTHON),/usr/bin/python3)
 SUDO   := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
-DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc openmpi-bin chromium git
+DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc openmpi-bin calculix-ccx chromium git
 VENV   := target/python-tools
 TOOL   := $(VENV)/bin/python
 WHEEL  := target/wheel-python
@@ -21,6 +21,8 @@ OUT    := target/check
 SCENES := $(basename $(notdir $(wildcard scenes/*.toml)))
 # meshes of a solid at `fine` take an hour
 PLATES := $(filter-out seal-seat-%,$(SCENES))
+# dry impacts of elastic spheres that CalculiX solves too; its solutions come with the project
+SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-light polymer-plate supported-plate titanium-sapphire)
 
 .PHONY: test setup rust wheel python live gate report solutions evidence
 
@@ -28,7 +30,7 @@ test: setup rust python live gate
 	@echo "all checks passed"
 
 setup:
-	@{ $(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" && command -v mpirun && command -v chromium && command -v git; } >/dev/null 2>&1 || \
+	@{ $(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" && command -v mpirun && command -v ccx && command -v chromium && command -v git; } >/dev/null 2>&1 || \
 	    { $(SUDO) apt-get update && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y $(DEBIAN); }
 	@[ -x $(VENV)/bin/ruff ] && [ -x $(VENV)/bin/mypy ] && [ -x $(VENV)/bin/maturin ] && ls $(VENV)/lib/*/site-packages/axe_playwright_python >/dev/null 2>&1 || \
 	    { $(PYTHON) -m venv --system-site-packages $(VENV) && $(TOOL) -m pip install --quiet ruff mypy maturin && \
@@ -90,6 +92,9 @@ evidence: setup wheel
 	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution $$resolution || exit 1; done; done
 	for scene in scenes/validation/*.toml; do \
 	    $(RUN) --store $(OUT)/evidence reference $$scene --resolution paper || exit 1; done
+	# the second program, and both beside each other
+	for scene in $(SECOND); do $(RUN) --store $(OUT)/evidence reference $$scene --solver calculix --fresh || exit 1; done
+	$(RUN) --store $(OUT)/evidence compare $(SECOND) --reference-check --out $(OUT)/second-program
 	$(RUN) --store $(OUT)/evidence gate scenes/validation/*.toml --models B,C --out $(OUT)/evidence-report
 	# what the map of validated scenes knows without these references
 	$(RUN) --store $(OUT)/evidence coverage --record

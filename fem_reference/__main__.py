@@ -12,6 +12,7 @@ from .common.errors import RunError, SceneError, SolverError
 from .common.parent import end_with_parent
 from .common.progress import Progress
 from .common.reader import read_document
+from .common.settings import SOLVERS
 from .kinds import commands_of
 
 RESOLUTION_NAMES = ("coarse", "paper", "fine")
@@ -50,6 +51,9 @@ def _parser() -> argparse.ArgumentParser:
         "--replace", action="store_true", help="even if OUT holds a solution of another scene"
     )
     solve.add_argument("--resolution", choices=RESOLUTION_NAMES, default="paper")
+    solve.add_argument(
+        "--solver", choices=SOLVERS, default=SOLVERS[0], help="calculix: ccx, plate impacts only"
+    )
     solve.add_argument("--stress-at", type=_times, default=(), metavar="T1,T2", help="seconds")
     solve.add_argument(
         "--courant", type=float, default=0.9, help="time step over the critical one (0.9)"

@@ -54,8 +54,8 @@ class Verified(SampledRun, Protocol):
         """S."""
 
     @property
-    def critical_time_step(self) -> float:
-        """S."""
+    def critical_time_step(self) -> float | None:
+        """S; None of steps that any length keeps stable."""
 
 
 def _convergence(
@@ -87,6 +87,11 @@ def _residuals(run: Verified) -> dict[str, float]:
         "contact_energy_loss": run.contact_loss,
         "support_impulse": run.support_impulse,
     }
+
+
+def _courant(run: Verified) -> float | None:
+    """Time step over the critical one."""
+    return run.critical_time_step and run.time_step / run.critical_time_step
 
 
 def summary(
@@ -140,7 +145,7 @@ def summary(
         "solver": {
             "time_step": run.time_step,
             "critical_time_step": run.critical_time_step,
-            "courant": run.time_step / run.critical_time_step,
+            "courant": _courant(run),
             **solver,
         },
         "residuals": _residuals(run),
@@ -177,7 +182,7 @@ def provenance(
         "settings": {
             "resolution": resolution,
             "resolution_factor": RESOLUTIONS[resolution],
-            "courant": run.time_step / run.critical_time_step,
+            "courant": _courant(run),
             "peak_window": PEAK_WINDOW_FRACTION * duration,
             "chatter_limit": CHATTER_FRACTION * duration,
             **settings,

@@ -12,6 +12,8 @@ from .errors import SceneError
 RESOLUTIONS = {"coarse": 2.0 / 3.0, "paper": 1.0, "fine": 1.5}
 """Factor on the number of elements, in every direction and place."""
 
+SOLVERS = ("explicit", "calculix")
+"""This package's own time loop, and CalculiX."""
 
 CHATTER_FRACTION = 0.005
 """Separations shorter than this share of the Hertz duration are chatter of single nodes."""
@@ -64,6 +66,8 @@ class Options:
     """Refine until the relative bands are that small."""
     threads: int = 1
     """Cores the time loop uses, all processes on a machine together; 0: those there are."""
+    solver: str = SOLVERS[0]
+    """One of `SOLVERS`."""
 
     @staticmethod
     def of(arguments: argparse.Namespace) -> Options:
@@ -76,6 +80,7 @@ class Options:
             arguments.checkpoint_interval,
             arguments.target_error,
             arguments.threads,
+            arguments.solver,
         )
 
 

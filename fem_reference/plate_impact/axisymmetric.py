@@ -6,7 +6,7 @@ import math
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -45,6 +45,7 @@ carries 1 % of the pulse."""
 class Solution:
     """A verified run, or several."""
 
+    program: ClassVar[str | None] = None
     runs: list[Run]
     """Of all impacts, one after the other."""
     mesh: ImpactMesh

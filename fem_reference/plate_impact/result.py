@@ -59,6 +59,10 @@ class Solution(Solved, Protocol):
     """A verified run on one mesh, of either geometry."""
 
     @property
+    def program(self) -> str | None:
+        """That made it; None: this package."""
+
+    @property
     def run(self) -> Run:
         """The run; of a series the last one."""
 
@@ -166,7 +170,22 @@ def solver(scene: Scene, resolution: str, comm: Any, options: Options) -> MeshSo
             "fields are asked for, but a material yields: the stress they show is the elastic one"
         )
     compute: Callable[[float, Settings, Report, Any], Any]
-    if scene.geometry == "solid":
+    leads: Callable[[Any], list[Any]] | None
+    if options.solver == "calculix":
+        from . import calculix
+        from .calculix_model import require_supported
+
+        require_supported(scene, options)
+
+        def compute(factor: float, settings: Settings, report: Report, lead: Any) -> Any:
+            return calculix.compute(scene, factor, settings, report, lead)
+
+        method, dimension = calculix.method(scene), 2
+
+        def leads(solution: Any) -> list[Any]:
+            return [*solution.radii]
+
+    elif scene.geometry == "solid":
         from . import solid
 
         def compute(factor: float, settings: Settings, report: Report, lead: Any) -> Any:
@@ -284,6 +303,8 @@ def _write(
             table, _ = history(impact)
             nothing = np.zeros((table.shape[0], 0))
             write_history(folder / f"impact-{number}.csv", HISTORY_COLUMNS, table, nothing, 10)
+    if solution.program is not None:
+        summary |= {"source": "external", "model": solution.program}
     if isinstance(scene.outer, Bender):
         summary["bender"] = _bender(scene.outer, summary)
     write_json(folder / "summary.json", summary)

@@ -35,7 +35,8 @@ class Run:
     contacts: tuple[ContactRecord, ContactRecord]
     in_contact_at_end: bool
     time_step: float
-    critical_time_step: float
+    critical_time_step: float | None
+    """None: implicit steps have none."""
     steps: int
     loop_seconds: float
     processor_seconds: float

@@ -7,7 +7,7 @@ import math
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from ..common.errors import SolverError
 from ..common.hertz import effective_modulus, hertz_contact_radius
@@ -47,6 +47,7 @@ RADIUS_STEP = 1.04
 class Solution:
     """A verified run."""
 
+    program: ClassVar[str | None] = None
     run: Run
     plate: PlateModel
     loop: Loop

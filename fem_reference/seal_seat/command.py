@@ -44,10 +44,13 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
         )
 
     def work(comm: Any) -> None:
-        from ..common.settings import Options
+        from ..common.settings import SOLVERS, Options
         from .result import solve
 
-        solve(scene, arguments.out, arguments.resolution, comm, Options.of(arguments))
+        options = Options.of(arguments)
+        if options.solver != SOLVERS[0]:
+            raise SceneError("kind is 'seal-seat': --solver calculix has plate impacts only")
+        solve(scene, arguments.out, arguments.resolution, comm, options)
 
     in_processes(arguments, work)
 

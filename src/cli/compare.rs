@@ -5,11 +5,12 @@ use super::compare_inputs;
 use super::external::{self, Permission};
 use super::film::film;
 use super::scatter::scatter;
+use super::second_program::{self, Asked};
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, JsonArgument, kinds, validated_scenes};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
-use crate::comparison::{Comparison, GateRules, SceneComparison, compare_scene};
+use crate::comparison::{Comparison, GateRules, ReferenceCheck, SceneComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record, Speed};
@@ -46,6 +47,10 @@ pub struct Arguments {
     /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
     #[arg(long)]
     pub(super) compute: bool,
+    /// CalculiX's solution of each scene beside the reference has to be there (`--compute` computes it) and within the bands of
+    /// both, or the exit status is 10; without this it is shown where it is stored. Scenes that CalculiX does not take are left out
+    #[arg(long)]
+    pub(super) reference_check: bool,
     /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
     /// repeated impacts, with commas or spaces between them
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
@@ -118,7 +123,11 @@ fn once(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     job.check_folders(&[])?;
     let results = job.results(context)?;
     let comparison = job.finish(context, job.report(context, &results)?, &Outputs::default())?;
-    Ok(if comparison.lacks_a_result() { ExitStatus::Solver } else { ExitStatus::Pass })
+    Ok(match comparison.lacks_a_result() {
+        true => ExitStatus::Solver,
+        false if job.refuses(&comparison) => ExitStatus::ToleranceExceeded,
+        false => ExitStatus::Pass,
+    })
 }
 
 /// Scenes to compare, read and checked.
@@ -139,6 +148,8 @@ pub(super) struct Results {
     cost: Vec<Cost>,
     /// Reference and models on the next coarser mesh, if they share their mesh and the reference is stored.
     coarser: Option<(Stored, Vec<Outcome>)>,
+    /// CalculiX's solution.
+    other: Option<Stored>,
 }
 
 /// What is written besides the report.
@@ -243,9 +254,16 @@ impl<'a> Job<'a> {
                 let (reduced, _) = models.beside(context, scene, &stored, asked)?;
                 Ok((stored, reduced))
             });
-            Ok(Results { stored, reduced, cost, coarser: coarser.transpose()? })
+            let asked = Asked::of(self.arguments.reference_check, self.arguments.compute);
+            let other = second_program::beside(context, file, scene, self.resolution(), asked)?;
+            Ok(Results { stored, reduced, cost, coarser: coarser.transpose()?, other })
         };
         self.scenes.iter().zip(references).map(result).collect()
+    }
+
+    /// Whether the references had to agree with CalculiX's solutions and do not.
+    pub(super) fn refuses(&self, comparison: &Comparison) -> bool {
+        self.arguments.reference_check && comparison.references_disagree()
     }
 
     /// The reference on the next coarser mesh, if it is stored and the models solve on the reference's mesh.
@@ -257,13 +275,17 @@ impl<'a> Job<'a> {
     /// The comparison of all scenes, and what is shown with it.
     pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
         let (mut scenes, mut found, mut scatters) = (Vec::new(), Vec::new(), Vec::new());
-        for ((file, scene), Results { stored, reduced, cost, coarser }) in self.scenes.iter().zip(results) {
+        for ((file, scene), Results { stored, reduced, cost, coarser, other }) in
+            self.scenes.iter().zip(results)
+        {
             let acceptances = acceptance::read(file)?;
             let mut comparison = compared(context, scene, &stored.outcome, reduced);
             if let Some((stored, reduced)) = coarser {
                 let coarser = compare_scene(scene, &stored.outcome, reduced);
                 comparison.judge_on_common_mesh(&coarser, COARSER);
             }
+            let beside = |other: &Stored| ReferenceCheck::of(&stored.outcome.summary, &other.outcome.summary);
+            comparison.reference_check = other.as_ref().map(beside);
             let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
             comparison.add_reference_checks(checks);
             comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
@@ -327,6 +349,9 @@ impl<'a> Job<'a> {
         }
         if let Some(tolerance) = self.arguments.tolerance {
             command += &format!(" --tolerance {tolerance}");
+        }
+        if self.arguments.reference_check {
+            command += " --reference-check";
         }
         if *resolution != Resolution::Paper {
             command += &format!(" --resolution {}", resolution.argument());

@@ -34,7 +34,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     for (file, scene) in &scenes {
         let store = context.store().for_scene_in(file);
         let stored: Vec<Stored> =
-            [finest(&store, scene), imported(&store, scene)].into_iter().flatten().collect();
+            finest(&store, scene).into_iter().chain(of_other_programs(&store, scene)).collect();
         let programs = match arguments.permission.is_given() {
             true => external::results(context, file, scene, None),
             false => Vec::new(),
@@ -72,14 +72,16 @@ fn finest(store: &Store, scene: &Scene) -> Option<Stored> {
     let dofs = |stored: &Stored| stored.outcome.summary.mesh.as_ref().and_then(|mesh| mesh["dofs"].as_u64());
     [Some(store), shipped.as_ref()].into_iter().flatten().find_map(|store| {
         let resolutions = store.resolutions(scene).into_iter();
-        let own = resolutions.filter(|resolution| *resolution != Resolution::Imported);
+        let own = resolutions.filter(|resolution| !resolution.is_of_another_program());
         own.filter_map(|resolution| store.find(scene, resolution).found()).max_by_key(dofs)
     })
 }
 
-/// What was imported of `scene`.
-fn imported(store: &Store, scene: &Scene) -> Option<Stored> {
-    store.find_here_or_shipped(scene, Resolution::Imported).found()
+/// What CalculiX says of `scene`, and what was imported.
+fn of_other_programs(store: &Store, scene: &Scene) -> impl Iterator<Item = Stored> {
+    let calculix = [Resolution::Fine, Resolution::Paper].into_iter().filter_map(Resolution::by_calculix);
+    let found = |resolution| store.find_here_or_shipped(scene, resolution).found();
+    calculix.into_iter().find_map(found).into_iter().chain(found(Resolution::Imported))
 }
 
 /// `model` against the scene's programs, as far as they have results.

@@ -13,8 +13,9 @@ pub fn run(context: &Context, arguments: JsonArgument) -> Result<ExitStatus> {
             let line = match &check.found {
                 Some(found) => format!("found    {:<14} {found}", check.name),
                 None => {
+                    let missing = if check.optional { "optional" } else { "missing " };
                     format!(
-                        "missing  {:<14} needed for {}; install with: {}",
+                        "{missing} {:<14} needed for {}; install with: {}",
                         check.name, check.needed_for, check.install
                     )
                 }
@@ -22,6 +23,6 @@ pub fn run(context: &Context, arguments: JsonArgument) -> Result<ExitStatus> {
             super::print(&line)?;
         }
     }
-    let is_complete = checks.iter().all(|check| check.found.is_some());
+    let is_complete = checks.iter().all(|check| check.found.is_some() || check.optional);
     Ok(if is_complete { ExitStatus::Pass } else { ExitStatus::Solver })
 }

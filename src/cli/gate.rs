@@ -87,7 +87,7 @@ fn conclude(
             "if this is right after all: the same command with --update --reason \"why\" changes the tolerances and keeps the reason",
         );
     }
-    let refused = comparison.verdicts().any(|(_, verdict)| rules.refuse(verdict));
+    let refused = comparison.verdicts().any(|(_, verdict)| rules.refuse(verdict)) || job.refuses(&comparison);
     Ok(if refused { ExitStatus::ToleranceExceeded } else { ExitStatus::Pass })
 }
 

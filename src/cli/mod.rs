@@ -21,6 +21,7 @@ mod reduced;
 mod reference;
 mod scatter;
 mod schema;
+mod second_program;
 mod shell;
 mod stored_references;
 mod stress;

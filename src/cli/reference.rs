@@ -20,6 +20,9 @@ pub struct Arguments {
     /// How fine the mesh is: coarse, paper or fine
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
+    /// Which program: this one, or CalculiX (`ccx`) as a second, independent one; dry elastic spheres on a plate
+    #[arg(long, value_enum, default_value_t = Solver::Fenicsx)]
+    solver: Solver,
     /// Refine until the 95 % band of efficiency and force peaks is at most this, for example 0.2%
     #[arg(long, value_name = "ERROR", conflicts_with = "resolution")]
     target_error: Option<TargetError>,
@@ -40,6 +43,13 @@ pub struct Arguments {
     fields: u32,
     #[command(flatten)]
     json: JsonArgument,
+}
+
+/// The programs that make references: `fem_reference` on FEniCSx, and `ccx`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Solver {
+    Fenicsx,
+    Calculix,
 }
 
 #[derive(Debug, Subcommand)]
@@ -101,7 +111,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         )));
     }
     let (scene, store) = (&scene, &context.store().for_scene_in(&file));
-    let resolution = arguments.target_error.map_or(arguments.resolution, Resolution::Within);
+    let resolution = resolution(arguments)?;
     let wanted = !arguments.fresh && arguments.stress_at.is_empty() && arguments.fields == 0;
     let stored = match wanted.then(|| store.find(scene, resolution)) {
         Some(Lookup::Found(stored)) => {
@@ -150,11 +160,25 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     show(&stored, arguments.json)
 }
 
+/// Which reference is asked for.
+fn resolution(arguments: &Arguments) -> Result<Resolution> {
+    let own = arguments.target_error.map_or(arguments.resolution, Resolution::Within);
+    match arguments.solver {
+        Solver::Fenicsx => Ok(own),
+        Solver::Calculix => own.by_calculix().ok_or_else(|| {
+            Error::Usage(format!(
+                "--solver calculix has the resolutions coarse, paper and fine, not {}",
+                own.argument()
+            ))
+        }),
+    }
+}
+
 /// That a solution is consistent with itself and its scene, as every comparison asks.
 ///
 /// # Errors
 /// [`Error::Reference`] that names what is not.
-fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
+pub(super) fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
     let checks = comparison::integrity(scene, &stored.outcome);
     let broken = checks.iter().filter(|check| check.verdict == Verdict::Fail);
     let broken: Vec<String> = broken.map(ToString::to_string).collect();

@@ -51,7 +51,7 @@ pub struct Discrepancy {
 /// Comparison error |E| against the uncertainty u of the comparison (ASME V&V 20-2009, section 1-6). Here u is
 /// the reference's 95 % band: both sides solve the same scene, so no input is uncertain, and the reduced model's own
 /// numerical error is smaller by orders of magnitude.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BandVerdict {
     /// |E| <= u: the model's error, if any, is hidden in the reference's.
@@ -62,7 +62,7 @@ pub enum BandVerdict {
 
 impl BandVerdict {
     /// `None` if one of them is not a number.
-    fn of(difference: f64, uncertainty: f64) -> Option<Self> {
+    pub(super) fn of(difference: f64, uncertainty: f64) -> Option<Self> {
         let comparable = difference.is_finite() && uncertainty.is_finite();
         let within = difference.abs() <= uncertainty;
         comparable.then_some(if within { BandVerdict::Within } else { BandVerdict::Beyond })

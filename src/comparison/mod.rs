@@ -13,6 +13,7 @@ mod discrepancy;
 mod impacts;
 mod integrity;
 mod moved;
+mod reference_check;
 mod series;
 mod undecided;
 pub mod validation;
@@ -23,6 +24,7 @@ pub use common_mesh::difference_band;
 pub use discrepancy::{BandVerdict, Discrepancy};
 pub use integrity::{Check, NO_RESULT, check as integrity};
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
+pub use reference_check::{ReferenceCheck, ReferenceRow};
 pub use series::{ORDER, STANDARD_ERRORS};
 pub use verdict::{GateRules, Undecided, Verdict};
 
@@ -62,6 +64,12 @@ impl Comparison {
         self.scenes.iter().flat_map(|scene| &scene.models).any(|model| model.summary.failure.is_some())
     }
 
+    /// Whether another program's solution differs from the reference of a scene by more than both bands.
+    pub fn references_disagree(&self) -> bool {
+        let checks = self.scenes.iter().filter_map(|scene| scene.reference_check.as_ref());
+        checks.into_iter().any(|check| check.verdict == BandVerdict::Beyond)
+    }
+
     /// Name and verdict of every scene.
     pub fn verdicts(&self) -> impl Iterator<Item = (&str, Verdict)> {
         self.scenes.iter().map(|s| (&*s.scene, s.verdict))
@@ -92,6 +100,9 @@ pub struct SceneComparison {
     /// Measured records beside reference and models, if there are any; reported, not gated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<Measured>,
+    /// Another program's solution beside the reference, if there is one; reported, not gated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference_check: Option<ReferenceCheck>,
 }
 
 impl SceneComparison {
@@ -279,6 +290,7 @@ pub fn compare_scene(scene: &Scene, reference: &Outcome, reduced: &[Outcome]) ->
         budget: Vec::new(),
         changed_tolerances: Vec::new(),
         measured: None,
+        reference_check: None,
     }
 }
 

@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::process::{Command, Stdio};
 
+/// Environment variable that names CalculiX's program.
+const CALCULIX_VARIABLE: &str = "IMPACTCHECK_CCX";
+
 /// One thing that is needed, and whether it is there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
@@ -19,6 +22,8 @@ pub struct Check {
     pub needed_for: String,
     /// The command that brings it.
     pub install: String,
+    /// Whether all else works without it.
+    pub optional: bool,
 }
 
 /// Checks the project's files, Python and all it will import, the C compiler, MPI's launcher, the store and its entries for
@@ -31,12 +36,21 @@ pub fn doctor(store: &Store) -> Vec<Check> {
         found: compiler(),
         needed_for: "computing references: dolfinx and the time loop compile their kernels".to_owned(),
         install: "sudo apt-get install gcc libc6-dev".to_owned(),
+        optional: false,
     });
     checks.push(Check {
         name: "mpirun".to_owned(),
         found: version_of("mpirun"),
         needed_for: "several processes (`reference --np`)".to_owned(),
         install: "sudo apt-get install openmpi-bin".to_owned(),
+        optional: false,
+    });
+    checks.push(Check {
+        name: "CalculiX".to_owned(),
+        found: calculix(),
+        needed_for: "a second program's references (`reference --solver calculix`)".to_owned(),
+        install: "sudo apt-get install calculix-ccx".to_owned(),
+        optional: true,
     });
     checks.push(store_folder(store));
     for path in shipped().unwrap_or_default() {
@@ -57,6 +71,7 @@ fn project() -> Check {
         },
         found: root.ok().map(|root| root.display().to_string()),
         install: "export IMPACTCHECK_HOME=FOLDER, a checkout of the project".to_owned(),
+        optional: false,
     }
 }
 
@@ -78,6 +93,7 @@ fn interpreter() -> Vec<Check> {
             needed_for: format!("computing references{needed_for}{why}"),
             install: format!("sudo apt-get install {package}"),
             name: if name == "python" { "Python".to_owned() } else { name },
+            optional: false,
         }
     };
     modules.into_iter().map(check).collect()
@@ -111,6 +127,15 @@ fn version_of(program: &str) -> Option<String> {
     output.status.success().then(|| text.lines().next().unwrap_or("unknown version").to_owned())
 }
 
+/// What CalculiX says about itself.
+fn calculix() -> Option<String> {
+    let named = std::env::var(CALCULIX_VARIABLE).ok().filter(|program| !program.is_empty());
+    let program = named.unwrap_or_else(|| "ccx".to_owned());
+    let output = Command::new(program).arg("-v").stdin(Stdio::null()).output().ok()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.lines().find(|line| line.contains("Version")).map(|line| line.trim().to_owned())
+}
+
 fn store_folder(store: &Store) -> Check {
     let root = store.root().display().to_string();
     let needed_for = "references that need no solver".to_owned();
@@ -123,7 +148,7 @@ fn store_folder(store: &Store) -> Check {
         Err(e) => (None, format!("{needed_for}; {root} can't be read: {e}")),
     };
     let install = "impactcheck reference SCENE".to_owned();
-    Check { name: "store of references".to_owned(), found, needed_for, install }
+    Check { name: "store of references".to_owned(), found, needed_for, install, optional: false }
 }
 
 /// The state of one entry. Only the `paper` resolution is expected to be there.
@@ -145,5 +170,6 @@ fn entry(store: &Store, scene: &Scene, resolution: Resolution) -> Option<Check> 
         found,
         needed_for,
         install: format!("impactcheck reference {} --resolution {resolution} --fresh", scene.name),
+        optional: false,
     })
 }

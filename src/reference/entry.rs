@@ -1,6 +1,6 @@
 //! One stored solution: a folder whose files are verified before they are believed.
 
-use super::{CurveBands, history_file};
+use super::{CurveBands, Resolution, history_file};
 use crate::kinds;
 use crate::result::{Outcome, SCHEMA_VERSION, Source, Summary};
 use crate::scene::Scene;
@@ -57,6 +57,13 @@ pub(super) enum MeshFiles {
     Optional,
     /// Another program's result has none.
     None,
+}
+
+impl MeshFiles {
+    /// Of a stored entry.
+    pub(super) fn of(resolution: Resolution) -> Self {
+        if resolution.is_of_another_program() { MeshFiles::None } else { MeshFiles::Optional }
+    }
 }
 
 /// Verifies the folder's checksums and reads it; what the solver can't know, how near the solution comes to the bounds of its

@@ -17,6 +17,9 @@ pub fn revision(scene: &Scene) -> u32 {
     }
 }
 
+/// The same of the results by CalculiX.
+const CALCULIX_REVISION: u32 = 1;
+
 /// SHA-256 (hexadecimal) of how the reference of `scene` is computed: its settings, the
 /// resolution and the revision of the method.
 pub fn settings_hash(scene: &Scene, resolution: Resolution) -> String {
@@ -24,9 +27,11 @@ pub fn settings_hash(scene: &Scene, resolution: Resolution) -> String {
         // whatever this program would do differently, another's result stays
         return sha256_hex(canonical(&json!({ "resolution": resolution })).as_bytes());
     }
-    let settings = json!({
-        "reference": scene.reference, "resolution": resolution, "revision": revision(scene),
-    });
+    let revision = match resolution {
+        Resolution::Calculix(_) => CALCULIX_REVISION,
+        _ => revision(scene),
+    };
+    let settings = json!({ "reference": scene.reference, "resolution": resolution, "revision": revision });
     sha256_hex(canonical(&settings).as_bytes())
 }
 

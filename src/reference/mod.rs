@@ -36,6 +36,8 @@ pub use section::MeshSection;
 pub use solve::{Wish, solve, solve_with};
 pub use store::{Lookup, Store};
 
+use crate::scene::{Geometry, Scene, Setup, Shape};
+
 /// Size of the elements over that of the next finer fixed resolution.
 pub const COARSER: f64 = 1.5;
 
@@ -50,9 +52,25 @@ pub enum Resolution {
     Fine,
     /// As many as bring the 95 % band of efficiency and force peaks down to an error.
     Within(TargetError),
+    /// CalculiX's, on its own series of meshes.
+    Calculix(CalculixMesh),
     /// None of this program's: another program's result.
     Imported,
 }
+
+/// Fineness of CalculiX's mesh, as of [`Resolution`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum CalculixMesh {
+    /// Two thirds of the elements and time steps.
+    Coarse,
+    /// Those that stand for what the scene asks for.
+    Paper,
+    /// Three halves of them.
+    Fine,
+}
+
+/// What the name of an entry of CalculiX's begins with.
+const CALCULIX: &str = "calculix-";
 
 impl Resolution {
     /// The fixed resolutions, coarse to fine.
@@ -61,17 +79,38 @@ impl Resolution {
     /// The resolution the solver begins with, by its name on the command line.
     pub fn first(self) -> &'static str {
         match self {
-            Resolution::Coarse | Resolution::Within(_) => "coarse",
-            Resolution::Paper => "paper",
-            Resolution::Fine => "fine",
+            Resolution::Coarse | Resolution::Within(_) | Resolution::Calculix(CalculixMesh::Coarse) => {
+                "coarse"
+            }
+            Resolution::Paper | Resolution::Calculix(CalculixMesh::Paper) => "paper",
+            Resolution::Fine | Resolution::Calculix(CalculixMesh::Fine) => "fine",
             Resolution::Imported => "imported",
         }
+    }
+
+    /// The same fineness by CalculiX, which has fixed ones only.
+    pub fn by_calculix(self) -> Option<Self> {
+        match self {
+            Resolution::Coarse => Some(Resolution::Calculix(CalculixMesh::Coarse)),
+            Resolution::Paper => Some(Resolution::Calculix(CalculixMesh::Paper)),
+            Resolution::Fine => Some(Resolution::Calculix(CalculixMesh::Fine)),
+            Resolution::Calculix(_) => Some(self),
+            Resolution::Within(_) | Resolution::Imported => None,
+        }
+    }
+
+    /// Whether it is of another program's finite elements.
+    pub fn is_of_another_program(self) -> bool {
+        matches!(self, Resolution::Calculix(_) | Resolution::Imported)
     }
 }
 
 impl Resolution {
     /// The one of a fixed name.
     fn named(name: &str) -> Option<Self> {
+        if let Some(mesh) = name.strip_prefix(CALCULIX) {
+            return Resolution::named(mesh).filter(|own| !own.is_of_another_program())?.by_calculix();
+        }
         Resolution::ALL.into_iter().chain([Resolution::Imported]).find(|r| r.first() == name)
     }
 
@@ -92,7 +131,9 @@ impl Resolution {
         match self {
             Resolution::Paper => Some(Resolution::Coarse),
             Resolution::Fine => Some(Resolution::Paper),
-            Resolution::Coarse | Resolution::Within(_) | Resolution::Imported => None,
+            Resolution::Coarse | Resolution::Within(_) | Resolution::Calculix(_) | Resolution::Imported => {
+                None
+            }
         }
     }
 
@@ -110,6 +151,7 @@ impl std::fmt::Display for Resolution {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Resolution::Within(error) => f.pad(&format!("error-{}ppm", error.parts_per_million)),
+            Resolution::Calculix(_) => f.pad(&format!("{CALCULIX}{}", self.first())),
             fixed => f.pad(fixed.first()),
         }
     }
@@ -129,11 +171,21 @@ impl std::str::FromStr for Resolution {
         let within = || text.contains('%').then(|| text.parse().map(Resolution::Within));
         let unknown = || {
             format!(
-                "`{text}` is not a resolution; there are coarse, paper, fine, errors such as 0.2% (as of --target-error), and imported"
+                "`{text}` is not a resolution; there are coarse, paper, fine, errors such as 0.2% (as of --target-error), calculix-paper \
+                 (or -coarse, -fine), and imported"
             )
         };
         found.map(Ok).or_else(within).unwrap_or_else(|| Err(unknown()))
     }
+}
+
+/// Whether the deck for CalculiX describes `scene`: a dry impact of elastic spheres on a plate without damping or friction.
+pub fn calculix_takes(scene: &Scene) -> bool {
+    let Setup::PlateImpact(setup) = &scene.setup else { return false };
+    let spheres = [&setup.outer.shape, &setup.inner.shape].iter().all(|s| matches!(s, Shape::Sphere { .. }));
+    let dry = setup.fluid.is_none() && setup.plate.damping_ratio == 0.0 && setup.friction == 0.0;
+    let elastic = !setup.relaxes() && !setup.yields() && setup.series.is_none();
+    spheres && dry && elastic && scene.reference.geometry == Geometry::Axisymmetric
 }
 
 /// A relative error asked for.
@@ -169,7 +221,7 @@ impl std::str::FromStr for TargetError {
 
 #[cfg(test)]
 mod tests {
-    use super::{Resolution, TargetError};
+    use super::{CalculixMesh, Resolution, TargetError};
 
     #[test]
     fn an_error_is_read_as_percent_or_share_and_names_its_entry() {
@@ -181,6 +233,10 @@ mod tests {
         assert_eq!(Resolution::of_folder("error-2500ppm"), Some(Resolution::Within(error)));
         assert_eq!(Resolution::Within(error).argument().parse(), Ok(Resolution::Within(error)));
         assert_eq!("coarse".parse(), Ok(Resolution::Coarse));
+        let calculix = Resolution::Calculix(CalculixMesh::Fine);
+        assert_eq!((calculix.to_string().parse(), calculix.first()), (Ok(calculix), "fine"));
+        assert_eq!(Resolution::of_folder("calculix-fine"), Some(calculix));
+        assert!("calculix-imported".parse::<Resolution>().is_err());
         assert!("0.2".parse::<Resolution>().is_err(), "a share without % could be a slip");
         for bad in ["", "0", "-1%", "NaN", "inf", "60%", "0.001%", "x%"] {
             assert!(read(bad).is_err(), "{bad}");

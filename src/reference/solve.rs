@@ -82,6 +82,9 @@ pub fn solve_with(
     command.args([OsStr::new("solve"), OsStr::new("--scene"), input.as_os_str()]);
     command.args([OsStr::new("--out"), output.as_os_str()]);
     command.args(["--resolution", resolution.first()]);
+    if let Resolution::Calculix(_) = resolution {
+        command.args(["--solver", "calculix"]);
+    }
     if let Resolution::Within(error) = resolution {
         command.args(["--target-error", &error.share().to_string()]);
     }
@@ -115,7 +118,11 @@ pub fn solve_with(
     if !output.is_dir() {
         return Err(unusable("it wrote no result".to_owned()));
     }
-    let stored = entry::load(scene, &output, entry::MeshFiles::Required).map_err(|d| {
+    let mesh_files = match entry::MeshFiles::of(resolution) {
+        entry::MeshFiles::None => entry::MeshFiles::None,
+        _ => entry::MeshFiles::Required,
+    };
+    let stored = entry::load(scene, &output, mesh_files).map_err(|d| {
         let file = d.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         unusable(format!("its {file} {}", d.reason))
     })?;

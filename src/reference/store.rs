@@ -5,7 +5,7 @@
 //! A solution of another scene of the same name, or with other settings, is not replaced: it moves to a folder beside that
 //! is named after its hashes (`paper.0123abcd-4567ef89`), where it is found when its scene is asked for again.
 
-use super::entry::{self, Damage, Stored};
+use super::entry::{self, Damage, MeshFiles, Stored};
 use super::turn::Turn;
 use super::{Resolution, identity};
 use crate::interrupt::Scratch;
@@ -319,11 +319,7 @@ fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
         }
         Ok(_) => {}
     }
-    let mesh_files = match resolution {
-        Resolution::Imported => entry::MeshFiles::None,
-        _ => entry::MeshFiles::Optional,
-    };
-    let stored = match entry::load(scene, folder, mesh_files) {
+    let stored = match entry::load(scene, folder, MeshFiles::of(resolution)) {
         Ok(stored) => stored,
         Err(damage) => return damage.into(),
     };

@@ -68,6 +68,7 @@ fn section(scene: &SceneReport) -> String {
     text += &super::budget_section::budget_markdown(&comparison.budget);
     text += &super::validation_section::validation_markdown(comparison);
     text += &super::measured_section::measured_markdown(scene);
+    text += &super::reference_check_section::reference_check_markdown(comparison.reference_check.as_ref());
     for model in &comparison.models {
         text += &model_section(model);
     }

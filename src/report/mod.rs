@@ -51,6 +51,7 @@ mod plot_axis;
 mod png;
 mod polyline;
 mod presentation;
+mod reference_check_section;
 mod run_times;
 mod scatter_figure;
 mod scene_drawing;

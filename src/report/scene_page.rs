@@ -49,6 +49,11 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
     all.extend(shown.sections(report));
     let accepted = super::acceptance_section::acceptances_html(attachments, &comparison.changed_tolerances);
     all.extend([
+        Section::new(
+            "reference-check",
+            "Reference and another program",
+            super::reference_check_section::reference_check_html(comparison.reference_check.as_ref()),
+        ),
         Section::new("validated", "Validated scenes", validated(report)),
         Section::new("validity", "Range of validity", super::limits_section::limits_html(comparison)),
         Section::new("trends", "Trends", super::trend_section::trends_html(attachments)),

@@ -80,6 +80,10 @@ pub fn terminal(report: &Report) -> String {
             let row = cells(columns, &model.summary, Some(reference));
             text += &format!("  {:<10}{row}  {}\n", model.model, of_model(model));
         }
+        if let Some(check) = &comparison.reference_check {
+            let row = cells(columns, &check.summary, Some(reference));
+            text += &format!("  {:<10}{row}  {}\n", check.program, check.words());
+        }
         if let Some(measured) = &comparison.measured {
             text += &format!("  {}\n", super::measured_section::sentence(measured));
         }

@@ -113,7 +113,8 @@ impl Validation {
             dofs: reference.mesh.as_ref().and_then(|mesh| mesh["dofs"].as_u64()),
             revision: revision(scene),
             program: PROGRAM.into(),
-            place: Place::of(scene, reference),
+            // the map is of this program's references: another one's stand beside them
+            place: reference.model.is_none().then(|| Place::of(scene, reference)).flatten(),
             rows: model.discrepancies.iter().filter(is_kept).filter_map(Row::of).collect(),
         }
     }

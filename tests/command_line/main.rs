@@ -16,6 +16,7 @@ mod measured;
 mod optimise;
 mod program;
 mod scene_files;
+mod second_program;
 mod snapshots;
 #[path = "../support/store_fixture.rs"]
 mod store_fixture;

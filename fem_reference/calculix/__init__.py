@@ -1,0 +1,1 @@
+"""CalculiX as a second program: axisymmetric bodies as wedges, implicit steps, penalty contact."""

@@ -1,0 +1,124 @@
+//! CalculiX's solution beside the reference: shown, asked for, missing, contradicting itself, disagreeing.
+
+use assert_cmd::Command;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+use std::fs;
+use std::path::Path;
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const SCENE: &str = "scaled-plate-r10";
+const ENTRY: &str = "scaled-plate-r10/calculix-paper";
+
+struct Ended {
+    status: i32,
+    said: String,
+    printed: String,
+}
+
+fn run(store: &Path, arguments: &[&str]) -> Ended {
+    let mut command = Command::cargo_bin("impactcheck").unwrap();
+    command.args(arguments).arg("--store").arg(store).current_dir(ROOT).env("IMPACTCHECK_CCX", "no-such-ccx");
+    let output = command.output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    Ended { status: output.status.code().unwrap(), said: text(&output.stderr), printed: text(&output.stdout) }
+}
+
+fn compared(store: &Path, more: &[&str]) -> Ended {
+    let out = store.join("report").display().to_string();
+    run(store, &[&["compare", SCENE, "--models", "C", "--out", &*out], more].concat())
+}
+
+/// A copy of the shipped solution in `store`, whose summary `change` makes another one; its checksum is right.
+fn changed(store: &Path, change: impl Fn(&mut Value)) {
+    let (from, to) = (Path::new(ROOT).join("fem_reference/solutions").join(ENTRY), store.join(ENTRY));
+    fs::create_dir_all(&to).unwrap();
+    for file in fs::read_dir(&from).unwrap().flatten() {
+        fs::copy(file.path(), to.join(file.file_name())).unwrap();
+    }
+    let mut summary: Value = serde_json::from_slice(&fs::read(to.join("summary.json")).unwrap()).unwrap();
+    change(&mut summary);
+    let text = summary.to_string();
+    let hash: String = Sha256::digest(&text).iter().map(|byte| format!("{byte:02x}")).collect();
+    fs::write(to.join("summary.json"), text).unwrap();
+    let sums = fs::read_to_string(to.join("checksums.sha256")).unwrap();
+    let kept = sums.lines().filter(|line| !line.ends_with("summary.json")).map(|line| format!("{line}\n"));
+    fs::write(to.join("checksums.sha256"), kept.collect::<String>() + &format!("{hash}  summary.json\n"))
+        .unwrap();
+}
+
+/// The plate's frequency as if its mesh series had given `factor` times as much.
+fn scaled(summary: &mut Value, factor: f64) {
+    let scale = |value: &mut Value| *value = json!(value.as_f64().unwrap() * factor);
+    scale(&mut summary["first_frequency"]);
+    scale(&mut summary["uncertainty"]["first_frequency"]);
+    let series = &mut summary["convergence"]["quantities"]["first_frequency"];
+    series["values"].as_array_mut().unwrap().iter_mut().for_each(scale);
+    ["extrapolated", "scatter", "band"].into_iter().for_each(|key| scale(&mut series[key]));
+}
+
+#[test]
+fn two_programs_agree_within_both_bands_in_terminal_document_and_report() {
+    let store = tempfile::tempdir().unwrap();
+    let ended = compared(store.path(), &["--reference-check"]);
+    assert_eq!(ended.status, 0, "{}", ended.said);
+    let line = ended.printed.lines().find(|line| line.trim_start().starts_with("CalculiX")).unwrap();
+    assert!(line.ends_with("within the joint bands"), "{line}");
+    let page = fs::read_to_string(store.path().join(format!("report/{SCENE}.html"))).unwrap();
+    assert!(
+        page.contains("Reference and another program") && page.contains("The same scene solved by CalculiX")
+    );
+    // where it is stored it is shown unasked
+    let document: Value = serde_json::from_str(&compared(store.path(), &["--json"]).printed).unwrap();
+    let check = &document["scenes"][0]["reference_check"];
+    assert_eq!((&check["program"], &check["verdict"]), (&json!("CalculiX"), &json!("within")));
+    let rows = check["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 8);
+    for row in rows {
+        let number = |key: &str| row[key].as_f64().unwrap();
+        let joint = number("uncertainty").hypot(number("other_uncertainty"));
+        assert!(
+            (number("joint_band") / joint - 1.0).abs() < 1e-12 && number("difference").abs() <= joint,
+            "{row}"
+        );
+        // bands that wide would say nothing
+        assert!(joint < 0.02 * number("reference").abs() && number("difference") != 0.0, "{row}");
+    }
+}
+
+#[test]
+fn a_solution_that_is_asked_for_and_missing_or_in_contradiction_ends_with_11() {
+    let store = tempfile::tempdir().unwrap();
+    let missing = compared(store.path(), &["--reference-check", "--resolution", "coarse"]);
+    assert_eq!(missing.status, 11, "{}", missing.said);
+    assert!(
+        missing.said.contains("the calculix-coarse reference of `scaled-plate-r10` is missing"),
+        "{}",
+        missing.said
+    );
+    changed(store.path(), |summary| summary["efficiency"] = json!(0.5));
+    let contradicting = compared(store.path(), &["--reference-check"]);
+    assert_eq!(contradicting.status, 11, "{}", contradicting.said);
+    assert!(contradicting.said.contains("contradicts itself"), "{}", contradicting.said);
+    // unasked, nothing is shown of it
+    let unasked = compared(store.path(), &[]);
+    assert_eq!((unasked.status, unasked.printed.contains("CalculiX")), (0, false), "{}", unasked.said);
+}
+
+#[test]
+fn two_programs_that_disagree_end_with_10_where_they_have_to_agree() {
+    let store = tempfile::tempdir().unwrap();
+    changed(store.path(), |summary| scaled(summary, 1.001));
+    let refused = compared(store.path(), &["--reference-check"]);
+    assert_eq!(refused.status, 10, "{}", refused.said);
+    assert!(refused.printed.contains("beyond the joint bands"), "{}", refused.printed);
+    assert_eq!(compared(store.path(), &[]).status, 0);
+}
+
+#[test]
+fn what_calculix_cannot_do_is_refused_in_words() {
+    let store = tempfile::tempdir().unwrap();
+    let ended = run(store.path(), &["reference", SCENE, "--solver", "calculix", "--target-error", "1%"]);
+    assert_eq!(ended.status, 2, "{}", ended.said);
+    assert!(ended.said.contains("coarse, paper and fine, not 1%"), "{}", ended.said);
+}
