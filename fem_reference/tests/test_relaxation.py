@@ -16,6 +16,7 @@ from fem_reference.common.arrays import Floats
 from fem_reference.common.bodies import Relaxation
 from fem_reference.common.errors import SceneError
 from fem_reference.common.fenicsx import alone
+from fem_reference.common.settings import SOLVERS
 from fem_reference.explicit.checkpoint import Checkpoint
 from fem_reference.explicit.levels import MOST_LEVELS
 from fem_reference.explicit.loop import SerialLoop
@@ -188,6 +189,7 @@ def test_ledger_closes_beside_another_loss(beside: dict[str, Any]) -> None:
 def test_solid_bodies_relax_in_one_process() -> None:
     options = {"np": 2, "courant": 0.9, "stress_at": (), "fields": 0, "checkpoint": None}
     options |= {"checkpoint_interval": 60.0, "target_error": None, "threads": 0}
+    options["solver"] = SOLVERS[0]
     scene = relaxing("plate", reference={"geometry": "solid", "elements_per_contact_radius": 2})
     with pytest.raises(SceneError, match=r"plate\.material\.relaxation .* --np is 2"):
         COMMANDS["solve"](scene, Namespace(**options))
