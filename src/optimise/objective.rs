@@ -10,7 +10,7 @@ pub enum Objective {
     /// The quantity of this name and unit.
     Quantity(&'static str, &'static str),
     /// Of a seal seat: the sphere's velocity along the intended direction, m/s, if it flies within so much (rad) of it; beyond that
-    /// less, by [`ASTRAY`] of it per rad.
+    /// less by ten times itself per rad.
     IntendedSpeed(f64),
 }
 
