@@ -43,7 +43,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             let mut validations: Vec<Validation> =
                 stored.iter().filter_map(|stored| compared(context, scene, stored, model)).collect();
             if !stored.iter().any(|stored| stored.outcome.summary.source == Source::Reference) {
-                let recorded = known.iter().filter(|v| v.is_of(scene, model));
+                let here: Vec<String> = validations.iter().map(|v| v.partner.clone()).collect();
+                let recorded = known.iter().filter(|v| v.is_of(scene, model) && !here.contains(&v.partner));
                 validations.extend(recorded.map(|v| renewed(context, v, scene, model)));
             }
             validations.extend(beside_programs(scene, &programs, model));
