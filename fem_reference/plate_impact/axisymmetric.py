@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,19 +86,11 @@ class Solution:
 
     def mesh_report(self) -> dict[str, Any]:
         """For the summary's ``mesh``."""
-        resolution = self.resolution
         return {
             "nodes": int(self.system.mass.size),
             "dofs": self.dofs,
             "elements": sum(body.quads.shape[0] for body in self.mesh.bodies),
-            "elements_per_contact_radius": {
-                "outer": resolution.outer if math.isfinite(resolution.outer) else None,
-                "inner": resolution.inner if math.isfinite(resolution.inner) else None,
-            },
-            "elements_per_wavelength": resolution.per_wavelength,
-            "wavelength": resolution.wavelength,
-            "smallest_element": resolution.smallest,
-            "largest_element": resolution.largest,
+            **self.resolution.report(),
             "min_quality": self.mesh.min_quality,
         }
 

@@ -155,20 +155,12 @@ class Solution:
 
     def mesh_report(self) -> dict[str, Any]:
         """For the summary's ``mesh``."""
-        resolution = self.resolution
         return {
             "nodes": self.dofs // 2,
             "dofs": self.dofs,
             "elements": sum(len(plane.quads) for plane in self.model.planes),
             "element": "C3D20R, at the axis C3D15: wedges of 2 degrees",
-            "elements_per_contact_radius": {
-                "outer": resolution.outer if math.isfinite(resolution.outer) else None,
-                "inner": resolution.inner if math.isfinite(resolution.inner) else None,
-            },
-            "elements_per_wavelength": resolution.per_wavelength,
-            "wavelength": resolution.wavelength,
-            "smallest_element": resolution.smallest,
-            "largest_element": resolution.largest,
+            **self.resolution.report(),
             "min_quality": self.mesh.min_quality,
         }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -34,6 +35,19 @@ class Resolution:
     """Shortest edge, m."""
     largest: float
     """Longest edge, m."""
+
+    def report(self) -> dict[str, Any]:
+        """For the summary's ``mesh``."""
+        return {
+            "elements_per_contact_radius": {
+                "outer": self.outer if math.isfinite(self.outer) else None,
+                "inner": self.inner if math.isfinite(self.inner) else None,
+            },
+            "elements_per_wavelength": self.per_wavelength,
+            "wavelength": self.wavelength,
+            "smallest_element": self.smallest,
+            "largest_element": self.largest,
+        }
 
 
 def elements_per_wavelength(scene: Scene, mesh: ImpactMesh, duration: float) -> tuple[float, float]:

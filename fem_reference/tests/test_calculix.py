@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -31,8 +30,6 @@ from fem_reference.plate_impact.scene import Scene, parse_scene
 
 from .conftest import STEEL, document, solve_once
 
-with_calculix = pytest.mark.skipif(shutil.which("ccx") is None, reason="there is no ccx")
-
 
 def small(**changes: Any) -> Scene:
     """A small plate hit hard: about 60 steps of some hundred nodes."""
@@ -54,7 +51,6 @@ def test_a_ring_of_quadratic_elements_has_its_volume_and_weights_its_nodes() -> 
     assert volumes @ plane.points[:, 1] / volumes.sum() == pytest.approx(1.5, rel=1e-13)
 
 
-@with_calculix
 def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
     """CalculiX's own mass of the wedges against closed forms."""
     scene = small()
@@ -73,7 +69,6 @@ def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
     assert made.masses == pytest.approx([found[n] for n in ("OUTER", "PLATE", "INNER")], rel=1e-4)
 
 
-@with_calculix
 @pytest.mark.parametrize(("edge", "eigenvalue"), [("clamped", 10.2158), ("free", 9.0031)])
 def test_a_thin_plate_vibrates_as_kirchhoff_says(
     tmp_path: Path, edge: str, eigenvalue: float
@@ -94,7 +89,6 @@ def test_a_thin_plate_vibrates_as_kirchhoff_says(
     assert found == pytest.approx(exact, rel=2e-3)
 
 
-@with_calculix
 def test_a_coarse_impact_keeps_its_balances_and_agrees_with_explicit_elements(
     tmp_path: Path,
 ) -> None:
@@ -114,7 +108,6 @@ def test_a_coarse_impact_keeps_its_balances_and_agrees_with_explicit_elements(
     )
 
 
-@with_calculix
 def test_the_momentum_of_a_free_plate_and_both_spheres_lasts(tmp_path: Path) -> None:
     scene = small(plate__edge="free", run={"end_time": 2e-5}, inner__gap=1e-6)
     solution = solved(scene, tmp_path, 0.4)
