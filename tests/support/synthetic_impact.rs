@@ -83,7 +83,7 @@ pub fn scene() -> Scene {
                 material: steel.clone(),
                 damping_ratio: 0.0,
             },
-            outer: Outer { shape: sphere.clone(), material: steel.clone(), speed: SPEED },
+            outer: Outer::centred(sphere.clone(), steel.clone(), SPEED),
             inner: Inner { shape: sphere, material: steel, gap: 0.0, speed: 0.0 },
             fluid: None,
             series: None,

@@ -197,7 +197,11 @@ pub(super) fn assemble(values: &Values, beside: Beside) -> Result<Scene> {
     let materials = root.table("materials")?;
     let settings = root.optional_table("reference")?;
     let (setup, reference) = match root.text("kind")? {
-        PLATE_IMPACT => (Setup::PlateImpact(Box::new(plate_impact(root, &materials)?)), reference(settings)?),
+        PLATE_IMPACT => {
+            let setup = plate_impact(root, &materials)?;
+            let reference = reference(settings, setup.outer.is_centred())?;
+            (Setup::PlateImpact(Box::new(setup)), reference)
+        }
         SEAL_SEAT => (Setup::SealSeat(Box::new(seal_seat(root, &materials)?)), seat_reference(settings)?),
         other => return Err(unknown("kind", other)),
     };

@@ -42,7 +42,13 @@ const fn drive(set: &'static str, field: Field) -> Field {
     one_way(Some("bender"), "the drive", set, field)
 }
 
-pub(in crate::scene) static OUTER: [Field; 15] = [
+/// Angles in rad at which a body can fly towards a plane.
+const TOWARDS: Bound = Bound {
+    low: Some((-std::f64::consts::FRAC_PI_2, false)),
+    high: Some((std::f64::consts::FRAC_PI_2, false)),
+};
+
+pub(in crate::scene) static OUTER: [Field; 17] = [
     required("kind", Kind::Choice(&[choice("sphere"), choice("compact"), choice("bender")]), SHAPE_KIND),
     SPHERE_RADIUS,
     COMPACT_MASS,
@@ -82,6 +88,22 @@ pub(in crate::scene) static OUTER: [Field; 15] = [
     drive(
         "speed",
         required("speed", positive(Dimension::SPEED), "Speed towards the plate; of a bender that of its tip"),
+    ),
+    only(
+        &["sphere", "compact"],
+        optional(
+            "offset",
+            Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
+            "Distance of the point of impact from the axis, along x; absent = 0",
+        ),
+    ),
+    only(
+        &["sphere", "compact"],
+        optional(
+            "angle",
+            Kind::Quantity(Dimension::ANGLE, TOWARDS),
+            "Angle of the velocity against the plate's normal, positive = towards +x; absent = 0",
+        ),
     ),
 ];
 
@@ -160,7 +182,7 @@ pub(in crate::scene) static REFERENCE: [Field; 4] = [
     optional(
         "geometry",
         Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
-        "Geometry of the elements; absent = axisymmetric",
+        "Geometry of the elements; absent = axisymmetric, for an impact beside the centre or at an angle solid",
     ),
     optional(
         "elements_per_contact_radius",
