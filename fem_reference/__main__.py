@@ -105,6 +105,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     yielding = commands.add_parser("yielding", help="a yielding sphere on a rigid wall")
     yielding.add_argument("--out", type=Path, required=True, help="Markdown")
+    rebound = commands.add_parser("rebound", help="balls that rebound from glass, as measured")
+    rebound.add_argument("--out", type=Path, required=True, help="Markdown")
     mesh = commands.add_parser("mesh", help="mesh of a seal seat as .vtu, a .json beside it")
     mesh.add_argument("--scene", type=Path, required=True, help="scene.json of kind seal-seat")
     mesh.add_argument("--out", type=Path, required=True, help="FILE.vtu")
@@ -138,6 +140,11 @@ def _run(arguments: argparse.Namespace) -> None:
             from .studies.speed import SIZES, report_speed
 
             report_speed(arguments.scene, tuple(arguments.dofs) or SIZES, arguments.out)
+            return
+        if arguments.command == "rebound":
+            from .studies.rebound import report_rebound
+
+            report_rebound(arguments.out, Progress())
             return
         if arguments.command == "yielding":
             from .studies.yielding import report_yielding

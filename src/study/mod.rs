@@ -20,6 +20,7 @@ pub mod seal_seat_direction;
 pub mod shakedown;
 pub mod sweep;
 pub mod table2;
+pub mod test_bed;
 mod write;
 
 pub use plot::{Axis, Only, Panel, figure};
@@ -82,7 +83,7 @@ impl Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 15] = [
+pub const STUDIES: [Entry; 16] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
@@ -161,6 +162,14 @@ pub const STUDIES: [Entry; 15] = [
         takes_model: true,
         run: shakedown::run,
         panels: &shakedown::PANELS,
+        drawing: None,
+    },
+    Entry {
+        name: "test-bed",
+        about: "Section 3.4.2, Figs. 12 and 13: whether its statements survive the tolerances of a test bed",
+        takes_model: true,
+        run: test_bed::run,
+        panels: &test_bed::PANELS,
         drawing: None,
     },
     Entry {

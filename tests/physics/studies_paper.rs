@@ -109,6 +109,13 @@ fn repeated_impacts_shake_down_as_the_paper_says() {
 }
 
 #[test]
+fn the_papers_statements_survive_a_test_bed() {
+    let study = run("test-bed", Some(Model::B));
+    assert_eq!((study.rows.len(), study.claims.len()), (384, 6));
+    assert!(study.claims.iter().all(|c| c.verdict == Verdict::Pass), "{:?}", study.claims);
+}
+
+#[test]
 fn every_study_is_drawn_from_columns_it_has() {
     for entry in STUDIES.iter().filter(|entry| entry.takes_model) {
         let study = run(entry.name, Some(Model::A));
