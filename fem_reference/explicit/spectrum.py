@@ -112,8 +112,8 @@ def body_rotation(loop: Loop, body: int) -> Floats:
 class RigidMotions:
     """The motions of a body that a force along an axis causes and no support hinders.
 
-    Translation along the axis, and the rotation about y of a body that has no plane of symmetry
-    but y = 0.
+    Translation along the axis; along x, and the rotation about y, of a body that has no plane of
+    symmetry but y = 0.
 
     Attributes:
         motions: each with its modal mass.
@@ -123,7 +123,7 @@ class RigidMotions:
         self._loop, self._mass = loop, np.repeat(loop.mass, 3)
         self.motions: list[tuple[Floats, float]] = []
         for whole, free in (
-            (float(loop.body_masses()[body]), body_translation(loop, body, axis)),
+            *((float(loop.body_masses()[body]), body_translation(loop, body, k)) for k in {axis, 0}),
             self._rotation(body),
         ):
             weight = loop.dot(free, self._mass * free)
