@@ -1,7 +1,7 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
 use super::asked_model::{self, AskedModel};
-use super::{Context, JsonArgument, kinds};
+use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::kinds::plate_impact::shared::SharedBodies;
@@ -69,7 +69,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         TableFormat::of(file)?;
     }
     let (_, scene) = super::read_scene(&arguments.scene)?;
-    let outcome = kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default())?;
+    let outcome = progress::watched(context, &scene.name, || {
+        kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default())
+    })?;
     finish(context, arguments, &outcome)
 }
 

@@ -97,10 +97,7 @@ impl Growing<'_> {
     }
 
     fn value(&self, index: usize, quantity: &str) -> Option<f64> {
-        match &self.records[index].outcome {
-            Outcome::Done(point) => point.quantities.get(quantity).filter(|value| value.is_finite()),
-            _ => None,
-        }
+        self.plan.value(&self.records[index], quantity).filter(|value| value.is_finite())
     }
 
     /// The rows of which every impact has a result.

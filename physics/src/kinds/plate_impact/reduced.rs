@@ -352,6 +352,20 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_contact_half_as_wide_as_its_sphere_is_refused_by_the_sphere_s_name() {
+        let text = include_str!("../../../../tests/fixtures/plate-impact.toml");
+        let [start, end] = ["[outer]", "[inner]"].map(|table| text.find(table).expect("a table"));
+        let soft = text.replace(
+            &text[start..end],
+            "[outer]\nkind = \"sphere\"\nradius = \"5 mm\"\nmaterial = \"soft\"\nspeed = \"20 m/s\"\n\n",
+        ) + "\n[materials.soft]\nyoungs_modulus = \"1.8 MPa\"\npoisson_ratio = 0.4\ndensity = \"1100 kg/m^3\"\n";
+        let scene = Scene::parse("soft.toml", &soft).unwrap();
+        let refused = Reduced::new(&scene, Model::C, None).expect_err("too wide").to_string();
+        assert!(refused.contains("`outer.radius`, 2.500 mm"), "{refused}");
+        assert!(Reduced::new(&scene, Model::B, None).is_ok());
+    }
+
     /// A result whose ledger is off says so, and is none if it is far off.
     #[test]
     fn the_ledger_of_a_run_is_judged() {
