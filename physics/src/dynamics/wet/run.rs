@@ -23,7 +23,7 @@ use crate::fluid::film::Overlap;
 use std::collections::BTreeMap;
 
 /// Steps after which a run counts as endless.
-const MAX_STEPS: u64 = 5_000_000;
+const MAX_STEPS: u64 = 300_000;
 /// Step lengths are the base length times 2^-level, level from 0 to this.
 const LAST_LEVEL: i32 = 44;
 /// Longest step without a touch in sight, as a power of 2 of the base length.
