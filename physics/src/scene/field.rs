@@ -1,8 +1,10 @@
 //! The numeric fields of a scene file: their names, bounds and places.
 
-use super::check::{Checked, Values};
+use super::grammar;
+use super::grammar::Kind;
 use super::quantity::{self, Dimension, QuantityError};
-use super::specification::{self, Kind, SCENE};
+use super::specification::SCENE;
+use super::values::{Checked, Values};
 use crate::{Error, Result};
 
 /// A numeric field of a scene file, such as `plate.thickness` or `materials.steel.density`.
@@ -161,7 +163,7 @@ pub(super) fn index(keys: &[String]) -> Option<usize> {
 
 /// The numeric fields below a table with the keys of `specification`; `values` is what the file has there.
 fn collect(
-    specification: &'static [specification::Field],
+    specification: &'static [grammar::Field],
     values: Option<&Values>,
     keys: &mut Vec<String>,
     found: &mut Vec<Field>,

@@ -2,10 +2,11 @@
 
 use super::Kind;
 use super::choice::Plan;
+use super::continua::Continua;
 use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate};
 use super::results::{PlateQuantities, quantities, values};
 use super::series::{Done, Impacts};
-use super::shared::{Continua, SharedBodies};
+use super::shared::SharedBodies;
 use super::truncation;
 use super::validity::film_warning;
 use crate::body::cache::Cache;
@@ -18,11 +19,9 @@ use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
 use crate::result::{BenderSummary, CUT, Choice, ElasticLimit, Outcome, Summary};
-use crate::scene::{self, MAX_MODES, Model, Outer, PlateImpact, Scene};
+use crate::scene::{self, DEFAULT_MODES, MAX_MODES, Model, Outer, PlateImpact, Scene};
 use std::time::Instant;
 
-/// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
-pub const DEFAULT_MODES: usize = 16;
 /// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
 const PEAK_ERROR: f64 = 0.1;
 /// Samples of a history per duration of a Hertz contact.

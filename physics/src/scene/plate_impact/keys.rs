@@ -1,10 +1,10 @@
 //! The keys of a plate impact, part of the table in `specification.rs`.
 
-use crate::scene::quantity::Dimension;
-use crate::scene::specification::{
+use crate::scene::grammar::{
     BODY_MATERIAL, Bound, Field, Kind, MODELS, TIP_RADIUS, choice, one_way, only, optional, positive, pure,
     required,
 };
+use crate::scene::quantity::Dimension;
 
 /// Smallest and largest number of elements across the contact radius.
 const ELEMENTS: Bound = Bound { low: Some((2.0, true)), high: Some((64.0, true)) };
@@ -170,6 +170,8 @@ pub(in crate::scene) static SERIES: [Field; 2] = [
 /// Most modes of a plate that a model is built with: with so many the bodies of model C take a quarter of a minute, with twice as many ten
 /// times as long.
 pub const MAX_MODES: usize = 256;
+/// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
+pub const DEFAULT_MODES: usize = 16;
 
 pub(in crate::scene) static REDUCED: [Field; 2] = [
     optional("model", Kind::Choice(&MODELS), "The model to run when the command line names none"),

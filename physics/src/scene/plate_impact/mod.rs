@@ -4,8 +4,8 @@ mod keys;
 mod read;
 mod soundness;
 
-pub use keys::MAX_MODES;
 pub(super) use keys::{DEFAULT_GEOMETRY, FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE, SERIES};
+pub use keys::{DEFAULT_MODES, MAX_MODES};
 pub(super) use read::{plate_impact, reference};
 
 use super::Material;

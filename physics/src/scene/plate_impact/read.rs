@@ -4,9 +4,10 @@ use super::keys::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS};
 use super::*;
 use crate::Result;
 use crate::actuator::{beam, cantilever};
-use crate::scene::check::{Checked, Values};
 use crate::scene::material::material;
-use crate::scene::read::{Node, element_order, refused, unknown};
+use crate::scene::read::refused;
+use crate::scene::values::{Checked, Values};
+use crate::scene::values::{Node, element_order, unknown};
 use crate::scene::{Geometry, ReferenceSettings, Rigid};
 
 /// The bodies of a plate impact.
