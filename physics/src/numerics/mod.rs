@@ -5,3 +5,4 @@ pub(crate) mod cholesky;
 pub(crate) mod eigenmodes;
 pub mod least_squares;
 pub mod quadrature;
+pub(crate) mod vectors;

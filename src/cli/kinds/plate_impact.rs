@@ -1,8 +1,8 @@
 //! The reduced models of plate impacts.
 
 use super::{Compared, Models};
+use crate::cli::asked_model::Asked;
 use crate::cli::asked_model::{self, AskedModel};
-use crate::cli::reduced::Asked;
 use crate::cli::{Context, progress};
 use crate::curves::CommonAxis;
 use crate::error::{Error, Result};

@@ -1,9 +1,7 @@
 //! The models of a scene before they run: the plate reduced to modes, and the bodies joined by their contacts.
 
+use super::continua::Continua;
 use super::predictor::Predictor;
-use super::reduced::DEFAULT_MODES;
-use super::shared::Continua;
-use super::trials::Cut;
 use super::validity;
 use crate::body::ModalBody;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
@@ -13,7 +11,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::scene::{Edge, Material, Model, PlateImpact, Shape};
+use crate::scene::{DEFAULT_MODES, Edge, Material, Model, PlateImpact, Shape};
 
 /// Relative error of the forces at which model C, left to choose, stops adding modes.
 const TRUNCATION: f64 = 5e-4;
@@ -42,6 +40,15 @@ pub(super) enum Wanted {
     Estimate,
     /// All below a frequency.
     Below(Cut),
+}
+
+/// Which modes of the continuum plate model C is to have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cut {
+    /// Angular frequency in rad/s below which all modes are kept.
+    pub(super) omega: f64,
+    /// How many that will be at most.
+    pub(super) modes: usize,
 }
 
 /// `plate`, immersed if there is a fluid, between the bodies of the scene.
