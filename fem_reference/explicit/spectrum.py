@@ -112,8 +112,8 @@ def body_rotation(loop: Loop, body: int) -> Floats:
 class RigidMotions:
     """The motions of a body that a force along an axis causes and no support hinders.
 
-    Translation along the axis, and the rotation about y of a body that has no plane of symmetry
-    but y = 0.
+    Translation along the axis; along x, and the rotation about y, of a body that has no plane of
+    symmetry but y = 0.
 
     Attributes:
         motions: each with its modal mass.
@@ -122,10 +122,9 @@ class RigidMotions:
     def __init__(self, loop: Loop, body: int, axis: int) -> None:
         self._loop, self._mass = loop, np.repeat(loop.mass, 3)
         self.motions: list[tuple[Floats, float]] = []
-        for whole, free in (
-            (float(loop.body_masses()[body]), body_translation(loop, body, axis)),
-            self._rotation(body),
-        ):
+        mass = float(loop.body_masses()[body])
+        translations = [(mass, body_translation(loop, body, k)) for k in sorted({axis, 0})]
+        for whole, free in (*translations, self._rotation(body)):
             weight = loop.dot(free, self._mass * free)
             if weight >= (1.0 - 1e-9) * whole:
                 self.motions.append((free, weight))

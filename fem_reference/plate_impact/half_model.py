@@ -113,6 +113,7 @@ def half_model(
         rigid=rigid_numbers,
         watched=of_both(watched),
         patches=patches,
+        off_axis=True,
         fraction=share(HALF),
         offset=scene.offset,
         pairings=tuple(pairings),

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
+
 from ..common.errors import SolverError
 from ..common.hertz import effective_modulus, hertz_contact_radius
 from ..common.series import Report
@@ -16,7 +18,7 @@ from ..common.settings import Settings
 from ..explicit.checkpoint import checkpoint_of
 from ..explicit.frames import Recorder
 from ..explicit.loop import Loop
-from ..explicit.spectrum import first_frequency
+from ..explicit.spectrum import body_translation, first_frequency
 from ..explicit.supervision import stable_run
 from ..solid.elasticity import write_fields
 from ..solid.memory import machine, memory_needed, peak_memory, require_memory
@@ -78,7 +80,13 @@ class Solution:
 
     def first_frequency(self) -> float:
         """Lowest elastic eigenfrequency of the plate, Hz."""
-        return first_frequency(self.loop, self.plate.elastic[PLATE])
+        loop, body = self.loop, self.plate.elastic[PLATE]
+        if not self.plate.off_axis:
+            return first_frequency(loop, body)
+        # A shape that is no rigid motion and has nodal diameters, too.
+        x = loop.system.points[loop.system.owned][:, 0]
+        bent = body_translation(loop, body, 2) * np.repeat(1.0 + (x / x.max()) ** 2, 3)
+        return first_frequency(loop, body, start=bent)
 
     def machine(self) -> dict[str, Any]:
         """For the summary's ``solver``."""

@@ -65,6 +65,8 @@ class PlateModel:
     mean of both over `observed_circle`."""
     patches: dict[tuple[str, str], tuple[Ints, Floats]]
     """Nodes and areas (m^2) of a body in the zone of a contact, by body and contact."""
+    off_axis: bool = False
+    """Whether y = 0 is the only plane of symmetry."""
     fraction: float = share(QUARTER)
     """Share of the bodies that is modelled."""
     offset: float = 0.0

@@ -7,7 +7,7 @@ use crate::file::write_file;
 use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::report::format::{prefixed, with_unit};
 use crate::report::{self, TableFormat};
-use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Summary};
+use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -70,6 +70,11 @@ pub fn table(summary: &Summary) -> String {
         let to = prefixed(unit, value);
         let band = summary.band(name).map_or_else(String::new, |u| format!(" ± {}", with_unit(u, to, 2)));
         lines.push(format!("  {name:<24} {:>14}{band}", with_unit(value, to, 6)));
+    }
+    for (name, value, unit) in summary.sideways.iter().flat_map(Sideways::rows) {
+        let to = prefixed(unit, value);
+        let band = summary.band(name).map_or_else(String::new, |u| format!(" ± {}", with_unit(u, to, 2)));
+        lines.push(format!("  {name:<32} {:>14}{band}", with_unit(value, to, 6)));
     }
     let bender = summary.bender.iter().flat_map(|bender| {
         let drive = &bender.drive;

@@ -193,6 +193,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         uncertainty: BTreeMap::new(),
         convergence: None,
         mesh: None,
+        sideways: None,
         bender: None,
         contact_pressure: None,
         losses: None,
