@@ -41,12 +41,12 @@ def test_what_a_difference_may_be_has_its_parts() -> None:
 
     for row in rows(TANGENTIAL, found(0.03), found(0.01), found(0.05)):
         assert row.simulated == pytest.approx(0.53)
-        assert (row.mesh, row.inputs) == (pytest.approx(0.02), pytest.approx(0.04))
-        assert row.data == pytest.approx(0.015 * 0.90142)
-        assert row.validation == pytest.approx(math.hypot(0.02, 0.04, row.data))
+        assert [row.mesh, row.inputs] == pytest.approx([0.01, 0.04])
+        assert row.data == pytest.approx(0.0075 * 0.90142)
+        assert row.validation == pytest.approx(math.hypot(0.01, 0.04, row.data))
         assert (row.verdict == "within") == (abs(row.error) <= row.validation)
     spins = rows(SPIN, found(0.0), found(0.0), found(0.0))
-    assert spins[0].data == pytest.approx(math.hypot(6.0, 0.015 * 612.88))
+    assert spins[0].data == pytest.approx(math.hypot(3.0, 0.0075 * 612.88))
 
 
 def test_a_ball_rebounds_as_it_was_measured() -> None:
