@@ -101,6 +101,7 @@ evidence: setup wheel
 	$(RUN) --store $(OUT)/evidence study auto --out $(OUT)/studies
 	$(PYTHON) -m fem_reference bands --random 50 --out $(OUT)/bands
 	$(PYTHON) -m fem_reference yielding --out reports/yielding.md
+	$(PYTHON) -m fem_reference rebound --out reports/rebound.md
 	for scene in $(PLATES); do $(PYTHON) -m fem_reference cost --out reports/reference-cost-$$scene.json \
 	    --scene fem_reference/solutions/$$scene/paper/provenance.json || exit 1; done
 	$(PYTHON) -m fem_reference speed --out reports/reference-speed.json \

@@ -1,7 +1,8 @@
 //! `impactcheck gate`: compare, the verdict is the exit status; tolerances and references change with a reason only.
 
 use super::Context;
-use super::compare::{self, Job, Outputs, Results};
+use super::compare_arguments;
+use super::comparison_job::{Job, Outputs, Results};
 use crate::ci::acceptance::{self, Acceptance, AcceptedReference, ToleranceChange};
 use crate::ci::{commit, tolerance_edit, tolerance_watch};
 use crate::comparison::{GateRules, SceneComparison, Undecided, Verdict};
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    pub(super) compare: compare::Arguments,
+    pub(super) compare: compare_arguments::Arguments,
     /// Write the checks as JUnit XML to this file
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,

@@ -5,7 +5,8 @@ pub use super::asked_model::Asked;
 pub use super::asked_model::AskedModel;
 
 use super::asked_model::within_bounds;
-use super::compare::{Arguments, Job, Outputs};
+use super::compare_arguments::Arguments;
+use super::comparison_job::{Job, Outputs};
 use super::{Context, kinds, stored_references};
 use crate::comparison::Comparison;
 use crate::error::{Error, Result};

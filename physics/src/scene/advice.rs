@@ -53,7 +53,8 @@ pub(super) fn example(place: &Place, field: &Field) -> String {
         Kind::Quantity(dimension, bound) => {
             let (_, unit, sample) = dimension.describe();
             let quote = if *dimension == Dimension::NONE { "" } else { "\"" };
-            format!("`{key} = {quote}{sample}{quote}`: {doc}, {}", bound.describe(unit))
+            // the sample shows how a number is written, not which one would be sensible here
+            format!("`{key} = ...`, written like {quote}{sample}{quote}: {doc}, {}", bound.describe(unit))
         }
         Kind::Quantities(dimension, bound, most) => {
             let (_, unit, sample) = dimension.describe();

@@ -1,0 +1,301 @@
+//! A comparison from scenes to the report: what `compare` and `gate` do alike.
+
+use super::asked_model::AskedModel;
+use super::compare_arguments::Arguments;
+use super::compare_inputs;
+use super::external;
+use super::film::film;
+use super::scatter::scatter;
+use super::second_program::{self, Asked};
+use super::stored_references::{look_up, tell_reused};
+use super::{Context, kinds, validated_scenes};
+use crate::ci::commit::Commit;
+use crate::ci::{acceptance, trend};
+use crate::comparison::{Comparison, GateRules, ReferenceCheck, SceneComparison, compare_scene};
+use crate::error::{Error, Result};
+use crate::file::write_file;
+use crate::measured::{self, Record};
+use crate::reference::{COARSER, Resolution, Stored};
+use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
+use crate::result::Outcome;
+use crate::scene::Scene;
+use crate::validated::Validation;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Results over commits, beside the report.
+const TRENDS: &str = "trends.jsonl";
+
+/// Scenes to compare, read and checked.
+pub(super) struct Job<'a> {
+    start: Instant,
+    arguments: &'a Arguments,
+    /// Scene files, and what they say.
+    pub(super) scenes: Vec<(PathBuf, Scene)>,
+    records: Vec<Record>,
+    figures: Vec<(PathBuf, FigureFile)>,
+}
+
+/// Reference and reduced models of one scene.
+pub(super) struct Results {
+    stored: Stored,
+    reduced: Vec<Outcome>,
+    /// What the models have cost, if they share a mesh with the reference.
+    cost: Vec<Cost>,
+    /// Reference and models on the next coarser mesh, if they share their mesh and the reference is stored.
+    coarser: Option<(Stored, Vec<Outcome>)>,
+    /// CalculiX's solution.
+    other: Option<Stored>,
+}
+
+/// What is written besides the report.
+#[derive(Debug, Default)]
+pub(super) struct Outputs {
+    /// The checks as JUnit XML.
+    pub(super) junit: Option<PathBuf>,
+    /// File of results over commits, and the commit to add to it.
+    pub(super) record: Option<(PathBuf, Commit)>,
+}
+
+impl<'a> Job<'a> {
+    pub(super) fn read(context: &Context, arguments: &'a Arguments) -> Result<Self> {
+        let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
+        // of all shipped scenes those are compared that have one of the models
+        if arguments.scenes.is_empty() {
+            let (kept, left_out) =
+                scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
+            scenes = kept;
+            for (_, scene) in left_out {
+                context.note(format_args!("{}", kinds::lacks(&scene)));
+            }
+        }
+        Self::of(arguments, scenes)
+    }
+
+    /// The comparison of these scenes. What can't be done is refused before anything is computed.
+    pub(super) fn of(arguments: &'a Arguments, scenes: Vec<(PathBuf, Scene)>) -> Result<Self> {
+        let start = Instant::now();
+        compare_inputs::named_apart(&scenes)?;
+        if let (Some(tolerance), false) = (arguments.tolerance, arguments.models.contains(&AskedModel::Auto))
+        {
+            return Err(Error::Usage(format!(
+                "--tolerance {tolerance} is for the model auto, which is not among --models"
+            )));
+        }
+        if let Some(file) = arguments.trends.as_ref().filter(|file| !file.is_file()) {
+            return Err(Error::Usage(format!("--trends: there is no file {}", file.display())));
+        }
+        if let Some((_, scene)) =
+            scenes.iter().find(|(_, scene)| !kinds::has_one_of(scene, &arguments.models))
+        {
+            let names: Vec<String> = arguments.models.iter().map(AskedModel::to_string).collect();
+            return Err(Error::Usage(format!("--models {}: {}", names.join(","), kinds::lacks(scene))));
+        }
+        if arguments.models.contains(&AskedModel::External) {
+            arguments.permission.ask(&scenes)?;
+        }
+        let records = compare_inputs::records(&arguments.measured, &scenes)?;
+        let figures = compare_inputs::figures(arguments.figure.as_ref(), &scenes)?;
+        Ok(Job { start, arguments, scenes, records, figures })
+    }
+
+    /// The folders of the report and of `files` can be written.
+    pub(super) fn check_folders(&self, files: &[Option<&PathBuf>]) -> Result<()> {
+        report::check_writable(&self.arguments.out)?;
+        let figures = self.figures.iter().map(|(file, _)| file);
+        let parents = files.iter().copied().flatten().chain(figures).filter_map(|file| file.parent());
+        parents.filter(|folder| !folder.as_os_str().is_empty()).try_for_each(report::check_writable)
+    }
+
+    pub(super) fn resolution(&self) -> Resolution {
+        self.arguments.resolution
+    }
+
+    pub(super) fn out(&self) -> &Path {
+        &self.arguments.out
+    }
+
+    /// References from the store (or computed), and the reduced models' runs, of every scene.
+    pub(super) fn results(&self, context: &Context) -> Result<Vec<Results>> {
+        let references = look_up(context, self.arguments.resolution, self.arguments.compute, &self.scenes)?;
+        for stored in &references {
+            tell_reused(context, stored);
+        }
+        let result = |((file, scene), stored): (&(PathBuf, Scene), Stored)| {
+            let asked = (&self.arguments.models[..], self.arguments.tolerance);
+            let models = kinds::of(scene);
+            let (mut reduced, cost) = models.beside(context, scene, &stored, asked)?;
+            if self.arguments.models.contains(&AskedModel::External) {
+                reduced.extend(external::results(
+                    context,
+                    file,
+                    scene,
+                    stored.outcome.summary.sample_interval,
+                ));
+            }
+            let coarser = self.coarser(context, file, scene).map(|stored| -> Result<_> {
+                let (reduced, _) = models.beside(context, scene, &stored, asked)?;
+                Ok((stored, reduced))
+            });
+            let asked = Asked::of(self.arguments.reference_check, self.arguments.compute);
+            let other = second_program::beside(context, file, scene, self.resolution(), asked)?;
+            Ok(Results { stored, reduced, cost, coarser: coarser.transpose()?, other })
+        };
+        self.scenes.iter().zip(references).map(result).collect()
+    }
+
+    /// Whether the references had to agree with CalculiX's solutions and do not.
+    pub(super) fn refuses(&self, comparison: &Comparison) -> bool {
+        self.arguments.reference_check && comparison.references_disagree()
+    }
+
+    /// The reference on the next coarser mesh, if it is stored and the models solve on the reference's mesh.
+    fn coarser(&self, context: &Context, file: &Path, scene: &Scene) -> Option<Stored> {
+        let resolution = self.resolution().coarser().filter(|_| kinds::of(scene).shares_mesh())?;
+        context.store().for_scene_in(file).find_here_or_shipped(scene, resolution).found()
+    }
+
+    /// The comparison of all scenes, and what is shown with it.
+    pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
+        let (mut scenes, mut found, mut scatters) = (Vec::new(), Vec::new(), Vec::new());
+        for ((file, scene), Results { stored, reduced, cost, coarser, other }) in
+            self.scenes.iter().zip(results)
+        {
+            let acceptances = acceptance::read(file)?;
+            let mut comparison = compared(context, scene, &stored.outcome, reduced);
+            if let Some((stored, reduced)) = coarser {
+                let coarser = compare_scene(scene, &stored.outcome, reduced);
+                comparison.judge_on_common_mesh(&coarser, COARSER);
+            }
+            let beside = |other: &Stored| ReferenceCheck::of(&stored.outcome.summary, &other.outcome.summary);
+            comparison.reference_check = other.as_ref().map(beside);
+            let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
+            comparison.add_reference_checks(checks);
+            comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
+            found.push((stored, Validation::of(scene, &comparison)));
+            scatters.push(scatter(context, file, scene, &comparison).unwrap_or_else(|error| {
+                context.note(format_args!(
+                    "scene `{}` is compared as if its inputs were certain: {error}",
+                    scene.name
+                ));
+                BTreeMap::new()
+            }));
+            let asked = self.figures.iter().any(|(_, format)| *format == FigureFile::Animation);
+            let film = film(context, scene, (stored, reduced), asked)?;
+            scenes.push(SceneReport {
+                scene,
+                comparison,
+                reference: &stored.outcome,
+                reduced,
+                provenance: stored.provenance.clone(),
+                command: self.command(scene),
+                attachments: Attachments {
+                    acceptances,
+                    folder: compare_inputs::folder(file),
+                    cost: cost.clone(),
+                    film,
+                    ..Attachments::of(scene, stored)
+                },
+            });
+        }
+        let known: Arc<[Validation]> = validated_scenes::known(context, &found).into();
+        let coverage = validated_scenes::coverage(context, &known).map(Arc::new);
+        for report in &mut scenes {
+            report.attachments.validated = Arc::clone(&known);
+            report.attachments.coverage.clone_from(&coverage);
+        }
+        if let (Some(report), false) = (scenes.first_mut(), self.records.is_empty()) {
+            let how = (self.arguments.bandwidth, self.arguments.speed);
+            let measured =
+                measured::compare(report.scene, &self.records, report.reference, report.reduced, how)?;
+            report.comparison.measured = Some(measured);
+            let files = self.arguments.measured.iter().map(|f| format!(" --measured {}", f.display()));
+            report.command += &files.collect::<String>();
+        }
+        for (report, scatters) in
+            scenes.iter_mut().zip(&scatters).filter(|(_, scatters)| !scatters.is_empty())
+        {
+            report.comparison.add_validation(scatters);
+        }
+        Ok(Report { scenes, rules: GateRules::default() })
+    }
+
+    /// The command line that compares `scene` in the same way.
+    fn command(&self, scene: &Scene) -> String {
+        let Arguments { scenes, models, resolution, .. } = self.arguments;
+        let place = self.scenes.iter().position(|(_, other)| other.name == scene.name);
+        let named = place.and_then(|k| scenes.get(k)).unwrap_or(&scene.name);
+        let mut command = format!("impactcheck compare {named}");
+        let models: Vec<String> = models.iter().map(AskedModel::to_string).collect();
+        if models != ["A", "B", "C", "external"] {
+            command += &format!(" --models {}", models.join(","));
+        }
+        if let Some(tolerance) = self.arguments.tolerance {
+            command += &format!(" --tolerance {tolerance}");
+        }
+        if self.arguments.reference_check {
+            command += " --reference-check";
+        }
+        if *resolution != Resolution::Paper {
+            command += &format!(" --resolution {}", resolution.argument());
+        }
+        command
+    }
+
+    /// Writes the report and `outputs`, and prints the result.
+    pub(super) fn finish(
+        &self,
+        context: &Context,
+        mut report: Report,
+        outputs: &Outputs,
+    ) -> Result<Comparison> {
+        let comparison = self.write(&mut report, outputs)?;
+        if self.arguments.json.json {
+            super::print_json(&comparison)?;
+        } else {
+            super::print(&report::terminal(&report))?;
+        }
+        context.note(format_args!(
+            "{} scene{} compared in {:.2} s; report: {}",
+            self.scenes.len(),
+            if self.scenes.len() == 1 { "" } else { "s" },
+            self.start.elapsed().as_secs_f64(),
+            self.arguments.out.join("index.html").display()
+        ));
+        Ok(comparison)
+    }
+
+    /// Writes the report and `outputs`.
+    pub(super) fn write(&self, report: &mut Report, outputs: &Outputs) -> Result<Comparison> {
+        let comparison = report.comparison();
+        let entries = match &outputs.record {
+            Some((file, commit)) => trend::record(file, &comparison, commit)?,
+            None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
+        };
+        let now = chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string();
+        for scene in &mut report.scenes {
+            scene.attachments.compared = Some(now.clone());
+            scene.attachments.trends = trend::trends(&entries, &scene.comparison);
+        }
+        report::write(report, &self.arguments.out)?;
+        for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
+            write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
+        }
+        if let Some(file) = &outputs.junit {
+            write_file(file, report::junit(report)?.as_bytes())?;
+        }
+        Ok(comparison)
+    }
+}
+
+/// The comparison with its discrepancy budget. A budget that can't be drawn up is said to be missing: the comparison
+/// stands without it.
+fn compared(context: &Context, scene: &Scene, reference: &Outcome, reduced: &[Outcome]) -> SceneComparison {
+    let mut comparison = compare_scene(scene, reference, reduced);
+    if let Err(error) = comparison.add_budget(scene) {
+        context.note(format_args!("scene `{}` has no discrepancy budget: {error}", scene.name));
+    }
+    comparison
+}
