@@ -6,27 +6,30 @@ use crate::error::Result;
 use crate::scene::Plate;
 use std::f64::consts::PI;
 
+/// Wave number by which the edge raises the modes, and some more.
+const EDGE: f64 = 6.0;
+
 /// The lowest `modes` modes of `plate`, clamped or simply supported, that move the point at `offset` in m from its centre, where the
 /// outer body strikes; the inner one faces the centre, which modes with nodal diameters leave at rest.
 ///
 /// # Errors
 /// As [`UnitPlate::new`].
 pub fn modes(plate: &Plate, offset: f64, modes: usize) -> Result<ModalBody> {
-    // the k-th mode with n diameters has about the wave number (k + n/2) pi, so that about x^2/pi^2 lie below x (Leissa, Vibration
-    // of Plates, 1969, section 2.1); some more for the edge
-    let highest = (modes as f64).sqrt() + 2.0;
+    // x^2/8 modes lie below the wave number x if it is large (Weyl), fewer by the edge
+    let highest = (8.0 * modes as f64).sqrt() + EDGE;
     let mut found: Vec<(f64, [f64; 2])> = Vec::new();
-    for diameters in 0..=(2.0 * highest) as usize {
-        let count = (highest - 0.5 * diameters as f64).ceil() as usize + 1;
+    for diameters in 0..=highest as usize {
+        // zeros of Bessel functions of the order n begin above n and are pi apart at least
+        let count = ((highest - diameters as f64) / PI) as usize + 2;
         let unit = UnitPlate::with_diameters(plate.edge, plate.material.poisson_ratio, count, diameters)?;
         let body = unit.scale(plate);
-        let struck = unit.shapes(plate, &[offset]);
-        let both = body.participation.iter().zip(struck).map(|(centre, struck)| [struck[0], centre[1]]);
-        // above it others with fewer diameters would be missing
-        let complete = |omega: &f64| *omega <= unit.frequency(plate) * (PI * highest).powi(2);
-        found.extend(body.omega.into_iter().zip(both).filter(|(omega, _)| complete(omega)));
+        let both = body.participation.iter().zip(unit.shapes(plate, &[offset]));
+        let both = both.map(|(centre, struck)| [struck[0], centre[1]]);
+        let below = unit.frequency(plate) * highest.powi(2);
+        found.extend(body.omega.into_iter().zip(both).filter(|(omega, _)| *omega <= below));
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    debug_assert!(found.len() >= modes);
     found.truncate(modes);
     let (omega, participation): (Vec<f64>, Vec<[f64; 2]>) = found.into_iter().unzip();
     Ok(ModalBody {
