@@ -52,7 +52,7 @@ const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
 }
 
 /// The features, of plates first.
-pub static FEATURES: [Feature; 25] = [
+pub static FEATURES: [Feature; 27] = [
     feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)).by(Form::CircularPlate),
     feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported))
         .by(Form::CircularPlate),
@@ -71,6 +71,8 @@ pub static FEATURES: [Feature; 25] = [
     feature("impacts in series", |s| plate(s, |p| p.series.is_some())),
     feature("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))).by(Form::Cantilever),
     feature("friction", |s| plate(s, |p| p.friction > 0.0)),
+    feature("off-centre impact", |s| plate(s, |p| p.outer.offset > 0.0)),
+    feature("oblique impact", |s| plate(s, |p| p.outer.angle != 0.0)),
     feature("squeeze film", |s| fluid(s, |f| f.squeeze_film)).by(Form::Film),
     feature("shear thinning", |s| fluid(s, |f| f.shear_thinning.is_some())),
     feature("added mass", |s| fluid(s, |f| f.added_mass_frequency_ratio < 1.0)),

@@ -99,6 +99,54 @@ def body_translation(loop: Loop, body: int, axis: int) -> Floats:
     return np.asarray(motion.ravel() * (loop.inverse > 0.0))
 
 
+def body_rotation(loop: Loop, body: int) -> Floats:
+    """The small rotation of a body about the y axis through its centre of mass, 1 rad."""
+    inside = np.where(loop.body == body, loop.mass, 0.0)
+    place = loop.system.points[loop.system.owned]
+    centre = loop.total(inside @ place) / float(loop.body_masses()[body])
+    motion = np.zeros_like(place)
+    motion[:, 0], motion[:, 2] = place[:, 2] - centre[2], centre[0] - place[:, 0]
+    return np.asarray((motion * (loop.body == body)[:, None]).ravel())
+
+
+class RigidMotions:
+    """The motions of a body that a force along an axis causes and no support hinders.
+
+    Translation along the axis; along x, and the rotation about y, of a body that has no plane of
+    symmetry but y = 0.
+
+    Attributes:
+        motions: each with its modal mass.
+    """
+
+    def __init__(self, loop: Loop, body: int, axis: int) -> None:
+        self._loop, self._mass = loop, np.repeat(loop.mass, 3)
+        self.motions: list[tuple[Floats, float]] = []
+        mass = float(loop.body_masses()[body])
+        translations = [(mass, body_translation(loop, body, k)) for k in sorted({axis, 0})]
+        for whole, free in (*translations, self._rotation(body)):
+            weight = loop.dot(free, self._mass * free)
+            if weight >= (1.0 - 1e-9) * whole:
+                self.motions.append((free, weight))
+
+    def _rotation(self, body: int) -> tuple[float, Floats]:
+        rotation = body_rotation(self._loop, body)
+        whole = self._loop.dot(rotation, self._mass * rotation)
+        return whole, rotation * (self._loop.inverse > 0.0)
+
+    def out_of_motion(self, x: Floats) -> Floats:
+        """A motion without them."""
+        for rigid, weight in self.motions:
+            x = x - rigid * (self._loop.dot(rigid, self._mass * x) / weight)
+        return x
+
+    def out_of_force(self, force: Floats) -> Floats:
+        """A force without what accelerates them."""
+        for rigid, weight in self.motions:
+            force = force - self._mass * rigid * (self._loop.dot(rigid, force) / weight)
+        return force
+
+
 def first_frequency(
     loop: Loop, body: int, axis: int = 2, tolerance: float = 1e-6, start: Floats | None = None
 ) -> float:
@@ -109,18 +157,10 @@ def first_frequency(
     """
     free = free_components(loop, body)
     mass = np.repeat(loop.mass, 3)
-    rigid = body_translation(loop, body, axis)
-    weight = loop.dot(rigid, mass * rigid)
-    floating = weight >= (1.0 - 1e-9) * float(loop.body_masses()[body])
-
-    def orthogonal(x: Floats) -> Floats:
-        return x - rigid * (loop.dot(rigid, mass * x) / weight) if floating else x
-
-    def balanced(force: Floats) -> Floats:
-        return force - mass * rigid * (loop.dot(rigid, force) / weight) if floating else force
-
-    x = rigid.copy()
-    if floating:
+    floating = RigidMotions(loop, body, axis)
+    x = rigid = body_translation(loop, body, axis)
+    orthogonal, balanced = floating.out_of_motion, floating.out_of_force
+    if floating.motions:
         place = loop.system.points[loop.system.owned]
         x = orthogonal(rigid * np.repeat((place[:, :2] ** 2).sum(axis=1), 3))
     if start is not None:
@@ -162,15 +202,7 @@ def patch_flexibility(loop: Loop, body: int, nodes: Ints, weights: Floats) -> fl
     patch[nodes + loop.system.first[body], 2] = weights
     load = loop.own(patch)
     free = free_components(loop, body)
-    rigid = body_translation(loop, body, 2)
-    mass = np.repeat(loop.mass, 3)
-    weight = loop.dot(rigid, mass * rigid)
-    if weight < (1.0 - 1e-9) * float(loop.body_masses()[body]):
-        return loop.dot(load, conjugate_gradients(loop, load, free, tolerance=1e-4))
-
-    def balanced(force: Floats) -> Floats:
-        return force - mass * rigid * (loop.dot(rigid, force) / weight)
-
-    relieved = balanced(load)
-    x = conjugate_gradients(loop, relieved, free, balanced, tolerance=1e-4)
+    floating = RigidMotions(loop, body, 2)
+    relieved = floating.out_of_force(load)
+    x = conjugate_gradients(loop, relieved, free, floating.out_of_force, tolerance=1e-4)
     return loop.dot(relieved, x)

@@ -59,8 +59,8 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
         hertz_stiffness(e, body.tip_radius) for e, body in zip(effective, bodies, strict=True)
     ]
     mobility = 1.0 / (8.0 * math.sqrt(plate.surface_density * plate.bending_stiffness))
-    scale = hertz_time_scale(scene.outer.mass, stiffness[0], scene.speed)
-    length = scene.speed * scale
+    scale = hertz_time_scale(scene.outer.mass, stiffness[0], scene.normal_speed)
+    length = scene.normal_speed * scale
 
     def forces(y: NDArray[np.float64]) -> NDArray[np.float64]:
         # y = outer, its velocity, plate, inner, its velocity, in units of length and scale
@@ -69,11 +69,11 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
 
     def rate(_: float, y: NDArray[np.float64]) -> list[float]:
         outer, inner = forces(y)
-        unit = scale / scene.speed
+        unit = scale / scene.normal_speed
         return [
             y[1],
             unit * outer / scene.outer.mass,
-            mobility * (inner - outer) / scene.speed,
+            mobility * (inner - outer) / scene.normal_speed,
             y[4],
             -unit * inner / scene.inner.mass,
         ]
@@ -82,7 +82,7 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
     path = solve_ivp(
         rate,
         (0.0, 13.0),
-        [0.0, -1.0, 0.0, -scene.gap / length, scene.inner_speed / scene.speed],
+        [0.0, -1.0, 0.0, -scene.gap / length, scene.inner_speed / scene.normal_speed],
         rtol=1e-6,
         atol=1e-9,
         max_step=0.05,
@@ -98,7 +98,7 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
     if peak[1] == 0.0:
         # Not reached in the first contact: the mesh is made for the other one, and verified.
         radii[1] = min(radii[0], 0.15 * scene.inner.tip_radius)
-    speeds = (scene.speed, max(scene.speed, scene.inner_speed))
+    speeds = (scene.normal_speed, max(scene.normal_speed, scene.inner_speed))
     radii = [
         max(radius, _dented_radius(radius, force, body, plate.material))
         for radius, force, body in zip(radii, peak, bodies, strict=True)

@@ -30,7 +30,7 @@ def observed_circle(scene: Scene) -> float:
     outer = scene.outer
     effective = effective_modulus(outer.material, scene.plate.material)
     stiffness = hertz_stiffness(effective, outer.tip_radius)
-    approach = hertz_approach(outer.mass, scene.speed, stiffness)
+    approach = hertz_approach(outer.mass, scene.normal_speed, stiffness)
     return min(CIRCLE * math.sqrt(outer.tip_radius * approach), scene.plate.radius)
 
 
@@ -92,6 +92,22 @@ class Yielded:
 
 
 @dataclass(frozen=True)
+class Sideways:
+    """Motion along the plate and about the y axis, of what is struck beside its axis or obliquely.
+
+    Of outer and inner body; a spin is positive from z to x, as that of a ball that rolls towards +x
+    on a plate below it.
+    """
+
+    velocities: tuple[float, float]
+    """Along x, m/s."""
+    spins: tuple[float, float]
+    """rad/s"""
+    misses: tuple[float, ...]
+    """Momentum along x that no impulse accounts for, of independent balances, N s."""
+
+
+@dataclass(frozen=True)
 class Further:
     """What acts besides contacts and supports."""
 
@@ -105,6 +121,8 @@ class Further:
     """None: nothing that could yield."""
     locked_in: float = 0.0
     """Elastic energy that would be left at rest, J."""
+    sideways: Sideways | None = None
+    """None: symmetry leaves no such motion."""
 
 
 class Motion(Protocol):

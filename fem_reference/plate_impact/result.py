@@ -28,7 +28,7 @@ from ..common.settings import RESOLUTIONS, Options, Settings
 from ..common.versions import versions
 from .estimate import ContactEstimate
 from .history import HISTORY_COLUMNS, curve_bands, history
-from .motion import Yielded
+from .motion import SPHERES, Yielded
 from .run import Run
 from .scene import Scene
 
@@ -92,7 +92,8 @@ class Solution(Solved, Protocol):
 
 def of_run(scene: Scene, run: Run) -> dict[str, float]:
     """Those of `QUANTITIES` that a run gives, SI; a contact that never closed ends at 0."""
-    transmitted = scene.inner.mass * run.inner_velocity**2
+    along = run.sideways.velocities if run.sideways else (0.0, 0.0)
+    transmitted = scene.inner.mass * (run.inner_velocity**2 + along[1] ** 2)
     return {
         "efficiency": transmitted / (scene.outer.mass * scene.speed**2),
         "outer_velocity_final": run.outer_velocity,
@@ -101,7 +102,19 @@ def of_run(scene: Scene, run: Run) -> dict[str, float]:
         "inner_force_peak": run.contacts[1].force_peak,
         "outer_contact_end": run.contacts[0].end or 0.0,
         "inner_contact_end": run.contacts[1].end or 0.0,
+        **_sideways(run),
     }
+
+
+def _sideways(run: Run) -> dict[str, float]:
+    """Velocities (m/s) and spins (rad/s) that bodies struck beside the axis or obliquely have."""
+    if run.sideways is None:
+        return {}
+    found = {}
+    for row, name in enumerate(SPHERES):
+        found[f"{name}_tangential_velocity_final"] = run.sideways.velocities[row]
+        found[f"{name}_spin_final"] = run.sideways.spins[row]
+    return found
 
 
 def quantities(scene: Scene, solution: Solution) -> dict[str, float]:

@@ -15,7 +15,7 @@ from ..explicit.energies import Energies, energies_of
 from ..explicit.levels import MOST_LEVELS
 from ..explicit.records import ContactRecord, intervals, peak_force
 from ..explicit.supervision import Account, Course, Ended, Plan, supervise
-from .motion import Losses, Motion, Yielded
+from .motion import Losses, Motion, Sideways, Yielded
 from .scene import Scene
 
 PEAK_WINDOW_SAMPLES = 4
@@ -57,6 +57,8 @@ class Run:
     """Of the whole bodies; None if nothing loses."""
     yielded: Yielded | None
     """None: nothing that could yield."""
+    sideways: Sideways | None = None
+    """None: symmetry leaves no motion along the plate."""
     dents: Floats | None = None
     """As `Dents.profiles`; None of bodies that cannot have any."""
 
@@ -134,6 +136,7 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
     ]
     if not isinstance(scene.outer, Bender):
         misses.append(momenta[0] - outer_start - impulses[0])
+    misses += further.sideways.misses if further.sideways else ()
     # The last sample needs one more step, which leaves the levels at different times.
     rows = np.vstack([course.rows, motion.sample(1, 1)])
     window = max(1, round(PEAK_WINDOW_FRACTION * duration / course.interval))
@@ -161,6 +164,7 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         support_impulse=support / share,
         losses=losses and losses.of_whole(share),
         yielded=further.yielded,
+        sideways=further.sideways,
     )
 
 

@@ -58,7 +58,11 @@ class Scene:
     outer: Body
     inner: Body
     speed: float
-    """Speed of the outer body towards the plate, m/s, positive."""
+    """Speed of the outer body, m/s, positive."""
+    offset: float
+    """Distance of the point of impact from the axis, along x, m."""
+    angle: float
+    """Of the outer body's velocity against the plate's normal, rad; positive: towards +x."""
     gap: float
     """Initial distance of the inner body from the plate, m."""
     inner_speed: float
@@ -80,6 +84,21 @@ class Scene:
     """The document as given, for the provenance."""
 
     @property
+    def centred(self) -> bool:
+        """Whether the outer body strikes the centre of the plate along the axis."""
+        return self.offset == 0.0 and self.angle == 0.0
+
+    @property
+    def normal_speed(self) -> float:
+        """Of the outer body towards the plate, m/s."""
+        return self.speed * math.cos(self.angle)
+
+    @property
+    def tangential_velocity(self) -> float:
+        """Of the outer body along x, m/s."""
+        return self.speed * math.sin(self.angle)
+
+    @property
     def initial_energy(self) -> float:
         """Of both bodies at the start: kinetic, and the strain energy of a bender, J."""
         if isinstance(self.outer, Bender):
@@ -91,7 +110,7 @@ class Scene:
         """Of outer and inner body along z, kg m/s."""
         if isinstance(self.outer, Bender):
             return self.outer.strike.momentum, self.inner.mass * self.inner_speed
-        return -self.outer.mass * self.speed, self.inner.mass * self.inner_speed
+        return -self.outer.mass * self.normal_speed, self.inner.mass * self.inner_speed
 
     @property
     def materials(self) -> tuple[Material, Material, Material]:
@@ -172,6 +191,22 @@ def _bender(reader: Reader) -> Bender:
     return bender
 
 
+def _direction(outer: Reader, plate: Plate, geometry: str) -> tuple[float, float]:
+    """Where the outer body strikes (m from the axis) and at what angle (rad)."""
+    offset = angle = 0.0
+    if outer.node.get("kind") != "bender":
+        offset = outer.number_or("offset", 0.0, "m", below=plate.radius, inclusive=True)
+        quarter = 0.5 * math.pi
+        angle = outer.number_or("angle", 0.0, "rad", above=-quarter, below=quarter)
+    for name, value, unit in (("offset", offset, "m"), ("angle", angle, "rad")):
+        if value != 0.0 and geometry != "solid":
+            raise SceneError(
+                f"outer.{name} is {value:g} {unit}, which has no axis of symmetry: take "
+                "reference.geometry 'solid'"
+            )
+    return offset, angle
+
+
 def _series(root: Reader, geometry: str) -> Series | None:
     if root.node.get("series") is None:
         return None
@@ -186,7 +221,9 @@ def _series(root: Reader, geometry: str) -> Series | None:
 
 
 def _outer(reader: Reader) -> Body:
-    return _bender(reader) if reader.node.get("kind") == "bender" else _body(reader, "speed")
+    if reader.node.get("kind") == "bender":
+        return _bender(reader)
+    return _body(reader, "speed", "offset", "angle")
 
 
 def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:
@@ -282,14 +319,21 @@ def parse_scene(document: Any) -> Scene:
                 "run.end_time is missing; a bender swings back to the plate for ever, so that it "
                 "has to be given"
             )
+    offset, angle = _direction(outer, plate, geometry)
     friction = root.number_or("friction", 0.0, "(no unit)", inclusive=True)
-    if friction > 0.0 and (geometry == "solid" or not _are_spheres(bodies)):
+    if friction > 0.0 and not _are_spheres(bodies):
         raise SceneError(
-            f"friction is {friction:g}; this solver has it between spheres and plate in "
-            "axisymmetric geometry, elsewhere it must be 0"
+            f"friction is {friction:g}; this solver has it between spheres and plate, elsewhere it "
+            "must be 0"
         )
     materials = {"plate": plate.material, **{n: body.material for n, body in bodies.items()}}
     _require_elastic(materials, geometry, _are_spheres(bodies), fluid is not None)
+    relaxing = [name for name, material in materials.items() if material.relaxation]
+    if relaxing and (offset != 0.0 or angle != 0.0):
+        raise SceneError(
+            f"{relaxing[0]}.material.relaxation is given; beside the axis or at an angle this "
+            "solver has elastic bodies only"
+        )
     for name, body in bodies.items():
         if not isinstance(body, Sphere) and name not in rigid and body.material.relaxation:
             raise SceneError(
@@ -311,6 +355,8 @@ def parse_scene(document: Any) -> Scene:
         outer=bodies["outer"],
         inner=bodies["inner"],
         speed=outer.number("speed", "m/s"),
+        offset=offset,
+        angle=angle,
         gap=inner.number("gap", "m", inclusive=True),
         inner_speed=inner.number_or("speed", 0.0, "m/s", above=-math.inf),
         friction=friction,

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
+
 from ..common.errors import SolverError
 from ..common.hertz import effective_modulus, hertz_contact_radius
 from ..common.series import Report
@@ -16,7 +18,7 @@ from ..common.settings import Settings
 from ..explicit.checkpoint import checkpoint_of
 from ..explicit.frames import Recorder
 from ..explicit.loop import Loop
-from ..explicit.spectrum import first_frequency
+from ..explicit.spectrum import body_translation, first_frequency
 from ..explicit.supervision import stable_run
 from ..solid.elasticity import write_fields
 from ..solid.memory import machine, memory_needed, peak_memory, require_memory
@@ -30,11 +32,13 @@ from .estimate import (
     estimate_contact,
     shortest_wavelengths,
 )
+from .half_model import half_model
+from .half_motion import HalfMotion
 from .motion import PLATE
 from .run import Run
 from .scene import Scene
 from .solid_model import PlateModel, plate_model
-from .solid_motion import integrate_solid
+from .solid_motion import SolidMotion, integrate_solid
 
 REVISION = 6
 """Counts changes of the method that make older checkpoints useless."""
@@ -76,7 +80,13 @@ class Solution:
 
     def first_frequency(self) -> float:
         """Lowest elastic eigenfrequency of the plate, Hz."""
-        return first_frequency(self.loop, self.plate.elastic[PLATE])
+        loop, body = self.loop, self.plate.elastic[PLATE]
+        if not self.plate.off_axis:
+            return first_frequency(loop, body)
+        # A shape that is no rigid motion and has nodal diameters, too.
+        x = loop.system.points[loop.system.owned][:, 0]
+        bent = body_translation(loop, body, 2) * np.repeat(1.0 + (x / x.max()) ** 2, 3)
+        return first_frequency(loop, body, start=bent)
 
     def machine(self) -> dict[str, Any]:
         """For the summary's ``solver``."""
@@ -168,6 +178,7 @@ def _stepped(
             plate,
             scene,
             duration,
+            SolidMotion if scene.centred else HalfMotion,
             courant=settings.courant,
             most_levels=most_levels,
             fields=recorder,
@@ -193,13 +204,14 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
     """
     estimate = estimate_contact(scene)
     wavelengths = shortest_wavelengths(scene, estimate.duration)
+    model = plate_model if scene.centred else half_model
     asked = scene.elements_per_contact_radius * factor
     radii = (estimate.outer_radius, estimate.inner_radius)
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
         expected = dataclasses.replace(estimate, outer_radius=radii[0], inner_radius=radii[1])
         # gmsh runs in one process; the others wait.
-        made = plate_model(scene, expected, wavelengths, factor) if comm.rank == 0 else None
+        made = model(scene, expected, wavelengths, factor) if comm.rank == 0 else None
         plate: PlateModel = comm.bcast(made)
         nodes = int(plate.model.first[-1])
         report(
@@ -239,6 +251,12 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
                 "asked; meshing again with the radii found",
                 file=sys.stderr,
             )
+    if not inside:
+        raise SolverError(
+            f"after {MOST_MESHES} meshes there still is contact outside of what can touch, "
+            f"{plate.zone:.3g} m around the points of impact: a body that touches again elsewhere "
+            "is beyond this solver"
+        )
     raise SolverError(
         f"after {MOST_MESHES} meshes there are still only {min(found):.3g} elements per contact "
         f"radius, {asked:.3g} are asked for"

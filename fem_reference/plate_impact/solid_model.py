@@ -1,4 +1,7 @@
-"""The plate scene as a three-dimensional model: a quarter of each body, elastic or rigid."""
+"""The plate scene as a three-dimensional model: a quarter of each body, elastic or rigid.
+
+Off the axis or at an angle it is a half (`half_model`).
+"""
 
 from __future__ import annotations
 
@@ -12,20 +15,37 @@ from ..common.bodies import Plate, Sphere, sphere_profile
 from ..common.errors import SceneError
 from ..explicit.contact import Contact, RigidBody, SphereContact, SurfaceContact, guided
 from ..solid.mesh import TetMesh, surface
-from ..solid.meshing import SizeField, quarter_plate, quarter_sphere
+from ..solid.meshing import QUARTER, SizeField, part_of_plate, part_of_sphere, share
 from ..solid.model import ElasticBody, Model, nodal_areas, project, symmetry_plane
+from ..solid.sphere_pairs import Ball
 from .estimate import ContactEstimate
 from .motion import INNER, OUTER, PLATE, observed_circle
 from .scene import Scene
 
-FRACTION = 0.25
-"""Share of the bodies that is modelled."""
 FINE_ZONE = 1.3
 """Radius of the zone of smallest elements over the largest contact radius expected."""
 CANDIDATE_ZONE = 1.8
 """Radius of the zone of nodes that may touch over the largest contact radius expected."""
+LARGEST, LARGEST_TURNING = 0.25, 0.15
+"""Largest element of a sphere over its radius; the moment of inertia of one that turns is 0.6 % too
+large with the latter."""
 SLOPE = 0.3
 """Growth of the element size per distance from the contact, at factor 1."""
+
+
+@dataclass(frozen=True)
+class Pairing:
+    """What it takes to pair nodes of the plate with an elastic sphere that slides along it."""
+
+    contact: int
+    """Number of the contact, of the plate's nodes."""
+    body: int
+    """Number of the sphere among the elastic bodies."""
+    ball: Ball
+    facets: Ints
+    """Facets of the sphere that can touch."""
+    reach: float
+    """Distance from the sphere's axis up to which they lie opposite to candidates, m."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +65,17 @@ class PlateModel:
     mean of both over `observed_circle`."""
     patches: dict[tuple[str, str], tuple[Ints, Floats]]
     """Nodes and areas (m^2) of a body in the zone of a contact, by body and contact."""
+    off_axis: bool = False
+    """Whether y = 0 is the only plane of symmetry."""
+    fraction: float = share(QUARTER)
+    """Share of the bodies that is modelled."""
+    offset: float = 0.0
+    """Distance of the point of impact from the axis, along x, m."""
+    pairings: tuple[Pairing, ...] = ()
+    """Contacts whose pairs follow the sphere."""
 
 
-def _plate_supports(plate: Plate, mesh: TetMesh, facets: Ints) -> Ints:
+def plate_supports(plate: Plate, mesh: TetMesh, facets: Ints) -> Ints:
     """Clamped: all displacements on the whole rim; simply supported: the axial one."""
     if plate.edge == "free":
         return np.zeros(0, dtype=np.int64)
@@ -68,7 +96,11 @@ def _symmetry(mesh: TetMesh) -> Ints:
 
 
 def size_fields(
-    scene: Scene, radii: tuple[float, float], wavelengths: tuple[float, float, float], factor: float
+    scene: Scene,
+    radii: tuple[float, float],
+    wavelengths: tuple[float, float, float],
+    factor: float,
+    travel: float = 0.0,
 ) -> tuple[SizeField, SizeField, SizeField]:
     """Element sizes of outer sphere, plate and inner sphere.
 
@@ -77,9 +109,10 @@ def size_fields(
         radii: outer and inner contact radius expected, m.
         wavelengths: shortest in the three bodies, m.
         factor: on the number of elements in every direction.
+        travel: of the outer body along the plate during its contact, m.
 
     Raises:
-        SceneError: the contact is too large for a body.
+        SceneError: the contact is too large for a body, or too near to the plate's rim.
     """
     order = scene.element_order
     zone = max(radii)
@@ -88,11 +121,12 @@ def size_fields(
     for name, radius in (
         (f"outer.{scene.outer.RADIUS_KEY}", scene.outer.tip_radius),
         (f"inner.{scene.inner.RADIUS_KEY}", scene.inner.tip_radius),
-        ("plate.radius", plate.radius),
+        ("plate.radius", plate.radius - scene.offset),
     ):
         if 3.0 * CANDIDATE_ZONE * zone > radius:
+            less = " less outer.offset" if name == "plate.radius" and scene.offset > 0.0 else ""
             raise SceneError(
-                f"{name} is {radius:g} m, but a contact radius of {zone:.3g} m is expected; "
+                f"{name}{less} is {radius:g} m, but a contact radius of {zone:.3g} m is expected; "
                 f"{3.0 * CANDIDATE_ZONE:g} times as much is the least"
             )
     # Elements per wavelength; linear tetrahedra are far too stiff in bending with fewer.
@@ -101,23 +135,25 @@ def size_fields(
 
     def field(centres: tuple[tuple[float, float, float], ...], largest: float) -> SizeField:
         return SizeField(
-            centres, FINE_ZONE * zone, least, SLOPE / factor, max(least, largest / factor)
+            centres, FINE_ZONE * zone + travel, least, SLOPE / factor, max(least, largest / factor)
         )
 
     half = 0.5 * plate.thickness
+    largest = LARGEST if scene.centred else LARGEST_TURNING
     # Above and below, a sphere is meshed with its pole at the origin.
     pole = ((0.0, 0.0, 0.0),)
     return (
-        field(pole, min(0.25 * scene.outer.tip_radius, wavelengths[0] / per_wave)),
+        field(pole, min(largest * scene.outer.tip_radius, wavelengths[0] / per_wave)),
         field(
-            ((0.0, 0.0, half), (0.0, 0.0, -half)),
+            ((scene.offset, 0.0, half), (0.0, 0.0, -half)),
             min(through * plate.thickness, plate.radius / 8.0, wavelengths[1] / per_wave),
         ),
-        field(pole, min(0.25 * scene.inner.tip_radius, wavelengths[2] / per_wave)),
+        field(pole, min(largest * scene.inner.tip_radius, wavelengths[2] / per_wave)),
     )
 
 
-def _face(mesh: TetMesh, facets: Ints, height: float) -> Ints:
+def face_of(mesh: TetMesh, facets: Ints, height: float) -> Ints:
+    """The facets at a height (m)."""
     return np.asarray(facets[np.all(mesh.points[facets][:, :, 2] == height, axis=1)])
 
 
@@ -143,9 +179,9 @@ def plate_model(
     outer_size, plate_size, inner_size = size_fields(scene, radii, wavelengths, factor)
     zone = CANDIDATE_ZONE * max(radii)
     order = scene.element_order
-    plate = quarter_plate(scene.plate, plate_size, order)
+    plate = part_of_plate(scene.plate, plate_size, order)
     plate_facets = surface(plate)
-    fixed = np.union1d(_symmetry(plate), _plate_supports(scene.plate, plate, plate_facets))
+    fixed = np.union1d(_symmetry(plate), plate_supports(scene.plate, plate, plate_facets))
     elastic = [ElasticBody(plate, scene.plate.material, fixed)]
     numbers, rigid_numbers = {PLATE: 0}, {}
     rigid: list[RigidBody] = []
@@ -157,27 +193,29 @@ def plate_model(
         (INNER, scene.inner, inner_size, -1.0, scene.gap, scene.inner_speed),
     ):
         height = side * 0.5 * scene.plate.thickness
-        face = _face(plate, plate_facets, height)
+        face = face_of(plate, plate_facets, height)
         areas = nodal_areas(plate, face)
         distance = np.hypot(plate.points[:, 0], plate.points[:, 1])
         near = np.flatnonzero((areas > 0.0) & (distance <= zone))
         # By increasing radius: the record of the outermost contact goes by it.
         near = near[np.argsort(distance[near], kind="stable")]
         patches[PLATE, name] = (near, areas[near])
-        watched.append(_watched(areas, distance, observed_circle(scene)))
+        watched.append(watched_nodes(areas, distance, observed_circle(scene)))
         if name in scene.rigid or not isinstance(body, Sphere):
             rigid_numbers[name] = len(rigid)
             along = guided((0.0, 0.0, 1.0))
-            rigid.append(RigidBody(name, FRACTION * body.mass, along, (0.0, 0.0, speed)))
+            rigid.append(RigidBody(name, share(QUARTER) * body.mass, along, (0.0, 0.0, speed)))
             place = (0.0, 0.0, height + side * (body.tip_radius + gap))
-            tip = SphereContact(name, 0, near, rigid_numbers[name], place, body.tip_radius)
+            tip = SphereContact(
+                name, 0, near, len(rigid) - 1, place, body.tip_radius, friction=scene.friction
+            )
             contacts.append(tip)
             continue
-        mesh = quarter_sphere(name, body, size, order, side)
+        mesh = part_of_sphere(name, body, size, order, side)
         numbers[name] = len(elastic)
         elastic.append(ElasticBody(mesh, body.material, _symmetry(mesh), (0.0, 0.0, speed)))
         contact, area = _sphere_on_plate(
-            name, mesh, numbers[name], plate, face, body, side, gap, zone
+            name, mesh, numbers[name], plate, face, body, side, gap, zone, scene.friction
         )
         contacts.append(contact)
         patches[name, name] = (contact.nodes, area)
@@ -187,15 +225,20 @@ def plate_model(
         zone=zone,
         elastic=numbers,
         rigid=rigid_numbers,
-        watched=(
-            np.concatenate([nodes for nodes, _ in watched]),
-            np.concatenate([0.5 * shares for _, shares in watched]),
-        ),
+        watched=of_both(watched),
         patches=patches,
     )
 
 
-def _watched(areas: Floats, distance: Floats, circle: float) -> tuple[Ints, Floats]:
+def of_both(faces: list[tuple[Ints, Floats]]) -> tuple[Ints, Floats]:
+    """Nodes and their shares in the mean of two faces."""
+    return (
+        np.concatenate([nodes for nodes, _ in faces]),
+        np.concatenate([0.5 * shares for _, shares in faces]),
+    )
+
+
+def watched_nodes(areas: Floats, distance: Floats, circle: float) -> tuple[Ints, Floats]:
     """The nodes of a face within a circle and their shares of a unit Hertz pressure on it.
 
     Args:
@@ -220,6 +263,7 @@ def _sphere_on_plate(
     side: float,
     gap: float,
     zone: float,
+    friction: float,
 ) -> tuple[SurfaceContact, Floats]:
     """The sphere's surface nodes against the plate's face, with the gap of the exact sphere."""
     areas = nodal_areas(mesh, _outer_surface(mesh, surface(mesh)))
@@ -233,5 +277,7 @@ def _sphere_on_plate(
     normals = np.zeros((nodes.size, 3))
     normals[:, 2] = side
     gaps = gap + sphere_profile(sphere.radius, distance[nodes])
-    contact = SurfaceContact(name, number, nodes, 0, facets, weights, normals, gaps)
+    contact = SurfaceContact(
+        name, number, nodes, 0, facets, weights, normals, gaps, friction=friction
+    )
     return contact, areas[nodes]

@@ -12,20 +12,18 @@ from ..explicit.energies import Energies
 from ..explicit.loop import Loop
 from ..explicit.spectrum import critical_time_step, patch_flexibility
 from .ending import Ending, Patch
-from .motion import INNER, OUTER, PLATE, SIDES, SPHERES, Further, State
+from .motion import INNER, OUTER, PLATE, SIDES, SPHERES, Further, Losses, State
 from .run import Run, integrate
 from .scene import Scene
-from .solid_model import FRACTION, PlateModel
+from .solid_model import PlateModel
 
 
 class SolidMotion:
     """See `motion.Motion`."""
 
-    share = FRACTION
-    further = Further()
-
     def __init__(self, loop: Loop, plate: PlateModel, scene: Scene) -> None:
-        self.loop, self.plate = loop, plate
+        self.loop, self.plate, self.share = loop, plate, plate.fraction
+        self._rough = scene.friction > 0.0
         self.gaps, self.free = (0.0, scene.gap), scene.plate.edge == "free"
         masses = loop.body_masses()
 
@@ -49,7 +47,16 @@ class SolidMotion:
     def _candidate_radii(self, number: int) -> Floats:
         contact = self.plate.model.contacts[number]
         points = self.plate.model.elastic[contact.body].mesh.points[contact.nodes]
-        return np.asarray(np.hypot(points[:, 0], points[:, 1]))
+        struck = (self.plate.offset, 0.0)[number]
+        return np.asarray(np.hypot(points[:, 0] - struck, points[:, 1]))
+
+    @property
+    def further(self) -> Further:
+        """See `Motion.further`."""
+        if not self._rough:
+            return Further()
+        outer, inner = (-self.loop.problem.contacts[number].rubbed for number in (0, 1))
+        return Further(Losses(contacts=(outer, inner)))
 
     def by_role(self, of_bodies: tuple[float, ...]) -> tuple[float, float, float]:
         """See `Motion.by_role`; a rigid body has 0."""
@@ -72,11 +79,13 @@ class SolidMotion:
 
     def _compressive(self, quantity: str) -> tuple[float, float]:
         """Impulse or force of each contact, on the whole bodies."""
-        # Candidates are the sphere's nodes, or the plate's if the sphere is rigid.
-        signs = [-s if n in self.plate.rigid else s for s, n in zip(SIDES, SPHERES, strict=True)]
+        # Candidates are the sphere's nodes or the plate's.
+        of_plate = self.plate.elastic[PLATE]
         outer, inner = (
-            float(sign * getattr(contact, quantity)[2] / FRACTION)
-            for sign, contact in zip(signs, self.loop.problem.contacts, strict=False)
+            float((-side if made.body == of_plate else side) * getattr(c, quantity)[2] / self.share)
+            for side, made, c in zip(
+                SIDES, self.plate.model.contacts, self.loop.problem.contacts, strict=False
+            )
         )
         return outer, inner
 
@@ -148,7 +157,8 @@ class SolidMotion:
         return state(0), state(1)
 
 
-def _ending(motion: SolidMotion) -> Ending:
+def ending(motion: SolidMotion) -> Ending:
+    """When a run may end."""
     loop, plate = motion.loop, motion.plate
 
     def flexibility(body: str, contact: str) -> float:
@@ -157,7 +167,8 @@ def _ending(motion: SolidMotion) -> Ending:
         nodes, areas = plate.patches[body, contact]
         number = plate.elastic[body]
         points = plate.model.elastic[number].mesh.points[nodes]
-        squares = (points[:, :2] ** 2).sum(axis=1) / plate.zone**2
+        struck = (plate.offset if contact == OUTER else 0.0, 0.0)
+        squares = ((points[:, :2] - struck) ** 2).sum(axis=1) / plate.zone**2
         weights = areas * np.sqrt(np.maximum(0.0, 1.0 - squares))
         # The stiffness that lasts bounds what an energy can displace.
         lasting = plate.model.elastic[number].material.lasting
@@ -171,7 +182,12 @@ def _ending(motion: SolidMotion) -> Ending:
 
 
 def integrate_solid(
-    loop: Loop, plate: PlateModel, scene: Scene, contact_duration: float, **options: Any
+    loop: Loop,
+    plate: PlateModel,
+    scene: Scene,
+    contact_duration: float,
+    made: type[SolidMotion] = SolidMotion,
+    **options: Any,
 ) -> Run:
     """Step a plate model to ``scene.end_time``; see `run.integrate` for the options.
 
@@ -181,14 +197,14 @@ def integrate_solid(
     Raises:
         SolverError: time step above the critical one, divergence, or no end found.
     """
-    motion = SolidMotion(loop, plate, scene)
+    motion = made(loop, plate, scene)
     if scene.end_time is not None:
         options["most_levels"] = 1
     return integrate(
         motion,
         scene,
         contact_duration,
-        lambda: _ending(motion),
+        lambda: ending(motion),
         lambda: critical_time_step(loop),
         end_time=scene.end_time,
         **options,

@@ -11,7 +11,7 @@ from ..common.errors import SolverError
 from ..explicit.contact import Contact, RigidBody, SphereContact, SurfaceContact, guided
 from ..solid.mesh import TetMesh, surface
 from ..solid.model import ElasticBody, Model, nodal_areas, symmetry_plane
-from .elastic_sphere import sphere_pairs, touching_facets
+from ..solid.sphere_pairs import sphere_pairs
 from .scene import Ring, SeatScene
 
 FRACTION = 0.5
@@ -91,6 +91,16 @@ def cone_nodes(mesh: TetMesh, facets: Ints, ring: Ring, reach: float) -> tuple[I
     if not np.any(cone):
         raise SolverError("the mesh of the seat has no faces on the cone around its contact ring")
     return facets[cone], nodal_areas(mesh, facets[cone])
+
+
+def touching_facets(scene: SeatScene, mesh: TetMesh) -> Ints:
+    """Facets of the sphere's surface that the cone can meet."""
+    ring = scene.ring()
+    facets = surface(mesh)
+    outside = ~np.all(mesh.points[facets[:, :3]][:, :, 1] == 0.0, axis=1)
+    s, _ = ring.coordinates(mesh.points[facets[:, :3]].mean(axis=1))
+    # The lower part, well beyond the ring to both sides.
+    return np.asarray(facets[outside & (s < 0.3 * ring.offset)])
 
 
 def _ring_patches(scene: SeatScene, mesh: TetMesh, facets: Ints) -> tuple[Patch, Patch, Floats]:
@@ -175,7 +185,7 @@ def seat_model(scene: SeatScene, mesh: TetMesh, sphere_mesh: TetMesh | None = No
         sphere_facets = touching_facets(scene, sphere_mesh)
         still = np.zeros_like(sphere_mesh.points)
         for name, patch in flanks:
-            pairs = sphere_pairs(scene, sphere_mesh, sphere_facets, places[patch.nodes], still)
+            pairs = sphere_pairs(scene.ball, sphere_mesh, sphere_facets, places[patch.nodes], still)
             contacts.append(
                 SurfaceContact(
                     name,

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..common.arrays import Floats
 from ..explicit.loop import Loop
-from .elastic_sphere import sphere_pairs
+from ..solid.sphere_pairs import sphere_pairs
 from .model import ELASTIC_SPHERE, LEFT, RIGHT, SeatModel
 from .scene import SeatScene
 
@@ -33,7 +33,7 @@ def pair_again(loop: Loop, seat: SeatModel, scene: SeatScene) -> None:
     for number in (LEFT, RIGHT):
         nodes = seat.patches[number].nodes
         pairs = sphere_pairs(
-            scene,
+            scene.ball,
             seat.model.elastic[ELASTIC_SPHERE].mesh,
             seat.sphere_facets,
             seat.places[number],

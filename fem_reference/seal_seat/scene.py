@@ -16,6 +16,7 @@ from ..common.arrays import Floats
 from ..common.bodies import Material, read_material
 from ..common.errors import SceneError
 from ..common.reader import Reader
+from ..solid.sphere_pairs import Ball
 
 KIND = "seal-seat"
 
@@ -163,6 +164,11 @@ class SeatScene:
             -self.sphere_radius * math.sin(half),
             half,
         )
+
+    @property
+    def ball(self) -> Ball:
+        """The sphere at rest in its seat."""
+        return Ball(self.ring().sphere_centre, self.sphere_radius)
 
     def lengths_over(self, unit: float) -> SeatScene:
         """The same geometry with all lengths as multiples of ``unit`` (m)."""

@@ -1,7 +1,7 @@
-"""Tetrahedral meshes of plate and spheres by gmsh's CAD kernel: a quarter of each body.
+"""Tetrahedral meshes of plate and spheres by gmsh's CAD kernel: a quarter or half of each body.
 
-The planes x = 0 and y = 0 are planes of symmetry. The element size grows linearly with the
-distance from the contact zone; a mesh refined by a factor is so everywhere.
+The planes x = 0 and y = 0 are planes of symmetry, of halves y = 0 alone. The element size
+grows linearly with the distance from the contact zone; a mesh refined by a factor is so everywhere.
 """
 
 from __future__ import annotations
@@ -117,44 +117,74 @@ def _mended(name: str, build: Callable[[], None], size: SizeField) -> tuple[Floa
     return generate(name, build, smaller)
 
 
-def quarter_sphere(name: str, sphere: Sphere, size: SizeField, order: int, side: float) -> TetMesh:
-    """A quarter of a sphere that touches the origin from above (side +1) or below (-1).
+QUARTER, HALF = (0, 1), (1,)
+"""Parts of a body, by the axes that its planes of symmetry are normal to."""
+
+
+def share(planes: Sequence[int]) -> float:
+    """Of a body, that is on one side of so many planes of symmetry."""
+    return 0.5 ** len(planes)
+
+
+def part_of_sphere(
+    name: str,
+    sphere: Sphere,
+    size: SizeField,
+    order: int,
+    side: float,
+    planes: Sequence[int] = QUARTER,
+) -> TetMesh:
+    """The part of a sphere that touches the origin from above (side +1) or below (-1).
 
     The polyhedron is enlarged about the pole until its volume is exact.
     """
     radius = sphere.radius
 
     def build() -> None:
-        half = 0.5 * math.pi
-        gmsh.model.occ.addSphere(0.0, 0.0, side * radius, radius, -1, -half, half, half)
+        half, around = 0.5 * math.pi, 2.0 * math.pi * share(planes)
+        gmsh.model.occ.addSphere(0.0, 0.0, side * radius, radius, -1, -half, half, around)
 
     points, corners = _mended(name, build, size)
-    _snap(points, (0, 1), radius)
+    _snap(points, planes, radius)
     pole = int(np.argmin(np.linalg.norm(points, axis=1)))
     points[pole] = 0.0
     volume = TetMesh(name, points, corners).volume()
-    points *= math.cbrt(sphere.volume / 4.0 / volume)
+    points *= math.cbrt(sphere.volume * share(planes) / volume)
     mesh = tetrahedra(name, points, corners, order)
     check_elements(mesh)
     return mesh
 
 
-def quarter_plate(plate: Plate, size: SizeField, order: int) -> TetMesh:
-    """A quarter of the plate, z = 0 at its midplane, widened until its volume is exact."""
+def part_of_plate(
+    plate: Plate,
+    size: SizeField,
+    order: int,
+    planes: Sequence[int] = QUARTER,
+    struck: Sequence[tuple[float, float, float]] = (),
+) -> TetMesh:
+    """The part of the plate, z = 0 at its midplane, widened until its volume is exact.
+
+    ``struck`` are places on its surface where a node has to be, m; those on the axis of a quarter
+    are corners of it anyway.
+    """
     radius, thickness = plate.radius, plate.thickness
 
     def build() -> None:
-        gmsh.model.occ.addCylinder(
-            0.0, 0.0, -0.5 * thickness, 0.0, 0.0, thickness, radius, -1, 0.5 * math.pi
+        around = 2.0 * math.pi * share(planes)
+        whole = gmsh.model.occ.addCylinder(
+            0.0, 0.0, -0.5 * thickness, 0.0, 0.0, thickness, radius, -1, around
         )
+        if struck:
+            places = [(0, gmsh.model.occ.addPoint(*place)) for place in struck]
+            gmsh.model.occ.fragment([(3, whole)], places)
 
     points, corners = _mended("plate", build, size)
-    _snap(points, (0, 1), radius)
+    _snap(points, planes, radius)
     for face in (-0.5, 0.5):
         points[np.abs(points[:, 2] - face * thickness) < 1e-9 * thickness, 2] = face * thickness
     volume = TetMesh("plate", points, corners).volume()
     # Only the rim moves noticeably: the polygon's area is made that of the circle.
-    points[:, :2] *= math.sqrt(0.25 * math.pi * radius**2 * thickness / volume)
+    points[:, :2] *= math.sqrt(share(planes) * math.pi * radius**2 * thickness / volume)
     mesh = tetrahedra("plate", points, corners, order)
     check_elements(mesh)
     return mesh

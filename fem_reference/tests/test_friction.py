@@ -32,13 +32,12 @@ RIGID = {"name": "rigid", "youngs_modulus": 2e12, "poisson_ratio": 0.3, "density
 """A hundred times as stiff as cork."""
 
 
-def test_friction_is_for_spheres_in_axisymmetric_geometry() -> None:
+def test_friction_is_for_spheres() -> None:
     assert parse_scene(document()).friction == 0.0
     assert parse_scene(document(friction=0.3)).friction == 0.3
     compact = {"kind": "compact", "mass": 1e-3, "tip_radius": 1e-2, "material": STEEL, "gap": 0.0}
-    for change in ({"reference__geometry": "solid"}, {"inner": compact}):
-        with pytest.raises(SceneError, match=r"friction is 0\.3"):
-            parse_scene(document(friction=0.3, **change))
+    with pytest.raises(SceneError, match=r"friction is 0\.3"):
+        parse_scene(document(friction=0.3, inner=compact))
     with pytest.raises(SceneError, match="friction is -1"):
         parse_scene(document(friction=-1.0))
 

@@ -21,7 +21,6 @@ from fem_reference.explicit.contact import SphereContact
 from fem_reference.explicit.loop import Loop
 from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.seal_seat import meshing
-from fem_reference.seal_seat.elastic_sphere import sphere_pairs
 from fem_reference.seal_seat.meshing import build, cad_volume, seat_mesh, seat_size, sphere_mesh
 from fem_reference.seal_seat.modal import seat_modes
 from fem_reference.seal_seat.model import ELASTIC_SPHERE, LEFT, RIGHT, SeatModel, seat_model
@@ -32,6 +31,7 @@ from fem_reference.seal_seat.solve import HISTORY_COLUMNS, QUANTITIES, history, 
 from fem_reference.solid.collapse import collapse_short_edges
 from fem_reference.solid.mesh import TetMesh, qualities, surface
 from fem_reference.solid.meshing import generate
+from fem_reference.solid.sphere_pairs import sphere_pairs
 from fem_reference.solid.system import make_loop
 from fem_reference.tests.cut_off import CutOffError, cut_off
 from fem_reference.tests.program import run_program
@@ -427,7 +427,7 @@ def test_pairs_of_an_elastic_sphere_follow_it_as_it_slides() -> None:
     for flank in (LEFT, RIGHT):
         pressed = loop.problem.multipliers(flank) > 0.0
         nodes, places = model.patches[flank].nodes[pressed], model.places[flank][pressed]
-        pairs = sphere_pairs(design, sphere, facets, places, moved[first:], mean, moved[nodes])
+        pairs = sphere_pairs(design.ball, sphere, facets, places, moved[first:], mean, moved[nodes])
         of_sphere = np.einsum("nk,nkd->nd", pairs.weights, moved[first:][pairs.facets])
         gaps += (pairs.gaps + ((moved[nodes] - of_sphere) * pairs.normals).sum(axis=1)).tolist()
         relative = moved[nodes] - mean

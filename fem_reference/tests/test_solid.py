@@ -25,7 +25,7 @@ from fem_reference.solid import meshing
 from fem_reference.solid.elasticity import Assembly, cell_stress, lumped_mass, mass_form, von_mises
 from fem_reference.solid.memory import memory_free, memory_needed, require_memory
 from fem_reference.solid.mesh import TetMesh, check_elements, surface, tetrahedra
-from fem_reference.solid.meshing import SizeField, quarter_sphere
+from fem_reference.solid.meshing import SizeField, part_of_sphere
 from fem_reference.solid.model import ElasticBody, Model, nodal_areas, project, symmetry_plane
 from fem_reference.solid.system import make_loop
 
@@ -35,7 +35,7 @@ RADIUS = 0.01
 
 def quarter(order: int, size: float, side: float = 1.0) -> TetMesh:
     field = SizeField(((0.0, 0.0, 0.0),), 1.3e-3, size, 0.4, 4e-3)
-    return quarter_sphere("sphere", Sphere(RADIUS, STEEL), field, order, side)
+    return part_of_sphere("sphere", Sphere(RADIUS, STEEL), field, order, side)
 
 
 @pytest.fixture(scope="module", params=[1, 2])

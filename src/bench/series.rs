@@ -3,12 +3,15 @@
 
 use super::{Bench, Settings};
 use crate::body::cache::Cache;
+use crate::body::continuum::MeshOptions;
 use crate::error::{Error, Result};
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::errors::largest_error;
 use crate::kinds::plate_impact::reduced::{Point, Reduced};
 use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
 use crate::sampling::latin_hypercube;
-use crate::scene::{self, Field, Model, Scene, Template};
+use crate::scene::{self, DEFAULT_MODES, Field, Model, Scene, Template};
 use crate::study::sweep::DEFAULT_TOLERANCE;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -30,6 +33,35 @@ const SHAPES: [(&str, f64, f64); 2] =
 /// Relative error of the integration of the impacts that the others are held against.
 const EXACT: f64 = 1e-7;
 
+/// Of so many impacts one has its bodies meshed once more, finer by so much in every direction.
+const REFINED: (usize, f64) = (10, 1.6);
+
+/// What 99 % of the impacts keep, and the largest, of relative errors.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Errors {
+    /// Of the efficiency.
+    pub efficiency: [f64; 2],
+    /// Of the larger error of both force peaks.
+    pub force_peaks: [f64; 2],
+}
+
+impl Errors {
+    /// Of pairs of what is held against what.
+    fn of(pairs: &[(PlateQuantities, PlateQuantities)]) -> Self {
+        let miss = |ours: f64, exact: f64| (ours / exact - 1.0).abs();
+        let of = |error: &dyn Fn(&PlateQuantities, &PlateQuantities) -> f64| {
+            most_and_largest(pairs.iter().map(|(ours, exact)| error(ours, exact)).collect())
+        };
+        Self {
+            efficiency: of(&|ours, exact| miss(ours.efficiency, exact.efficiency)),
+            force_peaks: of(&|ours, exact| {
+                miss(ours.outer_force_peak, exact.outer_force_peak)
+                    .max(miss(ours.inner_force_peak, exact.inner_force_peak))
+            }),
+        }
+    }
+}
+
 /// A series of impacts with one model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Series {
@@ -48,6 +80,12 @@ pub struct Series {
     pub error: [f64; 2],
     /// The same of the efficiency, relative.
     pub efficiency_error: [f64; 2],
+    /// Of model C's shared bodies against those meshed for every impact, both integrated to 1e-7.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shared: Option<Errors>,
+    /// Of bodies meshed for every impact against finer meshes with as many modes, both integrated to 1e-7; of every tenth impact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub meshed: Option<Errors>,
 }
 
 /// Runs `settings.series` impacts of each series.
@@ -56,9 +94,12 @@ pub(super) fn run(settings: &Settings, bench: &mut Bench) -> Result<()> {
     let all: Vec<(&str, f64, f64)> = SIZES.into_iter().chain(SHAPES).collect();
     for varied in [&SIZES[..], &all] {
         let scenes = scenes(&template, varied, settings.series)?;
-        let exact: Vec<Point> = scenes
+        let exact: Vec<(usize, Point)> = scenes
             .par_iter()
-            .map(|scene| Reduced::new_in(scene, Model::C, None, &Cache::off())?.point(EXACT))
+            .map(|scene| {
+                let exact = Reduced::new_in(scene, Model::C, None, &Cache::off())?;
+                Ok((exact.system().modes, exact.point(EXACT)?))
+            })
             .collect::<Result<_>>()?;
         for model in [Model::B, Model::C] {
             bench.series.push(series(&template, varied, model, &scenes, &exact)?);
@@ -83,27 +124,50 @@ fn series(
     varied: &[(&'static str, f64, f64)],
     model: Model,
     scenes: &[Scene],
-    exact: &[Point],
+    exact: &[(usize, Point)],
 ) -> Result<Series> {
     let setup = template.scene().plate_impact()?;
     let ranges = varied.iter().map(|(name, from, to)| (*name, [*from, *to]));
     let bodies = SharedBodies::for_varied(ranges, setup, scenes.len());
+    let run =
+        |scene: &Scene, tolerance| Reduced::in_series(scene.clone(), model, None, &bodies)?.point(tolerance);
     let pass = || -> Result<(Vec<Point>, f64)> {
         let start = Instant::now();
-        let run =
-            |scene: &Scene| Reduced::in_series(scene.clone(), model, None, &bodies)?.point(DEFAULT_TOLERANCE);
-        let points = scenes.iter().map(run).collect::<Result<_>>()?;
+        let points = scenes.iter().map(|scene| run(scene, DEFAULT_TOLERANCE)).collect::<Result<_>>()?;
         Ok((points, scenes.len() as f64 / start.elapsed().as_secs_f64()))
     };
     let (points, per_second_cold) = pass()?;
     let (_, per_second_warm) = pass()?;
     let (mut errors, mut efficiencies) = (Vec::new(), Vec::new());
-    for ((scene, ours), exact) in scenes.iter().zip(&points).zip(exact) {
+    for ((scene, ours), (_, exact)) in scenes.iter().zip(&points).zip(exact) {
         let (ours, exact) = (&ours.quantities, &exact.quantities);
         errors.push(largest_error(ours, exact, scene.plate_impact()?.outer.speed).0);
         efficiencies.push((ours.efficiency / exact.efficiency - 1.0).abs());
     }
+    let (mut shared, mut meshed) = (Vec::new(), Vec::new());
+    if model == Model::C {
+        let pair = |(scene, (_, exact)): (&Scene, &(usize, Point))| {
+            Ok((run(scene, EXACT)?.quantities, exact.quantities))
+        };
+        shared = scenes.par_iter().zip(exact).map(pair).collect::<Result<_>>()?;
+        let tenth: Vec<_> = scenes.iter().zip(exact).step_by(REFINED.0).collect();
+        let pair = |(scene, (modes, _)): (&Scene, &(usize, Point))| {
+            let on = |mesh: MeshOptions| {
+                let setup = ContinuumSetup { mesh, ..ContinuumSetup::default() };
+                Variants::new(scene, [1, *modes], DEFAULT_MODES, &setup)?.run(
+                    Simplification::None,
+                    *modes,
+                    EXACT,
+                )
+            };
+            Ok((on(MeshOptions::default())?, on(MeshOptions::default().refined(REFINED.1))?))
+        };
+        meshed = tenth.into_par_iter().map(pair).collect::<Result<_>>()?;
+    }
+    let errors_of = |pairs: &[_]| (!pairs.is_empty()).then(|| Errors::of(pairs));
     Ok(Series {
+        shared: errors_of(&shared),
+        meshed: errors_of(&meshed),
         model: model.to_string(),
         varied: varied.iter().map(|(name, ..)| *name).collect(),
         impacts: scenes.len(),

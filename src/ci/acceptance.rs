@@ -4,7 +4,6 @@
 //! bands of both, the gate fails until somebody says why.
 
 use super::json_lines;
-use super::tolerance_watch::Standing;
 use crate::comparison::{Check, Verdict};
 use crate::error::Result;
 use crate::reference::Resolution;
@@ -17,6 +16,9 @@ use std::path::{Path, PathBuf};
 pub const CHECK: &str = "accepted_reference";
 /// Relative difference that a quantity without a band may have.
 const WITHOUT_BAND: f64 = 1e-3;
+
+/// Tolerances as TOML, by model and quantity.
+pub type Standing = BTreeMap<String, BTreeMap<String, String>>;
 
 /// One accepted change.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

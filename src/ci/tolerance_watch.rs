@@ -1,15 +1,11 @@
 //! Tolerances that were changed in the scene file since they were accepted with a reason.
 
-use super::acceptance::Acceptance;
+use super::acceptance::{Acceptance, Standing};
 use super::tolerance_edit::shown;
 use crate::comparison::ChangedTolerance;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use std::collections::BTreeMap;
 use toml_edit::{DocumentMut, Item, Table};
-
-/// Tolerances as TOML, by model and quantity.
-pub type Standing = BTreeMap<String, BTreeMap<String, String>>;
 
 /// The tolerances in the text of a scene file.
 ///
@@ -107,6 +103,7 @@ fn parsed(text: &str) -> Result<DocumentMut> {
 mod tests {
     use super::*;
     use crate::ci::acceptance::{AcceptedReference, ToleranceChange};
+    use std::collections::BTreeMap;
 
     const SCENE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
 

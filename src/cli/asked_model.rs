@@ -1,10 +1,12 @@
-//! Models as the command line names them: A, B, C, `auto`, or `external`.
+//! Models as the command line names them: A, B, C, `auto`, or `external`; and what is asked of one.
 
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::choice;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::result::Choice;
 use crate::scene::{Model, Scene};
+use clap::Args;
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
 
@@ -120,4 +122,42 @@ pub(super) fn set_up(
         }
     }
     Ok(bodies)
+}
+
+/// The model that is asked for; what is left out is the scene's or the program's choice.
+#[derive(Debug, Clone, Default, Args)]
+pub struct Asked {
+    /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility), or auto, the cheapest whose
+    /// estimated error meets the tolerance [default: the scene's, else C]
+    #[arg(long)]
+    pub model: Option<AskedModel>,
+    /// Number of modes [default: the scene's, else 16 for B and as many as needed for C]
+    #[arg(long, value_name = "N")]
+    pub modes: Option<usize>,
+    /// Relative error that the time integration may have: of the efficiency, of a seal seat's sphere of its velocity [default: 1e-7,
+    /// of a seal seat 1e-3]; with --model auto the error of the model itself: of the efficiency, the outer body's final velocity
+    /// and both force peaks [default: 1%]
+    #[arg(long, value_parser = tolerance)]
+    pub tolerance: Option<f64>,
+    /// Mesh of the seat (.vtu, tetrahedra), for seal-seat scenes [default: that in meshes/ or the cache, else a new one]
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+}
+
+/// Largest tolerance of a time integration.
+const LARGEST_INTEGRATION: f64 = 1e-2;
+
+impl Asked {
+    /// The tolerance of the time integration of a model that is named, `default` if the user names none.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if it is too large for that.
+    pub(super) fn integration_tolerance(&self, default: f64) -> Result<f64> {
+        match self.tolerance {
+            Some(tolerance) if tolerance > LARGEST_INTEGRATION => Err(Error::Usage(format!(
+                "--tolerance {tolerance} is more than {LARGEST_INTEGRATION}: with a model that is named it is the error of the time integration; --model auto takes larger ones"
+            ))),
+            tolerance => Ok(tolerance.unwrap_or(default)),
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! What the commands compute, for programs that hold scenes in memory, as the Python package does: the same models, defaults,
 //! bounds and sentences; nothing is printed.
 
+pub use super::asked_model::Asked;
 pub use super::asked_model::AskedModel;
-pub use super::reduced::Asked;
 
 use super::asked_model::within_bounds;
 use super::compare::{Arguments, Job, Outputs};

@@ -2,17 +2,15 @@
 
 use super::reference::compute;
 use super::{Context, JsonArgument};
-use crate::body::cache::Cache;
 use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::kinds::seal_seat::SeatMesh;
 use crate::optimise::{Confirmation, Objective, Optimum, Problem, Robust, Variable, confirm};
 use crate::reference::{self, Resolution, Stored, Wish};
 use crate::report;
 use crate::report::format::words;
 use crate::result::Summary;
-use crate::scene::{self, Model, Scene, Setup, Template};
+use crate::scene::{self, Model, Scene, Template};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -98,7 +96,10 @@ fn probability(text: &str) -> std::result::Result<f64, String> {
 /// Searches the optimum, verifies it if asked to, prints it.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let template = Template::read(scene::resolve(&arguments.scene)?)?;
-    let mesh = seat_mesh(context, arguments, template.scene())?;
+    let mesh = reference::mesh_to_follow(template.scene(), arguments.mesh.as_deref())?;
+    if let Some(mesh) = &mesh {
+        context.note(format_args!("mesh {}", mesh.path().display()));
+    }
     let usual = if mesh.is_some() { Model::C } else { Model::B };
     let model = arguments.model.or(template.scene().reduced.model).unwrap_or(usual);
     let within =
@@ -142,28 +143,6 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         super::print(&table(&document))?;
     }
     Ok(failure.unwrap_or(ExitStatus::Pass))
-}
-
-/// The mesh of a seal seat that is to follow its dimensions; none of other scenes.
-fn seat_mesh(context: &Context, arguments: &Arguments, scene: &Scene) -> Result<Option<SeatMesh>> {
-    if matches!(scene.setup, Setup::PlateImpact(_)) {
-        return match &arguments.mesh {
-            Some(mesh) => Err(Error::Usage(format!(
-                "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
-                mesh.display(),
-                scene.name
-            ))),
-            None => Ok(None),
-        };
-    }
-    let cache = Cache::from_environment();
-    let of = |resolution| reference::seat_mesh(scene, resolution, &cache);
-    let path = match &arguments.mesh {
-        Some(path) => path.clone(),
-        None => of(Resolution::Coarse).or_else(|_| of(Resolution::Paper))?,
-    };
-    context.note(format_args!("mesh {}", path.display()));
-    SeatMesh::open(&path).map(Some)
 }
 
 fn verify(

@@ -5,7 +5,31 @@ use crate::reference::Progress;
 use crate::study::sweep;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::mpsc;
 use std::time::Duration;
+
+/// How long a run goes on without a word.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// Does `work`, and says on standard error that `what` is still at it when that takes longer than one expects.
+pub fn watched<T>(context: &Context, what: &str, work: impl FnOnce() -> T) -> T {
+    std::thread::scope(|scope| {
+        let (working, end) = mpsc::channel::<()>();
+        scope.spawn(move || {
+            let mut after = PATIENCE;
+            // the other end is dropped when the work is done
+            while end.recv_timeout(after) == Err(mpsc::RecvTimeoutError::Timeout) {
+                context.note(format_args!(
+                    "{what}: still at work; a larger --tolerance or a `run.end_time` shortens it"
+                ));
+                after *= 4;
+            }
+        });
+        let result = work();
+        drop(working);
+        result
+    })
+}
 
 /// Bar over the phases of a reference solution.
 pub struct Bar(ProgressBar);

@@ -1,13 +1,13 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
-use super::asked_model::{self, AskedModel};
-use super::{Context, JsonArgument, kinds};
-use crate::error::{Error, ExitStatus, Result};
+use super::asked_model::{self, Asked};
+use super::{Context, JsonArgument, kinds, progress};
+use crate::error::{ExitStatus, Result};
 use crate::file::write_file;
 use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::report::format::{prefixed, with_unit};
 use crate::report::{self, TableFormat};
-use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Summary};
+use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -24,44 +24,6 @@ pub struct Arguments {
     json: JsonArgument,
 }
 
-/// The model that is asked for; what is left out is the scene's or the program's choice.
-#[derive(Debug, Clone, Default, Args)]
-pub struct Asked {
-    /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility), or auto, the cheapest whose
-    /// estimated error meets the tolerance [default: the scene's, else C]
-    #[arg(long)]
-    pub model: Option<AskedModel>,
-    /// Number of modes [default: the scene's, else 16 for B and as many as needed for C]
-    #[arg(long, value_name = "N")]
-    pub modes: Option<usize>,
-    /// Relative error that the time integration may have: of the efficiency, of a seal seat's sphere of its velocity [default: 1e-7,
-    /// of a seal seat 1e-3]; with --model auto the error of the model itself: of the efficiency, the outer body's final velocity
-    /// and both force peaks [default: 1%]
-    #[arg(long, value_parser = asked_model::tolerance)]
-    pub tolerance: Option<f64>,
-    /// Mesh of the seat (.vtu, tetrahedra), for seal-seat scenes [default: that in meshes/ or the cache, else a new one]
-    #[arg(long, value_name = "FILE")]
-    pub mesh: Option<PathBuf>,
-}
-
-/// Largest tolerance of a time integration.
-const LARGEST_INTEGRATION: f64 = 1e-2;
-
-impl Asked {
-    /// The tolerance of the time integration of a model that is named, `default` if the user names none.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] if it is too large for that.
-    pub(super) fn integration_tolerance(&self, default: f64) -> Result<f64> {
-        match self.tolerance {
-            Some(tolerance) if tolerance > LARGEST_INTEGRATION => Err(Error::Usage(format!(
-                "--tolerance {tolerance} is more than {LARGEST_INTEGRATION}: with a model that is named it is the error of the time integration; --model auto takes larger ones"
-            ))),
-            tolerance => Ok(tolerance.unwrap_or(default)),
-        }
-    }
-}
-
 /// Runs the model and prints its summary.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     if let Some(file) = &arguments.history {
@@ -69,7 +31,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         TableFormat::of(file)?;
     }
     let (_, scene) = super::read_scene(&arguments.scene)?;
-    let outcome = kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default())?;
+    let outcome = progress::watched(context, &scene.name, || {
+        kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default())
+    })?;
     finish(context, arguments, &outcome)
 }
 
@@ -106,6 +70,11 @@ pub fn table(summary: &Summary) -> String {
         let to = prefixed(unit, value);
         let band = summary.band(name).map_or_else(String::new, |u| format!(" ± {}", with_unit(u, to, 2)));
         lines.push(format!("  {name:<24} {:>14}{band}", with_unit(value, to, 6)));
+    }
+    for (name, value, unit) in summary.sideways.iter().flat_map(Sideways::rows) {
+        let to = prefixed(unit, value);
+        let band = summary.band(name).map_or_else(String::new, |u| format!(" ± {}", with_unit(u, to, 2)));
+        lines.push(format!("  {name:<32} {:>14}{band}", with_unit(value, to, 6)));
     }
     let bender = summary.bender.iter().flat_map(|bender| {
         let drive = &bender.drive;

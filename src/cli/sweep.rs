@@ -14,9 +14,10 @@ use std::time::Instant;
 /// What a sweep file looks like, for `--help`.
 pub const EXAMPLE: &str = r#"A sweep file (TOML):
   scene     = "scaled-plate-r10"     # a file beside this one, or a shipped scene
-  model     = "B"                    # A, B, C or several, ["B", "C"]; absent = the scene's, else B
+  model     = "B"                    # A, B, C or several, ["B", "C"]; absent = the scene's, else B; a seal seat has C only
   modes     = 16                     # absent = the scene's, else the model's
   tolerance = 1e-4                   # relative error of the efficiency; absent = 1e-3 (force peaks: 2e-3)
+  mesh      = "seat.vtu"             # of a seal seat, beside this file; absent = a coarse one
   sampling  = "grid"                 # or "latin-hypercube", with samples = 10000 and seed = 1
 
   [[vary]]
@@ -41,7 +42,8 @@ An interrupted sweep goes on where it stopped when it is started again. As the a
   impactcheck study merge FILE --out DIR
 RAYON_NUM_THREADS sets the number of threads. Bodies of model C are scaled from
 those of one shape; where plate.radius, plate.thickness or a Poisson's ratio varies, from those of
-some shapes, or if the points are few every one meshes its plate (0.1 s, 4 kB in the cache)."#;
+some shapes, or if the points are few every one meshes its plate (0.1 s, 4 kB in the cache).
+The mesh of a seal seat follows its dimensions; points of the same seat share its body."#;
 
 /// Points up to which a sweep is drawn: each is a mark of its own.
 const MOST_DRAWN: usize = 100_000;
@@ -58,7 +60,7 @@ pub struct Arguments {
     format: TableFormat,
     /// Quantities that are drawn
     #[arg(long = "quantity", value_delimiter = ',', default_value = "efficiency", value_name = "NAME,…")]
-    quantities: Vec<Drawn>,
+    quantities: Vec<String>,
     /// Write the drawing to this file as well (.svg, .pdf or .png)
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
@@ -79,6 +81,7 @@ impl Arguments {
     /// The plan, which can be drawn if a figure is asked for.
     fn plan(&self) -> Result<Plan> {
         let plan = Plan::read(&self.file)?;
+        self.drawn(&plan)?;
         if let Some(file) = &self.figure {
             FigureFormat::of(file)?;
             if !is_drawn(&plan) {
@@ -92,6 +95,11 @@ impl Arguments {
         }
         Ok(plan)
     }
+
+    /// The quantities that are drawn.
+    fn drawn(&self, plan: &Plan) -> Result<Vec<Drawn>> {
+        self.quantities.iter().map(|name| Drawn::new(name, plan)).collect()
+    }
 }
 
 fn is_drawn(plan: &Plan) -> bool {
@@ -101,7 +109,7 @@ fn is_drawn(plan: &Plan) -> bool {
 /// Writes the drawing into `dir` and where it is asked for.
 fn draw(context: &Context, arguments: &Arguments, plan: &Plan, dir: &Path, table: &Table) -> Result<()> {
     let references = sweep::references(plan, &context.store());
-    let svg = sweep::figure(table, &arguments.quantities, &references)?;
+    let svg = sweep::figure(table, &arguments.drawn(plan)?, &references)?;
     let path = dir.join("sweep.svg");
     write_file(&path, svg.as_bytes())?;
     context.note(format_args!("wrote {}", path.display()));

@@ -13,8 +13,8 @@ pub use robust::{Robust, RobustOptimum};
 
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::reduced::Reduced;
-use crate::kinds::plate_impact::shared::SharedBodies;
-use crate::kinds::seal_seat::{SeatMesh, SeatModel, SeatSeries};
+use crate::kinds::seal_seat::SeatMesh;
+use crate::kinds::{Series as Impacts, SeriesModel};
 use crate::report::format::words;
 use crate::report::{ChartPanel, Series, chart};
 use crate::result::{CUT, Outcome, SCHEMA_VERSION, Summary};
@@ -107,16 +107,9 @@ pub struct Problem {
     objective: Objective,
     model: Model,
     modes: Option<usize>,
-    bodies: Bodies,
+    series: Impacts,
     /// If a quantile of the objective is maximised.
     robust: Option<Robust>,
-}
-
-/// What the impacts of a search share, by the kind of scene.
-#[derive(Debug)]
-enum Bodies {
-    Plates(Box<SharedBodies>),
-    Seats(Box<SeatSeries>),
 }
 
 /// What was tried, in order; part of [`Optimum`].
@@ -194,14 +187,11 @@ impl Problem {
         // the first that names a field is believed
         let ranges = scattered.into_iter().chain(varied);
         let scene = template.scene();
-        let bodies = match mesh {
-            Some(_) if model != Model::C => {
-                return Err(Error::Usage(format!("--model {model}: a seal seat has model C only")));
-            }
-            Some(mesh) => Bodies::Seats(Box::new(SeatSeries::new(scene, mesh)?)),
-            None => Bodies::Plates(SharedBodies::for_varied(ranges, scene.plate_impact()?, impacts).into()),
-        };
-        Ok(Problem { template, variables, objective, model, modes, bodies, robust })
+        if mesh.is_some() && model != Model::C {
+            return Err(Error::Usage(format!("--model {model}: a seal seat has model C only")));
+        }
+        let series = Impacts::new(ranges, scene, mesh, impacts)?;
+        Ok(Problem { template, variables, objective, model, modes, series, robust })
     }
 
     fn numbers<'a>(&'a self, values: &[f64]) -> Vec<(&'a Field, f64)> {
@@ -234,32 +224,18 @@ impl Problem {
     /// The objective of the scene with these `numbers`; `None` where there is no result.
     fn value(&self, numbers: &[(&Field, f64)]) -> Option<f64> {
         let scene = self.template.with(numbers).ok()?;
-        match &self.bodies {
-            Bodies::Plates(bodies) => {
-                let reduced = Reduced::in_series(scene.clone(), self.model, self.modes, bodies).ok()?;
-                let point = reduced.point(TOLERANCE).ok()?;
-                self.objective.value(&scene, |name| point.quantities.get(name))
-            }
-            Bodies::Seats(series) => {
-                let point = series.model(&scene, self.modes).ok()?.point(SEAT_TOLERANCE).ok()?;
-                self.objective.value(&scene, |name| point.quantities.get(name))
-            }
-        }
+        let model = self.series.model(scene.clone(), self.model, self.modes).ok()?;
+        let point = model.point(self.tolerance()).ok()?;
+        self.objective.value(&scene, |name| point.quantities.value(name))
     }
 
-    fn plate(&self, bodies: &SharedBodies, values: &[f64]) -> Result<Reduced> {
-        Reduced::in_series(self.scene(values)?, self.model, self.modes, bodies)
+    /// Relative error that the time integration may have.
+    fn tolerance(&self) -> f64 {
+        if self.series.is_dear() { SEAT_TOLERANCE } else { TOLERANCE }
     }
 
-    fn seat(&self, series: &SeatSeries, values: &[f64]) -> Result<SeatModel> {
-        series.model(&self.scene(values)?, self.modes)
-    }
-
-    fn summary(&self, values: &[f64]) -> Result<Summary> {
-        match &self.bodies {
-            Bodies::Plates(bodies) => self.plate(bodies, values)?.run(TOLERANCE),
-            Bodies::Seats(series) => self.seat(series, values)?.run(SEAT_TOLERANCE),
-        }
+    fn model(&self, values: &[f64]) -> Result<SeriesModel> {
+        self.series.model(self.scene(values)?, self.model, self.modes)
     }
 
     /// What is maximised, with `values` for the variables: the objective or its quantile; `None` where there is no result.
@@ -283,10 +259,7 @@ impl Problem {
     /// # Errors
     /// As [`Reduced::run_with_history`].
     pub fn outcome(&self, values: &[f64]) -> Result<Outcome> {
-        match &self.bodies {
-            Bodies::Plates(bodies) => self.plate(bodies, values)?.run_with_history(TOLERANCE),
-            Bodies::Seats(series) => self.seat(series, values)?.run_with_history(SEAT_TOLERANCE),
-        }
+        self.model(values)?.run_with_history(self.tolerance())
     }
 
     /// Searches the optimum; `seed` chooses the samples of a search over several variables, whose number is `samples` if given.
@@ -295,9 +268,9 @@ impl Problem {
     /// [`Error::Solver`] if no scene within the bounds has a result.
     pub fn solve(&self, seed: u64, samples: Option<usize>) -> Result<Optimum> {
         let dimensions = self.variables.len();
-        let search = match self.bodies {
-            Bodies::Plates(_) => Search { resolution: RESOLUTION, ..Search::of_dimensions(dimensions) },
-            Bodies::Seats(_) => Search::of_dear(dimensions),
+        let search = match self.series.is_dear() {
+            false => Search { resolution: RESOLUTION, ..Search::of_dimensions(dimensions) },
+            true => Search::of_dear(dimensions),
         };
         let search = Search { seed, samples: samples.unwrap_or(search.samples), ..search };
         let place = |s: &[f64]| -> Vec<f64> {
@@ -312,7 +285,7 @@ impl Problem {
         };
         let values: Vec<f64> =
             self.variables.iter().zip(&exact).map(|(v, x)| rounded(*x).clamp(v.low, v.high)).collect();
-        let summary = self.summary(&values)?;
+        let summary = self.model(&values)?.run(self.tolerance())?;
         let cut = || Error::Solver(CUT.into());
         let efficiency = summary.value("efficiency").ok_or_else(cut)?;
         let nominal =
@@ -332,10 +305,7 @@ impl Problem {
             there[k] = x;
             self.worth(&there)
         };
-        let points = match self.bodies {
-            Bodies::Plates(_) => PROFILE_POINTS,
-            Bodies::Seats(_) => DEAR_POINTS,
-        };
+        let points = if self.series.is_dear() { DEAR_POINTS } else { PROFILE_POINTS };
         let variables = (0..dimensions)
             .into_par_iter()
             .map(|k| Neighbourhood::of(&self.variables[k], values[k], best, points, |x| at(k, x)))

@@ -31,7 +31,7 @@ pub use identity::{revision, settings_hash};
 pub use import::import;
 pub use modes::{plate_modes, seat_frequencies};
 pub use python::{prefer_python, python};
-pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, seat_mesh, seat_mesh_with, seat_meshes};
+pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, mesh_to_follow, seat_mesh, seat_mesh_with, seat_meshes};
 pub use section::MeshSection;
 pub use solve::{Wish, solve, solve_with};
 pub use store::{Lookup, Store};

@@ -3,6 +3,7 @@
 use super::{Progress, Resolution, child, identity, python};
 use crate::body::cache::Cache;
 use crate::interrupt::Scratch;
+use crate::kinds::seal_seat::SeatMesh;
 use crate::project::project_root;
 use crate::scene::Scene;
 use crate::scene::hash::sha256_hex;
@@ -94,6 +95,29 @@ pub fn seat_mesh_with(
         make_seat_mesh(&python::python()?, scene, resolution, 1.0, &path)?;
     }
     Ok(path)
+}
+
+/// The mesh of the seal seat of `scene` that is to follow its dimensions in a series of launches: the file at `path`, else a coarse one
+/// as by [`seat_mesh`], or, where none can be made, the one there is. None of other scenes.
+///
+/// # Errors
+/// [`Error::Usage`] for the mesh of a scene that is no seal seat, else as [`seat_mesh`] and [`SeatMesh::open`].
+pub fn mesh_to_follow(scene: &Scene, path: Option<&Path>) -> Result<Option<SeatMesh>> {
+    if scene.seal_seat().is_err() {
+        return match path {
+            Some(path) => Err(Error::Usage(format!(
+                "mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
+                path.display(),
+                scene.name
+            ))),
+            None => Ok(None),
+        };
+    }
+    let cache = Cache::from_environment();
+    let of = |resolution| seat_mesh(scene, resolution, &cache);
+    let made = || of(Resolution::Coarse).or_else(|_| of(Resolution::Paper));
+    let path = path.map_or_else(made, |path| Ok(path.to_path_buf()))?;
+    SeatMesh::open(&path).map(Some)
 }
 
 /// The description of the mesh file at `path`, if both are there and belong together.

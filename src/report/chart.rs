@@ -1,6 +1,6 @@
 //! Curves over one axis, panel above panel: the figures of studies, sweeps and series of measurements.
 
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::plot_axis::{Axis, Plot};
 use super::polyline::{Point, path};
 use maud::{Markup, PreEscaped, html};

@@ -3,7 +3,7 @@
 use super::chart::{CHART_WIDTH, FONT_SIZE, LEFT, LEGEND_ROW, PANEL_GAP, sheet};
 use super::colours::hex;
 use super::field_raster::cividis;
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::plot_axis::{Axis, Plot};
 use super::polyline::Point;
 use maud::{Markup, html};

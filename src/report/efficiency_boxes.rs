@@ -1,6 +1,6 @@
 //! The boxes with the efficiencies in the figure's velocity panel, as in Fig. 10.
 
-use super::figure::{stroke, x2};
+use super::figure_geometry::{stroke, x2};
 use super::figure_lines::Line;
 use super::format::significant;
 use super::label_placement::Rect;

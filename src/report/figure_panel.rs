@@ -1,7 +1,7 @@
 //! One panel of the figure: a quantity of all bodies and results over time.
 
 use super::efficiency_boxes::EfficiencyBoxes;
-use super::figure::{FONT_SIZE, Geometry, PanelOf, stroke, text_width, x2};
+use super::figure_geometry::{FONT_SIZE, Geometry, PanelOf, stroke, text_width, x2};
 use super::figure_lines::Line;
 use super::label_placement::{Panel, Rect};
 use super::polyline::{Point, path, thinned};

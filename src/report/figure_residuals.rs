@@ -1,6 +1,6 @@
 //! The panel of residuals below a panel of the figure: model minus reference on a symmetric logarithmic axis, over the band.
 
-use super::figure::{FONT_SIZE, Geometry, PanelOf, x2};
+use super::figure_geometry::{FONT_SIZE, Geometry, PanelOf, x2};
 use super::figure_lines::Line;
 use super::format::minus;
 use super::polyline::{Point, path_within};

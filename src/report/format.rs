@@ -34,6 +34,7 @@ pub(crate) fn prefixed(unit: &str, scale: f64) -> Prefixed {
         "Pa" if small >= 1e9 => of("GPa", 1e-9),
         "Pa" if small >= 1e6 => of("MPa", 1e-6),
         "Pa" => of("Pa", 1.0),
+        "rad/s" => of("rad/s", 1.0),
         "rad" => of("°", 180.0 / std::f64::consts::PI),
         _ => of("", 1.0),
     }

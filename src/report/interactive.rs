@@ -1,7 +1,7 @@
 //! The interactive panels of a scene's page, their data and scripts; the page stays whole without scripts and on paper.
 
 use super::SceneReport;
-use super::figure::PanelOf;
+use super::figure_geometry::PanelOf;
 use super::html::drawn;
 use super::page_data::{curves, embedded};
 use maud::{Markup, PreEscaped, html};

@@ -22,6 +22,7 @@ mod facts;
 mod field_raster;
 mod figure;
 mod figure_file;
+mod figure_geometry;
 mod figure_lines;
 mod figure_panel;
 mod figure_residuals;

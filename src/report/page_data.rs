@@ -2,7 +2,7 @@
 
 use super::SceneReport;
 use super::colours::look;
-use super::figure::PanelOf;
+use super::figure_geometry::PanelOf;
 use super::figure_lines::reference_name;
 use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};

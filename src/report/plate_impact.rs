@@ -1,7 +1,7 @@
 //! How a plate impact is shown.
 
 use super::attachments::instant_of_peak;
-use super::figure::PanelOf;
+use super::figure_geometry::PanelOf;
 use super::plate_impact_picture::{self, plate_picture};
 use super::presentation::{Drawing, Presentation};
 use super::section::Section;

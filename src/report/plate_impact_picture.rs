@@ -1,6 +1,6 @@
 //! A plate impact in section, to scale, and in numbers.
 
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::format::{measure, short};
 use super::scene_drawing::{Scale, materials};
 use crate::scene::{Edge, Material, PlateImpact, Shape};

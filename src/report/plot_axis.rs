@@ -1,6 +1,6 @@
 //! Axes of charts: a range, linear or logarithmic, its marks, and the frame that two of them make.
 
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::format::{short, with_minus};
 use super::polyline::Point;
 use super::ticks::{tick_label, ticks};

@@ -1,6 +1,6 @@
 //! How the results of a kind of scene are shown, where that differs from kind to kind.
 
-use super::figure::PanelOf;
+use super::figure_geometry::PanelOf;
 use super::section::Section;
 use super::summary_column::Column;
 use super::{Attachments, SceneReport, plate_impact, seal_seat};

@@ -1,7 +1,7 @@
 //! How results scatter: histogram, shares of the variance and what one input alone changes, quantity below quantity.
 
 use super::chart::{FONT_SIZE, LEFT, sheet};
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::format::{percent, prefixed, words};
 use super::plot_axis::{Axis, Plot};
 use super::polyline::path;

@@ -1,6 +1,6 @@
 //! What drawings of scenes to scale share: places, the bar that gives the scale, materials in numbers.
 
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::format::{measure, short};
 use super::ticks::round_below;
 use crate::scene::Material;

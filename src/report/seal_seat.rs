@@ -1,7 +1,7 @@
 //! How a seal seat is shown: flight of the sphere, curves, what model and reference have cost.
 
 use super::attachments::instant_of_peak;
-use super::figure::PanelOf;
+use super::figure_geometry::PanelOf;
 use super::format::{model_name, prefixed, significant, with_unit};
 use super::html::{named, scrolled};
 use super::presentation::{Drawing, Presentation};

@@ -2,7 +2,7 @@
 
 use super::SceneReport;
 use super::field_raster::cividis;
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::format::{prefixed, with_unit};
 use super::section_frame::{Bounds, Frame, Place, Scale};
 use crate::reference::MeshSection;

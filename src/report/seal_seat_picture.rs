@@ -1,7 +1,7 @@
 //! The section y = 0 of a seal seat: geometry, where it is struck, and the directions of the sphere's flight.
 
 use super::Theme;
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::format::{measure, short};
 use super::scene_drawing::{Scale, materials};
 use super::summary_column::degrees;

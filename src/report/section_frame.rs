@@ -1,7 +1,7 @@
 //! Frame of a picture in section: axes in mm and, for a field, the scale of its colours.
 
 use super::field_raster::cividis;
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::ticks::{tick_label, ticks};
 use maud::{Markup, html};
 

@@ -1,7 +1,7 @@
 //! Results over commits in the report: a line per number, with what the gate admits.
 
 use super::Attachments;
-use super::figure::x2;
+use super::figure_geometry::x2;
 use super::format::{prefixed, significant, with_unit, words};
 use super::html::{badge, scrolled};
 use super::polyline::path;

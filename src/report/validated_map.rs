@@ -2,7 +2,7 @@
 //! among them. Two views per model share the axis of the patch, so that what is near in both is near in all three numbers.
 
 use super::discrepancy_picture::mark;
-use super::figure::{FONT_SIZE, x2};
+use super::figure_geometry::{FONT_SIZE, x2};
 use super::format::{percent, percent_above, significant, words};
 use super::html::scrolled;
 use super::plot_axis::{Axis, Plot};

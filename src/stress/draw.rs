@@ -149,7 +149,7 @@ impl Case {
             tip_radius: outer_shape.tip_radius() * random.log(0.05, 20.0),
         };
         let speed = random.log(1e-4, 50.0);
-        let outer = Outer { shape: outer_shape, material: outer_material, speed };
+        let outer = Outer::centred(outer_shape, outer_material, speed);
         let modes = (random.log(1.0, 257.0) as usize).clamp(1, TIERS[2]);
         let mut setup = PlateImpact {
             friction: 0.0,

@@ -37,7 +37,7 @@ pub fn impact(radius: f64, thickness: f64, edge: Edge, material: Material, spher
     PlateImpact {
         friction: 0.0,
         plate: Plate { radius, thickness, edge, material, damping_ratio: 0.0 },
-        outer: Outer { shape: shape.clone(), material: steel(), speed: SPEED },
+        outer: Outer::centred(shape.clone(), steel(), SPEED),
         inner: Inner { shape, material: steel(), gap: 0.0, speed: 0.0 },
         fluid: None,
         series: None,

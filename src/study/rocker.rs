@@ -66,7 +66,7 @@ pub fn setup(shape: Shape, speed: f64) -> PlateImpact {
     PlateImpact {
         friction: 0.0,
         plate: Plate { radius, thickness, edge: Edge::Clamped, material: titanium(), damping_ratio: 0.0 },
-        outer: Outer { shape, material: sapphire(), speed },
+        outer: Outer::centred(shape, sapphire(), speed),
         inner: Inner { shape: Shape::Sphere { radius: SPHERE }, material: sapphire(), gap: 0.0, speed: 0.0 },
         fluid: None,
         series: None,

@@ -6,9 +6,11 @@
 pub mod design;
 mod draw;
 pub mod estimate;
+mod request;
 mod scatter;
 mod study;
 
 pub use draw::Inputs;
+pub use request::{Request, Samples, WANTED};
 pub use scatter::{Correlated, Input, Local, QuantityScatter, Scatter, Share};
-pub use study::{Request, Samples, WANTED, study, uncertainty_of};
+pub use study::{study, uncertainty_of};

@@ -2,7 +2,7 @@
 
 use super::draw::Inputs;
 use super::estimate::{Estimate, Indices, Row, indices, mean, quantile, sorted, standard_deviation};
-use super::study::Request;
+use super::request::Request;
 use crate::result::SCHEMA_VERSION;
 use crate::scene::{Correlation, Scene};
 use serde::Serialize;

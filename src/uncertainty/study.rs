@@ -3,11 +3,12 @@
 use super::design::{MOST_INPUTS, MOST_ROWS, REPLICATES};
 use super::draw::Inputs;
 use super::estimate::{Row, mean, standard_deviation};
+use super::request::{Request, Samples};
 use super::scatter::{Impacts, Scatter};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::PlateQuantities;
 use crate::report::TableFormat;
-use crate::scene::{Field, Model, Scene, Template, Uncertainty};
+use crate::scene::{Field, Scene, Template, Uncertainty};
 use crate::study::sweep::{Outcome, Plan, Progress, Record, Shard, Table, in_memory, run};
 use std::path::{Path, PathBuf};
 
@@ -17,42 +18,6 @@ const FIRST_ROWS: usize = 16 * REPLICATES;
 const MOST_WANTED: usize = 1 << 16;
 /// Relative error of the efficiency that the time integration may have: far below any scatter worth a study.
 const TOLERANCE: f64 = 1e-4;
-/// Quantities whose scatter is wanted when nobody names others.
-pub const WANTED: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
-
-/// How much to sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Samples {
-    /// So many rows.
-    Rows(usize),
-    /// Twice as many again and again, until the 95 % intervals of mean and standard deviation of the wanted quantities are no wider than
-    /// this share of the standard deviation to either side.
-    Until(f64),
-}
-
-/// What is asked of a study.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Request {
-    /// The reduced model.
-    pub model: Model,
-    /// Its number of modes; `None` = as `reduced`.
-    pub modes: Option<usize>,
-    /// How much to sample.
-    pub samples: Samples,
-    /// The quantities that `samples` is about.
-    pub wanted: Vec<String>,
-    /// Another one gives other samples.
-    pub seed: u32,
-}
-
-impl Request {
-    /// Of `model`, as [`WANTED`], to an `accuracy`.
-    pub fn new(model: Model, accuracy: f64) -> Self {
-        let wanted = WANTED.map(str::to_owned).into();
-        Request { model, modes: None, samples: Samples::Until(accuracy), wanted, seed: 1 }
-    }
-}
-
 /// What `scene` says of its inputs.
 ///
 /// # Errors
@@ -97,10 +62,7 @@ impl Growing<'_> {
     }
 
     fn value(&self, index: usize, quantity: &str) -> Option<f64> {
-        match &self.records[index].outcome {
-            Outcome::Done(point) => point.quantities.get(quantity).filter(|value| value.is_finite()),
-            _ => None,
-        }
+        self.plan.value(&self.records[index], quantity).filter(|value| value.is_finite())
     }
 
     /// The rows of which every impact has a result.

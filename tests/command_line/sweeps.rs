@@ -182,6 +182,7 @@ fn sweep_files_that_make_no_sense_end_with_a_sentence_and_write_nothing() {
         (range("plate.radius", "values = [1]") + &range("plate.radius", "values = [2]"), 3, "varied twice"),
         (format!("samples = 5\n{}", range("plate.radius", "values = [1]")), 3, "latin-hypercube"),
         (format!("model = \"D\"\n{}", range("plate.radius", "values = [1]")), 3, "A, B and C"),
+        (format!("mesh = \"seat.vtu\"\n{}", range("plate.radius", "values = [1]")), 2, "is no seal seat"),
         (format!("tolerance = 1\n{}", range("plate.radius", "values = [1]")), 3, "tolerance"),
     ];
     let out = folder.path().join("out");

@@ -215,7 +215,7 @@ fn candidates_lie_on_the_exact_surfaces() {
     assert!(on_ring > 10, "{on_ring}");
 }
 
-fn impactcheck(arguments: &[&str], cache: &Path) -> (i32, String, String) {
+pub fn impactcheck(arguments: &[&str], cache: &Path) -> (i32, String, String) {
     let mut command = Command::cargo_bin("impactcheck").expect("binary");
     let output = command.args(arguments).env("IMPACTCHECK_CACHE", cache).output().expect("runs");
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");

@@ -436,3 +436,39 @@ fn only_what_changes_a_result_changes_the_hash() {
     assert!(yielding != hash("") && yielding != hash("yield_strength = 7e8\nhardening = 0"));
     assert_ne!(hash("relaxation = [{ ratio = 0.1, time = 1e-5 }]"), hash(""));
 }
+
+/// The valid scene without settings of its reference, with further keys of the outer body.
+fn struck(keys: &str) -> String {
+    let (physics, _) = VALID.split_once("[reference]").expect("settings");
+    let speed = "speed    = \"550 mm/s\"";
+    assert!(physics.contains(speed));
+    physics.replace(speed, &format!("{speed}\n{keys}"))
+}
+
+#[test]
+fn an_impact_beside_the_centre_or_at_an_angle_is_solved_in_three_dimensions() {
+    let scene = parse(&struck("offset = \"2 mm\"\nangle = \"-30 deg\""));
+    let outer = &plate_impact(&scene).outer;
+    assert_eq!((outer.offset, outer.is_centred()), (0.002, false));
+    assert!((outer.angle + std::f64::consts::FRAC_PI_6).abs() < 1e-15);
+    assert_eq!(scene.reference.geometry, Geometry::Solid);
+    assert_eq!(scene.reference.elements_per_contact_radius, Some(3.0));
+    // said or not: what is zero is what it always was
+    let centred = parse(&struck("offset = 0\nangle = 0"));
+    assert_eq!((centred.hash(), centred.reference.geometry), (parse(VALID).hash(), Geometry::Axisymmetric));
+    assert_ne!(scene.hash(), centred.hash());
+}
+
+#[test]
+fn what_nobody_solves_beside_the_centre_is_refused() {
+    for (text, words) in [
+        (struck("offset = \"-1 mm\""), "outer.offset"),
+        (struck("offset = \"33 mm\""), "less than `plate.radius`"),
+        (struck("angle = \"90 deg\""), "outer.angle"),
+        (struck("angle = 0.1").replace("edge ", "damping_ratio = 0.1\nedge "), "undamped"),
+        (struck("angle = 0.1") + "\n[reference]\ngeometry = \"axisymmetric\"", "no axis of symmetry"),
+    ] {
+        let error = Scene::parse("plate-impact.toml", &text).expect_err(words).to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}

@@ -20,7 +20,7 @@ pub fn scaled_plate(radius: f64, speed: f64) -> PlateImpact {
             material: steel.clone(),
             damping_ratio: 0.0,
         },
-        outer: Outer { shape: Shape::Sphere { radius }, material: steel.clone(), speed },
+        outer: Outer::centred(Shape::Sphere { radius }, steel.clone(), speed),
         inner: Inner { shape: Shape::Sphere { radius }, material: steel, gap: 0.0, speed: 0.0 },
         fluid: None,
         series: None,

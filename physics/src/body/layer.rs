@@ -12,12 +12,12 @@
 //! the continuum plate to three digits; what is lacking is the effect of shear on the rim, and longitudinal modes.
 
 use super::ModalBody;
-use super::continuum::mirror::axpy;
 use super::continuum::{ContinuumPlate, WEIGHTED};
 use super::free_sphere::patch_transform;
 use crate::analytical::circular_plate::{centre_deflection, deflection, frequency_parameters, rigidity};
 use crate::contact::{PatchTable, RADII};
 use crate::numerics::quadrature::gauss_legendre;
+use crate::numerics::vectors::axpy;
 use crate::scene::{Edge, Plate};
 use std::f64::consts::PI;
 

@@ -4,8 +4,8 @@
 //! time. Nothing depends on the order of the oscillators; the last block is filled up with rigid coordinates no
 //! contact acts on, which stay at rest.
 
-use super::collocation::{STAGES, Stages, powers};
 use super::duhamel::{MOMENTS, Oscillator};
+use super::stages::{STAGES, Stages, powers};
 use super::system::System;
 use bytemuck::cast;
 use wide::{f64x4, u64x4};

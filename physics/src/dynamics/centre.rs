@@ -7,7 +7,6 @@
 //! 0.75 (1 - nu^2)/(E b) (1 - a^2/(5 b^2)) per unit force (the mean of Hertz's displacement, Johnson, Contact Mechanics, 1985,
 //! section 3.4, over the other pressure).
 
-use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::contact::{Hertz, PatchFlexibility, RADII, TABULATED};
 
@@ -60,13 +59,9 @@ impl LocalCentre {
             .sum()
     }
 
-    /// Displacement in m and velocity in m/s along z in addition to the modes', with the patches `p` in m, the rates of the modal
-    /// approaches in m/s and the forces `f` in N.
-    pub fn motion(&self, system: &System, p: [f64; 2], rate: [f64; 2], f: [f64; 2]) -> [f64; 2] {
-        let (p_rate, f_rate) = match &system.residual {
-            Some(residual) => residual.rates(&system.laws, p, rate),
-            None => (rate, [0, 1].map(|i| system.laws[i].tangent(p[i]) * rate[i])),
-        };
+    /// Displacement in m and velocity in m/s along z in addition to the modes', with the patches `p` in m, the forces `f` in N and
+    /// the rates of both.
+    pub fn motion(&self, (p, p_rate): ([f64; 2], [f64; 2]), (f, f_rate): ([f64; 2], [f64; 2])) -> [f64; 2] {
         let mut motion = [0.0; 2];
         // the outer body presses the plate down, the inner one up
         for (j, sign) in [(0, -1.0), (1, 1.0)] {

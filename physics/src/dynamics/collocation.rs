@@ -10,16 +10,10 @@
 //! answer with a motion that comes back undamped. Radau's points, of which the last is the end, stop it
 //! (L-stability: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5), at order 2 STAGES - 1.
 
-use super::bank::{Bank, Block};
-use super::duhamel::{MOMENTS, Oscillator};
+use super::duhamel::Oscillator;
+use super::stages::{STAGES, Stages};
 use crate::numerics::quadrature::{gauss_legendre, gauss_radau};
 use wide::f64x4;
-
-/// Gauss (or Radau) points of a step, its nodes.
-pub const STAGES: usize = 4;
-
-/// Values at the nodes.
-pub type Stages = [f64; STAGES];
 
 /// Points of a step at which a contact is known: its start, the Gauss points, its end.
 pub const POINTS: usize = STAGES + 2;
@@ -236,147 +230,6 @@ pub struct Response {
     pub displacement_per_force: Stages,
     /// q'(t) per generalised force at each node, s.
     pub velocity_per_force: Stages,
-}
-
-/// Everything about a step of one length that does not depend on the state.
-#[derive(Debug, Clone)]
-pub struct StepTable {
-    /// Length of the step in s.
-    pub h: f64,
-    /// s' and s of every oscillator at Gauss point j, shape (STAGES, 2, blocks); then its moments at the end, shape
-    /// (MOMENTS, blocks).
-    oscillators: Vec<f64x4>,
-    /// `coupling[c][l]`: approaches at all Gauss points lost per force at Gauss point l, in m/N; c is the pair of contacts
-    /// (0,0), (0,1) = (1,0), (1,1).
-    pub coupling: [[f64x4; STAGES]; 3],
-    /// `coefficients[p][l]`: coefficient of tau^p / p! in the polynomial of a force per value at Gauss point l.
-    coefficients: [Stages; STAGES],
-}
-
-impl StepTable {
-    /// Room for the tables of `blocks` blocks.
-    pub fn empty(blocks: usize) -> Self {
-        Self {
-            h: 0.0,
-            oscillators: bytemuck::zeroed_vec((STAGES * 2 + MOMENTS) * blocks),
-            coupling: [[f64x4::ZERO; STAGES]; 3],
-            coefficients: Default::default(),
-        }
-    }
-
-    /// Makes these the tables of `bank` for steps of length `h` s.
-    pub fn fill(&mut self, bank: &Bank, collocation: &Collocation, h: f64) {
-        let n = bank.blocks.len();
-        self.h = h;
-        let mut scale = 1.0;
-        for p in 0..STAGES {
-            if p > 0 {
-                scale *= p as f64 / h;
-            }
-            self.coefficients[p] = std::array::from_fn(|l| scale * collocation.lagrange[l][p]);
-        }
-        let mut rows = [[[0.0; STAGES]; STAGES]; 3];
-        for j in 0..STAGES {
-            let t = collocation.nodes[j] * h;
-            let powers = powers(t);
-            let (slope, impulse) = self.oscillators[2 * j * n..][..2 * n].split_at_mut(n);
-            // answers of the approaches to forces tau^p / p!
-            let mut answers = [[f64x4::ZERO; STAGES]; 3];
-            for (k, block) in bank.blocks.iter().enumerate() {
-                let moments = block.moments(t, &powers);
-                (slope[k], impulse[k]) = (moments[0], moments[1]);
-                for p in 0..STAGES {
-                    for pair in 0..3 {
-                        answers[pair][p] += block.products[pair] * moments[p + 2];
-                    }
-                }
-            }
-            for (rows, answers) in rows.iter_mut().zip(answers) {
-                let answers = answers.map(f64x4::reduce_add);
-                for p in 0..STAGES {
-                    for l in 0..STAGES {
-                        rows[l][j] += self.coefficients[p][l] * answers[p];
-                    }
-                }
-            }
-        }
-        self.coupling = rows.map(|columns| columns.map(f64x4::from));
-        let powers = powers(h);
-        for (k, block) in bank.blocks.iter().enumerate() {
-            for (p, moment) in block.moments(h, &powers).into_iter().enumerate() {
-                self.oscillators[(2 * STAGES + p) * n + k] = moment;
-            }
-        }
-    }
-
-    /// Approaches at the Gauss points, in m, if no force acted during the step; `gap` in m.
-    #[inline]
-    pub fn free_approach(&self, bank: &Bank, gap: [f64; 2], q: &[f64x4], v: &[f64x4]) -> [f64x4; 2] {
-        let n = q.len();
-        let (blocks, v) = (&bank.blocks[..n], &v[..n]);
-        let rows: [&[f64x4]; 2 * STAGES] = std::array::from_fn(|row| &self.oscillators[row * n..][..n]);
-        let mut sums = [[f64x4::ZERO; STAGES]; 2];
-        for k in 0..n {
-            let rate = v[k] + blocks[k].damping * q[k];
-            for j in 0..STAGES {
-                let value = rows[2 * j][k] * q[k] + rows[2 * j + 1][k] * rate;
-                sums[0][j] += blocks[k].approach[0] * value;
-                sums[1][j] += blocks[k].approach[1] * value;
-            }
-        }
-        std::array::from_fn(|i| f64x4::from(sums[i].map(f64x4::reduce_add)) - f64x4::splat(gap[i]))
-    }
-
-    /// Writes the state at the end of the step under the forces at the Gauss points and gives the approaches there,
-    /// without the gaps, and the energy of the oscillators there in J.
-    #[inline]
-    pub fn advance(
-        &self,
-        bank: &Bank,
-        forces: &[Stages; 2],
-        (q, v): (&[f64x4], &[f64x4]),
-        (q_end, v_end): (&mut [f64x4], &mut [f64x4]),
-    ) -> ([f64; 2], f64) {
-        let n = q.len();
-        let (v, q_end, v_end) = (&v[..n], &mut q_end[..n], &mut v_end[..n]);
-        let blocks = &bank.blocks[..n];
-        let rows: [&[f64x4]; MOMENTS] =
-            std::array::from_fn(|p| &self.oscillators[(2 * STAGES + p) * n..][..n]);
-        let mut polynomial = [[0.0; STAGES]; 2];
-        for p in 0..STAGES {
-            for l in 0..STAGES {
-                polynomial[0][p] += self.coefficients[p][l] * forces[0][l];
-                polynomial[1][p] += self.coefficients[p][l] * forces[1][l];
-            }
-        }
-        let (mut sums, mut energy) = ([f64x4::ZERO; 2], f64x4::ZERO);
-        for k in 0..n {
-            let Block { stiffness, damping, approach: [b0, b1], .. } = blocks[k];
-            let (slope, impulse) = (rows[0][k], rows[1][k]);
-            let mut displacement = slope * q[k] + impulse * (v[k] + damping * q[k]);
-            let mut rate = slope * v[k] - stiffness * impulse * q[k];
-            for p in 0..STAGES {
-                let force = b0 * polynomial[0][p] + b1 * polynomial[1][p];
-                displacement -= rows[p + 2][k] * force;
-                rate -= rows[p + 1][k] * force;
-            }
-            (q_end[k], v_end[k]) = (displacement, rate);
-            sums[0] += b0 * displacement;
-            sums[1] += b1 * displacement;
-            energy += rate * rate + stiffness * (displacement * displacement);
-        }
-        (sums.map(f64x4::reduce_add), 0.5 * energy.reduce_add())
-    }
-}
-
-/// t^p / p! for p < STAGES.
-#[inline(always)]
-pub(super) fn powers(t: f64) -> [f64; STAGES] {
-    let mut powers = [1.0; STAGES];
-    for p in 1..STAGES {
-        powers[p] = powers[p - 1] * t / p as f64;
-    }
-    powers
 }
 
 #[cfg(test)]

@@ -6,9 +6,11 @@
 //! the Hertz approaches of the visit before.
 
 use super::bank::Bank;
-use super::collocation::{Collocation, POINTS, Points, STAGES, Stages, StepTable};
+use super::collocation::{Collocation, POINTS, Points};
 use super::contact_ledger::work;
 use super::point_laws::{HertzPoints, PointLaw, ResidualPoints, Visit};
+use super::stages::{STAGES, Stages};
+use super::step_table::StepTable;
 use super::system::{System, dot};
 use wide::f64x4;
 

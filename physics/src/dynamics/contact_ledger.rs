@@ -1,6 +1,7 @@
 //! What is booked about one contact: impulse, peak force, touches and releases.
 
-use super::collocation::{Collocation, STAGES, Stages, crossing};
+use super::collocation::{Collocation, crossing};
+use super::stages::{STAGES, Stages};
 use super::system::dot;
 
 /// Course of one contact over one step, known at `P` points of it: start, Gauss (Radau) points and end.

@@ -6,7 +6,7 @@
 //! Upwards in p the recurrence divides by omega^2 and is used when omega t is large; downwards,
 //! started by the power series, it is stable when omega t is small, a rigid motion included.
 
-use super::collocation::STAGES;
+use super::stages::STAGES;
 
 /// Number of moments of one time: s', s, S_0 ... S_(STAGES-1).
 pub const MOMENTS: usize = STAGES + 2;

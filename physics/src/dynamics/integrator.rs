@@ -4,7 +4,7 @@ mod judged;
 
 use self::judged::Judged;
 use super::bank::in_blocks;
-use super::collocation::{Collocation, POINTS, STAGES};
+use super::collocation::{Collocation, POINTS};
 use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse};
 use super::force_peak::SolvedStep;
@@ -12,6 +12,7 @@ use super::free_flight::{self, Flight};
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
+use super::stages::STAGES;
 use super::step_bounds::{Bounds, EnergyAccount, base_step, force_scale, momentum_scale};
 use super::system::System;
 use crate::error::{Error, Result};

@@ -1,7 +1,8 @@
 //! The step tables of a run, made when their length is first taken.
 
 use super::bank::Bank;
-use super::collocation::{Collocation, StepTable};
+use super::collocation::Collocation;
+use super::step_table::StepTable;
 
 /// Tables of the step lengths in use: a fixed number of places, taken over from the level farthest off when all are
 /// in use. One more serves steps of any other length.

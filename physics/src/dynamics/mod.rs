@@ -20,7 +20,9 @@ pub mod memory;
 mod moving_body;
 mod point_laws;
 pub(crate) mod recorder;
+mod stages;
 mod step_bounds;
+mod step_table;
 pub mod system;
 pub mod wet;
 

@@ -2,7 +2,8 @@
 //!
 //! The point's own forces act back on its approaches at once; a visit is one Newton step for both together.
 
-use super::collocation::{STAGES, Stages, StepTable};
+use super::stages::{STAGES, Stages};
+use super::step_table::StepTable;
 use crate::contact::{Hertz, Residual, State};
 use wide::f64x4;
 

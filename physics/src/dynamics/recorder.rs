@@ -1,6 +1,7 @@
 //! Sampling of the course over time; a run that is not asked for its history has no recorder.
 
-use super::collocation::{Collocation, POINTS, Stages};
+use super::collocation::{Collocation, POINTS};
+use super::stages::Stages;
 use super::system::{System, dot};
 use crate::error::Result;
 use crate::result::{Curve, History};
@@ -108,7 +109,7 @@ impl<'a, const P: usize> Recorder<'a, P> {
         let approach = system.modal_approach(q);
         let (patch, forces) = system.contact(approach, approach).unwrap_or(([f64::NAN; 2], [f64::NAN; 2]));
         let rate = [0, 1].map(|i| dot(&system.approach[i], v));
-        let local = system.local_centre.motion(system, patch, rate, forces);
+        let local = system.motion_of_centre(patch, rate, forces);
         self.history.push(time, sample(system, [q, v], local, forces));
     }
 }

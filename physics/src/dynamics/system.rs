@@ -296,6 +296,16 @@ impl System {
             Some(residual) => residual.solve(&self.laws, y, guess),
         }
     }
+
+    /// What the contacts add to displacement in m and velocity in m/s of the plate's centre, with the patches `p` in m, the rates of
+    /// the modal approaches in m/s and the `forces` in N.
+    pub fn motion_of_centre(&self, p: [f64; 2], rate: [f64; 2], forces: [f64; 2]) -> [f64; 2] {
+        let (p_rate, force_rate) = match &self.residual {
+            Some(residual) => residual.rates(&self.laws, p, rate),
+            None => (rate, [0, 1].map(|i| self.laws[i].tangent(p[i]) * rate[i])),
+        };
+        self.local_centre.motion((p, p_rate), (forces, force_rate))
+    }
 }
 
 /// Scalar product.

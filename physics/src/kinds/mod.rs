@@ -3,9 +3,12 @@
 mod consistency;
 pub mod plate_impact;
 pub mod seal_seat;
+mod series;
 
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table};
 use crate::scene::{Model, Scene, Setup};
+
+pub use series::{Series, SeriesModel};
 
 /// What everything that compares, shows or keeps results has to know of a kind of scene.
 pub trait Kind: Sync {

@@ -6,3 +6,4 @@ pub(crate) mod eigenmodes;
 pub mod least_squares;
 pub mod quadrature;
 pub(crate) mod root;
+pub(crate) mod vectors;

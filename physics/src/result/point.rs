@@ -12,3 +12,11 @@ pub struct Point<Q> {
     /// Time steps taken.
     pub steps: u64,
 }
+
+impl<Q> Point<Q> {
+    /// The same with other quantities.
+    pub fn map<R>(self, of: impl FnOnce(Q) -> R) -> Point<R> {
+        let Self { quantities, energy_residual, momentum_residual, steps } = self;
+        Point { quantities: of(quantities), energy_residual, momentum_residual, steps }
+    }
+}

@@ -31,6 +31,31 @@ pub struct BenderSummary {
     pub drive: Drive,
 }
 
+/// How bodies move along the plate and turn after an impact beside the centre or at an angle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Sideways {
+    /// Velocity of the outer body along x in m/s.
+    pub outer_tangential_velocity_final: f64,
+    /// Velocity of the inner body along x in m/s.
+    pub inner_tangential_velocity_final: f64,
+    /// Spin of the outer body about y in rad/s; positive as of a ball that rolls towards +x on a plate below it.
+    pub outer_spin_final: f64,
+    /// Spin of the inner body about y in rad/s.
+    pub inner_spin_final: f64,
+}
+
+impl Sideways {
+    /// Name, value and unit of each.
+    pub fn rows(&self) -> [(&'static str, f64, &'static str); 4] {
+        [
+            ("outer_tangential_velocity_final", self.outer_tangential_velocity_final, "m/s"),
+            ("inner_tangential_velocity_final", self.inner_tangential_velocity_final, "m/s"),
+            ("outer_spin_final", self.outer_spin_final, "rad/s"),
+            ("inner_spin_final", self.inner_spin_final, "rad/s"),
+        ]
+    }
+}
+
 /// Largest speed of the outer body in m/s at which a contact stays elastic, all else being as it is; `None` where no yield strength
 /// is known, or the contact never comes to it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -86,6 +111,9 @@ pub struct Summary {
     /// contacts only, which amplify it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integration_error: Option<f64>,
+    /// References of impacts beside the centre or at an angle, unless the run was cut during a contact.
+    #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
+    pub sideways: Option<Sideways>,
     /// Of a bender only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bender: Option<BenderSummary>,
@@ -201,6 +229,7 @@ impl Summary {
             steps: None,
             solve_seconds: 0.0,
             failure: None,
+            sideways: None,
             bender: None,
             contact_pressure: None,
             impacts: Vec::new(),

@@ -1,8 +1,8 @@
 //! What messages about a scene file advise: the choices there are, how a key is written.
 
-use super::check::Place;
+use super::grammar::{Choice, Field, Kind};
+use super::place::Place;
 use super::quantity::Dimension;
-use super::specification::{Choice, Field, Kind};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 

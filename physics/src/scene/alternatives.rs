@@ -1,7 +1,8 @@
 //! Keys that are several ways to say one thing: exactly one way has to be taken, and in full.
 
-use super::check::{Checker, Place};
-use super::specification::{Alternative, Field};
+use super::check::Checker;
+use super::grammar::{Alternative, Field};
+use super::place::Place;
 use toml::de::DeTable;
 
 /// The groups of alternatives among `fields` for a table of this `kind`: per group its sets, per set its fields.

@@ -2,45 +2,13 @@
 
 use super::advice::{alternatives, chosen, example, half_of_it, needed};
 use super::fault::{Collector, did_you_mean};
+use super::grammar::{Bound, Field, Kind};
+use super::place::Place;
 use super::plate_impact::DEFAULT_GEOMETRY;
 use super::quantity::{self, Dimension, QuantityError};
-use super::specification::{Bound, Field, Kind};
-use std::collections::BTreeMap;
-use std::ops::Range;
+use super::values::{Checked, Values};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// A value that has passed its checks; quantities are in SI.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Checked {
-    Number(f64),
-    Numbers(Vec<f64>),
-    Count(u64),
-    Text(String),
-    Texts(Vec<String>),
-    Flag(bool),
-    Table(Values),
-    Tables(Vec<Values>),
-}
-
-/// The checked values of one table by key.
-pub(super) type Values = BTreeMap<String, Checked>;
-
-/// Where a table stands: its full name and the place a missing key is reported at.
-pub(super) struct Place<'a> {
-    pub(super) path: &'a str,
-    pub(super) span: Range<usize>,
-}
-
-impl Place<'_> {
-    pub(super) fn key(&self, key: &str) -> String {
-        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
-    }
-
-    pub(super) fn name(&self) -> String {
-        if self.path.is_empty() { "a scene".to_owned() } else { format!("[{}]", self.path) }
-    }
-}
 
 /// Checks one file.
 pub(super) struct Checker<'a> {
@@ -135,7 +103,7 @@ impl<'a> Checker<'a> {
     ) {
         let mut valid: Vec<&str> = valid.collect();
         if place.path.is_empty() {
-            valid.push(super::specification::TOLERANCES.key);
+            valid.push(super::grammar::TOLERANCES.key);
         }
         for key in table.keys() {
             let name = key.get_ref().as_ref();

@@ -1,9 +1,10 @@
 //! `[[external]]`: programs of the user's that solve the scene too.
 
-use super::check::{Checker, Place};
+use super::check::Checker;
+use super::grammar::{Field, Kind, MODELS, optional, positive, required};
+use super::place::Place;
 use super::quantity::Dimension;
-use super::read::Node;
-use super::specification::{Field, Kind, MODELS, optional, positive, required};
+use super::values::Node;
 use crate::Result;
 use serde::Serialize;
 use toml::de::DeTable;

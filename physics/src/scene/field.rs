@@ -1,8 +1,10 @@
 //! The numeric fields of a scene file: their names, bounds and places.
 
-use super::check::{Checked, Values};
+use super::grammar;
+use super::grammar::Kind;
 use super::quantity::{self, Dimension, QuantityError};
-use super::specification::{self, Kind, SCENE};
+use super::specification::SCENE;
+use super::values::{Checked, Values};
 use crate::{Error, Result};
 
 /// A numeric field of a scene file, such as `plate.thickness` or `materials.steel.density`.
@@ -104,7 +106,7 @@ impl Field {
 /// Why the field called `path` changes no reduced model of a scene with these checked `values`, if it does not.
 pub(super) fn without_effect(values: &Values, path: &str) -> Option<&'static str> {
     let of_material = |key: &str| path.strip_suffix(key).filter(|rest| rest.starts_with("materials."));
-    if path == "friction" || path.starts_with("reference.") {
+    if ["friction", "outer.offset", "outer.angle"].contains(&path) || path.starts_with("reference.") {
         return Some("it is the reference's alone");
     }
     if of_material(".hardening").is_some() {
@@ -161,7 +163,7 @@ pub(super) fn index(keys: &[String]) -> Option<usize> {
 
 /// The numeric fields below a table with the keys of `specification`; `values` is what the file has there.
 fn collect(
-    specification: &'static [specification::Field],
+    specification: &'static [grammar::Field],
     values: Option<&Values>,
     keys: &mut Vec<String>,
     found: &mut Vec<Field>,

@@ -1,9 +1,9 @@
 //! Materials in a scene file: their keys, and what they say together.
 
 use super::collision::Collision;
+use super::grammar::{Bound, Field, Kind, optional, positive, pure, required};
 use super::quantity::Dimension;
-use super::read::Node;
-use super::specification::{Bound, Field, Kind, optional, positive, pure, required};
+use super::values::Node;
 use crate::material::{Material, RateHardening, Relaxation, fit_loss_factor, modulus_ratio};
 use crate::{Error, Result};
 

@@ -11,8 +11,10 @@ mod collision;
 mod external;
 mod fault;
 mod field;
+mod grammar;
 pub mod hash;
 mod material;
+mod place;
 mod plate_impact;
 mod plausibility;
 mod quantity;
@@ -23,13 +25,15 @@ mod specification;
 mod template;
 mod tolerances;
 mod uncertainty;
+mod values;
 
 pub use external::External;
 pub use fault::suggestion;
 pub use fault::{Fault, Faults, faults};
 pub use field::{Field, Rejected};
 pub use plate_impact::{
-    Bender, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape, ShearThinning, Spot,
+    Bender, DEFAULT_MODES, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape,
+    ShearThinning, Spot,
 };
 pub use plausibility::doubts;
 pub use quantity::in_unit as quantity_in;

@@ -1,12 +1,14 @@
 //! From the text of a scene file to a [`Scene`].
 
-use super::check::{Checked, Checker, Place, Values};
+use super::check::Checker;
 use super::collision::Collision;
 use super::external::external;
 use super::fault::Collector;
+use super::place::Place;
 use super::plate_impact::{plate_impact, reference};
 use super::seal_seat::{seal_seat, seat_reference};
 use super::specification::SCENE;
+use super::values::{Checked, Node, Values, unknown};
 use super::*;
 use crate::kinds;
 use crate::{Error, Result};
@@ -189,94 +191,17 @@ fn syntax(name: &str, text: &str, error: &toml::de::Error) -> Error {
     Error::Scene(problems.into_report())
 }
 
-/// Typed access to checked values. The specification has seen to presence and type, so
-/// what is not found is a defect of the program.
-pub(super) struct Node<'a>(pub(super) &'a Values);
-
-impl<'a> Node<'a> {
-    pub(super) fn get(&self, key: &str) -> Result<&'a Checked> {
-        self.0.get(key).ok_or_else(|| Error::Internal(format!("the scene's `{key}` was not checked")))
-    }
-
-    pub(super) fn table(&self, key: &str) -> Result<Node<'a>> {
-        match self.get(key)? {
-            Checked::Table(values) => Ok(Node(values)),
-            other => Err(mismatch(key, other)),
-        }
-    }
-
-    pub(super) fn optional_table(&self, key: &str) -> Result<Option<Node<'a>>> {
-        self.0.contains_key(key).then(|| self.table(key)).transpose()
-    }
-
-    /// The tables of a list, none if it is not there.
-    pub(super) fn tables(&self, key: &str) -> Result<Vec<Node<'a>>> {
-        match self.0.get(key) {
-            None => Ok(Vec::new()),
-            Some(Checked::Tables(tables)) => Ok(tables.iter().map(Node).collect()),
-            Some(other) => Err(mismatch(key, other)),
-        }
-    }
-
-    pub(super) fn number(&self, key: &str) -> Result<f64> {
-        match self.get(key)? {
-            Checked::Number(number) => Ok(*number),
-            other => Err(mismatch(key, other)),
-        }
-    }
-
-    pub(super) fn numbers(&self, key: &str) -> Result<Vec<f64>> {
-        match self.get(key)? {
-            Checked::Numbers(numbers) => Ok(numbers.clone()),
-            other => Err(mismatch(key, other)),
-        }
-    }
-
-    pub(super) fn texts(&self, key: &str) -> Result<Vec<String>> {
-        match self.get(key)? {
-            Checked::Texts(texts) => Ok(texts.clone()),
-            other => Err(mismatch(key, other)),
-        }
-    }
-
-    pub(super) fn count(&self, key: &str) -> Result<u64> {
-        match self.get(key)? {
-            Checked::Count(count) => Ok(*count),
-            other => Err(mismatch(key, other)),
-        }
-    }
-
-    pub(super) fn optional_number(&self, key: &str) -> Result<Option<f64>> {
-        self.0.contains_key(key).then(|| self.number(key)).transpose()
-    }
-
-    pub(super) fn number_or(&self, key: &str, default: f64) -> Result<f64> {
-        Ok(self.optional_number(key)?.unwrap_or(default))
-    }
-
-    pub(super) fn text(&self, key: &str) -> Result<&'a str> {
-        match self.get(key)? {
-            Checked::Text(text) => Ok(text),
-            other => Err(mismatch(key, other)),
-        }
-    }
-}
-
-fn mismatch(key: &str, found: &Checked) -> Error {
-    Error::Internal(format!("the scene's `{key}` was checked as {found:?}"))
-}
-
-pub(super) fn unknown(key: &str, word: &str) -> Error {
-    Error::Internal(format!("the scene's `{key}` = `{word}` has no type"))
-}
-
 /// The scene that checked values describe.
 pub(super) fn assemble(values: &Values, beside: Beside) -> Result<Scene> {
     let root = &Node(values);
     let materials = root.table("materials")?;
     let settings = root.optional_table("reference")?;
     let (setup, reference) = match root.text("kind")? {
-        PLATE_IMPACT => (Setup::PlateImpact(Box::new(plate_impact(root, &materials)?)), reference(settings)?),
+        PLATE_IMPACT => {
+            let setup = plate_impact(root, &materials)?;
+            let reference = reference(settings, setup.outer.is_centred())?;
+            (Setup::PlateImpact(Box::new(setup)), reference)
+        }
         SEAL_SEAT => (Setup::SealSeat(Box::new(seal_seat(root, &materials)?)), seat_reference(settings)?),
         other => return Err(unknown("kind", other)),
     };
@@ -308,12 +233,4 @@ fn reduced(settings: Option<Node>) -> Result<ReducedSettings> {
         reduced.modes = usize::try_from(*modes).ok();
     }
     Ok(reduced)
-}
-
-/// The order of the elements, if it is given.
-pub(super) fn element_order(settings: &Node) -> Option<u64> {
-    match settings.0.get("element_order") {
-        Some(Checked::Count(order)) => Some(*order),
-        _ => None,
-    }
 }

@@ -2,8 +2,9 @@
 
 use super::alternatives::groups;
 use super::check::MAX_NAME;
+use super::grammar::{Alternative, Bound, Field, Kind, MODELS, TOLERANCES};
 use super::quantity::{Dimension, prefixes, symbols};
-use super::specification::{Alternative, Bound, Field, Kind, MODELS, SCENE, TOLERANCES};
+use super::specification::SCENE;
 use super::tolerances::{TERMS, gated_names, models};
 use super::uncertainty::{CORRELATIONS, DISTRIBUTIONS};
 use crate::kinds::{self, KINDS};

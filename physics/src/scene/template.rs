@@ -3,11 +3,12 @@
 //! The scene file is read and checked once; every variation is checked against the same bounds as the file and
 //! costs a few microseconds.
 
-use super::check::{Checked, Values};
 use super::collision::Collision;
 use super::field::{fields_of, index, number_in, without_effect};
 use super::material;
-use super::read::{Beside, Node, assemble, checked, read_text, refuse_collisions};
+use super::read::{Beside, assemble, checked, read_text, refuse_collisions};
+use super::values::Node;
+use super::values::{Checked, Values};
 use super::{Distribution, Field, Rejected, Scene, suggestion};
 use crate::{Error, Result};
 use std::path::Path;
@@ -248,6 +249,7 @@ mod tests {
             ("fluid.viscosity", "no numeric field"),
             ("plate.edge", "no numeric field"),
             ("friction", "it is the reference's alone"),
+            ("outer.offset", "it is the reference's alone"),
             ("materials.steel.hardening", "knows no hardening"),
             ("materials.steel.yield_strength", "without `hardening`"),
             ("reference.elements_per_contact_radius", "it is the reference's alone"),

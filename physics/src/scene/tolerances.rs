@@ -1,9 +1,10 @@
 //! Reads `[tolerances.<model>]`: bounds by quantity, per reduced model or program of the user's.
 
-use super::check::{Checker, Place};
+use super::check::Checker;
 use super::fault::did_you_mean;
+use super::grammar::{Bound, Choice, MODELS};
+use super::place::Place;
 use super::quantity::{Dimension, dimension_of};
-use super::specification::{Bound, Choice, MODELS};
 use super::{Tolerance, Tolerances};
 use crate::kinds::Kind;
 use crate::result::Impact;

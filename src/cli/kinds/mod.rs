@@ -4,8 +4,8 @@ mod plate_impact;
 mod seal_seat;
 
 use super::Context;
+use super::asked_model::Asked;
 use super::asked_model::AskedModel;
-use super::reduced::Asked;
 use crate::error::Result;
 use crate::kinds;
 use crate::kinds::plate_impact::shared::SharedBodies;

@@ -1,9 +1,9 @@
 //! The reduced models of plate impacts.
 
 use super::{Compared, Models};
-use crate::cli::Context;
+use crate::cli::asked_model::Asked;
 use crate::cli::asked_model::{self, AskedModel};
-use crate::cli::reduced::Asked;
+use crate::cli::{Context, progress};
 use crate::curves::CommonAxis;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::choice;
@@ -75,7 +75,9 @@ impl Models for Plates {
         let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
         let models = asked_model::set_up(scene, models, tolerance)?;
         let outcomes = models.into_iter().map(|(body, set_up)| {
-            let outcome = body.run_with_history_until(COMPARISON_TOLERANCE, end)?;
+            let outcome = progress::watched(context, &scene.name, || {
+                body.run_with_history_until(COMPARISON_TOLERANCE, end)
+            })?;
             context.detail(format_args!(
                 "{}: model {} set up in {:.1} ms, run in {:.2} ms",
                 scene.name,

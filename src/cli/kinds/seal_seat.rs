@@ -3,9 +3,9 @@
 use super::{Compared, Models};
 use crate::body::cache::Cache;
 use crate::cli::Context;
+use crate::cli::asked_model::Asked;
 use crate::cli::asked_model::{self, AskedModel};
 use crate::cli::progress::Bar;
-use crate::cli::reduced::Asked;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};

@@ -1,16 +1,13 @@
 //! One frame of an animation as a drawing; the field of its left half is filled in afterwards.
 
 use super::stage::{Stage, WIDTH};
-use crate::curves::at;
-use crate::movement::Movement;
 use crate::report::colours::{BODIES, hex};
 use crate::report::field_raster::cividis;
-use crate::report::figure::x2;
+use crate::report::figure_geometry::x2;
 use crate::report::plot_axis::{Axis, Plot};
 use crate::report::polyline::path;
 use crate::report::scene_drawing::Scale;
 use crate::report::ticks::{tick_label, ticks};
-use crate::result::Outcome;
 use crate::scene::Shape;
 use maud::{Markup, PreEscaped, html};
 
@@ -19,34 +16,8 @@ const FONT_SIZE: f64 = 13.0;
 const SCALES: f64 = 58.0;
 const FORCES: f64 = 110.0;
 const AXIS: f64 = 48.0;
-/// Samples of a force that is drawn.
-const SAMPLES: usize = 600;
 const STYLE: &str = "text{fill:#1a1a1a}.frame,.fig-frame{stroke:#444;fill:none}.grid{stroke:#e3e3e3}\
 .body{stroke:#5a5a5a;stroke-width:1}";
-
-/// The contact forces over time: outer and inner one, of reference and model. Times in µs, forces in N.
-pub(super) struct Forces {
-    curves: [[Vec<(f64, f64)>; 2]; 2],
-    end: f64,
-}
-
-impl Forces {
-    pub(super) fn new(reference: &Outcome, reduced: &Outcome, movement: &Movement) -> Self {
-        let end = movement.times.last().copied().unwrap_or(0.0);
-        let time = |k: usize| end * k as f64 / (SAMPLES - 1) as f64;
-        let curve = |outcome: &Outcome, name: &str| {
-            let values = at(name, &outcome.history, (0..SAMPLES).map(time));
-            values.into_iter().enumerate().map(|(k, force)| (1e6 * time(k), force)).collect()
-        };
-        let of = |outcome| ["outer_force", "inner_force"].map(|name| curve(outcome, name));
-        Forces { curves: [of(reference), of(reduced)], end: 1e6 * end }
-    }
-
-    fn at(&self, curve: &[(f64, f64)], time: f64) -> (f64, f64) {
-        let k = (time / self.end * (SAMPLES - 1) as f64).round() as usize;
-        curve[k.min(SAMPLES - 1)]
-    }
-}
 
 /// Height of a frame, px.
 pub(super) fn height(stage: &Stage) -> f64 {

@@ -1,5 +1,6 @@
 //! The impact moving: on the left the reference's stress, on the right a reduced model's deflection, below them the forces.
 
+mod forces;
 mod frame;
 mod palette;
 mod stage;
@@ -64,7 +65,7 @@ struct Frame {
 impl Frame {
     /// Frame number `k`: the drawing, and the field in its left half.
     fn new(stage: &Stage, k: usize, palette: &mut Palette) -> Result<Self> {
-        let drawing = raster(&stage.svg(k), SCALE as f32)?;
+        let drawing = raster(&frame::svg(stage, k), SCALE as f32)?;
         let (width, height) = (drawing.width() as usize, drawing.height() as usize);
         let field = stage.field(k);
         let index = |(n, pixel): (usize, &PremultipliedColorU8)| {

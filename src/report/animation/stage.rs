@@ -1,6 +1,6 @@
 //! What all frames of an animation have in common: the part of the scene in view, the scales, and the fields.
 
-use super::frame::{self, Forces};
+use super::forces::Forces;
 use crate::curves::peak;
 use crate::error::Result;
 use crate::movement::Movement;
@@ -99,10 +99,6 @@ impl<'a> Stage<'a> {
     pub(super) fn picture(&self) -> [f64; 4] {
         let height = PICTURE as f64 * (self.view.high - self.view.low) / (2.0 * self.view.radius);
         [MARGIN as f64, TOP as f64, PICTURE as f64, height.round()]
-    }
-
-    pub(super) fn svg(&self, k: usize) -> String {
-        frame::svg(self, k)
     }
 
     /// The field of frame number `k`, deformed.

@@ -58,7 +58,7 @@ pub(super) fn draw(name: &str, x: &[f64]) -> Option<Scene> {
         let setup = PlateImpact {
             friction: 0.0,
             plate,
-            outer: Outer { shape: outer_shape, material: outer_material, speed },
+            outer: Outer::centred(outer_shape, outer_material, speed),
             inner: Inner { shape: inner_shape, material: inner_material, gap, speed: 0.0 },
             fluid: None,
             series: None,

@@ -1,9 +1,11 @@
 //! A sweep drawn: curves over one parameter, maps over two, with the references that lie in it and what the paper says.
 
-use super::record::{NUMBERS, Outcome, Record};
+use super::plan::Plan;
+use super::record::Record;
 use super::references::Known;
 use super::table::Table;
 use crate::error::{Error, Result};
+use crate::kinds::plate_impact::PlateQuantities;
 use crate::report::format::{prefixed, words};
 use crate::report::{ChartPanel, ColourMap, Series, chart, colour_maps};
 use crate::scene::{Model, suggestion};
@@ -34,44 +36,51 @@ impl Shown {
     }
 }
 
-/// A result that is drawn, by its place among the numbers of a result.
+/// A result that is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Drawn(usize);
-
-impl std::str::FromStr for Drawn {
-    type Err = String;
-
-    fn from_str(name: &str) -> std::result::Result<Self, String> {
-        let names = NUMBERS.map(|(name, _)| name);
-        names.iter().position(|known| *known == name).map(Drawn).ok_or_else(|| {
-            let hint = suggestion(name, names).map(|near| format!("; did you mean `{near}`?"));
-            format!(
-                "a sweep has no quantity `{name}`{} (there: {})",
-                hint.unwrap_or_default(),
-                names.join(", ")
-            )
-        })
-    }
+pub struct Drawn {
+    /// Place among the [`Plan::results`].
+    place: usize,
+    name: &'static str,
+    unit: &'static str,
 }
 
 impl Drawn {
+    /// The number called `name` of the results of `plan`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there is none.
+    pub fn new(name: &str, plan: &Plan) -> Result<Self> {
+        let results = || plan.results().iter().copied();
+        let found = results().enumerate().find(|(_, (known, _))| *known == name);
+        found.map(|(place, (name, unit))| Drawn { place, name, unit }).ok_or_else(|| {
+            let names: Vec<&str> = results().map(|(known, _)| known).collect();
+            let hint =
+                suggestion(name, names.iter().copied()).map(|near| format!("; did you mean `{near}`?"));
+            Error::Usage(format!(
+                "--quantity {name}: a sweep has no such quantity{} (there: {})",
+                hint.unwrap_or_default(),
+                names.join(", ")
+            ))
+        })
+    }
+
     fn of(self, record: &Record) -> f64 {
-        record.outcome.numbers().map_or(f64::NAN, |numbers| numbers[self.0])
+        record.outcome.numbers().map_or(f64::NAN, |numbers| numbers[self.place])
     }
 
     /// Whether the rule is about it, and the inner contact begins at the start, so that its end is how long it lasts.
     fn follows_rule(self, table: &Table) -> bool {
         let plan = table.plan();
         let touches = plan.template().scene().plate_impact().is_ok_and(|setup| setup.inner.gap == 0.0);
-        NUMBERS[self.0].0 == "efficiency" && touches && plan.fields().all(|field| field.path() != "inner.gap")
+        self.name == "efficiency" && touches && plan.fields().all(|field| field.path() != "inner.gap")
     }
 
     fn shown(self, table: &Table) -> Shown {
-        let (name, unit) = NUMBERS[self.0];
-        if name == "efficiency" {
+        if self.name == "efficiency" {
             return Shown { label: "Efficiency in %".into(), factor: 100.0 };
         }
-        Shown::new(&words(name), unit, table.records().iter().map(|record| self.of(record)))
+        Shown::new(&words(self.name), self.unit, table.records().iter().map(|record| self.of(record)))
     }
 }
 
@@ -121,7 +130,7 @@ fn panel(table: &Table, quantity: Drawn, known: &[Known]) -> ChartPanel {
         look: Some(LOOKS[*model as usize]),
         ..Series::default()
     };
-    let name = NUMBERS[quantity.0].0;
+    let name = quantity.name;
     let there: Vec<(&Known, f64)> = known.iter().filter_map(|k| Some((k, k.summary.value(name)?))).collect();
     let references = (!there.is_empty()).then(|| Series {
         name: REFERENCE.into(),
@@ -131,7 +140,7 @@ fn panel(table: &Table, quantity: Drawn, known: &[Known]) -> ChartPanel {
         look: Some(LOOKS[3]),
     });
     let best = table.plan().models().iter().max().filter(|_| quantity.follows_rule(table));
-    let ratio = best.map_or_else(Vec::new, |model| sorted(*model, &over_half_period));
+    let ratio = best.map_or_else(Vec::new, |model| sorted(*model, &|record| over_half_period(table, record)));
     ChartPanel {
         statements: crossings(&ratio).into_iter().map(|x| (x, RULE.to_owned())).collect(),
         series: table.plan().models().iter().map(curve).chain(references).collect(),
@@ -150,12 +159,13 @@ fn map(table: &Table, quantity: Drawn, model: Model, known: &[Known]) -> ColourM
     };
     let mark = |k: &Known| {
         let at = [x.factor * k.parameters[0], y.factor * k.parameters[1]];
-        Some((at, shown.factor * k.summary.value(NUMBERS[quantity.0].0)?))
+        Some((at, shown.factor * k.summary.value(quantity.name)?))
     };
     let several = table.plan().models().len() > 1;
     let is_grid = table.plan().is_grid();
-    let rule = (is_grid && quantity.follows_rule(table))
-        .then(|| (RULE.to_owned(), of_model(table, model).map(over_half_period).collect()));
+    let rule = (is_grid && quantity.follows_rule(table)).then(|| {
+        (RULE.to_owned(), of_model(table, model).map(|record| over_half_period(table, record)).collect())
+    });
     ColourMap {
         points: of_model(table, model).map(point).collect(),
         is_grid,
@@ -167,11 +177,9 @@ fn map(table: &Table, quantity: Drawn, model: Model, known: &[Known]) -> ColourM
     }
 }
 
-fn over_half_period(record: &Record) -> f64 {
-    match &record.outcome {
-        Outcome::Done(point) => contact_over_half_period(&point.quantities),
-        _ => f64::NAN,
-    }
+fn over_half_period(table: &Table, record: &Record) -> f64 {
+    let quantities = PlateQuantities::of(|name| table.plan().value(record, name));
+    quantities.map_or(f64::NAN, |quantities| contact_over_half_period(&quantities))
 }
 
 /// Where a curve is 1, linearly between its points.

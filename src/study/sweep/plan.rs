@@ -1,13 +1,14 @@
 //! What a sweep file asks for, as numbered points.
 
 use super::axis::{Axis, Sampling, Vary};
-use super::record::{Outcome, Record};
+use super::record::{Outcome, Record, results};
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::reduced::Reduced;
-use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::kinds::seal_seat::SeatMesh;
+use crate::kinds::{self, Series};
+use crate::reference;
 use crate::sampling::latin_hypercube;
 use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
-use crate::scene::{self, Field, Model, Template};
+use crate::scene::{self, Field, Model, Scene, Template};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::ops::{Range, RangeInclusive};
@@ -28,6 +29,7 @@ struct File {
     scene: String,
     model: Option<Models>,
     modes: Option<usize>,
+    mesh: Option<PathBuf>,
     tolerance: Option<f64>,
     #[serde(default)]
     sampling: Sampling,
@@ -56,7 +58,9 @@ pub struct Plan {
     axes: Vec<Axis>,
     points: Points,
     hash: String,
-    bodies: SharedBodies,
+    series: Series,
+    /// Name and unit of the numbers of a result.
+    results: Vec<(&'static str, &'static str)>,
 }
 
 /// Where the numbers of a point come from.
@@ -68,6 +72,17 @@ enum Points {
     Samples(Vec<Vec<f64>>),
     /// So many draws of fields without axes.
     Draws(Vec<Field>, Box<dyn Draw>, usize),
+}
+
+impl Points {
+    /// Number of points of one model, whose grid is that of `axes`.
+    fn count(&self, axes: &[Axis]) -> usize {
+        match self {
+            Points::Grid => axes.iter().map(|axis| axis.values.len()).product(),
+            Points::Samples(samples) => samples.len(),
+            Points::Draws(.., count) => *count,
+        }
+    }
 }
 
 /// Numbers for the fields of a plan that come from elsewhere than its axes. What it prints for debugging tells it from any other.
@@ -94,15 +109,12 @@ impl Plan {
             toml::from_str(&text).map_err(|e| invalid(path, &format!("is no sweep file: {e}")))?;
         let beside = path.parent().unwrap_or(Path::new("")).join(&file.scene);
         let scene = if beside.is_file() { beside } else { scene::resolve(&file.scene)? };
-        let template = Template::read(&scene)?;
-        // a seal seat is varied by `study seal-seat`, which meshes every geometry
-        template.scene().plate_impact()?;
-        Self::new(path, file, scene, template)
+        Self::new(path, file, scene.clone(), Template::read(&scene)?)
     }
 
     fn new(path: &Path, file: File, scene_file: PathBuf, template: Template) -> Result<Self> {
         let fault = |message: String| invalid(path, &message);
-        let models = models(&file, template.scene().reduced.model, &fault)?;
+        let models = models(&file, template.scene(), &fault)?;
         if file.modes == Some(0) || (models.contains(&Model::A) && file.modes.is_some_and(|modes| modes != 1))
         {
             return Err(fault(format!(
@@ -135,23 +147,28 @@ impl Plan {
         if samples.is_none() && count.is_none_or(|n| n > MOST_POINTS) {
             return Err(fault(format!("the grid has more than {MOST_POINTS} points")));
         }
+        let mesh = file.mesh.as_ref().map(|mesh| path.parent().unwrap_or(Path::new("")).join(mesh));
+        let mesh = reference::mesh_to_follow(template.scene(), mesh.as_deref())?;
+        let varied = axes.iter().flat_map(|axis| {
+            let (from, to) = axis.values.range().into_inner();
+            axis.fields.iter().map(move |field| (field.path(), [from, to]))
+        });
+        let points = samples.map_or(Points::Grid, Points::Samples);
+        let impacts = models.len() * points.count(&axes);
+        let series = Series::new(varied, template.scene(), mesh.as_ref(), impacts)?;
         let mut plan = Plan {
+            results: results(kinds::of(template.scene())),
             scene_file,
             template,
             models,
             modes: file.modes,
             tolerance,
             axes,
-            points: samples.map_or(Points::Grid, Points::Samples),
+            points,
             hash: String::new(),
-            bodies: SharedBodies::default(),
+            series,
         };
-        let varied = plan.axes.iter().flat_map(|axis| {
-            let (from, to) = axis.values.range().into_inner();
-            axis.fields.iter().map(move |field| (field.path(), [from, to]))
-        });
-        plan.bodies = SharedBodies::for_varied(varied, plan.template.scene().plate_impact()?, plan.len());
-        plan.hash = plan.identity(&file);
+        plan.hash = plan.identity(&file, mesh.as_ref());
         Ok(plan)
     }
 
@@ -168,9 +185,11 @@ impl Plan {
         impacts: usize,
     ) -> Result<Self> {
         let ranges = fields.iter().map(|(field, range)| (field.path(), *range));
-        let bodies = SharedBodies::for_varied(ranges, template.scene().plate_impact()?, impacts);
+        template.scene().plate_impact()?;
+        let series = Series::new(ranges, template.scene(), None, impacts)?;
         let fields: Vec<Field> = fields.into_iter().map(|(field, _)| field).collect();
         let mut plan = Plan {
+            results: results(kinds::of(template.scene())),
             scene_file,
             template,
             models: vec![model],
@@ -179,7 +198,7 @@ impl Plan {
             axes: Vec::new(),
             points: Points::Draws(fields, draw, 0),
             hash: String::new(),
-            bodies,
+            series,
         };
         plan.hash = plan.identified(&json!({ "draws": format!("{:?}", plan.points) }));
         Ok(plan)
@@ -193,13 +212,17 @@ impl Plan {
     }
 
     /// SHA-256 over everything the results depend on.
-    fn identity(&self, file: &File) -> String {
+    fn identity(&self, file: &File, mesh: Option<&SeatMesh>) -> String {
         let axis = |a: &Axis| {
             let fields: Vec<&str> = a.fields.iter().map(Field::path).collect();
             json!([fields, format!("{:?}", a.values)])
         };
         let axes: Vec<_> = self.axes.iter().map(axis).collect();
-        self.identified(&json!({ "samples": file.samples, "seed": file.seed, "axes": axes }))
+        let mut points = json!({ "samples": file.samples, "seed": file.seed, "axes": axes });
+        if let Some(mesh) = mesh {
+            points["mesh"] = json!(mesh.content_hash());
+        }
+        self.identified(&points)
     }
 
     /// SHA-256 over the scene, the models and what the table `points` says of the points.
@@ -223,11 +246,7 @@ impl Plan {
 
     /// Number of points of one model.
     fn places(&self) -> usize {
-        match &self.points {
-            Points::Grid => self.axes.iter().map(|axis| axis.values.len()).product(),
-            Points::Samples(samples) => samples.len(),
-            Points::Draws(.., count) => *count,
-        }
+        self.points.count(&self.axes)
     }
 
     /// Whether there is no point; never so for a plan that was read.
@@ -322,35 +341,58 @@ impl Plan {
         values.iter().zip(counts).flat_map(|(value, count)| std::iter::repeat_n(*value, count)).collect()
     }
 
+    /// Name and unit of the numbers of a result, in their order.
+    pub fn results(&self) -> &[(&'static str, &'static str)] {
+        &self.results
+    }
+
+    /// The number called `name` of the result of `record`; `None` if it has none.
+    pub fn value(&self, record: &Record, name: &str) -> Option<f64> {
+        let place = self.results.iter().position(|(known, _)| *known == name)?;
+        record.outcome.numbers().map(|numbers| numbers[place])
+    }
+
+    /// Whether every point takes tenths of a second.
+    pub(super) fn is_dear(&self) -> bool {
+        self.series.is_dear()
+    }
+
     /// Runs point `index`. A scene that is not valid and a solver that fails are results too.
     pub fn evaluate(&self, index: usize) -> Record {
         let numbers: Vec<(&Field, f64)> = self.fields().zip(self.numbers(index)).collect();
         let outcome = match self.template.with(&numbers) {
             Err(rejected) => Outcome::Invalid(rejected.to_string()),
             Ok(scene) => {
-                let run = Reduced::in_series(scene, self.model(index), self.modes, &self.bodies)
-                    .and_then(|reduced| reduced.point(self.tolerance));
-                match run {
-                    Ok(point) => Outcome::Done(point),
-                    Err(error) => Outcome::Failed(error.to_string()),
-                }
+                let model = self.series.model(scene, self.model(index), self.modes);
+                let run = model.and_then(|model| model.point(self.tolerance));
+                run.map_or_else(|error| Outcome::Failed(error.to_string()), Outcome::from)
             }
         };
         Record { index, outcome }
     }
 }
 
-/// The models that `file` names, else that `of_scene`, else B.
-fn models(file: &File, of_scene: Option<Model>, fault: &dyn Fn(String) -> Error) -> Result<Vec<Model>> {
+/// The models that `file` names, else that of `scene`, else B or the only one there is.
+fn models(file: &File, scene: &Scene, fault: &dyn Fn(String) -> Error) -> Result<Vec<Model>> {
+    let own = kinds::of(scene).models();
     let names = match &file.model {
         Some(Models::One(name)) => std::slice::from_ref(name),
         Some(Models::Several(names)) => names,
-        None => return Ok(vec![of_scene.unwrap_or(Model::B)]),
+        None => {
+            let usual = if own.contains(&Model::B) { Model::B } else { own[0] };
+            return Ok(vec![scene.reduced.model.unwrap_or(usual)]);
+        }
     };
     let parsed = names.iter().map(|name| name.parse().map_err(|e| fault(format!("model: {e}"))));
     let models: Vec<Model> = parsed.collect::<Result<_>>()?;
     if models.is_empty() || (1..models.len()).any(|k| models[..k].contains(&models[k])) {
         return Err(fault(format!("model is {names:?}: name each model once, at least one")));
+    }
+    if let Some(foreign) = models.iter().find(|model| !own.contains(model)) {
+        return Err(fault(format!(
+            "model is {foreign}, but scene `{}` is a seal seat, which has model C only",
+            scene.name
+        )));
     }
     Ok(models)
 }

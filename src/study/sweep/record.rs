@@ -4,8 +4,8 @@
 //! points run again; nothing that is in the log is ever changed. Numbers are written so that they come back bit
 //! by bit.
 
-use crate::kinds::plate_impact::PlateQuantities;
-use crate::kinds::plate_impact::reduced::Point;
+use crate::kinds::Kind;
+use crate::result::{Point, Table};
 use std::fmt::Write;
 
 /// What became of one point.
@@ -20,8 +20,8 @@ pub struct Record {
 /// Result of one point.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// The impact ran.
-    Done(Point),
+    /// The impact ran, with these numbers, those of [`results`].
+    Done(Box<[f64]>),
     /// The scene is not valid, for this reason.
     Invalid(String),
     /// The solver failed, for this reason.
@@ -46,32 +46,25 @@ impl Outcome {
         }
     }
 
-    /// The numbers of `NUMBERS`.
-    pub fn numbers(&self) -> Option<[f64; NUMBERS.len()]> {
-        let Outcome::Done(point) = self else { return None };
-        let values = PlateQuantities::ALL.iter().filter_map(|quantity| point.quantities.get(quantity.name));
-        let rest = [point.energy_residual, point.momentum_residual, point.steps as f64];
-        let mut numbers = [0.0; NUMBERS.len()];
-        for (number, value) in numbers.iter_mut().zip(values.chain(rest)) {
-            *number = value;
-        }
-        Some(numbers)
+    /// The numbers of [`results`], if there are any.
+    pub fn numbers(&self) -> Option<&[f64]> {
+        if let Outcome::Done(numbers) = self { Some(numbers) } else { None }
     }
 }
 
-/// Name and unit of the numbers of a result.
-pub const NUMBERS: [(&str, &str); PlateQuantities::ALL.len() + 3] = {
-    let quantities = PlateQuantities::ALL;
-    let mut numbers = [("energy_residual", "1"); PlateQuantities::ALL.len() + 3];
-    let mut k = 0;
-    while k < quantities.len() {
-        numbers[k] = (quantities[k].name, quantities[k].unit);
-        k += 1;
+impl From<Point<Table>> for Outcome {
+    fn from(point: Point<Table>) -> Self {
+        let values = point.quantities.iter().map(|quantity| quantity.value.unwrap_or(f64::NAN));
+        let rest = [point.energy_residual, point.momentum_residual, point.steps as f64];
+        Outcome::Done(values.chain(rest).collect())
     }
-    numbers[k + 1] = ("momentum_residual", "1");
-    numbers[k + 2] = ("steps", "1");
-    numbers
-};
+}
+
+/// Name and unit of the numbers of a result of `kind`.
+pub(super) fn results(kind: &dyn Kind) -> Vec<(&'static str, &'static str)> {
+    let quantities = kind.quantities().iter().map(|quantity| (quantity.name, quantity.unit));
+    quantities.chain(["energy_residual", "momentum_residual", "steps"].map(|name| (name, "1"))).collect()
+}
 
 /// First line of a log of the sweep with the identity `hash`.
 pub fn header(hash: &str) -> String {
@@ -95,8 +88,8 @@ impl Record {
         let _ = writeln!(text, "{:08x} {body}", crc32fast::hash(body.as_bytes()));
     }
 
-    /// The record in a line without its line break; `None` if the line is damaged.
-    pub fn parse(line: &[u8]) -> Option<Self> {
+    /// The record in a line without its line break, a result with so many `numbers`; `None` if the line is damaged.
+    pub fn parse(line: &[u8], numbers: usize) -> Option<Self> {
         let line = std::str::from_utf8(line).ok()?;
         let (checksum, body) = line.split_once(' ')?;
         if checksum.len() != 8 || u32::from_str_radix(checksum, 16).ok()? != crc32fast::hash(body.as_bytes())
@@ -106,7 +99,11 @@ impl Record {
         let mut parts = body.splitn(3, ' ');
         let (index, status, rest) = (parts.next()?.parse().ok()?, parts.next()?, parts.next()?);
         let outcome = match status {
-            "ok" => Outcome::Done(point(rest)?),
+            "ok" => {
+                let found = rest.split(' ').map(|number| number.parse().ok());
+                let found: Box<[f64]> = found.collect::<Option<_>>()?;
+                Outcome::Done(Some(found).filter(|found| found.len() == numbers)?)
+            }
             "invalid" => Outcome::Invalid(rest.to_owned()),
             "failed" => Outcome::Failed(rest.to_owned()),
             _ => return None,
@@ -115,30 +112,14 @@ impl Record {
     }
 }
 
-fn point(text: &str) -> Option<Point> {
-    let mut numbers = text.split(' ').map(|number| number.parse().ok());
-    let quantities = PlateQuantities::of(|_| numbers.next()?)?;
-    let mut number = || numbers.next()?;
-    let (energy_residual, momentum_residual, steps): (f64, f64, f64) = (number()?, number()?, number()?);
-    numbers.next().is_none().then_some(Point {
-        quantities,
-        energy_residual,
-        momentum_residual,
-        steps: steps as u64,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const NUMBERS: usize = 13;
+
     fn done() -> Record {
-        let numbers: Vec<String> =
-            (0..NUMBERS.len()).map(|k| format!("{:e}", (k as f64 + 0.1) / 3.0)).collect();
-        let mut point = point(&numbers.join(" ")).expect("numbers");
-        // counts are whole
-        (point.quantities.outer_contacts, point.quantities.inner_contacts, point.steps) = (3, 1, 42);
-        Record { index: 7, outcome: Outcome::Done(point) }
+        Record { index: 7, outcome: Outcome::Done((0..NUMBERS).map(|k| (k as f64 + 0.1) / 3.0).collect()) }
     }
 
     #[test]
@@ -147,7 +128,8 @@ mod tests {
         let mut text = String::new();
         done().append_to(&mut text);
         invalid.append_to(&mut text);
-        let lines: Vec<Option<Record>> = text.lines().map(|line| Record::parse(line.as_bytes())).collect();
+        let lines: Vec<Option<Record>> =
+            text.lines().map(|line| Record::parse(line.as_bytes(), NUMBERS)).collect();
         assert_eq!(lines[0], Some(done()));
         let back = lines[1].clone().expect("one line");
         assert_eq!((back.index, back.outcome.reason()), (8, "`plate.radius` is -1 m, but"));
@@ -163,11 +145,13 @@ mod tests {
             changed[k] ^= 1;
             // the checksum's own letters may change case only
             let same = changed.eq_ignore_ascii_case(line);
-            assert!(same || Record::parse(&changed).is_none(), "byte {k}");
-            assert!(Record::parse(&line[..k]).is_none(), "cut at {k}");
+            assert!(same || Record::parse(&changed, NUMBERS).is_none(), "byte {k}");
+            assert!(Record::parse(&line[..k], NUMBERS).is_none(), "cut at {k}");
         }
         for foreign in [&b""[..], b"\xff\xfe", b"00000000 ", b"impactcheck-sweep 1 abc"] {
-            assert!(Record::parse(foreign).is_none());
+            assert!(Record::parse(foreign, NUMBERS).is_none());
         }
+        // and none of another kind of scene
+        assert!(Record::parse(line, NUMBERS).is_some() && Record::parse(line, NUMBERS + 1).is_none());
     }
 }

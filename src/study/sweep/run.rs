@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Points whose records are written at once, and after which time they are in any case.
+/// Points whose records are written at once, of what takes long each by itself, and after which time they are in any case.
 const BATCH: usize = 64;
 const PATIENCE: Duration = Duration::from_millis(300);
 /// Ending of a log's name.
@@ -79,7 +79,7 @@ pub fn run(plan: &Plan, dir: &Path, shard: Shard, tell: &(dyn Fn(Progress) + Syn
     let (finished, pending): (Vec<usize>, Vec<usize>) = points.partition(|index| done[*index].is_some());
     tell(Progress::Start { points: finished.len() + pending.len(), done: finished.len() });
     let log = Log::open(plan, dir, shard)?;
-    pending.par_chunks(BATCH).try_for_each(|chunk| {
+    pending.par_chunks(if plan.is_dear() { 1 } else { BATCH }).try_for_each(|chunk| {
         let (mut text, mut count, mut since) = (String::new(), 0, Instant::now());
         for (k, index) in chunk.iter().enumerate() {
             plan.evaluate(*index).append_to(&mut text);
@@ -141,7 +141,7 @@ fn read(plan: &Plan, path: &Path, records: &mut [Option<Record>]) -> Result<()> 
                     path.display()
                 )));
             }
-        } else if let Some(record) = Record::parse(&line)
+        } else if let Some(record) = Record::parse(&line, plan.results().len())
             && let Some(place) = records.get_mut(record.index)
         {
             place.get_or_insert(record);

@@ -1,7 +1,7 @@
 //! The results of a sweep as a table: CSV, Parquet, JSON.
 
 use super::plan::Plan;
-use super::record::{NUMBERS, Outcome, Record};
+use super::record::Record;
 use super::run::{Shard, read_all};
 use crate::error::{Error, Result};
 use crate::file::write_file;
@@ -83,11 +83,7 @@ impl<'a> Table<'a> {
 
     /// The point with the highest efficiency.
     pub fn best(&self) -> Option<(&Record, f64)> {
-        let efficiency = |record: &'_ Record| match &record.outcome {
-            Outcome::Done(point) => Some(point.quantities.efficiency),
-            _ => None,
-        };
-        let rated = self.records.iter().filter_map(|record| Some((record, efficiency(record)?)));
+        let rated = self.records.iter().filter_map(|r| Some((r, self.plan.value(r, "efficiency")?)));
         rated.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
@@ -103,13 +99,13 @@ impl<'a> Table<'a> {
         let named = |column, name: &str| (column, name.to_owned(), "1");
         let model = (self.plan.models().len() > 1).then(|| named(Column::Model, "model"));
         let fields = self.plan.fields().enumerate();
-        let numbers = NUMBERS.into_iter().enumerate();
+        let results = self.plan.results().iter().enumerate();
         [named(Column::Index, "index")]
             .into_iter()
             .chain(model)
             .chain(fields.map(|(k, field)| (Column::Field(k), field.path().to_owned(), field.unit())))
             .chain([named(Column::Status, "status")])
-            .chain(numbers.map(|(k, (name, unit))| (Column::Number(k), name.to_owned(), unit)))
+            .chain(results.map(|(k, (name, unit))| (Column::Number(k), (*name).to_owned(), *unit)))
             .chain([named(Column::Reason, "reason")])
             .collect()
     }
@@ -264,7 +260,7 @@ enum Column {
     /// The varied field of this number.
     Field(usize),
     Status,
-    /// The number of [`NUMBERS`] at this place.
+    /// The number of [`Plan::results`] at this place.
     Number(usize),
     Reason,
 }

@@ -5,9 +5,9 @@
 //! `partial_self_adjoint_eigen` is bound to the Euclidean product, which would need half solves with
 //! the sparse factor, and to a number of modes that is known beforehand.
 
-use super::mirror::{axpy, dot};
 use crate::error::{Error, Result};
 use crate::numerics::eigenmodes::symmetric;
+use crate::numerics::vectors::{axpy, dot};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 

@@ -14,10 +14,11 @@ use super::assembly::{FIXED, Matrices};
 use super::lanczos::ShiftInvert;
 use super::mesh::Mesh;
 use crate::error::{Error, Result};
+use crate::numerics::vectors::{axpy, dot};
+use faer::Side;
 use faer::linalg::solvers::Solve;
 use faer::mat::MatMut;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::{MatRef, Side};
 use std::rc::Rc;
 
 /// How the motion behaves under reflection in the mid-plane.
@@ -182,20 +183,6 @@ impl ShiftInvert for HalfBody {
             let rigid_part = dot(&rigid.momentum, x) / rigid.mass;
             axpy(-rigid_part, &rigid.shape, x);
         }
-    }
-}
-
-/// Scalar product.
-pub(in crate::body) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let n = a.len();
-    let (a, b) = (MatRef::from_column_major_slice(a, n, 1), MatRef::from_column_major_slice(b, n, 1));
-    a.col(0).transpose() * b.col(0)
-}
-
-/// y += factor x.
-pub(in crate::body) fn axpy(factor: f64, x: &[f64], y: &mut [f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += factor * x;
     }
 }
 

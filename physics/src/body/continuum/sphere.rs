@@ -3,10 +3,11 @@
 use super::assembly::Matrices;
 use super::lanczos::ShiftInvert;
 use super::mesh;
-use super::mirror::{HalfBody, Parity, dot};
+use super::mirror::{HalfBody, Parity};
 use super::patch::{half_space_flexibility, nodal_forces};
 use super::{MeshOptions, check_patch};
 use crate::error::Result;
+use crate::numerics::vectors::dot;
 use crate::scene::Material;
 use std::rc::Rc;
 

@@ -5,7 +5,7 @@
 //! its radius: polynomials in the square of it, through Chebyshev's points, have them to [`NODES`] terms.
 
 use super::lanczos::ShiftInvert;
-use super::mirror::{HalfBody, Parity, dot};
+use super::mirror::{HalfBody, Parity};
 use super::patch::{half_space_flexibility, nodal_forces};
 use super::plate::{ContinuumPlate, Halves, SpectrumEntry, WAVES, WEIGHTED, plate_mesh, sign};
 use super::{MeshOptions, sphere_residual};
@@ -13,6 +13,7 @@ use crate::body::layer::Waves;
 use crate::contact::{PatchTable, RADII, TABULATED, WHOLE};
 use crate::error::Result;
 use crate::numerics::chebyshev::{Chebyshev, blend};
+use crate::numerics::vectors::dot;
 use crate::scene::{Edge, Material, Plate};
 use std::f64::consts::SQRT_2;
 

@@ -5,20 +5,12 @@
 //! are unknowns: with n coordinates that it acts on, (2 + n) times the points of a step. The factored equations serve as
 //! long as the iteration gains enough by them, from step to step of one length.
 
-use super::solve::{Defect, Trial, Wet};
+use super::solve::{Defect, Factors, Trial, Wet};
 use super::table::Table;
-use crate::dynamics::collocation::STAGES;
+use crate::dynamics::stages::STAGES;
 use crate::dynamics::system::INNER;
 use faer::Mat;
-use faer::linalg::solvers::{PartialPivLu, Solve};
-
-/// Factored equations of steps of one length.
-#[derive(Debug, Clone)]
-pub(super) struct Factors {
-    /// Length of the step in s.
-    pub(super) h: f64,
-    lu: PartialPivLu<f64>,
-}
+use faer::linalg::solvers::Solve;
 
 /// Place of the force of contact `i` among the unknowns.
 fn contact(i: usize, stage: usize) -> usize {

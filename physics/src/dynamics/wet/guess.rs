@@ -1,7 +1,8 @@
 //! First guess of the forces of a step: those of the step before, carried on.
 
 use super::solve::Trial;
-use crate::dynamics::collocation::{Collocation, RADAU_POINTS, STAGES, Stages};
+use crate::dynamics::collocation::{Collocation, RADAU_POINTS};
+use crate::dynamics::stages::{STAGES, Stages};
 use crate::dynamics::system::dot;
 
 /// Length of a step over that of the step before up to which its forces are extrapolated.

@@ -6,11 +6,11 @@
 //! at four points) however many modes there are; what D leaves out is found by the iteration, or, where that is slow, by
 //! Newton's step with the whole matrix.
 
-use super::full_newton::Factors;
 use super::table::{Motion, Table};
-use crate::dynamics::collocation::{STAGES, Stages};
+use crate::dynamics::stages::{STAGES, Stages};
 use crate::dynamics::system::{INNER, System};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
+use faer::linalg::solvers::PartialPivLu;
 
 /// Iterations for the forces of a step; more means that the step is too long.
 const MAX_ITERATIONS: usize = 30;
@@ -246,6 +246,14 @@ pub(super) struct Defect {
     /// Change of both contact forces per modal approach of both. Shape (STAGES, 2, 2).
     pub tangent: [[[f64; 2]; 2]; STAGES],
     pub fluid: Vec<Stages>,
+}
+
+/// Factored equations of steps of one length.
+#[derive(Debug, Clone)]
+pub(super) struct Factors {
+    /// Length of the step in s.
+    pub(super) h: f64,
+    pub(super) lu: PartialPivLu<f64>,
 }
 
 /// Solution of the linear equations with the right-hand side in the last column, by Gauss with row pivots.

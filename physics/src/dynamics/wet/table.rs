@@ -1,6 +1,7 @@
 //! Answers of all oscillators at all points of a step of one length.
 
-use crate::dynamics::collocation::{Collocation, RADAU_POINTS, Response, STAGES, Stages};
+use crate::dynamics::collocation::{Collocation, RADAU_POINTS, Response};
+use crate::dynamics::stages::{STAGES, Stages};
 use crate::dynamics::system::System;
 
 /// Everything about a step of one length that does not depend on the state.

@@ -11,8 +11,9 @@
 //! has more of them where that finds too large an error.
 
 use super::errors::COVERED;
+use super::joined::Cut;
 use super::results::PlateQuantities;
-use super::trials::{Cut, Lack, RUNGS, Trials};
+use super::trials::{Lack, RUNGS, Trials};
 use super::truncation::of_continuum;
 use super::validity;
 use crate::dynamics::assured;

@@ -2,13 +2,13 @@
 
 use super::joined::{continuum_shapes, kirchhoff_system};
 use super::predictor::Predictor;
-use super::reduced::{DEFAULT_MODES, Reduced};
+use super::reduced::Reduced;
 use crate::body::kirchhoff::{self, UnitPlates};
 use crate::dynamics::duhamel::Oscillator;
 use crate::dynamics::system::PLATE;
 use crate::error::{Error, Result};
 use crate::result::History;
-use crate::scene::{Model, Scene};
+use crate::scene::{DEFAULT_MODES, Model, Scene};
 
 /// Deflection in m, signed along z, at `radii` (m, the first 0) and `times` (s, rising) of the plate of `scene` in `model` with
 /// `modes` modes, whose run has given `history`; of model C that of the inner face, without what yields under the contacts.
@@ -108,7 +108,7 @@ mod tests {
             let yields = |k: usize| {
                 let force = forces.map(|force| force[k]);
                 let local = [0, 1].map(|i| system.laws[i].approach(force[i]));
-                system.local_centre.motion(system, local, [0.0; 2], force)[0]
+                system.local_centre.displacement(local, force)
             };
             let centre: Vec<f64> = curve.iter().enumerate().map(|(k, v)| v - yields(k)).collect();
             let asked: Vec<f64> = times.iter().step_by(7).map(|t| t + 1e-9).collect();

@@ -1,9 +1,7 @@
 //! The models of a scene before they run: the plate reduced to modes, and the bodies joined by their contacts.
 
+use super::continua::Continua;
 use super::predictor::Predictor;
-use super::reduced::DEFAULT_MODES;
-use super::shared::Continua;
-use super::trials::Cut;
 use super::validity;
 use crate::body::ModalBody;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
@@ -11,14 +9,16 @@ use crate::body::kirchhoff::UnitPlates;
 use crate::dynamics::MovingBody;
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::scene::{Edge, Material, PlateImpact, Shape};
+use crate::scene::{DEFAULT_MODES, Edge, Material, Model, PlateImpact, Shape};
 
 /// Relative error of the forces at which model C, left to choose, stops adding modes.
 const TRUNCATION: f64 = 5e-4;
 /// Most modes that model C chooses by itself.
 const MAX_CHOSEN_MODES: usize = 64;
+/// Contact radius over a sphere's radius from which on its residual flexibility is not known.
+const WIDEST_PATCH: f64 = 0.5;
 
 /// A model of a scene.
 pub(super) struct Joined {
@@ -40,6 +40,15 @@ pub(super) enum Wanted {
     Estimate,
     /// All below a frequency.
     Below(Cut),
+}
+
+/// Which modes of the continuum plate model C is to have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cut {
+    /// Angular frequency in rad/s below which all modes are kept.
+    pub(super) omega: f64,
+    /// How many that will be at most.
+    pub(super) modes: usize,
 }
 
 /// `plate`, immersed if there is a fluid, between the bodies of the scene.
@@ -164,18 +173,28 @@ fn continuum_plate(
 
 /// Residual flexibility in m/N of the outer and the inner body at their contact points, for contact patches of the
 /// radii `patch` in m; `sphere` gives that of a sphere by radius, material and patch.
+///
+/// # Errors
+/// [`Error::Solver`] for a contact half as wide as its sphere, and those of `sphere`.
 pub(super) fn tip_residuals(
     setup: &PlateImpact,
     patch: [f64; 2],
     sphere: impl Fn(f64, &Material, f64) -> Result<f64>,
 ) -> Result<[f64; 2]> {
-    let tip = |shape: &Shape, material: &Material, patch| match *shape {
+    let tip = |body: &str, shape: &Shape, material: &Material, patch| match *shape {
+        Shape::Sphere { radius } if patch >= WIDEST_PATCH * radius => Err(Error::Solver(format!(
+            "model {}: the {body} contact's radius, {:.3} mm by the first look, is not below half of `{body}.radius`, {:.3} mm: \
+             it knows spheres under smaller contacts only; take model B, a slower impact or a stiffer material",
+            Model::C,
+            1e3 * patch,
+            1e3 * WIDEST_PATCH * radius
+        ))),
         Shape::Sphere { radius } => sphere(radius, material, patch),
         // a compact body and the tip of a bender are rigid but for their Hertz contact
         Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
     };
     Ok([
-        tip(&setup.outer.shape, &setup.outer.material, patch[0])?,
-        tip(&setup.inner.shape, &setup.inner.material, patch[1])?,
+        tip("outer", &setup.outer.shape, &setup.outer.material, patch[0])?,
+        tip("inner", &setup.inner.shape, &setup.inner.material, patch[1])?,
     ])
 }

@@ -3,6 +3,7 @@
 mod checks;
 pub mod choice;
 pub mod closed_forms;
+mod continua;
 pub mod deflection;
 pub mod errors;
 mod joined;

@@ -2,10 +2,11 @@
 
 use super::Kind;
 use super::choice::Plan;
+use super::continua::Continua;
 use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate};
 use super::results::{PlateQuantities, quantities, values};
 use super::series::{Done, Impacts};
-use super::shared::{Continua, SharedBodies};
+use super::shared::SharedBodies;
 use super::truncation;
 use super::validity::film_warning;
 use crate::body::cache::Cache;
@@ -18,11 +19,9 @@ use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
 use crate::result::{BenderSummary, CUT, Choice, ElasticLimit, Outcome, Summary};
-use crate::scene::{self, MAX_MODES, Model, Scene};
+use crate::scene::{self, DEFAULT_MODES, MAX_MODES, Model, Outer, PlateImpact, Scene};
 use std::time::Instant;
 
-/// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
-pub const DEFAULT_MODES: usize = 16;
 /// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
 const PEAK_ERROR: f64 = 0.1;
 /// Samples of a history per duration of a Hertz contact.
@@ -68,7 +67,7 @@ impl Reduced {
         modes: Option<usize>,
         bodies: &SharedBodies,
     ) -> Result<Self> {
-        let setup = scene.plate_impact()?;
+        let setup = covered(&scene)?;
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
             (Model::A, Some(n)) => {
@@ -113,7 +112,7 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::auto`].
     pub fn auto_in(scene: &Scene, tolerance: f64, cache: &Cache) -> Result<Self> {
-        let setup = scene.plate_impact()?;
+        let setup = covered(scene)?;
         let mut plan = Plan::new(scene, tolerance)?;
         let mut continua: Option<Joined> = None;
         while let Some(cut) = plan.cut {
@@ -320,6 +319,18 @@ impl Reduced {
     }
 }
 
+/// What `scene` is, if the models have it.
+fn covered(scene: &Scene) -> Result<&PlateImpact> {
+    let setup = scene.plate_impact()?;
+    if setup.outer.is_centred() {
+        return Ok(setup);
+    }
+    let Outer { offset, angle, .. } = setup.outer;
+    Err(Error::Solver(format!(
+        "no reduced model takes an impact beside the centre or at an angle: `outer.offset` is {offset} m, `outer.angle` {angle} rad; the reference does"
+    )))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -338,6 +349,20 @@ mod tests {
                 "{summary:?}"
             );
         }
+    }
+
+    #[test]
+    fn a_contact_half_as_wide_as_its_sphere_is_refused_by_the_sphere_s_name() {
+        let text = include_str!("../../../../tests/fixtures/plate-impact.toml");
+        let [start, end] = ["[outer]", "[inner]"].map(|table| text.find(table).expect("a table"));
+        let soft = text.replace(
+            &text[start..end],
+            "[outer]\nkind = \"sphere\"\nradius = \"5 mm\"\nmaterial = \"soft\"\nspeed = \"20 m/s\"\n\n",
+        ) + "\n[materials.soft]\nyoungs_modulus = \"1.8 MPa\"\npoisson_ratio = 0.4\ndensity = \"1100 kg/m^3\"\n";
+        let scene = Scene::parse("soft.toml", &soft).unwrap();
+        let refused = Reduced::new(&scene, Model::C, None).expect_err("too wide").to_string();
+        assert!(refused.contains("`outer.radius`, 2.500 mm"), "{refused}");
+        assert!(Reduced::new(&scene, Model::B, None).is_ok());
     }
 
     /// A result whose ledger is off says so, and is none if it is far off.

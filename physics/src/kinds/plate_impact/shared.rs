@@ -1,13 +1,13 @@
 //! What the impacts of a series share, so that only the first of them pays for its bodies.
 
+use super::continua::Continua;
 use super::joined::{join, kirchhoff_system};
 use super::predictor::Predictor;
-use super::reduced::DEFAULT_MODES;
 use crate::body::cache::Cache;
-use crate::body::continuum::{ContinuumPlate, MeshOptions, UnitBodies, Varied, cached};
+use crate::body::continuum::{UnitBodies, Varied};
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::Result;
-use crate::scene::{Material, Plate, PlateImpact};
+use crate::scene::{DEFAULT_MODES, Plate, PlateImpact};
 
 /// Eigenproblems that are not solved again, and, where shapes recur, bodies that are not meshed again.
 #[derive(Debug)]
@@ -70,35 +70,6 @@ impl SharedBodies {
 
     /// The bodies of model C.
     pub(super) fn continua(&self) -> Continua<'_> {
-        Continua { shared: self.continuum.as_ref(), cache: &self.cache }
-    }
-}
-
-/// Where the bodies of model C come from.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Continua<'a> {
-    shared: Option<&'a UnitBodies>,
-    cache: &'a Cache,
-}
-
-impl<'a> Continua<'a> {
-    /// Each on a mesh of its own, through `cache`.
-    pub(super) fn meshed(cache: &'a Cache) -> Self {
-        Self { shared: None, cache }
-    }
-
-    /// As [`ContinuumPlate::new`] on the default mesh.
-    pub(super) fn plate(&self, plate: &Plate, patches: [f64; 2], modes: usize) -> Result<ContinuumPlate> {
-        let shared = self.shared.map(|bodies| bodies.plate(plate, patches, modes)).transpose()?;
-        let meshed = || cached::plate_in(self.cache, plate, patches, modes, &MeshOptions::default());
-        shared.flatten().map_or_else(meshed, Ok)
-    }
-
-    /// As [`crate::body::continuum::sphere_residual`] on the default mesh.
-    pub(super) fn sphere_residual(&self, radius: f64, material: &Material, patch: f64) -> Result<f64> {
-        let shared = self.shared.map(|bodies| bodies.sphere_residual(radius, material, patch)).transpose()?;
-        let mesh = MeshOptions::default();
-        let meshed = || cached::sphere_residual_in(self.cache, radius, material, patch, &mesh);
-        shared.flatten().map_or_else(meshed, Ok)
+        Continua::new(self.continuum.as_ref(), &self.cache)
     }
 }

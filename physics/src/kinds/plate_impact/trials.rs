@@ -5,9 +5,8 @@
 //! costs as much as a run of models A and B.
 
 use super::errors::largest_error;
-use super::joined::fluid_forces;
+use super::joined::{Cut, fluid_forces};
 use super::predictor::Predictor;
-use super::reduced::DEFAULT_MODES;
 use super::results::{PlateQuantities, quantities};
 use crate::analytical::circular_plate::rigidity;
 use crate::body::continuum::ContinuumPlate;
@@ -19,7 +18,7 @@ use crate::dynamics::integration::Options;
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::scene::{Material, PlateImpact, Shape};
+use crate::scene::{DEFAULT_MODES, Material, PlateImpact, Shape};
 use std::f64::consts::PI;
 
 /// Numbers of modes of the layer that are tried.
@@ -30,15 +29,6 @@ const SAFETY: f64 = 1.15;
 /// Part of (contact frequency / lowest frequency left out)^2 that a truncated series of continuum modes may be off by beyond
 /// what the layer, which has no longitudinal modes, tells.
 const TRUNCATION_SHARE: f64 = 0.1;
-
-/// Which modes of the continuum plate model C is to have.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cut {
-    /// Angular frequency in rad/s below which all modes are kept.
-    pub(super) omega: f64,
-    /// How many that will be at most.
-    pub(super) modes: usize,
-}
 
 /// What a model lacks.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -88,6 +88,11 @@ impl SeatMesh {
         &self.path
     }
 
+    /// SHA-256 of the file and of where its nodes have been moved to.
+    pub fn content_hash(&self) -> &str {
+        &self.content_hash
+    }
+
     /// [`SealSeat::geometry_hash`] of the scene it was made for, if the file says so: files from elsewhere do not.
     pub fn geometry_hash(&self) -> Option<&str> {
         self.geometry_hash.as_deref()

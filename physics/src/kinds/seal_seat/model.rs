@@ -13,10 +13,9 @@ use crate::body::cache::Cache;
 use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
-use crate::kinds::plate_impact::reduced::DEFAULT_MODES;
 use crate::material::vibration_frequency;
 use crate::result::{CUT, History, Losses, Outcome, Point, Summary};
-use crate::scene::{Model, Scene, SealSeat};
+use crate::scene::{DEFAULT_MODES, Model, Scene, SealSeat};
 use std::sync::Arc;
 use std::time::Instant;
 

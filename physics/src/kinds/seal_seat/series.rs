@@ -42,16 +42,16 @@ impl SeatSeries {
         Ok(Self { nodes: mesh.read()?, first, mesh: mesh.clone(), made: Kept::default() })
     }
 
-    /// The reduced model of `scene` on the mesh as it follows its dimensions.
+    /// `model` of `scene` on the mesh as it follows its dimensions.
     ///
     /// # Errors
     /// As [`SeatModel::new`], and if the mesh can't follow so far.
-    pub fn model(&self, scene: &Scene, modes: Option<usize>) -> Result<SeatModel> {
+    pub fn model(&self, scene: &Scene, model: Model, modes: Option<usize>) -> Result<SeatModel> {
         let setup = scene.seal_seat()?;
         let mesh = self.mesh_of(setup)?;
         let zones = Zones::expected(setup).of_series();
         let build = &mut |zones: &Zones, modes: usize| self.body(setup, &mesh, &zones.of_series(), modes);
-        SeatModel::in_zones(scene, (Model::C, modes), &mesh, zones, build)
+        SeatModel::in_zones(scene, (model, modes), &mesh, zones, build)
     }
 
     /// The mesh of the seat of `setup`.

@@ -11,6 +11,8 @@ use nalgebra::Vector3;
 
 /// How far the corners of a face may lie from its surface, over the membrane's radius.
 const ON_SURFACE: f64 = 1e-6;
+/// Radius of what goes along with a tip, over the membrane's radius: some contact radii.
+const AROUND_TIP: f64 = 0.1;
 
 /// A surface, and where on it faces may lie; the others of the same plane belong to another one.
 struct Side {
@@ -31,12 +33,16 @@ impl Side {
     }
 }
 
+/// The plane across y.
+fn aside(y: f64) -> Surface {
+    Surface::Plane { point: Vector3::new(0.0, y, 0.0), normal: Vector3::y() }
+}
+
 /// The sides of the half body y >= 0, always in the same order.
 fn sides(setup: &SealSeat) -> Vec<Side> {
     let (seat, ring) = (&setup.seat, setup.ring());
     let up = |z: f64| Surface::Plane { point: Vector3::new(0.0, 0.0, z), normal: Vector3::z() };
     let across = |x: f64| Surface::Plane { point: Vector3::new(x, 0.0, 0.0), normal: Vector3::x() };
-    let aside = |y: f64| Surface::Plane { point: Vector3::new(0.0, y, 0.0), normal: Vector3::y() };
     let rim = Surface::Cylinder { point: Vector3::zeros(), axis: Vector3::z(), radius: seat.membrane_radius };
     let (length, width) = (0.5 * seat.island_length, 0.5 * seat.island_width);
     let mut all = Vec::new();
@@ -60,22 +66,28 @@ fn sides(setup: &SealSeat) -> Vec<Side> {
     all
 }
 
-/// The points of the mesh that stay what they are: planes that meet in each, and along the ring the plane across the axis.
-fn marks(setup: &SealSeat) -> Vec<(Option<usize>, Vec<Surface>)> {
+/// Number of the side that is the underside.
+fn underside(sides: &[Side]) -> Option<usize> {
+    let level = Surface::Plane { point: Vector3::zeros(), normal: Vector3::z() };
+    sides.iter().position(|side| side.surface == level)
+}
+
+/// The cone of the seat with the sphere, and the plane in which its ring lies.
+fn ring(setup: &SealSeat, sides: &[Side]) -> Option<(usize, Surface)> {
     let ring = setup.ring();
-    let axis = in_plane(ring.axis);
-    let tip = |x: &f64| {
-        let point = Vector3::new(*x, 0.0, 0.0);
-        (
-            None,
-            [Vector3::x(), Vector3::y(), Vector3::z()]
-                .map(|normal| Surface::Plane { point, normal })
-                .to_vec(),
-        )
-    };
-    let cone = sides(setup).iter().position(|side| matches!(side.surface, Surface::Cone { .. }));
-    let plane = Surface::Plane { point: in_plane(ring.centre()), normal: axis };
-    std::iter::once((cone, vec![plane])).chain(setup.actuator.tip_positions.iter().map(tip)).collect()
+    let cone = sides.iter().position(|side| matches!(side.surface, Surface::Cone { .. }))?;
+    Some((cone, Surface::Plane { point: in_plane(ring.centre()), normal: in_plane(ring.axis) }))
+}
+
+/// Where the underside around a tip goes with it: the place of a point `p` that lies there, else `None`. A point alone would leave its
+/// elements behind, and the tip would meet another pattern of nodes at every place.
+fn with_tip(from: &SealSeat, to: &SealSeat, p: Vector3<f64>) -> Option<Vector3<f64>> {
+    let tips = from.actuator.tip_positions.iter().zip(&to.actuator.tip_positions);
+    let at = |x: f64| Vector3::new(x, 0.0, 0.0);
+    let growth = to.seat.membrane_radius / from.seat.membrane_radius;
+    let mut places = tips.map(|(x, there)| (p - at(*x), at(*there)));
+    let (off, there) = places.find(|(off, _)| off.norm() < AROUND_TIP * from.seat.membrane_radius)?;
+    Some(there + growth * off)
 }
 
 /// `mesh` of the seat of `from` as one of the seat of `to`.
@@ -109,16 +121,22 @@ pub(super) fn moved(mesh: &TetMesh, from: &SealSeat, to: &SealSeat) -> Result<Te
     }
     let mut surfaces: Vec<Vec<Surface>> =
         of_node.iter().map(|of| of.iter().map(|side| sides_to[*side].surface).collect()).collect();
-    for ((side, at), (_, wanted)) in marks(from).iter().zip(marks(to)) {
-        let is_there = |p: &Vector3<f64>| at.iter().all(|surface| surface.distance(*p).0.abs() < close);
+    if let Some(((cone, was), (_, is))) = ring(from, &sides_from).zip(ring(to, &sides_to)) {
         for (node, p) in mesh.points.iter().enumerate() {
-            if is_there(p)
-                && side.is_none_or(|side| of_node[node].contains(&side))
-                && !of_node[node].is_empty()
-            {
-                // a mark fixes more than the sides it lies on
-                surfaces[node].splice(0..0, wanted.iter().copied());
+            if of_node[node].contains(&cone) && was.distance(*p).0.abs() < close {
+                // the ring is more than the side it lies on
+                surfaces[node].insert(0, is);
             }
+        }
+    }
+    let below = underside(&sides_from);
+    let symmetry = |side: usize| sides_from[side].surface == aside(0.0);
+    for (node, p) in mesh.points.iter().enumerate() {
+        let free = of_node[node].iter().all(|side| Some(*side) == below || symmetry(*side));
+        let on_underside = below.is_some_and(|below| of_node[node].contains(&below));
+        if let Some(point) = with_tip(from, to, *p).filter(|_| free && on_underside) {
+            let across = |normal| Surface::Plane { point, normal };
+            surfaces[node] = [Vector3::x(), Vector3::y(), Vector3::z()].map(across).to_vec();
         }
     }
     mesh.moved_onto(&surfaces)

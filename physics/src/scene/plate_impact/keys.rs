@@ -1,10 +1,10 @@
 //! The keys of a plate impact, part of the table in `specification.rs`.
 
-use crate::scene::quantity::Dimension;
-use crate::scene::specification::{
+use crate::scene::grammar::{
     BODY_MATERIAL, Bound, Field, Kind, MODELS, TIP_RADIUS, choice, one_way, only, optional, positive, pure,
     required,
 };
+use crate::scene::quantity::Dimension;
 
 /// Smallest and largest number of elements across the contact radius.
 const ELEMENTS: Bound = Bound { low: Some((2.0, true)), high: Some((64.0, true)) };
@@ -42,7 +42,13 @@ const fn drive(set: &'static str, field: Field) -> Field {
     one_way(Some("bender"), "the drive", set, field)
 }
 
-pub(in crate::scene) static OUTER: [Field; 15] = [
+/// Angles in rad at which a body can fly towards a plane.
+const TOWARDS: Bound = Bound {
+    low: Some((-std::f64::consts::FRAC_PI_2, false)),
+    high: Some((std::f64::consts::FRAC_PI_2, false)),
+};
+
+pub(in crate::scene) static OUTER: [Field; 17] = [
     required("kind", Kind::Choice(&[choice("sphere"), choice("compact"), choice("bender")]), SHAPE_KIND),
     SPHERE_RADIUS,
     COMPACT_MASS,
@@ -82,6 +88,22 @@ pub(in crate::scene) static OUTER: [Field; 15] = [
     drive(
         "speed",
         required("speed", positive(Dimension::SPEED), "Speed towards the plate; of a bender that of its tip"),
+    ),
+    only(
+        &["sphere", "compact"],
+        optional(
+            "offset",
+            Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
+            "Distance of the point of impact from the axis, along x; absent = 0",
+        ),
+    ),
+    only(
+        &["sphere", "compact"],
+        optional(
+            "angle",
+            Kind::Quantity(Dimension::ANGLE, TOWARDS),
+            "Angle of the velocity against the plate's normal, positive = towards +x; absent = 0",
+        ),
     ),
 ];
 
@@ -148,6 +170,8 @@ pub(in crate::scene) static SERIES: [Field; 2] = [
 /// Most modes of a plate that a model is built with: with so many the bodies of model C take a quarter of a minute, with twice as many ten
 /// times as long.
 pub const MAX_MODES: usize = 256;
+/// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
+pub const DEFAULT_MODES: usize = 16;
 
 pub(in crate::scene) static REDUCED: [Field; 2] = [
     optional("model", Kind::Choice(&MODELS), "The model to run when the command line names none"),
@@ -158,7 +182,7 @@ pub(in crate::scene) static REFERENCE: [Field; 4] = [
     optional(
         "geometry",
         Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
-        "Geometry of the elements; absent = axisymmetric",
+        "Geometry of the elements; absent = axisymmetric, for an impact beside the centre or at an angle solid",
     ),
     optional(
         "elements_per_contact_radius",

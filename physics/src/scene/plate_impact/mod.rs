@@ -4,8 +4,8 @@ mod keys;
 mod read;
 mod soundness;
 
-pub use keys::MAX_MODES;
 pub(super) use keys::{DEFAULT_GEOMETRY, FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE, SERIES};
+pub use keys::{DEFAULT_MODES, MAX_MODES};
 pub(super) use read::{plate_impact, reference};
 
 use super::Material;
@@ -94,8 +94,26 @@ pub struct Outer {
     pub shape: Shape,
     /// Material.
     pub material: Material,
-    /// Speed towards the plate in m/s, positive; of a bender that of its tip when it strikes.
+    /// Speed in m/s, positive; of a bender that of its tip when it strikes.
     pub speed: f64,
+    /// Distance of the point of impact from the axis in m, along x, not negative.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub offset: f64,
+    /// Angle of the velocity against the plate's normal in rad, in the x-z plane; positive = towards +x.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub angle: f64,
+}
+
+impl Outer {
+    /// A body that strikes the centre of the plate along its axis with `speed` in m/s.
+    pub fn centred(shape: Shape, material: Material, speed: f64) -> Self {
+        Self { shape, material, speed, offset: 0.0, angle: 0.0 }
+    }
+
+    /// Whether it strikes the centre of the plate along its axis.
+    pub fn is_centred(&self) -> bool {
+        self.offset == 0.0 && self.angle == 0.0
+    }
 }
 
 /// The inner body: rests below the plate, or has a speed of its own.
@@ -154,7 +172,7 @@ pub struct ShearThinning {
     pub power_index: f64,
 }
 
-/// Outer body, circular plate, inner body on one axis.
+/// Outer body, circular plate, inner body on its axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlateImpact {
     /// The plate.

@@ -4,9 +4,10 @@ use super::keys::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS};
 use super::*;
 use crate::Result;
 use crate::actuator::{beam, cantilever};
-use crate::scene::check::{Checked, Values};
 use crate::scene::material::material;
-use crate::scene::read::{Node, element_order, refused, unknown};
+use crate::scene::read::refused;
+use crate::scene::values::{Checked, Values};
+use crate::scene::values::{Node, element_order, unknown};
 use crate::scene::{Geometry, ReferenceSettings, Rigid};
 
 /// The bodies of a plate impact.
@@ -60,7 +61,13 @@ fn shape(body: &Node) -> Result<Shape> {
 /// The outer body; the speed of a bender's tip follows from its drive.
 fn striker(outer: &Node, material: Material) -> Result<Outer> {
     if outer.text("kind")? != "bender" {
-        return Ok(Outer { shape: shape(outer)?, material, speed: outer.number("speed")? });
+        return Ok(Outer {
+            shape: shape(outer)?,
+            material,
+            speed: outer.number("speed")?,
+            offset: outer.number_or("offset", 0.0)?,
+            angle: outer.number_or("angle", 0.0)?,
+        });
     }
     let bender = bender(outer)?;
     let speed = if outer.0.contains_key("speed") {
@@ -77,7 +84,7 @@ fn striker(outer: &Node, material: Material) -> Result<Outer> {
         };
         torque * beam::Release::new(&bender)?.speed_per_moment
     };
-    Ok(Outer { shape: Shape::Bender(bender), material, speed })
+    Ok(Outer::centred(Shape::Bender(bender), material, speed))
 }
 
 fn bender(outer: &Node) -> Result<Bender> {
@@ -140,12 +147,19 @@ fn fluid(fluid: &Node, plate: &Plate) -> Result<Fluid> {
     })
 }
 
-/// Settings of the reference of a plate impact.
-pub(in crate::scene) fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
+/// Settings of the reference of a plate impact that has an axis of symmetry, or has none.
+pub(in crate::scene) fn reference(settings: Option<Node>, centred: bool) -> Result<ReferenceSettings> {
     let empty = Values::new();
     let settings = settings.unwrap_or(Node(&empty));
     let geometry = match settings.0.get("geometry") {
         Some(Checked::Text(word)) if word == "solid" => Geometry::Solid,
+        Some(_) if !centred => {
+            return Err(refused(
+                "`reference.geometry` is \"axisymmetric\", but `outer.offset` or `outer.angle` leaves no axis of symmetry",
+                "set it to \"solid\", or leave it out",
+            ));
+        }
+        None if !centred => Geometry::Solid,
         _ => Geometry::Axisymmetric,
     };
     let default = if geometry == Geometry::Solid { DEFAULT_SOLID_ELEMENTS } else { DEFAULT_ELEMENTS };

@@ -23,6 +23,9 @@ impl Part for PlateImpact {
             let yields = body.plasticity().or(plate.material.plasticity()).is_some();
             !(yields && !(body.relaxation.is_empty() && plate.material.relaxation.is_empty()))
         };
+        let dry = self.fluid.is_none() && plate.damping_ratio == 0.0 && self.series.is_none();
+        let spheres =
+            [&self.outer.shape, &self.inner.shape].iter().all(|shape| matches!(shape, Shape::Sphere { .. }));
         let ratio = plate.thickness / plate.radius;
         let [least, most] = SLENDERNESS;
         broken(vec![
@@ -33,6 +36,27 @@ impl Part for PlateImpact {
                     "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it has to be {least:e} to {most} times"
                 ),
                 help: "is one of them in the wrong unit?",
+            },
+            Rule {
+                fields: vec!["outer.offset", "plate.radius"],
+                holds: self.outer.offset < plate.radius,
+                message: format!(
+                    "`outer.offset` is {} m, but it has to be less than `plate.radius`, {} m",
+                    self.outer.offset, plate.radius
+                ),
+                help: "it is the distance of the point of impact from the centre of the plate",
+            },
+            Rule {
+                fields: vec!["outer.offset", "outer.angle"],
+                holds: self.outer.is_centred() || (elastic && dry),
+                message: "an impact beside the centre or at an angle is covered between elastic bodies, dry, on an undamped plate, once".into(),
+                help: "leave out `outer.offset` and `outer.angle`, or fluid, damping, `hardening`, `relaxation`, `loss_factor` and series",
+            },
+            Rule {
+                fields: vec!["friction"],
+                holds: self.outer.is_centred() || self.friction == 0.0 || spheres,
+                message: "`friction` beside the centre or at an angle turns the bodies: both have to be spheres, of other bodies the moment of inertia is not known".into(),
+                help: "take spheres, or leave out `friction`",
             },
             Rule {
                 fields: vec!["fluid"],

@@ -1,9 +1,9 @@
 //! The keys of a seal-seat scene, part of the table in `specification.rs`.
 
-use crate::scene::quantity::Dimension;
-use crate::scene::specification::{
+use crate::scene::grammar::{
     BODY_MATERIAL, Bound, Field, Kind, TIP_RADIUS, choice, one_way, optional, positive, pure, required,
 };
+use crate::scene::quantity::Dimension;
 
 const ACUTE: Bound = Bound { low: Some((0.0, true)), high: Some((std::f64::consts::FRAC_PI_2, false)) };
 const CONE: Bound = Bound { low: Some((0.0, false)), high: Some((std::f64::consts::PI, false)) };

@@ -3,9 +3,9 @@
 use super::keys::DEFAULT_RING_ELEMENTS;
 use super::{Actuator, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
 use crate::Result;
-use crate::scene::check::{Checked, Values};
 use crate::scene::material::material;
-use crate::scene::read::{Node, element_order};
+use crate::scene::values::{Checked, Values};
+use crate::scene::values::{Node, element_order};
 use crate::scene::{Geometry, ReferenceSettings, Shape};
 
 /// Seat, sphere, actuator and the intended direction.

@@ -1,11 +1,13 @@
 //! The table `[uncertainty]` of a scene file.
 
 use super::{Correlation, Distribution, Spread, UncertainInput, Uncertainty};
-use crate::scene::check::{Checked, Checker, Place, Values};
+use crate::scene::check::Checker;
 use crate::scene::fault::did_you_mean;
 use crate::scene::field::{Field, fields_of, number_in, without_effect};
+use crate::scene::grammar::{self, Bound, Kind, pure, required};
+use crate::scene::place::Place;
 use crate::scene::quantity::Dimension;
-use crate::scene::specification::{self, Bound, Kind, pure, required};
+use crate::scene::values::{Checked, Values};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -24,13 +26,13 @@ pub(in crate::scene) const DISTRIBUTIONS: [(&str, &str); 3] = [
     ("uniform", "Both bounds"),
 ];
 
-static PAIR: [specification::Field; 2] = [
+static PAIR: [grammar::Field; 2] = [
     required("between", Kind::Texts(2), "The names of two uncertain fields"),
     required("coefficient", pure(COEFFICIENT), "Coefficient of correlation of their normal scores"),
 ];
 
 /// The entry for correlations.
-pub(in crate::scene) static CORRELATIONS: specification::Field = specification::optional(
+pub(in crate::scene) static CORRELATIONS: grammar::Field = grammar::optional(
     CORRELATED,
     Kind::Tables(&PAIR, MOST_PAIRS),
     "Pairs of inputs that do not scatter independently",

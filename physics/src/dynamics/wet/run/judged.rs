@@ -1,7 +1,7 @@
 //! What a solved wet step is wrong by.
 
 use super::{Stepper, joined};
-use crate::dynamics::collocation::STAGES;
+use crate::dynamics::stages::STAGES;
 use crate::dynamics::step_bounds::{force_scale, peak_share};
 use crate::dynamics::system::dot;
 use crate::dynamics::wet::touch_between;

@@ -1,9 +1,9 @@
 //! What is booked of a wet step: impulses, work and losses.
 
 use super::{Stepper, joined};
-use crate::dynamics::collocation::Stages;
 use crate::dynamics::contact_ledger::work;
 use crate::dynamics::integration::FluidAccount;
+use crate::dynamics::stages::Stages;
 use crate::dynamics::system::INNER;
 use crate::dynamics::wet::FluidLoad;
 use crate::dynamics::wet::solve::END;

@@ -1,0 +1,132 @@
+//! Measures of a figure and its panels, and how lines and numbers are put into them.
+
+use super::figure_lines::Line;
+use crate::curves::SampledCurve;
+use maud::{Markup, html};
+
+/// Font size in px of the drawing.
+pub(super) const FONT_SIZE: f64 = 13.0;
+/// Width of a drawing for phones in px.
+pub(super) const PHONE_WIDTH: f64 = 360.0;
+
+/// Measures of the drawing in px.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Geometry {
+    pub(super) width: f64,
+    pub(super) left: f64,
+    pub(super) right: f64,
+    pub(super) panel_height: f64,
+    pub(super) gap: f64,
+    /// Height of the panel of residuals below a panel; 0 = none.
+    pub(super) residual_height: f64,
+    pub(super) bottom: f64,
+    /// Whether the efficiencies stand in boxes between the curves; else they stand in the legend.
+    pub(super) boxes: bool,
+    /// Millimetres of a px; `None` = the page decides.
+    pub(super) millimetres: Option<f64>,
+}
+
+impl Geometry {
+    pub(super) const PAGE: Geometry = Geometry {
+        width: 760.0,
+        left: 74.0,
+        right: 16.0,
+        panel_height: 226.0,
+        gap: 16.0,
+        residual_height: 0.0,
+        bottom: 50.0,
+        boxes: true,
+        millimetres: None,
+    };
+
+    /// For a phone held upright: as wide as its screen, so that type is not shrunk.
+    pub(super) const PHONE: Geometry = Geometry {
+        width: PHONE_WIDTH,
+        left: 62.0,
+        right: 8.0,
+        panel_height: 220.0,
+        gap: 14.0,
+        boxes: false,
+        ..Geometry::PAGE
+    };
+
+    /// For a figure `width` mm wide: type of 8.5 pt, in one column of a paper (below 120 mm) of 7.5 pt.
+    pub(super) fn printed(width: f64) -> Self {
+        const POINT: f64 = 25.4 / 72.0;
+        let of = |geometry: Geometry, points: f64| {
+            let millimetres = points * POINT / FONT_SIZE;
+            Geometry { width: width / millimetres, millimetres: Some(millimetres), ..geometry }
+        };
+        if width >= 120.0 {
+            return of(Geometry::PAGE, 8.5);
+        }
+        of(
+            Geometry {
+                left: 66.0,
+                right: 10.0,
+                panel_height: 158.0,
+                gap: 12.0,
+                boxes: false,
+                ..Geometry::PAGE
+            },
+            7.5,
+        )
+    }
+
+    /// With a panel of residuals below each panel.
+    pub(super) fn with_residuals(self) -> Self {
+        Geometry { residual_height: 84.0, panel_height: 0.75 * self.panel_height, ..self }
+    }
+
+    /// Height of a panel with its residuals.
+    pub(super) fn pair_height(&self) -> f64 {
+        self.panel_height + self.residual_height
+    }
+
+    /// Abscissa of `time`, if the axis ends at `end`.
+    pub(super) fn x_of(&self, time: f64, end: f64) -> f64 {
+        self.left + self.inner_width() * time / end
+    }
+
+    /// Width of a panel.
+    pub(super) fn inner_width(&self) -> f64 {
+        self.width - self.left - self.right
+    }
+}
+
+/// A panel: curves of one quantity over time.
+pub(super) struct PanelOf {
+    /// Quantity and unit, beside the axis.
+    pub(super) label: &'static str,
+    /// From SI to that unit.
+    pub(super) factor: f64,
+    /// What the panel calls each curve, and its name.
+    pub(super) curves: &'static [(&'static str, &'static str)],
+    /// Whether the efficiencies stand in boxes between the curves, where there is room for them.
+    pub(super) boxes: bool,
+}
+
+impl PanelOf {
+    /// Whether the panel shows this curve.
+    pub(super) fn holds(&self, curve: &SampledCurve) -> bool {
+        self.curves.iter().any(|(_, name)| curve.quantity == *name)
+    }
+}
+
+/// Width in px of `text` in DejaVu Sans, estimated from above.
+pub(super) fn text_width(text: &str) -> f64 {
+    0.62 * FONT_SIZE * text.chars().count() as f64
+}
+
+/// The curve `data` in the style of its line.
+pub(super) fn stroke(line: &Line, data: &str) -> Markup {
+    html! {
+        path class=(line.class) d=(data) fill="none" stroke-width=(line.width)
+            stroke-dasharray=(line.dash) stroke-linejoin="round" {}
+    }
+}
+
+/// Coordinate with two decimals.
+pub(super) fn x2(value: f64) -> String {
+    format!("{value:.2}")
+}

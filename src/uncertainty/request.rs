@@ -1,0 +1,39 @@
+//! What is asked of a study of scatter.
+
+use crate::scene::Model;
+
+/// Quantities whose scatter is wanted when nobody names others.
+pub const WANTED: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
+
+/// How much to sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Samples {
+    /// So many rows.
+    Rows(usize),
+    /// Twice as many again and again, until the 95 % intervals of mean and standard deviation of the wanted quantities are no wider than
+    /// this share of the standard deviation to either side.
+    Until(f64),
+}
+
+/// What is asked of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// The reduced model.
+    pub model: Model,
+    /// Its number of modes; `None` = as `reduced`.
+    pub modes: Option<usize>,
+    /// How much to sample.
+    pub samples: Samples,
+    /// The quantities that `samples` is about.
+    pub wanted: Vec<String>,
+    /// Another one gives other samples.
+    pub seed: u32,
+}
+
+impl Request {
+    /// Of `model`, as [`WANTED`], to an `accuracy`.
+    pub fn new(model: Model, accuracy: f64) -> Self {
+        let wanted = WANTED.map(str::to_owned).into();
+        Request { model, modes: None, samples: Samples::Until(accuracy), wanted, seed: 1 }
+    }
+}
