@@ -12,7 +12,10 @@ use crate::numerics::root::root;
 use std::f64::consts::PI;
 
 /// Gauss points of the work of a step.
-const WORK_POINTS: usize = 3;
+const WORK_POINTS: usize = 2;
+
+/// Critical approaches at least from which those of the next step are looked for.
+const LEAST_NEAR: f64 = 1e-3;
 
 /// What a surface has been through.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,8 +48,9 @@ pub struct DentedContact {
     surfaces: [Option<Surface>; 2],
     /// Which of them yields first.
     weaker: usize,
-    /// Approach at the end of the last step, m, and the work done on the contact so far, J.
+    /// Approach at the end of the last step, m, critical approaches of the weaker surface there, and the work done on the contact so far, J.
     last: f64,
+    near: f64,
     taken: f64,
 }
 
@@ -74,7 +78,7 @@ impl DentedContact {
         let onset = surfaces.map(|s: Option<Surface>| s.map_or(f64::INFINITY, |s| s.law.onset_pressure()));
         let weaker = usize::from(onset[1] < onset[0]);
         surfaces[weaker]?;
-        Some(Self { hertz, modulus, surfaces, weaker, last: 0.0, taken: 0.0 })
+        Some(Self { hertz, modulus, surfaces, weaker, last: 0.0, near: 1.0, taken: 0.0 })
     }
 
     /// Force in N up to which the contact is elastic while virgin.
@@ -163,11 +167,14 @@ impl DentedContact {
         }
     }
 
-    /// Critical approaches of the weaker surface, if virgin, at the approach `x` in m of both.
+    /// Critical approaches of the weaker surface, if virgin, at the approach `x` in m of both, beyond that at which they touch.
     fn critical_approaches(&self, x: f64) -> f64 {
         let error = |w: f64| self.pressed(w).approach - x;
-        let mut ends = [0.0, (x - self.depth()) / self.critical_approach()];
-        let mut values = [self.depth() - x, error(ends[1])];
+        let mut ends = [0.9 * self.near, 1.1 * self.near];
+        let mut values = ends.map(error);
+        if values[0] > 0.0 {
+            (ends, values) = ([0.0, ends[0]], [self.depth() - x, values[0]]);
+        }
         while values[1] < 0.0 {
             (ends, values) = ([ends[1], 2.0 * ends[1]], [values[1], error(2.0 * ends[1])]);
         }
@@ -180,8 +187,8 @@ impl DentedContact {
             return [0.0; 2];
         }
         let w = self.critical_approaches(x);
-        let [less, more] = [1.0 - 1e-6, 1.0 + 1e-6].map(|factor| self.pressed(factor * w));
-        [self.pressed(w).force, (more.force - less.force) / (more.approach - less.approach)]
+        let [at, beyond] = [w, (1.0 + 1e-6) * w].map(|w| self.pressed(w));
+        [at.force, (beyond.force - at.force) / (beyond.approach - at.approach)]
     }
 
     /// Ends a step at the approach `x` in m.
@@ -193,12 +200,14 @@ impl DentedContact {
         }
         let (points, weights) = gauss_legendre(WORK_POINTS);
         let [middle, half] = [0.5 * (from + to), 0.5 * (to - from)];
-        self.taken +=
-            half * points.iter().zip(weights).map(|(p, w)| w * self.force(middle + half * p)[0]).sum::<f64>();
+        let force = |p: &f64| self.pressed(self.critical_approaches(middle + half * p)).force;
+        self.taken += half * points.iter().zip(weights).map(|(p, w)| w * force(p)).sum::<f64>();
         if x <= self.depth() {
             return;
         }
-        let Pressed { radius, now, depths, .. } = self.pressed(self.critical_approaches(x));
+        let w = self.critical_approaches(x);
+        self.near = w.max(LEAST_NEAR);
+        let Pressed { radius, now, depths, .. } = self.pressed(w);
         for (i, surface) in self.surfaces.iter_mut().enumerate() {
             if let (Some(Surface { dent, .. }), Some(now)) = (surface, now[i]) {
                 dent.depth = depths[i];

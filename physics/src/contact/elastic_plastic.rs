@@ -132,16 +132,18 @@ impl ElasticPlastic {
         if w <= 1.0 {
             return [self.onset_pressure() * w.sqrt(), self.onset * w.sqrt()];
         }
-        let area = w * (w / ELASTIC).max(1.0).powf(self.growth);
+        let log = w.ln();
+        let power = |exponent: f64| (exponent * log).exp();
+        let area = w * (self.growth * (log - ELASTIC.ln()).max(0.0)).exp();
         let flattening = self.onset * area.sqrt();
         if w > self.hardest[0] {
             let [hardest, pressure] = self.hardest;
             return [pressure * (w / hardest).powf(HARDER), flattening];
         }
         let hardness = 1.0 - (-0.82 * flattening.powf(-0.7)).exp();
-        let share = 1.0 - (-w.powf(5.0 / 9.0) / 25.0).exp();
-        let elastic = w.powf(1.5);
-        let force = (-0.25 * w.powf(5.0 / 12.0)).exp() * elastic + self.constraint * hardness * share * w;
+        let share = 1.0 - (-power(5.0 / 9.0) / 25.0).exp();
+        let elastic = w * w.sqrt();
+        let force = (-0.25 * power(5.0 / 12.0)).exp() * elastic + self.constraint * hardness * share * w;
         // the two curves cross near `ELASTIC`
         [self.onset_pressure() * force.min(elastic) / area, flattening]
     }
@@ -153,7 +155,9 @@ impl ElasticPlastic {
             return Flattened { approach: w, pressure, flattening, ..Flattened::NONE };
         }
         let depth = w * self.onset.powi(2) / flattening;
-        let residual = (1.0 - w.powf(-0.28)) * (1.0 - w.powf(-0.69));
+        let log = w.ln();
+        let power = |exponent: f64| (exponent * log).exp();
+        let residual = (1.0 - power(-0.28)) * (1.0 - power(-0.69));
         let unit = pressure / self.modulus;
         let recovers = (1.0 - residual) * depth / unit;
         let [evenest, most] = self.evenest;
@@ -167,7 +171,7 @@ impl ElasticPlastic {
             stays: residual * depth,
             recovers,
             evenness,
-            exponent: 1.5 * w.powf(-0.0331),
+            exponent: 1.5 * power(-0.0331),
         };
         Flattened { lasting: (flattening - state.bends() * unit).max(0.0), ..state }
     }
