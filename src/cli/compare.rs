@@ -54,13 +54,13 @@ pub struct Arguments {
     /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
     /// repeated impacts, with commas or spaces between them
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
-    measured: Vec<PathBuf>,
+    pub(super) measured: Vec<PathBuf>,
     /// Bandwidth of the instrument, to which the models' curves are filtered
     #[arg(long, default_value = "100 kHz", value_name = "FREQUENCY", value_parser = compare_inputs::bandwidth)]
-    bandwidth: f64,
+    pub(super) bandwidth: f64,
     /// Where the outer body's measured speed comes from: scene (the signal may have an offset) or measured (it has none)
     #[arg(long, default_value = "scene", value_name = "SOURCE")]
-    speed: Speed,
+    pub(super) speed: Speed,
     /// Write the figure for a paper to this file (.svg, .pdf or .png), or an animation of a plate impact (.gif): the reference's
     /// stress, as `reference SCENE --fields 40` stores it, beside a reduced model's deflection; of several scenes, the scene's name
     /// is added

@@ -59,6 +59,11 @@ impl Template {
         &self.scene
     }
 
+    /// The content of the file.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// The numeric field called `path`.
     ///
     /// # Errors
