@@ -2,10 +2,13 @@
 #
 #   docker build --tag impactcheck .
 #   docker run --rm --user "$(id -u)" --volume "$PWD:/work" impactcheck gate my-impact.toml --compute
+#   docker run --rm --user "$(id -u)" --volume "$PWD:/work" --entrypoint python3 impactcheck my-script.py   # import impactcheck
 FROM rust:1.89-bookworm AS build
 WORKDIR /source
 COPY . .
-RUN cargo build --release --locked && strip target/release/impactcheck
+# the Python package's extension finds the symbols of the interpreter that loads it
+RUN PYO3_BUILD_EXTENSION_MODULE=1 cargo build --release --locked --package impactcheck --package impactcheck-python \
+    && strip target/release/impactcheck target/release/lib_core.so
 
 FROM debian:bookworm-slim
 # a release of Debian fixes the versions: results are those of its FEniCSx 0.5.2
@@ -15,6 +18,8 @@ RUN apt-get update \
         calculix-ccx gcc libc6-dev openmpi-bin python3-cffi python3-dolfinx python3-gmsh python3-meshio \
     && rm -rf /var/lib/apt/lists/*
 COPY --from=build /source/target/release/impactcheck /usr/local/bin/
+COPY python/impactcheck /usr/local/lib/python3.11/dist-packages/impactcheck
+COPY --from=build /source/target/release/lib_core.so /usr/local/lib/python3.11/dist-packages/impactcheck/_core.abi3.so
 COPY scenes /usr/local/share/impactcheck/scenes
 COPY meshes /usr/local/share/impactcheck/meshes
 COPY fem_reference /usr/local/share/impactcheck/fem_reference

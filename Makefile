@@ -22,6 +22,8 @@ SCENES := $(basename $(notdir $(wildcard scenes/*.toml)))
 # meshes of a solid at `fine` take an hour
 PLATES := $(filter-out seal-seat-%,$(SCENES))
 # dry impacts of elastic spheres that CalculiX solves too; its solutions come with the project
+# struck beside the centre, where model C has no modes
+ASIDE := scenes/validation/off-centre.toml
 SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-light polymer-plate supported-plate titanium-sapphire)
 
 .PHONY: test setup rust wheel python live gate report solutions evidence
@@ -95,7 +97,8 @@ evidence: setup wheel
 	# the second program, and both beside each other
 	for scene in $(SECOND); do $(RUN) --store $(OUT)/evidence reference $$scene --solver calculix --fresh || exit 1; done
 	$(RUN) --store $(OUT)/evidence compare $(SECOND) --reference-check --out $(OUT)/second-program
-	$(RUN) --store $(OUT)/evidence gate scenes/validation/*.toml --models B,C --out $(OUT)/evidence-report
+	$(RUN) --store $(OUT)/evidence gate $(filter-out $(ASIDE),$(wildcard scenes/validation/*.toml)) --models B,C --out $(OUT)/evidence-report
+	$(RUN) --store $(OUT)/evidence gate $(ASIDE) --models B --out $(OUT)/evidence-aside
 	# what the map of validated scenes knows without these references
 	$(RUN) --store $(OUT)/evidence coverage --record
 	$(RUN) --store $(OUT)/evidence study auto --out $(OUT)/studies

@@ -52,7 +52,7 @@ const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
 }
 
 /// The features, of plates first.
-pub static FEATURES: [Feature; 26] = [
+pub static FEATURES: [Feature; 27] = [
     feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)).by(Form::CircularPlate),
     feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported))
         .by(Form::CircularPlate),
@@ -81,6 +81,7 @@ pub static FEATURES: [Feature; 26] = [
     feature("seal seat", |s| matches!(s.setup, Setup::SealSeat(_))),
     feature("seal seat, friction", |s| seat(s, |seat| seat.friction > 0.0)),
     feature("seal seat, elastic sphere", |s| seat(s, |seat| seat.sphere.body == SphereBody::Elastic)),
+    feature("seal seat, relaxing", |s| seat(s, |seat| !seat.seat.material.relaxation.is_empty())),
 ];
 
 fn plate(scene: &Scene, has: fn(&PlateImpact) -> bool) -> bool {
@@ -275,6 +276,11 @@ mod tests {
         assert_eq!(names(&scene(&text)), ["free edge", "damped plate"]);
         let seat = include_str!("../tests/fixtures/seal-seat.toml");
         assert_eq!(names(&Scene::parse("seal-seat.toml", seat).expect("valid")), ["seal seat"]);
+        let relaxing = include_str!("../scenes/validation/seal-seat-relaxing.toml");
+        assert_eq!(
+            names(&Scene::parse("seal-seat.toml", relaxing).expect("valid")),
+            ["seal seat", "seal seat, relaxing"]
+        );
     }
 
     /// Closed forms are about a part, and shown where the feature is of that part.

@@ -27,7 +27,7 @@ FINE_ZONE = 1.3
 CANDIDATE_ZONE = 1.8
 """Radius of the zone of nodes that may touch over the largest contact radius expected."""
 LARGEST, LARGEST_TURNING = 0.25, 0.15
-"""Largest element of a sphere over its radius; the moment of inertia of one that turns is 0.6 % too
+"""Largest element of a sphere over its radius; the moment of inertia of one that turns is 0.5 % too
 large with the latter."""
 SLOPE = 0.3
 """Growth of the element size per distance from the contact, at factor 1."""

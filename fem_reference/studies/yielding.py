@@ -23,8 +23,10 @@ from ..plate_impact.meshing import build_system, mesh_impact, mesh_settings
 from ..plate_impact.scene import Scene, parse_scene
 
 STEEL = {"name": "steel", "youngs_modulus": 210e9, "poisson_ratio": 0.3, "density": 7780.0}
-WALL = {"name": "wall", "youngs_modulus": 2.1e14, "poisson_ratio": 0.3, "density": 7.78e6}
-"""A thousand times as stiff and as heavy as steel: waves are as fast, steps as long."""
+WALL = {"name": "wall", "youngs_modulus": 2.1e15, "poisson_ratio": 0.3, "density": 7.78e7}
+"""Ten thousand times as stiff and as heavy as steel: waves are as fast, steps as long.
+
+At a thousand times the sphere rebounds 0.35 % faster, at a hundred thousand 0.03 % slower."""
 RADIUS, STRENGTH = 0.01, 600e6
 """Of the sphere, m, and its yield strength, Pa: it begins to yield at 9.5 mm/s."""
 ONSET = 1.60

@@ -18,15 +18,17 @@ from __future__ import annotations
 from impactcheck import _core
 from impactcheck._core import Scene
 from impactcheck._error import Error
-from impactcheck._results import Comparison, Result
+from impactcheck._results import Comparison, Optimum, Result
 
 __all__ = [
     "Comparison",
     "Error",
     "Model",
+    "Optimum",
     "Result",
     "Scene",
     "compare",
+    "optimise",
     "reduced",
     "reference",
     "sweep",
@@ -35,7 +37,7 @@ __all__ = [
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from os import PathLike
 
 Model = Literal["A", "B", "C", "auto"]
@@ -116,6 +118,9 @@ def compare(
     compute: bool = False,
     allow_external: bool = False,
     out: str | PathLike[str] | None = None,
+    measured: Sequence[str | PathLike[str]] = (),
+    bandwidth: str | float | None = None,
+    speed: Literal["scene", "measured"] | None = None,
 ) -> Comparison:
     """Compare models with the reference of each scene, and judge them by its tolerances.
 
@@ -129,9 +134,80 @@ def compare(
         compute: As in :func:`reference`.
         allow_external: Whether the programs that scenes name may run.
         out: Folder of the report; none is written without.
+        measured: Histories of a laser vibrometer (CSV, units in the heading), repeated impacts of
+            the one scene; what they show is :meth:`Comparison.measured`.
+        bandwidth: Of the instrument, "100 kHz" unless told, or a number in Hz: the models' curves
+            are filtered to it.
+        speed: Where the outer body's measured speed comes from: the scene (unless told), or the
+            record, if its signal has no offset.
 
     Raises:
-        Error: If a reference is missing or a model fails.
+        Error: If a reference is missing, a model fails or a record can't be aligned.
     """
-    document, figures = _core.compare(scenes, models, resolution, compute, allow_external, out)
+    how = (None if bandwidth is None else str(bandwidth), speed)
+    document, figures = _core.compare(
+        scenes, models, resolution, compute, allow_external, out, measured, how
+    )
     return Comparison.of(document, figures)
+
+
+def optimise(
+    scene: Scene,
+    over: Mapping[str, tuple[str | float, str | float]],
+    objective: str | None = None,
+    within: str | float | None = None,
+    mesh: str | PathLike[str] | None = None,
+    model: Literal["A", "B", "C"] | None = None,
+    modes: int | None = None,
+    seed: int = 1,
+    samples: int | None = None,
+    robust: float | None = None,
+    verify: bool = False,
+    resolution: str = "paper",
+    out: str | PathLike[str] | None = None,
+    progress: Callable[[int, float | None], object] | None = None,
+) -> Optimum:
+    """Search the numbers of a scene with which a result is largest, as `impactcheck optimise`.
+
+    Args:
+        scene: The impact.
+        over: Bounds by field, with units or in SI: `{"plate.thickness": ("1 mm", "3 mm")}`; fields
+            that take the same value are joined by commas.
+        objective: A quantity of the summary; the efficiency unless told, of a seal seat
+            `intended_speed`, the sphere's speed in the intended direction in m/s.
+        within: How far from that direction the sphere may fly, with unit or in rad.
+        mesh: Mesh (.vtu) of a seal seat, which follows its dimensions; a coarse one unless told.
+        model: A, B or C; the scene's, else B, of a seal seat C.
+        modes: As in :func:`reduced`.
+        seed: Of the samples of a search over several variables.
+        samples: Their number.
+        robust: Maximise this quantile of the objective (0.05 = 5 %) under the scene's uncertainty.
+        verify: Whether the optimum is held against the reference, which is computed if there is
+            none (needs FEniCSx).
+        resolution: Of that reference.
+        out: Folder of the optimum's files; none are written without.
+        progress: Hears, some ten times a second, how many designs were tried and what the best is
+            worth (None before the first result).
+
+    Raises:
+        Error: If a field or its bounds make no sense, or nothing within them has a result.
+    """
+    options = [
+        f"--seed={seed}",
+        f"--resolution={resolution}",
+        *(f"--over={field}={low}..{high}" for field, (low, high) in over.items()),
+    ]
+    named = {
+        "objective": objective,
+        "within": within,
+        "mesh": mesh,
+        "model": model,
+        "modes": modes,
+        "samples": samples,
+        "robust": robust,
+        "out": out,
+    }
+    options += [f"--{name}={value}" for name, value in named.items() if value is not None]
+    options += ["--verify"] if verify else []
+    document, figure, best = _core.optimise(scene, options, progress)
+    return Optimum.of(document, figure, best)

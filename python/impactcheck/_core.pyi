@@ -1,4 +1,4 @@
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Any, final
 
@@ -8,6 +8,7 @@ __all__ = [
     "compare",
     "figure",
     "main",
+    "optimise",
     "project_root",
     "reduced",
     "reference",
@@ -17,15 +18,21 @@ __all__ = [
 class Scene:
     """One impact, read and checked.
 
+    It can be copied and pickled.
+
     Args:
-        content: The keys of a scene file. Quantities are texts with units ("33 mm") or numbers in
-            SI; `impactcheck schema` tells all keys.
+        content: The keys of a scene file, or its text. Quantities are texts with units ("33 mm") or
+            numbers in SI; `impactcheck schema` tells all keys.
+        file: The file that it is the content of, if there is one.
 
     Raises:
         Error: With every fault, if it is no valid scene.
     """
 
-    def __new__(cls, content: Mapping[str, Any]) -> Scene: ...
+    def __new__(
+        cls, content: Mapping[str, Any] | str, file: str | PathLike[str] | None = None
+    ) -> Scene: ...
+    def __getnewargs__(self) -> tuple[str, str | PathLike[str] | None]: ...
     @staticmethod
     def read(path: str | PathLike[str]) -> Scene:
         """The scene in a file, or the shipped one of that name.
@@ -64,7 +71,14 @@ def compare(
     compute: bool,
     allow_external: bool,
     out: str | PathLike[str] | None,
+    measured: Sequence[str | PathLike[str]],
+    how: tuple[str | None, str | None],
 ) -> tuple[str, list[str]]: ...
+def optimise(
+    scene: Scene,
+    options: Sequence[str],
+    progress: Callable[[int, float | None], object] | None,
+) -> tuple[str, str, str]: ...
 def figure(
     title: str, time: Iterable[float], curves: Sequence[tuple[str, Iterable[float]]]
 ) -> str: ...

@@ -108,6 +108,18 @@ class Comparison:
         """The rows of a model: quantity, reduced, reference, relative, tolerance, verdict, ..."""
         return list(self._entry(name, scene)["discrepancies"])
 
+    def measured(self, scene: str | None = None) -> dict[str, Any] | None:
+        """Measured records beside the models; None without. Of the first scene unless one is named.
+
+        `efficiency` has mean, standard deviation and values of the impacts, `partners` a row for
+        the reference and every model: `efficiency_difference` from the mean, `curves` (metrics).
+        """
+        for entry in self.document["scenes"]:
+            if scene in (None, entry["scene"]):
+                measured: dict[str, Any] | None = entry.get("measured")
+                return measured
+        raise KeyError(f"no scene {scene!r}")
+
     def _entry(self, name: str, scene: str | None) -> dict[str, Any]:
         for entry in self.document["scenes"]:
             if scene in (None, entry["scene"]):
@@ -127,6 +139,52 @@ class Comparison:
             parts += [warnings_html(side, summary) for side, summary, _ in sides]
             parts.append(self.figures[scene["scene"]])
         return "".join(parts)
+
+
+@dataclass(frozen=True, repr=False)
+class Optimum:
+    """The best design found.
+
+    Attributes:
+        document: As `impactcheck optimise --json` prints it: `variables` with their neighbourhood,
+            `history`, everything that was tried, `summary` of the best, `verification`.
+        scene: The best design.
+        figure: The objective along every variable, and on the way there, SVG.
+    """
+
+    document: dict[str, Any]
+    scene: _core.Scene
+    figure: str
+
+    @classmethod
+    def of(cls, document: str, figure: str, scene: str) -> Optimum:
+        """What the program gives."""
+        return cls(json.loads(document), _core.Scene(scene), figure)
+
+    def __repr__(self) -> str:
+        return f"<impactcheck.Optimum {self.document['scene']}: {self.values}>"
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The best value of every variable by its field, SI."""
+        return {v["field"]: float(v["optimum"]) for v in self.document["variables"]}
+
+    @property
+    def objective(self) -> float:
+        """What was maximised, at the best design, in its SI unit: the quantile if one was."""
+        robust = self.document.get("robust")
+        return float(robust["quantile"] if robust else self.document["objective_value"])
+
+    @property
+    def result(self) -> Result:
+        """The result of the model there, without curves."""
+        return Result(self.document["summary"])
+
+    def _repr_html_(self) -> str:
+        rows = [(v["field"], v["optimum"], v["unit"]) for v in self.document["variables"]]
+        name = self.document["objective"]
+        rows.append((name, self.objective, self.document["objective_unit"]))
+        return table_html(("best", "value", "unit"), rows) + self.figure
 
 
 def warnings_html(who: str, summary: dict[str, Any]) -> str:

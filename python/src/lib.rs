@@ -5,6 +5,7 @@
 
 mod detached;
 mod figure;
+mod optimise;
 mod samples;
 mod scene;
 
@@ -89,8 +90,10 @@ fn find_reference(py: Python, scene: &Scene, resolution: &str, compute: bool) ->
     run(detached(py, interrupt::end_children, find)?.map_err(raised)?)
 }
 
-/// Compares the scenes: the document as JSON, and the figure of each scene as SVG.
+/// Compares the scenes, and records measured of one, by an instrument of a bandwidth and with a source of the outer body's speed: the
+/// document as JSON, and the figure of each scene as SVG.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "those of the package's function")]
 fn compare(
     py: Python,
     scenes: Vec<Py<Scene>>,
@@ -99,11 +102,15 @@ fn compare(
     compute: bool,
     allow_external: bool,
     out: Option<PathBuf>,
+    measured: Vec<PathBuf>,
+    how: (Option<String>, Option<String>),
 ) -> PyResult<(String, Vec<String>)> {
+    let (bandwidth, speed) = how;
+    let speed = speed.map(|name| name.parse()).transpose().map_err(usage)?;
     let models =
         models.iter().map(|name| name.parse()).collect::<std::result::Result<_, _>>().map_err(usage)?;
     let resolution = resolution.parse().map_err(usage)?;
-    let asked = Comparing { models, resolution, compute, allow_external, out };
+    let asked = Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed };
     let scenes: Vec<_> = scenes.iter().map(|scene| scene.get().placed()).collect();
     let compare = || in_process::compare(scenes, asked);
     let compared = detached(py, interrupt::end_children, compare)?.map_err(raised)?;
@@ -135,6 +142,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(find_reference, module)?)?;
     module.add_function(wrap_pyfunction!(compare, module)?)?;
     module.add_function(wrap_pyfunction!(figure::figure, module)?)?;
+    module.add_function(wrap_pyfunction!(optimise::optimise, module)?)?;
     module.add_function(wrap_pyfunction!(project_root, module)?)?;
     module.add_function(wrap_pyfunction!(main, module)?)
 }

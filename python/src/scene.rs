@@ -2,11 +2,11 @@
 
 use crate::raised;
 use impactcheck::cli::in_process::Placed;
-use impactcheck::scene;
-use impactcheck::{Error, scene::Scene as Checked};
+use impactcheck::scene::{self, Scene as Checked, Template};
+use impactcheck::{Error, Result};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyList, PyMapping, PyString, PyTuple};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// One impact, read and checked.
@@ -14,25 +14,35 @@ use toml::{Table, Value};
 pub struct Scene {
     /// Empty of a dictionary.
     file: PathBuf,
+    /// Content of the file.
+    text: String,
     pub scene: Checked,
 }
 
 #[pymethods]
 impl Scene {
     #[new]
-    fn new(content: &Bound<'_, PyMapping>) -> PyResult<Self> {
-        let text = toml::to_string_pretty(&table(content, "")?)
+    #[pyo3(signature = (content, file=None))]
+    fn new(content: &Bound<'_, PyAny>, file: Option<PathBuf>) -> PyResult<Self> {
+        if let Ok(text) = content.extract::<String>() {
+            return Self::parsed("text", text, file.unwrap_or_default());
+        }
+        let text = toml::to_string_pretty(&table(content.cast::<PyMapping>()?, "")?)
             .map_err(|e| raised(Error::Usage(format!("the dictionary can't be a scene file: {e}"))))?;
-        let scene = Checked::parse("dictionary", &text).map_err(raised)?;
-        Ok(Self { file: PathBuf::new(), scene })
+        Self::parsed("dictionary", text, file.unwrap_or_default())
+    }
+
+    /// What a copy is made from, in this process or another one.
+    fn __getnewargs__(&self) -> (&str, Option<&Path>) {
+        (&self.text, Some(self.file.as_path()).filter(|file| !file.as_os_str().is_empty()))
     }
 
     #[staticmethod]
     fn read(path: PathBuf) -> PyResult<Self> {
         let named = path.to_str().map_or_else(|| Ok(path.clone()), scene::resolve);
         let file = named.map_err(raised)?;
-        let scene = Checked::read(&file).map_err(raised)?;
-        Ok(Self { file, scene })
+        let template = Template::read(&file).map_err(raised)?;
+        Ok(Self { file, text: template.text().to_owned(), scene: template.scene().clone() })
     }
 
     #[getter]
@@ -51,6 +61,16 @@ impl Scene {
 }
 
 impl Scene {
+    fn parsed(name: &str, text: String, file: PathBuf) -> PyResult<Self> {
+        let scene = Checked::parse(name, &text).map_err(raised)?;
+        Ok(Self { file, text, scene })
+    }
+
+    /// Open to variation.
+    pub fn template(&self) -> Result<Template> {
+        Template::parse(&self.scene.name, &self.text)
+    }
+
     pub fn placed(&self) -> Placed {
         (self.file.clone(), self.scene.clone())
     }

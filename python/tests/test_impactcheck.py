@@ -1,7 +1,9 @@
 """The package as a user of a notebook meets it."""
 
+import copy
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -75,6 +77,25 @@ def test_a_dictionary_is_the_scene_of_the_file() -> None:
     assert ic.reduced(ic.Scene(settings)).modes == 3
 
 
+def test_scenes_are_copied_and_pickled(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    shipped = subprocess.run([*PROGRAM, "new", "mine"], cwd=tmp_path, capture_output=True)
+    assert shipped.returncode == 0
+    for scene in (ic.Scene(TABLE_1), ic.Scene.read(file), ic.Scene.read("scaled-plate-r10")):
+        restored = pickle.loads(pickle.dumps(scene))
+        for other in (restored, copy.copy(scene), copy.deepcopy([scene])[0]):
+            assert (other.name, other.hash) == (scene.name, scene.hash)
+        assert restored.__getnewargs__() == scene.__getnewargs__()
+    # in another process, which finds the scene's file again
+    script = "import pickle, sys; print(pickle.load(sys.stdin.buffer).__getnewargs__()[1])"
+    given = pickle.dumps(ic.Scene.read(file))
+    ended = subprocess.run([sys.executable, "-c", script], input=given, capture_output=True)
+    assert ended.stdout.decode().strip() == str(file), ended.stderr
+    with pytest.raises(ic.Error, match="not valid TOML") as caught:
+        ic.Scene("nonsense")
+    assert caught.value.exit_status == 3
+
+
 def test_models_beside_the_reference() -> None:
     comparison = ic.compare(ic.Scene.read("scaled-plate-r10"))
     assert comparison.verdict == "pass"
@@ -127,6 +148,88 @@ def test_a_program_that_fails_stops_nothing(tmp_path: Path) -> None:
     assert "no-such-program" in comparison.model("gone").failure
     assert "no-such-program" in comparison._repr_html_()
     assert (tmp_path / "report" / "index.html").is_file()
+
+
+def record(file: Path, seed: int) -> Path:
+    """What a vibrometer would make of the reference of the larger spheres."""
+    curves = ic.reference(ic.Scene.read("scaled-plate-r10")).curves
+    time, noise = 1e6 * curves["time"], np.random.default_rng(seed)
+    before = np.arange(-60.0, 0.0, 0.5)
+    columns = [np.concatenate([before, time])]
+    for name, first in [("outer_velocity", -550.0), ("inner_velocity", 0.0)]:
+        signal_ = np.concatenate([np.full(before.shape, first), 1e3 * curves[name]])
+        columns.append(signal_ + noise.normal(0.0, 1.0, signal_.shape))
+    heading = "time [us],outer_velocity [mm/s],inner_velocity [mm/s]"
+    np.savetxt(file, np.transpose(columns), delimiter=",", header=heading, comments="")
+    return file
+
+
+def test_measured_records_beside_the_models(tmp_path: Path) -> None:
+    scene = ic.Scene.read("scaled-plate-r10")
+    records = [record(tmp_path / f"run{seed}.csv", seed) for seed in (1, 2)]
+    comparison = ic.compare(scene, models=["B", "C"], measured=records, bandwidth="150 kHz")
+    measured = comparison.measured()
+    assert measured is not None and measured["bandwidth"] == 150e3
+    partners = {row["partner"]: row for row in measured["partners"]}
+    assert set(partners) == {"reference", "B", "C"} and measured["efficiency"]["count"] == 2
+    assert abs(measured["efficiency"]["mean"] - 0.695) < 0.02
+    assert abs(partners["reference"]["efficiency_difference"]) < 0.02
+    assert ic.compare(scene, models=["C"]).measured() is None
+    for arguments, word in [
+        ({"measured": records, "bandwidth": "1 Hz"}, "100 MHz"),
+        ({"measured": [tmp_path / "none.csv"]}, "none.csv"),
+        ({"measured": records, "speed": "guess"}, "guess"),
+    ]:
+        with pytest.raises(ic.Error, match=word):
+            ic.compare(scene, **arguments)
+
+
+def test_an_optimum_is_the_programs(tmp_path: Path) -> None:
+    over = {"plate.thickness": ("1 mm", 0.003)}
+    heard: list[tuple[int, float | None]] = []
+    optimum = ic.optimise(
+        ic.Scene.read("scaled-plate-r10"),
+        over,
+        model="B",
+        out=tmp_path / "out",
+        progress=lambda tried, best: heard.append((tried, best)),
+    )
+    command = ["optimise", "scaled-plate-r10", "--over=plate.thickness=1mm..3mm", "--model=B"]
+    printed = subprocess.run([*PROGRAM, *command, "--json"], capture_output=True, check=True)
+    expected, found = json.loads(printed.stdout), dict(optimum.document)
+    for document in (expected, found):
+        document["summary"].pop("solve_seconds")
+        # threads finish in any order
+        document["history"].sort(key=lambda tried: (tried["climb"], tried["values"]))
+    assert found == expected
+    assert optimum.values == {"plate.thickness": expected["variables"][0]["optimum"]}
+    assert ic.reduced(optimum.scene, model="B").efficiency == optimum.objective
+    assert "<svg" in optimum._repr_html_() and (tmp_path / "out" / "optimum.toml").is_file()
+    assert all(best is None or best <= optimum.objective + 1e-3 for _, best in heard)
+
+
+def test_an_optimum_tells_how_far_it_is_and_what_is_wrong() -> None:
+    scene, heard = ic.Scene(TABLE_1), []
+    over = {"plate.thickness": ("1 mm", "3 mm"), "plate.radius": ("25 mm", "40 mm")}
+
+    def enough(tried: int, best: float | None) -> None:
+        heard.append(tried)
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        ic.optimise(scene, over, model="C", samples=2000, progress=enough)
+    # some were on their way
+    assert 1 <= len(heard) <= 8
+    for bounds, arguments, word in [
+        ({"plate.thicknes": (1e-3, 2e-3)}, {}, r"did you mean `plate\.thickness`"),
+        ({"plate.thickness": (2e-3, 1e-3)}, {}, "not below the high end"),
+        ({}, {}, "--over"),
+        ({"plate.radius": (0.02, 0.03)}, {"samples": 2}, "samples"),
+        ({"plate.radius": (0.02, 0.03)}, {"mesh": "seat.vtu"}, "no seal seat"),
+    ]:
+        with pytest.raises(ic.Error, match=word) as caught:
+            ic.optimise(scene, bounds, **arguments)
+        assert caught.value.exit_status == 2
 
 
 def test_errors_have_the_programs_sentence_and_status() -> None:

@@ -7,14 +7,17 @@ pub use super::asked_model::AskedModel;
 use super::asked_model::within_bounds;
 use super::compare_arguments::Arguments;
 use super::comparison_job::{Job, Outputs};
-use super::{Context, kinds, stored_references};
+use super::optimise::{self, Solved};
+use super::{Context, compare_inputs, kinds, stored_references};
 use crate::comparison::Comparison;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::measured::Speed;
+use crate::optimise::Watch;
 use crate::reference::Resolution;
 use crate::report::{self, Theme};
 use crate::result::Outcome;
-use crate::scene::Scene;
+use crate::scene::{Scene, Template};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -56,6 +59,12 @@ pub struct Comparing {
     pub allow_external: bool,
     /// Folder of the report; `None` = none is written.
     pub out: Option<PathBuf>,
+    /// Measured histories of the scene.
+    pub measured: Vec<PathBuf>,
+    /// Bandwidth of the instrument, with its unit, if it is not the usual one.
+    pub bandwidth: Option<String>,
+    /// Where the outer body's measured speed comes from, if not from the scene.
+    pub speed: Option<Speed>,
 }
 
 /// A comparison, and the figure of each of its scenes as SVG.
@@ -72,9 +81,14 @@ pub struct Compared {
 /// # Errors
 /// Those of the command.
 pub fn compare(scenes: Vec<Placed>, asked: Comparing) -> Result<Compared> {
-    let Comparing { models, resolution, compute, allow_external, out } = asked;
+    let Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed } = asked;
     let is_written = out.is_some();
-    let mut arguments: Arguments = defaults()?;
+    let mut arguments: Arguments = parsed(&[])?;
+    if let Some(bandwidth) = &bandwidth {
+        arguments.bandwidth = compare_inputs::bandwidth(bandwidth).map_err(Error::Usage)?;
+    }
+    arguments.speed = speed.unwrap_or(arguments.speed);
+    arguments.measured = measured;
     arguments.permission.allow_external = allow_external;
     (arguments.models, arguments.resolution, arguments.compute) = (models, resolution, compute);
     arguments.out = out.unwrap_or_default();
@@ -90,11 +104,41 @@ pub fn compare(scenes: Vec<Placed>, asked: Comparing) -> Result<Compared> {
     Ok(Compared { comparison, figures })
 }
 
-/// The arguments of a command that is given none.
-fn defaults<A: Args>() -> Result<A> {
+/// An optimum.
+#[derive(Debug)]
+pub struct Optimised {
+    /// As `impactcheck optimise --json` prints it.
+    pub document: serde_json::Value,
+    /// As SVG.
+    pub figure: String,
+    /// The scene file of the best design.
+    pub scene: String,
+}
+
+/// What `impactcheck optimise` does with the scene in `template` and these `options`; `watch` as [`crate::optimise::Problem::solve`] has it.
+///
+/// # Errors
+/// Those of the command.
+pub fn optimise(template: Template, options: &[String], watch: &Watch) -> Result<Optimised> {
+    let name = [template.scene().name.clone()];
+    let arguments: optimise::Arguments = parsed(&[&name, options].concat())?;
+    let Solved { problem, document, .. } = optimise::solve(&QUIET, &arguments, template, watch)?;
+    Ok(Optimised {
+        figure: document.optimum.figure(),
+        scene: problem.scene_text(&document.optimum.values())?,
+        document: serde_json::to_value(&document).map_err(|e| Error::Internal(e.to_string()))?,
+    })
+}
+
+/// The arguments of a command that is given these.
+fn parsed<A: Args>(given: &[String]) -> Result<A> {
     let command = A::augment_args(clap::Command::new("impactcheck").no_binary_name(true));
-    let found = command.try_get_matches_from([""; 0]).and_then(|found| A::from_arg_matches(&found));
-    found.map_err(|e| Error::Internal(e.to_string()))
+    let found = command.try_get_matches_from(given).and_then(|found| A::from_arg_matches(&found));
+    found.map_err(|e| {
+        let told = e.to_string();
+        let sentence = told.split("\n\n").next().unwrap_or_default();
+        Error::Usage(sentence.strip_prefix("error: ").unwrap_or(sentence).to_owned())
+    })
 }
 
 /// What the program says of an error, without its colours.

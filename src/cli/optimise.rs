@@ -5,7 +5,7 @@ use super::{Context, JsonArgument};
 use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::optimise::{Confirmation, Objective, Optimum, Problem, Robust, Variable, confirm};
+use crate::optimise::{Confirmation, Objective, Optimum, Problem, Robust, Variable, Watch, confirm};
 use crate::reference::{self, Resolution, Stored, Wish};
 use crate::report;
 use crate::report::format::words;
@@ -63,9 +63,9 @@ pub struct Arguments {
 
 /// The document of `optimise --json`.
 #[derive(Debug, Serialize)]
-struct Document {
+pub(super) struct Document {
     #[serde(flatten)]
-    optimum: Optimum,
+    pub(super) optimum: Optimum,
     /// What model C says, if another one searched.
     #[serde(skip_serializing_if = "Option::is_none")]
     confirmation: Option<Confirmation>,
@@ -93,9 +93,33 @@ fn probability(text: &str) -> std::result::Result<f64, String> {
     if (0.01..=0.99).contains(&value) { Ok(value) } else { Err(format!("{text} is not within 1 % to 99 %")) }
 }
 
+/// What a search found.
+pub(super) struct Solved {
+    pub(super) problem: Problem,
+    pub(super) document: Document,
+    /// The exit status of a verification without verdict.
+    failure: Option<ExitStatus>,
+}
+
 /// Searches the optimum, verifies it if asked to, prints it.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let template = Template::read(scene::resolve(&arguments.scene)?)?;
+    let Solved { document, failure, .. } = solve(context, arguments, template, &|_| true)?;
+    if arguments.json.json {
+        super::print_json(&document)?;
+    } else {
+        super::print(&table(&document))?;
+    }
+    Ok(failure.unwrap_or(ExitStatus::Pass))
+}
+
+/// The optimum of the scene in `template`, which is believed rather than the one that `arguments` name; written if asked to.
+pub(super) fn solve(
+    context: &Context,
+    arguments: &Arguments,
+    template: Template,
+    watch: &Watch,
+) -> Result<Solved> {
     let mesh = reference::mesh_to_follow(template.scene(), arguments.mesh.as_deref())?;
     if let Some(mesh) = &mesh {
         context.note(format_args!("mesh {}", mesh.path().display()));
@@ -114,7 +138,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         arguments.robust.map(|quantile| Robust::new(&template, quantile, arguments.seed)).transpose()?;
     let models = (model, arguments.modes);
     let problem = Problem::new(template, variables, objective, models, mesh.as_ref(), robust)?;
-    let optimum = problem.solve(arguments.seed, arguments.samples.map(|n| n as usize))?;
+    let optimum = problem.solve(arguments.seed, arguments.samples.map(|n| n as usize), watch)?;
     let confirmation = confirm(&problem, &optimum).unwrap_or_else(|error| {
         context.note(format_args!("warning: model C can't confirm the optimum: {error}"));
         None
@@ -137,12 +161,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     if let Some(folder) = &arguments.out {
         write(context, folder, &problem, &document)?;
     }
-    if arguments.json.json {
-        super::print_json(&document)?;
-    } else {
-        super::print(&table(&document))?;
-    }
-    Ok(failure.unwrap_or(ExitStatus::Pass))
+    Ok(Solved { problem, document, failure })
 }
 
 fn verify(

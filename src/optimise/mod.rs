@@ -22,6 +22,10 @@ use crate::scene::{Field, Model, Scene, Template};
 use rayon::prelude::*;
 use search::{Search, Tried, maximise};
 use serde::Serialize;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// Hears what a design is worth; whether the search is to go on.
+pub type Watch<'a> = dyn Fn(Option<f64>) -> bool + Sync + 'a;
 
 /// Relative error of the efficiency that the time integration may have: far below what tells two points apart.
 const TOLERANCE: f64 = 1e-7;
@@ -262,11 +266,12 @@ impl Problem {
         self.model(values)?.run_with_history(self.tolerance())
     }
 
-    /// Searches the optimum; `seed` chooses the samples of a search over several variables, whose number is `samples` if given.
+    /// Searches the optimum; `seed` chooses the samples of a search over several variables, whose number is `samples` if given. `watch`
+    /// hears what every design tried is worth, `None` without result; from when it says no, nothing has a result any more.
     ///
     /// # Errors
     /// [`Error::Solver`] if no scene within the bounds has a result.
-    pub fn solve(&self, seed: u64, samples: Option<usize>) -> Result<Optimum> {
+    pub fn solve(&self, seed: u64, samples: Option<usize>, watch: &Watch) -> Result<Optimum> {
         let dimensions = self.variables.len();
         let search = match self.series.is_dear() {
             false => Search { resolution: RESOLUTION, ..Search::of_dimensions(dimensions) },
@@ -276,7 +281,13 @@ impl Problem {
         let place = |s: &[f64]| -> Vec<f64> {
             self.variables.iter().zip(s).map(|(variable, s)| variable.between(*s)).collect()
         };
-        let maximum = maximise(dimensions, &search, |s| self.worth(&place(s)))?;
+        let goes_on = AtomicBool::new(true);
+        let worth = |values: &[f64]| {
+            let worth = if goes_on.load(Relaxed) { self.worth(values) } else { None };
+            goes_on.fetch_and(watch(worth), Relaxed);
+            worth
+        };
+        let maximum = maximise(dimensions, &search, |s| worth(&place(s)))?;
         let exact = place(&maximum.at);
         let evaluation = |tried: &Tried| Evaluation {
             climb: tried.climb,
@@ -303,7 +314,7 @@ impl Problem {
         let at = |k: usize, x: f64| {
             let mut there = values.clone();
             there[k] = x;
-            self.worth(&there)
+            worth(&there)
         };
         let points = if self.series.is_dear() { DEAR_POINTS } else { PROFILE_POINTS };
         let variables = (0..dimensions)

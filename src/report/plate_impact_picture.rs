@@ -111,10 +111,16 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
     };
     let gap = if inner.gap > 0.0 { format!(", gap {}", length(inner.gap)) } else { String::new() };
     let own = if inner.speed == 0.0 { String::new() } else { format!(", {}", measure(inner.speed, "m/s")) };
+    let aside = match (outer.offset, outer.angle) {
+        (0.0, 0.0) => String::new(),
+        (offset, 0.0) => format!(", {} beside the centre", length(offset)),
+        (0.0, angle) => format!(", at {}", measure(angle, "rad")),
+        (offset, angle) => format!(", {} beside the centre, at {}", length(offset), measure(angle, "rad")),
+    };
     let mut told = vec![
         (
             "outer".to_owned(),
-            format!("{}, {}", of_body(&outer.shape, &outer.material), measure(outer.speed, "m/s")),
+            format!("{}, {}{aside}", of_body(&outer.shape, &outer.material), measure(outer.speed, "m/s")),
         ),
         (
             "plate".to_owned(),

@@ -24,9 +24,10 @@ pub struct Place {
 }
 
 impl Place {
-    /// Where `scene` lies with the result `summary`; `None` of other kinds of scenes, or if the result does not tell.
+    /// Where `scene` lies with the result `summary`; `None` of other kinds of scenes, beside the centre of the plate or at an angle,
+    /// or if the result does not tell.
     pub fn of(scene: &Scene, summary: &Summary) -> Option<Self> {
-        let setup = scene.plate_impact().ok()?;
+        let setup = scene.plate_impact().ok().filter(|setup| setup.outer.is_centred())?;
         let pressure = summary.contact_pressure.as_ref()?;
         let patch = pressure.outer.contact_radius.max(pressure.inner.contact_radius);
         let contact = summary.value("outer_contact_end")? * summary.value("first_frequency")?;

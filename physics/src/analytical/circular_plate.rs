@@ -3,6 +3,7 @@
 //!
 //! w = A J0(k r/a) + B I0(k r/a), omega = k^2/a^2 sqrt(D / (rho h)).
 
+use crate::numerics::root::root;
 use crate::scene::Edge;
 use std::f64::consts::PI;
 
@@ -109,26 +110,6 @@ fn bessel_i0(x: f64) -> f64 {
 fn bessel_i_ratio(x: f64) -> f64 {
     let terms = 30 + (7.0 * x.sqrt()) as usize;
     (1..=terms).rev().fold(0.0, |tail, n| 1.0 / (2.0 * n as f64 / x + tail))
-}
-
-/// Root of `f` within the `bracket`, at whose ends it has the `values`, to rounding: false position, the end that stays
-/// weighed half (Illinois; Dowell & Jarratt, BIT 11, 1971).
-fn root(f: impl Fn(f64) -> f64, bracket: [f64; 2], values: [f64; 2]) -> f64 {
-    let ([mut old, mut new], [mut f_old, mut f_new]) = (bracket, values);
-    while f_new != 0.0 && (new - old).abs() > 4.0 * f64::EPSILON * new.abs() {
-        let next = new - f_new * (new - old) / (f_new - f_old);
-        if next == new || next == old {
-            return next;
-        }
-        let value = f(next);
-        if value * f_new < 0.0 {
-            (old, f_old) = (new, f_new);
-        } else {
-            f_old *= 0.5;
-        }
-        (new, f_new) = (next, value);
-    }
-    new
 }
 
 #[cfg(test)]

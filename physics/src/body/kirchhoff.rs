@@ -1,7 +1,8 @@
-//! Thin circular plate (Kirchhoff): axisymmetric finite elements and their modes.
+//! Thin circular plate (Kirchhoff): finite elements along the radius and their modes.
 //!
-//! Bending energy per D: 1/2 integral of ((w'' + w'/r)^2 - 2 (1 - nu) w'' w'/r) 2 pi r dr
-//! (Timoshenko & Woinowsky-Krieger, Theory of Plates and Shells, 1959, section 59).
+//! Bending energy per D of w(r) cos(n phi): 1/2 integral of ((w'' + s)^2 - 2 (1 - nu) (w'' s - t^2)) r dr times 2 pi (n = 0) or pi,
+//! with s = w'/r - n^2 w/r^2 and t = n (w'/r - w/r^2) (Timoshenko & Woinowsky-Krieger, Theory of Plates and Shells, 1959, sections 59
+//! and 64).
 //! Elements are C1: Hermite cubics for deflection and slope at the nodes, and inside the element
 //! twice integrated Legendre polynomials, which vanish with their slope at both ends.
 
@@ -22,12 +23,14 @@ const SHAPES: usize = DEGREE + 1;
 /// Gauss points of an element; the integrands are smooth but, near the axis, rational in r.
 const POINTS: usize = DEGREE + 4;
 
-/// Modes of the plate of unit radius, rigidity and mass per area; they depend on the edge and on
+/// Modes of the plate of unit radius, rigidity and mass per area; they depend on the edge, nodal diameters and
 /// Poisson's ratio only, so that a parameter study solves one eigenproblem for all its plates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnitPlate {
     edge: Edge,
     poisson_ratio: f64,
+    /// Number n of nodal diameters.
+    diameters: usize,
     /// omega of each mode, ascending; first 0 for a free plate.
     omega: Vec<f64>,
     /// Deflection of the centre in each mass-normalised mode.
@@ -39,14 +42,28 @@ pub struct UnitPlate {
 }
 
 impl UnitPlate {
-    /// The lowest `modes` elastic modes, and the rigid one if the edge is free.
+    /// The lowest `modes` elastic modes without nodal diameters, and the rigid one if the edge is free.
     ///
     /// # Errors
     /// [`crate::Error::Internal`] if the eigenproblem does not converge.
     pub fn new(edge: Edge, poisson_ratio: f64, modes: usize) -> Result<Self> {
+        Self::with_diameters(edge, poisson_ratio, modes, 0)
+    }
+
+    /// The lowest `modes` elastic modes with so many nodal `diameters`; a free edge has to have none.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(super) fn with_diameters(
+        edge: Edge,
+        poisson_ratio: f64,
+        modes: usize,
+        diameters: usize,
+    ) -> Result<Self> {
+        debug_assert!(diameters == 0 || edge != Edge::Free);
         // 4/3 half waves of the highest mode to an element of degree 9: shapes to 1e-8, frequencies beyond
         let elements = modes * 3 / 4 + 3;
-        let (stiffness, mass) = assemble(edge, poisson_ratio, elements);
+        let (stiffness, mass) = assemble(edge, poisson_ratio, elements, diameters);
         // a free plate's stiffness is singular: shift by a part of its first elastic eigenvalue
         let shift = if edge == Edge::Free { 10.0 } else { 0.0 };
         let count = modes + usize::from(edge == Edge::Free);
@@ -62,8 +79,8 @@ impl UnitPlate {
             (0..shapes.nrows())
                 .for_each(|row| shapes[(row, 0)] = if even(row) { PI.sqrt().recip() } else { 0.0 });
         }
-        let centre = (0..count).map(|k| shapes[(0, k)]).collect();
-        Ok(Self { edge, poisson_ratio, omega, centre, shapes, elements })
+        let centre = (0..count).map(|k| if diameters == 0 { shapes[(0, k)] } else { 0.0 }).collect();
+        Ok(Self { edge, poisson_ratio, diameters, omega, centre, shapes, elements })
     }
 
     /// Eigenfrequencies of the unit plate, k^2 of the closed form; first 0 for a free plate.
@@ -76,9 +93,9 @@ impl UnitPlate {
         &self.centre
     }
 
-    /// Deflection in every mass-normalised mode at the `radii`, 0 to 1. Shape (modes, radii).
+    /// Deflection in every mass-normalised mode at the `radii`, 0 to 1, where cos(n phi) is 1. Shape (modes, radii).
     pub fn deflection(&self, radii: &[f64]) -> Vec<Vec<f64>> {
-        let fixed = fixed_unknowns(self.edge, self.elements);
+        let fixed = fixed_unknowns(self.edge, self.elements, self.diameters);
         let row = |unknown: usize| {
             (!fixed.contains(&unknown)).then(|| unknown - fixed.iter().filter(|f| **f < unknown).count())
         };
@@ -95,7 +112,7 @@ impl UnitPlate {
     }
 
     /// Mass-normalised deflections of `plate` at `radii` in m, see [`shapes`].
-    fn shapes(&self, plate: &Plate, radii: &[f64]) -> Vec<Vec<f64>> {
+    pub(super) fn shapes(&self, plate: &Plate, radii: &[f64]) -> Vec<Vec<f64>> {
         let unit: Vec<f64> = radii.iter().map(|r| r / plate.radius).collect();
         let amplitude = Self::amplitude(plate);
         let mut shapes = self.deflection(&unit);
@@ -108,13 +125,18 @@ impl UnitPlate {
         1.0 / (plate.radius * (plate.material.density * plate.thickness).sqrt())
     }
 
-    /// The modes in the terms of `plate`, which must have this edge and (about) this Poisson's ratio.
-    pub fn scale(&self, plate: &Plate) -> ModalBody {
-        debug_assert!(plate.edge == self.edge);
+    /// Angular frequency in rad/s of a mode of `plate` per that of the unit plate.
+    pub(super) fn frequency(&self, plate: &Plate) -> f64 {
         let material = &plate.material;
         let mass_per_area = material.density * plate.thickness;
         let bending = rigidity(material.youngs_modulus, material.poisson_ratio, plate.thickness);
-        let frequency = (bending / mass_per_area).sqrt() / plate.radius.powi(2);
+        (bending / mass_per_area).sqrt() / plate.radius.powi(2)
+    }
+
+    /// The modes in the terms of `plate`, which must have this edge and (about) this Poisson's ratio.
+    pub fn scale(&self, plate: &Plate) -> ModalBody {
+        debug_assert!(plate.edge == self.edge);
+        let frequency = self.frequency(plate);
         let amplitude = Self::amplitude(plate);
         ModalBody {
             omega: self.omega.iter().map(|w| w * frequency).collect(),
@@ -193,19 +215,26 @@ fn unknown(element: usize, shape: usize) -> usize {
     }
 }
 
-/// Unknowns that symmetry at the axis and the edge hold at zero.
-fn fixed_unknowns(edge: Edge, elements: usize) -> Vec<usize> {
+/// Unknowns that smoothness at the axis and the edge hold at zero.
+fn fixed_unknowns(edge: Edge, elements: usize, diameters: usize) -> Vec<usize> {
     let rim = elements * PER_ELEMENT;
+    let mut fixed = match diameters {
+        0 => vec![1],
+        1 => vec![0],
+        _ => vec![0, 1],
+    };
     match edge {
-        Edge::Clamped => vec![1, rim, rim + 1],
-        Edge::SimplySupported => vec![1, rim],
-        Edge::Free => vec![1],
+        Edge::Clamped => fixed.extend([rim, rim + 1]),
+        Edge::SimplySupported => fixed.push(rim),
+        Edge::Free => {}
     }
+    fixed
 }
 
-/// Stiffness and mass of the unit plate on `elements` equal elements, constrained by symmetry at
-/// the axis and by the edge. The first unknown is the deflection of the axis.
-fn assemble(edge: Edge, poisson_ratio: f64, elements: usize) -> (Mat<f64>, Mat<f64>) {
+/// Stiffness and mass of the unit plate on `elements` equal elements for so many nodal `diameters`, constrained by smoothness at
+/// the axis and by the edge. Without diameters the first unknown is the deflection of the axis.
+fn assemble(edge: Edge, poisson_ratio: f64, elements: usize, diameters: usize) -> (Mat<f64>, Mat<f64>) {
+    let (n, around) = (diameters as f64, if diameters == 0 { 2.0 * PI } else { PI });
     let total = elements * PER_ELEMENT + 2;
     let mut stiffness = Mat::<f64>::zeros(total, total);
     let mut mass = Mat::<f64>::zeros(total, total);
@@ -214,20 +243,23 @@ fn assemble(edge: Edge, poisson_ratio: f64, elements: usize) -> (Mat<f64>, Mat<f
     for element in 0..elements {
         for (&xi, &weight) in points.iter().zip(&weights) {
             let r = (element as f64 + 0.5 * (xi + 1.0)) * length;
-            let area = 2.0 * PI * r * weight * 0.5 * length;
+            let area = around * r * weight * 0.5 * length;
             let shapes = shape_functions(xi, length);
             for (i, a) in shapes.iter().enumerate() {
                 for (j, b) in shapes.iter().enumerate() {
-                    let (slope_a, slope_b) = (a[1] / r, b[1] / r);
+                    let across = |w: &[f64; 3]| w[1] / r - n * n * w[0] / (r * r);
+                    let twist = |w: &[f64; 3]| n * (w[1] / r - w[0] / (r * r));
+                    let (slope_a, slope_b) = (across(a), across(b));
                     let bending = (a[2] + slope_a) * (b[2] + slope_b)
-                        - (1.0 - poisson_ratio) * (a[2] * slope_b + slope_a * b[2]);
+                        - (1.0 - poisson_ratio) * (a[2] * slope_b + slope_a * b[2])
+                        + 2.0 * (1.0 - poisson_ratio) * twist(a) * twist(b);
                     stiffness[(unknown(element, i), unknown(element, j))] += area * bending;
                     mass[(unknown(element, i), unknown(element, j))] += area * a[0] * b[0];
                 }
             }
         }
     }
-    let fixed = fixed_unknowns(edge, elements);
+    let fixed = fixed_unknowns(edge, elements, diameters);
     let free: Vec<usize> = (0..total).filter(|i| !fixed.contains(i)).collect();
     let reduce = |full: &Mat<f64>| Mat::from_fn(free.len(), free.len(), |i, j| full[(free[i], free[j])]);
     (reduce(&stiffness), reduce(&mass))

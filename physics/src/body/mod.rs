@@ -7,6 +7,7 @@ pub mod free_sphere;
 pub(crate) mod kept;
 pub mod kirchhoff;
 pub mod layer;
+pub mod off_centre;
 pub mod solid;
 
 use crate::contact::PatchFlexibility;

@@ -1,12 +1,13 @@
 //! Contact laws: force as a function of the approach of two bodies.
 
+mod dented;
 mod elastic_plastic;
 mod hertz;
 mod patch_flexibility;
 mod residual;
 mod viscoelastic;
 
-pub use elastic_plastic::{Dent, ElasticPlastic};
+pub use dented::DentedContact;
 pub use hertz::Hertz;
 pub use patch_flexibility::{PatchFlexibility, PatchTable, RADII, TABULATED, Tabulated, WHOLE};
 pub use residual::{Residual, State};

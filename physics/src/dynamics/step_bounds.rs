@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-12;
 const FEW_STEPS: f64 = 150.0;
 
 /// See [`peak_share`].
-const PEAK_SHARE: f64 = 1.0 / 100.0;
+const PEAK_SHARE: f64 = 1.0 / 40.0;
 /// Rise of a force between the last points of a step, over itself, below which its maximum is near.
 const FLAT: f64 = 0.02;
 

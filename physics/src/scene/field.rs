@@ -106,7 +106,7 @@ impl Field {
 /// Why the field called `path` changes no reduced model of a scene with these checked `values`, if it does not.
 pub(super) fn without_effect(values: &Values, path: &str) -> Option<&'static str> {
     let of_material = |key: &str| path.strip_suffix(key).filter(|rest| rest.starts_with("materials."));
-    if ["friction", "outer.offset", "outer.angle"].contains(&path) || path.starts_with("reference.") {
+    if path == "friction" || path.starts_with("reference.") {
         return Some("it is the reference's alone");
     }
     if of_material(".hardening").is_some() {

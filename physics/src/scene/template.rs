@@ -59,6 +59,11 @@ impl Template {
         &self.scene
     }
 
+    /// The content of the file.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// The numeric field called `path`.
     ///
     /// # Errors
@@ -249,7 +254,6 @@ mod tests {
             ("fluid.viscosity", "no numeric field"),
             ("plate.edge", "no numeric field"),
             ("friction", "it is the reference's alone"),
-            ("outer.offset", "it is the reference's alone"),
             ("materials.steel.hardening", "knows no hardening"),
             ("materials.steel.yield_strength", "without `hardening`"),
             ("reference.elements_per_contact_radius", "it is the reference's alone"),

@@ -10,13 +10,13 @@ mod stepper;
 
 pub(crate) use self::modes::Mode;
 
-use self::contact::{Contact, DentedContact};
+use self::contact::Contact;
 use self::stepper::Stepper;
 use super::assured::differences;
 use super::integration::{Integration, Options};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
-use crate::contact::{Dent, Hertz, ViscoelasticContact};
+use crate::contact::{DentedContact, Hertz, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::material::{Creep, Material, Relaxation, vibration_frequency};
 use crate::scene::{PlateImpact, Spot};
@@ -122,7 +122,6 @@ impl Memory {
         warnings.sort();
         warnings.dedup();
         warnings.extend(overloaded(&contacts, &hits)?);
-        warnings.extend(unlike(bodies, plate));
         Ok(Some(Self {
             warnings,
             bodies: Bodies {
@@ -151,7 +150,7 @@ impl Memory {
     pub fn next(mut self, spot: Spot) -> Self {
         for contact in &mut self.bodies.contacts {
             match contact {
-                Contact::Dented(contact) if spot == Spot::Fresh => contact.surfaces[0].dent = Dent::NONE,
+                Contact::Dented(contact) if spot == Spot::Fresh => *contact = contact.on_a_fresh_spot(),
                 Contact::Viscoelastic(contact) => *contact = contact.virgin(),
                 _ => {}
             }
@@ -176,8 +175,8 @@ pub fn onset_of_yield(setup: &PlateImpact, system: &System) -> [Option<f64>; 2] 
     let bodies = [&setup.outer.material, &setup.inner.material];
     [0, 1].map(|i| {
         let pair = [bodies[i], plate];
-        let contact = DentedContact::new(system.laws[i], pair, pair.map(|m| m.yield_strength));
-        Some(contact.critical_force()).filter(|force| force.is_finite())
+        let contact = DentedContact::new(system.laws[i], pair, pair.map(|m| m.yield_strength))?;
+        Some(contact.critical_force())
     })
 }
 
@@ -192,14 +191,14 @@ fn contact(pair: [&Material; 2], hertz: Hertz, hit: &HertzImpact) -> Result<Cont
     let radius = (hertz.tip_radius * hit.approach_peak()).sqrt();
     let relaxes = pair.iter().any(|m| !m.relaxation.is_empty());
     let yields = pair.map(|m| yield_strength(m, TABOR * radius / hertz.tip_radius / (0.5 * hit.duration())));
-    match (relaxes, yields.iter().any(Option::is_some)) {
-        (false, false) => Ok(Contact::Elastic(hertz)),
-        (false, true) => Ok(Contact::Dented(DentedContact::new(hertz, pair, yields))),
-        (true, false) => {
+    match (relaxes, DentedContact::new(hertz, pair, yields)) {
+        (false, None) => Ok(Contact::Elastic(hertz)),
+        (false, Some(contact)) => Ok(Contact::Dented(contact)),
+        (true, None) => {
             let springs = ViscoelasticContact::new(hertz.tip_radius, pair, radius / SPRINGS);
             Ok(Contact::Viscoelastic(springs))
         }
-        (true, true) => Err(Error::Internal("a contact that yields and relaxes".into())),
+        (true, Some(_)) => Err(Error::Internal("a contact that yields and relaxes".into())),
     }
 }
 
@@ -215,14 +214,6 @@ fn hardening_left_out(material: &Material, system: &System, hits: &[HertzImpact;
             material.name,
             100.0 * share
         )
-    })
-}
-
-/// A sentence if of a body and the plate one yields and the other does not.
-fn unlike(bodies: [&Material; 2], plate: &Material) -> Option<String> {
-    let yields = |material: &Material| material.plasticity().is_some();
-    bodies.iter().any(|body| yields(body) != yields(plate)).then(|| {
-        "the contact law was found for surfaces that yield alike; where only one of them does, the contact keeps too little energy: the first impacts have been up to 5 % too efficient".into()
     })
 }
 

@@ -32,7 +32,7 @@ fn of<'h>(history: &'h History, body: &str, what: &str) -> Option<&'h [f64]> {
 
 /// The bodies start as the scene says, and the first touch is at t = 0.
 fn start(setup: &PlateImpact, history: &History) -> Vec<Statement> {
-    let speed = setup.outer.speed;
+    let speed = setup.outer.normal_speed();
     let velocity = |(body, expected): (&str, f64)| {
         let found = of(history, body, "velocity")?[0];
         Some(Statement::new(format!("{body}_velocity_start"), "m/s", found, expected, VELOCITY_SLACK * speed))
@@ -84,7 +84,8 @@ fn efficiency(setup: &PlateImpact, summary: &Summary) -> Option<Statement> {
     let (outer, inner) = (&setup.outer, &setup.inner);
     let (stated, velocity) = (summary.value("efficiency")?, summary.value("inner_velocity_final")?);
     let mass_ratio = inner.shape.mass(&inner.material) / outer.shape.mass(&outer.material);
-    let efficiency = mass_ratio * (velocity / outer.speed).powi(2);
+    let along = summary.sideways.map_or(0.0, |sideways| sideways.inner_tangential_velocity_final);
+    let efficiency = mass_ratio * (velocity.powi(2) + along.powi(2)) / outer.speed.powi(2);
     let is_bender = matches!(outer.shape, Shape::Bender(_));
     (!is_bender).then(|| Statement::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency))
 }

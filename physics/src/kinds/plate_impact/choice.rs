@@ -71,6 +71,8 @@ pub(super) struct Plan<'a> {
     /// The modes that model C is to be built with, unless it stands.
     pub(super) cut: Option<Cut>,
     error: Option<f64>,
+    /// Estimated error of the plate of models A and B with any number of modes, if that is too large for them to be tried.
+    hopeless: Option<f64>,
     /// A or B with the smallest estimated error, if model C can't be set up.
     second: Option<Rated>,
     /// Why model C can't be set up.
@@ -108,10 +110,11 @@ impl<'a> Plan<'a> {
             modes: 0,
             cut: None,
             error: None,
+            hopeless: None,
             second: None,
             refused: None,
         };
-        plan.second = plan.kirchhoff();
+        plan.second = plan.kirchhoff(tolerance);
         match plan.second.filter(|(.., error)| *error <= tolerance) {
             Some((model, modes, error)) => (plan.model, plan.modes, plan.error) = (model, modes, Some(error)),
             None => {
@@ -122,8 +125,9 @@ impl<'a> Plan<'a> {
         Ok(plan)
     }
 
-    /// Tries models A and B until one meets the tolerance, or more modes don't help; the best with its estimate.
-    fn kirchhoff(&mut self) -> Option<Rated> {
+    /// Tries models A and B until one meets the tolerance, or more modes don't help; the best with its estimate. None is tried if their
+    /// plate alone, with any number of modes, is estimated to be off by more than `bearable`.
+    fn kirchhoff(&mut self, bearable: f64) -> Option<Rated> {
         let (layer, speed) = (self.layer?, self.trials.setup.outer.speed);
         let corrected = Lack::between(&self.trials.converged().ok()?, &layer, speed).error;
         let plate = &self.trials.setup.plate;
@@ -135,6 +139,10 @@ impl<'a> Plan<'a> {
             }
             Edge::Clamped | Edge::Free => 0.0,
         };
+        self.hopeless = self.total(share * corrected + rim).filter(|error| *error > bearable);
+        if self.hopeless.is_some() {
+            return None;
+        }
         let most = self.trials.waves.modes();
         let mut best: Option<Rated> = None;
         for modes in KIRCHHOFF_RUNGS.into_iter().take_while(|n| *n <= most) {
@@ -205,7 +213,8 @@ impl<'a> Plan<'a> {
     /// # Errors
     /// `error`, if there is nothing else.
     pub(super) fn without_continuum(&mut self, error: Error) -> Result<()> {
-        let Some((model, modes, estimate)) = self.second else { return Err(error) };
+        let second = self.second.or_else(|| self.kirchhoff(f64::INFINITY));
+        let Some((model, modes, estimate)) = second else { return Err(error) };
         self.refused = Some(error.to_string());
         (self.model, self.modes, self.error, self.cut) = (model, modes, Some(estimate), None);
         Ok(())
@@ -264,7 +273,13 @@ impl<'a> Plan<'a> {
                 100.0 * error
             ),
             (_, Some(_), _) if self.met() => {
-                format!("model {model} is the cheapest whose estimated error meets the tolerance")
+                let alone = self.hopeless.map_or(String::new(), |error| {
+                    format!(
+                        "; Kirchhoff's plate is estimated to be off by {:.2} % with any number of modes",
+                        100.0 * error
+                    )
+                });
+                format!("model {model} is the cheapest whose estimated error meets the tolerance{alone}")
             }
             (_, Some(error), Some(floor)) => format!(
                 "no reduced model is estimated to meet the tolerance: model {model} comes nearest with {:.2} %, {:.2} % of which are what model C was found to be off by",

@@ -30,6 +30,12 @@ pub fn deflection(
             scene.name
         )));
     }
+    if setup.outer.offset > 0.0 {
+        return Err(Error::Usage(format!(
+            "scene `{}` strikes its plate beside the centre: the deflection is no function of the radius",
+            scene.name
+        )));
+    }
     let reduced = Reduced::new(scene, model, modes)?;
     let system = reduced.system();
     let shapes = match model {

@@ -6,8 +6,9 @@ use super::validity;
 use crate::body::ModalBody;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
+use crate::body::off_centre;
 use crate::dynamics::MovingBody;
-use crate::dynamics::system::System;
+use crate::dynamics::system::{PLATE, System};
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
@@ -64,8 +65,26 @@ pub(super) fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitP
     join(setup, plates.modes(&setup.plate, modes)?, [0.0; 2])
 }
 
+/// Models A and B with `modes` modes of a plate that is struck beside its centre.
+pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize) -> Result<System> {
+    let plate = off_centre::modes(&setup.plate, setup.outer.offset, modes)?;
+    let centre: Vec<f64> = plate.participation.iter().map(|phi| phi[1]).collect();
+    let mut system = join(setup, plate, [0.0; 2])?;
+    // the plate is observed at its centre, not at the mean of both contacts
+    system.centre[PLATE..].copy_from_slice(&centre);
+    Ok(system)
+}
+
 /// Models A and B with `modes` elastic modes.
 pub(super) fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<Joined> {
+    if setup.outer.offset > 0.0 {
+        return Ok(Joined {
+            system: off_centre_system(setup, modes)?,
+            omega_next: f64::INFINITY,
+            fluid: None,
+            warnings: Vec::new(),
+        });
+    }
     let shapes = |radii: &[f64]| plates.shapes(&setup.plate, modes, radii);
     kirchhoff_plate(setup, plates.modes(&setup.plate, modes)?, shapes)
 }

@@ -19,9 +19,11 @@ use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
 use crate::result::{BenderSummary, CUT, Choice, ElasticLimit, Outcome, Summary};
-use crate::scene::{self, DEFAULT_MODES, MAX_MODES, Model, Outer, PlateImpact, Scene};
+use crate::scene::{self, DEFAULT_MODES, Edge, MAX_MODES, Model, Outer, PlateImpact, Scene, Setup};
 use std::time::Instant;
 
+/// The same of an impact beside the centre, where modes with nodal diameters are as many.
+const OFF_CENTRE_MODES: usize = 64;
 /// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
 const PEAK_ERROR: f64 = 0.1;
 /// Samples of a history per duration of a Hertz contact.
@@ -67,7 +69,8 @@ impl Reduced {
         modes: Option<usize>,
         bodies: &SharedBodies,
     ) -> Result<Self> {
-        let setup = covered(&scene)?;
+        let setup = &*scene.plate_impact()?.along_normal();
+        require_covered(setup, Some(model))?;
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
             (Model::A, Some(n)) => {
@@ -80,7 +83,10 @@ impl Reduced {
             (_, modes) => modes.or(scene.reduced.modes),
         };
         let built = match model {
-            Model::A | Model::B => kirchhoff(setup, modes.unwrap_or(DEFAULT_MODES), &bodies.kirchhoff)?,
+            Model::A | Model::B => {
+                let default = if setup.outer.offset > 0.0 { OFF_CENTRE_MODES } else { DEFAULT_MODES };
+                kirchhoff(setup, modes.unwrap_or(default), &bodies.kirchhoff)?
+            }
             Model::C => {
                 let predictor = bodies.predictor(setup)?;
                 let wanted = modes.map_or(Wanted::Estimate, Wanted::Modes);
@@ -112,8 +118,10 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::auto`].
     pub fn auto_in(scene: &Scene, tolerance: f64, cache: &Cache) -> Result<Self> {
-        let setup = covered(scene)?;
-        let mut plan = Plan::new(scene, tolerance)?;
+        let setup = &*scene.plate_impact()?.along_normal();
+        require_covered(setup, None)?;
+        let normal = Scene { setup: Setup::PlateImpact(Box::new(setup.clone())), ..scene.clone() };
+        let mut plan = Plan::new(&normal, tolerance)?;
         let mut continua: Option<Joined> = None;
         while let Some(cut) = plan.cut {
             match continuum(setup, Wanted::Below(cut), &plan.trials.predictor, Continua::meshed(cache)) {
@@ -200,7 +208,9 @@ impl Reduced {
         let setup = self.scene.plate_impact()?;
         let onset = memory::onset_of_yield(setup, &self.system);
         let materials = [&setup.outer.material, &setup.plate.material, &setup.inner.material];
-        let covered = self.system.drive.is_none() && materials.iter().all(|m| m.relaxation.is_empty());
+        let covered = self.system.drive.is_none()
+            && setup.outer.is_centred()
+            && materials.iter().all(|m| m.relaxation.is_empty());
         if !covered || onset == [None; 2] {
             return Ok(None);
         }
@@ -217,7 +227,7 @@ impl Reduced {
         let result = self.impacts().all(&options)?.last;
         ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.kept_tolerance))?;
         Ok(Point {
-            quantities: quantities(&self.system, &result)?,
+            quantities: self.of_all_energy(quantities(&self.system, &result)?),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
@@ -256,13 +266,19 @@ impl Reduced {
         Ok(Outcome { summary, history })
     }
 
+    /// `quantities` of the motion along the plate's normal with the efficiency relative to all kinetic energy of the outer body.
+    fn of_all_energy(&self, quantities: PlateQuantities) -> PlateQuantities {
+        let angle = self.scene.plate_impact().map_or(0.0, |setup| setup.outer.angle);
+        PlateQuantities { efficiency: quantities.efficiency * angle.cos().powi(2), ..quantities }
+    }
+
     fn options(&self, tolerance: f64) -> Options {
         Options { tolerance, end_time: self.scene.run.end_time, ..Options::default() }
     }
 
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
         let (system, tolerance) = (&self.system, tolerance.max(result.kept_tolerance));
-        let setup = self.scene.plate_impact()?;
+        let setup = &*self.scene.plate_impact()?.along_normal();
         let end_time = self.scene.run.end_time;
         let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
         let even_steps = result.kept_tolerance > 0.0;
@@ -292,7 +308,12 @@ impl Reduced {
             }
         }
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
-        let values = values(system, result);
+        if self.scene.plate_impact()?.outer.angle != 0.0 {
+            warnings.push(
+                "motion along the plate is left out: the velocity along its normal alone counts; the reference has both".into(),
+            );
+        }
+        let values = self.of_all_energy(values(system, result));
         let mut table = values.table();
         if result.is_cut() {
             table = table.cut();
@@ -319,15 +340,14 @@ impl Reduced {
     }
 }
 
-/// What `scene` is, if the models have it.
-fn covered(scene: &Scene) -> Result<&PlateImpact> {
-    let setup = scene.plate_impact()?;
-    if setup.outer.is_centred() {
-        return Ok(setup);
+/// Refuses what `model`, or the one that is to be chosen, does not have.
+fn require_covered(setup: &PlateImpact, model: Option<Model>) -> Result<()> {
+    let Outer { offset, .. } = setup.outer;
+    if offset == 0.0 || (model.is_some_and(|model| model < Model::C) && setup.plate.edge != Edge::Free) {
+        return Ok(());
     }
-    let Outer { offset, angle, .. } = setup.outer;
     Err(Error::Solver(format!(
-        "no reduced model takes an impact beside the centre or at an angle: `outer.offset` is {offset} m, `outer.angle` {angle} rad; the reference does"
+        "`outer.offset` is {offset} m: beside the centre of the plate only models A and B take an impact, if its edge is clamped or simply supported; the reference takes all"
     )))
 }
 

@@ -39,7 +39,8 @@ pub(super) fn shown(setup: &PlateImpact, history: &History) -> Table {
         setup.inner.shape.mass(&setup.inner.material) / setup.outer.shape.mass(&setup.outer.material);
     let is_bender = matches!(setup.outer.shape, Shape::Bender(_));
     let efficiency = |velocity: f64| mass_ratio * (velocity / setup.outer.speed).powi(2);
-    set("efficiency", inner.filter(|_| !is_bender).map(efficiency));
+    // the motion along the plate is no curve
+    set("efficiency", inner.filter(|_| !is_bender && setup.outer.angle == 0.0).map(efficiency));
     table
 }
 

@@ -4,13 +4,14 @@
 //! with more modes ([`Trials`]), which knows bending far from the rim, and against itself with fewer modes, which knows the
 //! rest. A fluid's film and drag are left out of both.
 
+use super::joined::off_centre_system;
 use super::results::quantities;
 use super::trials::{Lack, RUNGS, Trials};
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
 use crate::error::Result;
-use crate::scene::{Model, PlateImpact};
+use crate::scene::{MAX_MODES, Model, PlateImpact};
 
 /// Relative errors of which the user is warned.
 const LARGEST: f64 = 0.01;
@@ -44,6 +45,9 @@ pub(super) fn estimate(
     omega_next: f64,
     end_time: Option<f64>,
 ) -> Result<Truncation> {
+    if setup.outer.offset > 0.0 {
+        return off_centre(setup, model, system, end_time);
+    }
     let mut dry = setup.clone();
     if let Some(fluid) = &mut dry.fluid {
         (fluid.squeeze_film, fluid.drag_coefficient) = (false, 0.0);
@@ -79,6 +83,29 @@ pub(super) fn estimate(
         warning(model, system.modes, lack, enough)
     });
     Ok(Truncation { error: lack.error, warning })
+}
+
+/// The same of a plate that is struck beside its centre, from what as many modes again change: what is left to a point goes with
+/// the inverse of their number.
+fn off_centre(
+    setup: &PlateImpact,
+    model: Model,
+    system: &System,
+    end_time: Option<f64>,
+) -> Result<Truncation> {
+    let options = Options { tolerance: INTEGRATION, end_time, ..Options::default() };
+    let run = |system: &System| quantities(system, &integrate(system, &options)?);
+    let twice = off_centre_system(setup, 2 * system.modes)?;
+    let lack = match (run(system), run(&twice)) {
+        (Ok(ours), Ok(more)) => Lack::between(&ours, &more, setup.outer.speed),
+        _ => Lack { error: f64::INFINITY, quantity: None },
+    };
+    let lack = Lack { error: 2.0 * lack.error, ..lack };
+    let error = lack.error;
+    let enough = (system.modes as f64 * error / LARGEST).ceil() as usize;
+    let warning = (error > LARGEST)
+        .then(|| warning(model, system.modes, lack, (enough <= MAX_MODES).then_some(enough)));
+    Ok(Truncation { error, warning })
 }
 
 /// What the modes that `system`, a model C, leaves out change, from what its own upper ones do: the error goes with the square of

@@ -29,7 +29,7 @@ use crate::contact::PatchFlexibility;
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::scene::{PlateImpact, Scene};
 
 /// How the bodies of a scene are simplified.
@@ -85,6 +85,12 @@ impl<'a> Variants<'a> {
         continuum: &ContinuumSetup,
     ) -> Result<Self> {
         let setup = scene.plate_impact()?;
+        if !setup.outer.is_centred() {
+            return Err(Error::Usage(
+                "beside the centre of the plate and at an angle there are no parts of a model's difference"
+                    .into(),
+            ));
+        }
         let kirchhoff = kirchhoff::modes(&setup.plate, modes[0].max(patch_modes))?;
         let few = lowest(&kirchhoff, patch_modes);
         let mut predictor = Predictor::of(&System::new(setup, &few, [0.0; 2]))?;

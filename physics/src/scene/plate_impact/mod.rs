@@ -11,6 +11,7 @@ pub(super) use read::{plate_impact, reference};
 use super::Material;
 pub use crate::actuator::Bender;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Support of the plate's rim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
@@ -110,6 +111,11 @@ impl Outer {
         Self { shape, material, speed, offset: 0.0, angle: 0.0 }
     }
 
+    /// Speed towards the plate in m/s.
+    pub fn normal_speed(&self) -> f64 {
+        self.speed * self.angle.cos()
+    }
+
     /// Whether it strikes the centre of the plate along its axis.
     pub fn is_centred(&self) -> bool {
         self.offset == 0.0 && self.angle == 0.0
@@ -192,6 +198,15 @@ pub struct PlateImpact {
 }
 
 impl PlateImpact {
+    /// The same impact with the outer body's velocity along the plate's normal alone.
+    pub fn along_normal(&self) -> Cow<'_, Self> {
+        if self.outer.angle == 0.0 {
+            return Cow::Borrowed(self);
+        }
+        let outer = Outer { speed: self.outer.normal_speed(), angle: 0.0, ..self.outer.clone() };
+        Cow::Owned(Self { outer, ..self.clone() })
+    }
+
     /// Materials of outer body, plate and inner body.
     pub fn materials(&self) -> [&Material; 3] {
         [&self.outer.material, &self.plate.material, &self.inner.material]

@@ -1,0 +1,88 @@
+//! Thin circular plate (Kirchhoff) that is struck beside its centre: modes with nodal diameters, too.
+
+use super::ModalBody;
+use super::kirchhoff::UnitPlate;
+use crate::error::Result;
+use crate::scene::Plate;
+use std::f64::consts::PI;
+
+/// Wave number by which the edge raises the modes, and some more.
+const EDGE: f64 = 6.0;
+
+/// The lowest `modes` modes of `plate`, clamped or simply supported, that move the point at `offset` in m from its centre, where the
+/// outer body strikes; the inner one faces the centre, which modes with nodal diameters leave at rest.
+///
+/// # Errors
+/// As [`UnitPlate::new`].
+pub fn modes(plate: &Plate, offset: f64, modes: usize) -> Result<ModalBody> {
+    // x^2/8 modes lie below the wave number x if it is large (Weyl), fewer by the edge
+    let highest = (8.0 * modes as f64).sqrt() + EDGE;
+    let mut found: Vec<(f64, [f64; 2])> = Vec::new();
+    for diameters in 0..=highest as usize {
+        // zeros of Bessel functions of the order n begin above n and are pi apart at least
+        let count = ((highest - diameters as f64) / PI) as usize + 2;
+        let unit = UnitPlate::with_diameters(plate.edge, plate.material.poisson_ratio, count, diameters)?;
+        let body = unit.scale(plate);
+        let both = body.participation.iter().zip(unit.shapes(plate, &[offset]));
+        let both = both.map(|(centre, struck)| [struck[0], centre[1]]);
+        let below = unit.frequency(plate) * highest.powi(2);
+        found.extend(body.omega.into_iter().zip(both).filter(|(omega, _)| *omega <= below));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    debug_assert!(found.len() >= modes);
+    found.truncate(modes);
+    let (omega, participation): (Vec<f64>, Vec<[f64; 2]>) = found.into_iter().unzip();
+    Ok(ModalBody {
+        damping_ratio: vec![plate.damping_ratio; omega.len()],
+        omega,
+        participation,
+        residual: None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Edge, Material};
+    use approx::assert_relative_eq;
+
+    fn plate(edge: Edge) -> Plate {
+        let material = Material::elastic("steel", 210e9, 0.3, 7780.0);
+        Plate { radius: 0.03, thickness: 0.001, edge, material, damping_ratio: 0.0 }
+    }
+
+    /// Leissa, table 2.1, and Leissa & Narita, J. Sound Vib. 70 (1980) 221: squares of the wave numbers.
+    #[test]
+    fn frequencies_with_nodal_diameters_are_leissas() {
+        for (edge, table) in [
+            (Edge::Clamped, [10.2158, 21.26, 34.88, 39.771, 51.04, 60.82, 69.666, 84.58, 89.104]),
+            (Edge::SimplySupported, [4.9351, 13.898, 25.613, 29.720, 39.957, 48.479, 56.842, 70.117, 74.156]),
+        ] {
+            let plate = plate(edge);
+            let found = modes(&plate, 0.01, table.len()).expect("modes");
+            let unit = UnitPlate::new(edge, 0.3, 1).expect("a mode").frequency(&plate);
+            for (omega, expected) in found.omega.iter().zip(table) {
+                assert_relative_eq!(omega / unit, expected, max_relative = 3e-4);
+            }
+        }
+    }
+
+    /// Static deflection under the load of a clamped plate beside its centre: Michell's solution, with c = offset/radius
+    /// (1 - c^2)^2 P R^2/(16 pi D) (Timoshenko & Woinowsky-Krieger, section 64); at the centre, by reciprocity,
+    /// (1 - c^2 + 2 c^2 ln c) P R^2/(16 pi D) (section 19).
+    #[test]
+    fn all_modes_together_yield_as_a_plate_under_a_force_beside_its_centre() {
+        let plate = plate(Edge::Clamped);
+        let stiffness = plate.material.youngs_modulus * plate.thickness.powi(3) / (12.0 * (1.0 - 0.09));
+        for c in [0.2, 0.5] {
+            let body = modes(&plate, c * plate.radius, 600).expect("modes");
+            let sum = |i: usize, j: usize| -> f64 {
+                let each = body.omega.iter().zip(&body.participation);
+                each.map(|(omega, phi)| phi[i] * phi[j] / omega.powi(2)).sum()
+            };
+            let unit = plate.radius.powi(2) / (16.0 * PI * stiffness);
+            assert_relative_eq!(sum(0, 0), (1.0 - c * c).powi(2) * unit, max_relative = 4e-3);
+            assert_relative_eq!(sum(0, 1), (1.0 - c * c + 2.0 * c * c * c.ln()) * unit, max_relative = 1e-4);
+        }
+    }
+}
