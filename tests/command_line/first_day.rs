@@ -187,3 +187,19 @@ fn a_pure_number_has_no_unit() {
     let schema = String::from_utf8(run(folder.path(), &["schema"], 0).stdout).unwrap();
     assert!(schema.contains("\"in m, ") && !schema.contains("\"in 1, "));
 }
+
+#[test]
+fn a_model_that_has_no_form_for_a_scene_is_left_out_of_its_comparison() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/validation/off-centre.toml");
+    let scene = scene.to_str().unwrap();
+    says(folder.path(), &["compare", scene, "--out", "report"], 0, &["only models A and B"]);
+    let document = fs::read_to_string(folder.path().join("report/comparison.json")).unwrap();
+    assert!(document.contains(r#""model": "B""#) && !document.contains(r#""model": "C""#));
+    says(
+        folder.path(),
+        &["compare", scene, "--models", "C", "--out", "report"],
+        12,
+        &["only models A and B"],
+    );
+}

@@ -60,7 +60,7 @@ impl Models for Plates {
         scene: &Scene,
         (models, tolerance): (&[AskedModel], Option<f64>),
     ) -> Result<Vec<Outcome>> {
-        let models = asked_model::set_up(scene, models, tolerance)?;
+        let models = asked_model::set_up(scene, &having(scene, models, |_| ()), tolerance)?;
         models.into_iter().map(|(body, _)| body.run_with_history(COMPARISON_TOLERANCE)).collect()
     }
 
@@ -73,7 +73,8 @@ impl Models for Plates {
     ) -> Result<Compared> {
         // the models' curves are drawn and compared as far as the reference's
         let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
-        let models = asked_model::set_up(scene, models, tolerance)?;
+        let models = having(scene, models, |error| context.note(format_args!("{}: {error}", scene.name)));
+        let models = asked_model::set_up(scene, &models, tolerance)?;
         let outcomes = models.into_iter().map(|(body, set_up)| {
             let outcome = progress::watched(context, &scene.name, || {
                 body.run_with_history_until(COMPARISON_TOLERANCE, end)
@@ -93,4 +94,18 @@ impl Models for Plates {
         });
         Ok((outcomes.collect::<Result<_>>()?, Vec::new()))
     }
+}
+
+/// Those of `models` that have a form for `scene`; `left_out` is told why of the others. All if none has, which tells why, too.
+fn having(scene: &Scene, models: &[AskedModel], left_out: impl Fn(&Error)) -> Vec<AskedModel> {
+    let refused = |asked: &AskedModel| match asked {
+        AskedModel::Named(model) => Reduced::require(scene, *model).err(),
+        AskedModel::Auto | AskedModel::External => None,
+    };
+    let kept: Vec<AskedModel> = models.iter().copied().filter(|asked| refused(asked).is_none()).collect();
+    if kept.is_empty() {
+        return models.to_vec();
+    }
+    models.iter().filter_map(refused).for_each(|error| left_out(&error));
+    kept
 }

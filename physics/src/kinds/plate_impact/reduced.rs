@@ -160,6 +160,14 @@ impl Reduced {
         Ok(Self { model, system, omega_next, fluid, memory, warnings, choice, scene })
     }
 
+    /// Refuses a `model` that has no form for impacts like that of `scene`, before anything is built.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] with the reason, [`Error::Scene`] if the scene is no plate impact.
+    pub fn require(scene: &Scene, model: Model) -> Result<()> {
+        require_covered(scene.plate_impact()?, Some(model))
+    }
+
     /// The model.
     pub fn model(&self) -> Model {
         self.model
