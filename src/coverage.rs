@@ -166,7 +166,8 @@ pub fn exact(scene: &Scene) -> Result<Vec<Case<'_>>> {
 pub fn recorded(scenes: &[Scene], known: &[Validation]) -> Result<Coverage> {
     let mut cases = Vec::new();
     for scene in scenes {
-        for &model in kinds::of(scene).models() {
+        let kind = kinds::of(scene);
+        for &model in kind.models().iter().filter(|model| kind.has_form(scene, **model)) {
             let found = known.iter().filter(|v| v.is_of(scene, model)).map(Finding::from);
             cases.extend(Case::of_all(scene, model, found));
         }

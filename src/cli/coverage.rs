@@ -39,7 +39,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             true => external::results(context, file, scene, None),
             false => Vec::new(),
         };
-        for &model in crate::kinds::of(scene).models() {
+        let kind = crate::kinds::of(scene);
+        for &model in kind.models().iter().filter(|model| kind.has_form(scene, **model)) {
             let mut validations: Vec<Validation> =
                 stored.iter().filter_map(|stored| compared(context, scene, stored, model)).collect();
             if !stored.iter().any(|stored| stored.outcome.summary.source == Source::Reference) {

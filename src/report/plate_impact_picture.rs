@@ -19,7 +19,7 @@ const THINNEST: f64 = 1.5;
 pub(super) fn plate_picture(scene: &PlateImpact) -> Markup {
     let (plate, outer, inner) = (&scene.plate, &scene.outer, &scene.inner);
     let [r_outer, r_inner] = [&outer.shape, &inner.shape].map(|shape| shown_radius(shape, plate.radius));
-    let half = plate.radius.max(r_outer).max(r_inner);
+    let half = plate.radius.max(outer.offset + r_outer).max(r_inner);
     let top = 0.5 * plate.thickness + 2.0 * r_outer;
     let bottom = -0.5 * plate.thickness - inner.gap - 2.0 * r_inner;
     let factor = ((WIDTH - 2.0 * MARGIN) / (2.0 * half)).min(HEIGHT / (top - bottom));
@@ -30,7 +30,10 @@ pub(super) fn plate_picture(scene: &PlateImpact) -> Markup {
         margin: MARGIN,
     };
     let height = ABOVE + (top - bottom) * factor + BELOW;
-    let (middle, surface) = (scale.x(0.0), scale.z(top));
+    let (struck, surface) = (scale.x(outer.offset), scale.z(top));
+    // about its tip, so that it points where the body goes
+    let aslant = (outer.angle != 0.0)
+        .then(|| format!("rotate({:.1} {} {})", -outer.angle.to_degrees(), x2(struck), x2(surface - 6.0)));
     let thickness = (plate.thickness * factor).max(THINNEST);
     let z_outer = 0.5 * plate.thickness + r_outer;
     let z_inner = -0.5 * plate.thickness - inner.gap - r_inner;
@@ -41,10 +44,10 @@ pub(super) fn plate_picture(scene: &PlateImpact) -> Markup {
             (edge(plate.edge, plate.radius, thickness, &scale))
             rect.fig-body.plate x=(x2(scale.x(-plate.radius))) width=(x2(2.0 * plate.radius * factor))
                 y=(x2(scale.z(0.0) - 0.5 * thickness)) height=(x2(thickness)) {}
-            (body(&outer.shape, "outer", (r_outer, z_outer), 1.0, &scale))
-            (body(&inner.shape, "inner", (r_inner, z_inner), -1.0, &scale))
-            path.fig-frame d=(format!("M{0} {1}V{2}m-4-7l4 7l4-7", x2(middle), x2(surface - 34.0), x2(surface - 6.0))) {}
-            text.fig-text x=(x2(middle + 10.0)) y=(x2(surface - 18.0)) { (measure(outer.speed, "m/s")) }
+            (body(&outer.shape, "outer", r_outer, [outer.offset, z_outer], 1.0, &scale))
+            (body(&inner.shape, "inner", r_inner, [0.0, z_inner], -1.0, &scale))
+            path.fig-frame transform=[aslant] d=(format!("M{0} {1}V{2}m-4-7l4 7l4-7", x2(struck), x2(surface - 34.0), x2(surface - 6.0))) {}
+            text.fig-text x=(x2(struck + 10.0)) y=(x2(surface - 18.0)) { (measure(outer.speed, "m/s")) }
             (scale.bar(MARGIN, height - 6.0))
         }
     }
@@ -58,9 +61,9 @@ fn shown_radius(shape: &Shape, plate: f64) -> f64 {
     }
 }
 
-/// A sphere, or the tip of another body; `side` is 1 above the plate and -1 below it.
-fn body(shape: &Shape, name: &str, (radius, z): (f64, f64), side: f64, scale: &Scale) -> Markup {
-    let (x, y, r) = (scale.x(0.0), scale.z(z), radius * scale.factor);
+/// A sphere, or the tip of another body, about `centre`; `side` is 1 above the plate and -1 below it.
+fn body(shape: &Shape, name: &str, radius: f64, centre: [f64; 2], side: f64, scale: &Scale) -> Markup {
+    let (x, y, r) = (scale.x(centre[0]), scale.z(centre[1]), radius * scale.factor);
     let sweep = if side > 0.0 { 0 } else { 1 };
     let inside = r > 24.0;
     let label = if inside {

@@ -18,6 +18,11 @@ pub trait Kind: Sync {
     /// The reduced models it has.
     fn models(&self) -> &'static [Model];
 
+    /// Whether `model`, one of [`Self::models`], has a form for `scene`.
+    fn has_form(&self, _scene: &Scene, _model: Model) -> bool {
+        true
+    }
+
     /// The quantities of its results, in order, without values.
     fn quantities(&self) -> &'static [Quantity];
 

@@ -36,6 +36,10 @@ impl super::Kind for Kind {
         &[Model::A, Model::B, Model::C]
     }
 
+    fn has_form(&self, scene: &Scene, model: Model) -> bool {
+        reduced::Reduced::require(scene, model).is_ok()
+    }
+
     fn quantities(&self) -> &'static [Quantity] {
         PlateQuantities::ALL
     }
