@@ -3,9 +3,9 @@
 Kharaz, Gorham & Salman (2001), Powder Technol. 120, 281-291: balls of aluminium oxide, 5 mm in
 diameter, strike a thick block of soda-lime glass with 3.9 m/s at angles from normal to glancing.
 They measured rebound angle, tangential restitution and spin. The numbers here are those that the
-authors of Lethe tabulate from its figures in their validation of oblique collisions
-(examples/dem, `rebound`), the materials those that they and MFiX (test DEM05) give. Nothing here
-is fitted.
+authors of Lethe tabulate from its figures (examples/dem/3d-oblique-wall-impact,
+`oblique_wall_impact_postprocessing.py`), the materials those that they and MFiX (test DEM05) give.
+Nothing here is fitted.
 
 The words are ASME V&V 20's: E = S - D, and u_val from the mesh, the inputs and the data.
 """
@@ -261,7 +261,7 @@ Made by `python3 -m fem_reference rebound`: aluminium oxide balls of 5 mm strike
 with {SPEED:g} m/s, measured by Kharaz, Gorham and Salman (Powder Technol. 120, 2001, 281-291),
 solved in three dimensions with Coulomb friction ({FRICTION:g}) between elastic bodies. Nothing is
 fitted. The measured numbers are read off that paper's figures by the authors of Lethe, who
-tabulate them in their example of oblique collisions; how uncertain reading is (angles
+tabulate them (examples/dem/3d-oblique-wall-impact); how uncertain reading is (angles
 {READ_ANGLE:g} degrees, values {100.0 * READ_SHARE:g} % of the largest) is told from the tables
 themselves. The friction is taken to be known to {100.0 * FRICTION_SHARE:g} %, which the paper does
 not state. Angles are from the normal; S finite elements, D experiment, E = S - D, u_val as of ASME
