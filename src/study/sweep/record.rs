@@ -20,7 +20,7 @@ pub struct Record {
 /// Result of one point.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// The impact ran, with these numbers, those of [`results`].
+    /// The impact ran, with these numbers, those of `results`.
     Done(Box<[f64]>),
     /// The scene is not valid, for this reason.
     Invalid(String),
@@ -46,7 +46,7 @@ impl Outcome {
         }
     }
 
-    /// The numbers of [`results`], if there are any.
+    /// The numbers of `results`, if there are any.
     pub fn numbers(&self) -> Option<&[f64]> {
         if let Outcome::Done(numbers) = self { Some(numbers) } else { None }
     }
