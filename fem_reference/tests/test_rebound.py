@@ -7,7 +7,6 @@ import math
 import pytest
 
 from fem_reference.studies.rebound import (
-    ANGLE,
     ANGLES,
     FRICTION,
     MEASURED,
@@ -15,6 +14,7 @@ from fem_reference.studies.rebound import (
     SPIN,
     TANGENTIAL,
     Rebound,
+    measured_normal,
     rebound,
     rows,
 )
@@ -22,11 +22,7 @@ from fem_reference.studies.rebound import (
 
 def test_the_measured_values_are_those_of_one_experiment() -> None:
     """tan(rebound) = tangential over normal restitution times tan(angle), in separate figures."""
-    by_angle = {round(angle, -1): value for angle, value in MEASURED[TANGENTIAL]}
-    for angle, back in MEASURED[ANGLE][2:]:
-        incident, rebounding = math.tan(math.radians(angle)), math.tan(math.radians(back))
-        normal = by_angle[round(angle, -1)] * incident / rebounding
-        assert normal == pytest.approx(1.0, abs=0.05)
+    assert measured_normal() == pytest.approx(1.0, abs=0.05)
     # beyond 30 degrees the balls slide: 1 - mu (1 + e) / tan(angle)
     for angle, value in MEASURED[TANGENTIAL][-3:]:
         slides = 1.0 - FRICTION * 1.98 / math.tan(math.radians(angle))
@@ -52,7 +48,7 @@ def test_what_a_difference_may_be_has_its_parts() -> None:
 def test_a_ball_rebounds_as_it_was_measured() -> None:
     """Where it slides, on the coarsest mesh there is: what the tables' last rows say."""
     found = rebound(50.0, 2.0)
-    assert found.normal == pytest.approx(0.98, abs=0.015)
+    assert 0.965 < found.normal < 0.995
     assert found.tangential == pytest.approx(0.848, abs=0.015)
     assert found.angle == pytest.approx(45.3, abs=1.0)
     assert found.spin == pytest.approx(
