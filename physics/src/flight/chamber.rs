@@ -50,11 +50,15 @@ impl Chamber {
         let chamber = Chamber { corners, radius, seats };
         let mm = |length: f64| format!("{} mm", (length * 1e7).round() / 1e4);
         for (seat, name) in chamber.seats.iter().zip(["its seat", "the other seat"]) {
-            let room = (0..chamber.walls()).map(|wall| chamber.gap(wall, *seat)).fold(f64::INFINITY, f64::min);
+            let room =
+                (0..chamber.walls()).map(|wall| chamber.gap(wall, *seat)).fold(f64::INFINITY, f64::min);
             if room < -1e-9 * radius.max(1e-3) {
                 return Err(TooNarrow(format!(
                     "the chamber is too narrow: a sphere of radius {} in {name} (x = {}, z = {}) reaches {} into a wall",
-                    mm(radius), mm(seat.x), mm(seat.y), mm(-room)
+                    mm(radius),
+                    mm(seat.x),
+                    mm(seat.y),
+                    mm(-room)
                 )));
             }
         }
@@ -64,7 +68,9 @@ impl Chamber {
         if highest >= chamber.ceiling() {
             return Err(TooNarrow(format!(
                 "a sphere of radius {} does not pass under the ceiling at z = {}: it needs a height of more than {}",
-                mm(radius), mm(height), mm(highest + radius)
+                mm(radius),
+                mm(height),
+                mm(highest + radius)
             )));
         }
         Ok(chamber)

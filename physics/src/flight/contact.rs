@@ -75,7 +75,11 @@ impl Setup {
         if slip.abs() < NO_SPEED {
             slip = 0.0;
         }
-        let (_, loads) = self.loads(track, from.time, start);
+        let (pressed, loads) = self.loads(track, from.time, start);
+        if pressed < 0.0 {
+            // too fast for the bend that it came to
+            return (*from, Change::Leaves);
+        }
         let regime = Regime::at(&loads, slip, start[2]);
         if regime.surface == Bond::Stick {
             start[2] = -start[1] / self.radius;
@@ -190,9 +194,12 @@ impl Rolling<'_> {
         let speed = state.velocity.dot(&self.track.tangent(self.track.along(state.place)));
         let slips = |bond: Bond| matches!(bond, Bond::Slip(_));
         match condition {
-            Condition::Surface if slips(self.regime.surface) => State { spin: -speed / self.setup.radius, ..state },
+            Condition::Surface if slips(self.regime.surface) => {
+                State { spin: -speed / self.setup.radius, ..state }
+            }
             Condition::Turn if slips(self.regime.turn) => {
-                let velocity = if self.regime.surface == Bond::Stick { 0.0 * state.velocity } else { state.velocity };
+                let velocity =
+                    if self.regime.surface == Bond::Stick { 0.0 * state.velocity } else { state.velocity };
                 State { spin: 0.0, velocity, ..state }
             }
             _ => state,

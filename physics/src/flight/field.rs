@@ -149,9 +149,10 @@ impl Field {
 
     /// Largest moment in N m with which the spring resists a turn of a sphere of `radius` m at `place`.
     pub(super) fn resisting_moment(&self, radius: f64, place: Vector) -> f64 {
-        self.spring.as_ref().filter(|spring| spring.friction > 0.0).map_or(0.0, |spring| {
-            spring.friction * radius * spring.push(place).norm()
-        })
+        self.spring
+            .as_ref()
+            .filter(|spring| spring.friction > 0.0)
+            .map_or(0.0, |spring| spring.friction * radius * spring.push(place).norm())
     }
 
     /// Longest step in s from `time` on at a `speed` in m/s.

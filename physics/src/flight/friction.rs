@@ -1,5 +1,8 @@
 //! Coulomb's friction of a sphere that stays on a surface, and of the spring that holds its turn.
 
+/// Share of its limit up to which friction surely sticks; just below the limit it slips if it can.
+const STICKS: f64 = 1.0 - 1e-9;
+
 /// What acts on a sphere on a surface besides friction, and how large friction can be.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Loads {
@@ -93,7 +96,6 @@ impl Regime {
             for &turn in &turns {
                 let regime = Regime { surface, turn };
                 let excess = regime.excess(loads, [slip, spin]);
-                // of several that hold (rounding) the one that sticks, which comes first
                 if excess < best.0 {
                     best = (excess, regime);
                 }
@@ -110,14 +112,14 @@ impl Regime {
         let answer = self.answer(loads);
         let begins = |rate: f64, sign: i8| (-f64::from(sign) * rate).max(0.0) * loads.mass;
         let surface = match self.surface {
-            Bond::Stick => answer.friction.abs() - loads.grip,
+            Bond::Stick => answer.friction.abs() - STICKS * loads.grip,
             Bond::Slip(sign) if slip == 0.0 => {
                 begins(answer.acceleration + loads.radius * answer.spin_rate, sign)
             }
             Bond::Slip(_) => 0.0,
         };
         let turn = match self.turn {
-            Bond::Stick => (answer.moment.abs() - loads.resistance) / loads.radius,
+            Bond::Stick => (answer.moment.abs() - STICKS * loads.resistance) / loads.radius,
             Bond::Slip(sign) if spin == 0.0 && loads.resistance > 0.0 => {
                 begins(answer.spin_rate * loads.radius, sign)
             }

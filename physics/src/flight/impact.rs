@@ -10,7 +10,7 @@ pub(super) fn rebound(setup: &Setup, state: &State, normal: Vector) -> (Vector, 
     let approach = state.velocity.dot(&normal);
     let slip = state.velocity.dot(&along) + setup.radius * state.spin;
     // per unit of mass; 1/m + r^2/I is 7/2 of 1/m for a full sphere
-    let pressed = -(1.0 + setup.restitution) * approach;
+    let pressed = (-(1.0 + setup.restitution) * approach).max(0.0);
     let stopping = slip / 3.5;
     let dragged = -stopping.clamp(-setup.friction * pressed, setup.friction * pressed);
     let velocity = state.velocity + pressed * normal + dragged * along;

@@ -93,7 +93,12 @@ fn share(setup: &Setup, landscape: &Landscape, launch: &Launch, scatter: &Scatte
 
 /// Least speed in m/s of a launch in the direction of `launch` that shifts, between `low` and `high`, to a millionth; `None` if none is
 /// found in steps of a hundredth.
-pub fn least_shift(setup: &Setup, landscape: &Landscape, launch: &Launch, [low, high]: [f64; 2]) -> Option<f64> {
+pub fn least_shift(
+    setup: &Setup,
+    landscape: &Landscape,
+    launch: &Launch,
+    [low, high]: [f64; 2],
+) -> Option<f64> {
     let shifts = |speed: f64| {
         matches!(fly(setup, landscape, &Launch { speed, ..*launch }, false).ending, Ending::Seat(Seat::Other))
     };

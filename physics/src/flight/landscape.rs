@@ -89,6 +89,18 @@ impl Landscape {
         })
     }
 
+    /// One in which nothing is ever certain.
+    #[cfg(test)]
+    pub(super) fn unknown() -> Self {
+        Landscape {
+            x: Vec::new(),
+            energy: Vec::new(),
+            saddle: Saddle { x: 0.0, energy: 0.0 },
+            seat_energy: 0.0,
+            hollows: Vec::new(),
+        }
+    }
+
     /// Least speed in m/s with which the sphere of `mass` kg can leave its seat for good: sqrt(2 dU / m).
     pub fn least_speed(&self, mass: f64) -> f64 {
         (2.0 * self.saddle.energy / mass).sqrt()
@@ -192,7 +204,9 @@ fn held_by_friction(setup: &Setup, range: [f64; 2], lowest_x: f64) -> f64 {
         let x = range[0] + (range[1] - range[0]) * k as f64 / COLUMNS as f64;
         let place = Vector::new(x, setup.chamber.floor(x));
         let nearest = (0..setup.chamber.walls()).map(|wall| setup.chamber.nearest(wall, place).point);
-        let Some(point) = nearest.min_by(|a, b| (place - a).norm().total_cmp(&(place - b).norm())) else { continue };
+        let Some(point) = nearest.min_by(|a, b| (place - a).norm().total_cmp(&(place - b).norm())) else {
+            continue;
+        };
         let normal = (place - point).normalize();
         let pull = setup.mass * setup.field.acceleration(setup.mass, f64::INFINITY, place);
         let (pressed, along) = (-pull.dot(&normal), pull.dot(&super::track::tangent(normal)).abs());
@@ -210,14 +224,20 @@ fn unheld(setup: &Setup, hollows: &[Hollow]) -> Option<String> {
     let mm = |length: f64| format!("{} mm", (length * 1e6).round() / 1e3);
     for (seat, name) in setup.chamber.seats().into_iter().zip(["the seat it starts from", "the other seat"]) {
         let Some(hollow) = hollows.iter().find(|h| (h.range[0]..=h.range[1]).contains(&seat.x)) else {
-            return Some(format!("the sphere does not stay in {name}: nothing holds it at x = {}", mm(seat.x)));
+            return Some(format!(
+                "the sphere does not stay in {name}: nothing holds it at x = {}",
+                mm(seat.x)
+            ));
         };
         let height = lowest(setup, hollow.x).1;
         let off = Vector::new(hollow.x, height) - seat;
         if off.norm() > OFF_SEAT * setup.radius {
             return Some(format!(
                 "gravity and spring do not hold the sphere in {name} (x = {}, z = {}): they draw it to x = {}, z = {}",
-                mm(seat.x), mm(seat.y), mm(hollow.x), mm(height)
+                mm(seat.x),
+                mm(seat.y),
+                mm(hollow.x),
+                mm(height)
             ));
         }
     }

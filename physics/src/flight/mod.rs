@@ -9,14 +9,16 @@
 mod chamber;
 mod contact;
 mod field;
-mod friction;
 mod free;
+mod friction;
 mod impact;
 mod judged;
 mod landscape;
 mod run;
 mod spring;
 mod step;
+#[cfg(test)]
+mod tests;
 mod track;
 mod vibration;
 

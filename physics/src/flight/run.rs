@@ -8,8 +8,8 @@ use super::track::Track;
 use super::{Launch, Seat, Setup, State, Vector};
 use crate::numerics::root::root;
 
-/// Height in m of a bounce that is none any more.
-const BOUNCE: f64 = 1e-9;
+/// Height of a bounce that is none any more, over the radius.
+const BOUNCE: f64 = 1e-6;
 /// Touches and changes between rolling and sliding after which a motion is given up.
 const MOST_EVENTS: u32 = 20_000;
 /// Steps after which it is.
@@ -45,9 +45,13 @@ impl Ending {
         let mm = |x: f64| format!("{:.3} mm", x * 1e3);
         match self {
             Ending::Seat(_) | Ending::Passed => None,
-            Ending::Hollow(x) => Some(format!("the sphere comes to rest between or beside the seats, at x = {}", mm(*x))),
+            Ending::Hollow(x) => {
+                Some(format!("the sphere comes to rest between or beside the seats, at x = {}", mm(*x)))
+            }
             Ending::Held(x) => Some(format!("friction holds the sphere on its way, at x = {}", mm(*x))),
-            Ending::Moves => Some("the sphere still moves at the flight's `end_time`, with energy to leave every seat".into()),
+            Ending::Moves => Some(
+                "the sphere still moves at the flight's `end_time`, with energy to leave every seat".into(),
+            ),
             Ending::Bounces => Some(format!(
                 "the sphere still bounces after {MOST_EVENTS} touches, with energy to leave every seat: its restitution takes too little"
             )),
@@ -203,24 +207,26 @@ impl Running<'_> {
     fn settle(&mut self) {
         let (setup, state) = (self.setup, self.state);
         let pull = setup.field.acceleration(setup.mass, state.time, state.place);
+        let bounce = BOUNCE * setup.radius;
         let mut held: Vec<(Track, f64)> = Vec::new();
         for wall in 0..setup.chamber.walls() {
             let feature = setup.chamber.nearest(wall, state.place).feature;
-            if setup.chamber.gap(wall, state.place) > BOUNCE || held.iter().any(|(t, _)| t.feature == feature) {
+            if setup.chamber.gap(wall, state.place) > bounce || held.iter().any(|(t, _)| t.feature == feature)
+            {
                 continue;
             }
             let track = Track::of(&setup.chamber, feature);
             let normal = track.normal(track.along(state.place));
             let [away, along] = [normal, super::track::tangent(normal)].map(|n| state.velocity.dot(&n));
             let pressed = -pull.dot(&normal) - along * along * track.curvature();
-            if pressed > 0.0 && away * away < 2.0 * pressed * BOUNCE {
+            if pressed > 0.0 && away * away < 2.0 * pressed * bounce {
                 held.push((track, pressed));
             }
         }
         held.sort_by(|a, b| b.1.total_cmp(&a.1));
         self.mode = match held[..] {
             [] => Mode::Free,
-            [(a, _), (b, _), ..] if state.velocity.norm_squared() < 2.0 * pull.norm() * BOUNCE => {
+            [(a, _), (b, _), ..] if state.velocity.norm_squared() < 2.0 * pull.norm() * bounce => {
                 let normals = [a, b].map(|track| track.normal(track.along(state.place)));
                 if self.presses(state.time, normals).into_iter().all(|force| force > 0.0) {
                     (self.state.velocity, self.state.spin) = (Vector::zeros(), 0.0);

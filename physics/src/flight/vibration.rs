@@ -30,7 +30,9 @@ pub fn thresholds(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: 
         }
         _ => None,
     };
-    let shifts = unseats.and_then(|unseats| least(unseats, |amplitude| shaken_over(setup, landscape, wave, direction, amplitude)));
+    let shifts = unseats.and_then(|unseats| {
+        least(unseats, |amplitude| shaken_over(setup, landscape, wave, direction, amplitude))
+    });
     Thresholds { unseats, shifts, shock_bound }
 }
 
@@ -68,7 +70,10 @@ fn static_limit(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Ve
     let presses = |pull: Vector| [-pull.perp(&b) / a.perp(&b), pull.perp(&a) / a.perp(&b)];
     let (rest, shaken) = (presses(pull), presses(-direction));
     let limits = wave.peaks().into_iter().flat_map(|peak| {
-        rest.into_iter().zip(shaken).filter(move |(_, shaken)| shaken * peak < 0.0).map(move |(rest, shaken)| rest / -(shaken * peak))
+        rest.into_iter()
+            .zip(shaken)
+            .filter(move |(_, shaken)| shaken * peak < 0.0)
+            .map(move |(rest, shaken)| rest / -(shaken * peak))
     });
     limits.reduce(f64::min)
 }
