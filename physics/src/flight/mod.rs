@@ -105,3 +105,13 @@ pub enum Seat {
     /// In neither.
     None,
 }
+
+impl std::fmt::Display for Seat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Seat::Other => "other",
+            Seat::Same => "same",
+            Seat::None => "none",
+        })
+    }
+}
