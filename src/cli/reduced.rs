@@ -130,7 +130,8 @@ pub fn table(summary: &Summary) -> String {
 /// Flight and vibration, a line for each value.
 fn after_the_impact(summary: &Summary) -> Vec<String> {
     let row = |name: &str, value: Option<f64>, unit| {
-        let told = value.map_or_else(|| "none".to_owned(), |value| with_unit(value, prefixed(unit, value), 4));
+        let told =
+            value.map_or_else(|| "none".to_owned(), |value| with_unit(value, prefixed(unit, value), 4));
         format!("  {name:<24} {told:>14}")
     };
     let mut lines = Vec::new();

@@ -28,7 +28,10 @@ pub fn launch(scene: &Scene, summary: &Summary) -> Option<Launch> {
 /// [`Error::Usage`] if it asks for none; the checks of the scene have seen to the rest.
 pub fn flight_of(scene: &Scene, restitution: f64) -> Result<(Setup, Landscape)> {
     let flight = scene.flight.as_ref().ok_or_else(|| {
-        Error::Usage(format!("scene `{}` has no [flight]: add one, with spring, chamber and friction", scene.name))
+        Error::Usage(format!(
+            "scene `{}` has no [flight]: add one, with spring, chamber and friction",
+            scene.name
+        ))
     })?;
     let of_scene = |sentence: String| Error::Solver(format!("{}: {sentence}", scene.name));
     let setup = flight.setup(scene, restitution).map_err(of_scene)?;

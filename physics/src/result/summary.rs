@@ -1,6 +1,8 @@
 //! The result of a run in a few numbers, the same type for reduced models and the reference.
 
-use super::{ContactPressure, Drive, FlightSummary, Impact, Limit, Losses, Quantity, Table, VibrationSummary};
+use super::{
+    ContactPressure, Drive, FlightSummary, Impact, Limit, Losses, Quantity, Table, VibrationSummary,
+};
 use crate::scene::{Model, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

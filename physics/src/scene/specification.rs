@@ -88,8 +88,7 @@ pub(super) static SCENE: [Field; 24] = [
     ),
 ];
 
-const FLIGHT: &str =
-    "The flight of the sphere after the impact, to its seat; absent = not asked for. Changes nothing of the impact";
+const FLIGHT: &str = "The flight of the sphere after the impact, to its seat; absent = not asked for. Changes nothing of the impact";
 
 static RUN: [Field; 1] = [optional(
     "end_time",

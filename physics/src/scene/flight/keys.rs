@@ -22,7 +22,11 @@ static SPRING: [Field; 5] = [
         None,
         "where the spring pushes from",
         "a direction",
-        optional("angle", Kind::Quantity(Dimension::ANGLE, TURN), "Direction of its push against -z, positive towards +x; absent = 0"),
+        optional(
+            "angle",
+            Kind::Quantity(Dimension::ANGLE, TURN),
+            "Direction of its push against -z, positive towards +x; absent = 0",
+        ),
     ),
     one_way(
         None,
@@ -41,8 +45,7 @@ static SPRING: [Field; 5] = [
     ),
 ];
 
-const HEIGHT: Field =
-    required("chamber_height", positive(Dimension::LENGTH), "z of the chamber's ceiling");
+const HEIGHT: Field = required("chamber_height", positive(Dimension::LENGTH), "z of the chamber's ceiling");
 const GRAVITY: Field =
     optional("gravity", not_negative(Dimension::ACCELERATION), "Gravity; absent = 9.80665 m/s^2");
 const GRAVITY_ANGLE: Field = optional(
@@ -50,8 +53,11 @@ const GRAVITY_ANGLE: Field = optional(
     Kind::Quantity(Dimension::ANGLE, TURN),
     "Direction of gravity against -z, positive towards +x; absent = 0",
 );
-const SPRING_KEY: Field =
-    optional("spring", Kind::Table(&SPRING), "The spring that presses the sphere into its seats; absent = none");
+const SPRING_KEY: Field = optional(
+    "spring",
+    Kind::Table(&SPRING),
+    "The spring that presses the sphere into its seats; absent = none",
+);
 const FRICTION: Field =
     required("friction", pure(Bound::NOT_NEGATIVE), "Coulomb's coefficient of friction of sphere and walls");
 const FLUID_DENSITY: Field = one_way(
@@ -77,11 +83,8 @@ const ANGLE_SCATTER: Field = optional(
     not_negative(Dimension::ANGLE),
     "Half width of the band of the launch's angle; absent = 0.5 deg",
 );
-const RESTITUTION_SCATTER: Field = optional(
-    "restitution_scatter",
-    pure(SHARE),
-    "Half width of the band of the restitution; absent = 0.02",
-);
+const RESTITUTION_SCATTER: Field =
+    optional("restitution_scatter", pure(SHARE), "Half width of the band of the restitution; absent = 0.02");
 
 /// Of a seal seat, whose shape is the chamber's floor.
 pub(in crate::scene) static SEAT_FLIGHT: [Field; 12] = [
@@ -139,7 +142,11 @@ pub(in crate::scene) static VIBRATION: [Field; 7] = [
     only(&["half-sine"], required("duration", positive(Dimension::TIME), "Length of the shock")),
     only(
         &["record"],
-        required("time", Kind::Quantities(Dimension::TIME, Bound::NOT_NEGATIVE, MOST_SAMPLES), "Times of the samples, from 0 on"),
+        required(
+            "time",
+            Kind::Quantities(Dimension::TIME, Bound::NOT_NEGATIVE, MOST_SAMPLES),
+            "Times of the samples, from 0 on",
+        ),
     ),
     only(
         &["record"],

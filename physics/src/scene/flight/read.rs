@@ -55,9 +55,7 @@ pub(in crate::scene) fn vibration(root: &Node) -> Result<Option<Vibration>> {
     let wave = match node.text("kind")? {
         "sine" => Wave::Sine { frequency: node.number("frequency")?, periods: periods as f64 },
         "half-sine" => Wave::HalfSine { duration: node.number("duration")? },
-        "record" => {
-            Wave::Record { time: node.numbers("time")?, acceleration: node.numbers("acceleration")? }
-        }
+        "record" => Wave::Record { time: node.numbers("time")?, acceleration: node.numbers("acceleration")? },
         other => return Err(unknown("vibration.kind", other)),
     };
     Ok(Some(Vibration { wave, direction: Vector::new(angle.sin(), angle.cos()) }))
