@@ -153,7 +153,9 @@ def _run(arguments: argparse.Namespace) -> None:
             try:
                 from .flight.cases import report_flights
             except ImportError as error:
-                message = f"{error}; install it by `make setup` and run target/python-tools/bin/python"
+                message = (
+                    f"{error}; install it by `make setup` and run target/python-tools/bin/python"
+                )
                 raise SolverError(f"a Python module is missing: {message}") from error
             report_flights(arguments.out, arguments.number, Progress())
             return

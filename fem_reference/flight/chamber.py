@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 Point = tuple[float, float]
 Wall = tuple[Point, Point]
@@ -35,7 +36,7 @@ class Seat:
         rim, top = self.membrane_radius, self.chamber_height
         corners = [(rim, self.membrane_thickness), (rim, top), (-rim, top)]
         corners.append((-rim, self.membrane_thickness))
-        return [*left, *mirrored, *zip(corners, corners[1:], strict=False)]
+        return [*left, *mirrored, *pairwise(corners)]
 
     def _flanks(self) -> list[Wall]:
         """Walls at x < 0: by the angles at which the flanks rise from the cone's tip."""
@@ -64,7 +65,7 @@ class Seat:
         side = -self.island_length / 2
         steps = [(-self.membrane_radius, self.membrane_thickness), (side, self.membrane_thickness)]
         steps += [(side, self.island_height), high, low]
-        return [*zip(steps, steps[1:], strict=False), *zip(ends, ends[1:], strict=False)]
+        return [*pairwise(steps), *pairwise(ends)]
 
     def seats(self) -> tuple[Point, Point]:
         """Centres of a sphere in the seat it starts from and in the other one."""
