@@ -41,6 +41,8 @@ impl Dimension {
     pub const ANGLE: Dimension = Dimension([0, 0, 0, 1]);
     /// Impulse, N s.
     pub const IMPULSE: Dimension = Dimension([1, 1, -1, 0]);
+    /// m/s^2
+    pub const ACCELERATION: Dimension = Dimension([1, 0, -2, 0]);
 
     /// What a message calls it: name with article, SI unit, an example.
     pub fn describe(self) -> (&'static str, &'static str, &'static str) {
@@ -61,6 +63,7 @@ impl Dimension {
             Dimension::FREQUENCY => ("a frequency", "Hz", "4.6 kHz"),
             Dimension::ANGLE => ("an angle", "rad", "15 deg"),
             Dimension::IMPULSE => ("an impulse", "N*s", "0.2 mN*s"),
+            Dimension::ACCELERATION => ("an acceleration", "m/s^2", "9.81 m/s^2"),
             _ => ("a quantity", "SI", "1"),
         }
     }
