@@ -22,6 +22,7 @@ pub mod shakedown;
 pub mod sweep;
 pub mod table2;
 pub mod test_bed;
+pub mod valve;
 mod write;
 
 pub use plot::{Axis, Only, Panel, figure};
@@ -84,7 +85,7 @@ impl Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 17] = [
+pub const STUDIES: [Entry; 18] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
@@ -179,6 +180,14 @@ pub const STUDIES: [Entry; 17] = [
         takes_model: false,
         run: |_, note| flight::run(note),
         panels: &[],
+        drawing: None,
+    },
+    Entry {
+        name: "valve",
+        about: "Section 5: both demonstrators from the voltage to the seat, with the scatter of a workshop",
+        takes_model: false,
+        run: |_, note| valve::run(note),
+        panels: &valve::PANELS,
         drawing: None,
     },
     Entry {

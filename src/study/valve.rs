@@ -73,10 +73,8 @@ const DEMONSTRATORS: [Demonstrator; 2] = [
 ];
 
 /// How it is drawn: what the actuator gives, and the share that shifts.
-pub const PANELS: [Panel; 2] = [
-    panel("launch_speed", "Speed of the sphere in m/s"),
-    panel("share", "Share of launches that shift"),
-];
+pub const PANELS: [Panel; 2] =
+    [panel("launch_speed", "Speed of the sphere in m/s"), panel("share", "Share of launches that shift")];
 
 const fn panel(column: &'static str, label: &'static str) -> Panel {
     Panel {
@@ -117,8 +115,7 @@ impl Valve {
 
     /// A shift with other numbers than the scene's.
     fn shift(&self, numbers: &[(&Field, f64)]) -> Result<(Summary, FlightSummary)> {
-        let scene =
-            self.template.with(numbers).map_err(|rejected| Error::Internal(rejected.to_string()))?;
+        let scene = self.template.with(numbers).map_err(|rejected| Error::Internal(rejected.to_string()))?;
         let mut summary = self.series.model(scene, self.model, None)?.run(TOLERANCE)?;
         let flight = summary.flight.take();
         flight.map(|flight| (summary, flight)).ok_or_else(|| Error::Internal("a shift has no flight".into()))
@@ -154,8 +151,11 @@ impl Workshop {
         let uncertainty = uncertainty_of(valve.template.scene())?;
         let inputs = Inputs::new(uncertainty, SEED)
             .ok_or_else(|| Error::Internal("independent inputs have a correlation".into()))?;
-        let fields: Vec<Field> =
-            uncertainty.inputs.iter().map(|input| valve.template.field(&input.field)).collect::<Result<_>>()?;
+        let fields: Vec<Field> = uncertainty
+            .inputs
+            .iter()
+            .map(|input| valve.template.field(&input.field))
+            .collect::<Result<_>>()?;
         let one = |row: usize| {
             let numbers = inputs.place(&inputs.design().at(row, Point::A));
             let drawn: Vec<(&Field, f64)> = fields.iter().zip(numbers).collect();
@@ -250,7 +250,8 @@ fn claims_of(
     let truth = |text: &str, holds: bool| {
         Claim::new(format!("{name}: {text}"), "1", Some(1.0), Some(f64::from(u8::from(holds))), 0.5)
     };
-    let free = |text: &str, unit, value| Claim::new(format!("{name}: {text}"), unit, None, value, f64::INFINITY);
+    let free =
+        |text: &str, unit, value| Claim::new(format!("{name}: {text}"), unit, None, value, f64::INFINITY);
     let weak = shifts.first().map(|(_, flight)| flight.seat);
     vec![
         truth("shifts at the paper's voltage", least.is_some_and(|least| least <= NOMINAL)),

@@ -106,12 +106,19 @@ pub enum Seat {
     None,
 }
 
-impl std::fmt::Display for Seat {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
+impl Seat {
+    /// As documents call it.
+    pub fn name(self) -> &'static str {
+        match self {
             Seat::Other => "other",
             Seat::Same => "same",
             Seat::None => "none",
-        })
+        }
+    }
+}
+
+impl std::fmt::Display for Seat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
     }
 }
