@@ -11,7 +11,7 @@ import numpy as np
 
 from ..common import document
 from ..common.arrays import Floats
-from ..common.bodies import Bender
+from ..common.bodies import Bender, Stack
 from ..common.errors import SceneError
 from ..common.output import write_history, write_json
 from ..common.progress import Progress
@@ -267,6 +267,19 @@ def _bender(bender: Bender, summary: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+def _stack(scene: Scene, solution: Solution) -> dict[str, Any]:
+    """What a stack took and gave."""
+    run = solution.run
+    taken, given = run.stack or (0.0, 0.0)
+    cut = run.in_contact_at_end
+    transmitted = 0.5 * scene.inner.mass * run.inner_velocity**2
+    return {
+        "electrical_energy": taken,
+        "mechanical_energy": given,
+        "share": None if cut else transmitted / taken,
+    }
+
+
 def write_dents(path: Path, runs: list[Run]) -> None:
     """The surfaces at rest after each impact, comma-separated; see `Dents.profiles`."""
     columns = ("impact", "radius", *DENTED_SURFACES)
@@ -320,6 +333,11 @@ def _write(
         summary |= {"source": "external", "model": solution.program}
     if isinstance(scene.outer, Bender):
         summary["bender"] = _bender(scene.outer, summary)
+    if isinstance(scene.outer, Stack):
+        # Eq. (1) relates to a kinetic energy before the impact, of which a stack has none.
+        summary["efficiency"] = None
+        summary["uncertainty"].pop("efficiency", None)
+        summary["stack"] = _stack(scene, solution)
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(
         scene,

@@ -10,6 +10,7 @@ mod contact_ledger;
 pub mod duhamel;
 pub mod explicit_runge_kutta;
 mod force_peak;
+mod heating;
 mod free_flight;
 pub mod integration;
 pub mod integrator;

@@ -33,7 +33,7 @@ pub use fault::{Fault, Faults, faults};
 pub use field::{Field, Rejected};
 pub use plate_impact::{
     Bender, DEFAULT_MODES, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape,
-    ShearThinning, Spot,
+    ShearThinning, Spot, Stack, Supply,
 };
 pub use plausibility::doubts;
 pub use quantity::in_unit as quantity_in;

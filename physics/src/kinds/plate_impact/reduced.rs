@@ -18,7 +18,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
-use crate::result::{BenderSummary, CUT, Choice, ElasticLimit, Outcome, Summary};
+use crate::result::{BenderSummary, CUT, Choice, ElasticLimit, Outcome, StackSummary, Summary};
 use crate::scene::{self, DEFAULT_MODES, Edge, MAX_MODES, Model, Outer, PlateImpact, Scene, Setup};
 use std::time::Instant;
 
@@ -26,6 +26,9 @@ use std::time::Instant;
 const OFF_CENTRE_MODES: usize = 64;
 /// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
 const PEAK_ERROR: f64 = 0.1;
+/// What a stack leaves open: the first always, the others where it presses on the plate at the end.
+const OF_A_PRESSING_BODY: [&str; 4] =
+    ["efficiency", "outer_velocity_final", "outer_contact_end", "outer_contacts"];
 /// Samples of a history per duration of a Hertz contact.
 const SAMPLES_PER_CONTACT: f64 = 400.0;
 
@@ -202,7 +205,7 @@ impl Reduced {
     /// The summary, and what the materials remembered when the last impact began.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>)> {
         let start = Instant::now();
-        let options = self.options(tolerance);
+        let options = Options { heat: true, ..self.options(tolerance) };
         let Done { last, impacts, memory, warning } = self.impacts().all(&options)?;
         let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
         summary.warnings.extend(warning);
@@ -216,7 +219,7 @@ impl Reduced {
         let setup = self.scene.plate_impact()?;
         let onset = memory::onset_of_yield(setup, &self.system);
         let materials = [&setup.outer.material, &setup.plate.material, &setup.inner.material];
-        let covered = self.system.drive.is_none()
+        let covered = !setup.outer.shape.is_held()
             && setup.outer.is_centred()
             && materials.iter().all(|m| m.relaxation.is_empty());
         if !covered || onset == [None; 2] {
@@ -327,6 +330,11 @@ impl Reduced {
             table = table.cut();
             warnings.push(CUT.into());
         }
+        if system.stack.is_some() {
+            // eq. (1) relates to a kinetic energy before the impact; of a body that still presses nothing has ended
+            let open = if result.pressed { &OF_A_PRESSING_BODY[..] } else { &OF_A_PRESSING_BODY[..1] };
+            open.iter().filter_map(|name| Some(*table.value_mut(name)? = None)).for_each(drop);
+        }
         Ok(Summary {
             energy_residual: Some(result.energy_residual),
             momentum_residual: Some(result.momentum_residual),
@@ -339,7 +347,15 @@ impl Reduced {
                 let efficiency = transmitted / drive.strain_energy;
                 BenderSummary { strain_energy_efficiency: (!result.is_cut()).then_some(efficiency), drive }
             }),
-            losses: (system.is_damped() || self.fluid.is_some() || self.memory.is_some())
+            stack: result.supplied.map(|supplied| {
+                let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
+                StackSummary {
+                    electrical_energy: supplied.taken,
+                    mechanical_energy: supplied.given,
+                    share: (!result.is_cut()).then_some(transmitted / supplied.taken),
+                }
+            }),
+            losses: (system.is_damped() && system.stack.is_none() || self.fluid.is_some() || self.memory.is_some())
                 .then_some(result.losses),
             warnings,
             choice: self.choice.clone(),
