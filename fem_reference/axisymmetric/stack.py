@@ -1,8 +1,8 @@
 """Finite elements of a piezo stack: a round rod under the stress of a uniform field.
 
-Bilinear elements with incompatible modes, u_z = 0 at the base, where the rod may widen. A stiff cap
-without mass closes the other end: its nodes are one, which has the spherical tip. The piezo stress is
-uniform, so that all of its load stands on base and cap.
+Bilinear elements with incompatible modes, u_z = 0 at the base, where the rod may widen. A stiff
+cap without mass closes the other end: its nodes are one, which has the spherical tip. The piezo
+stress is uniform, so that all of its load stands on base and cap.
 """
 
 from __future__ import annotations

@@ -179,8 +179,6 @@ class Bender:
         return 2.0 * self.strike.kinetic_energy / self.speed**2
 
 
-
-
 @dataclass(frozen=True)
 class Supply:
     """A charged buffer behind a resistor."""
@@ -247,7 +245,7 @@ class Stack:
 
     @property
     def mass(self) -> float:
-        """kg"""
+        """Mass, kg."""
         return self.density * self.area * self.length
 
     @property

@@ -150,7 +150,7 @@ class AxisymmetricMotion:
         )
 
     def _supplied(self) -> tuple[float, float, tuple[float, float] | None]:
-        """What a stack has of momentum (N s) and work (J) beyond their measures; `Further.taken`."""
+        """Momentum (N s) and work (J) of a stack beyond their measures; `Further.taken`."""
         system, voltage = self.system, self.voltage
         if voltage is None or system.stack is None:
             return 0.0, 0.0, None
@@ -161,7 +161,6 @@ class AxisymmetricMotion:
         taken = system.stack.taken(voltage, extension)
         momentum = start + stack.mass * stack.step_speed + voltage.impulse
         return momentum, work - stack.energy, (taken, work)
-
 
     def by_role(self, of_bodies: tuple[float, ...]) -> tuple[float, float, float]:
         """See `Motion.by_role`."""

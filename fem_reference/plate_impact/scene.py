@@ -351,7 +351,8 @@ def parse_scene(document: Any) -> Scene:
     bodies = {"outer": _outer(outer), "inner": _body(inner, "gap", "speed")}
     if isinstance(bodies["outer"], Bender | Stack):
         if geometry == "solid":
-            raise SceneError(f"outer.kind is '{outer.node['kind']}': take reference.geometry 'axisymmetric'")
+            kind = outer.node["kind"]
+            raise SceneError(f"outer.kind is '{kind}': take reference.geometry 'axisymmetric'")
         if end_time is None:
             raise SceneError(
                 "run.end_time is missing; a bender or a stack comes back to the plate for ever, so "

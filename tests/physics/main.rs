@@ -14,6 +14,7 @@ mod materials_memory;
 mod plate_frequencies_leissa;
 mod shared_bodies;
 mod squeeze_film;
+mod stack;
 mod studies_paper;
 mod table1_paper;
 mod table2_paper;

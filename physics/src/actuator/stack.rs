@@ -107,10 +107,7 @@ impl Stack {
     fn mode(&self, k: usize) -> RodMode {
         let kappa = (2 * k + 1) as f64 * FRAC_PI_2 / self.length;
         let love = 1.0 + Self::lateral(self.length, self.area, self.poisson_ratio, k);
-        RodMode {
-            omega: kappa * self.wave_speed() / love.sqrt(),
-            tip: (2.0 / (self.mass() * love)).sqrt(),
-        }
+        RodMode { omega: kappa * self.wave_speed() / love.sqrt(), tip: (2.0 / (self.mass() * love)).sqrt() }
     }
 
     /// The lowest `modes` modes, and as one more all others: with the flexibility that they have together, at the frequency of the first

@@ -110,7 +110,10 @@ impl<'a> Stepper<'a> {
         let mut touching = true;
         while self.time < self.end_time {
             let [approach, ..] = self.course.end();
-            if !touching && approach[1] <= 0.0 && (self.only_presses() || approach[0] <= 0.0 && !self.fly()?) {
+            if !touching
+                && approach[1] <= 0.0
+                && (self.only_presses() || approach[0] <= 0.0 && !self.fly()?)
+            {
                 break;
             }
             self.step()?;

@@ -1,11 +1,11 @@
 //! A body beside the plate as oscillators, in the state in which the impact begins.
 
 use super::duhamel::Oscillator;
+use super::system::dot;
 use crate::actuator::beam::Release;
 use crate::actuator::cantilever;
 use crate::actuator::circuit::{self, Circuit, Feed};
 use crate::actuator::stack::{MODES, RodMode, Stack};
-use super::system::dot;
 use crate::error::{Error, Result};
 use crate::result::Drive;
 use crate::scene::{Material, Outer, PlateImpact, Shape};

@@ -26,9 +26,6 @@ use std::time::Instant;
 const OFF_CENTRE_MODES: usize = 64;
 /// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
 const PEAK_ERROR: f64 = 0.1;
-/// What a stack leaves open: the first always, the others where it presses on the plate at the end.
-const OF_A_PRESSING_BODY: [&str; 4] =
-    ["efficiency", "outer_velocity_final", "outer_contact_end", "outer_contacts"];
 /// Samples of a history per duration of a Hertz contact.
 const SAMPLES_PER_CONTACT: f64 = 400.0;
 
@@ -331,9 +328,12 @@ impl Reduced {
             warnings.push(CUT.into());
         }
         if system.stack.is_some() {
-            // eq. (1) relates to a kinetic energy before the impact; of a body that still presses nothing has ended
-            let open = if result.pressed { &OF_A_PRESSING_BODY[..] } else { &OF_A_PRESSING_BODY[..1] };
-            open.iter().filter_map(|name| Some(*table.value_mut(name)? = None)).for_each(drop);
+            // eq. (1) relates to a kinetic energy before the impact, and the tip vibrates on
+            let open = ["efficiency", "outer_velocity_final"].into_iter();
+            let pressing = ["outer_contact_end", "outer_contacts"].into_iter().filter(|_| result.pressed);
+            for name in open.chain(pressing) {
+                table.value_mut(name).into_iter().for_each(|value| *value = None);
+            }
         }
         Ok(Summary {
             energy_residual: Some(result.energy_residual),
@@ -355,8 +355,10 @@ impl Reduced {
                     share: (!result.is_cut()).then_some(transmitted / supplied.taken),
                 }
             }),
-            losses: (system.is_damped() && system.stack.is_none() || self.fluid.is_some() || self.memory.is_some())
-                .then_some(result.losses),
+            losses: (system.is_damped() && system.stack.is_none()
+                || self.fluid.is_some()
+                || self.memory.is_some())
+            .then_some(result.losses),
             warnings,
             choice: self.choice.clone(),
             ..Summary::of_reduced(&self.scene, self.model, system.modes, table)
