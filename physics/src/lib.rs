@@ -11,6 +11,7 @@ pub mod contact;
 pub mod dynamics;
 pub mod error;
 pub mod file;
+pub mod flight;
 pub mod fluid;
 pub mod kinds;
 pub mod material;

@@ -86,6 +86,39 @@ fn two_programs_agree_within_both_bands_in_terminal_document_and_report() {
     }
 }
 
+/// Every scene that both programs have solved: as the record of validated scenes keeps it.
+#[test]
+fn both_programs_agree_on_every_recorded_scene() {
+    let record = fs::read_to_string(Path::new(ROOT).join("fem_reference/solutions/validated.jsonl")).unwrap();
+    let lines: Vec<Value> = record.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let of_scene = |scene: &Value, calculix: bool| {
+        let found = lines.iter().find(|line| {
+            line["scene"] == *scene && line["model"] == "C" && (line["partner"] == "CalculiX") == calculix
+        });
+        found.unwrap_or_else(|| panic!("{scene} of one program only"))
+    };
+    let scenes: Vec<&Value> = lines
+        .iter()
+        .filter(|line| line["partner"] == "CalculiX" && line["model"] == "C")
+        .map(|line| &line["scene"])
+        .collect();
+    assert!(scenes.len() >= 7, "{scenes:?}");
+    for scene in scenes {
+        let rows = |calculix| of_scene(scene, calculix)["rows"].as_array().unwrap();
+        for quantity in ["efficiency", "outer_force_peak", "inner_force_peak"] {
+            let [own, other] =
+                [false, true].map(|by| rows(by).iter().find(|row| row["quantity"] == quantity).unwrap());
+            let number = |row: &Value, key: &str| row[key].as_f64().unwrap();
+            let joint = number(own, "band").hypot(number(other, "band"));
+            let apart = (number(own, "reference") - number(other, "reference")).abs();
+            assert!(
+                apart <= joint && joint < 0.03 * number(own, "reference"),
+                "{scene} {quantity}: {apart} of {joint}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_solution_that_is_asked_for_and_missing_or_in_contradiction_ends_with_11() {
     let store = tempfile::tempdir().unwrap();

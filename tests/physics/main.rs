@@ -11,6 +11,7 @@ mod continuum_sphere;
 mod hertz_goldsmith;
 mod integrator_runge_kutta;
 mod materials_memory;
+mod materials_yielding;
 mod plate_frequencies_leissa;
 mod shared_bodies;
 mod squeeze_film;

@@ -57,6 +57,13 @@ pub const DORMAND_PRINCE_8: Method = Method {
     order: 7,
 };
 
+impl Method {
+    /// Weights of the stages before each stage, and of all stages in the result.
+    pub(crate) fn weights(&self) -> (&'static [&'static [f64]], &'static [f64]) {
+        (self.a, self.b)
+    }
+}
+
 /// Tolerances and the most evaluations of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerances {

@@ -65,6 +65,17 @@ pub struct Overlap {
     pub depth: f64,
 }
 
+/// Where the film narrows most towards its edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Neck {
+    /// Radius in m.
+    pub radius: f64,
+    /// Width of the film there in m.
+    pub width: f64,
+    /// Largest width farther in, m.
+    pub width_inside: f64,
+}
+
 /// Flow through the outer face of a cell of the film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Face {
@@ -72,6 +83,8 @@ pub struct Face {
     pub radius: f64,
     /// Area of the cell inside of it in m^2.
     pub area: f64,
+    /// Width of the film there in m, the minimal gap at least.
+    pub width: f64,
     /// Fall of the pressure to the next cell in Pa.
     pub fall: f64,
     /// Change of the fall per flow outwards, Pa s/m^3.
@@ -80,6 +93,18 @@ pub struct Face {
     pub per_gap: f64,
     /// Fall against a uniform closing speed of 1 m/s at the present viscosity, Pa s/m.
     unit_fall: f64,
+}
+
+impl FilmForces {
+    /// Where the film is narrowest in relation to its width farther in; `None` without a film.
+    pub fn neck(&self) -> Option<Neck> {
+        let mut width_inside: f64 = 0.0;
+        let necks = self.faces.iter().map(|face| {
+            width_inside = width_inside.max(face.width);
+            Neck { radius: face.radius, width: face.width, width_inside }
+        });
+        necks.min_by(|a, b| (a.width / a.width_inside).total_cmp(&(b.width / b.width_inside)))
+    }
 }
 
 /// Cells of the film unless asked for otherwise.
@@ -174,6 +199,7 @@ impl Film {
             forces.faces.push(Face {
                 radius: face_radius,
                 area,
+                width,
                 fall,
                 unit_fall: unit_flow * resistance,
                 per_flow: (1.0 + slope) * resistance,

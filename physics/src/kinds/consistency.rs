@@ -30,13 +30,16 @@ pub(crate) struct Stated {
     pub(crate) peak: Option<f64>,
     /// Last release in s, if it is determined.
     end: Option<f64>,
+    /// Its 95 % band in s, 0 if none is stated: between a last faint force and none a release is known no better.
+    end_band: f64,
 }
 
 impl Stated {
     /// Of the contact of `body`.
     pub(crate) fn of(summary: &Summary, body: &str) -> Self {
         let value = |what: &str| summary.value(&format!("{body}_{what}"));
-        Stated { peak: value("force_peak"), end: value("contact_end") }
+        let end_band = summary.band(&format!("{body}_contact_end")).unwrap_or(0.0);
+        Stated { peak: value("force_peak"), end: value("contact_end"), end_band }
     }
 }
 
@@ -74,7 +77,7 @@ pub(crate) fn contact(
     };
     let tension = Statement::new(format!("{name}_tension"), "N", tension, 0.0, 1e-6 * peak(force));
     let peak = compared("force_peak", "N", found, stated.peak, peak_bound);
-    let end = compared("contact_end", "s", end, stated.end, end_bound);
+    let end = compared("contact_end", "s", end, stated.end, end_bound + stated.end_band);
     [Some(tension), peak, end].into_iter().flatten().collect()
 }
 

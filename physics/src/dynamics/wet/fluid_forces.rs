@@ -2,7 +2,7 @@
 
 use crate::dynamics::system::{INNER, PLATE};
 use crate::fluid::deflection::PlateProfile;
-use crate::fluid::film::{CELLS, Film, FilmForces, Overlap};
+use crate::fluid::film::{CELLS, Film, FilmForces, Neck, Overlap};
 use crate::fluid::{Deflection, Drag, Viscosity};
 use crate::scene::{Fluid, Inner, Plate};
 
@@ -37,6 +37,11 @@ impl FluidLoad {
     /// Overlap of plate and inner body beside the axis, where the model knows no contact: the film between them is not one.
     pub fn overlap(&self) -> Option<Overlap> {
         self.film.overlap
+    }
+
+    /// Where the film narrows most towards its edge.
+    pub fn neck(&self) -> Option<Neck> {
+        self.film.neck()
     }
 }
 

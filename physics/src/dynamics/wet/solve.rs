@@ -23,6 +23,8 @@ const SLOW: f64 = 0.3;
 const STALLS: u32 = 2;
 /// Admissible force errors with which such a step is in order.
 const ROUNDED: f64 = 100.0;
+/// Errors of a rate in its last digit that may come together in a force of the film.
+const ROUNDINGS: f64 = 16.0;
 /// Unknowns of Newton's step: both contact forces and the film's part along g at every point of a step.
 const UNKNOWNS: usize = 3 * STAGES;
 
@@ -70,7 +72,9 @@ impl Wet<'_> {
             best = size.min(best);
             // in a very short step any guess gives the right impulse, but not the right energy
             let settled = size <= force_error && iteration > 0;
-            let rounded = stalls >= STALLS && size <= 2.0 * best && size <= ROUNDED * force_error;
+            let rounded = stalls >= STALLS
+                && size <= 2.0 * best
+                && size <= (ROUNDED * force_error).max(self.rounding(trial));
             if settled || rounded {
                 return self.balance(table, q, v, trial);
             }
@@ -169,6 +173,19 @@ impl Wet<'_> {
         let (contact, fluid) =
             (largest(&defect.contact), largest(&defect.fluid) * self.system.masses[1].sqrt());
         if contact >= fluid || contact.is_nan() { contact } else { fluid }
+    }
+
+    /// What rounding of the rates makes of the film's forces, as [`Self::size`] counts them, N: their parts from each coordinate, of
+    /// which next to nothing may be left where fast bodies move together.
+    fn rounding(&self, trial: &Trial) -> f64 {
+        let at = |(load, v): (&FluidLoad, &Vec<f64>)| {
+            let parts: f64 =
+                load.unit_force.iter().zip(&v[INNER..]).map(|(force, v)| (force * v).abs()).sum();
+            let largest = load.unit_force.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
+            if load.resistance > 0.0 { parts * largest / load.resistance } else { 0.0 }
+        };
+        let parts = trial.loads.iter().zip(&trial.motion.v).map(at).fold(0.0, f64::max);
+        ROUNDINGS * f64::EPSILON * parts * self.system.masses[1].sqrt()
     }
 
     /// Improves the forces; `false` if the equations are singular.

@@ -1,0 +1,118 @@
+//! The verdict on a launch, with its margin and its share over the scatter of the launch.
+
+use super::landscape::Landscape;
+use super::run::{Ending, Flight, fly};
+use super::{Launch, Seat, Setup};
+
+/// Launches over whose seats the share is taken.
+const LAUNCHES: u32 = 256;
+/// Relative changes of the speed up to which a margin is looked for, the first of them, and the ratio of one to the next.
+const WIDEST: f64 = 0.5;
+const FIRST: f64 = 1e-3;
+const RATIO: f64 = 1.1;
+/// Halvings of the change at which the seat changes.
+const HALVINGS: u32 = 12;
+
+/// Half widths of the bands in which a launch and the walls lie, all values in them as likely.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scatter {
+    /// Of the speed, relative.
+    pub speed: f64,
+    /// Of the angle in rad.
+    pub angle: f64,
+    /// Of the restitution.
+    pub restitution: f64,
+}
+
+/// A verdict, and how sure it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// The flight of the launch itself, with its path.
+    pub flight: Flight,
+    /// Least relative change of the launch's speed with another seat; `None` if there is none up to a half.
+    pub margin: Option<f64>,
+    /// Share of launches in the scatter that end in the other seat.
+    pub share: f64,
+    /// Least speed in m/s to shift by the landscape: sqrt(2 dU / m).
+    pub least_speed: f64,
+}
+
+/// Flies the `launch`, those around it for the margin, and those of the `scatter` for the share.
+pub fn judge(setup: &Setup, landscape: &Landscape, launch: &Launch, scatter: &Scatter) -> Judged {
+    Judged {
+        flight: fly(setup, landscape, launch, true),
+        margin: margin(setup, landscape, launch),
+        share: share(setup, landscape, launch, scatter),
+        least_speed: landscape.least_speed(setup.mass),
+    }
+}
+
+fn seat(setup: &Setup, landscape: &Landscape, launch: &Launch) -> Seat {
+    fly(setup, landscape, launch, false).ending.seat()
+}
+
+fn margin(setup: &Setup, landscape: &Landscape, launch: &Launch) -> Option<f64> {
+    let own = seat(setup, landscape, launch);
+    let keeps = |change: f64| {
+        [-1.0, 1.0].into_iter().all(|side| {
+            let speed = launch.speed * (1.0 + side * change);
+            seat(setup, landscape, &Launch { speed, ..*launch }) == own
+        })
+    };
+    let (mut inside, mut change) = (0.0, FIRST);
+    while keeps(change) {
+        if change >= WIDEST {
+            return None;
+        }
+        (inside, change) = (change, (change * RATIO).min(WIDEST));
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (inside + change);
+        if keeps(middle) { inside = middle } else { change = middle }
+    }
+    Some(change)
+}
+
+/// Share over points that fill the box of the scatter evenly: multiples of the powers of the root of x^4 = x + 1 (Roberts 2018).
+fn share(setup: &Setup, landscape: &Landscape, launch: &Launch, scatter: &Scatter) -> f64 {
+    const ROOT: f64 = 1.220_744_084_605_759_5;
+    let shifts = (0..LAUNCHES).filter(|k| {
+        let [speed, angle, restitution] =
+            [1, 2, 3].map(|power| 2.0 * ((0.5 + f64::from(*k) * ROOT.powi(-power)) % 1.0) - 1.0);
+        let launch = Launch {
+            speed: launch.speed * (1.0 + scatter.speed * speed),
+            angle: launch.angle + scatter.angle * angle,
+            ..*launch
+        };
+        let restitution = (setup.restitution + scatter.restitution * restitution).clamp(0.0, 1.0);
+        let setup = Setup { restitution, ..setup.clone() };
+        seat(&setup, landscape, &launch) == Seat::Other
+    });
+    shifts.count() as f64 / f64::from(LAUNCHES)
+}
+
+/// Least speed in m/s of a launch in the direction of `launch` that shifts, between `low` and `high`, to a millionth; `None` if none is
+/// found in steps of a hundredth.
+pub fn least_shift(
+    setup: &Setup,
+    landscape: &Landscape,
+    launch: &Launch,
+    [low, high]: [f64; 2],
+) -> Option<f64> {
+    let shifts = |speed: f64| {
+        matches!(fly(setup, landscape, &Launch { speed, ..*launch }, false).ending, Ending::Seat(Seat::Other))
+    };
+    let mut speed = low;
+    while !shifts(speed) {
+        if speed >= high {
+            return None;
+        }
+        speed = (1.01 * speed).min(high);
+    }
+    let (mut too_slow, mut enough) = (speed / 1.01, speed);
+    while enough - too_slow > 1e-6 * enough {
+        let middle = 0.5 * (too_slow + enough);
+        if shifts(middle) { enough = middle } else { too_slow = middle }
+    }
+    Some(enough)
+}

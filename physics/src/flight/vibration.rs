@@ -1,0 +1,79 @@
+//! How hard the valve can be shaken: the least accelerations that take the sphere off its seat and over the saddle (section 5.1.3).
+
+use super::landscape::Landscape;
+use super::run::{Asked, Ending, Mode, moved};
+use super::{Excitation, Setup, Vector, Wave};
+
+/// Relative steps of the amplitude in which a shift is looked for, and halvings of the step in which it is found.
+const STEP: f64 = 0.05;
+const HALVINGS: u32 = 24;
+/// Largest amplitude looked at over the static limit.
+const HARDEST: f64 = 1e4;
+
+/// Accelerations of the valve in m/s^2, as amplitudes of the wave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thresholds {
+    /// Least one at which the sphere comes off one side of its seat; `None` if this direction presses it in.
+    pub unseats: Option<f64>,
+    /// Least one at which it passes the saddle; `None` if none is found.
+    pub shifts: Option<f64>,
+    /// What a half-sine of this length needs at least to give the sphere the energy of the saddle, pi sqrt(2 dU / m) / (2 T).
+    pub shock_bound: Option<f64>,
+}
+
+/// The thresholds of a `wave` of base acceleration along `direction` (of length 1).
+pub fn thresholds(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Vector) -> Thresholds {
+    let unseats = static_limit(setup, landscape, wave, direction);
+    let shock_bound = match wave {
+        Wave::HalfSine { duration } => {
+            Some(0.5 * std::f64::consts::PI * landscape.least_speed(setup.mass) / duration)
+        }
+        _ => None,
+    };
+    let shifts = unseats.and_then(|unseats| {
+        least(unseats, |amplitude| shaken_over(setup, landscape, wave, direction, amplitude))
+    });
+    Thresholds { unseats, shifts, shock_bound }
+}
+
+/// Whether the sphere passes the saddle when the valve is shaken with this `amplitude`.
+fn shaken_over(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Vector, amplitude: f64) -> bool {
+    let mut setup = setup.clone();
+    setup.field.shaken = Some(Excitation { direction, amplitude, wave: wave.clone() });
+    setup.end_time += wave.end();
+    let (state, mode) = setup.seated(landscape);
+    let asked = Asked { path: false, beyond: Some(landscape.saddle.x) };
+    moved(&setup, landscape, state, mode, asked).ending == Ending::Passed
+}
+
+/// Least amplitude from `low` on for which something `happens`, by steps and halvings.
+fn least(low: f64, happens: impl Fn(f64) -> bool) -> Option<f64> {
+    let (mut below, mut above) = (low, low);
+    while !happens(above) {
+        if above > HARDEST * low {
+            return None;
+        }
+        (below, above) = (above, above * (1.0 + STEP));
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (below + above);
+        if happens(middle) { above = middle } else { below = middle }
+    }
+    Some(above)
+}
+
+/// Least amplitude at which a surface of the seat has no more to carry: the statics of a sphere between two surfaces.
+fn static_limit(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Vector) -> Option<f64> {
+    let (state, Mode::Wedged(normals, _)) = setup.seated(landscape) else { return Some(0.0) };
+    let pull = setup.field.acceleration(setup.mass, f64::INFINITY, state.place);
+    let [a, b] = normals;
+    let presses = |pull: Vector| [-pull.perp(&b) / a.perp(&b), pull.perp(&a) / a.perp(&b)];
+    let (rest, shaken) = (presses(pull), presses(-direction));
+    let limits = wave.peaks().into_iter().flat_map(|peak| {
+        rest.into_iter()
+            .zip(shaken)
+            .filter(move |(_, shaken)| shaken * peak < 0.0)
+            .map(move |(rest, shaken)| rest / -(shaken * peak))
+    });
+    limits.reduce(f64::min)
+}
