@@ -124,7 +124,8 @@ def summary(
     special = dict(special)
     if run.in_contact_at_end:
         special["at_end"] = {
-            name: {"value": value, "band": found[name].band} for name, value in values.items()
+            name: {"value": value, "band": found[name].band}
+            for name, value in values.items()
             if name in found
         }
         found = {OF_A_BODY: found[OF_A_BODY]}
