@@ -52,7 +52,7 @@ const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
 }
 
 /// The features, of plates first.
-pub static FEATURES: [Feature; 27] = [
+pub static FEATURES: [Feature; 28] = [
     feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)).by(Form::CircularPlate),
     feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported))
         .by(Form::CircularPlate),
@@ -70,6 +70,7 @@ pub static FEATURES: [Feature; 27] = [
     feature("yielding material", |s| plate(s, |p| p.yields())),
     feature("impacts in series", |s| plate(s, |p| p.series.is_some())),
     feature("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))).by(Form::Cantilever),
+    feature("stack", |s| plate(s, |p| matches!(p.outer.shape, Shape::Stack(_)))),
     feature("friction", |s| plate(s, |p| p.friction > 0.0)),
     feature("off-centre impact", |s| plate(s, |p| p.outer.offset > 0.0)),
     feature("oblique impact", |s| plate(s, |p| p.outer.angle != 0.0)),

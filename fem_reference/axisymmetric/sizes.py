@@ -36,6 +36,8 @@ class MeshSettings:
     """Smallest and largest peak contact radius, m: between them the zone's elements are finest."""
     rim_element: float | None = None
     """Element length at the plate's rim, m; None: the rim is not refined."""
+    factor: float = 1.0
+    """On the number of elements asked for."""
 
     @property
     def contact_zone(self) -> float:

@@ -18,6 +18,7 @@ from ..explicit.parts import Rows
 from ..explicit.plastic import Plasticity
 from .elasticity import BodyMatrices, scatter
 from .mesh import BodyMesh
+from .stack import StackBody
 from .tip import ring_edges
 
 BODIES = ("outer", "plate", "inner")
@@ -64,6 +65,8 @@ class AxisymmetricSystem:
     relaxations: tuple[tuple[Relaxation, ...], ...] = ((), (), ())
     tip: int | None = None
     """Node whose motion is the outer body's, if that is a beam."""
+    stack: StackBody | None = None
+    """The outer body, if it is one; its tip is `tip`."""
     plasticity: Plasticity | None = None
     """Of the boxes around the contacts of bodies that yield."""
 

@@ -179,7 +179,94 @@ class Bender:
         return 2.0 * self.strike.kinetic_energy / self.speed**2
 
 
-Body = Sphere | Compact | Bender
+@dataclass(frozen=True)
+class Supply:
+    """A charged buffer behind a resistor."""
+
+    resistance: float
+    """Ohm"""
+    buffer_capacitance: float | None
+    """F; None: so large that its voltage stays."""
+
+    @property
+    def elastance(self) -> float:
+        """Of the buffer, 1/F."""
+        return 0.0 if self.buffer_capacitance is None else 1.0 / self.buffer_capacitance
+
+
+@dataclass(frozen=True)
+class Stack:
+    """Round rod of piezo layers, fixed at its base; its tip is that of a compact body."""
+
+    RADIUS_KEY: ClassVar[str] = "tip_radius"
+    length: float
+    """m"""
+    area: float
+    """Of the section, m^2."""
+    stroke: float
+    """Free, at `voltage`, m."""
+    blocked_force: float
+    """At `voltage`, N."""
+    voltage: float
+    """V"""
+    capacitance: float
+    """Free, F."""
+    density: float
+    """kg/m^3"""
+    poisson_ratio: float
+    tip_radius: float
+    """m"""
+    gap: float
+    """Of the tip before the voltage is switched on, m."""
+    drive: Supply | None
+    """None: a source that holds the voltage."""
+    material: Material
+    """Of the tip."""
+
+    @property
+    def radius(self) -> float:
+        """Of a round section, m."""
+        return math.sqrt(self.area / math.pi)
+
+    @property
+    def force_per_voltage(self) -> float:
+        """N/V, and charge per extension, C/m."""
+        return self.blocked_force / self.voltage
+
+    @property
+    def stiffness(self) -> float:
+        """At constant voltage, N/m."""
+        return self.blocked_force / self.stroke
+
+    @property
+    def held_capacitance(self) -> float:
+        """Of the stack held at its length, F."""
+        return self.capacitance - self.force_per_voltage**2 / self.stiffness
+
+    @property
+    def mass(self) -> float:
+        """Mass, kg."""
+        return self.density * self.area * self.length
+
+    @property
+    def ceramic(self) -> Material:
+        """What all of it is made of, so that its stiffness is `stiffness`."""
+        modulus = self.stiffness * self.length / self.area
+        return Material("stack", modulus, self.poisson_ratio, self.density)
+
+    @property
+    def step_speed(self) -> float:
+        """Of the tip after a step of the voltage: stroke c / L, m/s."""
+        wave_speed = math.sqrt(self.stiffness * self.length / (self.area * self.density))
+        return self.stroke * wave_speed / self.length
+
+    @property
+    def energy(self) -> float:
+        """Half of blocked force times stroke, the measure of what it can give, J."""
+        return 0.5 * self.blocked_force * self.stroke
+
+
+Body = Sphere | Compact | Bender | Stack
 
 
 def sphere_profile(radius: float, r: Floats) -> Floats:

@@ -101,6 +101,7 @@ def summary(
     meshes: list[MeshResult],
     targeted: tuple[Target, ...],
     solver: dict[str, Any],
+    undetermined: tuple[str, ...] = (),
     **special: Any,
 ) -> dict[str, Any]:
     """The summary of a solution.
@@ -115,13 +116,17 @@ def summary(
         meshes: finest first.
         targeted: quantities whose relative band counts.
         solver: versions; levels, processes, memory.
+        undetermined: quantities that mean nothing in this scene.
         special: what only this kind of scene has.
     """
     values, found = meshes[0].values, estimates(meshes)
+    found = {name: estimate for name, estimate in found.items() if name not in undetermined}
     special = dict(special)
     if run.in_contact_at_end:
         special["at_end"] = {
-            name: {"value": value, "band": found[name].band} for name, value in values.items()
+            name: {"value": value, "band": found[name].band}
+            for name, value in values.items()
+            if name in found
         }
         found = {OF_A_BODY: found[OF_A_BODY]}
     return {

@@ -35,6 +35,8 @@
 
 #include "plastic.c"
 
+#include "voltage.c"
+
 /* Friction on a closed pair of matching nodes, along the radius: the multiplier that leaves the two no relative
  * velocity at the step's end, as far as Coulomb's law lets it grow. */
 static void rub(const State *s, Pairs *c, int64_t k, double lambda) {
@@ -153,6 +155,7 @@ static void remember(const State *s) {
         memcpy(p->before + C * i, v + C * (int64_t)p->global[i], C * sizeof *v);
     if (p->film) openings(p->film, v, p->film->before);
     if (p->plastic) flow(p->plastic, s->u, p->dt);
+    if (p->voltage) p->voltage->before = v[C * p->voltage->node + AXIAL];
 }
 
 /* Contact and film correct what was predicted. */
@@ -161,9 +164,11 @@ static void close_step(const State *s) {
     const double dt = p->dt;
     double *u = s->u, *v = s->v;
     book_supports(s, p->reaction);
+    if (p->voltage) push_tip(s, p->voltage);
     if (p->film) correct_with_film(s, p->film);
     for (int64_t c = 0; c < p->matched; ++c) correct(s, &p->pairs[c]);
     if (p->film) book_film(s, p->film);
+    if (p->voltage) book_voltage(s, p->voltage);
     for (int64_t i = 0; i < p->nodes; ++i) {
         const int64_t g = C * (int64_t)p->global[i];
         memcpy(p->u + C * i, u + g, C * sizeof *u);
@@ -299,6 +304,7 @@ void run(State *s, Carried *body, const Watched *watched, int64_t samples, int64
 int64_t layout(int32_t what) {
     const size_t size[] = {sizeof(Record), sizeof(Pairs), sizeof(Rigid), sizeof(Contact), sizeof(Problem),
                            sizeof(Part),  sizeof(State), sizeof(Carried), sizeof(Tip),
-                           sizeof(Watched), sizeof(Film), sizeof(Plastic), sizeof(Relaxing)};
+                           sizeof(Watched), sizeof(Film), sizeof(Plastic), sizeof(Relaxing),
+                           sizeof(Voltage)};
     return (int64_t)size[what];
 }

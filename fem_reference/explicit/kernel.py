@@ -37,6 +37,7 @@ from .structures import (
     Rigid,
     State,
     Tip,
+    Voltage,
     Watched,
 )
 
@@ -162,7 +163,7 @@ def load(components: int) -> ctypes.CDLL:
     kernel.layout.restype = ctypes.c_int64
     mirrors: tuple[type[ctypes.Structure], ...] = (
         *(Record, Pairs, Rigid, Contact, Problem, PARTS[components], State, Carried, Tip, Watched),
-        *(Film, Plastic, Relaxing),
+        *(Film, Plastic, Relaxing, Voltage),
     )
     for number, mirror in enumerate(mirrors):
         if kernel.layout(number) != ctypes.sizeof(mirror):

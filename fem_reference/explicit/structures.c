@@ -129,6 +129,23 @@ typedef struct {
     Record record;         /* of forces along each candidate's own normal */
 } Contact;
 
+/* What drives a stack, see voltage.c. */
+typedef struct {
+    int64_t node;             /* the tip, in the numbering of the system */
+    double force_per_voltage; /* alpha, N/V */
+    double capacitance;       /* C_S of the stack held at its length, F */
+    double source;            /* V_0, V */
+    double resistance;        /* Ohm; 0: the source is the voltage */
+    double elastance;         /* of the buffer, 1/F */
+    double charge;            /* C */
+    double extension;         /* at the start of the step, m */
+    double force;             /* in the step, N */
+    double before;            /* velocity of the tip before it, m/s */
+    double impulse;           /* on the tip so far, N s */
+    double work;              /* on the tip so far, J */
+    double heat;              /* in the resistor so far, J */
+} Voltage;
+
 typedef struct {
     int64_t nodes;          /* surface nodes that can touch */
     const int32_t *global;  /* (nodes) their number in the system */
@@ -145,6 +162,7 @@ typedef struct {
     Pairs *pairs;           /* (matched), in the numbering of the system */
     Film *film;             /* 0: none */
     Plastic *plastic;       /* 0: none */
+    Voltage *voltage;       /* of a stack; 0: none */
     double dt;
     double tolerance;       /* of the multipliers, over the largest one */
     int64_t step;           /* steps done */

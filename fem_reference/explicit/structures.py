@@ -155,6 +155,26 @@ class Contact(ctypes.Structure):
     )
 
 
+class Voltage(ctypes.Structure):
+    """Mirror of ``Voltage`` in C."""
+
+    _fields_ = (
+        ("node", ctypes.c_int64),
+        ("force_per_voltage", ctypes.c_double),
+        ("capacitance", ctypes.c_double),
+        ("source", ctypes.c_double),
+        ("resistance", ctypes.c_double),
+        ("elastance", ctypes.c_double),
+        ("charge", ctypes.c_double),
+        ("extension", ctypes.c_double),
+        ("force", ctypes.c_double),
+        ("before", ctypes.c_double),
+        ("impulse", ctypes.c_double),
+        ("work", ctypes.c_double),
+        ("heat", ctypes.c_double),
+    )
+
+
 class Problem(ctypes.Structure):
     """Mirror of ``Problem`` in C."""
 
@@ -174,6 +194,7 @@ class Problem(ctypes.Structure):
         ("pairs", ctypes.POINTER(Pairs)),
         ("film", ctypes.POINTER(Film)),
         ("plastic", ctypes.POINTER(Plastic)),
+        ("voltage", ctypes.POINTER(Voltage)),
         ("dt", ctypes.c_double),
         ("tolerance", ctypes.c_double),
         ("step", ctypes.c_int64),

@@ -98,7 +98,7 @@ def solve(flight: Document) -> Document:
     along = (math.sin(flight["angle"]), math.cos(flight["angle"]))
     speed = flight["speed"]
     sphere.start(seats[0], (speed * along[0], speed * along[1]), flight["spin"])
-    flown = sphere.fly(seats, END)
+    flown = sphere.fly(END)
     near = [math.dist(flown.place, centre) < 0.1 for centre in seats]
     name = "same" if near[0] else "other" if near[1] else "none"
     return {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 from typing import Any
 
@@ -72,6 +73,12 @@ class AxisymmetricMotion:
             carried.node = -1
         if system.tip is not None:
             bodies[0].node = system.tip
+        self.voltage: structures.Voltage | None = None
+        self._outer_before = 0.0
+        if system.stack is not None and system.tip is not None:
+            self.voltage = system.stack.voltage(system.tip)
+            self.loop.problem.state.voltage = ctypes.pointer(self.voltage)
+            self._outer_before = float(self.loop.u[2 * system.tip + 1])
         self.dents: Dents | None = None
         if self.loop.problem.plastic is not None:
             self.dents = Dents(system, self.loop.problem.plastic)
@@ -131,13 +138,29 @@ class AxisymmetricMotion:
             (yielded.lost[0] - outer.rubbed, yielded.lost[1] - inner.rubbed),
         )
         slowed = drag.impulse if drag else 0.0
+        pushed, supplied, taken = self._supplied()
         return Further(
             losses if damping or film or drag or dents or outer.friction > 0.0 else None,
-            slowed + (damping.impulse if damping else 0.0),
+            slowed + pushed + (damping.impulse if damping else 0.0),
             slowed - (film.impulse if film else 0.0),
             yielded if dents else None,
             float(dents.locked_in().sum()) if dents else 0.0,
+            supplied=supplied,
+            taken=taken,
         )
+
+    def _supplied(self) -> tuple[float, float, tuple[float, float] | None]:
+        """Momentum (N s) and work (J) of a stack beyond their measures; `Further.taken`."""
+        system, voltage = self.system, self.voltage
+        if voltage is None or system.stack is None:
+            return 0.0, 0.0, None
+        touch, stack = system.stack.touch, system.stack.stack
+        start = float(system.stack.matrices.mass @ touch.velocity[:, 1])
+        work = touch.work + voltage.work
+        extension = -float(self.loop.u[2 * voltage.node + 1])
+        taken = system.stack.taken(voltage, extension)
+        momentum = start + stack.mass * stack.step_speed + voltage.impulse
+        return momentum, work - stack.energy, (taken, work)
 
     def by_role(self, of_bodies: tuple[float, ...]) -> tuple[float, float, float]:
         """See `Motion.by_role`."""
@@ -152,6 +175,7 @@ class AxisymmetricMotion:
     def sample(self, samples: int, stride: int) -> Floats:
         """See `Motion.sample`; samples lie close, so that compiled code takes them."""
         rows = self._sample(samples, stride)
+        rows[:, 0] -= self._outer_before
         rows[:, 3] -= self._watched_before
         return rows
 
@@ -177,6 +201,11 @@ class AxisymmetricMotion:
         loop, system = self.loop, self.system
         impulse = 0.5 * loop.impulse(loop.u)
         loop.v += loop.inverse * impulse
+        if self.voltage is not None and system.stack is not None and system.tip is not None:
+            axial = 2 * system.tip + 1
+            force = system.stack.force(float(loop.u[axial]), float(self.voltage.charge))
+            loop.v[axial] += 0.5 * loop.dt * loop.inverse[axial] * force
+            self.voltage.impulse += 0.5 * loop.dt * force
         loop.problem.state.reaction[1] -= float(impulse[1::2][system.supports].sum())
 
     def velocities(self) -> tuple[float, float]:

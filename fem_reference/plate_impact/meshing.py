@@ -14,6 +14,7 @@ from ..axisymmetric.mesh import BodyMesh, check_elements, face_nodes
 from ..axisymmetric.meshing import mesh_plate, mesh_sphere
 from ..axisymmetric.plastic import boxes, plasticity, together, with_box
 from ..axisymmetric.sizes import MeshSettings
+from ..axisymmetric.stack import ACROSS, StackBody
 from ..axisymmetric.system import (
     AxisymmetricSystem,
     axis_constraints,
@@ -23,7 +24,7 @@ from ..axisymmetric.system import (
 )
 from ..axisymmetric.tip import tip_flexibility
 from ..common.arrays import Floats, Ints
-from ..common.bodies import Bender, Body, Compact, Plate, Sphere, sphere_profile
+from ..common.bodies import Bender, Body, Compact, Plate, Sphere, Stack, sphere_profile
 from ..common.errors import SceneError, SolverError
 from ..explicit.contact import MatchedContact
 from ..explicit.film import Film
@@ -79,7 +80,7 @@ def mesh_settings(
     through_ratio = 1.35 if scene.plate.material.yielding is None else 1.12
     growth, through_growth = (ratio ** (1.0 / factor) for ratio in (1.2, through_ratio))
     edge = (min(outer_radius, inner_radius), max(outer_radius, inner_radius))
-    return MeshSettings(size, count, along, through, growth, through_growth, edge, rim)
+    return MeshSettings(size, count, along, through, growth, through_growth, edge, rim, factor)
 
 
 @dataclass(frozen=True)
@@ -104,6 +105,8 @@ class ImpactMesh:
     settings: MeshSettings
     min_quality: float
     """Least scaled Jacobian of all elements."""
+    stack: StackBody | None = None
+    """The outer body, if it is one."""
 
     @property
     def bodies(self) -> tuple[BodyMesh, BodyMesh, BodyMesh]:
@@ -127,6 +130,8 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     Raises:
         SolverError: gmsh failed or an element is degenerate.
     """
+    across = max(2, round(ACROSS * settings.factor))
+    stack = StackBody(scene.outer, across) if isinstance(scene.outer, Stack) else None
     plate = mesh_plate(scene.plate, settings)
     radii = settings.zone_radii()
     half = scene.plate.thickness / 2.0
@@ -134,8 +139,9 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     def above(body: Body, name: str) -> tuple[BodyMesh, Ints]:
         if isinstance(body, Sphere):
             return mesh_sphere(body, settings, name, radii)
-        # All nodes of a beam at its tip, which is the last.
+        # All nodes of a beam or a stack at its tip, which is the last.
         count = body.beam.mass.size if isinstance(body, Bender) else 1
+        count = stack.count if stack is not None and body is scene.outer else count
         tip = BodyMesh(name, np.zeros((count, 2)), np.zeros((0, 4), dtype=np.int64))
         return tip, np.full(radii.size, count - 1)
 
@@ -164,6 +170,7 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
         ContactSurface(radii, lower_nodes, face(-half)),
         settings,
         quality,
+        stack,
     )
 
 
@@ -198,8 +205,12 @@ def _watched(scene: Scene, plate: BodyMesh) -> tuple[Ints, Floats]:
     return np.concatenate(nodes), np.concatenate(shares)
 
 
-def _discretised(body: BodyMesh, made: Body | Plate) -> tuple[BodyMatrices, Ints]:
+def _discretised(
+    body: BodyMesh, made: Body | Plate, stack: StackBody | None
+) -> tuple[BodyMatrices, Ints]:
     """Matrices of a body and its fixed components (2 * node + component)."""
+    if isinstance(made, Stack) and stack is not None:
+        return stack.matrices, stack.fixed
     if isinstance(made, Bender):
         return beam_body(made.beam), np.arange(2)
     if isinstance(made, Compact):
@@ -227,7 +238,7 @@ def build_system(
     first = np.zeros(4, dtype=np.int64)
     of_scene = (scene.outer, scene.plate, scene.inner)
     for index, (body, made) in enumerate(zip(mesh.bodies, of_scene, strict=True)):
-        matrices, fixed = _discretised(body, made)
+        matrices, fixed = _discretised(body, made, mesh.stack)
         if not matrices.mass.min() > 0.0:
             node = int(np.argmin(matrices.mass))
             r, z = body.points[node]
@@ -259,9 +270,9 @@ def build_system(
         element_stiffness.append(elements.stiffness)
         element_steps.append(elements.critical_time_steps())
         first[index + 1] = first[index] + order.size
-    contacts = []
+    stack, contacts = mesh.stack, []
     for name, surface, index, gap, normal in (
-        ("outer", mesh.outer_contact, 0, 0.0, 1.0),
+        ("outer", mesh.outer_contact, 0, stack.stack.gap if stack else 0.0, 1.0),
         ("inner", mesh.inner_contact, 2, scene.gap, -1.0),
     ):
         made = scene.outer if index == 0 else scene.inner
@@ -286,6 +297,9 @@ def build_system(
     if isinstance(scene.outer, Bender):
         displacement, strike, beam = np.zeros_like(velocity), scene.outer.strike, numbers[0]
         displacement[beam], velocity[beam], tip = strike.displacement, strike.velocity, beam[-1]
+    if stack is not None:
+        displacement, touch, rod = np.zeros_like(velocity), stack.touch, numbers[0]
+        displacement[rod], velocity[rod], tip = touch.displacement, touch.velocity, rod[-1]
     return AxisymmetricSystem(
         stiffness=scipy.sparse.block_diag(stiffness, format="csr"),
         points=np.concatenate(points),
@@ -305,4 +319,5 @@ def build_system(
         tip=tip,
         film=_film(scene, mesh, numbers),
         plasticity=together(yielding),
+        stack=stack,
     )

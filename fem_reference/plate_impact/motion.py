@@ -123,6 +123,10 @@ class Further:
     """Elastic energy that would be left at rest, J."""
     sideways: Sideways | None = None
     """None: symmetry leaves no such motion."""
+    supplied: float = 0.0
+    """Energy that bodies were given beyond the measure of what they had at the start, J."""
+    taken: tuple[float, float] | None = None
+    """Electrical energy that a stack took and work of its voltage on it, J; None: no stack."""
 
 
 class Motion(Protocol):

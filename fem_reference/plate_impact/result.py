@@ -11,7 +11,7 @@ import numpy as np
 
 from ..common import document
 from ..common.arrays import Floats
-from ..common.bodies import Bender
+from ..common.bodies import Bender, Stack
 from ..common.errors import SceneError
 from ..common.output import write_history, write_json
 from ..common.progress import Progress
@@ -53,6 +53,16 @@ TARGETED = (
     Target("outer_force_peak"),
     Target("inner_force_peak", small=MINOR, of="outer_force_peak"),
 )
+
+OF_NO_STACK = ("efficiency", "outer_velocity_final")
+"""Eq. (1) relates to a kinetic energy before the impact; the tip of a stack vibrates on."""
+
+
+def targeted(scene: Scene) -> tuple[Target, ...]:
+    """The quantities whose relative band counts."""
+    if isinstance(scene.outer, Stack):
+        return (Target("inner_velocity_final"), *TARGETED[1:])
+    return TARGETED
 
 
 class Solution(Solved, Protocol):
@@ -224,7 +234,7 @@ def solver(scene: Scene, resolution: str, comm: Any, options: Options) -> MeshSo
         method=method,
         end_time=scene.end_time,
         ratio=RATIO,
-        targeted=TARGETED,
+        targeted=targeted(scene),
         compute=compute,
         quantities=lambda solution: quantities(scene, solution),
         write=write,
@@ -267,6 +277,19 @@ def _bender(bender: Bender, summary: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+def _stack(scene: Scene, solution: Solution) -> dict[str, Any]:
+    """What a stack took and gave."""
+    run = solution.run
+    taken, given = run.stack or (0.0, 0.0)
+    cut = run.in_contact_at_end
+    transmitted = 0.5 * scene.inner.mass * run.inner_velocity**2
+    return {
+        "electrical_energy": taken,
+        "mechanical_energy": given,
+        "share": None if cut else transmitted / taken,
+    }
+
+
 def write_dents(path: Path, runs: list[Run]) -> None:
     """The surfaces at rest after each impact, comma-separated; see `Dents.profiles`."""
     columns = ("impact", "radius", *DENTED_SURFACES)
@@ -294,8 +317,9 @@ def _write(
         resolution,
         run,
         meshes,
-        TARGETED,
+        targeted(scene),
         {"versions": found, **solution.machine()},
+        OF_NO_STACK if isinstance(scene.outer, Stack) else (),
         outer_contacts=None if run.in_contact_at_end else run.contacts[0].count,
         inner_contacts=None if run.in_contact_at_end else run.contacts[1].count,
         mesh=solution.mesh_report(),
@@ -320,6 +344,8 @@ def _write(
         summary |= {"source": "external", "model": solution.program}
     if isinstance(scene.outer, Bender):
         summary["bender"] = _bender(scene.outer, summary)
+    if isinstance(scene.outer, Stack):
+        summary["stack"] = _stack(scene, solution)
     write_json(folder / "summary.json", summary)
     provenance = document.provenance(
         scene,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..common.arrays import Floats
-from ..common.bodies import Bender
+from ..common.bodies import Bender, Stack
 from ..common.settings import PEAK_WINDOW_FRACTION
 from ..explicit.energies import Energies, energies_of
 from ..explicit.levels import MOST_LEVELS
@@ -59,6 +59,8 @@ class Run:
     """None: nothing that could yield."""
     sideways: Sideways | None = None
     """None: symmetry leaves no motion along the plate."""
+    stack: tuple[float, float] | None = None
+    """Energy that a stack took, and that it gave to the plate, J; None: no stack."""
     dents: Floats | None = None
     """As `Dents.profiles`; None of bodies that cannot have any."""
 
@@ -129,12 +131,13 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         losses = replace(losses or Losses(), bodies=motion.by_role(energies.lost))
     vibration = energies.total - further.locked_in
     missed = vibration + (losses.total if losses else 0.0) - initial_energy - work
+    missed -= further.supplied
     # Independent balances: all bodies against the supports, each free one against what acts on it.
     misses = [
         sum(momenta) - outer_start - inner_start - support - further.on_all,
         momenta[2] - inner_start + impulses[1] - further.on_inner,
     ]
-    if not isinstance(scene.outer, Bender):
+    if not isinstance(scene.outer, Bender | Stack):
         misses.append(momenta[0] - outer_start - impulses[0])
     misses += further.sideways.misses if further.sideways else ()
     # The last sample needs one more step, which leaves the levels at different times.
@@ -165,6 +168,7 @@ def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Ru
         losses=losses and losses.of_whole(share),
         yielded=further.yielded,
         sideways=further.sideways,
+        stack=further.taken and (further.taken[0], further.taken[1] - energies.elastic[0]),
     )
 
 

@@ -16,6 +16,8 @@ from ..common.bodies import (
     Material,
     Plate,
     Sphere,
+    Stack,
+    Supply,
     read_material,
 )
 from ..common.errors import SceneError
@@ -100,9 +102,13 @@ class Scene:
 
     @property
     def initial_energy(self) -> float:
-        """Of both bodies at the start: kinetic, and the strain energy of a bender, J."""
-        if isinstance(self.outer, Bender):
-            return self.outer.strike.energy + 0.5 * self.inner.mass * self.inner_speed**2
+        """Of both bodies at the start, J: kinetic, and the strain energy of a bender.
+
+        Of a stack, which is given energy as it goes, the measure of it.
+        """
+        if isinstance(self.outer, Bender | Stack):
+            own = self.outer.strike.energy if isinstance(self.outer, Bender) else self.outer.energy
+            return own + 0.5 * self.inner.mass * self.inner_speed**2
         return 0.5 * (self.outer.mass * self.speed**2 + self.inner.mass * self.inner_speed**2)
 
     @property
@@ -191,10 +197,40 @@ def _bender(reader: Reader) -> Bender:
     return bender
 
 
+def _stack(reader: Reader) -> Stack:
+    reader.allow(
+        *("kind", "length", "area", "stroke", "blocked_force", "voltage", "capacitance"),
+        *("density", "poisson_ratio", "tip_radius", "gap", "drive", "material", "speed"),
+    )
+    supply = None
+    if reader.node.get("drive") is not None:
+        drive = reader.child("drive")
+        drive.allow("resistance", "buffer_capacitance")
+        buffer = drive.node.get("buffer_capacitance")
+        supply = Supply(
+            drive.number("resistance", "Ohm"),
+            None if buffer is None else drive.number("buffer_capacitance", "F"),
+        )
+    return Stack(
+        length=reader.number("length", "m"),
+        area=reader.number("area", "m^2"),
+        stroke=reader.number("stroke", "m"),
+        blocked_force=reader.number("blocked_force", "N"),
+        voltage=reader.number("voltage", "V"),
+        capacitance=reader.number("capacitance", "F"),
+        density=reader.number("density", "kg/m^3"),
+        poisson_ratio=reader.number("poisson_ratio", "(no unit)", above=-1.0, below=0.5),
+        tip_radius=reader.number("tip_radius", "m"),
+        gap=reader.number("gap", "m", inclusive=True),
+        drive=supply,
+        material=read_material(reader.child("material")),
+    )
+
+
 def _direction(outer: Reader, plate: Plate, geometry: str) -> tuple[float, float]:
     """Where the outer body strikes (m from the axis) and at what angle (rad)."""
     offset = angle = 0.0
-    if outer.node.get("kind") != "bender":
+    if outer.node.get("kind") not in ("bender", "stack"):
         offset = outer.number_or("offset", 0.0, "m", below=plate.radius, inclusive=True)
         quarter = 0.5 * math.pi
         angle = outer.number_or("angle", 0.0, "rad", above=-quarter, below=quarter)
@@ -223,6 +259,8 @@ def _series(root: Reader, geometry: str) -> Series | None:
 def _outer(reader: Reader) -> Body:
     if reader.node.get("kind") == "bender":
         return _bender(reader)
+    if reader.node.get("kind") == "stack":
+        return _stack(reader)
     return _body(reader, "speed", "offset", "angle")
 
 
@@ -311,13 +349,14 @@ def parse_scene(document: Any) -> Scene:
         )
     outer, inner = root.child("outer"), root.child("inner")
     bodies = {"outer": _outer(outer), "inner": _body(inner, "gap", "speed")}
-    if isinstance(bodies["outer"], Bender):
+    if isinstance(bodies["outer"], Bender | Stack):
         if geometry == "solid":
-            raise SceneError("outer.kind is 'bender': take reference.geometry 'axisymmetric'")
+            kind = outer.node["kind"]
+            raise SceneError(f"outer.kind is '{kind}': take reference.geometry 'axisymmetric'")
         if end_time is None:
             raise SceneError(
-                "run.end_time is missing; a bender swings back to the plate for ever, so that it "
-                "has to be given"
+                "run.end_time is missing; a bender or a stack comes back to the plate for ever, so "
+                "that it has to be given"
             )
     offset, angle = _direction(outer, plate, geometry)
     friction = root.number_or("friction", 0.0, "(no unit)", inclusive=True)

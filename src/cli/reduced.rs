@@ -88,6 +88,15 @@ pub fn table(summary: &Summary) -> String {
             ("strike_delay", drive.strike_delay, "s"),
         ])
     });
+    let stack = summary.stack.iter().flat_map(|stack| {
+        let share = stack.share.map(|share| ("share of electrical energy", share, "1"));
+        [
+            ("electrical_energy", stack.electrical_energy, "J"),
+            ("mechanical_energy", stack.mechanical_energy, "J"),
+        ]
+        .into_iter()
+        .chain(share)
+    });
     let [striker, struck, middle] = match summary.quantities.get("actuator_force_peak") {
         Some(_) => ["lost in actuator contact", "lost in sphere contact", "lost in seat"],
         None => ["lost in outer contact", "lost in inner contact", "lost in plate"],
@@ -109,7 +118,7 @@ pub fn table(summary: &Summary) -> String {
     let patches = summary.contact_pressure.iter().flat_map(ContactPressure::rows);
     let speeds = summary.elastic_limit.iter().flat_map(ElasticLimit::rows);
     let speeds = speeds.map(|(name, speed)| (name, speed, "m/s"));
-    for (name, value, unit) in patches.chain(speeds).chain(bender).chain(losses) {
+    for (name, value, unit) in patches.chain(speeds).chain(bender).chain(stack).chain(losses) {
         lines.push(format!("  {name:<24} {:>14}", with_unit(value, prefixed(unit, value), 6)));
     }
     lines.extend(series(&summary.impacts));

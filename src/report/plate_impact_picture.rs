@@ -57,7 +57,7 @@ pub(super) fn plate_picture(scene: &PlateImpact) -> Markup {
 fn shown_radius(shape: &Shape, plate: f64) -> f64 {
     match shape {
         Shape::Sphere { radius } => *radius,
-        Shape::Compact { .. } | Shape::Bender(_) => shape.tip_radius().min(plate),
+        Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => shape.tip_radius().min(plate),
     }
 }
 
@@ -74,7 +74,7 @@ fn body(shape: &Shape, name: &str, radius: f64, centre: [f64; 2], side: f64, sca
     html! {
         @match shape {
             Shape::Sphere { .. } => circle class=(format!("fig-body {name}")) cx=(x2(x)) cy=(x2(y)) r=(x2(r)) {},
-            Shape::Compact { .. } | Shape::Bender(_) => {
+            Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => {
                 path class=(format!("fig-body {name}")) d=(format!("M{} {}A{r:.2} {r:.2} 0 0 {sweep} {} {}", x2(x - r), x2(y), x2(x + r), x2(y))) {}
                 path.fig-frame stroke-dasharray="3 3" d=(format!("M{} {}V{}H{}V{}", x2(x - r), x2(y), x2(y - side * r), x2(x + r), x2(y))) {}
             },
@@ -159,6 +159,14 @@ fn of_body(shape: &Shape, material: &Material) -> String {
             "bender, length {}, tip mass {}, tip radius {tip}, {}",
             measure(bender.length, "m"),
             grams(bender.tip_mass),
+            material.name
+        ),
+        Shape::Stack(stack) => format!(
+            "stack, length {}, stroke {}, blocked force {}, {}, tip radius {tip}, {}",
+            measure(stack.length, "m"),
+            measure(stack.stroke, "m"),
+            measure(stack.blocked_force, "N"),
+            measure(stack.voltage, "V"),
             material.name
         ),
     }

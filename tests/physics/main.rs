@@ -15,6 +15,7 @@ mod materials_yielding;
 mod plate_frequencies_leissa;
 mod shared_bodies;
 mod squeeze_film;
+mod stack;
 mod studies_paper;
 mod table1_paper;
 mod table2_paper;

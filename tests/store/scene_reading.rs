@@ -341,6 +341,39 @@ fn a_bender_is_given_in_exactly_one_way() {
 }
 
 #[test]
+fn a_stack_that_cannot_be_is_told() {
+    let stack = |from: &str, to: &str| {
+        let keys = "kind = \"stack\"\nlength = 0.018\narea = 25e-6\nstroke = 17.4e-6\nblocked_force = 850\nvoltage = 150\ncapacitance = 1.4e-6\ndensity = 8000\ntip_radius = 0.004";
+        let keys = keys.replacen(from, to, 1);
+        let text = edited("kind     = \"sphere\"\nradius   = \"10 mm\"", &keys);
+        text.replacen("speed    = \"550 mm/s\"\n", "", 1)
+    };
+    assert!(Scene::parse("scene.toml", &stack("", "")).is_ok());
+    let both = stack("density = 8000", "density = 8000\nfirst_frequency = 3e4");
+    refuses(&both, 25, &["outer.density", "outer.first_frequency", "both", "inertia"]);
+    refuses(&stack("density = 8000\n", ""), 16, &["inertia is missing", "outer.first_frequency"]);
+    refuses(
+        &stack("blocked_force = 850", "blocked_force = 0"),
+        21,
+        &["outer.blocked_force", "greater than 0 N"],
+    );
+    refuses(&stack("voltage = 150", "voltage = \"150 N\""), 22, &["outer.voltage", "V"]);
+    refuses(&stack("density = 8000", "density = 8000\nspeed = 1"), 25, &["outer.speed", "stack"]);
+    let drive = stack("density = 8000", "density = 8000\ndrive = { buffer_capacitance = 1e-5 }");
+    refuses(&drive, 25, &["outer.drive.resistance", "missing", "Ohm"]);
+    for (from, to, parts) in [
+        ("capacitance = 1.4e-6", "capacitance = 0.6e-6", ["outer.capacitance", "6.5733e-7 F"]),
+        ("density = 8000", "density = 8000\ngap = 36e-6", ["outer.gap", "3.4800e-5 m"]),
+        ("density = 8000", "density = 8000\ngap = 36e-6", ["outer.gap", "never touches"]),
+    ] {
+        let error = Scene::parse("scene.toml", &stack(from, to)).expect_err("no stack");
+        assert_eq!(error.exit_status(), ExitStatus::InvalidScene);
+        let said = error.to_string();
+        assert!(parts.iter().all(|part| said.contains(part)), "{said}");
+    }
+}
+
+#[test]
 fn shear_thinning_is_given_in_full_or_not_at_all() {
     let fluid = |keys: &str| {
         let water = "[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6";

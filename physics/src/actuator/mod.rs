@@ -2,6 +2,10 @@
 
 pub mod beam;
 pub mod cantilever;
+pub mod circuit;
+pub mod stack;
+
+pub use stack::{Stack, Supply};
 
 use serde::Serialize;
 

@@ -6,7 +6,8 @@
 
 use super::duhamel::{MOMENTS, Oscillator};
 use super::stages::{STAGES, Stages, powers};
-use super::system::System;
+use super::system::{System, dot};
+use crate::actuator::circuit::Feed;
 use bytemuck::cast;
 use wide::{f64x4, u64x4};
 
@@ -46,11 +47,31 @@ pub struct Block {
     oscillators: [Oscillator; LANES],
 }
 
+/// An oscillator of a circuit.
+#[derive(Debug, Clone)]
+pub struct Fed {
+    /// Its place among the oscillators.
+    pub place: usize,
+    pub oscillator: Oscillator,
+    /// Approach of the first contact per unit.
+    pub approach: f64,
+    pub feed: Feed,
+}
+
+impl Fed {
+    /// Coordinate and rate, positive against the force, at time `t` under forces tau^p / p!.
+    pub fn answers(&self, t: f64) -> [Stages; 2] {
+        self.oscillator.fed(&self.feed, &self.oscillator.moments(t))
+    }
+}
+
 /// All blocks of a [`System`].
 #[derive(Debug, Clone)]
 pub struct Bank {
     /// In the order of the oscillators.
     pub blocks: Vec<Block>,
+    /// Oscillators of a circuit, which the force of the first contact moves in one more way; none of any other body.
+    pub fed: Vec<Fed>,
 }
 
 impl Bank {
@@ -73,7 +94,16 @@ impl Bank {
                 oscillators,
             }
         };
-        Self { blocks: system.oscillators.chunks(LANES).zip((0..).step_by(LANES)).map(block).collect() }
+        let fed = system.feeds.iter().map(|&(place, feed)| Fed {
+            place,
+            oscillator: system.oscillators[place],
+            approach: system.approach[0][place],
+            feed,
+        });
+        Self {
+            blocks: system.oscillators.chunks(LANES).zip((0..).step_by(LANES)).map(block).collect(),
+            fed: fed.collect(),
+        }
     }
 
     /// Approaches in m, without the gaps, with their first and second derivatives by time, `t` s after the state
@@ -103,7 +133,16 @@ impl Bank {
                 sums[1] += b1 * value;
             }
         }
-        sums.map(|sums| sums.map(f64x4::reduce_add))
+        let mut sums = sums.map(|sums| sums.map(f64x4::reduce_add));
+        for fed in &self.fed {
+            let [displacement, rate] = fed.answers(t).map(|answers| dot(&answers, &forces[0]));
+            let Oscillator { omega, alpha } = fed.oscillator;
+            let acceleration = omega.powi(2) * displacement + 2.0 * alpha * rate - fed.feed.push * now[0];
+            sums[0][0] -= fed.approach * displacement;
+            sums[1][0] -= fed.approach * rate;
+            sums[2][0] += fed.approach * acceleration;
+        }
+        sums
     }
 
     /// Rates of the approaches in m/s with the rates `v` of the oscillators.

@@ -12,6 +12,7 @@
 
 use super::duhamel::Oscillator;
 use super::stages::{STAGES, Stages};
+use crate::actuator::circuit::Feed;
 use crate::numerics::quadrature::{gauss_legendre, gauss_radau};
 use wide::f64x4;
 
@@ -196,6 +197,11 @@ impl<const P: usize> Collocation<P> {
             displacement_per_force: self.per_force(&moments[2..], h),
             velocity_per_force: self.per_force(&moments[1..], h),
         }
+    }
+
+    /// Coordinate and rate of an oscillator through `feed` at time `t` of a step of length `h`, per force at the nodes.
+    pub fn fed(&self, oscillator: &Oscillator, feed: &Feed, t: f64, h: f64) -> [Stages; 2] {
+        oscillator.fed(feed, &oscillator.moments(t)).map(|answers| self.per_force(&answers, h))
     }
 
     /// Answer per force at each node of a step of length `h`, from the answers to tau^p / p!.

@@ -7,6 +7,7 @@
 //! started by the power series, it is stable when omega t is small, a rigid motion included.
 
 use super::stages::STAGES;
+use crate::actuator::circuit::Feed;
 
 /// Number of moments of one time: s', s, S_0 ... S_(STAGES-1).
 pub const MOMENTS: usize = STAGES + 2;
@@ -60,6 +61,26 @@ impl Oscillator {
         }
         let [slope, impulse, ..] = self.moments(t);
         [slope, impulse]
+    }
+
+    /// Coordinate and rate, positive against the force, under forces tau^p / p! through `feed`, from the oscillator's `moments`.
+    #[inline]
+    pub fn fed(&self, feed: &Feed, moments: &[f64; MOMENTS]) -> [[f64; STAGES]; 2] {
+        let Feed { push, slip } = *feed;
+        let of = |p: usize| {
+            let [rate, displacement] = [moments[p + 1], moments[p + 2]];
+            [
+                push * displacement + slip * (rate + 2.0 * self.alpha * displacement),
+                push * rate - slip * self.omega.powi(2) * displacement,
+            ]
+        };
+        [0, 1].map(|i| std::array::from_fn(|p| of(p)[i]))
+    }
+
+    /// Coordinate and rate after `time` s of free motion from `state`.
+    pub fn after(&self, time: f64, [q, v]: [f64; 2]) -> [f64; 2] {
+        let [slope, impulse] = self.free(time);
+        [(slope + 2.0 * self.alpha * impulse) * q + impulse * v, slope * v - self.omega.powi(2) * impulse * q]
     }
 
     /// Small omega t: power series for the two highest moments, recurrence downwards.

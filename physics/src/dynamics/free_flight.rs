@@ -93,6 +93,11 @@ pub fn is_over(system: &System, q: &[f64], v: &[f64]) -> bool {
     inner.horizon(0.0).is_none() && GapBounds::new(system, 0, q, v).horizon(0.0).is_none()
 }
 
+/// Whether the inner body, which is free, recedes and is out of reach in the state (`q`, `v`), whatever the outer one does to the plate.
+pub fn inner_is_gone(system: &System, q: &[f64], v: &[f64]) -> bool {
+    inner_is_out_of_reach(system, &GapBounds::new(system, 1, q, v), q, v)
+}
+
 /// A time in s within which no contact can touch in free flight from the state (`q`, `v`).
 pub fn safe_step(system: &System, q: &[f64], v: &[f64]) -> f64 {
     let safe = |contact: usize| {
@@ -106,10 +111,7 @@ pub fn safe_step(system: &System, q: &[f64], v: &[f64]) -> f64 {
 /// The state after `time` s of free flight, in place.
 pub fn advance(system: &System, time: f64, q: &mut [f64], v: &mut [f64]) {
     for (oscillator, (q, v)) in system.oscillators.iter().zip(q.iter_mut().zip(v)) {
-        let [slope, impulse] = oscillator.free(time);
-        let start = *q;
-        *q = (slope + 2.0 * oscillator.alpha * impulse) * start + impulse * *v;
-        *v = slope * *v - oscillator.omega.powi(2) * impulse * start;
+        [*q, *v] = oscillator.after(time, [*q, *v]);
     }
 }
 
@@ -117,7 +119,7 @@ pub fn advance(system: &System, time: f64, q: &mut [f64], v: &mut [f64]) {
 ///
 /// A bender swings back to the plate for ever; what it does to the plate then can't concern the inner body any more.
 fn inner_is_out_of_reach(system: &System, bounds: &GapBounds, q: &[f64], v: &[f64]) -> bool {
-    let energy = system.energy(q, v) - 0.5 * v[INNER].powi(2);
+    let energy = system.energy_left(q, v) - 0.5 * v[INNER].powi(2);
     let plate = system.oscillators.iter().zip(&system.approach[1]).enumerate().filter(|(k, _)| *k != INNER);
     // |sum of b q|^2 <= (sum of b^2/omega^2) (sum of omega^2 q^2), infinite for a free plate
     let flexibility: f64 =
@@ -171,9 +173,9 @@ impl GapBounds {
         let (mut gap, mut rate) = (self.rigid_gap + self.rigid_rate * time, self.rigid_rate);
         for (k, oscillator) in system.oscillators.iter().enumerate() {
             if oscillator.omega > 0.0 {
-                let [slope, impulse] = oscillator.free(time);
-                gap -= b[k] * ((slope + 2.0 * oscillator.alpha * impulse) * q[k] + impulse * v[k]);
-                rate -= b[k] * (slope * v[k] - oscillator.omega.powi(2) * impulse * q[k]);
+                let [q, v] = oscillator.after(time, [q[k], v[k]]);
+                gap -= b[k] * q;
+                rate -= b[k] * v;
             }
         }
         (gap, rate)

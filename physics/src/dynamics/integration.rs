@@ -2,6 +2,7 @@
 //! unexplained.
 
 use super::contact_ledger::ContactLedger;
+use super::free_flight;
 use super::system::{PLATE, System};
 use crate::result::{History, Losses};
 
@@ -16,11 +17,13 @@ pub struct Options {
     pub sample_interval: Option<f64>,
     /// Relative error of the force peaks from looking for them within the steps; 0 = as exact as rounding permits.
     pub peak_error: f64,
+    /// Whether the heat in the drive of a stack is summed up, for its ledger of energy.
+    pub heat: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 1e-7, end_time: None, sample_interval: None, peak_error: 0.0 }
+        Self { tolerance: 1e-7, end_time: None, sample_interval: None, peak_error: 0.0, heat: false }
     }
 }
 
@@ -46,6 +49,10 @@ pub struct Integration {
     pub error_estimate: Option<f64>,
     /// Tolerance that the integration keeps whatever smaller one is asked for; 0 where it keeps any.
     pub kept_tolerance: f64,
+    /// What a stack took and gave, if the outer body is one.
+    pub supplied: Option<Supplied>,
+    /// Whether the run ended with a stack that presses on a plate which the inner body has left for good.
+    pub pressed: bool,
     /// Course over time, if asked for.
     pub history: Option<History>,
 }
@@ -53,7 +60,7 @@ pub struct Integration {
 impl Integration {
     /// Whether the run ended while bodies touched: what the impact comes to is then open.
     pub fn is_cut(&self) -> bool {
-        self.contacts.iter().any(|contact| contact.closed)
+        self.contacts.iter().any(|contact| contact.closed) && !self.pressed
     }
 }
 
@@ -82,6 +89,17 @@ impl FluidAccount {
     }
 }
 
+/// Energies of a stack from its switching on to the end of a run, J.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Supplied {
+    /// Taken from the buffer or the source.
+    pub taken: f64,
+    /// Given to plate and inner body.
+    pub given: f64,
+    /// What no heat accounts for of what was taken, but neither held nor given; where none was summed up, heat.
+    pub rest: f64,
+}
+
 /// The end of a run.
 pub(super) struct Closing<'a> {
     pub(super) system: &'a System,
@@ -93,6 +111,8 @@ pub(super) struct Closing<'a> {
     pub(super) contacts: [ContactLedger; 2],
     pub(super) fluid: FluidAccount,
     pub(super) steps: u64,
+    /// Heat in the drive of a stack in J, if it was summed up.
+    pub(super) heat: Option<f64>,
 }
 
 impl Closing<'_> {
@@ -101,7 +121,11 @@ impl Closing<'_> {
         let Self { system, v, ref contacts, fluid, .. } = self;
         let velocity = system.of_bodies(v);
         let [start_q, start_v] = &system.start;
-        let initial = system.energy(start_q, start_v);
+        // of a stack's circuit the coordinates have no energy each
+        let initial = match system.stack {
+            Some(_) => system.kinetic_energy(),
+            None => system.energy(start_q, start_v),
+        };
         let end = system.energy(self.q, v);
         let contact_work = contacts[0].work + contacts[1].work;
         let dissipated = fluid.dissipated[0] + fluid.dissipated[1];
@@ -112,6 +136,16 @@ impl Closing<'_> {
         } else {
             end + self.stored - initial + dissipated
         };
+        let supplied = self.supplied();
+        // with its heat the whole ledger of a stack can be told, without it that of the contacts alone
+        let unaccounted = match (supplied, self.heat) {
+            (Some(supplied), Some(_)) => supplied.rest,
+            _ => unaccounted,
+        };
+        let pressed = contacts[0].closed
+            && !contacts[1].closed
+            && system.stack.is_some()
+            && free_flight::inner_is_gone(system, self.q, v);
         Integration {
             velocity,
             contacts: self.contacts,
@@ -128,8 +162,22 @@ impl Closing<'_> {
             steps: self.steps,
             error_estimate: None,
             kept_tolerance: 0.0,
+            supplied,
+            pressed,
             history,
         }
+    }
+}
+
+impl Closing<'_> {
+    fn supplied(&self) -> Option<Supplied> {
+        let [start_q, start_v] = &self.system.start;
+        let (before, still) = self.system.account(start_q, start_v)?;
+        let (after, moved) = self.system.account(self.q, self.v)?;
+        let given = moved + self.stored - still;
+        // what was lost until the touch was heat
+        let rest = after.taken - before.taken - (after.held - before.held) - given - self.heat.unwrap_or(0.0);
+        Some(Supplied { taken: after.taken, given, rest })
     }
 }
 

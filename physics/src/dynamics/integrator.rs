@@ -9,10 +9,11 @@ use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse};
 use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
+use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::stages::STAGES;
+use super::stages::{STAGES, Stages};
 use super::step_bounds::{Bounds, EnergyAccount, base_step, force_scale, momentum_scale};
 use super::system::System;
 use crate::error::{Error, Result};
@@ -59,6 +60,8 @@ struct Stepper<'a> {
     steps: u64,
     /// See [`Options`].
     peak_error: f64,
+    /// Heat in the drive of a stack, J, if it is asked for.
+    heat: Option<f64>,
     damped: bool,
 }
 
@@ -98,6 +101,7 @@ impl<'a> Stepper<'a> {
             contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
             steps: 0,
             peak_error: options.peak_error,
+            heat: options.heat.then_some(0.0),
             damped: system.is_damped(),
         }
     }
@@ -106,7 +110,10 @@ impl<'a> Stepper<'a> {
         let mut touching = true;
         while self.time < self.end_time {
             let [approach, ..] = self.course.end();
-            if !touching && approach[0] <= 0.0 && approach[1] <= 0.0 && !self.fly()? {
+            if !touching
+                && approach[1] <= 0.0
+                && (self.only_presses() || approach[0] <= 0.0 && !self.fly()?)
+            {
                 break;
             }
             self.step()?;
@@ -119,6 +126,14 @@ impl<'a> Stepper<'a> {
             }
         }
         Ok(self.finish())
+    }
+
+    /// Whether all that goes on is a stack that presses on the plate, in a run without an end.
+    fn only_presses(&self) -> bool {
+        let (system, n) = (self.solver.system, self.solver.system.size());
+        system.stack.is_some()
+            && self.end_time.is_infinite()
+            && free_flight::inner_is_gone(system, &flat(&self.q)[..n], &flat(&self.v)[..n])
     }
 
     /// Flies to the next touch; `false` if there is none before the end.
@@ -134,15 +149,16 @@ impl<'a> Stepper<'a> {
             let n = system.size();
             recorder.step(self.time, flight, &q[..n], &v[..n], &[[0.0; STAGES]; 2])?;
         }
+        self.book_heat(flight, &[0.0; STAGES]);
         free_flight::advance(
-            system,
+            self.solver.system,
             flight,
             bytemuck::cast_slice_mut(&mut self.q),
             bytemuck::cast_slice_mut(&mut self.v),
         );
         self.time += flight;
         // exact flight keeps the energy of undamped bodies; of others it is not asked for
-        self.course = at_rest(system.modal_approach(flat(&self.q)), self.course.motion);
+        self.course = at_rest(self.solver.system.modal_approach(flat(&self.q)), self.course.motion);
         self.level = self.level.max(START_LEVEL);
         Ok(more)
     }
@@ -265,12 +281,21 @@ impl<'a> Stepper<'a> {
             contact.book(self.solver.collocation, &course);
         }
         self.book_peaks(&trial);
+        self.book_heat(trial.h, &trial.stages()[0]);
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);
         self.time += trial.h;
         self.steps += 1;
         self.course = trial;
         Ok(())
+    }
+
+    /// Books the heat of the next `h` s under the outer contact's `force` in N, if that is asked for.
+    fn book_heat(&mut self, h: f64, force: &Stages) {
+        if let Some(heat) = &mut self.heat {
+            let StepSolver { system, collocation, .. } = &self.solver;
+            *heat += heating::heat(system, collocation, h, [flat(&self.q), flat(&self.v)], force);
+        }
     }
 
     /// Books the largest forces of the step from the present state to the next.
@@ -315,6 +340,7 @@ impl<'a> Stepper<'a> {
             contacts: self.contacts,
             fluid: FluidAccount::default(),
             steps: self.steps,
+            heat: self.heat,
         };
         closing.integration(self.recorder.map(Recorder::finish))
     }

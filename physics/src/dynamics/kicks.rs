@@ -26,8 +26,12 @@ pub struct Kicked {
     pub impulse: f64,
 }
 
-/// Both contacts of the impact of `system` until no further one is possible, without residual flexibility; `None` if that takes too long.
+/// Both contacts of the impact of `system` until no further one is possible, without residual flexibility; `None` if that takes too long,
+/// and of a stack, which presses on when all else is over.
 pub fn run(system: &System) -> Option<[Kicked; 2]> {
+    if system.stack.is_some() {
+        return None;
+    }
     let h = step(system);
     let bank = Bank::new(system);
     let free: Vec<[f64; 2]> = system.oscillators.iter().map(|oscillator| oscillator.free(h)).collect();

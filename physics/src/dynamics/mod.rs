@@ -11,6 +11,7 @@ pub mod duhamel;
 pub mod explicit_runge_kutta;
 mod force_peak;
 mod free_flight;
+mod heating;
 pub mod integration;
 pub mod integrator;
 pub(crate) mod kicks;

@@ -1,14 +1,20 @@
 //! A body beside the plate as oscillators, in the state in which the impact begins.
 
 use super::duhamel::Oscillator;
+use super::system::dot;
 use crate::actuator::beam::Release;
 use crate::actuator::cantilever;
-use crate::error::Result;
+use crate::actuator::circuit::{self, Circuit, Feed};
+use crate::actuator::stack::{MODES, RodMode, Stack};
+use crate::error::{Error, Result};
 use crate::result::Drive;
 use crate::scene::{Material, Outer, PlateImpact, Shape};
 
+/// Time in radians of the slowest mode after which a stack that has not touched never will.
+const PATIENCE: f64 = 60.0;
+
 /// Outer or inner body: mass-normalised coordinates that move its contact point, and their state at t = 0.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct MovingBody {
     /// The oscillators. Shape (n).
     pub oscillators: Vec<Oscillator>,
@@ -22,6 +28,10 @@ pub struct MovingBody {
     pub mass: f64,
     /// How it was driven, if it is a bender.
     pub drive: Option<Drive>,
+    /// Gap in m to the plate with all coordinates at zero; negative where they are displaced at the touch.
+    pub clearance: f64,
+    /// What supplies it while it strikes, if it is a stack behind a resistor: what the force does to each coordinate. Shape (n).
+    pub supply: Option<(Circuit, Vec<Feed>)>,
 }
 
 impl MovingBody {
@@ -35,17 +45,19 @@ impl MovingBody {
 
     /// Both as rigid bodies; a bender is none.
     pub(super) fn both_rigid(setup: &PlateImpact) -> [Self; 2] {
-        debug_assert!(!matches!(setup.outer.shape, Shape::Bender(_)), "a bender is no rigid body");
+        debug_assert!(!setup.outer.shape.is_held(), "a bender or a stack is no rigid body");
         [Self::rigid_outer(&setup.outer), Self::rigid_inner(setup)]
     }
 
-    /// The outer body of a scene: rigid, or a bender with the modes of its beam.
+    /// The outer body of a scene: rigid, a bender with the modes of its beam, or a stack with those of its rod.
     ///
     /// # Errors
-    /// As [`Release::new`].
+    /// As [`Release::new`] and [`Self::stack`].
     pub fn outer(outer: &Outer) -> Result<Self> {
-        let Shape::Bender(bender) = &outer.shape else {
-            return Ok(Self::rigid_outer(outer));
+        let bender = match &outer.shape {
+            Shape::Bender(bender) => bender,
+            Shape::Stack(stack) => return Self::stack(stack),
+            Shape::Sphere { .. } | Shape::Compact { .. } => return Ok(Self::rigid_outer(outer)),
         };
         let release = Release::new(bender)?;
         let torque = outer.speed / release.speed_per_moment;
@@ -66,7 +78,91 @@ impl MovingBody {
                 kinetic_energy,
                 strike_delay: release.time,
             }),
+            clearance: 0.0,
+            supply: None,
         })
+    }
+
+    /// A stack that is switched on, in the state in which its tip touches; its coordinates are those about its rest.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if it does not reach the plate, and as [`Circuit::new`].
+    pub fn stack(stack: &Stack) -> Result<Self> {
+        let supply = stack.drive.map(|supply| Circuit::new(stack, supply)).transpose()?;
+        let mut body = match supply {
+            Some(circuit) => {
+                let each = |value: fn(&circuit::Mode) -> f64| circuit.modes.iter().map(value).collect();
+                Self {
+                    oscillators: circuit.modes.iter().map(|mode| mode.oscillator).collect(),
+                    tip: each(|mode| -mode.tip),
+                    displacement: each(|mode| mode.start[0]),
+                    velocity: each(|mode| mode.start[1]),
+                    mass: stack.mass(),
+                    drive: None,
+                    clearance: stack.gap - circuit.final_extension(),
+                    supply: Some((circuit.clone(), circuit.modes.iter().map(|mode| mode.feed).collect())),
+                }
+            }
+            None => {
+                let modes = stack.modes(MODES);
+                let still = |mode: &RodMode| -stack.blocked_force * mode.tip / mode.omega.powi(2);
+                Self {
+                    oscillators: modes.iter().map(|m| Oscillator { omega: m.omega, alpha: 0.0 }).collect(),
+                    tip: modes.iter().map(|mode| -mode.tip).collect(),
+                    displacement: modes.iter().map(still).collect(),
+                    velocity: vec![0.0; modes.len()],
+                    mass: stack.mass(),
+                    drive: None,
+                    clearance: stack.gap - stack.stroke,
+                    supply: None,
+                }
+            }
+        };
+        if stack.gap > 0.0 {
+            body.fly_to_the_touch(stack)?;
+        }
+        Ok(body)
+    }
+
+    /// Moves on, freely, until the tip touches the plate.
+    fn fly_to_the_touch(&mut self, stack: &Stack) -> Result<()> {
+        let of_tip = |body: &Self, values: &[f64]| dot(&body.tip, values);
+        // |x''| of the tip is bounded by the modes' amplitudes: steps that provably pass no touch, and close to it are Newton's
+        let bound: f64 = (0..self.tip.len())
+            .map(|k| {
+                let Oscillator { omega, alpha } = self.oscillators[k];
+                let amplitude = self.tip[k].abs() * self.displacement[k].hypot(self.velocity[k] / omega);
+                amplitude * omega * (omega + 2.0 * alpha)
+            })
+            .sum();
+        let slowest = self.oscillators.iter().map(|o| o.omega.min(o.omega.powi(2) / (2.0 * o.alpha)));
+        let patience = PATIENCE / slowest.fold(f64::INFINITY, f64::min);
+        let (mut time, mut farthest) = (0.0, 0.0_f64);
+        while time < patience {
+            let (q, v) = self.after(time);
+            let (gap, rate) = (self.clearance + of_tip(self, &q), of_tip(self, &v));
+            farthest = farthest.max(stack.gap - gap);
+            let root = (rate * rate + 2.0 * bound * gap.max(0.0)).sqrt();
+            let step = if rate >= 0.0 { (rate + root) / bound } else { 2.0 * gap / (root - rate) };
+            if gap <= 1e-14 * stack.gap || time + step == time {
+                (self.displacement, self.velocity) = (q, v);
+                return Ok(());
+            }
+            time += step;
+        }
+        Err(Error::Solver(format!(
+            "`outer.gap` is {} m, but the tip of the stack comes to {farthest:.4e} m only: it never touches the plate",
+            stack.gap
+        )))
+    }
+
+    /// Coordinates and rates after `time` s without a force.
+    fn after(&self, time: f64) -> (Vec<f64>, Vec<f64>) {
+        let (mut q, mut v) = (self.displacement.clone(), self.velocity.clone());
+        for ((oscillator, q), v) in self.oscillators.iter().zip(&mut q).zip(&mut v) {
+            [*q, *v] = oscillator.after(time, [*q, *v]);
+        }
+        (q, v)
     }
 
     fn rigid_outer(outer: &Outer) -> Self {
@@ -87,6 +183,8 @@ impl MovingBody {
             velocity: vec![velocity * mass.sqrt()],
             mass,
             drive: None,
+            clearance: 0.0,
+            supply: None,
         }
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn sample(system: &System, motion: [&[f64]; 2], local: [f64; 2], forc
     let [q, v] = motion;
     let (displacement, velocity) = (system.of_bodies(q), system.of_bodies(v));
     [
-        displacement[0],
+        displacement[0] + system.gap[0],
         dot(&system.centre, q) + local[0],
         displacement[1],
         velocity[0],
@@ -59,12 +59,12 @@ impl<'a, const P: usize> Recorder<'a, P> {
     /// As the contact's system of equations.
     pub fn step(&mut self, time: f64, h: f64, q: &[f64], v: &[f64], forces: &[Stages; 2]) -> Result<()> {
         let [b0, b1] = &self.system.approach;
-        self.step_under(time, h, q, v, |k| {
+        self.step_under(time, h, q, v, forces[0], |k| {
             std::array::from_fn(|l| -(b0[k] * forces[0][l] + b1[k] * forces[1][l]))
         })
     }
 
-    /// As [`Recorder::step`], under the generalised forces `forces` of each oscillator at the nodes.
+    /// As [`Recorder::step`], under the generalised forces `forces` of each oscillator and the `outer` contact's at the nodes.
     ///
     /// # Errors
     /// As the contact's system of equations.
@@ -74,6 +74,7 @@ impl<'a, const P: usize> Recorder<'a, P> {
         h: f64,
         q: &[f64],
         v: &[f64],
+        outer: Stages,
         forces: impl Fn(usize) -> Stages,
     ) -> Result<()> {
         let count = (h / self.interval).ceil().max(1.0) as usize;
@@ -89,6 +90,12 @@ impl<'a, const P: usize> Recorder<'a, P> {
                 v_at[k] = at.velocity_per_displacement * q[k]
                     + at.velocity_per_velocity * v[k]
                     + dot(&at.velocity_per_force, &force);
+            }
+            for (k, feed) in &self.system.feeds {
+                let oscillator = &self.system.oscillators[*k];
+                let [displacement, rate] = self.collocation.fed(oscillator, feed, t, h);
+                q_at[*k] -= dot(&displacement, &outer);
+                v_at[*k] -= dot(&rate, &outer);
             }
             self.push(time + t, &q_at, &v_at);
         }

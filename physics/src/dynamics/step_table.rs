@@ -4,6 +4,7 @@ use super::bank::{Bank, Block};
 use super::collocation::Collocation;
 use super::duhamel::MOMENTS;
 use super::stages::{STAGES, Stages, powers};
+use super::system::dot;
 use wide::f64x4;
 
 /// Everything about a step of one length that does not depend on the state.
@@ -17,6 +18,8 @@ pub struct StepTable {
     /// `coupling[c][l]`: approaches at all Gauss points lost per force at Gauss point l, in m/N; c is the pair of contacts
     /// (0,0), (0,1) = (1,0), (1,1).
     pub coupling: [[f64x4; STAGES]; 3],
+    /// Of the bank's oscillators of a circuit coordinate and rate at the end under forces tau^p / p!.
+    fed: Vec<[Stages; 2]>,
     /// `coefficients[p][l]`: coefficient of tau^p / p! in the polynomial of a force per value at Gauss point l.
     coefficients: [Stages; STAGES],
 }
@@ -28,6 +31,7 @@ impl StepTable {
             h: 0.0,
             oscillators: bytemuck::zeroed_vec((STAGES * 2 + MOMENTS) * blocks),
             coupling: [[f64x4::ZERO; STAGES]; 3],
+            fed: Vec::new(),
             coefficients: Default::default(),
         }
     }
@@ -59,8 +63,14 @@ impl StepTable {
                     }
                 }
             }
+            let mut answers = answers.map(|answers| answers.map(f64x4::reduce_add));
+            for fed in &bank.fed {
+                let [displacement, _] = fed.answers(t);
+                for p in 0..STAGES {
+                    answers[0][p] += fed.approach * displacement[p];
+                }
+            }
             for (rows, answers) in rows.iter_mut().zip(answers) {
-                let answers = answers.map(f64x4::reduce_add);
                 for p in 0..STAGES {
                     for l in 0..STAGES {
                         rows[l][j] += self.coefficients[p][l] * answers[p];
@@ -75,6 +85,8 @@ impl StepTable {
                 self.oscillators[(2 * STAGES + p) * n + k] = moment;
             }
         }
+        self.fed.clear();
+        self.fed.extend(bank.fed.iter().map(|fed| fed.answers(h)));
     }
 
     /// Approaches at the Gauss points, in m, if no force acted during the step; `gap` in m.
@@ -133,6 +145,13 @@ impl StepTable {
             sums[1] += b1 * displacement;
             energy += rate * rate + stiffness * (displacement * displacement);
         }
-        (sums.map(f64x4::reduce_add), 0.5 * energy.reduce_add())
+        let mut sums = sums.map(f64x4::reduce_add);
+        for (fed, answers) in bank.fed.iter().zip(&self.fed) {
+            let [displacement, rate] = answers.map(|answers| dot(&answers, &polynomial[0]));
+            bytemuck::cast_slice_mut::<_, f64>(q_end)[fed.place] -= displacement;
+            bytemuck::cast_slice_mut::<_, f64>(v_end)[fed.place] -= rate;
+            sums[0] -= fed.approach * displacement;
+        }
+        (sums, 0.5 * energy.reduce_add())
     }
 }

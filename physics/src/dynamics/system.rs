@@ -9,6 +9,8 @@
 use super::centre::LocalCentre;
 use super::duhamel::Oscillator;
 use super::moving_body::MovingBody;
+use crate::actuator::Stack;
+use crate::actuator::circuit::{Account, Circuit, Feed};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::contact::{Hertz, PatchFlexibility, Residual};
@@ -87,7 +89,13 @@ pub struct System {
     pub masses: [f64; 2],
     /// How the outer body was driven, if it is a bender.
     pub drive: Option<Drive>,
-    /// Speed of the outer body towards the plate in m/s.
+    /// The outer body if it is a stack, which may press on the plate for ever.
+    pub stack: Option<Stack>,
+    /// What supplies the outer body while it strikes, if it is a stack behind a resistor.
+    pub circuit: Option<Circuit>,
+    /// What its force on the plate does to such a stack besides what the participations say, by oscillator; none of any other body.
+    pub feeds: Vec<(usize, Feed)>,
+    /// Speed of the outer body towards the plate in m/s; of a stack that of its tip after a step of the voltage.
     pub speed: f64,
     /// First eigenfrequency of the plate that is not a rigid motion, Hz.
     pub first_frequency: f64,
@@ -124,6 +132,9 @@ impl System {
         let masses = [bodies[0].mass, bodies[1].mass];
         let mut coordinates: Vec<Coordinate> = [0, 1].map(|i| Coordinate::of_body(bodies, i, 0)).into();
         coordinates.extend((0..plate.omega.len()).map(|k| Coordinate::of_plate(plate, k)));
+        let own = |k: usize| if k == 0 { OUTER } else { PLATE + plate.omega.len() + k - 1 };
+        let (circuit, feeds) = bodies[0].supply.clone().unzip();
+        let feeds = feeds.into_iter().flatten().enumerate().map(|(k, feed)| (own(k), feed)).collect();
         for (i, body) in bodies.iter().enumerate() {
             coordinates.extend((1..body.oscillators.len()).map(|k| Coordinate::of_body(bodies, i, k)));
         }
@@ -146,13 +157,16 @@ impl System {
             bodies: [each(|c| c.bodies[0]), each(|c| c.bodies[1])],
             start: [each(|c| c.start[0]), each(|c| c.start[1])],
             centre: each(|c| c.centre),
-            gap: [0.0, inner.gap],
+            gap: [bodies[0].clearance, inner.gap],
             laws,
             local_centre,
             residual: (!residual.is_zero()).then_some(residual),
             tip_residual,
             masses,
             drive: bodies[0].drive,
+            stack: if let Shape::Stack(stack) = outer.shape { Some(stack) } else { None },
+            circuit,
+            feeds,
             speed: outer.speed,
             first_frequency: elastic.clone().fold(f64::INFINITY, f64::min) / (2.0 * std::f64::consts::PI),
             modes: elastic.count(),
@@ -210,6 +224,9 @@ impl System {
         for coordinates in pairs.into_iter().flatten().chain([&mut system.centre]) {
             coordinates.drain(gone.clone());
         }
+        for (k, _) in system.feeds.iter_mut().filter(|(k, _)| *k >= gone.end) {
+            *k -= gone.len();
+        }
         system
     }
 
@@ -261,7 +278,7 @@ impl System {
         HertzImpact { mass: self.masses[0], speed: self.speed, stiffness: self.laws[0].stiffness }
     }
 
-    /// Whether the outer body is held by a spring of its own (a bender) and comes back whatever happens.
+    /// Whether the outer body is held by a spring of its own (a bender, a stack) and comes back whatever happens.
     pub fn outer_returns(&self) -> bool {
         self.oscillators[OUTER].omega > 0.0
     }
@@ -269,6 +286,38 @@ impl System {
     /// Kinetic and strain energy of all bodies in J, without that of the contacts.
     pub fn energy(&self, q: &[f64], v: &[f64]) -> f64 {
         self.oscillators.iter().zip(q).zip(v).map(|((o, q), v)| 0.5 * (v * v + (o.omega * q).powi(2))).sum()
+    }
+
+    /// The same with what a circuit can still give instead of what it has.
+    pub fn energy_left(&self, q: &[f64], v: &[f64]) -> f64 {
+        match &self.circuit {
+            None => self.energy(q, v),
+            Some(circuit) => {
+                let available = circuit.account(&self.of_outer(q), &self.of_outer(v)).available;
+                available + self.energy_beside_outer(q, v)
+            }
+        }
+    }
+
+    /// Kinetic and strain energy of all but the outer body in J.
+    fn energy_beside_outer(&self, q: &[f64], v: &[f64]) -> f64 {
+        let of = |k: usize| 0.5 * (v[k] * v[k] + (self.oscillators[k].omega * q[k]).powi(2));
+        (0..self.size()).filter(|k| self.bodies[0][*k] == 0.0).map(of).sum()
+    }
+
+    /// Those of all `values` that are of the outer body's own coordinates.
+    fn of_outer(&self, values: &[f64]) -> Vec<f64> {
+        (0..self.size()).filter(|k| self.bodies[0][*k] != 0.0).map(|k| values[k]).collect()
+    }
+
+    /// Energies of the stack, if the outer body is one, and of what lies beyond its tip but for the contacts, J.
+    pub fn account(&self, q: &[f64], v: &[f64]) -> Option<(Account, f64)> {
+        let (own_q, own_v) = (self.of_outer(q), self.of_outer(v));
+        let account = match &self.circuit {
+            Some(circuit) => circuit.account(&own_q, &own_v),
+            None => self.stack.as_ref()?.account(&own_q, &own_v),
+        };
+        Some((account, self.energy_beside_outer(q, v)))
     }
 
     /// Strain energy of contacts and residual flexibility in J under the forces `f` in N with the patches `p` in m that go

@@ -23,7 +23,7 @@ pub use limit::Limit;
 pub use losses::Losses;
 pub use point::Point;
 pub use statement::Statement;
-pub use summary::{BenderSummary, ElasticLimit, SCHEMA_VERSION, Sideways, Source, Summary};
+pub use summary::{BenderSummary, ElasticLimit, SCHEMA_VERSION, Sideways, Source, StackSummary, Summary};
 pub(crate) use table::quantities;
 pub use table::{Quantity, Table};
 

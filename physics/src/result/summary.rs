@@ -33,6 +33,17 @@ pub struct BenderSummary {
     pub drive: Drive,
 }
 
+/// What is said about a stack besides the quantities: it has no kinetic energy that eq. (1) could relate to, and goes on giving.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StackSummary {
+    /// Electrical energy taken from buffer or source from the switching on to the end of the run, J.
+    pub electrical_energy: f64,
+    /// Mechanical energy given to plate and inner body, J.
+    pub mechanical_energy: f64,
+    /// Kinetic energy of the inner body at the end over the electrical energy; `None` if the run was cut during a contact.
+    pub share: Option<f64>,
+}
+
 /// How bodies move along the plate and turn after an impact beside the centre or at an angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sideways {
@@ -119,6 +130,9 @@ pub struct Summary {
     /// Of a bender only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bender: Option<BenderSummary>,
+    /// Of a stack only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stack: Option<StackSummary>,
     /// Plate impacts: Hertz's contact patches at the force peaks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact_pressure: Option<ContactPressure>,
@@ -239,6 +253,7 @@ impl Summary {
             failure: None,
             sideways: None,
             bender: None,
+            stack: None,
             contact_pressure: None,
             impacts: Vec::new(),
             elastic_efficiency: None,

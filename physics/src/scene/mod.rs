@@ -35,7 +35,7 @@ pub use field::{Field, Rejected};
 pub use flight::{Flight, FlightSpring, Vibration};
 pub use plate_impact::{
     Bender, DEFAULT_MODES, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape,
-    ShearThinning, Spot,
+    ShearThinning, Spot, Stack, Supply,
 };
 pub use plausibility::doubts;
 pub use quantity::in_unit as quantity_in;

@@ -4,45 +4,55 @@
 //! the number `0.033`. Products (`*`, `·`, a space) and quotients (`/`) bind from left to right.
 //! Units and prefixes: BIPM, The International System of Units, 9th edition, tables 2, 4 and 7.
 
-/// Dimension: exponents of metre, kilogram, second and radian.
+/// Dimension: exponents of metre, kilogram, second, radian and ampere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Dimension(pub [i32; 4]);
+pub struct Dimension(pub [i32; 5]);
 
 impl Dimension {
     /// A pure number.
-    pub const NONE: Dimension = Dimension([0, 0, 0, 0]);
+    pub const NONE: Dimension = Dimension([0, 0, 0, 0, 0]);
     /// Length, m.
-    pub const LENGTH: Dimension = Dimension([1, 0, 0, 0]);
+    pub const LENGTH: Dimension = Dimension([1, 0, 0, 0, 0]);
     /// Mass, kg.
-    pub const MASS: Dimension = Dimension([0, 1, 0, 0]);
+    pub const MASS: Dimension = Dimension([0, 1, 0, 0, 0]);
     /// Time, s.
-    pub const TIME: Dimension = Dimension([0, 0, 1, 0]);
+    pub const TIME: Dimension = Dimension([0, 0, 1, 0, 0]);
     /// Speed, m/s.
-    pub const SPEED: Dimension = Dimension([1, 0, -1, 0]);
+    pub const SPEED: Dimension = Dimension([1, 0, -1, 0, 0]);
     /// Pressure or modulus, Pa.
-    pub const PRESSURE: Dimension = Dimension([-1, 1, -2, 0]);
+    pub const PRESSURE: Dimension = Dimension([-1, 1, -2, 0, 0]);
     /// Density, kg/m^3.
-    pub const DENSITY: Dimension = Dimension([-3, 1, 0, 0]);
+    pub const DENSITY: Dimension = Dimension([-3, 1, 0, 0, 0]);
     /// Dynamic viscosity, Pa s.
-    pub const VISCOSITY: Dimension = Dimension([-1, 1, -1, 0]);
+    pub const VISCOSITY: Dimension = Dimension([-1, 1, -1, 0, 0]);
     /// Force, N.
-    pub const FORCE: Dimension = Dimension([1, 1, -2, 0]);
+    pub const FORCE: Dimension = Dimension([1, 1, -2, 0, 0]);
     /// Torque, N m.
-    pub const TORQUE: Dimension = Dimension([2, 1, -2, 0]);
+    pub const TORQUE: Dimension = Dimension([2, 1, -2, 0, 0]);
     /// Stiffness, N/m.
-    pub const STIFFNESS: Dimension = Dimension([0, 1, -2, 0]);
+    pub const STIFFNESS: Dimension = Dimension([0, 1, -2, 0, 0]);
     /// Bending stiffness of a beam, N m^2.
-    pub const BENDING_STIFFNESS: Dimension = Dimension([3, 1, -2, 0]);
+    pub const BENDING_STIFFNESS: Dimension = Dimension([3, 1, -2, 0, 0]);
     /// Mass per length, kg/m.
-    pub const LINE_MASS: Dimension = Dimension([-1, 1, 0, 0]);
+    pub const LINE_MASS: Dimension = Dimension([-1, 1, 0, 0, 0]);
     /// Frequency, Hz.
-    pub const FREQUENCY: Dimension = Dimension([0, 0, -1, 0]);
+    pub const FREQUENCY: Dimension = Dimension([0, 0, -1, 0, 0]);
     /// Plane angle, rad.
-    pub const ANGLE: Dimension = Dimension([0, 0, 0, 1]);
+    pub const ANGLE: Dimension = Dimension([0, 0, 0, 1, 0]);
+    /// Acceleration, m/s^2.
+    pub const ACCELERATION: Dimension = Dimension([1, 0, -2, 0, 0]);
     /// Impulse, N s.
-    pub const IMPULSE: Dimension = Dimension([1, 1, -1, 0]);
-    /// m/s^2
-    pub const ACCELERATION: Dimension = Dimension([1, 0, -2, 0]);
+    pub const IMPULSE: Dimension = Dimension([1, 1, -1, 0, 0]);
+    /// Area, m^2.
+    pub const AREA: Dimension = Dimension([2, 0, 0, 0, 0]);
+    /// Voltage, V.
+    pub const VOLTAGE: Dimension = Dimension([2, 1, -3, 0, -1]);
+    /// Capacitance, F.
+    pub const CAPACITANCE: Dimension = Dimension([-2, -1, 4, 0, 2]);
+    /// Resistance, Ohm.
+    pub const RESISTANCE: Dimension = Dimension([2, 1, -3, 0, -2]);
+    /// Inductance, H.
+    pub const INDUCTANCE: Dimension = Dimension([2, 1, -2, 0, -2]);
 
     /// What a message calls it: name with article, SI unit, an example.
     pub fn describe(self) -> (&'static str, &'static str, &'static str) {
@@ -64,6 +74,11 @@ impl Dimension {
             Dimension::ANGLE => ("an angle", "rad", "15 deg"),
             Dimension::IMPULSE => ("an impulse", "N*s", "0.2 mN*s"),
             Dimension::ACCELERATION => ("an acceleration", "m/s^2", "9.81 m/s^2"),
+            Dimension::AREA => ("an area", "m^2", "25 mm^2"),
+            Dimension::VOLTAGE => ("a voltage", "V", "150 V"),
+            Dimension::CAPACITANCE => ("a capacitance", "F", "1.4 uF"),
+            Dimension::RESISTANCE => ("a resistance", "Ohm", "10 Ohm"),
+            Dimension::INDUCTANCE => ("an inductance", "H", "20 mH"),
             _ => ("a quantity", "SI", "1"),
         }
     }
@@ -114,18 +129,23 @@ struct Unit {
 }
 
 /// Symbol, dimension, decimal exponent of the SI size, whether prefixes may stand before it.
-const UNITS: [(&str, [i32; 4], i32, bool); 11] = [
-    ("m", [1, 0, 0, 0], 0, true),
-    ("g", [0, 1, 0, 0], -3, true),
-    ("s", [0, 0, 1, 0], 0, true),
-    ("rad", [0, 0, 0, 1], 0, true),
-    ("deg", [0, 0, 0, 1], 0, false),
-    ("Hz", [0, 0, -1, 0], 0, true),
-    ("N", [1, 1, -2, 0], 0, true),
-    ("Pa", [-1, 1, -2, 0], 0, true),
-    ("J", [2, 1, -2, 0], 0, true),
-    ("W", [2, 1, -3, 0], 0, true),
-    ("%", [0, 0, 0, 0], -2, false),
+const UNITS: [(&str, [i32; 5], i32, bool); 16] = [
+    ("m", [1, 0, 0, 0, 0], 0, true),
+    ("g", [0, 1, 0, 0, 0], -3, true),
+    ("s", [0, 0, 1, 0, 0], 0, true),
+    ("rad", [0, 0, 0, 1, 0], 0, true),
+    ("deg", [0, 0, 0, 1, 0], 0, false),
+    ("Hz", [0, 0, -1, 0, 0], 0, true),
+    ("N", [1, 1, -2, 0, 0], 0, true),
+    ("Pa", [-1, 1, -2, 0, 0], 0, true),
+    ("J", [2, 1, -2, 0, 0], 0, true),
+    ("W", [2, 1, -3, 0, 0], 0, true),
+    ("V", [2, 1, -3, 0, -1], 0, true),
+    ("A", [0, 0, 0, 0, 1], 0, true),
+    ("F", [-2, -1, 4, 0, 2], 0, true),
+    ("Ohm", [2, 1, -3, 0, -2], 0, true),
+    ("H", [2, 1, -2, 0, -2], 0, true),
+    ("%", [0, 0, 0, 0, 0], -2, false),
 ];
 
 const PREFIXES: [(&str, i32); 12] = [
@@ -332,12 +352,17 @@ mod tests {
             ("1 g/m/s", Dimension::VISCOSITY, 1e-3),
             ("0.110 g", Dimension::MASS, 0.00011),
             ("110 mg", Dimension::MASS, 0.00011),
-            ("4.0 N*mm", Dimension([2, 1, -2, 0]), 0.004),
-            ("4 mJ", Dimension([2, 1, -2, 0]), 0.004),
+            ("4.0 N*mm", Dimension([2, 1, -2, 0, 0]), 0.004),
+            ("4 mJ", Dimension([2, 1, -2, 0, 0]), 0.004),
             ("2.5e2 us", Dimension::TIME, 250e-6),
             ("-1.5E-3 m", Dimension::LENGTH, -1.5e-3),
             ("3 %", Dimension::NONE, 0.03),
-            ("180 deg", Dimension([0, 0, 0, 1]), std::f64::consts::PI),
+            ("1.4 uF", Dimension::CAPACITANCE, 1.4e-6),
+            ("10 V/A", Dimension::RESISTANCE, 10.0),
+            ("2.2 kOhm", Dimension::RESISTANCE, 2200.0),
+            ("20 mH", Dimension::INDUCTANCE, 0.02),
+            ("25 mm^2", Dimension::AREA, 25e-6),
+            ("180 deg", Dimension([0, 0, 0, 1, 0]), std::f64::consts::PI),
             ("33", Dimension::LENGTH, 33.0),
             (".5 m", Dimension::LENGTH, 0.5),
         ] {

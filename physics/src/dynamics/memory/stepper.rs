@@ -382,6 +382,8 @@ impl<'a> Stepper<'a> {
             steps: self.steps,
             error_estimate: None,
             kept_tolerance: CHANGE,
+            supplied: None,
+            pressed: false,
             history: self.history,
         };
         (integration, self.bodies.contacts)

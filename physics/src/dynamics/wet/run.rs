@@ -74,6 +74,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
     };
     stepper.go()?;
     let closing = Closing {
+        heat: None,
         system,
         q: &stepper.q,
         v: &stepper.v,
@@ -298,7 +299,7 @@ impl Stepper<'_> {
         self.check_overlap(h, |overlap| overlap.depth > self.wet.fluid.minimum_gap())?;
         if let Some(recorder) = &mut self.recorder {
             let forces = self.wet.generalised(&self.trial);
-            recorder.step_under(self.time, h, &self.q, &self.v, |k| forces[k])?;
+            recorder.step_under(self.time, h, &self.q, &self.v, Stages::default(), |k| forces[k])?;
         }
         for i in 0..2 {
             let trial = &self.trial;

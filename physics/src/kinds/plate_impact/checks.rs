@@ -48,7 +48,9 @@ fn start(setup: &PlateImpact, history: &History) -> Vec<Statement> {
         let next = history.time[2.min(history.time.len() - 1)];
         Statement::new("outer_contact_start", "s", touch, 0.0, next)
     };
-    let velocities = [("outer", -speed), ("inner", setup.inner.speed)].into_iter().filter_map(velocity);
+    // a stack begins at rest, or with what speed it has come to the plate
+    let outer = (!matches!(setup.outer.shape, Shape::Stack(_))).then_some(("outer", -speed));
+    let velocities = outer.into_iter().chain([("inner", setup.inner.speed)]).filter_map(velocity);
     let displacements = ["outer", "plate", "inner"].into_iter().filter_map(displacement);
     velocities.chain(displacements).chain(of(history, "outer", "force").map(touch)).collect()
 }
@@ -79,15 +81,15 @@ fn end(setup: &PlateImpact, summary: &Summary, history: &History) -> Vec<Stateme
     bodies.iter().copied().filter_map(velocity).collect()
 }
 
-/// The efficiency is that of the inner body's final velocity, eq. (1). The kinetic energy of a bender is that of its own beam.
+/// The efficiency is that of the inner body's final velocity, eq. (1). The kinetic energy of a bender or a stack is its own.
 fn efficiency(setup: &PlateImpact, summary: &Summary) -> Option<Statement> {
     let (outer, inner) = (&setup.outer, &setup.inner);
     let (stated, velocity) = (summary.value("efficiency")?, summary.value("inner_velocity_final")?);
     let mass_ratio = inner.shape.mass(&inner.material) / outer.shape.mass(&outer.material);
     let along = summary.sideways.map_or(0.0, |sideways| sideways.inner_tangential_velocity_final);
     let efficiency = mass_ratio * (velocity.powi(2) + along.powi(2)) / outer.speed.powi(2);
-    let is_bender = matches!(outer.shape, Shape::Bender(_));
-    (!is_bender).then(|| Statement::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency))
+    let is_held = outer.shape.is_held();
+    (!is_held).then(|| Statement::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency))
 }
 
 /// Momentum against impulse and path against velocity.
@@ -95,8 +97,8 @@ fn balances(setup: &PlateImpact, summary: &Summary, history: &History) -> Vec<St
     // Forces of a reference are averages over the sampling interval, which shifts them by up to one.
     let interval = summary.sample_interval.unwrap_or(0.0);
     let (outer, inner) = (&setup.outer, &setup.inner);
-    // a bender's clamp has a part in its momentum; in a fluid more than the contact force acts on the inner body
-    let outer_mass = (!matches!(outer.shape, Shape::Bender(_))).then(|| outer.shape.mass(&outer.material));
+    // a bender's clamp or a stack's base has a part in its momentum; in a fluid more than the contact force acts on the inner body
+    let outer_mass = (!outer.shape.is_held()).then(|| outer.shape.mass(&outer.material));
     let inner_mass = setup.fluid.is_none().then(|| inner.shape.mass(&inner.material));
     let momentum = |(body, mass, sign): (&str, Option<f64>, f64)| {
         let (velocity, force) = (of(history, body, "velocity")?, of(history, body, "force")?);

@@ -62,6 +62,7 @@ pub fn closed_forms(setup: &PlateImpact) -> Result<Vec<ClosedForm>> {
         Shape::Bender(bender) => {
             found.push(of(Form::Cantilever, ALL, "bender_frequencies", beam(bender)?));
         }
+        Shape::Stack(_) => {}
         _ => found.push(of(Form::Hertz, &[Model::A, Model::B], "outer_force_peak", contact(setup)?)),
     }
     if setup.relaxes() {

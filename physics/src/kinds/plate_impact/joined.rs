@@ -209,8 +209,8 @@ pub(super) fn tip_residuals(
             1e3 * WIDEST_PATCH * radius
         ))),
         Shape::Sphere { radius } => sphere(radius, material, patch),
-        // a compact body and the tip of a bender are rigid but for their Hertz contact
-        Shape::Compact { .. } | Shape::Bender(_) => Ok(0.0),
+        // a compact body and the tips of benders and stacks are rigid but for their Hertz contact
+        Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => Ok(0.0),
     };
     Ok([
         tip("outer", &setup.outer.shape, &setup.outer.material, patch[0])?,

@@ -18,7 +18,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
-use crate::result::{BenderSummary, CUT, Choice, ElasticLimit, Outcome, Summary};
+use crate::result::{BenderSummary, CUT, Choice, ElasticLimit, Outcome, StackSummary, Summary};
 use crate::scene::{self, DEFAULT_MODES, Edge, MAX_MODES, Model, Outer, PlateImpact, Scene, Setup};
 use std::time::Instant;
 
@@ -209,7 +209,7 @@ impl Reduced {
     /// The summary, and what the materials remembered when the last impact began.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>)> {
         let start = Instant::now();
-        let options = self.options(tolerance);
+        let options = Options { heat: true, ..self.options(tolerance) };
         let Done { last, impacts, memory, warning } = self.impacts().all(&options)?;
         let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
         summary.warnings.extend(warning);
@@ -223,7 +223,7 @@ impl Reduced {
         let setup = self.scene.plate_impact()?;
         let onset = memory::onset_of_yield(setup, &self.system);
         let materials = [&setup.outer.material, &setup.plate.material, &setup.inner.material];
-        let covered = self.system.drive.is_none()
+        let covered = !setup.outer.shape.is_held()
             && setup.outer.is_centred()
             && materials.iter().all(|m| m.relaxation.is_empty());
         if !covered || onset == [None; 2] {
@@ -335,6 +335,14 @@ impl Reduced {
             table = table.cut();
             warnings.push(CUT.into());
         }
+        if system.stack.is_some() {
+            // eq. (1) relates to a kinetic energy before the impact, and the tip vibrates on
+            let open = ["efficiency", "outer_velocity_final"].into_iter();
+            let pressing = ["outer_contact_end", "outer_contacts"].into_iter().filter(|_| result.pressed);
+            for name in open.chain(pressing) {
+                table.value_mut(name).into_iter().for_each(|value| *value = None);
+            }
+        }
         Ok(Summary {
             energy_residual: Some(result.energy_residual),
             momentum_residual: Some(result.momentum_residual),
@@ -347,8 +355,18 @@ impl Reduced {
                 let efficiency = transmitted / drive.strain_energy;
                 BenderSummary { strain_energy_efficiency: (!result.is_cut()).then_some(efficiency), drive }
             }),
-            losses: (system.is_damped() || self.fluid.is_some() || self.memory.is_some())
-                .then_some(result.losses),
+            stack: result.supplied.map(|supplied| {
+                let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
+                StackSummary {
+                    electrical_energy: supplied.taken,
+                    mechanical_energy: supplied.given,
+                    share: (!result.is_cut()).then_some(transmitted / supplied.taken),
+                }
+            }),
+            losses: (system.is_damped() && system.stack.is_none()
+                || self.fluid.is_some()
+                || self.memory.is_some())
+            .then_some(result.losses),
             warnings,
             choice: self.choice.clone(),
             ..Summary::of_reduced(&self.scene, self.model, system.modes, table)

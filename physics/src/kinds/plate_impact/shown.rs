@@ -3,7 +3,7 @@
 use super::PlateQuantities;
 use crate::kinds::consistency::{FORCE_FLOOR, VELOCITY_SLACK, peak};
 use crate::result::{History, Table};
-use crate::scene::{PlateImpact, Shape};
+use crate::scene::PlateImpact;
 
 /// Share of the samples, the last ones, over which the velocity of a body that flies freely does not change.
 const FLIGHT: f64 = 0.05;
@@ -37,10 +37,10 @@ pub(super) fn shown(setup: &PlateImpact, history: &History) -> Table {
     set("inner_velocity_final", inner);
     let mass_ratio =
         setup.inner.shape.mass(&setup.inner.material) / setup.outer.shape.mass(&setup.outer.material);
-    let is_bender = matches!(setup.outer.shape, Shape::Bender(_));
+    let is_held = setup.outer.shape.is_held();
     let efficiency = |velocity: f64| mass_ratio * (velocity / setup.outer.speed).powi(2);
     // the motion along the plate is no curve
-    set("efficiency", inner.filter(|_| !is_bender && setup.outer.angle == 0.0).map(efficiency));
+    set("efficiency", inner.filter(|_| !is_held && setup.outer.angle == 0.0).map(efficiency));
     table
 }
 

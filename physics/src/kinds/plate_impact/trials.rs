@@ -185,7 +185,7 @@ fn system(setup: &PlateImpact, bodies: &[MovingBody; 2], plate: ModalBody, tips:
 fn tips(setup: &PlateImpact, predictor: &Predictor) -> [f64; 2] {
     let tip = |shape: &Shape, material: &Material, patch: f64| match *shape {
         Shape::Sphere { radius } => free_sphere::sphere_residual(radius, material, patch),
-        Shape::Compact { .. } | Shape::Bender(_) => 0.0,
+        Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => 0.0,
     };
     [
         tip(&setup.outer.shape, &setup.outer.material, predictor.patch_radius[0]),

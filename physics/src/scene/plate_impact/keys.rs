@@ -27,6 +27,25 @@ const SPHERE_RADIUS: Field =
     only(&["sphere"], required("radius", positive(Dimension::LENGTH), "Radius of the sphere"));
 const COMPACT_MASS: Field =
     only(&["compact"], required("mass", positive(Dimension::MASS), "Mass of the body"));
+/// A key of the piezo stack (section 2.2.1 of the paper).
+const fn stack(key: &'static str, dimension: Dimension, doc: &'static str) -> Field {
+    only(&["stack"], required(key, positive(dimension), doc))
+}
+
+/// A key of one of the two ways to give a stack's inertia.
+const fn inertia(set: &'static str, field: Field) -> Field {
+    one_way(Some("stack"), "the stack's inertia", set, field)
+}
+
+static DRIVE: [Field; 2] = [
+    required("resistance", positive(Dimension::RESISTANCE), "Resistance between buffer and stack"),
+    optional(
+        "buffer_capacitance",
+        positive(Dimension::CAPACITANCE),
+        "Capacitance of the buffer, charged to `voltage`; absent = so large that its voltage stays",
+    ),
+];
+
 /// A key of the bender (section 4.3 of the paper).
 const fn bender(key: &'static str, dimension: Dimension, doc: &'static str) -> Field {
     only(&["bender"], required(key, positive(dimension), doc))
@@ -48,12 +67,53 @@ const TOWARDS: Bound = Bound {
     high: Some((std::f64::consts::FRAC_PI_2, false)),
 };
 
-pub(in crate::scene) static OUTER: [Field; 17] = [
-    required("kind", Kind::Choice(&[choice("sphere"), choice("compact"), choice("bender")]), SHAPE_KIND),
+pub(in crate::scene) static OUTER: [Field; 27] = [
+    required(
+        "kind",
+        Kind::Choice(&[choice("sphere"), choice("compact"), choice("bender"), choice("stack")]),
+        SHAPE_KIND,
+    ),
     SPHERE_RADIUS,
     COMPACT_MASS,
-    only(&["compact", "bender"], TIP_RADIUS),
-    bender("length", Dimension::LENGTH, "Length of the beam"),
+    only(&["compact", "bender", "stack"], TIP_RADIUS),
+    only(
+        &["bender", "stack"],
+        required("length", positive(Dimension::LENGTH), "Length of the beam or of the stack"),
+    ),
+    stack("area", Dimension::AREA, "Area of the stack's section"),
+    stack("stroke", Dimension::LENGTH, "Growth of the free stack at `voltage`"),
+    stack("blocked_force", Dimension::FORCE, "Force of the stack that is held at its length, at `voltage`"),
+    stack("voltage", Dimension::VOLTAGE, "Voltage that is switched on"),
+    stack("capacitance", Dimension::CAPACITANCE, "Capacitance of the free stack"),
+    inertia("density", stack("density", Dimension::DENSITY, "Mass density of the stack")),
+    inertia(
+        "first frequency",
+        stack("first_frequency", Dimension::FREQUENCY, "First frequency of the stack, fixed at its base"),
+    ),
+    only(
+        &["stack"],
+        optional(
+            "poisson_ratio",
+            pure(Bound { low: Some((-1.0, false)), high: Some((0.5, false)) }),
+            "Poisson's ratio of the stack; absent = 0.3",
+        ),
+    ),
+    only(
+        &["stack"],
+        optional(
+            "gap",
+            Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
+            "Distance of the stack's tip from the plate before it is switched on; absent = 0",
+        ),
+    ),
+    only(
+        &["stack"],
+        optional(
+            "drive",
+            Kind::Table(&DRIVE),
+            "What supplies the stack; absent = a source that holds `voltage` whatever it takes",
+        ),
+    ),
     bender("tip_mass", Dimension::MASS, "Point mass at the tip of the beam"),
     beam(
         "section",
@@ -85,9 +145,16 @@ pub(in crate::scene) static OUTER: [Field; 17] = [
         ),
     ),
     BODY_MATERIAL,
-    drive(
-        "speed",
-        required("speed", positive(Dimension::SPEED), "Speed towards the plate; of a bender that of its tip"),
+    only(
+        &["sphere", "compact", "bender"],
+        drive(
+            "speed",
+            required(
+                "speed",
+                positive(Dimension::SPEED),
+                "Speed towards the plate; of a bender that of its tip",
+            ),
+        ),
     ),
     only(
         &["sphere", "compact"],

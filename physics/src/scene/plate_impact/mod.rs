@@ -9,7 +9,7 @@ pub use keys::{DEFAULT_MODES, MAX_MODES};
 pub(super) use read::{plate_impact, reference};
 
 use super::Material;
-pub use crate::actuator::Bender;
+pub use crate::actuator::{Bender, Stack, Supply};
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -65,6 +65,8 @@ pub enum Shape {
     },
     /// Beam with a tip mass, an elastic body; outer body only.
     Bender(Bender),
+    /// Piezo stack, an elastic body that pushes on while it strikes; outer body only.
+    Stack(Stack),
 }
 
 impl Shape {
@@ -74,6 +76,7 @@ impl Shape {
             Shape::Sphere { radius } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * material.density,
             Shape::Compact { mass, .. } => mass,
             Shape::Bender(bender) => bender.mass(),
+            Shape::Stack(stack) => stack.mass(),
         }
     }
 
@@ -83,7 +86,13 @@ impl Shape {
             Shape::Sphere { radius } => radius,
             Shape::Compact { tip_radius, .. } => tip_radius,
             Shape::Bender(bender) => bender.tip_radius,
+            Shape::Stack(stack) => stack.tip_radius,
         }
+    }
+
+    /// Whether it is held at one end, so that its momentum is not its own.
+    pub fn is_held(&self) -> bool {
+        matches!(self, Shape::Bender(_) | Shape::Stack(_))
     }
 }
 
@@ -95,7 +104,7 @@ pub struct Outer {
     pub shape: Shape,
     /// Material.
     pub material: Material,
-    /// Speed in m/s, positive; of a bender that of its tip when it strikes.
+    /// Speed in m/s, positive; of a bender that of its tip when it strikes, of a stack that after a step of its voltage.
     pub speed: f64,
     /// Distance of the point of impact from the axis in m, along x, not negative.
     #[serde(skip_serializing_if = "is_zero")]

@@ -58,8 +58,12 @@ fn shape(body: &Node) -> Result<Shape> {
     }
 }
 
-/// The outer body; the speed of a bender's tip follows from its drive.
+/// The outer body; the speed of a bender's or a stack's tip follows from its drive.
 fn striker(outer: &Node, material: Material) -> Result<Outer> {
+    if outer.text("kind")? == "stack" {
+        let stack = stack(outer)?;
+        return Ok(Outer::centred(Shape::Stack(stack), material, stack.step_speed()));
+    }
     if outer.text("kind")? != "bender" {
         return Ok(Outer {
             shape: shape(outer)?,
@@ -86,6 +90,62 @@ fn striker(outer: &Node, material: Material) -> Result<Outer> {
     };
     Ok(Outer::centred(Shape::Bender(bender), material, speed))
 }
+
+/// Poisson's ratio of a stack that names none: that of lead zirconate titanate is 0.29 to 0.34.
+const STACK_POISSON_RATIO: f64 = 0.3;
+
+fn stack(outer: &Node) -> Result<Stack> {
+    let drive = outer.optional_table("drive")?;
+    let supply = |drive: Node| -> Result<Supply> {
+        let buffer = drive.0.contains_key("buffer_capacitance");
+        Ok(Supply {
+            resistance: drive.number("resistance")?,
+            buffer_capacitance: buffer.then(|| drive.number("buffer_capacitance")).transpose()?,
+        })
+    };
+    let mut stack = Stack {
+        length: outer.number("length")?,
+        area: outer.number("area")?,
+        stroke: outer.number("stroke")?,
+        blocked_force: outer.number("blocked_force")?,
+        voltage: outer.number("voltage")?,
+        capacitance: outer.number("capacitance")?,
+        density: f64::NAN,
+        poisson_ratio: outer.number_or("poisson_ratio", STACK_POISSON_RATIO)?,
+        tip_radius: outer.number("tip_radius")?,
+        gap: outer.number_or("gap", 0.0)?,
+        drive: drive.map(supply).transpose()?,
+    };
+    stack.density = if outer.0.contains_key("density") {
+        outer.number("density")?
+    } else {
+        stack.density_for(outer.number("first_frequency")?)
+    };
+    let coupled = stack.force_per_voltage().powi(2) / stack.stiffness();
+    if coupled >= stack.capacitance {
+        return Err(refused(
+            &format!(
+                "`outer.capacitance` is {} F, but `outer.blocked_force` times `outer.stroke` over the square of `outer.voltage` alone is {coupled:.4e} F, of which it has to be more",
+                stack.capacitance
+            ),
+            "a stack that is held has less capacitance than a free one, by just that, and still some",
+        ));
+    }
+    let most = MOST_STROKES * stack.stroke;
+    if stack.gap >= most {
+        return Err(refused(
+            &format!(
+                "`outer.gap` is {} m, but the stack's tip swings out by less than twice `outer.stroke`, {most:.4e} m: it never touches the plate",
+                stack.gap
+            ),
+            "bring the stack nearer, or take one with a larger stroke",
+        ));
+    }
+    Ok(stack)
+}
+
+/// Strokes by which a stack swings out at most, when the voltage is there at once.
+const MOST_STROKES: f64 = 2.0;
 
 fn bender(outer: &Node) -> Result<Bender> {
     let (length, tip_mass) = (outer.number("length")?, outer.number("tip_mass")?);

@@ -66,11 +66,17 @@ impl Part for PlateImpact {
             },
             Rule {
                 fields: vec!["outer.kind"],
-                holds: elastic || !matches!(self.outer.shape, Shape::Bender(_)),
+                holds: elastic || !self.outer.shape.is_held(),
                 message:
-                    "`outer.kind` is \"bender\": with a material that yields or relaxes it is not covered"
+                    "`outer.kind` is \"bender\" or \"stack\": with a material that yields or relaxes it is not covered"
                         .into(),
                 help: "take a sphere or a compact body, or leave out `hardening`, `relaxation` and `loss_factor` of the materials",
+            },
+            Rule {
+                fields: vec!["outer.kind"],
+                holds: dry || !matches!(self.outer.shape, Shape::Stack(_)),
+                message: "`outer.kind` is \"stack\": in a fluid, on a damped plate or in series it is not covered".into(),
+                help: "leave out `fluid`, `plate.damping_ratio` and `series`, or take another outer body",
             },
             Rule {
                 fields: vec!["plate.material"],
