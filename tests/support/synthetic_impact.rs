@@ -200,6 +200,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         mesh: None,
         sideways: None,
         bender: None,
+        stack: None,
         contact_pressure: None,
         losses: None,
         solver: None,
