@@ -38,7 +38,7 @@ MASS = 7.78e-3 * 4 / 3 * math.pi * 1.5**3
 """g"""
 GRAVITY = 9.80665e-3
 """mm/ms^2"""
-END = 400.0
+END = 200.0
 """ms"""
 Document = dict[str, Any]
 
@@ -135,11 +135,11 @@ def threshold(shock: Document) -> Document:
             return -1e-3 * amplitude * wave, 0.0
 
         # beyond the notch's edge, the highest point on the way
-        return sphere.passes(-seat.notch_width / 2 + 0.1, (duration, duration + 40), shaken)
+        return sphere.passes(-seat.notch_width / 2 + 0.1, (duration, duration + 15), shaken)
 
     low = high = 60.0
     while not passes(high):
-        low, high = high, 1.05 * high
+        low, high = high, 1.1 * high
     while high - low > 1e-5 * high:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if passes(middle) else (middle, high)

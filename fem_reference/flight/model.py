@@ -132,6 +132,8 @@ class Sphere:
         data, case = self.data, self.case
         data.qfrc_applied[:] = 0.0
         for contact in data.contact if case.friction > 0 and data.ncon else ():
+            if contact.efc_address < 0:
+                continue
             # from the sphere into the wall; the tangent points to the right on a floor
             into = contact.frame
             along = (-into[2], into[0])

@@ -165,7 +165,6 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
     let (outer, inner) = (impact.outer, impact.inner);
     let inner_velocity = -inner.impulse(inner.end) / mass();
     Summary {
-        stack: None,
         flight: None,
         vibration: None,
         impacts: Vec::new(),
@@ -200,6 +199,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         mesh: None,
         sideways: None,
         bender: None,
+        stack: None,
         contact_pressure: None,
         losses: None,
         solver: None,
