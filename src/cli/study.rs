@@ -28,7 +28,7 @@ enum Own {
 #[derive(Debug, Args)]
 struct Named {
     /// Name of the study: table2, fig14, fig15, fig16, fig17, half-period (section 4.1),
-    /// insensitivity, auto, rocker, fluid, damping, shakedown, test-bed, seal-seat (section 4.4),
+    /// insensitivity, auto, actuators, rocker, fluid, damping, shakedown, test-bed, seal-seat (section 4.4),
     /// seal-seat-direction, seal-seat-cost
     #[arg(required = true)]
     name: Option<String>,
