@@ -34,8 +34,8 @@ test: setup rust python live gate
 setup:
 	@{ $(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" && command -v mpirun && command -v ccx && command -v chromium && command -v git; } >/dev/null 2>&1 || \
 	    { $(SUDO) apt-get update && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y $(DEBIAN); }
-	@[ -x $(VENV)/bin/ruff ] && [ -x $(VENV)/bin/mypy ] && [ -x $(VENV)/bin/maturin ] && ls $(VENV)/lib/*/site-packages/axe_playwright_python >/dev/null 2>&1 || \
-	    { $(PYTHON) -m venv --system-site-packages $(VENV) && $(TOOL) -m pip install --quiet ruff mypy maturin && \
+	@[ -x $(VENV)/bin/ruff ] && [ -x $(VENV)/bin/mypy ] && [ -x $(VENV)/bin/maturin ] && ls -d $(VENV)/lib/*/site-packages/mujoco >/dev/null 2>&1 && ls $(VENV)/lib/*/site-packages/axe_playwright_python >/dev/null 2>&1 || \
+	    { $(PYTHON) -m venv --system-site-packages $(VENV) && $(TOOL) -m pip install --quiet ruff mypy maturin mujoco && \
 	    $(TOOL) -m pip install --quiet --no-deps axe-playwright-python; }
 
 rust:
@@ -105,11 +105,13 @@ evidence: setup wheel
 	$(PYTHON) -m fem_reference bands --random 50 --out $(OUT)/bands
 	$(PYTHON) -m fem_reference yielding --out reports/yielding.md
 	$(PYTHON) -m fem_reference rebound --out reports/rebound.md
+	# flights of the sphere by another program
+	$(TOOL) -m fem_reference flights --out fem_reference/solutions/flights.json
 	for scene in $(PLATES); do $(PYTHON) -m fem_reference cost --out reports/reference-cost-$$scene.json \
 	    --scene fem_reference/solutions/$$scene/paper/provenance.json || exit 1; done
 	$(PYTHON) -m fem_reference speed --out reports/reference-speed.json \
 	    --scene fem_reference/solutions/solid-plate-r10/paper/provenance.json
-	for study in table2 actuators rocker fluid damping shakedown test-bed insensitivity seal-seat seal-seat-direction seal-seat-cost; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done
+	for study in table2 actuators rocker flight fluid damping shakedown test-bed insensitivity seal-seat seal-seat-direction seal-seat-cost; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done
 	for study in fig14 fig15 fig16 fig17 half-period; do $(RUN) study $$study --model C --out $(OUT)/studies || exit 1; done
 	cargo build --release --manifest-path benches/diffsol/Cargo.toml
 	$(RUN) bench --peer benches/diffsol/target/release/diffsol-peer --out $(OUT)/bench

@@ -105,6 +105,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     yielding = commands.add_parser("yielding", help="a yielding sphere on a rigid wall")
     yielding.add_argument("--out", type=Path, required=True, help="Markdown")
+    flights = commands.add_parser("flights", help="flights and shocks of the sphere by MuJoCo")
+    flights.add_argument("--out", type=Path, required=True, help="JSON")
+    flights.add_argument("--number", type=_count, default=500, metavar="N", help="flights (500)")
     rebound = commands.add_parser("rebound", help="balls that rebound from glass, as measured")
     rebound.add_argument("--out", type=Path, required=True, help="Markdown")
     mesh = commands.add_parser("mesh", help="mesh of a seal seat as .vtu, a .json beside it")
@@ -145,6 +148,16 @@ def _run(arguments: argparse.Namespace) -> None:
             from .studies.rebound import report_rebound
 
             report_rebound(arguments.out, Progress())
+            return
+        if arguments.command == "flights":
+            try:
+                from .flight.cases import report_flights
+            except ImportError as error:
+                message = (
+                    f"{error}; install it by `make setup` and run target/python-tools/bin/python"
+                )
+                raise SolverError(f"a Python module is missing: {message}") from error
+            report_flights(arguments.out, arguments.number, Progress())
             return
         if arguments.command == "yielding":
             from .studies.yielding import report_yielding

@@ -49,5 +49,6 @@ pub mod validated;
 
 pub use impactcheck_physics::{Error, ExitStatus, Result};
 pub use impactcheck_physics::{
-    actuator, analytical, body, contact, dynamics, error, file, fluid, kinds, material, numerics, result,
+    actuator, analytical, body, contact, dynamics, error, file, flight, fluid, kinds, material, numerics,
+    result,
 };

@@ -122,6 +122,7 @@ pub fn table(summary: &Summary) -> String {
         lines.push(format!("  {name:<24} {:>14}", with_unit(value, prefixed(unit, value), 6)));
     }
     lines.extend(series(&summary.impacts));
+    lines.extend(after_the_impact(summary));
     let errors = [
         ("energy_residual", summary.energy_residual),
         ("momentum_residual", summary.momentum_residual),
@@ -133,6 +134,32 @@ pub fn table(summary: &Summary) -> String {
     lines.extend(summary.steps.map(|steps| format!("  {steps} steps in {seconds}, set-up apart")));
     lines.extend(summary.choice.as_ref().map(asked_model::told));
     lines.join("\n")
+}
+
+/// Flight and vibration, a line for each value.
+fn after_the_impact(summary: &Summary) -> Vec<String> {
+    let row = |name: &str, value: Option<f64>, unit| {
+        let told =
+            value.map_or_else(|| "none".to_owned(), |value| with_unit(value, prefixed(unit, value), 4));
+        format!("  {name:<24} {told:>14}")
+    };
+    let mut lines = Vec::new();
+    if let Some(flight) = &summary.flight {
+        lines.push(format!("  {:<24} {:>14}", "seat", flight.seat.to_string()));
+        lines.extend(flight.reason.iter().map(|reason| format!("    {reason}")));
+        lines.extend([
+            row("certain after", Some(flight.time), "s"),
+            row("margin of speed", flight.margin, "1"),
+            row("share in other seat", Some(flight.share), "1"),
+            row("least speed to shift", Some(flight.least_speed), "m/s"),
+            row("restitution", Some(flight.restitution), "1"),
+        ]);
+    }
+    if let Some(vibration) = &summary.vibration {
+        lines.push(row("unseats at", vibration.unseats, "m/s^2"));
+        lines.push(row("shifts at", vibration.shifts, "m/s^2"));
+    }
+    lines
 }
 
 /// The impacts of a series, one line each.

@@ -52,6 +52,14 @@ pub fn doctor(store: &Store) -> Vec<Check> {
         install: "sudo apt-get install calculix-ccx".to_owned(),
         optional: true,
     });
+    checks.push(Check {
+        name: "MuJoCo".to_owned(),
+        found: mujoco(),
+        needed_for: "new flights to hold the reduced flight against (`python -m fem_reference flights`)"
+            .to_owned(),
+        install: "make setup".to_owned(),
+        optional: true,
+    });
     checks.push(store_folder(store));
     for path in shipped().unwrap_or_default() {
         if let Ok(scene) = Scene::read(&path) {
@@ -134,6 +142,14 @@ fn calculix() -> Option<String> {
     let output = Command::new(program).arg("-v").stdin(Stdio::null()).output().ok()?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     text.lines().find(|line| line.contains("Version")).map(|line| line.trim().to_owned())
+}
+
+/// Version of MuJoCo in the project's own Python environment.
+fn mujoco() -> Option<String> {
+    let python = project_root().ok()?.join("target/python-tools/bin/python");
+    let script = "import importlib.metadata as m; print(m.version('mujoco'))";
+    let output = Command::new(python).args(["-c", script]).stdin(Stdio::null()).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
 fn store_folder(store: &Store) -> Check {

@@ -27,6 +27,7 @@ mod figure_lines;
 mod figure_panel;
 mod figure_residuals;
 mod first_screen;
+mod flight_section;
 pub(crate) mod format;
 pub mod github;
 mod history_file;

@@ -9,6 +9,7 @@ pub mod fig14;
 pub mod fig15;
 pub mod fig16;
 pub mod fig17;
+pub mod flight;
 pub mod fluid;
 pub mod half_period;
 pub mod insensitivity;
@@ -84,7 +85,7 @@ impl Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 17] = [
+pub const STUDIES: [Entry; 18] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
@@ -179,6 +180,14 @@ pub const STUDIES: [Entry; 17] = [
         takes_model: true,
         run: test_bed::run,
         panels: &test_bed::PANELS,
+        drawing: None,
+    },
+    Entry {
+        name: "flight",
+        about: "Sections 5.1.1 to 5.1.3: flights and shocks of the sphere against MuJoCo, statements on the rocker",
+        takes_model: false,
+        run: |_, note| flight::run(note),
+        panels: &[],
         drawing: None,
     },
     Entry {

@@ -61,6 +61,8 @@ pub fn scene(name: &str, setup: PlateImpact) -> Scene {
         },
         tolerances: BTreeMap::new(),
         uncertainty: None,
+        flight: None,
+        vibration: None,
         external: Vec::new(),
     }
 }

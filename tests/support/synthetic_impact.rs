@@ -72,6 +72,8 @@ pub fn scene() -> Scene {
     let steel = Material::elastic("steel", 210e9, 0.3, 7780.0);
     let sphere = Shape::Sphere { radius: 0.01 };
     Scene {
+        flight: None,
+        vibration: None,
         name: "synthetic".into(),
         description: "Half-sine forces on two spheres".into(),
         setup: Setup::PlateImpact(Box::new(PlateImpact {
@@ -163,6 +165,8 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
     let (outer, inner) = (impact.outer, impact.inner);
     let inner_velocity = -inner.impulse(inner.end) / mass();
     Summary {
+        flight: None,
+        vibration: None,
         impacts: Vec::new(),
         elastic_efficiency: None,
         elastic_limit: None,

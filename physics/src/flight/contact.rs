@@ -12,6 +12,9 @@ const NO_SPEED: f64 = 1e-11;
 /// Penetration in m below which another wall counts as not touched.
 const TOUCHED: f64 = 1e-13;
 
+/// How far ahead of a step, over its length, it is asked what sticks.
+const SOON: f64 = 1e-6;
+
 /// Why a step on a wall or an edge ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Change {
@@ -80,12 +83,14 @@ impl Setup {
             // too fast for the bend that it came to
             return (*from, Change::Leaves);
         }
-        let regime = Regime::at(&loads, slip, start[2]);
+        let h = self.step_length(from);
+        // where shaking has just overcome what held the sphere, rounding hides which way: a moment later it shows
+        let soon = from.time + SOON * h;
+        let regime = Regime::at(&self.loads(track, soon, start).1, slip, start[2]);
         if regime.surface == Bond::Stick {
             start[2] = -start[1] / self.radius;
         }
         let rolling = Rolling { setup: self, track, regime };
-        let h = self.step_length(from);
         if self.is_still(from.time) && rolling.is_at_rest(&loads, start) {
             return (rolling.state(from.time, start), Change::Rests);
         }

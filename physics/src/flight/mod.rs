@@ -14,6 +14,7 @@ mod friction;
 mod impact;
 mod judged;
 mod landscape;
+mod of_scene;
 mod run;
 mod spring;
 mod step;
@@ -26,6 +27,7 @@ pub use chamber::{Chamber, TooNarrow};
 pub use field::{Drag, Excitation, Field, Wave};
 pub use judged::{Judged, Scatter, judge, least_shift};
 pub use landscape::{Landscape, Saddle};
+pub use of_scene::{add_flight, flight_of, launch};
 pub use run::{Ending, Flight, Touch, fly};
 pub use spring::Spring;
 pub use vibration::{Thresholds, thresholds};
@@ -102,4 +104,14 @@ pub enum Seat {
     Same,
     /// In neither.
     None,
+}
+
+impl std::fmt::Display for Seat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Seat::Other => "other",
+            Seat::Same => "same",
+            Seat::None => "none",
+        })
+    }
 }

@@ -335,12 +335,16 @@ fn limits_of_vibration() {
     let left = Vector::new(-1.0, 0.0);
     let pull = G + 37e-3 / setup.mass;
     let expected = pull * up.y / up.x;
-    for duration in [0.5e-3, 2e-3, 8e-3] {
+    for (duration, friction) in [(0.5e-3, 0.3), (2e-3, 0.3), (8e-3, 0.3), (5e-3, 0.0), (1e-3, 0.0)] {
+        let setup = Setup { friction, ..setup.clone() };
         let found = thresholds(&setup, &landscape, &Wave::HalfSine { duration }, left);
         let unseats = found.unseats.expect("it leans out");
         assert!((unseats / expected - 1.0).abs() < 1e-12, "{unseats} instead of {expected}");
         let (shifts, bound) = (found.shifts.expect("it shifts"), found.shock_bound.expect("a shock"));
         assert!(shifts > bound && shifts > unseats, "{shifts} {bound} {unseats}");
+        // of a short shock little is lost to the way during it; rolling takes two fifths more of the energy
+        let most = if friction > 0.0 { 1.4 } else { 1.2 };
+        assert!(duration > 1e-3 || shifts < most * bound, "{shifts} {bound}");
     }
     // a slow sine shifts what it unseats as soon as it stays long enough: half a period far longer than the way takes
     let slow = Wave::Sine { frequency: 0.5, periods: 1.0 };

@@ -3,6 +3,7 @@
 mod choice;
 mod contact_pressure;
 mod drive;
+mod flight;
 mod history;
 mod impact;
 pub(crate) mod limit;
@@ -15,6 +16,7 @@ pub(crate) mod table;
 pub use choice::{Candidate, Choice};
 pub use contact_pressure::{ContactPatch, ContactPressure};
 pub use drive::Drive;
+pub use flight::{FlightSummary, VibrationSummary};
 pub use history::{Curve, History};
 pub use impact::Impact;
 pub use limit::Limit;

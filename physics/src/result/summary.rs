@@ -1,6 +1,8 @@
 //! The result of a run in a few numbers, the same type for reduced models and the reference.
 
-use super::{ContactPressure, Drive, Impact, Limit, Losses, Quantity, Table};
+use super::{
+    ContactPressure, Drive, FlightSummary, Impact, Limit, Losses, Quantity, Table, VibrationSummary,
+};
 use crate::scene::{Model, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -146,6 +148,12 @@ pub struct Summary {
     /// Energy lost to damping, fluid and materials, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub losses: Option<Losses>,
+    /// Reduced models of scenes with `[flight]`; `None` also if the run was cut during a contact.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flight: Option<FlightSummary>,
+    /// Reduced models of scenes with `[vibration]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vibration: Option<VibrationSummary>,
     /// Reference only: half width of the 95 % band of each quantity, absolute, in its unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertainty: BTreeMap<String, f64>,
@@ -251,6 +259,8 @@ impl Summary {
             elastic_efficiency: None,
             elastic_limit: None,
             losses: None,
+            flight: None,
+            vibration: None,
             truncation_error: None,
             integration_error: None,
             choice: None,

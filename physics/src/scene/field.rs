@@ -109,6 +109,9 @@ pub(super) fn without_effect(values: &Values, path: &str) -> Option<&'static str
     if path == "friction" || path.starts_with("reference.") {
         return Some("it is the reference's alone");
     }
+    if path.starts_with("flight.") || path.starts_with("vibration.") {
+        return Some("it is the flight's alone, and changes nothing of the impact");
+    }
     if of_material(".hardening").is_some() {
         return Some("their contact law knows no hardening, which is the reference's alone");
     }

@@ -11,6 +11,7 @@ mod collision;
 mod external;
 mod fault;
 mod field;
+mod flight;
 mod grammar;
 pub mod hash;
 mod material;
@@ -31,6 +32,7 @@ pub use external::External;
 pub use fault::suggestion;
 pub use fault::{Fault, Faults, faults};
 pub use field::{Field, Rejected};
+pub use flight::{Flight, FlightSpring, Vibration};
 pub use plate_impact::{
     Bender, DEFAULT_MODES, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape,
     ShearThinning, Spot, Stack, Supply,
@@ -213,6 +215,12 @@ pub struct Scene {
     /// How uncertain its numbers are; no solver is told of it.
     #[serde(skip)]
     pub uncertainty: Option<Uncertainty>,
+    /// Where the sphere flies after the impact; no solver of the impact is told of it.
+    #[serde(skip)]
+    pub flight: Option<Flight>,
+    /// How the valve is shaken; no solver of the impact is told of it.
+    #[serde(skip)]
+    pub vibration: Option<Vibration>,
     /// Programs of the user's that solve the scene too.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub external: Vec<External>,

@@ -39,6 +39,8 @@ impl Dimension {
     pub const FREQUENCY: Dimension = Dimension([0, 0, -1, 0, 0]);
     /// Plane angle, rad.
     pub const ANGLE: Dimension = Dimension([0, 0, 0, 1, 0]);
+    /// Acceleration, m/s^2.
+    pub const ACCELERATION: Dimension = Dimension([1, 0, -2, 0, 0]);
     /// Impulse, N s.
     pub const IMPULSE: Dimension = Dimension([1, 1, -1, 0, 0]);
     /// Area, m^2.
@@ -71,6 +73,7 @@ impl Dimension {
             Dimension::FREQUENCY => ("a frequency", "Hz", "4.6 kHz"),
             Dimension::ANGLE => ("an angle", "rad", "15 deg"),
             Dimension::IMPULSE => ("an impulse", "N*s", "0.2 mN*s"),
+            Dimension::ACCELERATION => ("an acceleration", "m/s^2", "9.81 m/s^2"),
             Dimension::AREA => ("an area", "m^2", "25 mm^2"),
             Dimension::VOLTAGE => ("a voltage", "V", "150 V"),
             Dimension::CAPACITANCE => ("a capacitance", "F", "1.4 uF"),

@@ -4,6 +4,7 @@ use super::check::Checker;
 use super::collision::Collision;
 use super::external::external;
 use super::fault::Collector;
+use super::flight::{flight, vibration};
 use super::place::Place;
 use super::plate_impact::{plate_impact, reference};
 use super::seal_seat::{seal_seat, seat_reference};
@@ -134,7 +135,11 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, Beside)>
 /// # Errors
 /// [`Error::Scene`] with every collision.
 pub(super) fn refuse_collisions(scene: &Scene, source_name: &str, text: &str) -> Result<()> {
-    let collisions = scene.setup.part().collisions();
+    let mut collisions = scene.setup.part().collisions();
+    // a chamber made of bodies that can't be means nothing
+    if collisions.is_empty() {
+        collisions = super::flight::collisions(scene);
+    }
     if collisions.is_empty() {
         return Ok(());
     }
@@ -219,6 +224,8 @@ pub(super) fn assemble(values: &Values, beside: Beside) -> Result<Scene> {
         reference,
         tolerances: beside.tolerances,
         uncertainty: beside.uncertainty,
+        flight: flight(root)?,
+        vibration: vibration(root)?,
         external: root.tables("external")?.iter().map(external).collect::<Result<_>>()?,
     })
 }

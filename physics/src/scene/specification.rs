@@ -1,6 +1,7 @@
 //! Every key a scene file may have: one table that drives reading, checking and the JSON schema.
 
 use super::external::EXTERNAL;
+use super::flight::{PLATE_FLIGHT, SEAT_FLIGHT, VIBRATION};
 use super::grammar::{Bound, Field, Kind, choice, only, optional, positive, pure, required};
 use super::material::MATERIAL;
 use super::plate_impact::{FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE, SERIES};
@@ -12,7 +13,7 @@ const OF_PLATE_IMPACT: &[&str] = &[PLATE_IMPACT];
 const OF_SEAL_SEAT: &[&str] = &[SEAL_SEAT];
 
 /// The keys of a scene file. A key whose table depends on the scene's kind stands here once per kind.
-pub(super) static SCENE: [Field; 21] = [
+pub(super) static SCENE: [Field; 24] = [
     required("name", Kind::Name, "Name of the scene in the store and in reports"),
     optional("description", Kind::Text, "One line for people"),
     required("kind", Kind::Choice(&[choice(PLATE_IMPACT), choice(SEAL_SEAT)]), "What strikes what"),
@@ -73,12 +74,21 @@ pub(super) static SCENE: [Field; 21] = [
             "How uncertain the scene's numbers are, by the names of their fields; changes no result",
         ),
     ),
+    only(OF_PLATE_IMPACT, optional("flight", Kind::Table(&PLATE_FLIGHT), FLIGHT)),
+    only(OF_SEAL_SEAT, optional("flight", Kind::Table(&SEAT_FLIGHT), FLIGHT)),
+    optional(
+        "vibration",
+        Kind::Table(&VIBRATION),
+        "How the valve is shaken; absent = not asked for. Changes nothing of the impact",
+    ),
     optional(
         "external",
         Kind::Tables(&EXTERNAL, 16),
         "Programs of one's own that solve the scene too; they run only with --allow-external",
     ),
 ];
+
+const FLIGHT: &str = "The flight of the sphere after the impact, to its seat; absent = not asked for. Changes nothing of the impact";
 
 static RUN: [Field; 1] = [optional(
     "end_time",

@@ -198,7 +198,14 @@ impl Reduced {
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let (mut summary, _) = self.unjudged(tolerance)?;
         Kind.judge(&self.scene, &mut summary, None);
+        self.add_flight(&mut summary)?;
         Ok(summary)
+    }
+
+    /// What the scene asks of the flight after the impact.
+    fn add_flight(&self, summary: &mut Summary) -> Result<()> {
+        let given = || Err(Error::Internal("a flight behind a plate names its restitution".into()));
+        crate::flight::add_flight(&self.scene, summary, given)
     }
 
     /// The summary, and what the materials remembered when the last impact began.
@@ -273,6 +280,7 @@ impl Reduced {
         }
         summary.samples = Some(history.len());
         Kind.judge(&self.scene, &mut summary, Some(&history));
+        self.add_flight(&mut summary)?;
         Ok(Outcome { summary, history })
     }
 

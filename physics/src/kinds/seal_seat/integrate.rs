@@ -41,10 +41,18 @@ pub struct Options {
 /// # Errors
 /// [`Error::Solver`] if the contact forces do not converge, or contact does not end.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
+    integrate_from(system, system.start(), options)
+}
+
+/// Runs what follows from the state `start`; the balance of momentum is that of an actuator that arrives.
+///
+/// # Errors
+/// As [`integrate`].
+pub(super) fn integrate_from(system: &System, start: State, options: &Options) -> Result<Integration> {
     let traces = (!system.relaxation.is_empty()).then(|| Traces::new(&system.relaxation, options.step));
     let softer = traces.as_ref().map(|traces| system.nodes.softer(traces.growth()));
     let workspace = Workspace::new(system, softer.as_ref().unwrap_or(&system.nodes), traces);
-    let mut run = Running::new(system, options, workspace);
+    let mut run = Running::new(system, start, options, workspace);
     run.workspace.survey(system, &run.state, run.margin());
     run.workspace.forces(system, &run.state, options.step, &mut run.forces)?;
     run.sample();
@@ -83,8 +91,7 @@ struct Kept {
 }
 
 impl<'a> Running<'a> {
-    fn new(system: &'a System, options: &Options, workspace: Workspace<'a>) -> Self {
-        let state = system.start();
+    fn new(system: &'a System, state: State, options: &Options, workspace: Workspace<'a>) -> Self {
         Self {
             system,
             options: *options,

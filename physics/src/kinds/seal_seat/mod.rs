@@ -17,6 +17,7 @@ pub mod integration;
 mod limits;
 mod model;
 pub mod nodes;
+mod restitution;
 mod results;
 mod series;
 mod shape;

@@ -12,6 +12,7 @@ use super::truncation;
 use crate::body::cache::Cache;
 use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
+use crate::flight;
 use crate::kinds::Kind as _;
 use crate::material::vibration_frequency;
 use crate::result::{CUT, History, Losses, Outcome, Point, Summary};
@@ -144,6 +145,19 @@ impl SeatModel {
         })
     }
 
+    /// What the scene asks of the flight after the launch.
+    fn add_flight(&self, summary: &mut Summary) -> Result<()> {
+        let launch = flight::launch(&self.scene, summary);
+        // it falls as fast as it rose
+        let speed = launch.map_or(self.system.speed, |launch| launch.speed);
+        flight::add_flight(&self.scene, summary, || self.restitution(speed))
+    }
+
+    /// The scene it is a model of.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
     /// Modes, contact nodes and rigid bodies.
     pub fn system(&self) -> &System {
         &self.system
@@ -182,6 +196,7 @@ impl SeatModel {
         let (result, _) = self.converged(tolerance)?;
         let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
         Kind.judge(&self.scene, &mut summary, None);
+        self.add_flight(&mut summary)?;
         Ok(summary)
     }
 
@@ -196,6 +211,7 @@ impl SeatModel {
         let history = history(&self.integrate(step, true)?);
         summary.samples = Some(history.len());
         Kind.judge(&self.scene, &mut summary, Some(&history));
+        self.add_flight(&mut summary)?;
         Ok(Outcome { summary, history })
     }
 

@@ -1,0 +1,197 @@
+"""A sphere in a chamber as MuJoCo's model.
+
+Its own friction is the convex one, in which sliding lifts: at a slip of twice the speed of approach
+and a coefficient of 0.3 a restitution of 0.8 becomes 0.6. So contacts are smooth to it, and
+Coulomb's force is applied from the normal force of the step before.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import mujoco
+import numpy as np
+
+from .chamber import Point, Wall
+
+STEP = 5e-4
+"""ms; with 1 us the times of touches are no better than that."""
+CONTACT = 1e-2
+"""Length of an undamped contact, ms: twenty steps, and no more than some um deep."""
+THICKNESS = 0.02
+"""Of the boxes behind the walls, mm: thin, so that none juts out of another's face."""
+IMPEDANCE = 0.9999
+"""The hardest that MuJoCo has."""
+STOPS = 0.5 / 3.5
+"""Of the force that would stop a slip within a step: what acts a step late must not overshoot."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A sphere, its chamber and what acts on it; mm, ms, g, N."""
+
+    walls: tuple[Wall, ...]
+    radius: float
+    mass: float
+    gravity: Point
+    """Acceleration by all that is constant, mm/ms^2."""
+    spring: tuple[float, float]
+    """Stiffness along z, N/mm, and z at which its force is none."""
+    restitution: float
+    friction: float
+
+
+@dataclass(frozen=True)
+class Flown:
+    """What became of a flight."""
+
+    place: Point
+    """Where the sphere lies, mm."""
+    time: float
+    """ms"""
+    first_touch: tuple[float, float, float] | None
+    """Time in ms, x and z in mm."""
+    rests: bool
+
+
+def _box(number: int, wall: Wall) -> str:
+    (x0, z0), (x1, z1) = wall
+    length, angle = math.hypot(x1 - x0, z1 - z0), math.atan2(z1 - z0, x1 - x0)
+    x = (x0 + x1) / 2 + THICKNESS / 2 * math.sin(angle)
+    z = (z0 + z1) / 2 - THICKNESS / 2 * math.cos(angle)
+    return (
+        f'<geom name="w{number}" type="box" size="{length / 2!r} 5 {THICKNESS / 2!r}" '
+        f'pos="{x!r} 0 {z!r}" axisangle="0 1 0 {-angle!r}"/>'
+    )
+
+
+def _xml(case: Case, damping: float) -> str:
+    stiffness = (math.pi / CONTACT) ** 2
+    inertia = 0.4 * case.mass * case.radius**2
+    pairs = "".join(
+        f'<pair geom1="s" geom2="w{k}" condim="1" solref="{-stiffness!r} {-damping!r}" '
+        f'solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 1"/>'
+        for k in range(len(case.walls))
+    )
+    return f"""<mujoco><compiler angle="radian" inertiafromgeom="false"/>
+<option timestep="{STEP}" gravity="{case.gravity[0]!r} 0 {case.gravity[1]!r}" integrator="Euler"
+ iterations="50" tolerance="1e-14"/>
+<worldbody>{"".join(_box(k, wall) for k, wall in enumerate(case.walls))}
+<body name="sphere"><inertial pos="0 0 0" mass="{case.mass!r}"
+ diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
+<joint type="slide" axis="1 0 0"/>
+<joint type="slide" axis="0 0 1" stiffness="{case.spring[0]!r}" springref="{case.spring[1]!r}"/>
+<joint type="hinge" axis="0 1 0"/>
+<geom name="s" type="sphere" size="{case.radius!r}" contype="0" conaffinity="0"/></body>
+</worldbody><contact>{pairs}</contact></mujoco>"""
+
+
+@lru_cache(maxsize=4096)
+def damping_of(restitution: float) -> float:
+    """Damping with which a sphere that falls on a floor rebounds so, found by falls."""
+    low, high = 0.0, 2 * math.pi / CONTACT
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        if _rebound(middle) > restitution:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+def _rebound(damping: float) -> float:
+    case = Case((((-5, 0), (5, 0)),), 1.5, 0.11, (0, 0), (0, 0), 0.5, 0)
+    model = mujoco.MjModel.from_xml_string(_xml(case, damping))
+    data = mujoco.MjData(model)
+    # no touch at a step's very begin
+    data.qpos[1], data.qvel[1] = 1.5 + 1.3e-4, -1.0
+    mujoco.mj_step(model, data, int(10 * CONTACT / STEP))
+    return float(data.qvel[1])
+
+
+class Sphere:
+    """A sphere that moves in a chamber."""
+
+    def __init__(self, case: Case):
+        damping = damping_of(case.restitution)
+        self.case = case
+        self.model = mujoco.MjModel.from_xml_string(_xml(case, damping))
+        self.data = mujoco.MjData(self.model)
+        self.gravity = np.array(case.gravity)
+
+    def start(self, place: Point, velocity: Point, spin: float) -> None:
+        """Place in mm, velocity in mm/ms, spin in 1/ms, counterclockwise with z up."""
+        self.data.qpos[:] = [*place, 0.0]
+        self.data.qvel[:] = [*velocity, -spin]
+
+    def step(self) -> None:
+        """One step, with friction by the contacts of the last one."""
+        data, case = self.data, self.case
+        data.qfrc_applied[:] = 0.0
+        for contact in data.contact if case.friction > 0 and data.ncon else ():
+            if contact.efc_address < 0:
+                continue
+            # from the sphere into the wall; the tangent points to the right on a floor
+            into = contact.frame
+            along = (-into[2], into[0])
+            slip = data.qvel[0] * along[0] + data.qvel[1] * along[1] - case.radius * data.qvel[2]
+            pressed = case.friction * data.efc_force[contact.efc_address]
+            stops = STOPS * abs(slip) * case.mass / STEP
+            force = -math.copysign(min(pressed, stops), slip)
+            data.qfrc_applied[0] += force * along[0]
+            data.qfrc_applied[1] += force * along[1]
+            data.qfrc_applied[2] -= case.radius * force
+        mujoco.mj_step(self.model, data)
+
+    def fly(self, end: float) -> Flown:
+        """Until the sphere lies still, at latest ``end`` ms."""
+        first = self._first_touch(end)
+        still = 0
+        last = self._place()
+        while self.data.time < end and still < 3:
+            for _ in range(2000):
+                self.step()
+            place, speed = self._place(), float(np.linalg.norm(self.data.qvel[:2]))
+            moved = math.dist(place, last)
+            still = still + 1 if moved < 5e-3 and speed < 0.01 else 0
+            last = place
+        return Flown(last, self.data.time, first, still >= 3)
+
+    def _first_touch(self, end: float) -> tuple[float, float, float] | None:
+        """To the first touch after the seat is left, between two steps by the gap."""
+        left = False
+        while self.data.time < end:
+            before = (self.data.time, *self._place())
+            self.step()
+            touches = self.data.ncon > 0
+            if touches and left:
+                gap = min(float(contact.dist) for contact in self.data.contact)
+                # the contact is found where the step began; it went on from there
+                velocity = self.data.qvel[:2]
+                into = self.data.contact[0].frame
+                approach = max(1e-9, float(velocity[0] * into[0] + velocity[1] * into[2]))
+                return before[0] + gap / approach, before[1], before[2]
+            left = left or not touches
+        return None
+
+    def passes(
+        self, beyond: float, ends: tuple[float, float], shaken: Callable[[float], Point]
+    ) -> bool:
+        """Whether the sphere comes beyond this x while its chamber accelerates as ``shaken``.
+
+        The acceleration lasts to the first of the times ``ends`` in ms, the motion to the second.
+        """
+        while self.data.time < ends[1]:
+            acceleration = shaken(self.data.time + STEP / 2)
+            self.model.opt.gravity[0] = self.gravity[0] - acceleration[0]
+            self.model.opt.gravity[2] = self.gravity[1] - acceleration[1]
+            self.step()
+            if self.data.qpos[0] > beyond:
+                return True
+        return False
+
+    def _place(self) -> Point:
+        return float(self.data.qpos[0]), float(self.data.qpos[1])

@@ -1,0 +1,87 @@
+//! The flight that a scene asks for, from the results of its impact.
+
+use super::{Ending, Landscape, Launch, Setup, judge, thresholds};
+use crate::error::{Error, Result};
+use crate::result::{FlightSummary, Summary, VibrationSummary};
+use crate::scene::{Scene, Setup as Bodies};
+use std::f64::consts::FRAC_PI_2;
+
+/// How the sphere is launched by the impact that `summary` tells of; `None` if the run was cut during a contact.
+pub fn launch(scene: &Scene, summary: &Summary) -> Option<Launch> {
+    match scene.setup {
+        // over the rocker the sphere leaves along the floor
+        Bodies::PlateImpact(_) => {
+            let speed = summary.value("inner_velocity_final")?.abs();
+            Some(Launch { speed, angle: FRAC_PI_2, spin: 0.0 })
+        }
+        Bodies::SealSeat(_) => {
+            let [x, z] = ["sphere_velocity_x", "sphere_velocity_z"].map(|name| summary.value(name));
+            let (x, z) = (x?, z?);
+            Some(Launch { speed: x.hypot(z), angle: x.atan2(z), spin: 0.0 })
+        }
+    }
+}
+
+/// Sphere, chamber, forces and energy landscape of the flight that `scene` asks for, with this coefficient of restitution.
+///
+/// # Errors
+/// [`Error::Usage`] if it asks for none; the checks of the scene have seen to the rest.
+pub fn flight_of(scene: &Scene, restitution: f64) -> Result<(Setup, Landscape)> {
+    let flight = scene.flight.as_ref().ok_or_else(|| {
+        Error::Usage(format!(
+            "scene `{}` has no [flight]: add one, with spring, chamber and friction",
+            scene.name
+        ))
+    })?;
+    let of_scene = |sentence: String| Error::Solver(format!("{}: {sentence}", scene.name));
+    let setup = flight.setup(scene, restitution).map_err(of_scene)?;
+    let landscape = Landscape::new(&setup).map_err(of_scene)?;
+    Ok((setup, landscape))
+}
+
+/// Adds to `summary` what `scene` asks of flight and vibration; `restitution` gives the coefficient if the scene leaves it open.
+///
+/// # Errors
+/// Those of `restitution`.
+pub fn add_flight(
+    scene: &Scene,
+    summary: &mut Summary,
+    restitution: impl FnOnce() -> Result<f64>,
+) -> Result<()> {
+    let Some(flight) = &scene.flight else { return Ok(()) };
+    let restitution = flight.restitution.map_or_else(restitution, Ok)?;
+    let (setup, landscape) = flight_of(scene, restitution)?;
+    if let Some(launch) = launch(scene, summary) {
+        let judged = judge(&setup, &landscape, &launch, &flight.scatter);
+        let ending = judged.flight.ending;
+        summary.warnings.extend(warning(ending, judged.share));
+        summary.flight = Some(FlightSummary {
+            seat: ending.seat(),
+            time: judged.flight.time,
+            margin: judged.margin,
+            share: judged.share,
+            least_speed: judged.least_speed,
+            restitution,
+            launch,
+            reason: ending.told(),
+        });
+    }
+    summary.vibration = scene.vibration.as_ref().map(|vibration| {
+        let found = thresholds(&setup, &landscape, &vibration.wave, vibration.direction);
+        VibrationSummary { unseats: found.unseats, shifts: found.shifts, shock_bound: found.shock_bound }
+    });
+    Ok(())
+}
+
+/// That a verdict hangs on more than is known.
+fn warning(ending: Ending, share: f64) -> Option<String> {
+    if let Ending::Moves | Ending::Bounces = ending {
+        return ending.told();
+    }
+    (share > 0.0 && share < 1.0).then(|| {
+        format!(
+            "of the launches in the bands of speed, angle and restitution {:.0} % end in the other seat: the verdict of one flight says little",
+            100.0 * share
+        )
+    })
+}

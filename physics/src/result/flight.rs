@@ -1,0 +1,38 @@
+//! What becomes of the sphere after the impact, and how hard the valve can be shaken.
+
+use crate::flight::{Launch, Seat};
+use serde::{Deserialize, Serialize};
+
+/// The flight after the impact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FlightSummary {
+    /// The seat the sphere comes to rest in.
+    pub seat: Seat,
+    /// Time in s after the launch at which that is certain.
+    pub time: f64,
+    /// Least relative change of the launch's speed that ends in another seat; `None` if none up to a half does.
+    pub margin: Option<f64>,
+    /// Share of the launches in the scene's bands that end in the other seat.
+    pub share: f64,
+    /// Least speed in m/s that can shift, by the saddle between the seats: sqrt(2 dU / m).
+    pub least_speed: f64,
+    /// Newton's coefficient of restitution, as given or as computed.
+    pub restitution: f64,
+    /// The launch, from the impact's own result.
+    pub launch: Launch,
+    /// Why it is in neither seat, in a sentence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+/// Least accelerations of the valve, as amplitudes in m/s^2 (of a record: factors on it).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct VibrationSummary {
+    /// At which the sphere comes off a side of its seat; `None` if this direction presses it in.
+    pub unseats: Option<f64>,
+    /// At which it passes the saddle; `None` if none is found.
+    pub shifts: Option<f64>,
+    /// What a half-sine needs at least by energy, pi sqrt(2 dU / m) / (2 T).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shock_bound: Option<f64>,
+}
