@@ -159,13 +159,19 @@ class Beam:
         rate = (1j * frequencies * free).real
         return free.real + forced * left, rate - (forced * left / decay if decay > 0.0 else 0.0)
 
-    def strike(self, speed: float, decay: float = 0.0) -> Strike:
-        """Released from the moment with which the tip strikes at ``speed`` m/s; see `swing`."""
+    def strike(self, speed: float, decay: float = 0.0, at: float = 0.0) -> Strike:
+        """Released from the moment with which the tip strikes at ``speed`` m/s; see `swing`.
+
+        Args:
+            speed: m/s
+            decay: see `swing`.
+            at: deflection at the strike over that before the release.
+        """
         frequencies, shapes = self.modes
         tip = shapes[-2 + DEFLECTION]
 
         def place(time: float) -> float:
-            return float(tip @ self.swing(decay, time)[0])
+            return float(tip @ self.swing(decay, time)[0]) - at * self.tip_deflection
 
         times = np.linspace(0.0, 2.0 * math.pi / frequencies[0] + 10.0 * decay, INSTANTS)
         after = next(t for t in times if place(t) < 0.0)

@@ -167,11 +167,18 @@ class Bender:
     """Of the tip at the strike, m/s."""
     discharge_time: float = 0.0
     """With which its moment decays after the release, s."""
+    strike_at: float = 0.0
+    """Deflection of the tip at the strike over that before the release."""
 
     @cached_property
     def strike(self) -> Strike:
         """The state in which it strikes."""
-        return self.beam.strike(self.speed, self.discharge_time)
+        return self.beam.strike(self.speed, self.discharge_time, self.strike_at)
+
+    @property
+    def offset(self) -> float:
+        """Deflection of the tip at the strike, m."""
+        return self.strike_at * self.strike.moment * self.beam.tip_deflection
 
     @property
     def mass(self) -> float:

@@ -71,14 +71,14 @@ class AxisymmetricMotion:
             carried.mass = self._masses[body]
             carried.start = float(system.velocity[system.first[body], 1])
             carried.node = -1
+        self._outer_before = 0.0
         if system.tip is not None:
             bodies[0].node = system.tip
+            self._outer_before = float(self.loop.u[2 * system.tip + 1])
         self.voltage: structures.Voltage | None = None
-        self._outer_before = 0.0
         if system.stack is not None and system.tip is not None:
             self.voltage = system.stack.voltage(system.tip)
             self.loop.problem.state.voltage = ctypes.pointer(self.voltage)
-            self._outer_before = float(self.loop.u[2 * system.tip + 1])
         self.dents: Dents | None = None
         if self.loop.problem.plastic is not None:
             self.dents = Dents(system, self.loop.problem.plastic)

@@ -219,6 +219,13 @@ def _discretised(
     return assemble(body, made.material), fixed
 
 
+def _place(outer: Body) -> float:
+    """Distance of the outer body's tip from the plate with all of it undeformed, m."""
+    if isinstance(outer, Bender):
+        return -outer.offset
+    return outer.gap if isinstance(outer, Stack) else 0.0
+
+
 def build_system(
     scene: Scene, mesh: ImpactMesh, yielding_reach: float = YIELDING_REACH
 ) -> AxisymmetricSystem:
@@ -272,7 +279,7 @@ def build_system(
         first[index + 1] = first[index] + order.size
     stack, contacts = mesh.stack, []
     for name, surface, index, gap, normal in (
-        ("outer", mesh.outer_contact, 0, stack.stack.gap if stack else 0.0, 1.0),
+        ("outer", mesh.outer_contact, 0, _place(scene.outer), 1.0),
         ("inner", mesh.inner_contact, 2, scene.gap, -1.0),
     ):
         made = scene.outer if index == 0 else scene.inner

@@ -173,7 +173,7 @@ def _body(reader: Reader, *extra: str) -> Body:
 def _bender(reader: Reader) -> Bender:
     reader.allow(
         *("kind", "length", "bending_stiffness", "line_mass", "tip_mass"),
-        *("tip_radius", "discharge_time", "material", "speed"),
+        *("tip_radius", "discharge_time", "strike_at", "material", "speed"),
     )
     beam = Beam(
         length=reader.number("length", "m"),
@@ -187,6 +187,7 @@ def _bender(reader: Reader) -> Bender:
         material=read_material(reader.child("material")),
         speed=reader.number("speed", "m/s"),
         discharge_time=reader.number("discharge_time", "s", inclusive=True),
+        strike_at=reader.number_or("strike_at", 0.0, "(no unit)", above=-1.0, below=1.0),
     )
     if bender.strike.moment_left > MOMENT_LEFT:
         raise SceneError(

@@ -28,8 +28,8 @@ enum Own {
 #[derive(Debug, Args)]
 struct Named {
     /// Name of the study: table2, fig14, fig15, fig16, fig17, half-period (section 4.1),
-    /// insensitivity, auto, rocker, flight, valve, fluid, damping, shakedown, test-bed, seal-seat (section 4.4),
-    /// seal-seat-direction, seal-seat-cost
+    /// insensitivity, auto, actuators, rocker, flight, valve, fluid, damping, shakedown, test-bed,
+    /// seal-seat (section 4.4), seal-seat-direction, seal-seat-cost
     #[arg(required = true)]
     name: Option<String>,
     /// Reduced model, for the studies of figures [default: B, with which the paper made them]

@@ -2,6 +2,7 @@
 //!
 //! A study is one file with one function that returns a [`Study`], and one line in [`STUDIES`].
 
+pub mod actuators;
 pub mod auto;
 pub mod damping;
 pub mod fig14;
@@ -85,7 +86,7 @@ impl Entry {
 }
 
 /// All studies there are.
-pub const STUDIES: [Entry; 18] = [
+pub const STUDIES: [Entry; 19] = [
     Entry {
         name: "table2",
         about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
@@ -149,6 +150,14 @@ pub const STUDIES: [Entry; 18] = [
         run: auto::run,
         panels: &[],
         drawing: Some(auto::figure),
+    },
+    Entry {
+        name: "actuators",
+        about: "Section 2.2: energy of the inner sphere over the gap, from stack, bender and lift magnet",
+        takes_model: true,
+        run: actuators::run,
+        panels: &actuators::PANELS,
+        drawing: None,
     },
     Entry {
         name: "rocker",

@@ -89,6 +89,7 @@ pub fn bender(discharge_time: f64) -> Result<Bender> {
         tip_mass,
         tip_radius,
         discharge_time,
+        strike_at: 0.0,
     };
     // frequencies and stiffness hold for any length, the deflection per torque goes with its inverse
     let guess = 10e-3;

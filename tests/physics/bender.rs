@@ -23,6 +23,7 @@ fn measured() -> Bender {
         tip_mass,
         tip_radius: 4e-3,
         discharge_time: 0.0,
+        strike_at: 0.0,
     }
 }
 
@@ -154,6 +155,39 @@ fn discharge_follows_its_equation_of_motion() {
             max_relative = 1e-6,
             epsilon = 1e-9 * start.abs() * beam.omega[mode]
         );
+    }
+}
+
+/// Of a beam that is one mode: it passes `share` of its deflection where the cosine does.
+#[test]
+fn offset_of_a_single_mode_is_the_closed_form() {
+    for share in [-0.6, -0.1, 0.3, 0.8_f64] {
+        let bender = Bender { strike_at: share, ..measured() };
+        let release = Release::with_modes(&bender, 1).unwrap();
+        let omega = release.beam.omega[0];
+        let deflection = release.beam.tip[0] * release.beam.bent()[0];
+        assert_relative_eq!(release.time, share.acos() / omega, max_relative = 1e-9);
+        let speed = omega * deflection * (1.0 - share * share).sqrt();
+        assert_relative_eq!(release.speed_per_moment, speed, max_relative = 1e-9);
+        // and with a discharge: q'' + omega^2 q = omega^2 q_0 e^(-t/tau)
+        let slow = Bender { strike_at: share, discharge_time: 0.05e-3, ..measured() };
+        let release = Release::with_modes(&slow, 1).unwrap();
+        let (x, phase) = (omega * 0.05e-3, omega * release.time);
+        let rest = (-release.time / 0.05e-3).exp();
+        let passed = (phase.cos() + x * phase.sin() + x * x * rest) / (1.0 + x * x);
+        assert_relative_eq!(passed, share, max_relative = 1e-9);
+    }
+}
+
+/// The tip begins where the plate stands, and displacements there are counted from zero.
+#[test]
+fn impact_beside_the_straight_position_closes_its_ledger() {
+    for strike_at in [-0.5, 0.5] {
+        let (system, result) = run(&rocker(Bender { strike_at, ..measured() }));
+        let tip = system.of_bodies(&system.start[0])[0];
+        assert_relative_eq!(tip + system.gap[0], 0.0, epsilon = 1e-15);
+        assert!(tip.abs() > 1e-5 && tip.signum() == strike_at.signum());
+        assert!(result.energy_residual < 1e-6 && result.velocity[1] < -0.3, "{result:?}");
     }
 }
 

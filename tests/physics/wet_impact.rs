@@ -171,6 +171,7 @@ fn a_fluid_without_viscosity_changes_nothing() {
         tip_mass: 128e-6,
         tip_radius: 4e-3,
         discharge_time: 0.0,
+        strike_at: 0.0,
     });
     for (name, mut setup) in [("sphere", valve(water())), ("bender", bender)] {
         setup.fluid.as_mut().expect("fluid").viscosity = 1e-15;

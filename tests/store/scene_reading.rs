@@ -341,6 +341,55 @@ fn a_bender_is_given_in_exactly_one_way() {
 }
 
 #[test]
+fn a_bender_s_circuit_and_offset() {
+    let bender = |keys: &str| {
+        let fixed = "kind = \"bender\"\nlength = 0.0137\ntip_mass = 128e-6\ntip_radius = 0.004\nfirst_frequency = 500\ntip_stiffness = 2500";
+        let text = edited("kind     = \"sphere\"\nradius   = \"10 mm\"", &format!("{fixed}\n{keys}"));
+        text.replacen("speed    = \"550 mm/s\"\n", "", 1)
+    };
+    let outer = |keys: &str| plate_impact(&parse(&bender(keys))).outer.clone();
+    let circuit = outer("speed = 0.5\ncapacitance = \"50 nF\"\ndischarge_resistance = \"1 kOhm\"");
+    let time = outer("speed = 0.5\ndischarge_time = \"50 us\"");
+    let (Shape::Bender(circuit), Shape::Bender(time)) = (circuit.shape, time.shape) else {
+        panic!("benders")
+    };
+    assert!((circuit.discharge_time / time.discharge_time - 1.0).abs() < 1e-12);
+    refuses(&bender("speed = 0.5\ncapacitance = 5e-8"), 16, &["outer.discharge_resistance", "missing"]);
+    let both = bender("speed = 0.5\ncapacitance = 5e-8\ndischarge_resistance = 1000\ndischarge_time = 1e-4");
+    assert!(refused(&both)[0].message.contains("both give the discharge"), "{:?}", refused(&both));
+    // the torque that gives a speed at an offset gives it
+    let by_speed = outer("speed = 0.5\noffset = \"60 um\"");
+    let Shape::Bender(bent) = by_speed.shape else { panic!("a bender") };
+    assert!(bent.strike_at > 0.2 && bent.strike_at < 0.6, "{bent:?}");
+    let far =
+        Scene::parse("scene.toml", &bender("tip_deflection = 1e-4\noffset = 2e-4")).expect_err("too far");
+    assert_eq!(far.exit_status(), ExitStatus::InvalidScene);
+    assert!(
+        far.to_string().contains("`outer.offset` is 0.0002 m") && far.to_string().contains("9.0000e-5 m"),
+        "{far}"
+    );
+}
+
+#[test]
+fn a_magnet_is_a_compact_body_with_the_speed_of_its_plunger() {
+    let magnet = |stop: &str| {
+        let keys = format!(
+            "kind = \"magnet\"\nmass = \"5 g\"\ntip_radius = 0.004\nvoltage = \"12 V\"\nresistance = \"8 Ohm\"\ninductance = \"20 mH\"\nstop_inductance = \"{stop}\"\ntravel = \"2 mm\""
+        );
+        edited("kind     = \"sphere\"\nradius   = \"10 mm\"", &keys).replacen(
+            "speed    = \"550 mm/s\"\n",
+            "",
+            1,
+        )
+    };
+    let setup = plate_impact(&parse(&magnet("60 mH"))).clone();
+    assert!(matches!(setup.outer.shape, Shape::Compact { mass: 0.005, tip_radius: 0.004 }));
+    assert!(setup.outer.speed > 0.1 && setup.outer.speed < 5.0, "{}", setup.outer.speed);
+    let said = Scene::parse("scene.toml", &magnet("10 mH")).expect_err("no pull").to_string();
+    assert!(said.contains("`outer.stop_inductance` is 0.01 H") && said.contains("0.02 H"), "{said}");
+}
+
+#[test]
 fn a_stack_that_cannot_be_is_told() {
     let stack = |from: &str, to: &str| {
         let keys = "kind = \"stack\"\nlength = 0.018\narea = 25e-6\nstroke = 17.4e-6\nblocked_force = 850\nvoltage = 150\ncapacitance = 1.4e-6\ndensity = 8000\ntip_radius = 0.004";

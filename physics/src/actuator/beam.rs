@@ -4,7 +4,7 @@
 //! deflection M x^2/(2 E I) is among the cubics, so that the statics are exact on any mesh.
 
 use super::Bender;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::numerics::eigenmodes;
 use faer::Mat;
 
@@ -12,6 +12,10 @@ use faer::Mat;
 pub const MODES: usize = 16;
 /// Elements per mode that is asked for: the highest frequency is then within 2 %, the others much closer.
 const ELEMENTS_PER_MODE: usize = 2;
+
+/// Time in radians of the first mode, and in time constants of the discharge, after which a tip that has not struck never will.
+const SWINGS: f64 = 20.0;
+const DECAYS: f64 = 20.0;
 
 /// Modes of the beam with its tip mass.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +71,7 @@ impl Beam {
     }
 }
 
-/// Release from a uniform bending moment, and the strike: the tip's first passage of its straight position. Per
+/// Release from a uniform bending moment, and the strike: the tip's first passage of its straight position, or of one beside it. Per
 /// 1 N m of moment; everything is proportional to it, and energies to its square.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Release {
@@ -87,7 +91,7 @@ impl Release {
     /// Releases `bender`.
     ///
     /// # Errors
-    /// As [`Beam::new`].
+    /// As [`Beam::new`], [`Error::Solver`] if the tip does not come to where it is to strike.
     pub fn new(bender: &Bender) -> Result<Self> {
         Self::with_modes(bender, MODES)
     }
@@ -95,7 +99,7 @@ impl Release {
     /// As [`Release::new`], with the lowest `modes` modes of the beam.
     ///
     /// # Errors
-    /// As [`Beam::new`].
+    /// As [`Release::new`].
     pub fn with_modes(bender: &Bender, modes: usize) -> Result<Self> {
         let beam = Beam::new(bender, modes)?;
         let bent = beam.bent();
@@ -105,11 +109,18 @@ impl Release {
         // provably pass no zero, and close to it are Newton's
         let bound: f64 =
             (0..modes).map(|k| 3.0 * (beam.tip[k] * bent[k]).abs() * beam.omega[k].powi(2)).sum();
-        let start = tip(&bent);
-        let mut time = (2.0 * start / bound).sqrt();
+        let (start, offset) = (tip(&bent), bender.strike_at * tip(&bent));
+        let patience = SWINGS / beam.omega[0] + DECAYS * bender.discharge_time;
+        let mut time = (2.0 * (start - offset) / bound).sqrt();
         loop {
             let (q, v) = swing(time);
-            let (deflection, rate) = (tip(&q), tip(&v));
+            let (deflection, rate) = (tip(&q) - offset, tip(&v));
+            if time > patience {
+                return Err(Error::Solver(format!(
+                    "the bender's tip does not swing as far as {} of its deflection before the release",
+                    bender.strike_at
+                )));
+            }
             if deflection <= 1e-14 * start {
                 break;
             }

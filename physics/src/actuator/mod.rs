@@ -3,6 +3,7 @@
 pub mod beam;
 pub mod cantilever;
 pub mod circuit;
+pub mod magnet;
 pub mod stack;
 
 pub use stack::{Stack, Supply};
@@ -13,7 +14,7 @@ use serde::Serialize;
 ///
 /// It is bent away from the plate by a bending moment that is uniform along the beam, as a piezo layer gives it,
 /// and released from rest: the moment is gone at once or, as a piezo is discharged through a resistor (section 2.2.2),
-/// decays. It strikes where its tip passes the straight position.
+/// decays. It strikes where its tip passes the straight position, or beside it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Bender {
     /// Length L of the beam in m.
@@ -28,6 +29,15 @@ pub struct Bender {
     pub tip_radius: f64,
     /// Time constant in s with which the moment decays after the release; 0 = it is gone at once.
     pub discharge_time: f64,
+    /// Deflection of the tip at which it strikes, over that before the release: 0 where it passes its straight position, positive where
+    /// the plate stands nearer, negative where it stands beyond.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub strike_at: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Bender {

@@ -65,6 +65,7 @@ impl MovingBody {
         let velocity = scaled(&release.velocity);
         let kinetic_energy = 0.5 * velocity.iter().map(|v| v * v).sum::<f64>();
         let (length, stiffness) = (bender.length, bender.bending_stiffness);
+        let strikes_at = torque * dot(&release.beam.tip, &release.displacement);
         Ok(Self {
             oscillators: release.beam.omega.iter().map(|&omega| Oscillator { omega, alpha: 0.0 }).collect(),
             tip: release.beam.tip.clone(),
@@ -78,7 +79,7 @@ impl MovingBody {
                 kinetic_energy,
                 strike_delay: release.time,
             }),
-            clearance: 0.0,
+            clearance: if bender.strike_at == 0.0 { 0.0 } else { -strikes_at },
             supply: None,
         })
     }

@@ -44,22 +44,27 @@ impl<'a> Checker<'a> {
         let kind = selector.zip(table.get(word));
         let absent = (word == "geometry" && kind.is_none()).then_some(DEFAULT_GEOMETRY);
         let kind = kind.and_then(|(field, value)| Some(chosen(field, value)?.name)).or(absent);
-        // A key that has a form for this kind is not told about its other forms.
-        let elsewhere = |field: &Field| {
-            !field.belongs_to(kind) && fields.iter().any(|f| f.key == field.key && f.belongs_to(kind))
+        // A key that has a form for this kind is not told about its other forms, and one that has none is told of once.
+        let elsewhere = |(index, field): (usize, &Field)| {
+            let same = |f: &Field| f.key == field.key;
+            !field.belongs_to(kind)
+                && (fields[..index].iter().any(same) || fields.iter().any(|f| same(f) && f.belongs_to(kind)))
         };
-        for field in fields.iter().filter(|field| !elsewhere(field)) {
+        for (_, field) in fields.iter().enumerate().filter(|place| !elsewhere(*place)) {
             match table.get_key_value(field.key) {
                 Some((key, _)) if kind.is_some() && !field.belongs_to(kind) => {
-                    let (kind, owners) = (kind.unwrap_or_default(), field.only.join("` and `"));
+                    let owners = fields.iter().filter(|f| f.key == field.key).flat_map(|f| f.only);
+                    let owners: Vec<&str> = owners.copied().collect();
+                    let kind = kind.unwrap_or_default();
                     self.problems.add(
                         key.span(),
                         format!(
-                            "`{}` does not belong to {word} `{kind}`, only to `{owners}`",
-                            place.key(field.key)
+                            "`{}` does not belong to {word} `{kind}`, only to `{}`",
+                            place.key(field.key),
+                            owners.join("` and `")
                         ),
                         &format!("not for this {word}"),
-                        format!("remove it, or set {word} = \"{}\"", field.only.join("\" or \"")),
+                        format!("remove it, or set {word} = \"{}\"", owners.join("\" or \"")),
                     );
                 }
                 Some((key, value)) => {

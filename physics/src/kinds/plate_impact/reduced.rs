@@ -19,13 +19,15 @@ use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
 use crate::result::{BenderSummary, CUT, Choice, ElasticLimit, Outcome, StackSummary, Summary};
-use crate::scene::{self, DEFAULT_MODES, Edge, MAX_MODES, Model, Outer, PlateImpact, Scene, Setup};
+use crate::scene::{self, DEFAULT_MODES, Edge, MAX_MODES, Model, Outer, PlateImpact, Scene, Setup, Shape};
 use std::time::Instant;
 
 /// The same of an impact beside the centre, where modes with nodal diameters are as many.
 const OFF_CENTRE_MODES: usize = 64;
 /// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
 const PEAK_ERROR: f64 = 0.1;
+/// Share of a bender's moment at the strike that is told.
+const MOMENT_LEFT: f64 = 0.01;
 /// Samples of a history per duration of a Hertz contact.
 const SAMPLES_PER_CONTACT: f64 = 400.0;
 
@@ -316,6 +318,15 @@ impl Reduced {
             warnings.extend(memory.warnings.iter().cloned());
             warnings.extend(result.error_estimate.filter(|error| *error > memory::CHANGE / 3.0).map(|error| {
                 format!("velocities and force peaks are uncertain by {error:.0e}: ever shorter steps have not settled them")
+            }));
+        }
+        if let (Shape::Bender(bender), Some(drive)) = (&setup.outer.shape, system.drive) {
+            let left = (-drive.strike_delay / bender.discharge_time).exp();
+            warnings.extend((left > MOMENT_LEFT).then(|| {
+                format!(
+                    "{:.1} % of the bender's moment is left when it strikes, which the models take as gone",
+                    100.0 * left
+                )
             }));
         }
         for (body, contact) in ["outer", "inner"].iter().zip(&result.contacts) {

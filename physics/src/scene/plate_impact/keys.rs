@@ -61,25 +61,47 @@ const fn drive(set: &'static str, field: Field) -> Field {
     one_way(Some("bender"), "the drive", set, field)
 }
 
+/// A key of one of the ways to give how a bender is discharged.
+const fn discharge(set: &'static str, field: Field) -> Field {
+    only(&["bender"], one_way(Some("bender"), "the discharge", set, field))
+}
+
+/// A key of the lift magnet.
+const fn magnet(key: &'static str, dimension: Dimension, doc: &'static str) -> Field {
+    only(&["magnet"], required(key, positive(dimension), doc))
+}
+
 /// Angles in rad at which a body can fly towards a plane.
 const TOWARDS: Bound = Bound {
     low: Some((-std::f64::consts::FRAC_PI_2, false)),
     high: Some((std::f64::consts::FRAC_PI_2, false)),
 };
 
-pub(in crate::scene) static OUTER: [Field; 27] = [
+pub(in crate::scene) static OUTER: [Field; 36] = [
     required(
         "kind",
-        Kind::Choice(&[choice("sphere"), choice("compact"), choice("bender"), choice("stack")]),
+        Kind::Choice(&[
+            choice("sphere"),
+            choice("compact"),
+            choice("bender"),
+            choice("stack"),
+            choice("magnet"),
+        ]),
         SHAPE_KIND,
     ),
     SPHERE_RADIUS,
     COMPACT_MASS,
-    only(&["compact", "bender", "stack"], TIP_RADIUS),
+    only(&["compact", "bender", "stack", "magnet"], TIP_RADIUS),
     only(
         &["bender", "stack"],
         required("length", positive(Dimension::LENGTH), "Length of the beam or of the stack"),
     ),
+    magnet("mass", Dimension::MASS, "Mass of the magnet's plunger"),
+    magnet("voltage", Dimension::VOLTAGE, "Voltage that is switched on"),
+    magnet("resistance", Dimension::RESISTANCE, "Resistance of the magnet's circuit"),
+    magnet("inductance", Dimension::INDUCTANCE, "Inductance with the plunger at its start"),
+    magnet("stop_inductance", Dimension::INDUCTANCE, "The same with the plunger at its stop, at the plate"),
+    magnet("travel", Dimension::LENGTH, "Way of the plunger to its stop"),
     stack("area", Dimension::AREA, "Area of the stack's section"),
     stack("stroke", Dimension::LENGTH, "Growth of the free stack at `voltage`"),
     stack("blocked_force", Dimension::FORCE, "Force of the stack that is held at its length, at `voltage`"),
@@ -138,6 +160,26 @@ pub(in crate::scene) static OUTER: [Field; 27] = [
     ),
     only(
         &["bender"],
+        optional(
+            "offset",
+            Kind::Quantity(Dimension::LENGTH, Bound::ANY),
+            "Deflection of the bender's tip at which it meets the plate, negative = beyond its straight position; absent = 0",
+        ),
+    ),
+    discharge(
+        "circuit",
+        optional("capacitance", positive(Dimension::CAPACITANCE), "Capacitance of the bender"),
+    ),
+    discharge(
+        "circuit",
+        optional(
+            "discharge_resistance",
+            positive(Dimension::RESISTANCE),
+            "Resistance through which the bender is discharged",
+        ),
+    ),
+    discharge(
+        "time",
         optional(
             "discharge_time",
             Kind::Quantity(Dimension::TIME, Bound::NOT_NEGATIVE),

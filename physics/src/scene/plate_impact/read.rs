@@ -3,6 +3,7 @@
 use super::keys::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS};
 use super::*;
 use crate::Result;
+use crate::actuator::magnet::Magnet;
 use crate::actuator::{beam, cantilever};
 use crate::scene::material::material;
 use crate::scene::read::refused;
@@ -64,6 +65,11 @@ fn striker(outer: &Node, material: Material) -> Result<Outer> {
         let stack = stack(outer)?;
         return Ok(Outer::centred(Shape::Stack(stack), material, stack.step_speed()));
     }
+    if outer.text("kind")? == "magnet" {
+        let magnet = magnet(outer)?;
+        let plunger = Shape::Compact { mass: magnet.mass, tip_radius: outer.number("tip_radius")? };
+        return Ok(Outer::centred(plunger, material, magnet.lift()?.speed));
+    }
     if outer.text("kind")? != "bender" {
         return Ok(Outer {
             shape: shape(outer)?,
@@ -73,9 +79,12 @@ fn striker(outer: &Node, material: Material) -> Result<Outer> {
             angle: outer.number_or("angle", 0.0)?,
         });
     }
-    let bender = bender(outer)?;
+    let mut bender = bender(outer)?;
+    let offset = outer.number_or("offset", 0.0)?;
     let speed = if outer.0.contains_key("speed") {
-        outer.number("speed")?
+        let speed = outer.number("speed")?;
+        bender.strike_at = strike_at(bender, offset, speed)?;
+        speed
     } else {
         let torque = if outer.0.contains_key("torque") {
             outer.number("torque")?
@@ -86,9 +95,30 @@ fn striker(outer: &Node, material: Material) -> Result<Outer> {
                 outer.number("tip_deflection")?,
             )
         };
+        bender.strike_at = within(offset / deflection(&bender, torque), offset)?;
         torque * beam::Release::new(&bender)?.speed_per_moment
     };
     Ok(Outer::centred(Shape::Bender(bender), material, speed))
+}
+
+fn magnet(outer: &Node) -> Result<Magnet> {
+    let inductance = [outer.number("inductance")?, outer.number("stop_inductance")?];
+    if inductance[1] <= inductance[0] {
+        return Err(refused(
+            &format!(
+                "`outer.stop_inductance` is {} H, but it has to be more than `outer.inductance`, {} H",
+                inductance[1], inductance[0]
+            ),
+            "the plunger is pulled to where the inductance is larger",
+        ));
+    }
+    Ok(Magnet {
+        mass: outer.number("mass")?,
+        voltage: outer.number("voltage")?,
+        resistance: outer.number("resistance")?,
+        inductance,
+        travel: outer.number("travel")?,
+    })
 }
 
 /// Poisson's ratio of a stack that names none: that of lead zirconate titanate is 0.29 to 0.34.
@@ -147,6 +177,46 @@ fn stack(outer: &Node) -> Result<Stack> {
 /// Strokes by which a stack swings out at most, when the voltage is there at once.
 const MOST_STROKES: f64 = 2.0;
 
+/// Deflection of the tip in m under a uniform bending moment of `torque` N m.
+fn deflection(bender: &Bender, torque: f64) -> f64 {
+    torque / cantilever::moment_for_deflection(bender.length, bender.bending_stiffness, 1.0)
+}
+
+/// Largest offset of a bender over its deflection before the release.
+const FARTHEST: f64 = 0.9;
+/// Iterations for the deflection from which a bender has its speed at an offset, and their relative change in the end.
+const ITERATIONS: usize = 60;
+const SETTLED: f64 = 1e-13;
+
+/// `share` of the deflection at which a bender strikes, for an `offset` in m.
+fn within(share: f64, offset: f64) -> Result<f64> {
+    if share.abs() <= FARTHEST {
+        return Ok(share);
+    }
+    Err(refused(
+        &format!(
+            "`outer.offset` is {offset} m, but its magnitude has to be at most {FARTHEST} of the tip's deflection before the release, {:.4e} m",
+            FARTHEST * (offset / share).abs()
+        ),
+        "bend the bender more, or bring the plate nearer to its straight position",
+    ))
+}
+
+/// The same of a bender that strikes with `speed` m/s.
+fn strike_at(bender: Bender, offset: f64, speed: f64) -> Result<f64> {
+    let mut share = 0.0;
+    for _ in 0..if offset == 0.0 { 0 } else { ITERATIONS } {
+        let release = beam::Release::new(&Bender { strike_at: share, ..bender })?;
+        let next = within(offset / deflection(&bender, speed / release.speed_per_moment), offset)?;
+        let change = (next - share).abs();
+        share = next;
+        if change <= SETTLED {
+            break;
+        }
+    }
+    Ok(share)
+}
+
 fn bender(outer: &Node) -> Result<Bender> {
     let (length, tip_mass) = (outer.number("length")?, outer.number("tip_mass")?);
     let (bending_stiffness, line_mass) = if outer.0.contains_key("bending_stiffness") {
@@ -170,7 +240,12 @@ fn bender(outer: &Node) -> Result<Bender> {
         line_mass,
         tip_mass,
         tip_radius: outer.number("tip_radius")?,
-        discharge_time: outer.number_or("discharge_time", 0.0)?,
+        discharge_time: if outer.0.contains_key("capacitance") {
+            outer.number("capacitance")? * outer.number("discharge_resistance")?
+        } else {
+            outer.number_or("discharge_time", 0.0)?
+        },
+        strike_at: 0.0,
     })
 }
 

@@ -1,0 +1,150 @@
+//! Lift magnet (section 2.2): a coil pulls a plunger, which strikes with the speed it has come to.
+//!
+//! R i + d(L i)/dt = V, m x'' = i^2 L'(x)/2, from rest and without current. The plunger starts `travel` before its stop, where the
+//! plate is; the inductance goes from that at the start to that at the stop as one over what is left of the air gap:
+//! 1/L = 1/L_1 + (1/L_0 - 1/L_1) g/g_0, the reluctance of an even gap being in proportion to its length.
+//! The plunger is a compact body from the touch on: in the microseconds of the impact the coil's force, of newtons, does nothing.
+
+use crate::error::{Error, Result};
+
+/// Steps of the integration from the start to the stop, about.
+const STEPS: f64 = 20_000.0;
+/// Times `characteristic` after which a plunger that has not come to its stop never will.
+const PATIENCE: f64 = 100.0;
+
+/// Lift magnet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Magnet {
+    /// Mass of the plunger in kg.
+    pub mass: f64,
+    /// Voltage in V.
+    pub voltage: f64,
+    /// Resistance of the circuit in Ohm.
+    pub resistance: f64,
+    /// Inductance in H with the plunger at the start and at the stop, which is larger.
+    pub inductance: [f64; 2],
+    /// Way of the plunger from the start to the stop in m.
+    pub travel: f64,
+}
+
+/// A magnet's plunger at its stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lift {
+    /// Time since the switching on in s.
+    pub time: f64,
+    /// Speed of the plunger in m/s.
+    pub speed: f64,
+    /// Current in A.
+    pub current: f64,
+    /// Energy taken from the source in J.
+    pub taken: f64,
+    /// Heat in the resistance in J.
+    pub heat: f64,
+}
+
+/// State: way, speed, flux linkage, energy taken, heat.
+type State = [f64; 5];
+
+impl Magnet {
+    /// Inductance in H and its slope by the way in H/m, `way` m from the start.
+    pub fn inductance_at(&self, way: f64) -> [f64; 2] {
+        let [start, stop] = self.inductance;
+        let slope = (1.0 / start - 1.0 / stop) / self.travel;
+        let inductance = 1.0 / (1.0 / start - slope * way);
+        [inductance, slope * inductance * inductance]
+    }
+
+    fn rates(&self, [way, speed, flux, ..]: State) -> State {
+        let [inductance, slope] = self.inductance_at(way);
+        let current = flux / inductance;
+        let force = 0.5 * current * current * slope;
+        let heating = self.resistance * current * current;
+        [speed, force / self.mass, self.voltage - self.resistance * current, self.voltage * current, heating]
+    }
+
+    /// A step of `h` s by Runge and Kutta.
+    fn step(&self, state: State, h: f64) -> State {
+        let add = |k: State, c: f64| -> State { std::array::from_fn(|i| state[i] + c * h * k[i]) };
+        let k1 = self.rates(state);
+        let k2 = self.rates(add(k1, 0.5));
+        let k3 = self.rates(add(k2, 0.5));
+        let k4 = self.rates(add(k3, 1.0));
+        std::array::from_fn(|i| state[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
+    }
+
+    /// Time in s that the plunger would take under the force of the final current at the start.
+    fn characteristic(&self) -> f64 {
+        let [inductance, slope] = self.inductance_at(0.0);
+        let force = 0.5 * (self.voltage / self.resistance).powi(2) * slope;
+        (2.0 * self.travel * self.mass / force).sqrt() + inductance / self.resistance
+    }
+
+    /// The plunger at its stop.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if it takes too long to be meant.
+    pub fn lift(&self) -> Result<Lift> {
+        let h = self.characteristic() / STEPS;
+        let (mut state, mut time) = (State::default(), 0.0);
+        while time < PATIENCE * STEPS * h {
+            let next = self.step(state, h);
+            if next[0] >= self.travel {
+                // by Newton's method in the length of the last step
+                let mut last = h;
+                for _ in 0..20 {
+                    let end = self.step(state, last);
+                    last -= (end[0] - self.travel) / end[1];
+                }
+                let [_, speed, flux, taken, heat] = self.step(state, last);
+                let current = flux / self.inductance[1];
+                return Ok(Lift { time: time + last, speed, current, taken, heat });
+            }
+            (state, time) = (next, time + h);
+        }
+        Err(Error::Solver(format!(
+            "the magnet's plunger has not come to its stop after {time:.3e} s: is its mass, or a voltage, in the wrong unit?"
+        )))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn magnet() -> Magnet {
+        Magnet { mass: 5e-3, voltage: 12.0, resistance: 8.0, inductance: [20e-3, 60e-3], travel: 2e-3 }
+    }
+
+    #[test]
+    fn what_the_source_gives_is_heat_field_or_motion() {
+        for resistance in [1.0, 8.0, 40.0] {
+            let magnet = Magnet { resistance, ..magnet() };
+            let lift = magnet.lift().unwrap();
+            let field = 0.5 * magnet.inductance[1] * lift.current.powi(2);
+            let motion = 0.5 * magnet.mass * lift.speed.powi(2);
+            assert_relative_eq!(lift.taken, lift.heat + field + motion, max_relative = 1e-12);
+        }
+    }
+
+    /// With so much resistance that the current is there at once the work is i^2 (L_1 - L_0)/2.
+    #[test]
+    fn a_held_current_works_by_the_change_of_inductance() {
+        let magnet = Magnet { resistance: 1e6, voltage: 1e6, mass: 50.0, ..magnet() };
+        let lift = magnet.lift().unwrap();
+        assert_relative_eq!(0.5 * magnet.mass * lift.speed.powi(2), 0.5 * 40e-3, max_relative = 1e-3);
+    }
+
+    /// A current that shorts itself, without resistance: the flux grows as V t, and the force as its square.
+    #[test]
+    fn speed_does_not_hang_on_the_steps() {
+        let magnet = magnet();
+        let lift = magnet.lift().unwrap();
+        let (mut state, h) = (State::default(), lift.time / 3000.0);
+        for _ in 0..3000 {
+            state = magnet.step(state, h);
+        }
+        assert_relative_eq!(state[0], magnet.travel, max_relative = 1e-9);
+        assert_relative_eq!(state[1], lift.speed, max_relative = 1e-9);
+    }
+}
