@@ -22,6 +22,7 @@ pub(crate) fn prefixed(unit: &str, scale: f64) -> Prefixed {
         "m" => of("m", 1.0),
         "m/s" if small < 10.0 => of("mm/s", 1e3),
         "m/s" => of("m/s", 1.0),
+        "m/s^2" => of("m/s²", 1.0),
         "N" if small < 0.1 => of("mN", 1e3),
         "N" => of("N", 1.0),
         "N*s" => of("mN s", 1e3),
@@ -35,6 +36,7 @@ pub(crate) fn prefixed(unit: &str, scale: f64) -> Prefixed {
         "Pa" if small >= 1e6 => of("MPa", 1e-6),
         "Pa" => of("Pa", 1.0),
         "rad/s" => of("rad/s", 1.0),
+        "V" => of("V", 1.0),
         "rad" => of("°", 180.0 / std::f64::consts::PI),
         _ => of("", 1.0),
     }
