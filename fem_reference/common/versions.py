@@ -62,10 +62,12 @@ def versions() -> dict[str, str | None]:
 def package() -> str | None:
     """Folder of this package; None if one of its modules cannot be imported."""
     root = import_module(PACKAGE)
+    # rigid bodies by MuJoCo run in an environment of their own, and no reference needs them
+    apart = (".tests", f"{PACKAGE}.flight", "__main__")
     modules = [module.name for module in walk_packages(root.__path__, PACKAGE + ".")]
     try:
         for name in modules:
-            if ".tests" not in name and not name.endswith("__main__"):
+            if not any(part in name for part in apart):
                 import_module(name)
     except Exception:  # as in `_version`
         return None

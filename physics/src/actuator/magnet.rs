@@ -11,6 +11,8 @@ use crate::error::{Error, Result};
 const STEPS: f64 = 20_000.0;
 /// Times `characteristic` after which a plunger that has not come to its stop never will.
 const PATIENCE: f64 = 100.0;
+/// Most steps in the characteristic time.
+const MOST_STEPS: f64 = 1e8;
 
 /// Lift magnet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,9 +86,16 @@ impl Magnet {
     /// # Errors
     /// [`Error::Solver`] if it takes too long to be meant.
     pub fn lift(&self) -> Result<Lift> {
-        let h = self.characteristic() / STEPS;
+        let characteristic = self.characteristic();
+        // longer steps than the circuit's time constant would not be stable
+        let h = (characteristic / STEPS).min(self.inductance[0] / self.resistance);
+        if characteristic / h > MOST_STEPS {
+            return Err(Error::Solver(format!(
+                "the magnet's current follows in {h:.1e} s, its plunger in {characteristic:.1e} s: too far apart to follow both; take a smaller resistance"
+            )));
+        }
         let (mut state, mut time) = (State::default(), 0.0);
-        while time < PATIENCE * STEPS * h {
+        while time < PATIENCE * characteristic {
             let next = self.step(state, h);
             if next[0] >= self.travel {
                 // by Newton's method in the length of the last step

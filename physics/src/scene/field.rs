@@ -181,9 +181,8 @@ fn collect(
     };
     let kind = text("kind").map(str::to_owned);
     for field in specification {
-        // of several ways to say a thing only the one the file takes
-        let absent = !values.is_some_and(|v| v.contains_key(field.key));
-        if !field.belongs_to(kind.as_deref()) || (field.alternative(kind.as_deref()).is_some() && absent) {
+        if !field.belongs_to(kind.as_deref()) || is_another_way(specification, values, kind.as_deref(), field)
+        {
             continue;
         }
         keys.push(field.key.to_owned());
@@ -221,4 +220,19 @@ fn collect(
         }
         keys.pop();
     }
+}
+
+/// Whether `field` says in another way than the file what can be said in several; where the file says nothing, also if it takes more
+/// numbers than one.
+fn is_another_way(
+    specification: &[grammar::Field],
+    values: Option<&Values>,
+    kind: Option<&str>,
+    field: &grammar::Field,
+) -> bool {
+    let is_there = |field: &grammar::Field| values.is_some_and(|v| v.contains_key(field.key));
+    let Some(own) = field.alternative(kind).filter(|_| !is_there(field)) else { return false };
+    let ways = || specification.iter().filter_map(|other| Some((other, other.alternative(kind)?)));
+    let taken = ways().any(|(other, way)| way.group == own.group && is_there(other));
+    taken || ways().filter(|(_, way)| *way == own).count() > 1
 }
