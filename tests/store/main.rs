@@ -2,6 +2,8 @@
 
 mod import;
 mod random_input;
+mod scene_actuators;
+mod scene_materials;
 mod scene_reading;
 mod scene_schema;
 mod store_lookup;
