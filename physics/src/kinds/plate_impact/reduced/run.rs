@@ -1,0 +1,247 @@
+//! Runs of a reduced model, and what they come to.
+
+use super::{Point, Reduced};
+use crate::dynamics::assured;
+use crate::dynamics::integration::{Integration, Options};
+use crate::dynamics::ledger_check;
+use crate::dynamics::memory::{self, Memory};
+use crate::error::{Error, Result};
+use crate::kinds::Kind as _;
+use crate::kinds::plate_impact::Kind;
+use crate::kinds::plate_impact::results::{PlateQuantities, quantities, values};
+use crate::kinds::plate_impact::series::{Done, Impacts};
+use crate::kinds::plate_impact::truncation;
+use crate::kinds::plate_impact::validity::film_warning;
+use crate::result::{BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary};
+use crate::scene::{self, Shape};
+use std::time::Instant;
+
+/// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
+const PEAK_ERROR: f64 = 0.1;
+/// Share of a bender's moment at the strike that is told.
+const MOMENT_LEFT: f64 = 0.01;
+/// Samples of a history per duration of a Hertz contact.
+const SAMPLES_PER_CONTACT: f64 = 400.0;
+
+impl Reduced {
+    fn impacts(&self) -> Impacts<'_> {
+        let series = self.scene.plate_impact().ok().and_then(|setup| setup.series);
+        Impacts { system: &self.system, fluid: self.fluid.as_ref(), memory: self.memory.as_ref(), series }
+    }
+
+    /// Runs the impact without keeping its history; `tolerance` bounds the efficiency's relative error from the
+    /// time integration.
+    ///
+    /// # Errors
+    /// As [`crate::dynamics::integrate`] and [`ledger_check`].
+    pub fn run(&self, tolerance: f64) -> Result<Summary> {
+        let (mut summary, _) = self.unjudged(tolerance)?;
+        Kind.judge(&self.scene, &mut summary, None);
+        self.add_flight(&mut summary)?;
+        Ok(summary)
+    }
+
+    /// What the scene asks of the flight after the impact.
+    fn add_flight(&self, summary: &mut Summary) -> Result<()> {
+        let given = || Err(Error::Internal("a flight behind a plate names its restitution".into()));
+        crate::flight::add_flight(&self.scene, summary, given)
+    }
+
+    /// The summary, and what the materials remembered when the last impact began.
+    fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>)> {
+        let start = Instant::now();
+        let options = Options { heat: true, ..self.options(tolerance) };
+        let Done { last, impacts, memory, warning } = self.impacts().all(&options)?;
+        let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
+        summary.warnings.extend(warning);
+        let elastic_efficiency = self.impacts().elastic_efficiency(&options);
+        let elastic_limit = self.elastic_limit(&options)?;
+        Ok((Summary { impacts, elastic_efficiency, elastic_limit, ..summary }, memory))
+    }
+
+    /// `None` without yield strengths, and where bodies relax or bend before they strike.
+    fn elastic_limit(&self, options: &Options) -> Result<Option<ElasticLimit>> {
+        let setup = self.scene.plate_impact()?;
+        let onset = memory::onset_of_yield(setup, &self.system);
+        let materials = [&setup.outer.material, &setup.plate.material, &setup.inner.material];
+        let covered = !setup.outer.shape.is_held()
+            && setup.outer.is_centred()
+            && materials.iter().all(|m| m.relaxation.is_empty());
+        if !covered || onset == [None; 2] {
+            return Ok(None);
+        }
+        let [outer, inner] = self.impacts().elastic_speeds(onset, options);
+        Ok(Some(ElasticLimit { outer, inner }))
+    }
+
+    /// Runs the impact for its results alone, as a series of many needs them.
+    ///
+    /// # Errors
+    /// As [`Reduced::run`], [`Error::Solver`] if the run is cut during a contact.
+    pub fn point(&self, tolerance: f64) -> Result<Point> {
+        let options = Options { peak_error: PEAK_ERROR * tolerance, ..self.options(tolerance) };
+        let result = self.impacts().all(&options)?.last;
+        ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.kept_tolerance))?;
+        Ok(Point {
+            quantities: self.of_all_energy(quantities(&self.system, &result)?),
+            energy_residual: result.energy_residual,
+            momentum_residual: result.momentum_residual,
+            steps: result.steps,
+        })
+    }
+
+    /// Runs the impact and keeps its history. The summary's time is that of a run without history.
+    ///
+    /// # Errors
+    /// As [`Reduced::run`].
+    pub fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
+        self.run_with_history_until(tolerance, 0.0)
+    }
+
+    /// As [`Reduced::run_with_history`]; a history that would end earlier, because no further contact is possible, goes on
+    /// until `end` (s) unless the scene names its end.
+    ///
+    /// # Errors
+    /// As [`Reduced::run`].
+    pub fn run_with_history_until(&self, tolerance: f64, end: f64) -> Result<Outcome> {
+        let (mut summary, memory) = self.unjudged(tolerance)?;
+        let system = &self.system;
+        let sample_interval = Some(system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
+        let options = Options { sample_interval, ..self.options(tolerance) };
+        let record = |options: &Options| -> Result<_> {
+            let (result, _) = self.impacts().one(options, memory.as_ref())?;
+            result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))
+        };
+        let mut history = record(&options)?;
+        if options.end_time.is_none() && history.time.last().is_some_and(|last| *last < end) {
+            // so much later that rounding can't leave the last instant out
+            history = record(&Options { end_time: Some(end * (1.0 + 1e-9)), ..options })?;
+        }
+        summary.samples = Some(history.len());
+        Kind.judge(&self.scene, &mut summary, Some(&history));
+        self.add_flight(&mut summary)?;
+        Ok(Outcome { summary, history })
+    }
+
+    /// `quantities` of the motion along the plate's normal with the efficiency relative to all kinetic energy of the outer body.
+    fn of_all_energy(&self, quantities: PlateQuantities) -> PlateQuantities {
+        let angle = self.scene.plate_impact().map_or(0.0, |setup| setup.outer.angle);
+        PlateQuantities { efficiency: quantities.efficiency * angle.cos().powi(2), ..quantities }
+    }
+
+    fn options(&self, tolerance: f64) -> Options {
+        Options { tolerance, end_time: self.scene.run.end_time, ..Options::default() }
+    }
+
+    fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
+        let (system, tolerance) = (&self.system, tolerance.max(result.kept_tolerance));
+        let setup = &*self.scene.plate_impact()?.along_normal();
+        let end_time = self.scene.run.end_time;
+        let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
+        let even_steps = result.kept_tolerance > 0.0;
+        let unsure =
+            result.error_estimate.filter(|error| !even_steps && *error > assured::ENOUGH * tolerance);
+        let mut warnings = scene::doubts(&self.scene);
+        warnings.extend(self.warnings.iter().cloned());
+        warnings.extend(truncation.warning);
+        if setup.friction > 0.0 {
+            warnings.push("friction is left out: Hertz's contact is smooth; the reference has it".into());
+        }
+        warnings.extend(film_warning(result.losses.squeeze_film / system.initial_energy()));
+        warnings.extend(unsure.map(|error| {
+            format!(
+                "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
+            )
+        }));
+        if let (Some(memory), true) = (&self.memory, even_steps) {
+            warnings.extend(memory.warnings.iter().cloned());
+            warnings.extend(result.error_estimate.filter(|error| *error > memory::CHANGE / 3.0).map(|error| {
+                format!("velocities and force peaks are uncertain by {error:.0e}: ever shorter steps have not settled them")
+            }));
+        }
+        if let (Shape::Bender(bender), Some(drive)) = (&setup.outer.shape, system.drive) {
+            let left = (-drive.strike_delay / bender.discharge_time).exp();
+            warnings.extend((left > MOMENT_LEFT).then(|| {
+                format!(
+                    "{:.1} % of the bender's moment is left when it strikes, which the models take as gone",
+                    100.0 * left
+                )
+            }));
+        }
+        for (body, contact) in ["outer", "inner"].iter().zip(&result.contacts) {
+            if contact.contacts == 0 {
+                warnings.push(format!("the {body} body and the plate never touch"));
+            }
+        }
+        warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
+        if self.scene.plate_impact()?.outer.angle != 0.0 {
+            warnings.push(
+                "motion along the plate is left out: the velocity along its normal alone counts; the reference has both".into(),
+            );
+        }
+        let values = self.of_all_energy(values(system, result));
+        let mut table = values.table();
+        if result.is_cut() {
+            table = table.cut();
+            warnings.push(CUT.into());
+        }
+        if system.stack.is_some() {
+            // eq. (1) relates to a kinetic energy before the impact, and the tip vibrates on
+            let open = ["efficiency", "outer_velocity_final"].into_iter();
+            let pressing = ["outer_contact_end", "outer_contacts"].into_iter().filter(|_| result.pressed);
+            for name in open.chain(pressing) {
+                table.value_mut(name).into_iter().for_each(|value| *value = None);
+            }
+        }
+        Ok(Summary {
+            energy_residual: Some(result.energy_residual),
+            momentum_residual: Some(result.momentum_residual),
+            steps: Some(result.steps),
+            solve_seconds,
+            integration_error: result.error_estimate,
+            truncation_error: Some(truncation.error),
+            bender: system.drive.map(|drive| {
+                let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
+                let efficiency = transmitted / drive.strain_energy;
+                BenderSummary { strain_energy_efficiency: (!result.is_cut()).then_some(efficiency), drive }
+            }),
+            stack: result.supplied.map(|supplied| {
+                let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
+                StackSummary {
+                    electrical_energy: supplied.taken,
+                    mechanical_energy: supplied.given,
+                    share: (!result.is_cut()).then_some(transmitted / supplied.taken),
+                }
+            }),
+            losses: (system.is_damped() && system.stack.is_none()
+                || self.fluid.is_some()
+                || self.memory.is_some())
+            .then_some(result.losses),
+            warnings,
+            choice: self.choice.clone(),
+            ..Summary::of_reduced(&self.scene, self.model, system.modes, table)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Model, Scene};
+
+    /// A result whose ledger is off says so, and is none if it is far off.
+    #[test]
+    fn the_ledger_of_a_run_is_judged() {
+        let text = include_str!("../../../../../tests/fixtures/plate-impact.toml");
+        let scene = Scene::parse("plate-impact.toml", text).unwrap();
+        let reduced = Reduced::new(&scene, Model::B, None).unwrap();
+        let sound = reduced.impacts().all(&reduced.options(1e-7)).unwrap().last;
+        let summary = |energy_residual: f64| {
+            reduced.summary(&Integration { energy_residual, ..sound.clone() }, 1e-7, 0.0)
+        };
+        assert_eq!(summary(sound.energy_residual).unwrap().warnings, Vec::<String>::new());
+        let off = summary(1e-5).unwrap();
+        assert!(off.warnings.iter().any(|w| w.contains("ledger of energy")), "{:?}", off.warnings);
+        assert!(matches!(summary(0.02), Err(Error::Solver(_))));
+    }
+}
