@@ -95,7 +95,8 @@ def _imported(source: Path) -> set[str]:
 
 def test_versions_asks_for_everything_that_is_imported() -> None:
     folder = ROOT / "fem_reference"
-    # what ParaView runs, also beside a solution's fields, we do not import; MuJoCo has an environment of its own
+    # what ParaView runs, also beside a solution's fields, we do not import;
+    # MuJoCo has an environment of its own
     others = {"tests", "paraview", "solutions", "flight"}
     sources = [path for path in folder.rglob("*.py") if others.isdisjoint(path.parts)]
     imported = set().union(*map(_imported, sources)) - sys.stdlib_module_names
