@@ -14,7 +14,6 @@ import mujoco
 import numpy
 
 from ..common.progress import Progress
-from ..common.versions import package
 from .chamber import Seat
 from .model import STEP, Case, Sphere
 
@@ -168,7 +167,6 @@ def report_flights(out: Path, number: int, progress: Progress) -> None:
             "made_by": f"python -m fem_reference flights --number {number}",
             "units": "mm, ms, g, N; amplitudes m/s^2",
             "versions": {
-                "fem_reference": package(),
                 "mujoco": mujoco.__version__,
                 "numpy": numpy.__version__,
             },
