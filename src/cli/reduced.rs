@@ -2,7 +2,7 @@
 
 use super::asked_model::{self, Asked};
 use super::{Context, JsonArgument, kinds, progress};
-use crate::error::{ExitStatus, Result};
+use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::report::format::{prefixed, with_unit};
@@ -20,6 +20,9 @@ pub struct Arguments {
     /// Write displacement, velocity and force over time to this file (.csv or .parquet)
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
+    /// Write a page with results, curves and, of scenes that have one, the flight to this file (.html)
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
     #[command(flatten)]
     json: JsonArgument,
 }
@@ -30,10 +33,19 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         // refused before anything is computed
         TableFormat::of(file)?;
     }
+    if let Some(file) =
+        arguments.page.as_ref().filter(|file| file.extension().is_none_or(|kind| kind != "html"))
+    {
+        return Err(Error::Usage(format!("--page {}: a page is a file that ends in .html", file.display())));
+    }
     let (_, scene) = super::read_scene(&arguments.scene)?;
     let outcome = progress::watched(context, &scene.name, || {
         kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default())
     })?;
+    if let Some(file) = &arguments.page {
+        write_file(file, report::model_page(&scene, &outcome).as_bytes())?;
+        context.note(format_args!("page in {}", file.display()));
+    }
     finish(context, arguments, &outcome)
 }
 

@@ -19,9 +19,15 @@ const LANDSCAPE: f64 = 150.0;
 /// Length of the launch's band over the sphere's radius.
 const BAND: f64 = 3.0;
 
+/// [`flight_html`] of a comparison.
+pub(super) fn flights_html(report: &SceneReport) -> Markup {
+    let models: Vec<&Summary> = report.reduced.iter().map(|outcome| &outcome.summary).collect();
+    flight_html(report.scene, &models)
+}
+
 /// Verdicts, pictures of the first model's flight, thresholds of vibration; empty if the scene asks for none.
-pub(super) fn flight_html(report: &SceneReport) -> Markup {
-    let models = report.reduced.iter().map(|outcome| &outcome.summary);
+pub(super) fn flight_html(scene: &Scene, models: &[&Summary]) -> Markup {
+    let models = models.iter().copied();
     let flown: Vec<(&Summary, &FlightSummary)> =
         models.clone().filter_map(|summary| Some((summary, summary.flight.as_ref()?))).collect();
     let Some(&(_, first)) = flown.first() else { return html! {} };
@@ -43,7 +49,7 @@ pub(super) fn flight_html(report: &SceneReport) -> Markup {
             } } }
         } }))
         @for (_, flight) in &flown { @if let Some(reason) = &flight.reason { p { (model_reason(reason)) } } }
-        (pictures(report.scene, first))
+        (pictures(scene, first))
         @for (summary, vibration) in models.filter_map(|summary| Some((summary, summary.vibration?))) {
             p { "Vibration, by the launch's chamber of model " (model(summary)) ": unseats at " (quantity(vibration.unseats, "m/s^2"))
                 ", shifts at " (quantity(vibration.shifts, "m/s^2")) "." }

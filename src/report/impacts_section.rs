@@ -39,7 +39,8 @@ pub(super) fn impacts_figure(report: &SceneReport) -> Option<String> {
     Some(chart(&format!("{}: efficiency of the impacts in series", report.scene.name), &[panel]))
 }
 
-fn course(summary: &Summary, name: String) -> Series {
+/// The efficiencies of a series.
+pub(super) fn course(summary: &Summary, name: String) -> Series {
     let point = |i: &Impact| (i.number as f64, i.value("efficiency").map_or(f64::NAN, |share| 100.0 * share));
     Series { name, points: summary.impacts.iter().map(point).collect(), ..Series::default() }
 }

@@ -98,7 +98,7 @@ impl Presentation for Plate {
         vec![
             Section::new("movement", "The impact moving", super::animation_section::animation_html(report)),
             Section::new("impacts", "Impacts in series", super::impacts_section::impacts_html(report)),
-            Section::new("landing", "Landing", super::flight_section::flight_html(report)),
+            Section::new("landing", "Landing", super::flight_section::flights_html(report)),
             Section::new("dents", "Dents", dents),
             Section::new("budget", "Discrepancy budget", budget),
             Section::new("measurement", "Measurement", measured),

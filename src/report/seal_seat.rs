@@ -111,7 +111,7 @@ impl Presentation for Seat {
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
         vec![
             Section::new("flight", "Flight of the sphere", flight(report)),
-            Section::new("landing", "Landing", super::flight_section::flight_html(report)),
+            Section::new("landing", "Landing", super::flight_section::flights_html(report)),
             Section::new("cost", "Cost", cost(report)),
         ]
     }

@@ -67,6 +67,29 @@ fn a_history_has_the_format_its_ending_names() {
     assert!(!file("h.xlsx").exists());
 }
 
+/// What a scene without a reference can show: the numbers of the summary, the curves, and where the sphere lands.
+#[test]
+fn a_reduced_model_alone_has_a_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/examples/rocker-flight.toml");
+    run(folder.path(), &["reduced", scene, "--model", "B", "--page", "page.html"], 0);
+    let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
+    let json = run(folder.path(), &["reduced", scene, "--model", "B", "--json"], 0).stdout;
+    let summary: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let efficiency = summary["efficiency"].as_f64().unwrap();
+    for told in
+        ["rocker-flight: model B", "Curves", "Landing", "Path of the sphere", &format!("{efficiency:.5}")]
+    {
+        assert!(page.contains(told), "no {told}");
+    }
+    let bender = page.matches("<path").count();
+    run(folder.path(), &["reduced", "scaled-plate-r10", "--model", "B", "--page", "plate.html"], 0);
+    let plate = fs::read_to_string(folder.path().join("plate.html")).unwrap();
+    assert!(!plate.contains("Landing") && plate.matches("<path").count() >= 5 && bender >= 5);
+    says(folder.path(), &["reduced", "scaled-plate-r10", "--page", "p.svg"], 2, &["p.svg", ".html"]);
+    assert!(!folder.path().join("p.svg").exists());
+}
+
 #[test]
 fn results_over_commits_that_are_not_there_are_told() {
     let folder = tempfile::tempdir().unwrap();
