@@ -10,11 +10,11 @@ use crate::actuator::{Bender, Stack, Supply};
 use crate::error::Result;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::result::Summary;
-use crate::scene::{Model, PlateImpact, Setup, Shape};
+use crate::scene::{Model, PlateImpact, Shape};
 use rayon::prelude::*;
 
-/// Stack of the class of TOKIN's AE0505D16DF (data sheet).
-const STACK: Stack = Stack {
+/// Stack of the class of TOKIN's AE0505D16DF (data sheet), in contact with its plate at a source that holds the voltage.
+pub const STACK: Stack = Stack {
     length: 18e-3,
     area: 25e-6,
     stroke: 17.4e-6,
@@ -128,7 +128,6 @@ fn solve(case: &Case, model: Model) -> Result<Outcome> {
     };
     let mass = setup.inner.shape.mass(&setup.inner.material);
     let scene = parameter::scene("actuators", setup.clone());
-    debug_assert!(matches!(scene.setup, Setup::PlateImpact(_)), "a plate impact");
     let result: Summary = Reduced::new(&scene, model, None)?.run(TOLERANCE)?;
     let [electrical, mechanical] = case.energies;
     Ok(Outcome {

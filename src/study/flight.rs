@@ -144,14 +144,9 @@ fn stored() -> Result<Stored> {
 }
 
 fn row(compared: &Compared) -> Vec<Cell> {
-    let name = |seat: Seat| match seat {
-        Seat::Other => "other",
-        Seat::Same => "same",
-        Seat::None => "none",
-    };
     let [distance, time] = [0, 1].map(|k| Cell::from(compared.first_touch.map(|off| off[k])));
     let unanimous = if compared.unanimous { "yes" } else { "no" };
-    let texts = [name(compared.ours), name(compared.theirs), unanimous].map(Cell::Text);
+    let texts = [compared.ours.name(), compared.theirs.name(), unanimous].map(Cell::Text);
     let [ours, theirs, unanimous] = texts;
     vec![Cell::Count(compared.seed), ours, theirs, unanimous, distance, time]
 }

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::flight::Seat;
 use crate::kinds::Series;
 use crate::reference::mesh_to_follow;
-use crate::result::{FlightSummary, Summary};
+use crate::result::FlightSummary;
 use crate::scene::{Distribution, Field, Model, Spread, Template, UncertainInput, Uncertainty};
 use crate::uncertainty::Inputs;
 use crate::uncertainty::design::Point;
@@ -152,20 +152,19 @@ impl Valve {
     }
 
     /// A shift with other numbers than the scene's.
-    fn shift(&self, numbers: &[(&Field, f64)]) -> Result<(Summary, FlightSummary)> {
+    fn shift(&self, numbers: &[(&Field, f64)]) -> Result<FlightSummary> {
         let mut scene =
             self.template.with(numbers).map_err(|rejected| Error::Internal(rejected.to_string()))?;
         let spring = scene.flight.as_mut().and_then(|flight| flight.spring.as_mut());
         if let (Some(Transmission::Plunger), Some(spring)) = (self.transmission, spring) {
             spring.friction = 0.0;
         }
-        let mut summary = self.series.model(scene, self.model, None)?.run(TOLERANCE)?;
-        let flight = summary.flight.take();
-        flight.map(|flight| (summary, flight)).ok_or_else(|| Error::Internal("a shift has no flight".into()))
+        let summary = self.series.model(scene, self.model, None)?.run(TOLERANCE)?;
+        summary.flight.ok_or_else(|| Error::Internal("a shift has no flight".into()))
     }
 
     /// A shift by `voltage` V.
-    fn at(&self, voltage: f64) -> Result<(Summary, FlightSummary)> {
+    fn at(&self, voltage: f64) -> Result<FlightSummary> {
         self.shift(&[(&self.speed, self.nominal * voltage / NOMINAL)])
     }
 
@@ -173,7 +172,7 @@ impl Valve {
     fn least_voltage(&self, mut low: f64, mut high: f64) -> Result<f64> {
         while high - low > ACCURACY {
             let middle = 0.5 * (low + high);
-            if self.at(middle)?.1.seat == Seat::Other { high = middle } else { low = middle }
+            if self.at(middle)?.seat == Seat::Other { high = middle } else { low = middle }
         }
         Ok(high)
     }
@@ -193,7 +192,7 @@ impl Workshop {
         let one = |row: usize| {
             let numbers = valve.inputs.place(&valve.inputs.design().at(row, Point::A));
             let drawn: Vec<(&Field, f64)> = valve.fields.iter().zip(numbers).collect();
-            let (_, flight) = valve.shift(&drawn)?;
+            let flight = valve.shift(&drawn)?;
             Ok((flight.launch.speed, flight.seat == Seat::Other))
         };
         let found: Vec<(f64, bool)> = (0..DRAWN).into_par_iter().map(one).collect::<Result<_>>()?;
@@ -201,7 +200,7 @@ impl Workshop {
         let mean = found.iter().map(|(speed, _)| speed).sum::<f64>() / count;
         let squares = found.iter().map(|(speed, _)| (speed - mean).powi(2)).sum::<f64>();
         let deviation = (squares / (count - 1.0)).sqrt();
-        let (_, designed) = valve.at(NOMINAL)?;
+        let designed = valve.at(NOMINAL)?;
         let room = designed.margin.unwrap_or(WIDEST_MARGIN) * designed.launch.speed;
         Ok(Self {
             margin: (designed.seat == Seat::Other).then_some(room / deviation),
@@ -222,10 +221,10 @@ pub fn run(note: &mut Note) -> Result<Study> {
         let [low, high] = VOLTAGES;
         let step = (high - low) / (COUNT - 1) as f64;
         let voltages: Vec<f64> = (0..COUNT).map(|k| low + step * k as f64).collect();
-        let shifts: Vec<(Summary, FlightSummary)> =
+        let shifts: Vec<FlightSummary> =
             voltages.par_iter().map(|voltage| valve.at(*voltage)).collect::<Result<_>>()?;
         let struck = |voltage: f64| valve.nominal * voltage / NOMINAL;
-        for (voltage, (_, flight)) in voltages.iter().zip(&shifts) {
+        for (voltage, flight) in voltages.iter().zip(&shifts) {
             rows.push(vec![
                 Cell::Text(demonstrator.name),
                 (*voltage).into(),
@@ -237,7 +236,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
                 flight.share.into(),
             ]);
         }
-        let first = shifts.iter().position(|(_, flight)| flight.seat == Seat::Other);
+        let first = shifts.iter().position(|flight| flight.seat == Seat::Other);
         let least = match first {
             Some(0) => Some(low),
             Some(k) => Some(valve.least_voltage(voltages[k - 1], voltages[k])?),
@@ -274,7 +273,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
 /// What section 5 says of a demonstrator, and what it leaves open.
 fn claims_of(
     demonstrator: &Demonstrator,
-    shifts: &[(Summary, FlightSummary)],
+    shifts: &[FlightSummary],
     least: Option<f64>,
     workshop: &Workshop,
 ) -> Vec<Claim> {
@@ -284,7 +283,7 @@ fn claims_of(
     };
     let found =
         |text: &str, unit, value| Claim::new(format!("{name}: {text}"), unit, None, value, f64::INFINITY);
-    let any = |seat: Seat| shifts.iter().any(|(_, flight)| flight.seat == seat);
+    let any = |seat: Seat| shifts.iter().any(|flight| flight.seat == seat);
     let mut claims = vec![
         truth("the sphere falls back when the impact is too weak (5.1.1)", any(Seat::Same)),
         found("least voltage that shifts", "V", least),
@@ -321,7 +320,7 @@ mod tests {
     #[test]
     fn a_plunger_cures_what_the_spring_holds_up() {
         let [spring, plunger] =
-            [0, 1].map(|k| [60.0, NOMINAL].map(|voltage| rocker(k).at(voltage).unwrap().1.seat));
+            [0, 1].map(|k| [60.0, NOMINAL].map(|voltage| rocker(k).at(voltage).unwrap().seat));
         assert_eq!(spring, [Seat::Same, Seat::None]);
         assert_eq!(plunger, [Seat::Same, Seat::Other]);
     }
@@ -332,7 +331,7 @@ mod tests {
     fn the_least_voltage_is_that_of_the_saddle() {
         let valve = rocker(1);
         let least = valve.least_voltage(60.0, NOMINAL).unwrap();
-        let (_, flight) = valve.at(least).unwrap();
+        let flight = valve.at(least).unwrap();
         let ratio = flight.launch.speed / flight.least_speed;
         assert_relative_eq!(ratio, (7.0_f64 / 5.0).sqrt(), max_relative = 0.05);
     }

@@ -12,24 +12,12 @@ use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Model, PlateImpact, Scene, Shape};
+use impactcheck::study::actuators::STACK;
 
 const MODES: usize = 16;
 
-/// Of the class of TOKIN's AE0505D16DF (data sheet).
 fn stack(gap: f64, drive: Option<Supply>) -> Stack {
-    Stack {
-        length: 18e-3,
-        area: 25e-6,
-        stroke: 17.4e-6,
-        blocked_force: 850.0,
-        voltage: 150.0,
-        capacitance: 1.4e-6,
-        density: 8000.0,
-        poisson_ratio: 0.3,
-        tip_radius: 4e-3,
-        gap,
-        drive,
-    }
+    Stack { gap, drive, ..STACK }
 }
 
 /// Titanium plate of 0.3 mm and a sapphire sphere of 2 mm behind it.

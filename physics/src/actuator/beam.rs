@@ -6,6 +6,7 @@
 use super::Bender;
 use crate::error::{Error, Result};
 use crate::numerics::eigenmodes;
+use crate::numerics::root::first_fall;
 use faer::Mat;
 
 /// Modes of the beam that take part in an impact.
@@ -105,32 +106,22 @@ impl Release {
         let bent = beam.bent();
         let swing = |time| beam.swing(&bent, bender.discharge_time, time);
         let tip = |values: &[f64]| beam.tip.iter().zip(values).map(|(tip, value)| tip * value).sum::<f64>();
-        // |u''| of the tip is bounded, as |q''| = omega^2 |q_0 e^(-t/decay) - q| <= 3 omega^2 |q_0|: steps that
-        // provably pass no zero, and close to it are Newton's
+        // |u''| of the tip is bounded, as |q''| = omega^2 |q_0 e^(-t/decay) - q| <= 3 omega^2 |q_0|
         let bound: f64 =
             (0..modes).map(|k| 3.0 * (beam.tip[k] * bent[k]).abs() * beam.omega[k].powi(2)).sum();
         let (start, offset) = (tip(&bent), bender.strike_at * tip(&bent));
         let patience = SWINGS / beam.omega[0] + DECAYS * bender.discharge_time;
-        let mut time = (2.0 * (start - offset) / bound).sqrt();
-        loop {
+        let motion = |time: f64| {
             let (q, v) = swing(time);
-            let (deflection, rate) = (tip(&q) - offset, tip(&v));
-            if time > patience {
-                return Err(Error::Solver(format!(
-                    "the bender's tip does not swing as far as {} of its deflection before the release",
-                    bender.strike_at
-                )));
-            }
-            if deflection <= 1e-14 * start {
-                break;
-            }
-            let root = (rate * rate + 2.0 * bound * deflection).sqrt();
-            let step = if rate >= 0.0 { (rate + root) / bound } else { 2.0 * deflection / (root - rate) };
-            if time + step == time {
-                break;
-            }
-            time += step;
-        }
+            [tip(&q) - offset, tip(&v)]
+        };
+        let from = (2.0 * (start - offset) / bound).sqrt();
+        let time = first_fall(motion, [from, patience], bound, 1e-14 * start).ok_or_else(|| {
+            Error::Solver(format!(
+                "the bender's tip does not swing as far as {} of its deflection before the release",
+                bender.strike_at
+            ))
+        })?;
         let (displacement, velocity) = swing(time);
         let speed_per_moment = -tip(&velocity);
         Ok(Self { time, speed_per_moment, displacement, velocity, beam })

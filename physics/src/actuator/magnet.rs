@@ -84,7 +84,7 @@ impl Magnet {
     /// The plunger at its stop.
     ///
     /// # Errors
-    /// [`Error::Solver`] if it takes too long to be meant.
+    /// [`Error::Solver`] if it takes too long to be meant, or the current follows the voltage too quickly for both to be followed.
     pub fn lift(&self) -> Result<Lift> {
         let characteristic = self.characteristic();
         // longer steps than the circuit's time constant would not be stable
@@ -144,7 +144,7 @@ mod tests {
         assert_relative_eq!(0.5 * magnet.mass * lift.speed.powi(2), 0.5 * 40e-3, max_relative = 1e-3);
     }
 
-    /// A current that shorts itself, without resistance: the flux grows as V t, and the force as its square.
+    /// Fewer and longer steps end at the same place with the same speed.
     #[test]
     fn speed_does_not_hang_on_the_steps() {
         let magnet = magnet();

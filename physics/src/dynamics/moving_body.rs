@@ -7,8 +7,10 @@ use crate::actuator::cantilever;
 use crate::actuator::circuit::{self, Circuit, Feed};
 use crate::actuator::stack::{MODES, RodMode, Stack};
 use crate::error::{Error, Result};
+use crate::numerics::root::first_fall;
 use crate::result::Drive;
 use crate::scene::{Material, Outer, PlateImpact, Shape};
+use std::cell::Cell;
 
 /// Time in radians of the slowest mode after which a stack that has not touched never will.
 const PATIENCE: f64 = 60.0;
@@ -127,8 +129,7 @@ impl MovingBody {
 
     /// Moves on, freely, until the tip touches the plate.
     fn fly_to_the_touch(&mut self, stack: &Stack) -> Result<()> {
-        let of_tip = |body: &Self, values: &[f64]| dot(&body.tip, values);
-        // |x''| of the tip is bounded by the modes' amplitudes: steps that provably pass no touch, and close to it are Newton's
+        // |x''| of the tip is bounded by the modes' amplitudes
         let bound: f64 = (0..self.tip.len())
             .map(|k| {
                 let Oscillator { omega, alpha } = self.oscillators[k];
@@ -138,23 +139,22 @@ impl MovingBody {
             .sum();
         let slowest = self.oscillators.iter().map(|o| o.omega.min(o.omega.powi(2) / (2.0 * o.alpha)));
         let patience = PATIENCE / slowest.fold(f64::INFINITY, f64::min);
-        let (mut time, mut farthest) = (0.0, 0.0_f64);
-        while time < patience {
+        let farthest = Cell::new(0.0_f64);
+        let motion = |time: f64| {
             let (q, v) = self.after(time);
-            let (gap, rate) = (self.clearance + of_tip(self, &q), of_tip(self, &v));
-            farthest = farthest.max(stack.gap - gap);
-            let root = (rate * rate + 2.0 * bound * gap.max(0.0)).sqrt();
-            let step = if rate >= 0.0 { (rate + root) / bound } else { 2.0 * gap / (root - rate) };
-            if gap <= 1e-14 * stack.gap || time + step == time {
-                (self.displacement, self.velocity) = (q, v);
-                return Ok(());
-            }
-            time += step;
-        }
-        Err(Error::Solver(format!(
-            "`outer.gap` is {} m, but the tip of the stack comes to {farthest:.4e} m only: it never touches the plate",
-            stack.gap
-        )))
+            let gap = self.clearance + dot(&self.tip, &q);
+            farthest.set(farthest.get().max(stack.gap - gap));
+            [gap, dot(&self.tip, &v)]
+        };
+        let time = first_fall(motion, [0.0, patience], bound, 1e-14 * stack.gap).ok_or_else(|| {
+            Error::Solver(format!(
+                "`outer.gap` is {} m, but the tip of the stack comes to {:.4e} m only: it never touches the plate",
+                stack.gap,
+                farthest.get()
+            ))
+        })?;
+        (self.displacement, self.velocity) = self.after(time);
+        Ok(())
     }
 
     /// Coordinates and rates after `time` s without a force.

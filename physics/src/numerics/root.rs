@@ -1,5 +1,29 @@
 //! Roots of functions of one variable.
 
+/// When a motion, `[value, rate]` at a time, first falls to `zero` after the time `from`; `None` if it has not by `latest`. `bound` is one
+/// of its second derivative: steps provably pass no zero, and close to it they are Newton's.
+pub(crate) fn first_fall(
+    motion: impl Fn(f64) -> [f64; 2],
+    [from, latest]: [f64; 2],
+    bound: f64,
+    zero: f64,
+) -> Option<f64> {
+    let mut time = from;
+    while time <= latest {
+        let [value, rate] = motion(time);
+        if value <= zero {
+            return Some(time);
+        }
+        let root = (rate * rate + 2.0 * bound * value).sqrt();
+        let step = if rate >= 0.0 { (rate + root) / bound } else { 2.0 * value / (root - rate) };
+        if time + step == time {
+            return Some(time);
+        }
+        time += step;
+    }
+    None
+}
+
 /// Root of `f` within the `bracket`, at whose ends it has the `values`, to rounding: false position, the end that stays
 /// weighed half (Illinois; Dowell & Jarratt, BIT 11, 1971).
 pub(crate) fn root(f: impl Fn(f64) -> f64, bracket: [f64; 2], values: [f64; 2]) -> f64 {
