@@ -50,7 +50,8 @@ fn fresh_spots_stay_below_the_elastic_efficiency() {
     let found = efficiencies(&fresh);
     let elastic = series("scaled-plate-r10", Model::B, "", "6000 MPa").value("efficiency").unwrap();
     assert_eq!(found.len(), 8);
-    assert_eq!(fresh.warnings, Vec::<String>::new());
+    let told = |warning: &String| warning.contains("finite elements");
+    assert!(!fresh.warnings.iter().any(told), "{:?}", fresh.warnings);
     assert!(found[0] < found[7] && found[7] < 0.95 * elastic, "{found:?} {elastic}");
 }
 

@@ -7,7 +7,7 @@ use crate::contact::{DentedContact, Hertz, ViscoelasticContact};
 pub(super) enum Contact {
     /// Remembers nothing.
     Elastic(Hertz),
-    Dented(DentedContact),
+    Dented(Box<DentedContact>),
     Viscoelastic(ViscoelasticContact),
 }
 
@@ -58,7 +58,7 @@ impl Contact {
     /// The same on a plate that is pulled along its face by `stress` Pa while it is struck.
     pub(super) fn on_a_pulled_plate(self, stress: f64) -> Self {
         match self {
-            Contact::Dented(contact) => Contact::Dented(contact.on_a_pulled_plate(stress)),
+            Contact::Dented(contact) => Contact::Dented(Box::new(contact.on_a_pulled_plate(stress))),
             other => other,
         }
     }

@@ -162,7 +162,7 @@ impl Memory {
     pub fn next(mut self, spot: Spot) -> Self {
         for contact in &mut self.bodies.contacts {
             match contact {
-                Contact::Dented(contact) if spot == Spot::Fresh => *contact = contact.on_a_fresh_spot(),
+                Contact::Dented(contact) if spot == Spot::Fresh => **contact = contact.on_a_fresh_spot(),
                 Contact::Viscoelastic(contact) => *contact = contact.virgin(),
                 _ => {}
             }
@@ -226,7 +226,7 @@ fn contact(pair: [&Material; 2], hertz: Hertz, hit: &HertzImpact) -> Result<Cont
     let yields = pair.map(|m| yield_strength(m, TABOR * radius / hertz.tip_radius / (0.5 * hit.duration())));
     match (relaxes, DentedContact::new(hertz, pair, yields)) {
         (false, None) => Ok(Contact::Elastic(hertz)),
-        (false, Some(contact)) => Ok(Contact::Dented(contact)),
+        (false, Some(contact)) => Ok(Contact::Dented(Box::new(contact))),
         (true, None) => {
             let springs = ViscoelasticContact::new(hertz.tip_radius, pair, radius / SPRINGS);
             Ok(Contact::Viscoelastic(springs))
