@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(of_file.vibration, scene(lists).unwrap().vibration);
         let told = |record: &str| scene(record).unwrap_err().to_string();
         let both = told(&format!("{lists}\nfile = \"shock.csv\""));
-        assert!(both.contains("both give the record's samples"), "{both}");
+        assert!(both.contains("one too many"), "{both}");
         let missing = told("kind = \"record\"\nfile = \"other.csv\"");
         assert!(
             missing.contains("`vibration.file` is \"other.csv\"") && missing.contains("read"),
