@@ -125,7 +125,7 @@ fn a_yielding_sphere_rebounds_as_in_finite_elements() {
         setup.plate.material.youngs_modulus = 1e17;
         yielding(600e6)(&mut setup.outer.material);
         let system = System::new(&setup, &held, [0.0; 2]);
-        let critical = Memory::new(&setup, &system).unwrap().unwrap().critical_forces()[0];
+        let critical = Memory::new(&setup, &system).unwrap().unwrap().critical_forces([0.0; 2])[0];
         // Hertz: 2/5 F_c x_c is the energy at the onset
         let energy = 0.4 * critical * system.laws[0].approach(critical);
         setup.outer.speed = ratio * (2.0 * energy / system.masses[0]).sqrt();

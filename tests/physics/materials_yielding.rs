@@ -50,16 +50,14 @@ fn fresh_spots_stay_below_the_elastic_efficiency() {
     let found = efficiencies(&fresh);
     let elastic = series("scaled-plate-r10", Model::B, "", "6000 MPa").value("efficiency").unwrap();
     assert_eq!(found.len(), 8);
-    assert!(
-        fresh.warnings.iter().any(|warning| warning.contains("with fresh spots")),
-        "{:?}",
-        fresh.warnings
-    );
+    let told = |warning: &String| warning.contains("finite elements");
+    assert!(!fresh.warnings.iter().any(told), "{:?}", fresh.warnings);
     assert!(found[0] < found[7] && found[7] < 0.95 * elastic, "{found:?} {elastic}");
 }
 
-/// Efficiency of the first three impacts and of the eighth where plate and spheres yield at strengths of their own, against the finite elements
-/// of `fem_reference` on one mesh (6 elements per contact radius, which is worth half a percent in the first impact).
+/// Efficiency of the first three impacts and of the eighth where plate and spheres yield at strengths of their own or strike with fresh
+/// spots, against the finite elements of `fem_reference` on one mesh (6 elements per contact radius, which is worth half a percent in the
+/// first impact).
 #[test]
 fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
     let scene = |[plate, spheres]: [Option<&str>; 2], size: [&str; 3], spot: &str| {
@@ -91,6 +89,15 @@ fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
         // spheres of 600 MPa hardly yield before a plate of 350 MPa, and a fresh spot of them changes next to nothing
         ([Some("350 MPa"), Some("600 MPa")], table1, "fresh", [0.4824, 0.5799, 0.6339, 0.7003]),
         ([Some("600 MPa"), None], ["2 mm", "6.35 mm", "800 mm/s"], "same", [0.3532, 0.4430, 0.4732, 0.4919]),
+        // without the plate's bending -2.0 and -4.2 % in the end
+        ([Some("600 MPa"); 2], table1, "fresh", [0.569, 0.623, 0.634, 0.638]),
+        ([Some("400 MPa"); 2], ["2 mm", "6.35 mm", "550 mm/s"], "fresh", [0.2815, 0.3435, 0.3647, 0.3754]),
+        (
+            [Some("450 MPa"), None],
+            ["1.5 mm", "6.35 mm", "500 mm/s"],
+            "same",
+            [0.4517, 0.5488, 0.5826, 0.6162],
+        ),
     ] {
         let summary = Reduced::new(&scene(strengths, size, spot), Model::C, None).unwrap().run(1e-7).unwrap();
         let ours = efficiencies(&summary);
@@ -99,8 +106,10 @@ fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
         }
         assert_relative_eq!(*ours.last().unwrap(), found[3], max_relative = 0.015);
         assert!(summary.energy_residual.unwrap() < 1e-3, "{:?}", summary.energy_residual);
-        let told = summary.warnings.iter().any(|warning| warning.contains("yield unlike each other"));
-        assert!(told, "{:?}", summary.warnings);
+        let told =
+            summary.warnings.iter().any(|warning| warning.contains("the plate yields before the bodies"));
+        let softer = strengths[0].is_some() && strengths[0] != strengths[1];
+        assert_eq!(told, softer, "{:?}", summary.warnings);
     }
 }
 
@@ -132,14 +141,21 @@ fn struck(soft: [bool; 3], plate: &str, speed: f64, model: Model) -> Summary {
     Reduced::new(&Scene::parse("struck", &text).unwrap(), model, None).unwrap().run(1e-7).unwrap()
 }
 
-/// Bisection between speeds with and without plastic work in the model itself ends at the elastic limit it tells.
+/// Bisection between speeds with and without plastic work in the model itself ends at the elastic limit it tells; a plate that yields alone
+/// does so where its bending pulls it.
 #[test]
 fn the_elastic_limit_is_where_the_model_begins_to_yield() {
     let plate = "radius = \"33 mm\", thickness = \"2 mm\"";
-    for (soft, model) in [([true, false, false], Model::C), ([false, false, true], Model::B)] {
+    for (soft, model) in
+        [([true, false, false], Model::C), ([false, false, true], Model::B), ([false, true, false], Model::B)]
+    {
         let limit = struck(soft, plate, 0.55, model).elastic_limit.unwrap();
-        let [told, other] = if soft[0] { [limit.outer, limit.inner] } else { [limit.inner, limit.outer] };
-        assert_eq!(other, None, "{limit:?}");
+        assert_eq!(
+            [limit.outer, limit.inner].map(|speed| speed.is_some()),
+            [!soft[2], !soft[0]],
+            "{limit:?}"
+        );
+        let told = limit.outer.into_iter().chain(limit.inner).reduce(f64::min);
         let yields = |speed: f64| struck(soft, plate, speed, model).impacts[0].plastic_work != Some(0.0);
         let (mut low, mut high) = (0.001, 0.1);
         assert!(!yields(low) && yields(high));

@@ -44,13 +44,12 @@ pub struct DentedContact {
     hertz: Hertz,
     /// E* in Pa.
     modulus: f64,
-    /// Of body and plate; `None`: elastic.
+    /// Of body and plate; `None`: elastic. Which of them yields first.
     surfaces: [Option<Surface>; 2],
-    /// Which of them yields first.
     weaker: usize,
-    /// Approach at the end of the last step, m, critical approaches of the weaker surface there, and the work done on the contact so far, J.
+    /// Approach at the end of the last step, m, critical approaches of both surfaces there, and the work done on the contact so far, J.
     last: f64,
-    near: f64,
+    near: [f64; 2],
     taken: f64,
 }
 
@@ -66,6 +65,12 @@ struct Pressed {
     depths: [f64; 2],
 }
 
+/// Which of `surfaces` yields first.
+fn weaker(surfaces: &[Option<Surface>; 2]) -> usize {
+    let onset = surfaces.map(|s| s.map_or(f64::INFINITY, |s| s.law.onset_pressure()));
+    usize::from(onset[1] < onset[0])
+}
+
 impl DentedContact {
     /// The contact `hertz` of a body and the plate, of the materials `pair`; a material yields at `yield_strength` in Pa of its own.
     /// `None` if neither does.
@@ -75,10 +80,24 @@ impl DentedContact {
             let law = |y| ElasticPlastic::new(pair[i].plane_strain_modulus(), y, pair[i].poisson_ratio);
             yield_strength[i].map(|y| Surface { law: law(y), dent: Dent::NONE })
         });
-        let onset = surfaces.map(|s: Option<Surface>| s.map_or(f64::INFINITY, |s| s.law.onset_pressure()));
-        let weaker = usize::from(onset[1] < onset[0]);
+        let weaker = weaker(&surfaces);
         surfaces[weaker]?;
-        Some(Self { hertz, modulus, surfaces, weaker, last: 0.0, near: 1.0, taken: 0.0 })
+        Some(Self { hertz, modulus, surfaces, weaker, last: 0.0, near: [1.0; 2], taken: 0.0 })
+    }
+
+    /// The same if virgin, on a plate that is pulled along its face by `stress` Pa; a contact with dents stays as they were made.
+    #[must_use]
+    pub fn on_a_pulled_plate(mut self, stress: f64) -> Self {
+        if let (true, Some(plate)) = (self.is_virgin(), &mut self.surfaces[1]) {
+            plate.law = plate.law.pulled(stress);
+            self.weaker = weaker(&self.surfaces);
+        }
+        self
+    }
+
+    /// Whether nothing has yielded yet.
+    pub fn is_virgin(&self) -> bool {
+        self.depth() == 0.0
     }
 
     /// Force in N up to which the contact is elastic while virgin.
@@ -124,7 +143,7 @@ impl DentedContact {
         let now = [0, 1].map(|i| {
             let law = &self.surfaces[i].as_ref()?.law;
             let is_weaker = i == self.weaker || law == self.weaker_law();
-            Some(if is_weaker { of_weaker } else { law.sheared(shear, w) })
+            Some(if is_weaker { of_weaker } else { law.sheared(shear, w, self.near[i]) })
         });
         let dents = self.surfaces.map(|s| s.map_or(Dent::NONE, |s| s.dent));
         // how even the pressure is: as each dent has made it, by their depths
@@ -170,7 +189,8 @@ impl DentedContact {
     /// Critical approaches of the weaker surface, if virgin, at the approach `x` in m of both, beyond that at which they touch.
     fn critical_approaches(&self, x: f64) -> f64 {
         let error = |w: f64| self.pressed(w).approach - x;
-        let mut ends = [0.9 * self.near, 1.1 * self.near];
+        let near = self.near[self.weaker];
+        let mut ends = [0.9 * near, 1.1 * near];
         let mut values = ends.map(error);
         if values[0] > 0.0 {
             (ends, values) = ([0.0, ends[0]], [self.depth() - x, values[0]]);
@@ -206,8 +226,8 @@ impl DentedContact {
             return;
         }
         let w = self.critical_approaches(x);
-        self.near = w.max(LEAST_NEAR);
         let Pressed { radius, now, depths, .. } = self.pressed(w);
+        self.near = [0, 1].map(|i| now[i].map_or(w, |now| now.approach).max(LEAST_NEAR));
         for (i, surface) in self.surfaces.iter_mut().enumerate() {
             if let (Some(Surface { dent, .. }), Some(now)) = (surface, now[i]) {
                 dent.depth = depths[i];

@@ -19,6 +19,9 @@ const HARDER: f64 = 1e-3;
 const SEARCHED: [f64; 2] = [ELASTIC, 1e4];
 const SEARCH_STEPS: usize = 60;
 
+/// Share of the yield strength that is left at least where the surface is pulled along itself.
+const LEAST_STRENGTH: f64 = 0.1;
+
 /// Depth of a half-space under a pressure of Hertz's distribution, and twice what the middle is deeper than the edge: both 3 pi/4; and of
 /// an even pressure: 2, and 4 - 8/pi. In units of p a/E' (Johnson, Contact Mechanics, 1985, sections 3.4 and 4.2).
 const HERTZ: f64 = 0.75 * PI;
@@ -33,6 +36,9 @@ const SHEAR: [f64; 2] = [0.465, 0.332];
 pub struct ElasticPlastic {
     /// E' = E/(1 - nu^2) in Pa.
     modulus: f64,
+    /// Yield strength in Pa without a stress along the surface, and Poisson's ratio.
+    yield_strength: f64,
+    poisson_ratio: f64,
     /// a/rho at the onset of yield, pi C Y/(2 E').
     onset: f64,
     /// B: how the contact grows beyond Hertz's.
@@ -108,6 +114,8 @@ impl ElasticPlastic {
         let factor = 1.295 * (0.736 * poisson_ratio).exp();
         let law = Self {
             modulus,
+            yield_strength,
+            poisson_ratio,
             onset: 0.5 * PI * factor * yield_strength / modulus,
             growth: 0.14 * (23.0 * yield_strength / modulus).exp(),
             constraint: 4.0 * HARDNESS / factor,
@@ -120,6 +128,13 @@ impl ElasticPlastic {
             evenest: [evenest, law.flattened(evenest).evenness],
             ..law
         }
+    }
+
+    /// The same pulled along the surface by `stress` Pa in all directions: on the axis of the contact that adds to what shears it, and
+    /// so it yields as if it were so much weaker (von Mises).
+    pub fn pulled(&self, stress: f64) -> Self {
+        let left = (self.yield_strength - stress).max(LEAST_STRENGTH * self.yield_strength);
+        Self { yield_strength: self.yield_strength, ..Self::new(self.modulus, left, self.poisson_ratio) }
     }
 
     /// Mean pressure in Pa at the onset of yield.
@@ -176,8 +191,9 @@ impl ElasticPlastic {
         Flattened { lasting: (flattening - state.bends() * unit).max(0.0), ..state }
     }
 
-    /// The surface where the pressure strives to shear it by `shear` Pa; at `w` critical approaches if it can bear no more.
-    pub fn sheared(&self, shear: f64, w: f64) -> Flattened {
+    /// The surface where the pressure strives to shear it by `shear` Pa, looked for `near` so many critical approaches; at `w` of them if it
+    /// can bear no more.
+    pub fn sheared(&self, shear: f64, w: f64, near: f64) -> Flattened {
         let elastic = (shear / (self.onset_pressure() * SHEAR[0])).powi(2);
         if elastic <= 1.0 {
             return self.flattened(elastic);
@@ -187,6 +203,11 @@ impl ElasticPlastic {
             state.pressure * state.shears() - shear
         };
         let ends = [1.0, self.hardest[0]];
+        let around = [0.9 * near, 1.1 * near].map(|w| w.clamp(ends[0], ends[1]));
+        let values = around.map(error);
+        if values[0] < 0.0 && values[1] > 0.0 {
+            return self.flattened(root(error, around, values));
+        }
         let values = ends.map(error);
         if values[1] <= 0.0 {
             self.flattened(w.max(ends[1]))
@@ -211,6 +232,17 @@ mod tests {
         assert_relative_eq!(1.5 * steel(600e6).onset_pressure() / 600e6, 1.6, max_relative = 0.02);
     }
 
+    /// On the axis sigma_r - sigma_z = Y: a stress along the surface takes its part of Y, a pressure gives it, and neither adds to one before.
+    #[test]
+    fn a_surface_that_is_pulled_yields_earlier_by_the_stress() {
+        let law = steel(600e6);
+        for stress in [60e6, -120e6] {
+            let onset = law.pulled(1e8).pulled(stress).onset_pressure() / law.onset_pressure();
+            assert_relative_eq!(onset, 1.0 - stress / 600e6, max_relative = 1e-12);
+        }
+        assert!(law.pulled(9e8).onset_pressure() > 0.0);
+    }
+
     /// Full plasticity: the mean pressure grows towards 2.84 Y, less for a strong material, 2 % beyond for a soft one.
     #[test]
     fn the_pressure_grows_from_the_onset_to_the_hardness() {
@@ -224,7 +256,7 @@ mod tests {
                 assert!(state.stays >= before.stays && state.lasting >= before.lasting, "{w}");
                 if w < 0.999 * law.hardest[0] {
                     assert_relative_eq!(
-                        law.sheared(state.pressure * state.shears(), 0.0).approach,
+                        law.sheared(state.pressure * state.shears(), 0.0, 1.0).approach,
                         w,
                         max_relative = 1e-6
                     );

@@ -54,6 +54,13 @@ pub const ELASTICITY: Theory = Theory {
     beyond: "plastic flow has begun below the surface (at 1.6 times the yield strength), and the result is elastic",
 };
 
+/// The plate's elasticity beside its contacts: largest bending stress along its faces over its yield strength.
+pub const ELASTIC_BENDING: Theory = Theory {
+    measure: "bending_stress_over_yield_strength",
+    bound: 1.0,
+    beyond: "the plate yields in bending, beside its contacts too, which the reduced models leave out",
+};
+
 /// How near a result comes to the bound of a theory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
@@ -106,7 +113,7 @@ impl Limit {
 
     /// If the bound is exceeded: by what, and what that means, in one sentence.
     pub fn warning(&self) -> Option<String> {
-        let theories = [HERTZ, SMALL_STRAIN, SMALL_DEFLECTION, QUASI_STATIC, ELASTICITY];
+        let theories = [HERTZ, SMALL_STRAIN, SMALL_DEFLECTION, QUASI_STATIC, ELASTICITY, ELASTIC_BENDING];
         let theory = theories.iter().find(|theory| self.measure.ends_with(theory.measure))?;
         let measure = self.measure.replace('_', " ");
         self.is_exceeded()

@@ -7,7 +7,7 @@ use crate::contact::{DentedContact, Hertz, ViscoelasticContact};
 pub(super) enum Contact {
     /// Remembers nothing.
     Elastic(Hertz),
-    Dented(DentedContact),
+    Dented(Box<DentedContact>),
     Viscoelastic(ViscoelasticContact),
 }
 
@@ -50,8 +50,16 @@ impl Contact {
     pub(super) fn critical_force(&self) -> f64 {
         match self {
             Contact::Elastic(_) => f64::INFINITY,
-            Contact::Dented(contact) if contact.depth() == 0.0 => contact.critical_force(),
+            Contact::Dented(contact) if contact.is_virgin() => contact.critical_force(),
             Contact::Dented(_) | Contact::Viscoelastic(_) => -1.0,
+        }
+    }
+
+    /// The same on a plate that is pulled along its face by `stress` Pa while it is struck.
+    pub(super) fn on_a_pulled_plate(self, stress: f64) -> Self {
+        match self {
+            Contact::Dented(contact) => Contact::Dented(Box::new(contact.on_a_pulled_plate(stress))),
+            other => other,
         }
     }
 

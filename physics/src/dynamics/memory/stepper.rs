@@ -1,8 +1,8 @@
 //! One impact in even steps: the modes move exactly, the contacts answer at the end of every step.
 
-use super::contact::Contact;
+use super::bending::Loads;
 use super::modes::Modes;
-use super::{Bodies, CHANGE, MAX_STEPS};
+use super::{Bodies, CHANGE, MAX_STEPS, Ran};
 use crate::dynamics::contact_ledger::ContactLedger;
 use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
 use crate::dynamics::recorder::{CURVES, sample};
@@ -79,6 +79,7 @@ pub(super) struct Stepper<'a> {
     power: f64,
     /// What the contacts add to the displacement of the plate's centre, m.
     centre: f64,
+    loads: Loads,
     sample_interval: f64,
     history: Option<History>,
 }
@@ -122,6 +123,7 @@ impl<'a> Stepper<'a> {
             modal_loss: 0.0,
             power: 0.0,
             centre: 0.0,
+            loads: Loads::default(),
             sample_interval: options.sample_interval.unwrap_or(0.0),
             history: options.sample_interval.map(|_| History::new(&CURVES)),
             bodies,
@@ -130,8 +132,8 @@ impl<'a> Stepper<'a> {
         run
     }
 
-    /// Runs to `end_time` s, or until no further contact is possible; gives also the contacts as they are then.
-    pub(super) fn go(mut self, end_time: Option<f64>) -> Result<(Integration, [Contact; 2])> {
+    /// Runs to `end_time` s, or until no further contact is possible.
+    pub(super) fn go(mut self, end_time: Option<f64>) -> Result<Ran> {
         while end_time.map_or_else(|| !self.is_over(), |end| self.time < end * (1.0 - 1e-12)) {
             match self.flight(end_time) {
                 0 => self.step()?,
@@ -336,6 +338,7 @@ impl<'a> Stepper<'a> {
 
     /// Keeps every step of a contact, and what moves freely at the interval asked for.
     fn record(&mut self) {
+        self.loads.push(self.time, self.force);
         let Some(history) = &mut self.history else { return };
         let centre = self.system.local_centre.displacement(self.patch, self.force);
         let local = [centre, (centre - self.centre) / self.h];
@@ -348,7 +351,7 @@ impl<'a> Stepper<'a> {
         history.push(self.time, sample(self.system, [&q, &v], local, self.force));
     }
 
-    fn finish(self) -> (Integration, [Contact; 2]) {
+    fn finish(self) -> Ran {
         let system = self.system;
         let [_, v] = self.modes.motion(&self.state[0]);
         let velocity = system.of_bodies(&v);
@@ -386,6 +389,6 @@ impl<'a> Stepper<'a> {
             pressed: false,
             history: self.history,
         };
-        (integration, self.bodies.contacts)
+        Ran { integration, contacts: self.bodies.contacts, loads: self.loads }
     }
 }

@@ -2,11 +2,13 @@
 
 use super::PlateCurves;
 use crate::contact::Hertz;
-use crate::result::limit::{self, QUASI_STATIC, SMALL_DEFLECTION};
+use crate::dynamics::memory::{Bending, Loads};
+use crate::result::limit::{self, ELASTIC_BENDING, QUASI_STATIC, SMALL_DEFLECTION};
 use crate::result::{ContactPressure, History, Limit, Summary};
 use crate::scene::{Edge, Material, PlateImpact};
 
-/// Adds contact pressures and limits to the `summary` of any model or reference; without `history` the deflection is not known.
+/// Adds contact pressures and limits to the `summary` of any model or reference; without `history` deflection and bending
+/// are not known.
 pub(super) fn judge(setup: &PlateImpact, summary: &mut Summary, history: Option<&History>) {
     let plate = &setup.plate.material;
     let bodies = [
@@ -30,6 +32,10 @@ pub(super) fn judge(setup: &PlateImpact, summary: &mut Summary, history: Option<
     let curves = history.and_then(PlateCurves::of);
     let deflection = curves.and_then(|curves| deflection(setup, &curves));
     limits.extend(deflection.map(|w| SMALL_DEFLECTION.at("plate", w / setup.plate.thickness)));
+    if let (Some(strength), Some(loads)) = (plate.yield_strength, history.and_then(Loads::of)) {
+        let [outer, inner] = Bending::new(&setup.plate).at_peaks(&laws, &loads).map(f64::abs);
+        limits.push(ELASTIC_BENDING.at("plate", outer.max(inner) / strength));
+    }
     let slowest = [plate, &setup.outer.material, &setup.inner.material].map(Material::bar_wave_speed);
     let slowest = slowest.into_iter().fold(f64::INFINITY, f64::min);
     limits.push(QUASI_STATIC.at("outer", setup.outer.speed / slowest));

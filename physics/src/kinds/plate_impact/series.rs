@@ -4,16 +4,19 @@ use super::results::values;
 use crate::dynamics::assured::assured;
 use crate::dynamics::integrate;
 use crate::dynamics::integration::{Integration, Options};
-use crate::dynamics::memory::{self, Memory};
+use crate::dynamics::memory::{self, Loads, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::result::Impact;
 use crate::scene::Series;
 use std::collections::BTreeMap;
 
 /// Plastic work over the impact's energy below which nothing yields any more.
 const SHAKEN_DOWN: f64 = 3e-4;
+
+/// Samples of a course of forces per duration of a Hertz contact.
+pub(super) const SAMPLES_PER_CONTACT: f64 = 400.0;
 
 /// Runs after which no elastic limit is found, and the relative change from one to the next that is in order.
 const MOST_RUNS: usize = 30;
@@ -79,9 +82,9 @@ impl Impacts<'_> {
     ) -> Result<(Integration, Option<Memory>)> {
         let Some(memory) = memory else { return Ok((self.elastic(options)?, None)) };
         // virgin contacts below their onset of yield are elastic ones
-        if memory.is_elastic_below([0.0; 2]) {
-            let result = self.elastic(options)?;
-            if memory.is_elastic_below(result.contacts.map(|contact| contact.force_peak)) {
+        if memory.is_elastic() {
+            let (result, loads) = self.loaded(options)?;
+            if memory.is_elastic_under(self.system, &loads) {
                 return Ok((result, Some(memory.clone())));
             }
         }
@@ -92,6 +95,17 @@ impl Impacts<'_> {
         assured(options, self.system, |options| integrate(self.system, self.fluid, options))
     }
 
+    /// The elastic impact, and the course of its forces.
+    fn loaded(&self, options: &Options) -> Result<(Integration, Loads)> {
+        let interval = self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT;
+        let sampled = Options { sample_interval: options.sample_interval.or(Some(interval)), ..*options };
+        let mut result = self.elastic(&sampled)?;
+        let loads = result.history.as_ref().and_then(Loads::of);
+        let loads = loads.ok_or_else(|| Error::Internal("a history was asked for".into()))?;
+        result.history = result.history.filter(|_| options.sample_interval.is_some());
+        Ok((result, loads))
+    }
+
     /// What the efficiency of a series whose bodies yield would be if they were elastic; `None` where they do not or that is not known.
     pub(super) fn elastic_efficiency(&self, options: &Options) -> Option<f64> {
         self.series?;
@@ -100,18 +114,18 @@ impl Impacts<'_> {
         values(self.system, &result).table().value("efficiency")
     }
 
-    /// Largest speeds of the outer body in m/s at which outer and inner contact of virgin bodies stay below the forces `onset` in N;
-    /// `None` where there is no such force or speed.
+    /// Largest speeds of the outer body in m/s at which outer and inner contact of virgin bodies stay below their `onset`; `None` where
+    /// there is no such speed.
     ///
     /// On a rigid wall the peak of Hertz's force grows with the speed to the 6/5 (Johnson 1985, section 11.4), on a plate nearly so:
     /// that power, again and again.
-    pub(super) fn elastic_speeds(&self, onset: [Option<f64>; 2], options: &Options) -> [Option<f64>; 2] {
+    pub(super) fn elastic_speeds(&self, onset: &OnsetOfYield, options: &Options) -> [Option<f64>; 2] {
         [0, 1].map(|i| {
             let mut speed = self.system.speed;
             for _ in 0..MOST_RUNS {
                 let system = &self.system.at_speed(speed);
-                let peak = Impacts { system, ..*self }.elastic(options).ok()?.contacts[i].force_peak;
-                let growth = (onset[i]? / peak).powf(5.0 / 6.0);
+                let (_, loads) = Impacts { system, ..*self }.loaded(options).ok()?;
+                let growth = (onset.force(i, system, &loads)? / loads.peaks()[i]).powf(5.0 / 6.0);
                 speed *= growth;
                 if (growth - 1.0).abs() < SETTLED {
                     return Some(speed);

@@ -4,12 +4,12 @@ use super::{Point, Reduced};
 use crate::dynamics::assured;
 use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::ledger_check;
-use crate::dynamics::memory::{self, Memory};
+use crate::dynamics::memory::{self, Memory, OnsetOfYield};
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
 use crate::kinds::plate_impact::Kind;
 use crate::kinds::plate_impact::results::{PlateQuantities, quantities, values};
-use crate::kinds::plate_impact::series::{Done, Impacts};
+use crate::kinds::plate_impact::series::{Done, Impacts, SAMPLES_PER_CONTACT};
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
 use crate::result::{BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary};
@@ -20,8 +20,6 @@ use std::time::Instant;
 const PEAK_ERROR: f64 = 0.1;
 /// Share of a bender's moment at the strike that is told.
 const MOMENT_LEFT: f64 = 0.01;
-/// Samples of a history per duration of a Hertz contact.
-const SAMPLES_PER_CONTACT: f64 = 400.0;
 
 impl Reduced {
     fn impacts(&self) -> Impacts<'_> {
@@ -62,16 +60,15 @@ impl Reduced {
     /// `None` without yield strengths, and where bodies relax or bend before they strike.
     fn elastic_limit(&self, options: &Options) -> Result<Option<ElasticLimit>> {
         let setup = self.scene.plate_impact()?;
-        let onset = memory::onset_of_yield(setup, &self.system);
         let materials = [&setup.outer.material, &setup.plate.material, &setup.inner.material];
         let covered = !setup.outer.shape.is_held()
             && setup.outer.is_centred()
             && materials.iter().all(|m| m.relaxation.is_empty());
-        if !covered || onset == [None; 2] {
-            return Ok(None);
-        }
-        let [outer, inner] = self.impacts().elastic_speeds(onset, options);
-        Ok(Some(ElasticLimit { outer, inner }))
+        let limit = |onset: OnsetOfYield| {
+            let [outer, inner] = self.impacts().elastic_speeds(&onset, options);
+            ElasticLimit { outer, inner }
+        };
+        Ok(OnsetOfYield::new(setup, &self.system).filter(|_| covered).map(limit))
     }
 
     /// Runs the impact for its results alone, as a series of many needs them.

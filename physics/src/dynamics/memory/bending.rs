@@ -1,0 +1,163 @@
+//! The stress that a plate's bending lays along its faces under the contacts.
+//!
+//! Where a plate is bent its struck face is pressed along itself and the other one pulled: so the one bears more pressure before it yields and
+//! the other less, by as much as that stress is (von Mises on the axis). Under a force that rises step by step the moment below it is that of
+//! an infinite plate, into which bending spreads like heat, with the square root of time:
+//! M = (1 + nu)/(8 pi) sum dF ln(b^2/r^2), b^2 = 4 t sqrt(D/m) exp(-gamma), m the mass per area (Boussinesq; Zener, Phys. Rev. 59, 1941, 669), until it is
+//! that of the whole plate at rest (Timoshenko & Woinowsky-Krieger, Theory of Plates and Shells, 2nd ed., articles 16 to 19).
+
+use crate::analytical::circular_plate::rigidity;
+use crate::contact::Hertz;
+use crate::result::History;
+use crate::scene::{Edge, Plate};
+use std::f64::consts::PI;
+
+/// Euler's constant.
+const GAMMA: f64 = 0.577_215_664_901_532_9;
+
+/// Forces of outer and inner contact over the time of an impact, from before the first touch on.
+#[derive(Debug, Clone, Default)]
+pub struct Loads {
+    /// In s.
+    time: Vec<f64>,
+    /// In N. Shape (2, samples).
+    force: [Vec<f64>; 2],
+}
+
+impl Loads {
+    /// Those of a `history`; `None` if it does not tell them.
+    pub fn of(history: &History) -> Option<Self> {
+        let force = |name: &str| Some(history.curve(name)?.to_vec());
+        Some(Self { time: history.time.clone(), force: [force("outer_force")?, force("inner_force")?] })
+    }
+
+    /// Adds the forces `force` in N at `time` s.
+    pub fn push(&mut self, time: f64, force: [f64; 2]) {
+        self.time.push(time);
+        self.force.iter_mut().zip(force).for_each(|(all, one)| all.push(one));
+    }
+
+    /// Largest forces in N.
+    pub fn peaks(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.force[i][self.peak(i)])
+    }
+
+    /// Where the force of contact `i` is largest.
+    fn peak(&self, i: usize) -> usize {
+        let force = &self.force[i];
+        (1..force.len()).fold(0, |best, k| if force[k] > force[best] { k } else { best })
+    }
+}
+
+/// A plate that is bent by forces at its centre.
+#[derive(Debug, Clone, Copy)]
+pub struct Bending {
+    thickness: f64,
+    poisson_ratio: f64,
+    /// Growth of the square of b, to where the plate is bent, m^2/s, and the largest one, m^2.
+    spreading: f64,
+    farthest: f64,
+}
+
+impl Bending {
+    /// Of `plate`.
+    pub fn new(plate: &Plate) -> Self {
+        let Plate { radius, thickness, material, edge, .. } = plate;
+        let (nu, mass) = (material.poisson_ratio, material.density * thickness);
+        let stiffness = rigidity(material.youngs_modulus, nu, *thickness);
+        // moments at the centre of what edge and inertia add to a clamped plate, over (1 + nu)/(8 pi) F
+        let beyond_clamped = match edge {
+            Edge::Clamped => 0.0,
+            Edge::SimplySupported => 2.0 / (1.0 + nu),
+            Edge::Free => 0.5 * (1.0 - nu) / (1.0 + nu),
+        };
+        Self {
+            thickness: *thickness,
+            poisson_ratio: nu,
+            spreading: 4.0 * (stiffness / mass).sqrt() * (-GAMMA).exp(),
+            farthest: radius.powi(2) * (beyond_clamped - 1.0).exp(),
+        }
+    }
+
+    /// Stress in Pa along the faces under outer and inner contact, tension positive, when the forces there are largest.
+    pub fn at_peaks(&self, laws: &[Hertz; 2], loads: &Loads) -> [f64; 2] {
+        [(0, -1.0), (1, 1.0)].map(|(i, sign)| {
+            let peak = loads.peak(i);
+            let patch = laws[i].contact_radius(loads.force[i][peak]);
+            sign * 6.0 * self.moment(self.ring(patch), loads, peak) / self.thickness.powi(2)
+        })
+    }
+
+    /// Radius in m of the ring that bends the plate in its middle as a patch of the radius `patch` in m does: that of a thin plate's
+    /// circle with the stress under the patch (Westergaard 1926, after Timoshenko, article 19), over sqrt(e).
+    fn ring(&self, patch: f64) -> f64 {
+        let circle = (1.6 * patch.powi(2) + self.thickness.powi(2)).sqrt() - 0.675 * self.thickness;
+        circle * (-0.5_f64).exp()
+    }
+
+    /// Bending moment per width in N within forces on rings of the radius `ring` in m at the sample `end`.
+    fn moment(&self, ring: f64, loads: &Loads, end: usize) -> f64 {
+        let Loads { time, force: [outer, inner] } = loads;
+        let force = |k: usize| outer[k] - inner[k];
+        let step = |k: usize| {
+            let reach = (self.spreading * (time[end] - 0.5 * (time[k] + time[k - 1]))).min(self.farthest);
+            (force(k) - force(k - 1)) * (reach / ring.powi(2)).max(1.0).ln()
+        };
+        (1.0 + self.poisson_ratio) / (8.0 * PI) * (1..=end).map(step).sum::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::kirchhoff::UnitPlate;
+    use crate::scene::Material;
+    use approx::assert_relative_eq;
+
+    const RADIUS: f64 = 0.033;
+
+    fn plate(edge: Edge) -> Plate {
+        let material = Material::elastic("steel", 210e9, 0.3, 7780.0);
+        Plate { radius: RADIUS, thickness: 2e-3, material, edge, damping_ratio: 0.0 }
+    }
+
+    /// Moment within a ring of `r` radii of the plate by all modes, which answer a unit force by `answer` times their deflection at the centre,
+    /// by their frequency in units of the plate: from how much deeper the centre lies than that ring; which is what the moment is within a ring
+    /// e times smaller.
+    fn by_modes(edge: Edge, r: f64, answer: impl Fn(f64) -> f64) -> f64 {
+        let modes = UnitPlate::new(edge, 0.3, 150).unwrap();
+        let around = modes.deflection(&[std::f64::consts::E * r]);
+        let elastic = (0..modes.omega().len()).filter(|k| modes.omega()[*k] > 0.0);
+        let deeper = elastic.map(|k| {
+            let centre = modes.centre()[k];
+            centre * (centre - around[k][0]) * answer(modes.omega()[k])
+        });
+        0.5 * 1.3 * 4.0 / (std::f64::consts::E * r).powi(2) * deeper.sum::<f64>()
+    }
+
+    /// Under a force that stays the plate comes to the moment that its edge leaves it.
+    #[test]
+    fn at_rest_the_moment_is_that_of_the_plate_s_modes() {
+        let lasting = Loads { time: vec![0.0, 1.0, 1e9], force: [vec![0.0, 1.0, 1.0], vec![0.0; 3]] };
+        for edge in [Edge::Clamped, Edge::SimplySupported, Edge::Free] {
+            let found = Bending::new(&plate(edge)).moment(0.03 * RADIUS, &lasting, 2);
+            assert_relative_eq!(found, by_modes(edge, 0.03, |w| w.powi(-2)), max_relative = 5e-3);
+        }
+    }
+
+    /// Under forces that grow evenly, those on both faces against each other, it is that of the modes until waves come back from the edge.
+    #[test]
+    fn soon_after_the_touch_the_moment_is_that_of_the_plate_s_modes() {
+        let plate = plate(Edge::Clamped);
+        let mass = plate.thickness * plate.material.density;
+        let unit = RADIUS.powi(2) * (mass / rigidity(210e9, 0.3, plate.thickness)).sqrt();
+        for t in [0.02, 0.04, 0.06] {
+            let time: Vec<f64> = (0..=2000).map(|k| f64::from(k) / 2000.0 * t * unit).collect();
+            let grown = |force: f64| time.iter().map(|now| force * now / (t * unit)).collect::<Vec<f64>>();
+            let loads = Loads { force: [grown(3.0), grown(2.0)], time: time.clone() };
+            let found = Bending::new(&plate).moment(0.03 * RADIUS, &loads, 2000);
+            let exact = by_modes(Edge::Clamped, 0.03, |w| (1.0 - (w * t).sin() / (w * t)) / (w * w));
+            assert_relative_eq!(found, exact, max_relative = 0.02);
+        }
+    }
+}
