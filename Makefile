@@ -57,6 +57,7 @@ python: setup wheel
 	$(VENV)/bin/ruff format --check fem_reference examples python
 	$(TOOL) -m mypy
 	$(PYTHON) -m pytest -q fem_reference
+	$(TOOL) -m pytest -q fem_reference/tests/test_flight.py
 	cargo build --release
 	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck $(WHEEL)/bin/python -m pytest -q python
 	$(WHEEL)/bin/python -m mypy.stubtest impactcheck._core

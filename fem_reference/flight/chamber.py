@@ -71,3 +71,9 @@ class Seat:
         """Centres of a sphere in the seat it starts from and in the other one."""
         x = self.seat_distance / 2
         return (-x, self.seated_height), (x, self.seated_height)
+
+    def saddle(self) -> Point:
+        """Centre of a sphere that stands on the inner edge of its seat, the highest on its way."""
+        # the flanks' last wall ends there
+        x, z = self._flanks()[-1][1]
+        return x, z + self.sphere_radius

@@ -25,6 +25,8 @@ THICKNESS = 0.02
 """Of the boxes behind the walls, mm: thin, so that none juts out of another's face."""
 IMPEDANCE = 0.9999
 """The hardest that MuJoCo has."""
+GIVEN_UP = 0.02
+"""Of the saddle's energy: what a sphere has to lack before it is sure not to pass it."""
 STOPS = 0.5 / 3.5
 """Of the force that would stop a slip within a step: what acts a step late must not overshoot."""
 
@@ -42,6 +44,8 @@ class Case:
     """Stiffness along z, N/mm, and z at which its force is none."""
     restitution: float
     friction: float
+    step: float = STEP
+    """ms"""
 
 
 @dataclass(frozen=True)
@@ -77,8 +81,8 @@ def _xml(case: Case, damping: float) -> str:
         for k in range(len(case.walls))
     )
     return f"""<mujoco><compiler angle="radian" inertiafromgeom="false"/>
-<option timestep="{STEP}" gravity="{case.gravity[0]!r} 0 {case.gravity[1]!r}" integrator="Euler"
- iterations="50" tolerance="1e-14"/>
+<option timestep="{case.step}" gravity="{case.gravity[0]!r} 0 {case.gravity[1]!r}"
+ integrator="Euler" iterations="50" tolerance="1e-14"/>
 <worldbody>{"".join(_box(k, wall) for k, wall in enumerate(case.walls))}
 <body name="sphere"><inertial pos="0 0 0" mass="{case.mass!r}"
  diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
@@ -90,25 +94,25 @@ def _xml(case: Case, damping: float) -> str:
 
 
 @lru_cache(maxsize=4096)
-def damping_of(restitution: float) -> float:
+def damping_of(restitution: float, step: float = STEP) -> float:
     """Damping with which a sphere that falls on a floor rebounds so, found by falls."""
     low, high = 0.0, 2 * math.pi / CONTACT
     for _ in range(40):
         middle = 0.5 * (low + high)
-        if _rebound(middle) > restitution:
+        if _rebound(middle, step) > restitution:
             low = middle
         else:
             high = middle
     return 0.5 * (low + high)
 
 
-def _rebound(damping: float) -> float:
-    case = Case((((-5, 0), (5, 0)),), 1.5, 0.11, (0, 0), (0, 0), 0.5, 0)
+def _rebound(damping: float, step: float) -> float:
+    case = Case((((-5, 0), (5, 0)),), 1.5, 0.11, (0, 0), (0, 0), 0.5, 0, step)
     model = mujoco.MjModel.from_xml_string(_xml(case, damping))
     data = mujoco.MjData(model)
     # no touch at a step's very begin
     data.qpos[1], data.qvel[1] = 1.5 + 1.3e-4, -1.0
-    mujoco.mj_step(model, data, int(10 * CONTACT / STEP))
+    mujoco.mj_step(model, data, int(10 * CONTACT / step))
     return float(data.qvel[1])
 
 
@@ -116,16 +120,25 @@ class Sphere:
     """A sphere that moves in a chamber."""
 
     def __init__(self, case: Case):
-        damping = damping_of(case.restitution)
+        damping = damping_of(case.restitution, case.step)
         self.case = case
         self.model = mujoco.MjModel.from_xml_string(_xml(case, damping))
         self.data = mujoco.MjData(self.model)
         self.gravity = np.array(case.gravity)
 
     def start(self, place: Point, velocity: Point, spin: float) -> None:
-        """Place in mm, velocity in mm/ms, spin in 1/ms, counterclockwise with z up."""
+        """Place in mm, velocity in mm/ms, spin in 1/ms, counterclockwise with z up.
+
+        Velocities are kept half a step early: MuJoCo's steps (first the velocity, with it the
+        place) are the leapfrog's then, of second order and exact on a parabola.
+        """
+        stiffness, at = self.case.spring
+        pull = (self.gravity[0], self.gravity[1] + stiffness * (at - place[1]) / self.case.mass)
         self.data.qpos[:] = [*place, 0.0]
-        self.data.qvel[:] = [*velocity, -spin]
+        self.data.qvel[:] = [
+            *(v - self.case.step / 2 * a for v, a in zip(velocity, pull, strict=True)),
+            -spin,
+        ]
 
     def step(self) -> None:
         """One step, with friction by the contacts of the last one."""
@@ -139,7 +152,7 @@ class Sphere:
             along = (-into[2], into[0])
             slip = data.qvel[0] * along[0] + data.qvel[1] * along[1] - case.radius * data.qvel[2]
             pressed = case.friction * data.efc_force[contact.efc_address]
-            stops = STOPS * abs(slip) * case.mass / STEP
+            stops = STOPS * abs(slip) * case.mass / case.step
             force = -math.copysign(min(pressed, stops), slip)
             data.qfrc_applied[0] += force * along[0]
             data.qfrc_applied[1] += force * along[1]
@@ -161,37 +174,56 @@ class Sphere:
         return Flown(last, self.data.time, first, still >= 3)
 
     def _first_touch(self, end: float) -> tuple[float, float, float] | None:
-        """To the first touch after the seat is left, between two steps by the gap."""
+        """To the first touch after the seat is left: back from where it is found, by its depth."""
         left = False
         while self.data.time < end:
-            before = (self.data.time, *self._place())
+            time, (x, z) = self.data.time, self._place()
+            # of the way that led there, since velocities are half a step early
+            vx, vz = (float(v) for v in self.data.qvel[:2])
             self.step()
             touches = self.data.ncon > 0
             if touches and left:
-                gap = min(float(contact.dist) for contact in self.data.contact)
-                # the contact is found where the step began; it went on from there
-                velocity = self.data.qvel[:2]
-                into = self.data.contact[0].frame
-                approach = max(1e-9, float(velocity[0] * into[0] + velocity[1] * into[2]))
-                return before[0] + gap / approach, before[1], before[2]
+                # the contact is found where the step began; its normal goes into the wall
+                contact = min(self.data.contact, key=lambda contact: contact.dist)
+                approach = vx * contact.frame[0] + vz * contact.frame[2]
+                early = float(contact.dist / approach)
+                return time + early, x + early * vx, z + early * vz
             left = left or not touches
         return None
 
     def passes(
-        self, beyond: float, ends: tuple[float, float], shaken: Callable[[float], Point]
+        self, saddle: Point, duration: float, end: float, shaken: Callable[[float], Point]
     ) -> bool:
-        """Whether the sphere comes beyond this x while its chamber accelerates as ``shaken``.
+        """Whether the sphere passes ``saddle`` in x while its chamber accelerates as ``shaken``.
 
-        The acceleration lasts to the first of the times ``ends`` in ms, the motion to the second.
+        A sphere that just passes may take any time: given up is one that, after the ``duration``
+        of the shaking in ms, has clearly too little energy, or is still before it after ``end``.
         """
-        while self.data.time < ends[1]:
-            acceleration = shaken(self.data.time + STEP / 2)
-            self.model.opt.gravity[0] = self.gravity[0] - acceleration[0]
-            self.model.opt.gravity[2] = self.gravity[1] - acceleration[1]
+        data, model = self.data, self.model
+        needed = self._potential(saddle)
+        sure = needed - GIVEN_UP * (needed - self._potential(self._place()))
+        while data.time < end:
+            # at the time of the place, in the middle between two velocities
+            acceleration = shaken(data.time)
+            model.opt.gravity[0] = self.gravity[0] - acceleration[0]
+            model.opt.gravity[2] = self.gravity[1] - acceleration[1]
             self.step()
-            if self.data.qpos[0] > beyond:
+            if data.qpos[0] > saddle[0]:
                 return True
+            if data.time > duration and self._energy() < sure:
+                return False
         return False
+
+    def _potential(self, place: Point) -> float:
+        """Of all that is constant and the spring, per mass, mm^2/ms^2."""
+        stiffness, at = self.case.spring
+        pull = float(self.gravity @ place)
+        return stiffness / self.case.mass * (place[1] - at) ** 2 / 2 - pull
+
+    def _energy(self) -> float:
+        vx, vz, spin = self.data.qvel
+        kinetic = float(vx**2 + vz**2 + 0.4 * (self.case.radius * spin) ** 2) / 2
+        return kinetic + self._potential(self._place())
 
     def _place(self) -> Point:
         return float(self.data.qpos[0]), float(self.data.qpos[1])

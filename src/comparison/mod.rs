@@ -12,6 +12,7 @@ mod common_mesh;
 mod discrepancy;
 mod impacts;
 mod integrity;
+mod landing;
 mod moved;
 mod reference_check;
 mod series;
@@ -32,7 +33,7 @@ use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, align, peak};
 use crate::error::Result;
 use crate::kinds;
 use crate::measured::Measured;
-use crate::result::{Curve, Outcome, Quantity, SCHEMA_VERSION, Source, Summary};
+use crate::result::{Curve, FlightSummary, Outcome, Quantity, SCHEMA_VERSION, Source, Summary};
 use crate::scene::{Model, Scene, Tolerances};
 use crate::uncertainty::Scatter;
 use budget::QuantityBudget;
@@ -277,13 +278,16 @@ pub fn compare_scene(scene: &Scene, reference: &Outcome, reduced: &[Outcome]) ->
     let integrity = integrity::check(scene, reference);
     let sound = Verdict::of_soundness(integrity.iter().map(|c| c.verdict));
     let window = CommonAxis::of_reference(reference);
-    let models: Vec<_> =
-        reduced.iter().map(|outcome| compare_model(scene, reference, outcome, window, sound)).collect();
+    let flight = landing::of_reference(scene, &reference.summary, reduced);
+    let models: Vec<_> = reduced
+        .iter()
+        .map(|outcome| compare_model(scene, (reference, flight.as_ref()), outcome, window, sound))
+        .collect();
     let verdict = Verdict::worst(models.iter().map(|m| m.verdict).chain([sound]));
     SceneComparison {
         scene: scene.name.clone(),
         verdict,
-        reference: reference.summary.clone(),
+        reference: Summary { flight, ..reference.summary.clone() },
         integrity,
         window,
         models,
@@ -296,7 +300,7 @@ pub fn compare_scene(scene: &Scene, reference: &Outcome, reduced: &[Outcome]) ->
 
 fn compare_model(
     scene: &Scene,
-    reference: &Outcome,
+    (reference, flight): (&Outcome, Option<&FlightSummary>),
     reduced: &Outcome,
     window: Option<CommonAxis>,
     reference_sound: Verdict,
@@ -313,6 +317,7 @@ fn compare_model(
     let (m, c) = (&reference.summary, &reduced.summary);
     let mut discrepancies = quantities(kind, reference, c, tolerances);
     discrepancies.extend(impacts::rows(m, c, tolerances));
+    discrepancies.extend(landing::row([flight, c.flight.as_ref()], tolerances));
     discrepancies.extend(curve_distances(kind.curves(), [reference, reduced], &aligned, tolerances));
     discrepancies.extend(residuals(m, c, tolerances));
     undecided::tell(&mut discrepancies, m);

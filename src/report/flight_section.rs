@@ -1,15 +1,17 @@
-//! Where the sphere flies after the impact: the chamber in section with its path, the launch's band and the seats, and the energy
-//! landscape below it.
+//! Where the sphere flies after the impact: the chamber in section with its path, the launch's band and the seats, the energy
+//! landscape below it, the map of landings and the thresholds of vibration.
 
 use super::figure_geometry::x2;
 use super::format::{model_name, prefixed, with_unit};
 use super::html::scrolled;
+use super::landing_map::map_picture;
 use super::scene_drawing::Scale;
+use super::vibration_chart::vibration_chart;
 use super::{SceneReport, format};
 use crate::flight::{Flight, Landscape, Launch, Setup, Vector, flight_of, fly};
 use crate::result::{FlightSummary, Summary};
 use crate::scene::Scene;
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 /// Width of both pictures in px, and their margin.
 const WIDTH: f64 = 640.0;
@@ -31,6 +33,9 @@ pub(super) fn flight_html(scene: &Scene, models: &[&Summary]) -> Markup {
     let flown: Vec<(&Summary, &FlightSummary)> =
         models.clone().filter_map(|summary| Some((summary, summary.flight.as_ref()?))).collect();
     let Some(&(_, first)) = flown.first() else { return html! {} };
+    let reference = report.comparison.reference.flight.as_ref().map(|flight| ("FE".to_owned(), flight));
+    let launches =
+        reference.into_iter().chain(flown.iter().map(|(summary, flight)| (model(summary), *flight)));
     let quantity = |value: Option<f64>, unit| {
         value.map_or_else(|| "none".to_owned(), |value| with_unit(value, prefixed(unit, value), 4))
     };
@@ -38,8 +43,8 @@ pub(super) fn flight_html(scene: &Scene, models: &[&Summary]) -> Markup {
         (scrolled("Where the sphere lands", &html! { table {
             thead { tr { th { "launched by" } th { "seat" } th { "certain after" } th { "margin of speed" } th { "share in the other seat" }
                 th { "least speed to shift" } th { "restitution" } } }
-            tbody { @for (summary, flight) in &flown { tr {
-                th scope="row" { (model(summary)) }
+            tbody { @for (name, flight) in launches { tr {
+                th scope="row" { (name) }
                 td { (flight.seat) }
                 td { (quantity(Some(flight.time), "s")) }
                 td { (flight.margin.map_or_else(|| "over 50 %".to_owned(), percent)) }
@@ -52,7 +57,7 @@ pub(super) fn flight_html(scene: &Scene, models: &[&Summary]) -> Markup {
         (pictures(scene, first))
         @for (summary, vibration) in models.filter_map(|summary| Some((summary, summary.vibration?))) {
             p { "Vibration, by the launch's chamber of model " (model(summary)) ": unseats at " (quantity(vibration.unseats, "m/s^2"))
-                ", shifts at " (quantity(vibration.shifts, "m/s^2")) "." }
+                ", shifts at " (quantity(vibration.shifts, "m/s^2")) "; by energy it takes at least " (quantity(Some(vibration.energy_bound), "m/s^2")) "." }
         }
     }
 }
@@ -73,13 +78,27 @@ fn percent(share: f64) -> String {
 fn pictures(scene: &Scene, summary: &FlightSummary) -> Markup {
     let Ok((setup, landscape)) = flight_of(scene, summary.restitution) else { return html! {} };
     let flight = fly(&setup, &landscape, &summary.launch, true);
-    let scatter = scene.flight.as_ref().map_or(0.0, |flight| flight.scatter.angle);
+    let Some(scatter) = scene.flight.as_ref().map(|flight| flight.scatter) else { return html! {} };
+    let shaken =
+        scene.vibration.as_ref().and_then(|vibration| vibration_chart(&setup, &landscape, vibration));
     html! {
         figure {
-            (section(&setup, &flight, &summary.launch, scatter))
+            (section(&setup, &flight, &summary.launch, scatter.angle))
             (landscape_picture(&setup, &landscape, &summary.launch))
             figcaption { "The chamber in section with the path of the sphere's centre until its seat is certain, the seats (dashed) and the band of the launch's \
                 angle. Below: the least energy with which the sphere can be at x, its saddle, and the energy of the launch (dashed)." }
+        }
+        figure {
+            (PreEscaped(map_picture(&setup, &landscape, summary, &scatter)))
+            figcaption { "Where launches of other speeds and angles end, with the launch (ring) and its band. Below, the band: the launches whose share is told above, \
+                with their restitutions, too." }
+        }
+        @if let Some(chart) = shaken {
+            figure {
+                (PreEscaped(chart))
+                figcaption { "The least amplitude that shifts, over the frequency (of a half-sine that of the whole sine). Below the limit of statics the sphere stays in its \
+                    seat; below that of energy, √(2ΔU/m) over the integral of the acceleration's magnitude, it can't pass the saddle." }
+            }
         }
     }
 }

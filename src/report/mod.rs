@@ -39,6 +39,7 @@ mod interactive;
 mod json;
 mod junit;
 mod label_placement;
+mod landing_map;
 mod limits_section;
 mod markdown;
 mod measured_section;
@@ -75,6 +76,7 @@ mod trend_section;
 mod trust;
 mod validated_map;
 mod validation_section;
+mod vibration_chart;
 mod write;
 
 pub use animation::{Film, film};

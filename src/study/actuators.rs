@@ -5,6 +5,7 @@ use super::rocker::{bender, setup};
 use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
 use crate::actuator::beam::Release;
 use crate::actuator::cantilever::{moment_energy, moment_for_deflection};
+use crate::actuator::inductance::Inductance;
 use crate::actuator::magnet::Magnet;
 use crate::actuator::{Bender, Stack, Supply};
 use crate::error::Result;
@@ -38,8 +39,13 @@ const DISCHARGE: f64 = 0.05e-3;
 /// Offsets of the bender's plate to both sides in m, and how many are drawn.
 const OFFSETS: (f64, usize) = (100e-6, 41);
 /// A small lift magnet; the paper gives no data of one.
-const MAGNET: Magnet =
-    Magnet { mass: 1e-3, voltage: 12.0, resistance: 8.0, inductance: [20e-3, 40e-3], travel: 1e-3 };
+const MAGNET: Magnet = Magnet {
+    mass: 1e-3,
+    voltage: 12.0,
+    resistance: 8.0,
+    inductance: Inductance::EvenGap { ends: [20e-3, 40e-3], way: 1e-3 },
+    travel: 1e-3,
+};
 /// Gap in m within which a stack has lost half of what it gives without, whatever its drive.
 const FEW_MICROMETRES: f64 = 22e-6;
 /// Relative error of the time integration.
@@ -110,9 +116,7 @@ fn bent(gap: f64) -> Result<Case> {
 /// # Errors
 /// As [`Magnet::lift`].
 fn magnet(gap: f64) -> Result<Case> {
-    let travel = MAGNET.travel + gap;
-    let inductance = [MAGNET.inductance[0], MAGNET.inductance_at(travel)[0]];
-    let lift = Magnet { travel, inductance, ..MAGNET }.lift()?;
+    let lift = Magnet { travel: MAGNET.travel + gap, ..MAGNET }.lift()?;
     let plunger = Shape::Compact { mass: MAGNET.mass, tip_radius: STACK.tip_radius };
     Ok(Case {
         actuator: "magnet",

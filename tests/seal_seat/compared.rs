@@ -2,6 +2,7 @@
 
 use super::reduced::{fixture, model, sixteen};
 use impactcheck::comparison::{GateRules, Verdict, compare_scene};
+use impactcheck::flight::{flight_summary, launch};
 use impactcheck::report::{self, Cost, Report, SceneReport};
 use impactcheck::result::{Outcome, Source};
 use impactcheck::scene::Scene;
@@ -65,6 +66,39 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
         change(&mut bad);
         assert_eq!(compare_scene(&scene, &reference, &[bad]).verdict, Verdict::Fail, "{what}");
     }
+}
+
+/// The reference's launch flies in the model's chamber; a model that throws the sphere too weakly has another share of shifts, which a
+/// tolerance holds.
+#[test]
+fn the_reference_s_launch_flies_beside_the_model_s() {
+    let text = std::fs::read_to_string(fixture("seal-seat.toml")).expect("scene");
+    let flight =
+        "[flight]\nchamber_height = 0.02\nfriction = 0.2\nrestitution = 0.5\n[flight.spring]\nforce = 0.04\n";
+    let text = format!("{text}\n{flight}[tolerances.C]\nlanding_share = {{ absolute = 0.1 }}\n");
+    let scene = Scene::parse("seal-seat.toml", &text).expect("scene");
+    let flown = |mut outcome: Outcome| {
+        let launch = launch(&scene, &outcome.summary).expect("a launch");
+        outcome.summary.flight = Some(flight_summary(&scene, launch, 0.5).expect("a chamber"));
+        outcome
+    };
+    let reference = stand_in();
+    let good = sixteen().run_with_history(1e-3).expect("run");
+    let mut weak = good.clone();
+    for name in ["sphere_velocity_x", "sphere_velocity_z"] {
+        alter(&mut weak, name, |v| 0.3 * v);
+    }
+    let compared = compare_scene(&scene, &reference, &[flown(good), flown(weak)]);
+    let of_reference = compared.reference.flight.as_ref().expect("flown");
+    assert_eq!(Some(of_reference.launch), launch(&scene, &reference.summary));
+    let rows = [0, 1].map(|k| compared.models[k].discrepancy("landing_share").expect("a row"));
+    assert!(rows.iter().all(|row| row.reference == Some(of_reference.share)), "{rows:?}");
+    assert!(of_reference.share > 0.5, "{} {:?}", of_reference.share, of_reference.launch);
+    assert_eq!(rows.map(|row| row.verdict), [Verdict::Pass, Verdict::Fail]);
+    assert_eq!(rows[1].reduced, Some(0.0));
+    // without a flight there is neither
+    let alone = compare_scene(&gated_scene(), &reference, &[sixteen().run_with_history(1e-3).expect("run")]);
+    assert!(alone.reference.flight.is_none() && alone.models[0].discrepancy("landing_share").is_none());
 }
 
 /// The error of a mesh that both sides have leaves with the difference; what it does to the difference itself counts.

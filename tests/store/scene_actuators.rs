@@ -91,6 +91,54 @@ fn a_magnet_is_a_compact_body_with_the_speed_of_its_plunger() {
     assert!(said.contains("`outer.stop_inductance` is 0.01 H") && said.contains("0.02 H"), "{said}");
 }
 
+/// A curve of what the law gives strikes as fast as the law; one that can't be is told.
+#[test]
+fn a_magnet_pulls_by_a_curve() {
+    let magnet = |pull: &str| {
+        let keys = format!(
+            "kind = \"magnet\"\nmass = 0.005\ntip_radius = 0.004\nvoltage = 12\nresistance = 8\ninductance = 0.02\ntravel = 0.002\n{pull}"
+        );
+        let text = edited("kind     = \"sphere\"\nradius   = \"10 mm\"", &keys);
+        text.replacen("speed    = \"550 mm/s\"\n", "", 1)
+    };
+    let speed = |pull: &str| plate_impact(&parse(&magnet(pull))).outer.speed;
+    let law = speed("stop_inductance = 0.06");
+    let curve = |key: &str, of: &dyn Fn(f64) -> f64| {
+        let points = (0..=20)
+            .map(|k| 1e-4 * f64::from(k))
+            .map(|way| format!("{{ way = {way:?}, {key} = {:?} }}", of(way)));
+        format!("curve = [{}]", points.collect::<Vec<_>>().join(", "))
+    };
+    let inductance =
+        |way: f64| if way == 0.0 { 0.02 } else { 1.0 / (50.0 - way / 0.002 * (50.0 - 1.0 / 0.06)) };
+    let force = |way: f64| 0.5 * inductance(way).powi(2) * (50.0 - 1.0 / 0.06) / 0.002;
+    for pull in [curve("inductance", &inductance), curve("force", &force)] {
+        assert!((speed(&pull) / law - 1.0).abs() < 2e-3, "{} {law}", speed(&pull));
+    }
+    for (pull, told) in [
+        ("curve = [{ way = 0, force = 1 }, { way = 0.001, force = 2 }]", "0 to `outer.travel`, 0.002 m"),
+        ("curve = [{ way = 0, force = 1 }, { way = 0.002, inductance = 0.06 }]", "of one kind"),
+        (
+            "curve = [{ way = 0, force = 1 }, { way = 0, force = 1 }, { way = 0.002, force = 2 }]",
+            "the way 0 m after 0 m",
+        ),
+        (
+            "curve = [{ way = 0, inductance = 0.02 }, { way = 0.002, inductance = 0.01 }]",
+            "0.01 H after 0.02 H",
+        ),
+        (
+            "curve = [{ way = 0, inductance = 0.03 }, { way = 0.002, inductance = 0.04 }]",
+            "begins with 0.03 H",
+        ),
+    ] {
+        let said = Scene::parse("scene.toml", &magnet(pull)).expect_err(pull).to_string();
+        let words = said.split(|c: char| c.is_whitespace() || c == '│').filter(|word| !word.is_empty());
+        let said = words.collect::<Vec<_>>().join(" ");
+        assert!(said.contains("`outer.curve`") && said.contains(told), "{pull}: {said}");
+    }
+    refuses(&magnet(""), 16, &["the pull is missing", "outer.stop_inductance", "outer.curve"]);
+}
+
 #[test]
 fn a_stack_that_cannot_be_is_told() {
     let stack = |from: &str, to: &str| {

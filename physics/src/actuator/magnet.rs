@@ -1,10 +1,10 @@
 //! Lift magnet (section 2.2): a coil pulls a plunger, which strikes with the speed it has come to.
 //!
 //! R i + d(L i)/dt = V, m x'' = i^2 L'(x)/2, from rest and without current. The plunger starts `travel` before its stop, where the
-//! plate is; the inductance goes from that at the start to that at the stop as one over what is left of the air gap:
-//! 1/L = 1/L_1 + (1/L_0 - 1/L_1) g/g_0, the reluctance of an even gap being in proportion to its length.
+//! plate is.
 //! The plunger is a compact body from the touch on: in the microseconds of the impact the coil's force, of newtons, does nothing.
 
+use super::inductance::Inductance;
 use crate::error::{Error, Result};
 
 /// Steps of the integration from the start to the stop, about.
@@ -15,7 +15,7 @@ const PATIENCE: f64 = 100.0;
 const MOST_STEPS: f64 = 1e8;
 
 /// Lift magnet.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Magnet {
     /// Mass of the plunger in kg.
     pub mass: f64,
@@ -23,8 +23,8 @@ pub struct Magnet {
     pub voltage: f64,
     /// Resistance of the circuit in Ohm.
     pub resistance: f64,
-    /// Inductance in H with the plunger at the start and at the stop, which is larger.
-    pub inductance: [f64; 2],
+    /// Inductance over the way of the plunger.
+    pub inductance: Inductance,
     /// Way of the plunger from the start to the stop in m.
     pub travel: f64,
 }
@@ -48,16 +48,8 @@ pub struct Lift {
 type State = [f64; 5];
 
 impl Magnet {
-    /// Inductance in H and its slope by the way in H/m, `way` m from the start.
-    pub fn inductance_at(&self, way: f64) -> [f64; 2] {
-        let [start, stop] = self.inductance;
-        let slope = (1.0 / start - 1.0 / stop) / self.travel;
-        let inductance = 1.0 / (1.0 / start - slope * way);
-        [inductance, slope * inductance * inductance]
-    }
-
     fn rates(&self, [way, speed, flux, ..]: State) -> State {
-        let [inductance, slope] = self.inductance_at(way);
+        let [inductance, slope] = self.inductance.at(way);
         let current = flux / inductance;
         let force = 0.5 * current * current * slope;
         let heating = self.resistance * current * current;
@@ -76,7 +68,7 @@ impl Magnet {
 
     /// Time in s that the plunger would take under the force of the final current at the start.
     fn characteristic(&self) -> f64 {
-        let [inductance, slope] = self.inductance_at(0.0);
+        let [inductance, slope] = self.inductance.at(0.0);
         let force = 0.5 * (self.voltage / self.resistance).powi(2) * slope;
         (2.0 * self.travel * self.mass / force).sqrt() + inductance / self.resistance
     }
@@ -88,31 +80,35 @@ impl Magnet {
     pub fn lift(&self) -> Result<Lift> {
         let characteristic = self.characteristic();
         // longer steps than the circuit's time constant would not be stable
-        let h = (characteristic / STEPS).min(self.inductance[0] / self.resistance);
+        let h = (characteristic / STEPS).min(self.inductance.at(0.0)[0] / self.resistance);
         if characteristic / h > MOST_STEPS {
             return Err(Error::Solver(format!(
                 "the magnet's current follows in {h:.1e} s, its plunger in {characteristic:.1e} s: too far apart to follow both; take a smaller resistance"
             )));
         }
         let (mut state, mut time) = (State::default(), 0.0);
-        while time < PATIENCE * characteristic {
-            let next = self.step(state, h);
-            if next[0] >= self.travel {
-                // by Newton's method in the length of the last step
-                let mut last = h;
-                for _ in 0..20 {
-                    let end = self.step(state, last);
-                    last -= (end[0] - self.travel) / end[1];
+        // a step across a bend of the inductance's curve would lose the method's order
+        for place in self.inductance.bends(self.travel).chain([self.travel]) {
+            let mut next = self.step(state, h);
+            while next[0] < place {
+                if time > PATIENCE * characteristic {
+                    return Err(Error::Solver(format!(
+                        "the magnet's plunger has not come to its stop after {time:.3e} s: is its mass, or a voltage, in the wrong unit?"
+                    )));
                 }
-                let [_, speed, flux, taken, heat] = self.step(state, last);
-                let current = flux / self.inductance[1];
-                return Ok(Lift { time: time + last, speed, current, taken, heat });
+                (state, time) = (next, time + h);
+                next = self.step(state, h);
             }
-            (state, time) = (next, time + h);
+            // by Newton's method in the length of the last step
+            let mut last = h;
+            for _ in 0..20 {
+                let end = self.step(state, last);
+                last -= (end[0] - place) / end[1];
+            }
+            (state, time) = (self.step(state, last), time + last);
         }
-        Err(Error::Solver(format!(
-            "the magnet's plunger has not come to its stop after {time:.3e} s: is its mass, or a voltage, in the wrong unit?"
-        )))
+        let [_, speed, flux, taken, heat] = state;
+        Ok(Lift { time, speed, current: flux / self.inductance.at(self.travel)[0], taken, heat })
     }
 }
 
@@ -122,17 +118,31 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn magnet() -> Magnet {
-        Magnet { mass: 5e-3, voltage: 12.0, resistance: 8.0, inductance: [20e-3, 60e-3], travel: 2e-3 }
+        let inductance = Inductance::EvenGap { ends: [20e-3, 60e-3], way: 2e-3 };
+        Magnet { mass: 5e-3, voltage: 12.0, resistance: 8.0, inductance, travel: 2e-3 }
+    }
+
+    /// The even gap's law at `count` + 1 points, as inductances or as forces at 1 A.
+    fn curves(count: u32) -> [Inductance; 2] {
+        let law = magnet().inductance;
+        let ways: Vec<f64> = (0..=count).map(|k| 2e-3 * f64::from(k) / f64::from(count)).collect();
+        let points = |of: &dyn Fn([f64; 2]) -> f64| -> Vec<[f64; 2]> {
+            ways.iter().map(|way| [*way, of(law.at(*way))]).collect()
+        };
+        let forces = points(&|[_, slope]| 0.5 * slope);
+        [Inductance::through(&points(&|[inductance, _]| inductance)), Inductance::of_forces(20e-3, &forces)]
     }
 
     #[test]
     fn what_the_source_gives_is_heat_field_or_motion() {
         for resistance in [1.0, 8.0, 40.0] {
-            let magnet = Magnet { resistance, ..magnet() };
-            let lift = magnet.lift().unwrap();
-            let field = 0.5 * magnet.inductance[1] * lift.current.powi(2);
-            let motion = 0.5 * magnet.mass * lift.speed.powi(2);
-            assert_relative_eq!(lift.taken, lift.heat + field + motion, max_relative = 1e-12);
+            for inductance in curves(8).into_iter().chain([magnet().inductance]) {
+                let magnet = Magnet { resistance, inductance, ..magnet() };
+                let lift = magnet.lift().unwrap();
+                let field = 0.5 * magnet.inductance.at(magnet.travel)[0] * lift.current.powi(2);
+                let motion = 0.5 * magnet.mass * lift.speed.powi(2);
+                assert_relative_eq!(lift.taken, lift.heat + field + motion, max_relative = 1e-12);
+            }
         }
     }
 
@@ -155,5 +165,21 @@ mod tests {
         }
         assert_relative_eq!(state[0], magnet.travel, max_relative = 1e-9);
         assert_relative_eq!(state[1], lift.speed, max_relative = 1e-9);
+    }
+
+    /// Points of the law give what the law gives, ever closer with their number: of second order, of inductances at least.
+    #[test]
+    fn a_curve_of_the_law_is_the_law() {
+        let exact = magnet().lift().unwrap().speed;
+        let off = |count| {
+            curves(count)
+                .map(|inductance| Magnet { inductance, ..magnet() }.lift().unwrap().speed / exact - 1.0)
+        };
+        let [coarse, fine] = [16, 32].map(off);
+        for (k, (coarse, fine)) in coarse.into_iter().zip(fine).enumerate() {
+            let order = (coarse / fine).abs().log2();
+            assert!(order > 1.9 && (k == 0 || order < 2.1), "curve {k}: order {order}, {coarse} {fine}");
+            assert!(fine.abs() < 1e-3, "curve {k}: {fine}");
+        }
     }
 }

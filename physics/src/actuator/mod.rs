@@ -3,6 +3,7 @@
 pub mod beam;
 pub mod cantilever;
 pub mod circuit;
+pub mod inductance;
 pub mod magnet;
 pub mod stack;
 

@@ -108,6 +108,41 @@ impl Wave {
         }
     }
 
+    /// Integral of its magnitude over time, s (of a record m/s).
+    pub fn impulse(&self) -> f64 {
+        match self {
+            Wave::Sine { .. } | Wave::HalfSine { .. } => 2.0 / std::f64::consts::PI * self.end(),
+            Wave::Record { time, acceleration } => {
+                let pieces = time.windows(2).zip(acceleration.windows(2));
+                let area = |(t, a): (&[f64], &[f64])| {
+                    let size = a[0].abs() + a[1].abs();
+                    // a line through zero makes two triangles
+                    let twice = if a[0] * a[1] < 0.0 { (a[0].powi(2) + a[1].powi(2)) / size } else { size };
+                    0.5 * (t[1] - t[0]) * twice
+                };
+                pieces.map(area).sum()
+            }
+        }
+    }
+
+    /// Frequency in Hz, of a half-sine that of the whole one; `None` of a record.
+    pub fn frequency(&self) -> Option<f64> {
+        match self {
+            Wave::Sine { frequency, .. } => Some(*frequency),
+            Wave::HalfSine { duration } => Some(0.5 / duration),
+            Wave::Record { .. } => None,
+        }
+    }
+
+    /// The same wave at another `frequency` in Hz; a record stays as it is.
+    pub fn at_frequency(&self, frequency: f64) -> Self {
+        match self {
+            Wave::Sine { periods, .. } => Wave::Sine { frequency, periods: *periods },
+            Wave::HalfSine { .. } => Wave::HalfSine { duration: 0.5 / frequency },
+            Wave::Record { .. } => self.clone(),
+        }
+    }
+
     /// The end in s of the piece from `time` on in which it is smooth, and the longest step in it.
     fn smooth_from(&self, time: f64) -> (f64, f64) {
         let end = self.end();

@@ -24,6 +24,15 @@ pub struct Scatter {
     pub restitution: f64,
 }
 
+/// A launch, and the seat it ends in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Landing {
+    /// The launch.
+    pub launch: Launch,
+    /// Its seat.
+    pub seat: Seat,
+}
+
 /// A verdict, and how sure it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
@@ -31,8 +40,8 @@ pub struct Judged {
     pub flight: Flight,
     /// Least relative change of the launch's speed with another seat; `None` if there is none up to a half.
     pub margin: Option<f64>,
-    /// Share of launches in the scatter that end in the other seat.
-    pub share: f64,
+    /// Launches that fill the bands of the scatter evenly, and where each ends.
+    pub landings: Vec<Landing>,
     /// Least speed in m/s to shift by the landscape: sqrt(2 dU / m).
     pub least_speed: f64,
 }
@@ -42,9 +51,32 @@ pub fn judge(setup: &Setup, landscape: &Landscape, launch: &Launch, scatter: &Sc
     Judged {
         flight: fly(setup, landscape, launch, true),
         margin: margin(setup, landscape, launch),
-        share: share(setup, landscape, launch, scatter),
+        landings: landings(setup, landscape, launch, scatter),
         least_speed: landscape.least_speed(setup.mass),
     }
+}
+
+impl Judged {
+    /// Share of the launches in the scatter that end in the other seat.
+    pub fn share(&self) -> f64 {
+        let shifts = self.landings.iter().filter(|landing| landing.seat == Seat::Other);
+        shifts.count() as f64 / self.landings.len() as f64
+    }
+}
+
+/// Where launches of all `speeds` in m/s and `angles` in rad against z end, speeds first; but not those into a wall beside the seat.
+pub fn map_of_landings(
+    setup: &Setup,
+    landscape: &Landscape,
+    [speeds, angles]: [&[f64]; 2],
+    spin: f64,
+) -> Vec<Landing> {
+    let open = |angle: &&f64| !setup.chamber.is_beside_wall(**angle);
+    let launches = angles
+        .iter()
+        .filter(open)
+        .flat_map(|angle| speeds.iter().map(|speed| Launch { speed: *speed, angle: *angle, spin }));
+    launches.map(|launch| Landing { launch, seat: seat(setup, landscape, &launch) }).collect()
 }
 
 fn seat(setup: &Setup, landscape: &Landscape, launch: &Launch) -> Seat {
@@ -73,12 +105,12 @@ fn margin(setup: &Setup, landscape: &Landscape, launch: &Launch) -> Option<f64> 
     Some(change)
 }
 
-/// Share over points that fill the box of the scatter evenly: multiples of the powers of the root of x^4 = x + 1 (Roberts 2018).
-fn share(setup: &Setup, landscape: &Landscape, launch: &Launch, scatter: &Scatter) -> f64 {
+/// Launches at points that fill the box of the scatter evenly: multiples of the powers of the root of x^4 = x + 1 (Roberts 2018).
+fn landings(setup: &Setup, landscape: &Landscape, launch: &Launch, scatter: &Scatter) -> Vec<Landing> {
     const ROOT: f64 = 1.220_744_084_605_759_5;
-    let shifts = (0..LAUNCHES).filter(|k| {
+    let landing = |k: u32| {
         let [speed, angle, restitution] =
-            [1, 2, 3].map(|power| 2.0 * ((0.5 + f64::from(*k) * ROOT.powi(-power)) % 1.0) - 1.0);
+            [1, 2, 3].map(|power| 2.0 * ((0.5 + f64::from(k) * ROOT.powi(-power)) % 1.0) - 1.0);
         let launch = Launch {
             speed: launch.speed * (1.0 + scatter.speed * speed),
             angle: launch.angle + scatter.angle * angle,
@@ -86,9 +118,9 @@ fn share(setup: &Setup, landscape: &Landscape, launch: &Launch, scatter: &Scatte
         };
         let restitution = (setup.restitution + scatter.restitution * restitution).clamp(0.0, 1.0);
         let setup = Setup { restitution, ..setup.clone() };
-        seat(&setup, landscape, &launch) == Seat::Other
-    });
-    shifts.count() as f64 / f64::from(LAUNCHES)
+        Landing { launch, seat: seat(&setup, landscape, &launch) }
+    };
+    (0..LAUNCHES).map(landing).collect()
 }
 
 /// Least speed in m/s of a launch in the direction of `launch` that shifts, between `low` and `high`, to a millionth; `None` if none is

@@ -25,9 +25,9 @@ mod vibration;
 
 pub use chamber::{Chamber, TooNarrow};
 pub use field::{Drag, Excitation, Field, Wave};
-pub use judged::{Judged, Scatter, judge, least_shift};
+pub use judged::{Judged, Landing, Scatter, judge, least_shift, map_of_landings};
 pub use landscape::{Landscape, Saddle};
-pub use of_scene::{add_flight, flight_of, launch};
+pub use of_scene::{add_flight, flight_of, flight_summary, launch};
 pub use run::{Ending, Flight, Touch, fly};
 pub use spring::Spring;
 pub use vibration::{Thresholds, thresholds};

@@ -1,9 +1,9 @@
 //! The flight that a scene asks for, from the results of its impact.
 
-use super::{Ending, Landscape, Launch, Setup, judge, thresholds};
+use super::{Ending, Landscape, Launch, Setup, Thresholds, judge, thresholds};
 use crate::error::{Error, Result};
 use crate::result::{FlightSummary, Summary, VibrationSummary};
-use crate::scene::{Scene, Setup as Bodies};
+use crate::scene::{Flight, Scene, Setup as Bodies};
 use std::f64::consts::FRAC_PI_2;
 
 /// How the sphere is launched by the impact that `summary` tells of; `None` if the run was cut during a contact.
@@ -22,19 +22,23 @@ pub fn launch(scene: &Scene, summary: &Summary) -> Option<Launch> {
     }
 }
 
+/// The flight that `scene` asks for.
+fn asked(scene: &Scene) -> Result<&Flight> {
+    scene.flight.as_ref().ok_or_else(|| {
+        Error::Usage(format!(
+            "scene `{}` has no [flight]: add one, with spring, chamber and friction",
+            scene.name
+        ))
+    })
+}
+
 /// Sphere, chamber, forces and energy landscape of the flight that `scene` asks for, with this coefficient of restitution.
 ///
 /// # Errors
 /// [`Error::Usage`] if it asks for none; the checks of the scene have seen to the rest.
 pub fn flight_of(scene: &Scene, restitution: f64) -> Result<(Setup, Landscape)> {
-    let flight = scene.flight.as_ref().ok_or_else(|| {
-        Error::Usage(format!(
-            "scene `{}` has no [flight]: add one, with spring, chamber and friction",
-            scene.name
-        ))
-    })?;
     let of_scene = |sentence: String| Error::Solver(format!("{}: {sentence}", scene.name));
-    let setup = flight.setup(scene, restitution).map_err(of_scene)?;
+    let setup = asked(scene)?.setup(scene, restitution).map_err(of_scene)?;
     let landscape = Landscape::new(&setup).map_err(of_scene)?;
     Ok((setup, landscape))
 }
@@ -50,27 +54,44 @@ pub fn add_flight(
 ) -> Result<()> {
     let Some(flight) = &scene.flight else { return Ok(()) };
     let restitution = flight.restitution.map_or_else(restitution, Ok)?;
-    let (setup, landscape) = flight_of(scene, restitution)?;
     if let Some(launch) = launch(scene, summary) {
-        let judged = judge(&setup, &landscape, &launch, &flight.scatter);
-        let ending = judged.flight.ending;
-        summary.warnings.extend(warning(ending, judged.share));
-        summary.flight = Some(FlightSummary {
-            seat: ending.seat(),
-            time: judged.flight.time,
-            margin: judged.margin,
-            share: judged.share,
-            least_speed: judged.least_speed,
-            restitution,
-            launch,
-            reason: ending.told(),
-        });
+        let (flown, ending) = flown(scene, launch, restitution)?;
+        summary.warnings.extend(warning(ending, flown.share));
+        summary.flight = Some(flown);
     }
-    summary.vibration = scene.vibration.as_ref().map(|vibration| {
-        let found = thresholds(&setup, &landscape, &vibration.wave, vibration.direction);
-        VibrationSummary { unseats: found.unseats, shifts: found.shifts, shock_bound: found.shock_bound }
-    });
+    if let Some(vibration) = &scene.vibration {
+        let (setup, landscape) = flight_of(scene, restitution)?;
+        let Thresholds { unseats, shifts, energy_bound } =
+            thresholds(&setup, &landscape, &vibration.wave, vibration.direction);
+        summary.vibration = Some(VibrationSummary { unseats, shifts, energy_bound });
+    }
     Ok(())
+}
+
+/// Where the sphere lands in `scene` after a `launch`, with this coefficient of restitution, and how sure that is.
+///
+/// # Errors
+/// Those of [`flight_of`].
+pub fn flight_summary(scene: &Scene, launch: Launch, restitution: f64) -> Result<FlightSummary> {
+    Ok(flown(scene, launch, restitution)?.0)
+}
+
+fn flown(scene: &Scene, launch: Launch, restitution: f64) -> Result<(FlightSummary, Ending)> {
+    let (setup, landscape) = flight_of(scene, restitution)?;
+    let judged = judge(&setup, &landscape, &launch, &asked(scene)?.scatter);
+    let ending = judged.flight.ending;
+    let summary = FlightSummary {
+        seat: ending.seat(),
+        time: judged.flight.time,
+        margin: judged.margin,
+        share: judged.share(),
+        landings: judged.landings,
+        least_speed: judged.least_speed,
+        restitution,
+        launch,
+        reason: ending.told(),
+    };
+    Ok((summary, ending))
 }
 
 /// That a verdict hangs on more than is known.

@@ -17,23 +17,19 @@ pub struct Thresholds {
     pub unseats: Option<f64>,
     /// Least one at which it passes the saddle; `None` if none is found.
     pub shifts: Option<f64>,
-    /// What a half-sine of this length needs at least to give the sphere the energy of the saddle, pi sqrt(2 dU / m) / (2 T).
-    pub shock_bound: Option<f64>,
+    /// What the wave needs at least to give the sphere the energy of the saddle: sqrt(2 dU / m) over the integral of its magnitude, since
+    /// d sqrt(2 E / m) / dt is at most the acceleration's; of a half-sine of length T pi sqrt(2 dU / m) / (2 T).
+    pub energy_bound: f64,
 }
 
 /// The thresholds of a `wave` of base acceleration along `direction` (of length 1).
 pub fn thresholds(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Vector) -> Thresholds {
     let unseats = static_limit(setup, landscape, wave, direction);
-    let shock_bound = match wave {
-        Wave::HalfSine { duration } => {
-            Some(0.5 * std::f64::consts::PI * landscape.least_speed(setup.mass) / duration)
-        }
-        _ => None,
-    };
+    let energy_bound = landscape.least_speed(setup.mass) / wave.impulse();
     let shifts = unseats.and_then(|unseats| {
         least(unseats, |amplitude| shaken_over(setup, landscape, wave, direction, amplitude))
     });
-    Thresholds { unseats, shifts, shock_bound }
+    Thresholds { unseats, shifts, energy_bound }
 }
 
 /// Whether the sphere passes the saddle when the valve is shaken with this `amplitude`.

@@ -1,6 +1,6 @@
 //! What becomes of the sphere after the impact, and how hard the valve can be shaken.
 
-use crate::flight::{Launch, Seat};
+use crate::flight::{Landing, Launch, Seat};
 use serde::{Deserialize, Serialize};
 
 /// The flight after the impact.
@@ -14,6 +14,9 @@ pub struct FlightSummary {
     pub margin: Option<f64>,
     /// Share of the launches in the scene's bands that end in the other seat.
     pub share: f64,
+    /// The launches whose share that is, and where each ends; not part of the JSON document.
+    #[serde(skip)]
+    pub landings: Vec<Landing>,
     /// Least speed in m/s that can shift, by the saddle between the seats: sqrt(2 dU / m).
     pub least_speed: f64,
     /// Newton's coefficient of restitution, as given or as computed.
@@ -32,7 +35,6 @@ pub struct VibrationSummary {
     pub unseats: Option<f64>,
     /// At which it passes the saddle; `None` if none is found.
     pub shifts: Option<f64>,
-    /// What a half-sine needs at least by energy, pi sqrt(2 dU / m) / (2 T).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shock_bound: Option<f64>,
+    /// What the wave needs at least by energy: sqrt(2 dU / m) over the integral of its magnitude.
+    pub energy_bound: f64,
 }

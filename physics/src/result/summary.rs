@@ -148,7 +148,8 @@ pub struct Summary {
     /// Energy lost to damping, fluid and materials, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub losses: Option<Losses>,
-    /// Reduced models of scenes with `[flight]`; `None` also if the run was cut during a contact.
+    /// Reduced models of scenes with `[flight]`, and references beside them in a comparison; `None` also if the run was cut during a
+    /// contact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flight: Option<FlightSummary>,
     /// Reduced models of scenes with `[vibration]`.

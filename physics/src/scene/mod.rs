@@ -44,6 +44,7 @@ pub use schema::schema;
 pub use seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
 pub use specification::unit_of;
 pub use template::Template;
+pub use tolerances::LANDING_SHARE;
 pub use uncertainty::{Correlation, Distribution, Spread, UncertainInput, Uncertainty};
 
 pub use crate::material::{Material, RateHardening, Relaxation};

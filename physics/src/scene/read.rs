@@ -4,7 +4,7 @@ use super::check::Checker;
 use super::collision::Collision;
 use super::external::external;
 use super::fault::Collector;
-use super::flight::{flight, vibration};
+use super::flight::{flight, vibration, with_record};
 use super::place::Place;
 use super::plate_impact::{plate_impact, reference};
 use super::seal_seat::{seal_seat, seat_reference};
@@ -114,7 +114,7 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, Beside)>
     }
     let mut checker = Checker::new(source_name, text, root);
     let place = Place { path: "", span: 0..0 };
-    let values = checker.table(&place, root, &SCENE);
+    let mut values = checker.table(&place, root, &SCENE);
     let kind = values.get("kind").and_then(|kind| match kind {
         Checked::Text(name) => kinds::named(name),
         _ => None,
@@ -123,6 +123,11 @@ pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, Beside)>
     let uncertainty = checker.uncertainty(root, &values);
     if checker.problems.is_empty() {
         note(material::collisions(&Node(&values))?, root, &mut checker.problems);
+        if let Err(message) = with_record(&mut values, source_name) {
+            let (place, help) =
+                (span_of(root, "vibration.file"), "name a table beside the scene file".to_owned());
+            checker.problems.add(place.unwrap_or(0..0), message, "no record", help);
+        }
     }
     match checker.problems.is_empty() {
         true => Ok((values, Beside { tolerances, uncertainty })),

@@ -38,9 +38,11 @@ pub(super) fn gated_names(kind: &dyn Kind) -> impl Iterator<Item = String> {
         curves.iter().flat_map(|curve| ["rms", "max"].map(|distance| format!("{}_{distance}", curve.name)));
     let impacts = Impact::COMPARED.map(|(name, _)| format!("{OF_IMPACTS}{name}"));
     let impacts = impacts.into_iter().filter(|_| has_series(kind));
-    scalars.chain(curves).chain(impacts).chain(RESIDUALS.map(str::to_owned))
+    scalars.chain(curves).chain(impacts).chain([LANDING_SHARE.to_owned()]).chain(RESIDUALS.map(str::to_owned))
 }
 
+/// Share of launches that end in the other seat, of model and reference, where there is a flight.
+pub const LANDING_SHARE: &str = "landing_share";
 const RESIDUALS: [&str; 2] = ["energy_residual", "momentum_residual"];
 /// Before the quantities of all impacts of a series.
 const OF_IMPACTS: &str = "impact_";
@@ -52,6 +54,9 @@ fn has_series(kind: &dyn Kind) -> bool {
 
 fn gated(name: &str, kind: &dyn Kind) -> Option<Gated> {
     let curves = kind.curves();
+    if name == LANDING_SHARE {
+        return Some(Gated { dimension: Dimension::NONE, has_curve: false, is_residual: false });
+    }
     if RESIDUALS.contains(&name) {
         return Some(Gated { dimension: Dimension::NONE, has_curve: false, is_residual: true });
     }

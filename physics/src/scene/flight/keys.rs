@@ -124,9 +124,10 @@ pub(in crate::scene) static PLATE_FLIGHT: [Field; 13] = [
 ];
 
 /// Most samples of a record.
-const MOST_SAMPLES: usize = 10_000;
+pub(super) const MOST_SAMPLES: usize = 10_000;
+const SAMPLES: &str = "the record's samples";
 
-pub(in crate::scene) static VIBRATION: [Field; 7] = [
+pub(in crate::scene) static VIBRATION: [Field; 8] = [
     required(
         "kind",
         Kind::Choice(&[choice("sine"), choice("half-sine"), choice("record")]),
@@ -142,18 +143,41 @@ pub(in crate::scene) static VIBRATION: [Field; 7] = [
     only(&["half-sine"], required("duration", positive(Dimension::TIME), "Length of the shock")),
     only(
         &["record"],
-        required(
-            "time",
-            Kind::Quantities(Dimension::TIME, Bound::NOT_NEGATIVE, MOST_SAMPLES),
-            "Times of the samples, from 0 on",
+        one_way(
+            Some("record"),
+            SAMPLES,
+            "lists",
+            required(
+                "time",
+                Kind::Quantities(Dimension::TIME, Bound::NOT_NEGATIVE, MOST_SAMPLES),
+                "Times of the samples, from 0 on",
+            ),
         ),
     ),
     only(
         &["record"],
-        required(
-            "acceleration",
-            Kind::Quantities(Dimension::ACCELERATION, Bound::ANY, MOST_SAMPLES),
-            "Accelerations; the thresholds are factors on them",
+        one_way(
+            Some("record"),
+            SAMPLES,
+            "lists",
+            required(
+                "acceleration",
+                Kind::Quantities(Dimension::ACCELERATION, Bound::ANY, MOST_SAMPLES),
+                "Accelerations; the thresholds are factors on them",
+            ),
+        ),
+    ),
+    only(
+        &["record"],
+        one_way(
+            Some("record"),
+            SAMPLES,
+            "a file",
+            required(
+                "file",
+                Kind::Text,
+                "Table in CSV with the columns time and acceleration, beside the scene file",
+            ),
         ),
     ),
 ];

@@ -5,9 +5,11 @@
 
 mod keys;
 mod read;
+mod record;
 
 pub(super) use keys::{PLATE_FLIGHT, SEAT_FLIGHT, VIBRATION};
 pub(super) use read::{flight, vibration};
+pub(super) use record::with_record;
 
 use super::collision::{Collision, Rule, broken};
 use super::{Scene, Setup, Shape};
@@ -115,12 +117,9 @@ pub(super) fn collisions(scene: &Scene) -> Vec<Collision> {
     if let Some(Vibration { wave: Wave::Record { time, acceleration }, .. }) = &scene.vibration {
         let ascends = time.windows(2).all(|pair| pair[0] < pair[1]);
         let fits = time.len() > 1 && time.len() == acceleration.len() && time[0] == 0.0 && ascends;
-        rules.push(rule(
-            "vibration.time",
-            fits,
-            "`vibration.time` and `vibration.acceleration` are no record: it needs as many accelerations as times, at least 2, and times that ascend from 0",
-            "give every sample a time",
-        ));
+        let fields = vec!["vibration.time", "vibration.file"];
+        let message = "`vibration.time` and `vibration.acceleration` are no record: it needs as many accelerations as times, at least 2, and times that ascend from 0".into();
+        rules.push(Rule { fields, holds: fits, message, help: "give every sample a time" });
     }
     match &scene.flight {
         None => rules.push(rule(

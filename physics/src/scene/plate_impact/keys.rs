@@ -66,6 +66,35 @@ const fn discharge(set: &'static str, field: Field) -> Field {
     only(&["bender"], one_way(Some("bender"), "the discharge", set, field))
 }
 
+/// A key of one of the ways to give how a magnet pulls.
+const fn pull(set: &'static str, field: Field) -> Field {
+    one_way(Some("magnet"), "the pull", set, field)
+}
+
+/// Most points of a magnet's curve.
+const MOST_POINTS: usize = 1000;
+
+/// A point of a magnet's curve.
+static PULL: [Field; 3] = [
+    required(
+        "way",
+        Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
+        "Way of the plunger from its start",
+    ),
+    one_way(
+        None,
+        "the magnet's pull",
+        "an inductance",
+        required("inductance", positive(Dimension::INDUCTANCE), "Inductance there"),
+    ),
+    one_way(
+        None,
+        "the magnet's pull",
+        "a force",
+        required("force", positive(Dimension::FORCE), "Force there at a current of 1 A"),
+    ),
+];
+
 /// A key of the lift magnet.
 const fn magnet(key: &'static str, dimension: Dimension, doc: &'static str) -> Field {
     only(&["magnet"], required(key, positive(dimension), doc))
@@ -77,7 +106,7 @@ const TOWARDS: Bound = Bound {
     high: Some((std::f64::consts::FRAC_PI_2, false)),
 };
 
-pub(in crate::scene) static OUTER: [Field; 36] = [
+pub(in crate::scene) static OUTER: [Field; 37] = [
     required(
         "kind",
         Kind::Choice(&[
@@ -100,7 +129,25 @@ pub(in crate::scene) static OUTER: [Field; 36] = [
     magnet("voltage", Dimension::VOLTAGE, "Voltage that is switched on"),
     magnet("resistance", Dimension::RESISTANCE, "Resistance of the magnet's circuit"),
     magnet("inductance", Dimension::INDUCTANCE, "Inductance with the plunger at its start"),
-    magnet("stop_inductance", Dimension::INDUCTANCE, "The same with the plunger at its stop, at the plate"),
+    pull(
+        "the inductance at the stop",
+        magnet(
+            "stop_inductance",
+            Dimension::INDUCTANCE,
+            "The same with the plunger at its stop, at the plate; 1/L falls evenly on the way",
+        ),
+    ),
+    pull(
+        "a curve",
+        only(
+            &["magnet"],
+            required(
+                "curve",
+                Kind::Tables(&PULL, MOST_POINTS),
+                "Points of the pull, from the start to the stop",
+            ),
+        ),
+    ),
     magnet("travel", Dimension::LENGTH, "Way of the plunger to its stop"),
     stack("area", Dimension::AREA, "Area of the stack's section"),
     stack("stroke", Dimension::LENGTH, "Growth of the free stack at `voltage`"),

@@ -3,6 +3,7 @@
 use super::keys::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS};
 use super::*;
 use crate::Result;
+use crate::actuator::inductance::Inductance;
 use crate::actuator::magnet::Magnet;
 use crate::actuator::{beam, cantilever};
 use crate::scene::material::material;
@@ -102,23 +103,66 @@ fn striker(outer: &Node, material: Material) -> Result<Outer> {
 }
 
 fn magnet(outer: &Node) -> Result<Magnet> {
-    let inductance = [outer.number("inductance")?, outer.number("stop_inductance")?];
-    if inductance[1] <= inductance[0] {
-        return Err(refused(
-            &format!(
-                "`outer.stop_inductance` is {} H, but it has to be more than `outer.inductance`, {} H",
-                inductance[1], inductance[0]
-            ),
-            "the plunger is pulled to where the inductance is larger",
-        ));
-    }
     Ok(Magnet {
         mass: outer.number("mass")?,
         voltage: outer.number("voltage")?,
         resistance: outer.number("resistance")?,
-        inductance,
+        inductance: pull(outer)?,
         travel: outer.number("travel")?,
     })
+}
+
+/// How a magnet pulls: by the inductances at both ends of its way, or by a curve.
+fn pull(outer: &Node) -> Result<Inductance> {
+    let (start, travel) = (outer.number("inductance")?, outer.number("travel")?);
+    if let Some(stop) = outer.optional_number("stop_inductance")? {
+        if stop <= start {
+            return Err(refused(
+                &format!(
+                    "`outer.stop_inductance` is {stop} H, but it has to be more than `outer.inductance`, {start} H"
+                ),
+                "the plunger is pulled to where the inductance is larger",
+            ));
+        }
+        return Ok(Inductance::EvenGap { ends: [start, stop], way: travel });
+    }
+    let rows = outer.tables("curve")?;
+    let column = |key: &str| -> Result<Vec<[f64; 2]>> {
+        let given = rows.iter().filter(|row| row.0.contains_key(key));
+        given.map(|row| Ok([row.number("way")?, row.number(key)?])).collect()
+    };
+    let (inductances, forces) = (column("inductance")?, column("force")?);
+    let refuse = |what: String| {
+        Err(refused(
+            &format!("`outer.curve` {what}"),
+            "its points go from the start of the plunger to its stop",
+        ))
+    };
+    if !inductances.is_empty() && !forces.is_empty() {
+        return refuse("has inductances and forces, but it has to be of one kind".into());
+    }
+    let points = if forces.is_empty() { &inductances } else { &forces };
+    if points.len() < 2 || points[0][0] != 0.0 || points[points.len() - 1][0] < travel {
+        return refuse(format!(
+            "does not reach over the way of the plunger, from 0 to `outer.travel`, {travel} m"
+        ));
+    }
+    if let Some(pair) = points.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+        return refuse(format!("has the way {} m after {} m, but it has to rise", pair[1][0], pair[0][0]));
+    }
+    if !forces.is_empty() {
+        return Ok(Inductance::of_forces(start, &forces));
+    }
+    if let Some(pair) = points.windows(2).find(|pair| pair[1][1] <= pair[0][1]) {
+        return refuse(format!(
+            "has the inductance {} H after {} H, but it has to rise",
+            pair[1][1], pair[0][1]
+        ));
+    }
+    if points[0][1] != start {
+        return refuse(format!("begins with {} H, but `outer.inductance` is {start} H", points[0][1]));
+    }
+    Ok(Inductance::through(&inductances))
 }
 
 /// Poisson's ratio of a stack that names none: that of lead zirconate titanate is 0.29 to 0.34.

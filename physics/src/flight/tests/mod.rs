@@ -8,10 +8,13 @@ use super::*;
 use crate::scene::Scene;
 use std::f64::consts::PI;
 
+mod vibration;
+
 const G: f64 = 9.81;
 
 fn improved() -> Scene {
-    Scene::parse("improved", include_str!("../../../scenes/seal-seat-improved.toml")).expect("shipped scene")
+    Scene::parse("improved", include_str!("../../../../scenes/seal-seat-improved.toml"))
+        .expect("shipped scene")
 }
 
 fn down(acceleration: f64) -> Field {
@@ -322,61 +325,6 @@ fn a_sphere_that_nothing_holds_is_told() {
     assert!(narrow.0.contains("ceiling"), "{narrow:?}");
 }
 
-/// Static limit -(F_s + m g).t / (m (-d.t)) with t up the inner flank, and the least half-sine above pi sqrt(2 dU/m) / (2 T).
-#[test]
-fn limits_of_vibration() {
-    let setup = valve(37e-3, 0.5, 0.3);
-    let landscape = Landscape::new(&setup).expect("held");
-    let scene = improved();
-    let ring = scene.seal_seat().expect("a seat").ring();
-    // up the inner flank, which rises by 15 deg
-    let slope = ring.axis[1].acos() + 0.5 * PI - PI / 3.0 - 2.0 * ring.axis[0].asin();
-    let up = Vector::new(slope.cos(), slope.sin());
-    let left = Vector::new(-1.0, 0.0);
-    let pull = G + 37e-3 / setup.mass;
-    let expected = pull * up.y / up.x;
-    for (duration, friction) in [(0.5e-3, 0.3), (2e-3, 0.3), (8e-3, 0.3), (5e-3, 0.0), (1e-3, 0.0)] {
-        let setup = Setup { friction, ..setup.clone() };
-        let found = thresholds(&setup, &landscape, &Wave::HalfSine { duration }, left);
-        let unseats = found.unseats.expect("it leans out");
-        assert!((unseats / expected - 1.0).abs() < 1e-12, "{unseats} instead of {expected}");
-        let (shifts, bound) = (found.shifts.expect("it shifts"), found.shock_bound.expect("a shock"));
-        assert!(shifts > bound && shifts > unseats, "{shifts} {bound} {unseats}");
-        // of a short shock little is lost to the way during it; rolling takes two fifths more of the energy
-        let most = if friction > 0.0 { 1.4 } else { 1.2 };
-        assert!(duration > 1e-3 || shifts < most * bound, "{shifts} {bound}");
-    }
-    // a slow sine shifts what it unseats as soon as it stays long enough: half a period far longer than the way takes
-    let slow = Wave::Sine { frequency: 0.5, periods: 1.0 };
-    let found = thresholds(&setup, &landscape, &slow, left);
-    assert!(found.shifts.expect("it shifts") < 2.0 * found.unseats.expect("it leans out"));
-    // pressed into the seat it stays
-    let shock = Wave::HalfSine { duration: 1e-3 };
-    let up = thresholds(&setup, &landscape, &shock, Vector::new(0.0, 1.0));
-    assert_eq!((up.unseats, up.shifts), (None, None));
-}
-
-/// With a spring force that falls linearly over the way to the saddle s, a_u = v_min^2 / s: 63 g at 555 mm/s and 0.5 mm.
-#[test]
-fn what_is_shifted_easily_does_not_hold() {
-    let mut setup = rocker(0.5, 0.0, 0.0);
-    let half = 0.5e-3_f64;
-    if let Some(spring) = &mut setup.field.spring {
-        // an anchor far away: the push along the floor is linear
-        spring.anchor = Some(Vector::new(0.0, 0.05 + setup.radius));
-        let arm = half.hypot(0.05) - 0.05;
-        spring.force = 0.5 * setup.mass * 0.555_f64.powi(2) / arm;
-    }
-    let landscape = Landscape::new(&setup).expect("two seats");
-    assert!((landscape.least_speed(setup.mass) / 0.555 - 1.0).abs() < 1e-9);
-    let shock = Wave::HalfSine { duration: 1e-3 };
-    let found = thresholds(&setup, &landscape, &shock, Vector::new(-1.0, 0.0));
-    let law = 0.555_f64.powi(2) / half;
-    let unseats = found.unseats.expect("off the wall");
-    assert!((unseats / law - 1.0).abs() < 1e-4, "{unseats} instead of {law}");
-    assert!((unseats / G - 63.0).abs() < 1.0);
-}
-
 /// A motion goes on where another set out from its middle: nothing hangs on where steps begin.
 #[test]
 fn steps_leave_no_trace() {
@@ -394,19 +342,4 @@ fn steps_leave_no_trace() {
     assert!((fine.velocity - coarse.velocity).norm() < 1e-10);
     let step = free.step_length(&state);
     assert!(step > 1e-5 && step < 1e-3, "{step}");
-}
-
-/// Rolling waits in its seat until the valve is shaken, and afterwards lies there again.
-#[test]
-fn a_weak_shock_leaves_the_sphere_in_its_seat() {
-    let mut setup = valve(37e-3, 0.5, 0.3);
-    let landscape = Landscape::new(&setup).expect("held");
-    let wave = Wave::Sine { frequency: 200.0, periods: 5.0 };
-    setup.field.shaken = Some(Excitation { direction: Vector::new(-1.0, 0.0), amplitude: 150.0, wave });
-    let (state, mode) = setup.seated(&landscape);
-    assert!(matches!(mode, Mode::Wedged(..)), "{mode:?}");
-    let flight = moved(&setup, &landscape, state, mode, Asked { path: true, beyond: None });
-    assert_eq!(flight.ending, Ending::Seat(Seat::Same));
-    let farthest = flight.path.iter().map(|s| (s.place - state.place).norm()).fold(0.0, f64::max);
-    assert!(farthest > 1e-6, "150 m/s^2 lift it off: {farthest}");
 }
