@@ -24,16 +24,16 @@ const BAND: f64 = 3.0;
 /// [`flight_html`] of a comparison.
 pub(super) fn flights_html(report: &SceneReport) -> Markup {
     let models: Vec<&Summary> = report.reduced.iter().map(|outcome| &outcome.summary).collect();
-    flight_html(report.scene, &models)
+    flight_html(report.scene, &models, report.comparison.reference.flight.as_ref())
 }
 
-/// Verdicts, pictures of the first model's flight, thresholds of vibration; empty if the scene asks for none.
-pub(super) fn flight_html(scene: &Scene, models: &[&Summary]) -> Markup {
+/// Verdicts of the `models` and of the `reference`, pictures of the first model's flight, thresholds of vibration; empty if the scene asks for none.
+pub(super) fn flight_html(scene: &Scene, models: &[&Summary], reference: Option<&FlightSummary>) -> Markup {
     let models = models.iter().copied();
     let flown: Vec<(&Summary, &FlightSummary)> =
         models.clone().filter_map(|summary| Some((summary, summary.flight.as_ref()?))).collect();
     let Some(&(_, first)) = flown.first() else { return html! {} };
-    let reference = report.comparison.reference.flight.as_ref().map(|flight| ("FE".to_owned(), flight));
+    let reference = reference.map(|flight| ("FE".to_owned(), flight));
     let launches =
         reference.into_iter().chain(flown.iter().map(|(summary, flight)| (model(summary), *flight)));
     let quantity = |value: Option<f64>, unit| {

@@ -16,7 +16,7 @@ pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
     let Outcome { summary, history } = outcome;
     let model = format!("model {}", model_name(summary.model.as_deref().unwrap_or("?"), summary.modes));
     let title = format!("{}: {model}", scene.name);
-    let landing = flight_html(scene, &[summary]);
+    let landing = flight_html(scene, &[summary], None);
     let body = html! {
         h1 { (title) }
         p.soft { (scene.description) }

@@ -8,7 +8,7 @@ use super::Hertz;
 use super::elastic_plastic::{ElasticPlastic, Flattened};
 use crate::material::Material;
 use crate::numerics::quadrature::gauss_legendre;
-use crate::numerics::root::root;
+use crate::numerics::root::{root, root_near};
 use std::f64::consts::PI;
 
 /// Gauss points of the work of a step.
@@ -188,8 +188,11 @@ impl DentedContact {
 
     /// Critical approaches of the weaker surface, if virgin, at the approach `x` in m of both, beyond that at which they touch.
     fn critical_approaches(&self, x: f64) -> f64 {
-        let error = |w: f64| self.pressed(w).approach - x;
         let near = self.near[self.weaker];
+        if let Some(found) = root_near(|w| self.pressed(w).approach, x, near, 1.0) {
+            return found;
+        }
+        let error = |w: f64| self.pressed(w).approach - x;
         let mut ends = [0.9 * near, 1.1 * near];
         let mut values = ends.map(error);
         if values[0] > 0.0 {

@@ -6,7 +6,7 @@
 //! are written per radius a of the contact: then the mean pressure p depends on how far the surface has been flattened, a/rho, and
 //! on nothing else, rho the radius of the curvature that it has lost. The law knows no hardening.
 
-use crate::numerics::root::root;
+use crate::numerics::root::{root, root_near};
 use std::f64::consts::PI;
 
 /// Greatest hardness over the yield strength.
@@ -30,6 +30,9 @@ const EVEN: [f64; 2] = [2.0, 4.0 - 8.0 / PI];
 /// Largest shear stress on the axis over the mean pressure, of Hertz's distribution and an even one, nu = 0.3 (Johnson 1985, sections 4.2
 /// and 3.4).
 const SHEAR: [f64; 2] = [0.465, 0.332];
+
+/// Power of the approach with which that stress grows, about: 1/2 of Hertz's contact, less of one that yields.
+const SHEARED_POWER: f64 = 0.3;
 
 /// Surface of a material that yields.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -198,16 +201,16 @@ impl ElasticPlastic {
         if elastic <= 1.0 {
             return self.flattened(elastic);
         }
-        let error = |w: f64| {
+        let bears = |w: f64| {
             let state = self.flattened(w);
-            state.pressure * state.shears() - shear
+            state.pressure * state.shears()
         };
         let ends = [1.0, self.hardest[0]];
-        let around = [0.9 * near, 1.1 * near].map(|w| w.clamp(ends[0], ends[1]));
-        let values = around.map(error);
-        if values[0] < 0.0 && values[1] > 0.0 {
-            return self.flattened(root(error, around, values));
+        let found = root_near(bears, shear, near.clamp(ends[0], ends[1]), SHEARED_POWER);
+        if let Some(found) = found.filter(|w| (ends[0]..=ends[1]).contains(w)) {
+            return self.flattened(found);
         }
+        let error = |w: f64| bears(w) - shear;
         let values = ends.map(error);
         if values[1] <= 0.0 {
             self.flattened(w.max(ends[1]))

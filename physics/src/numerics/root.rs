@@ -24,6 +24,32 @@ pub(crate) fn first_fall(
     None
 }
 
+/// Secants of [`root_near`] at most, and the step, relative, from which on the next one ends at rounding.
+const SECANTS: usize = 12;
+const LAST_STEP: f64 = 1e-9;
+
+/// Where the positive `f`, about the power `power` of its positive argument, is `value`: by secants of the logarithms from `near` on.
+/// `None` if these don't settle, as they may not across a kink.
+pub(crate) fn root_near(f: impl Fn(f64) -> f64, value: f64, near: f64, power: f64) -> Option<f64> {
+    let error = |x: f64| (f(x.exp()) / value).ln();
+    let mut x = near.ln();
+    let (mut miss, mut slope) = (error(x), power);
+    for _ in 0..SECANTS {
+        let step = -miss / slope;
+        x += step;
+        if step.abs() <= LAST_STEP {
+            return Some(x.exp());
+        }
+        let before = miss;
+        miss = error(x);
+        slope = (miss - before) / step;
+        if !slope.is_finite() || slope <= 0.0 {
+            return None;
+        }
+    }
+    None
+}
+
 /// Root of `f` within the `bracket`, at whose ends it has the `values`, to rounding: false position, the end that stays
 /// weighed half (Illinois; Dowell & Jarratt, BIT 11, 1971).
 pub(crate) fn root(f: impl Fn(f64) -> f64, bracket: [f64; 2], values: [f64; 2]) -> f64 {
