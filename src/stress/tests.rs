@@ -162,6 +162,13 @@ fn a_film_that_encloses_fluid_is_refused() {
     assert_eq!((report.failures, report.beyond_model), (vec![], vec![9_800_001_493]));
 }
 
+/// A plate of a soft foil lies on the inner body over a wide circle, of which the film's minimum gap hides all but its beginning: 300 000 steps were not enough.
+#[test]
+fn a_plate_that_lies_on_the_inner_body_is_refused_at_once() {
+    let report = run(1, 11_000_090_344, &|| ()).unwrap();
+    assert_eq!((report.failures, report.beyond_model), (vec![], vec![11_000_090_344]));
+}
+
 /// Fast bodies move together, and the film answers to the rounding of their rates with forces far above those of the contact beside it:
 /// steps of 1e-11 s did not settle either.
 #[test]
@@ -189,6 +196,8 @@ fn dry_and_wet_cases_hold() {
 /// A plate so light that both forces are nearly one: its peak is off by what the step's polynomials are.
 #[test]
 fn the_peak_under_a_light_plate_is_as_exact_as_any() {
-    let report = run(1, 9_800_011_810, &|| ()).unwrap();
-    assert!(report.worst["force_difference"].value < 5e-6, "{:?}", report.worst["force_difference"]);
+    for seed in [9_800_011_810, 11_000_047_147] {
+        let report = run(1, seed, &|| ()).unwrap();
+        assert!(report.worst["force_difference"].value < 5e-6, "{:?}", report.worst["force_difference"]);
+    }
 }

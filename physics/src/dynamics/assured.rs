@@ -16,7 +16,7 @@ use crate::error::Result;
 /// which on that the inner body takes, an impact amplifies no errors: of 3 700 random ones none was then off by more than
 /// 31 times the tolerance, one in 150 by more than ten times.
 const FEW_TOUCHES: u32 = 2;
-const FEW_STEPS: u64 = 200;
+const FEW_STEPS: u64 = 160;
 const SMALL_DEFECT: f64 = 1.0 / 6.0;
 /// The same for the sum of all defects where modes are damped: there the energy, which else betrays forces that are a little wrong step
 /// after step, says nothing of vibrations quicker than the step.

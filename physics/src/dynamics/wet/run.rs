@@ -24,8 +24,10 @@ use std::collections::BTreeMap;
 
 /// Steps after which a run counts as endless.
 const MAX_STEPS: u64 = 300_000;
-/// Steps that get nowhere: so many that advance by less than so much of the base length.
+/// Steps that get nowhere: so many that advance by less than so much of the base length; and the same where the plate overlaps the inner body,
+/// however little: the film's law has a kink where that begins, at which steps don't settle.
 const STALLED: (u64, f64) = (1_000, 1e-6);
+const STALLED_IN_OVERLAP: f64 = 0.03;
 /// Step lengths are the base length times 2^-level, level from 0 to this.
 const LAST_LEVEL: i32 = 44;
 /// Longest step without a touch in sight, as a power of 2 of the base length.
@@ -134,8 +136,12 @@ impl Stepper<'_> {
             touching = false;
             let (steps, advance) = STALLED;
             if self.steps.is_multiple_of(steps) {
-                if self.time - looked < advance * self.base_step {
+                let advanced = (self.time - looked) / self.base_step;
+                if advanced < advance {
                     return Err(self.stalled(self.length(self.level)));
+                }
+                if advanced < STALLED_IN_OVERLAP {
+                    self.check_overlap(0.0, |_| true)?;
                 }
                 looked = self.time;
             }
