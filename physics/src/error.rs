@@ -38,7 +38,7 @@ pub enum Error {
     /// A solver failed.
     #[error("{0}")]
     Solver(String),
-    /// The bodies do what the model does not know of.
+    /// The bodies do what the model does not know of, or more often than it follows.
     #[error("{0}")]
     BeyondModel(String),
     /// A file or folder can't be read or written.

@@ -51,9 +51,8 @@ fn table(report: &StressReport) -> String {
     }
     if !report.beyond_model.is_empty() {
         lines.push(format!(
-            "  refused, since the plate bends around the inner body in the fluid: {} of {}",
-            report.beyond_model.len(),
-            report.wet
+            "  refused, since the plate bends around the inner body in the fluid or rattles endlessly: {}",
+            report.beyond_model.len()
         ));
     }
     for (name, worst) in &report.worst {

@@ -201,3 +201,12 @@ fn the_peak_under_a_light_plate_is_as_exact_as_any() {
         assert!(report.worst["force_difference"].value < 5e-6, "{:?}", report.worst["force_difference"]);
     }
 }
+
+/// A free foil of 2 g between 1.7 kg and 1300 kg that close in on it: it rattles 37 000 times before they part.
+#[test]
+fn a_foil_that_rattles_endlessly_is_refused_as_that() {
+    let case = draw(12_000_010_418);
+    let solved = integrate(&case.system, None, &options(&case, 1e-7));
+    let Err(Error::BeyondModel(sentence)) = solved else { panic!("{solved:?}") };
+    assert!(sentence.contains("contacts") && sentence.contains("run.end_time"), "{sentence}");
+}

@@ -11,7 +11,7 @@ use crate::flight::Seat;
 use crate::kinds::Series;
 use crate::reference::mesh_to_follow;
 use crate::result::FlightSummary;
-use crate::scene::{Distribution, Field, Model, Spread, Template, UncertainInput, Uncertainty};
+use crate::scene::{Distribution, Field, Model, Setup, Spread, Template, UncertainInput, Uncertainty};
 use crate::uncertainty::Inputs;
 use crate::uncertainty::design::Point;
 use rayon::prelude::*;
@@ -53,6 +53,8 @@ struct Demonstrator {
     transmission: Option<Transmission>,
     /// The actuator's speed, which the voltage sets.
     speed: &'static str,
+    /// Its capacitance, if the scene knows it.
+    capacitance: Option<&'static str>,
     /// Plausible standard deviations, relative; the paper states none.
     tolerances: &'static [(&'static str, f64)],
 }
@@ -71,6 +73,7 @@ const DEMONSTRATORS: [Demonstrator; 3] = [
         model: Model::C,
         transmission: Some(Transmission::LastTurn),
         speed: "outer.speed",
+        capacitance: Some("outer.capacitance"),
         tolerances: ROCKER_TOLERANCES,
     },
     Demonstrator {
@@ -79,6 +82,7 @@ const DEMONSTRATORS: [Demonstrator; 3] = [
         model: Model::C,
         transmission: Some(Transmission::Plunger),
         speed: "outer.speed",
+        capacitance: Some("outer.capacitance"),
         tolerances: ROCKER_TOLERANCES,
     },
     Demonstrator {
@@ -87,6 +91,7 @@ const DEMONSTRATORS: [Demonstrator; 3] = [
         model: Model::C,
         transmission: None,
         speed: "actuator.speed",
+        capacitance: None,
         tolerances: &[
             ("actuator.speed", 0.01),
             ("actuator.mass", 0.01),
@@ -110,6 +115,15 @@ const fn panel(column: &'static str, label: &'static str) -> Panel {
     }
 }
 
+/// An impact and the flight that follows.
+struct Shift {
+    flight: FlightSummary,
+    /// Kinetic energy of the actuator at the touch in J.
+    actuator_energy: f64,
+    /// The same of the sphere at its launch.
+    sphere_energy: f64,
+}
+
 /// A demonstrator and what its shifts share.
 struct Valve {
     template: Template,
@@ -117,6 +131,8 @@ struct Valve {
     speed: Field,
     /// Speed of the actuator in m/s at [`NOMINAL`].
     nominal: f64,
+    /// In F.
+    capacitance: Option<f64>,
     series: Series,
     model: Model,
     /// What scatters.
@@ -133,6 +149,8 @@ impl Valve {
         let nominal = template.number(&speed).ok_or_else(|| {
             Error::Internal(format!("scene `{}` has no `{}`", demonstrator.scene, demonstrator.speed))
         })?;
+        let capacitance = demonstrator.capacitance.map(|field| template.field(field)).transpose()?;
+        let capacitance = capacitance.and_then(|field| template.number(&field));
         let mesh = mesh_to_follow(template.scene(), None)?;
         let fields = demonstrator.tolerances.iter().map(|(field, _)| template.field(field));
         let fields = fields.collect::<Result<Vec<Field>>>()?;
@@ -148,31 +166,60 @@ impl Valve {
             .ok_or_else(|| Error::Internal("independent inputs have a correlation".into()))?;
         let transmission = demonstrator.transmission;
         let series = Series::new([], template.scene(), mesh.as_ref(), 1)?;
-        Ok(Self { template, transmission, speed, nominal, series, model: demonstrator.model, fields, inputs })
+        let model = demonstrator.model;
+        Ok(Self { template, transmission, speed, nominal, capacitance, series, model, fields, inputs })
     }
 
     /// A shift with other numbers than the scene's.
-    fn shift(&self, numbers: &[(&Field, f64)]) -> Result<FlightSummary> {
+    fn shift(&self, numbers: &[(&Field, f64)]) -> Result<Shift> {
         let mut scene =
             self.template.with(numbers).map_err(|rejected| Error::Internal(rejected.to_string()))?;
         let spring = scene.flight.as_mut().and_then(|flight| flight.spring.as_mut());
         if let (Some(Transmission::Plunger), Some(spring)) = (self.transmission, spring) {
             spring.friction = 0.0;
         }
+        let setup = scene.setup.clone();
         let summary = self.series.model(scene, self.model, None)?.run(TOLERANCE)?;
-        summary.flight.ok_or_else(|| Error::Internal("a shift has no flight".into()))
+        let (actuator_energy, sphere_mass) = match (&setup, &summary.bender) {
+            (Setup::PlateImpact(plate), Some(bender)) => {
+                (bender.drive.kinetic_energy, plate.inner.shape.mass(&plate.inner.material))
+            }
+            (Setup::SealSeat(seat), _) => {
+                (0.5 * seat.actuator.mass * seat.actuator.speed.powi(2), seat.sphere.mass)
+            }
+            _ => return Err(Error::Internal("a demonstrator's plate is not struck by a bender".into())),
+        };
+        let flight = summary.flight.ok_or_else(|| Error::Internal("a shift has no flight".into()))?;
+        let sphere_energy = 0.5 * sphere_mass * flight.launch.speed.powi(2);
+        Ok(Shift { flight, actuator_energy, sphere_energy })
     }
 
     /// A shift by `voltage` V.
-    fn at(&self, voltage: f64) -> Result<FlightSummary> {
+    fn at(&self, voltage: f64) -> Result<Shift> {
         self.shift(&[(&self.speed, self.nominal * voltage / NOMINAL)])
+    }
+
+    /// Energy in J that the bender is charged with to `voltage` V and that its resistor takes, C V^2 / 2.
+    fn electrical_energy(&self, voltage: f64) -> Option<f64> {
+        self.capacitance.map(|capacitance| 0.5 * capacitance * voltage.powi(2))
+    }
+
+    /// What a shift by `voltage` V takes and gives, in J.
+    fn energies(&self, voltage: f64) -> Result<Vec<(&'static str, f64)>> {
+        let shift = self.at(voltage)?;
+        let electrical = self.electrical_energy(voltage).map(|energy| ("electrical energy", energy));
+        let mechanical = [
+            ("energy of the actuator", shift.actuator_energy),
+            ("energy of the sphere", shift.sphere_energy),
+        ];
+        Ok(electrical.into_iter().chain(mechanical).collect())
     }
 
     /// Least voltage in V that shifts, between those of the table at `low` and `high`.
     fn least_voltage(&self, mut low: f64, mut high: f64) -> Result<f64> {
         while high - low > ACCURACY {
             let middle = 0.5 * (low + high);
-            if self.at(middle)?.seat == Seat::Other { high = middle } else { low = middle }
+            if self.at(middle)?.flight.seat == Seat::Other { high = middle } else { low = middle }
         }
         Ok(high)
     }
@@ -192,7 +239,7 @@ impl Workshop {
         let one = |row: usize| {
             let numbers = valve.inputs.place(&valve.inputs.design().at(row, Point::A));
             let drawn: Vec<(&Field, f64)> = valve.fields.iter().zip(numbers).collect();
-            let flight = valve.shift(&drawn)?;
+            let flight = valve.shift(&drawn)?.flight;
             Ok((flight.launch.speed, flight.seat == Seat::Other))
         };
         let found: Vec<(f64, bool)> = (0..DRAWN).into_par_iter().map(one).collect::<Result<_>>()?;
@@ -200,7 +247,7 @@ impl Workshop {
         let mean = found.iter().map(|(speed, _)| speed).sum::<f64>() / count;
         let squares = found.iter().map(|(speed, _)| (speed - mean).powi(2)).sum::<f64>();
         let deviation = (squares / (count - 1.0)).sqrt();
-        let designed = valve.at(NOMINAL)?;
+        let designed = valve.at(NOMINAL)?.flight;
         let room = designed.margin.unwrap_or(WIDEST_MARGIN) * designed.launch.speed;
         Ok(Self {
             margin: (designed.seat == Seat::Other).then_some(room / deviation),
@@ -221,14 +268,18 @@ pub fn run(note: &mut Note) -> Result<Study> {
         let [low, high] = VOLTAGES;
         let step = (high - low) / (COUNT - 1) as f64;
         let voltages: Vec<f64> = (0..COUNT).map(|k| low + step * k as f64).collect();
-        let shifts: Vec<FlightSummary> =
+        let shifts: Vec<Shift> =
             voltages.par_iter().map(|voltage| valve.at(*voltage)).collect::<Result<_>>()?;
         let struck = |voltage: f64| valve.nominal * voltage / NOMINAL;
-        for (voltage, flight) in voltages.iter().zip(&shifts) {
+        for (voltage, shift) in voltages.iter().zip(&shifts) {
+            let flight = &shift.flight;
             rows.push(vec![
                 Cell::Text(demonstrator.name),
                 (*voltage).into(),
                 struck(*voltage).into(),
+                valve.electrical_energy(*voltage).into(),
+                shift.actuator_energy.into(),
+                shift.sphere_energy.into(),
                 flight.launch.speed.into(),
                 flight.launch.angle.into(),
                 flight.least_speed.into(),
@@ -236,13 +287,17 @@ pub fn run(note: &mut Note) -> Result<Study> {
                 flight.share.into(),
             ]);
         }
-        let first = shifts.iter().position(|flight| flight.seat == Seat::Other);
+        let first = shifts.iter().position(|shift| shift.flight.seat == Seat::Other);
         let least = match first {
             Some(0) => Some(low),
             Some(k) => Some(valve.least_voltage(voltages[k - 1], voltages[k])?),
             None => None,
         };
-        claims.extend(claims_of(demonstrator, &shifts, least, &Workshop::of(&valve)?));
+        let energies = match least {
+            Some(voltage) => valve.energies(voltage)?,
+            None => Vec::new(),
+        };
+        claims.extend(claims_of(demonstrator, &shifts, (least, energies), &Workshop::of(&valve)?));
     }
     Ok(Study {
         schema_version: SCHEMA_VERSION,
@@ -258,13 +313,16 @@ pub fn run(note: &mut Note) -> Result<Study> {
             "demonstrator",
             "voltage",
             "actuator_speed",
+            "electrical_energy",
+            "actuator_energy",
+            "sphere_energy",
             "launch_speed",
             "launch_angle",
             "least_speed",
             "seat",
             "share",
         ],
-        units: vec!["1", "V", "m/s", "m/s", "rad", "m/s", "1", "1"],
+        units: vec!["1", "V", "m/s", "J", "J", "J", "m/s", "rad", "m/s", "1", "1"],
         rows,
         claims,
     })
@@ -273,8 +331,8 @@ pub fn run(note: &mut Note) -> Result<Study> {
 /// What section 5 says of a demonstrator, and what it leaves open.
 fn claims_of(
     demonstrator: &Demonstrator,
-    shifts: &[FlightSummary],
-    least: Option<f64>,
+    shifts: &[Shift],
+    (least, energies): (Option<f64>, Vec<(&'static str, f64)>),
     workshop: &Workshop,
 ) -> Vec<Claim> {
     let name = demonstrator.name;
@@ -283,13 +341,15 @@ fn claims_of(
     };
     let found =
         |text: &str, unit, value| Claim::new(format!("{name}: {text}"), unit, None, value, f64::INFINITY);
-    let any = |seat: Seat| shifts.iter().any(|flight| flight.seat == seat);
+    let any = |seat: Seat| shifts.iter().any(|shift| shift.flight.seat == seat);
     let mut claims = vec![
         truth("the sphere falls back when the impact is too weak (5.1.1)", any(Seat::Same)),
         found("least voltage that shifts", "V", least),
         found("share of drawn valves that shift at the paper's voltage", "1", Some(workshop.share)),
         found("standard deviations from the launch to the nearest that does not shift", "1", workshop.margin),
     ];
+    let of_energy = |(name, energy)| found(&format!("{name} per shift at that voltage"), "J", Some(energy));
+    claims.splice(2..2, energies.into_iter().map(of_energy));
     let lasts = workshop.margin.is_some_and(|margin| margin >= LONG_TERM);
     claims.extend(match demonstrator.transmission {
         Some(Transmission::LastTurn) => {
@@ -320,9 +380,25 @@ mod tests {
     #[test]
     fn a_plunger_cures_what_the_spring_holds_up() {
         let [spring, plunger] =
-            [0, 1].map(|k| [60.0, NOMINAL].map(|voltage| rocker(k).at(voltage).unwrap().seat));
+            [0, 1].map(|k| [60.0, NOMINAL].map(|voltage| rocker(k).at(voltage).unwrap().flight.seat));
         assert_eq!(spring, [Seat::Same, Seat::None]);
         assert_eq!(plunger, [Seat::Same, Seat::Other]);
+    }
+
+    /// What the sphere has is what the impact's efficiency says, and goes with the square of the voltage.
+    #[test]
+    fn a_shift_shares_the_bender_s_energy() {
+        let valve = rocker(0);
+        let [half, whole] = [0.5 * NOMINAL, NOMINAL].map(|voltage| valve.at(voltage).unwrap());
+        let scene = valve.template.scene().clone();
+        let efficiency = valve.series.model(scene, valve.model, None).unwrap().run(TOLERANCE).unwrap();
+        let share = whole.sphere_energy / whole.actuator_energy;
+        assert_relative_eq!(share, efficiency.value("efficiency").unwrap(), max_relative = 1e-9);
+        assert_relative_eq!(4.0 * half.actuator_energy, whole.actuator_energy, max_relative = 1e-9);
+        // the contact is stiffer the harder the blow
+        assert_relative_eq!(4.0 * half.sphere_energy, whole.sphere_energy, max_relative = 0.1);
+        let taken = valve.electrical_energy(NOMINAL).unwrap();
+        assert!(taken > whole.actuator_energy, "{taken:e} J make {:e} J", whole.actuator_energy);
     }
 
     /// Without friction of the spring the sphere rolls, and its launch, which has no spin, loses two sevenths of its energy to that: the
@@ -331,7 +407,7 @@ mod tests {
     fn the_least_voltage_is_that_of_the_saddle() {
         let valve = rocker(1);
         let least = valve.least_voltage(60.0, NOMINAL).unwrap();
-        let flight = valve.at(least).unwrap();
+        let flight = valve.at(least).unwrap().flight;
         let ratio = flight.launch.speed / flight.least_speed;
         assert_relative_eq!(ratio, (7.0_f64 / 5.0).sqrt(), max_relative = 0.05);
     }

@@ -22,6 +22,8 @@ use wide::f64x4;
 
 /// Steps after which a run counts as endless.
 const MAX_STEPS: u64 = 5_000_000;
+/// Contacts beyond which that is the impact's nature: a light plate that rattles between heavy bodies which close in on it.
+const RATTLING: u32 = 1000;
 /// Step lengths are the base length times 2^-level, level in this range.
 const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 /// Share of a force's admissible defect at which the sweeps may end.
@@ -32,7 +34,8 @@ const START_LEVEL: i32 = 4;
 /// Integrates the impact.
 ///
 /// # Errors
-/// [`Error::Solver`] if the contact has no equilibrium, the step falls below 2^-44 of its base length, or the run does not end.
+/// [`Error::Solver`] if the contact has no equilibrium, the step falls below 2^-44 of its base length, or the run does not end;
+/// [`Error::BeyondModel`] if it does not since the bodies rattle.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
     let recorder = options.sample_interval.map(|interval| Recorder::new(system, &COLLOCATION, interval));
@@ -119,10 +122,7 @@ impl<'a> Stepper<'a> {
             self.step()?;
             touching = false;
             if self.steps > MAX_STEPS {
-                return Err(Error::Solver(format!(
-                    "reduced model: no end after {MAX_STEPS} steps, at t = {:.6e} s; set `run.end_time`",
-                    self.time
-                )));
+                return Err(self.endless());
             }
         }
         Ok(self.finish())
@@ -235,6 +235,16 @@ impl<'a> Stepper<'a> {
     /// Forces in N in relation to which those of a step have to be right at least, see [`force_scale`].
     fn least_forces(&self, scale: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| force_scale(&[], self.contacts[i].force_peak, scale[i], self.energy.contact_time))
+    }
+
+    /// That there is no end, and whether the integration or the impact itself is to blame for it.
+    fn endless(&self) -> Error {
+        let touches: u32 = self.contacts.iter().map(|contact| contact.contacts).sum();
+        let sentence = format!(
+            "reduced model: no end after {MAX_STEPS} steps and {touches} contacts, at t = {:.6e} s; set `run.end_time`",
+            self.time
+        );
+        if touches > RATTLING { Error::BeyondModel(sentence) } else { Error::Solver(sentence) }
     }
 
     /// Why no step is short enough; whether the last one could be `solved`.

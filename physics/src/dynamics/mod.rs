@@ -38,7 +38,7 @@ use integration::{Integration, Options};
 ///
 /// # Errors
 /// [`crate::Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of its base length, or the run does not end;
-/// [`crate::Error::BeyondModel`] if the plate bends around the inner body in a film.
+/// [`crate::Error::BeyondModel`] if the plate bends around the inner body in a film, or rattles endlessly.
 pub fn integrate(
     system: &system::System,
     fluid: Option<&wet::FluidForces>,
