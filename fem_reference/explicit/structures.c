@@ -201,7 +201,8 @@ typedef struct {
     int64_t fours;         /* elements, by fours; the last may be filled up with ones without stiffness */
     const double *element; /* (fours, 11, 4), see elements.c */
     const int32_t *node;   /* (fours, size, 4) */
-    int64_t free, moving;  /* ends of the nodes that are free and of those that are held somewhere */
+    int64_t free;          /* end of the nodes that are free */
+    int64_t moving;        /* end of those that are held somewhere */
     const int32_t *moves;  /* (moving) nodes of the part that move with the level */
 } Part;
 #endif

@@ -55,11 +55,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             context.note(format_args!("wrote {}", folder.join(name).display()));
         }
     }
-    if arguments.json.json {
-        super::print_json(&bench)?;
-    } else {
-        super::print(&table(&bench))?;
-    }
+    arguments.json.print(&bench, table)?;
     Ok(ExitStatus::Pass)
 }
 

@@ -47,11 +47,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     for sentence in &found.untold {
         context.note(format_args!("note: {sentence}"));
     }
-    if arguments.json.json {
-        super::print_json(&found)?;
-    } else {
-        super::print(&table(&found))?;
-    }
+    arguments.json.print(&found, table)?;
     Ok(ExitStatus::Pass)
 }
 

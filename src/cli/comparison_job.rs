@@ -252,11 +252,7 @@ impl<'a> Job<'a> {
         outputs: &Outputs,
     ) -> Result<Comparison> {
         let comparison = self.write(&mut report, outputs)?;
-        if self.arguments.json.json {
-            super::print_json(&comparison)?;
-        } else {
-            super::print(&report::terminal(&report))?;
-        }
+        self.arguments.json.print(&comparison, |_| report::terminal(&report))?;
         context.note(format_args!(
             "{} scene{} compared in {:.2} s; report: {}",
             self.scenes.len(),

@@ -60,11 +60,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         validated::record(&found)?;
     }
     let found = coverage(&cases);
-    if arguments.json.json {
-        super::print_json(&found)?;
-    } else {
-        super::print(&table(&found))?;
-    }
+    arguments.json.print(&found, table)?;
     Ok(ExitStatus::Pass)
 }
 

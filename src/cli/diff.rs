@@ -35,11 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitStatus> {
         let names = [&arguments.a, &arguments.b].map(|path| path.display().to_string());
         write_file(file, report::moves_page([&names[0], &names[1]], &moves, above).as_bytes())?;
     }
-    if arguments.json.json {
-        super::print_json(&moves)?;
-    } else {
-        super::print(&markdown(&moves))?;
-    }
+    arguments.json.print(&moves, markdown)?;
     Ok(ExitStatus::Pass)
 }
 

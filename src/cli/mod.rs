@@ -145,6 +145,13 @@ struct JsonArgument {
     json: bool,
 }
 
+impl JsonArgument {
+    /// Prints `document` as JSON if that is asked for, else what `table` says of it.
+    fn print<D: Serialize>(self, document: &D, table: impl FnOnce(&D) -> String) -> Result<()> {
+        if self.json { print_json(document) } else { print(&table(document)) }
+    }
+}
+
 /// What every command is told besides its own arguments.
 #[derive(Debug, Clone)]
 struct Context {

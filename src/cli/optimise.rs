@@ -105,11 +105,7 @@ pub(super) struct Solved {
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let template = Template::read(scene::resolve(&arguments.scene)?)?;
     let Solved { document, failure, .. } = solve(context, arguments, template, &|_| true)?;
-    if arguments.json.json {
-        super::print_json(&document)?;
-    } else {
-        super::print(&table(&document))?;
-    }
+    arguments.json.print(&document, table)?;
     Ok(failure.unwrap_or(ExitStatus::Pass))
 }
 

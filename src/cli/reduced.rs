@@ -59,11 +59,7 @@ fn finish(context: &Context, arguments: &Arguments, outcome: &Outcome) -> Result
     for warning in &summary.warnings {
         context.note(format_args!("warning: {warning}"));
     }
-    if arguments.json.json {
-        super::print_json(summary)?;
-    } else {
-        super::print(&table(summary))?;
-    }
+    arguments.json.print(summary, table)?;
     Ok(ExitStatus::Pass)
 }
 

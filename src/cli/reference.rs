@@ -90,11 +90,7 @@ fn import(context: &Context, arguments: &ImportArguments) -> Result<ExitStatus> 
 }
 
 fn show(stored: &Stored, json: JsonArgument) -> Result<ExitStatus> {
-    if json.json {
-        super::print_json(&stored.outcome.summary)?;
-    } else {
-        super::print(&super::reduced::table(&stored.outcome.summary))?;
-    }
+    json.print(&stored.outcome.summary, super::reduced::table)?;
     Ok(ExitStatus::Pass)
 }
 

@@ -26,11 +26,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     let report = stress::run(arguments.cases, arguments.seed, &|| bar.inc(1))?;
     bar.finish_and_clear();
-    if arguments.json.json {
-        super::print_json(&report)?;
-    } else {
-        super::print(&table(&report))?;
-    }
+    arguments.json.print(&report, table)?;
     Ok(if report.failures.is_empty() { ExitStatus::Pass } else { ExitStatus::Solver })
 }
 

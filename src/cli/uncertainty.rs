@@ -121,11 +121,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         write_file(&folder.join("uncertainty.svg"), svg.as_bytes())?;
         context.note(format_args!("wrote {}", folder.join("uncertainty.svg").display()));
     }
-    if arguments.json.json {
-        super::print_json(&scatter)?;
-    } else {
-        super::print(&table(&scatter, &request.wanted))?;
-    }
+    arguments.json.print(&scatter, |_| table(&scatter, &request.wanted))?;
     Ok(ExitStatus::Pass)
 }
 

@@ -29,7 +29,7 @@ pub use entry::Stored;
 pub use fields::FieldMesh;
 pub use identity::{revision, settings_hash};
 pub use import::import;
-pub use modes::{plate_modes, seat_frequencies};
+pub use modes::plate_modes;
 pub use python::{prefer_python, python};
 pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, mesh_to_follow, seat_mesh, seat_mesh_with, seat_meshes};
 pub use section::MeshSection;

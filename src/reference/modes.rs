@@ -17,8 +17,6 @@ struct Document {
 struct Mode {
     /// Hz.
     frequency: f64,
-    /// Of a plate's mode.
-    #[serde(default)]
     longitudinal: bool,
 }
 
@@ -30,28 +28,9 @@ struct Mode {
 /// [`Error::Io`] if no temporary file can be written.
 pub fn plate_modes(python: &Path, scene: &Scene, count: usize) -> Result<Vec<PlateMode>> {
     let thickness = scene.plate_impact()?.plate.thickness;
-    let modes = modes(python, scene, None, count, &format!("the plate of thickness {thickness} m"))?;
-    Ok(modes
-        .into_iter()
-        .map(|m| PlateMode { frequency: m.frequency, longitudinal: m.longitudinal })
-        .collect())
-}
-
-/// The `count` lowest eigenfrequencies in Hz, ascending, of the scene's seat on the mesh in the file `mesh` (`.vtu`):
-/// rim clamped, symmetric about y = 0, with the lumped mass of the reference. `python` is the interpreter, see
-/// [`super::python`].
-///
-/// # Errors
-/// As [`plate_modes`].
-pub fn seat_frequencies(python: &Path, scene: &Scene, mesh: &Path, count: usize) -> Result<Vec<f64>> {
-    scene.seal_seat()?;
-    let mesh = std::path::absolute(mesh).map_err(|e| Error::io("finding", mesh, e))?;
-    let modes = modes(python, scene, Some(&mesh), count, &format!("the seat of `{}`", scene.name))?;
-    Ok(modes.into_iter().map(|m| m.frequency).collect())
-}
-
-fn modes(python: &Path, scene: &Scene, mesh: Option<&Path>, count: usize, body: &str) -> Result<Vec<Mode>> {
-    let failed = |what: String| Error::Solver(format!("modes of {body} by SLEPc: {what}"));
+    let failed = |what: String| {
+        Error::Solver(format!("modes of the plate of thickness {thickness} m by SLEPc: {what}"))
+    };
     let folder = std::env::temp_dir();
     let folder =
         Scratch::new_in(&folder, "impactcheck-").map_err(|e| Error::io("writing into", &folder, e))?;
@@ -60,9 +39,6 @@ fn modes(python: &Path, scene: &Scene, mesh: Option<&Path>, count: usize, body: 
     std::fs::write(&input, document.to_string()).map_err(|e| Error::io("writing", &input, e))?;
     let mut command = python::fem_reference(python)?;
     command.args(["modes", "--count", &count.to_string(), "--scene"]).arg(&input);
-    if let Some(mesh) = mesh {
-        command.arg("--mesh").arg(mesh);
-    }
     let output = command.output().map_err(|e| failed(format!("{} can't be run: {e}", python.display())))?;
     if !output.status.success() {
         let log = String::from_utf8_lossy(&output.stderr);
@@ -73,5 +49,6 @@ fn modes(python: &Path, scene: &Scene, mesh: Option<&Path>, count: usize, body: 
     if document.modes.len() != count {
         return Err(failed(format!("{} modes came back, {count} were asked for", document.modes.len())));
     }
-    Ok(document.modes)
+    let mode = |m: Mode| PlateMode { frequency: m.frequency, longitudinal: m.longitudinal };
+    Ok(document.modes.into_iter().map(mode).collect())
 }
