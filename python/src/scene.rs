@@ -62,18 +62,23 @@ impl Scene {
 
 impl Scene {
     fn parsed(name: &str, text: String, file: PathBuf) -> PyResult<Self> {
-        let scene = Checked::parse(name, &text).map_err(raised)?;
+        let scene = Checked::parse(&place(&file, name), &text).map_err(raised)?;
         Ok(Self { file, text, scene })
     }
 
     /// Open to variation.
     pub fn template(&self) -> Result<Template> {
-        Template::parse(&self.scene.name, &self.text)
+        Template::parse(&place(&self.file, &self.scene.name), &self.text)
     }
 
     pub fn placed(&self) -> Placed {
         (self.file.clone(), self.scene.clone())
     }
+}
+
+/// What a scene's text is read as the content of: files that it names lie beside that.
+fn place(file: &Path, name: &str) -> String {
+    if file.as_os_str().is_empty() { name.to_owned() } else { file.display().to_string() }
 }
 
 /// A mapping as TOML; `place` is its key ("plate.").

@@ -81,7 +81,16 @@ def test_scenes_are_copied_and_pickled(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     shipped = subprocess.run([*PROGRAM, "new", "mine"], cwd=tmp_path, capture_output=True)
     assert shipped.returncode == 0
-    for scene in (ic.Scene(TABLE_1), ic.Scene.read(file), ic.Scene.read("scaled-plate-r10")):
+    # what a scene names lies beside its file, wherever it is copied to
+    example = Path(__file__).parents[2] / "scenes" / "examples" / "rocker-flight.toml"
+    sine, record = 'kind      = "sine"', 'kind = "record"\nfile = "shock.csv"'
+    text = example.read_text()
+    assert sine in text
+    shaken = tmp_path / "shaken.toml"
+    shaken.write_text(text.replace('frequency = "100 Hz"', "").replace(sine, record))
+    (tmp_path / "shock.csv").write_text("time,acceleration\n0,0\n1e-3,3\n")
+    read = [ic.Scene.read(name) for name in (file, shaken, "scaled-plate-r10")]
+    for scene in (ic.Scene(TABLE_1), *read):
         restored = pickle.loads(pickle.dumps(scene))
         for other in (restored, copy.copy(scene), copy.deepcopy([scene])[0]):
             assert (other.name, other.hash) == (scene.name, scene.hash)

@@ -5,6 +5,7 @@ use super::tolerance_edit::shown;
 use crate::comparison::ChangedTolerance;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
+use std::path::Path;
 use toml_edit::{DocumentMut, Item, Table};
 
 /// The tolerances in the text of a scene file.
@@ -44,17 +45,17 @@ fn accepted(record: &[Acceptance]) -> Standing {
 /// What is recorded in the place of a tolerance that was removed.
 pub const REMOVED: &str = "none";
 
-/// The tolerances of the scene file `text` that mean something else than those accepted last. How a number is written
+/// The tolerances of the scene file `text`, which is that of `file`, that mean something else than those accepted last. How a number is written
 /// does not count; tolerances that were never accepted are new, not changed.
 ///
 /// # Errors
 /// [`Error::Usage`] if `text` is not TOML, [`Error::Scene`] if it is no scene.
-pub fn changed(record: &[Acceptance], text: &str) -> Result<Vec<ChangedTolerance>> {
+pub fn changed(record: &[Acceptance], file: &Path, text: &str) -> Result<Vec<ChangedTolerance>> {
     let accepted = accepted(record);
     if accepted.is_empty() {
         return Ok(Vec::new());
     }
-    let (scene, standing) = (Scene::parse("scene", text)?, standing(text)?);
+    let (scene, standing) = (Scene::parse(&file.display().to_string(), text)?, standing(text)?);
     let mut found = Vec::new();
     for (model, tolerances) in &accepted {
         for (quantity, before) in tolerances {
@@ -66,7 +67,7 @@ pub fn changed(record: &[Acceptance], text: &str) -> Result<Vec<ChangedTolerance
             let same = now.is_some_and(|now| {
                 now == before
                     || with(text, model, quantity, before)
-                        .and_then(|text| Scene::parse("accepted", &text))
+                        .and_then(|text| Scene::parse(&file.display().to_string(), &text))
                         .is_ok_and(|old| meant(&old) == meant(&scene))
             });
             if !same {
@@ -132,14 +133,14 @@ mod tests {
         let first =
             with_c("efficiency = { absolute = 0.002 }\nouter_contact_end = { absolute = \"0.5 us\" }\n");
         let record = [entry(standing(&first).expect("TOML"), Vec::new())];
-        assert_eq!(changed(&record, &first).expect("scene"), []);
+        assert_eq!(changed(&record, Path::new("scene"), &first).expect("scene"), []);
         let rewritten = with_c(
             "outer_contact_end = { absolute = \"500 ns\" } # the same\nefficiency = { absolute = 2e-3 }\n\
              inner_force_peak = 0.01\n",
         );
-        assert_eq!(changed(&record, &rewritten).expect("scene"), []);
+        assert_eq!(changed(&record, Path::new("scene"), &rewritten).expect("scene"), []);
         let looser = with_c("efficiency = { absolute = 0.02 }\n");
-        let found = changed(&record, &looser).expect("scene");
+        let found = changed(&record, Path::new("scene"), &looser).expect("scene");
         let words: Vec<_> = found.iter().map(|c| (&*c.quantity, &*c.accepted, c.now.as_deref())).collect();
         assert_eq!(
             words,
@@ -161,7 +162,7 @@ mod tests {
         let now = with_c("efficiency = { absolute = 0.02 }\n");
         let changes = |tos: &[&str]| {
             let record: Vec<_> = tos.iter().map(|to| entry(Standing::new(), vec![change(to)])).collect();
-            changed(&record, &now).expect("scene").len()
+            changed(&record, Path::new("scene"), &now).expect("scene").len()
         };
         assert_eq!(changes(&["{ absolute = 0.01 }"]), 1);
         assert_eq!(changes(&["{ absolute = 0.01 }", "{ absolute = 0.02 }"]), 0);

@@ -124,5 +124,5 @@ pub(super) fn changed_tolerances(file: &Path, record: &[Acceptance]) -> Result<V
         return Ok(Vec::new());
     }
     let text = std::fs::read_to_string(file).map_err(|e| Error::io("reading", file, e))?;
-    tolerance_watch::changed(record, &text)
+    tolerance_watch::changed(record, file, &text)
 }

@@ -32,7 +32,7 @@ pub(super) fn flight_html(scene: &Scene, models: &[&Summary], reference: Option<
     let models = models.iter().copied();
     let flown: Vec<(&Summary, &FlightSummary)> =
         models.clone().filter_map(|summary| Some((summary, summary.flight.as_ref()?))).collect();
-    let Some(&(_, first)) = flown.first() else { return html! {} };
+    let shaken: Vec<_> = models.filter_map(|summary| Some((summary, summary.vibration?))).collect();
     let reference = reference.map(|flight| ("FE".to_owned(), flight));
     let launches =
         reference.into_iter().chain(flown.iter().map(|(summary, flight)| (model(summary), *flight)));
@@ -40,6 +40,7 @@ pub(super) fn flight_html(scene: &Scene, models: &[&Summary], reference: Option<
         value.map_or_else(|| "none".to_owned(), |value| with_unit(value, prefixed(unit, value), 4))
     };
     html! {
+        @if let Some(&(_, first)) = flown.first() {
         (scrolled("Where the sphere lands", &html! { table {
             thead { tr { th { "launched by" } th { "seat" } th { "certain after" } th { "margin of speed" } th { "share in the other seat" }
                 th { "least speed to shift" } th { "restitution" } } }
@@ -55,7 +56,8 @@ pub(super) fn flight_html(scene: &Scene, models: &[&Summary], reference: Option<
         } }))
         @for (_, flight) in &flown { @if let Some(reason) = &flight.reason { p { (model_reason(reason)) } } }
         (pictures(scene, first))
-        @for (summary, vibration) in models.filter_map(|summary| Some((summary, summary.vibration?))) {
+        }
+        @for (summary, vibration) in shaken {
             p { "Vibration, by the launch's chamber of model " (model(summary)) ": unseats at " (quantity(vibration.unseats, "m/s^2"))
                 ", shifts at " (quantity(vibration.shifts, "m/s^2")) "; by energy it takes at least " (quantity(Some(vibration.energy_bound), "m/s^2")) "." }
         }

@@ -5,8 +5,8 @@ use crate::flight::{Landscape, Setup, Thresholds, thresholds};
 use crate::scene::Vibration;
 use rayon::prelude::*;
 
-/// Frequencies of the chart, and how far it goes to both sides of the scene's.
-const COUNT: usize = 33;
+/// Frequencies of the chart, the middle one the scene's, and how far it goes to both sides of the scene's.
+const COUNT: usize = 21;
 const REACH: f64 = 6.0;
 
 /// The chart as a stand-alone SVG; `None` of a record, which has no frequency, and where nothing unseats.
@@ -25,7 +25,7 @@ pub(super) fn vibration_chart(setup: &Setup, landscape: &Landscape, vibration: &
         points: found.iter().map(|(f, found)| (*f, value(found).unwrap_or(f64::NAN))).collect(),
         ..Series::default()
     };
-    let own = thresholds(setup, landscape, &vibration.wave, vibration.direction).shifts;
+    let own = found[COUNT / 2].1.shifts;
     let scene = Series {
         name: "this scene".into(),
         points: own.map(|shifts| (of_scene, shifts)).into_iter().collect(),

@@ -38,14 +38,8 @@ const TORQUE: f64 = 4e-3;
 const DISCHARGE: f64 = 0.05e-3;
 /// Offsets of the bender's plate to both sides in m, and how many are drawn.
 const OFFSETS: (f64, usize) = (100e-6, 41);
-/// A small lift magnet; the paper gives no data of one.
-const MAGNET: Magnet = Magnet {
-    mass: 1e-3,
-    voltage: 12.0,
-    resistance: 8.0,
-    inductance: Inductance::EvenGap { ends: [20e-3, 40e-3], way: 1e-3 },
-    travel: 1e-3,
-};
+/// Mass of a small lift magnet's plunger in kg, and its travel in m; the paper gives no data of one.
+const PLUNGER: (f64, f64) = (1e-3, 1e-3);
 /// Gap in m within which a stack has lost half of what it gives without, whatever its drive.
 const FEW_MICROMETRES: f64 = 22e-6;
 /// Relative error of the time integration.
@@ -116,13 +110,15 @@ fn bent(gap: f64) -> Result<Case> {
 /// # Errors
 /// As [`Magnet::lift`].
 fn magnet(gap: f64) -> Result<Case> {
-    let lift = Magnet { travel: MAGNET.travel + gap, ..MAGNET }.lift()?;
-    let plunger = Shape::Compact { mass: MAGNET.mass, tip_radius: STACK.tip_radius };
+    let (mass, travel) = PLUNGER;
+    let inductance = Inductance::even_gap([20e-3, 40e-3], travel);
+    let lift = Magnet { mass, voltage: 12.0, resistance: 8.0, inductance, travel: travel + gap }.lift()?;
+    let plunger = Shape::Compact { mass, tip_radius: STACK.tip_radius };
     Ok(Case {
         actuator: "magnet",
         gap,
         setup: Some(setup(plunger, lift.speed)),
-        energies: [Some(lift.taken), Some(0.5 * MAGNET.mass * lift.speed.powi(2))],
+        energies: [Some(lift.taken), Some(0.5 * mass * lift.speed.powi(2))],
     })
 }
 

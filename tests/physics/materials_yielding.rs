@@ -60,57 +60,145 @@ fn fresh_spots_stay_below_the_elastic_efficiency() {
 /// first impact).
 #[test]
 fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
-    let scene = |[plate, spheres]: [Option<&str>; 2], size: [&str; 3], spot: &str| {
-        let yields = |strength: Option<&str>| {
-            strength.map_or(String::new(), |y| format!(", yield_strength = \"{y}\", hardening = \"2.1 GPa\""))
+    // Young's modulus in GPa, Poisson's ratio, density in kg/m^3; tangent modulus E/200 but of steel 2.1 GPa
+    let (steel, aluminium) = ([210.0, 0.3, 7780.0], [70.0, 0.33, 2700.0]);
+    let (titanium, bronze) = ([115.0, 0.37, 4430.0], [110.0, 0.34, 8800.0]);
+    let scene = |material: [f64; 3], [plate, spheres]: [Option<f64>; 2], size: [f64; 4], spot: &str| {
+        let of = |[modulus, ratio, density]: [f64; 3], strength: Option<f64>, hardening: f64| {
+            let plasticity = strength.map_or(String::new(), |y| {
+                format!(", yield_strength = \"{y} MPa\", hardening = \"{hardening} GPa\"")
+            });
+            format!(
+                "{{ youngs_modulus = \"{modulus} GPa\", poisson_ratio = {ratio}, density = {density}{plasticity} }}"
+            )
         };
-        let steel = "youngs_modulus = \"210 GPa\", poisson_ratio = 0.3, density = 7780";
-        let [thickness, radius, speed] = size;
+        let [plate_radius, thickness, radius, speed] = size;
+        let hardening = if material == steel { 2.1 } else { material[0] / 200.0 };
         let text = format!(
             r#"
             name = "unlike"
             kind = "plate-impact"
-            materials.plate = {{ {steel}{} }}
-            materials.sphere = {{ {steel}{} }}
-            plate = {{ radius = "33 mm", thickness = "{thickness}", edge = "clamped", material = "plate" }}
-            outer = {{ kind = "sphere", radius = "{radius}", material = "sphere", speed = "{speed}" }}
-            inner = {{ kind = "sphere", radius = "{radius}", material = "sphere" }}
+            materials.plate = {}
+            materials.sphere = {}
+            plate = {{ radius = "{plate_radius} mm", thickness = "{thickness} mm", edge = "clamped", material = "plate" }}
+            outer = {{ kind = "sphere", radius = "{radius} mm", material = "sphere", speed = {speed} }}
+            inner = {{ kind = "sphere", radius = "{radius} mm", material = "sphere" }}
             series = {{ impacts = 8, sphere_spot = "{spot}" }}
             "#,
-            yields(plate),
-            yields(spheres)
+            of(material, plate, hardening),
+            of(steel, spheres, if material == steel { 2.1 } else { 1.05 }),
         );
         Scene::parse("unlike", &text).unwrap()
     };
-    let table1 = ["2 mm", "10 mm", "550 mm/s"];
-    for (strengths, size, spot, found) in [
-        ([Some("350 MPa"), None], table1, "same", [0.4825, 0.5798, 0.6341, 0.7009]),
-        ([None, Some("350 MPa")], table1, "same", [0.4918, 0.5923, 0.6423, 0.7033]),
+    let table1 = [33.0, 2.0, 10.0, 0.55];
+    for (material, strengths, size, spot, found) in [
+        (steel, [Some(350.0), None], table1, "same", [0.4825, 0.5798, 0.6341, 0.7009]),
+        (steel, [None, Some(350.0)], table1, "same", [0.4918, 0.5923, 0.6423, 0.7033]),
         // spheres of 600 MPa hardly yield before a plate of 350 MPa, and a fresh spot of them changes next to nothing
-        ([Some("350 MPa"), Some("600 MPa")], table1, "fresh", [0.4824, 0.5799, 0.6339, 0.7003]),
-        ([Some("600 MPa"), None], ["2 mm", "6.35 mm", "800 mm/s"], "same", [0.3532, 0.4430, 0.4732, 0.4919]),
+        (steel, [Some(350.0), Some(600.0)], table1, "fresh", [0.4824, 0.5799, 0.6339, 0.7003]),
+        (steel, [Some(600.0), None], [33.0, 2.0, 6.35, 0.8], "same", [0.3532, 0.4430, 0.4732, 0.4919]),
         // without the plate's bending -2.0 and -4.2 % in the end
-        ([Some("600 MPa"); 2], table1, "fresh", [0.569, 0.623, 0.634, 0.638]),
-        ([Some("400 MPa"); 2], ["2 mm", "6.35 mm", "550 mm/s"], "fresh", [0.2815, 0.3435, 0.3647, 0.3754]),
+        (steel, [Some(600.0); 2], table1, "fresh", [0.569, 0.623, 0.634, 0.638]),
+        (steel, [Some(400.0); 2], [33.0, 2.0, 6.35, 0.55], "fresh", [0.2815, 0.3435, 0.3647, 0.3754]),
+        (steel, [Some(450.0), None], [33.0, 1.5, 6.35, 0.5], "same", [0.4517, 0.5488, 0.5826, 0.6162]),
         (
-            [Some("450 MPa"), None],
-            ["1.5 mm", "6.35 mm", "500 mm/s"],
-            "same",
-            [0.4517, 0.5488, 0.5826, 0.6162],
+            aluminium,
+            [Some(150.0), Some(900.0)],
+            [25.0, 2.0, 5.0, 0.6],
+            "fresh",
+            [0.3209, 0.4015, 0.4617, 0.5707],
+        ),
+        (
+            aluminium,
+            [Some(200.0), Some(800.0)],
+            [25.0, 3.0, 6.0, 0.6],
+            "fresh",
+            [0.1915, 0.3509, 0.4240, 0.4948],
+        ),
+        (
+            titanium,
+            [Some(500.0), Some(450.0)],
+            [30.0, 2.0, 8.0, 0.3],
+            "fresh",
+            [0.6121, 0.6341, 0.6366, 0.6371],
+        ),
+        (
+            bronze,
+            [Some(250.0), Some(700.0)],
+            [30.0, 2.5, 8.0, 0.5],
+            "fresh",
+            [0.2984, 0.3864, 0.4364, 0.5047],
         ),
     ] {
-        let summary = Reduced::new(&scene(strengths, size, spot), Model::C, None).unwrap().run(1e-7).unwrap();
+        let summary =
+            Reduced::new(&scene(material, strengths, size, spot), Model::C, None).unwrap().run(1e-7).unwrap();
         let ours = efficiencies(&summary);
-        for k in 0..3 {
+        // the warning of aluminium that yields before the spheres says 5 %
+        assert_relative_eq!(
+            ours[0],
+            found[0],
+            max_relative = if material == aluminium { 0.05 } else { 0.04 }
+        );
+        for k in 1..3 {
             assert_relative_eq!(ours[k], found[k], max_relative = 0.04);
         }
         assert_relative_eq!(*ours.last().unwrap(), found[3], max_relative = 0.015);
         assert!(summary.energy_residual.unwrap() < 1e-3, "{:?}", summary.energy_residual);
         let told =
             summary.warnings.iter().any(|warning| warning.contains("the plate yields before the bodies"));
-        let softer = strengths[0].is_some() && strengths[0] != strengths[1];
+        let strength = strengths.map(|y| y.unwrap_or(f64::INFINITY));
+        let softer = strength[0] < strength[1];
         assert_eq!(told, softer, "{:?}", summary.warnings);
     }
+}
+
+/// The inner force has two humps that are nearly alike, at which the plate is bent unlike: which of them is higher is no matter.
+#[test]
+fn two_humps_of_a_force_are_no_jump() {
+    let of = |strength: f64| {
+        let text = format!(
+            r#"
+            name = "humps"
+            kind = "plate-impact"
+            materials.plate = {{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = 7780, yield_strength = "{strength} MPa" }}
+            materials.steel = {{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = 7780 }}
+            plate = {{ radius = "33 mm", thickness = "0.7 mm", edge = "clamped", material = "plate" }}
+            outer = {{ kind = "sphere", radius = "10 mm", material = "steel", speed = 0.3 }}
+            inner = {{ kind = "sphere", radius = "10 mm", material = "steel" }}
+            "#
+        );
+        let text = text.replace("MPa\" }", "MPa\", hardening = 0 }");
+        let scene = Scene::parse("humps", &text).unwrap();
+        let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-7).unwrap();
+        let settled = !summary.warnings.iter().any(|warning| warning.contains("uncertain by"));
+        assert!(settled, "{strength} MPa: {:?}", summary.warnings);
+        summary.value("efficiency").unwrap()
+    };
+    let found: Vec<f64> = (0..=10).map(|k| of(90.0 + 2.0 * f64::from(k))).collect();
+    let steps: Vec<f64> = found.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert!(steps.iter().all(|step| (0.0..0.01).contains(step)), "{found:?}");
+}
+
+/// Bending is told of forces at the plate's centre that were found to their ends.
+#[test]
+fn the_plate_s_bending_is_told_where_it_is_known() {
+    let of = |outer: &str, more: &str| {
+        let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
+        let density = "density        = \"7780 kg/m^3\"";
+        let text = text.replace(density, &format!("{density}\nyield_strength = \"2 GPa\""));
+        let text = text.replacen("[outer]", &format!("[outer]\n{outer}"), 1) + more;
+        let scene = Scene::parse("bent", &text).unwrap();
+        let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-7).unwrap();
+        let bends = |limit: &&impactcheck::result::Limit| limit.measure.contains("bending");
+        (
+            summary.limits.iter().any(|limit| bends(&limit)),
+            summary.elastic_limit.and_then(|limit| limit.outer),
+        )
+    };
+    let (told, limit) = of("", "");
+    assert!(told && limit.is_some());
+    assert!(!of("offset = \"8 mm\"", "").0);
+    assert_eq!(of("", "\n[run]\nend_time = \"5 us\"\n"), (false, None));
 }
 
 /// A contact that does not reach its onset of yield takes the elastic branch: the same steps and bits as without.

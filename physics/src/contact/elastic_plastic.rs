@@ -134,9 +134,10 @@ impl ElasticPlastic {
     }
 
     /// The same pulled along the surface by `stress` Pa in all directions: on the axis of the contact that adds to what shears it, and
-    /// so it yields as if it were so much weaker (von Mises).
+    /// so it yields as if it were so much weaker (von Mises), as far as it does not yield by that stress alone.
     pub fn pulled(&self, stress: f64) -> Self {
-        let left = (self.yield_strength - stress).max(LEAST_STRENGTH * self.yield_strength);
+        let most = (1.0 - LEAST_STRENGTH) * self.yield_strength;
+        let left = self.yield_strength - stress.clamp(-most, most);
         Self { yield_strength: self.yield_strength, ..Self::new(self.modulus, left, self.poisson_ratio) }
     }
 

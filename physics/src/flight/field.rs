@@ -96,6 +96,12 @@ impl Wave {
         }
     }
 
+    /// Largest magnitude: 1, of a record in m/s^2.
+    pub fn size(&self) -> f64 {
+        let [high, low] = self.peaks();
+        high.max(-low)
+    }
+
     /// Largest and smallest value: a sine's peaks are 1 and -1.
     pub fn peaks(&self) -> [f64; 2] {
         match self {

@@ -7,10 +7,10 @@ use super::{Excitation, Setup, Vector, Wave};
 /// Relative steps of the amplitude in which a shift is looked for, and halvings of the step in which it is found.
 const STEP: f64 = 0.05;
 const HALVINGS: u32 = 24;
-/// Largest amplitude looked at over the static limit.
+/// Largest amplitude looked at over the one below which nothing can happen.
 const HARDEST: f64 = 1e4;
 
-/// Accelerations of the valve in m/s^2, as amplitudes of the wave.
+/// Largest accelerations of the valve in m/s^2: amplitudes of a wave, the largest magnitude of a record that is scaled as a whole.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
     /// Least one at which the sphere comes off one side of its seat; `None` if this direction presses it in.
@@ -27,9 +27,16 @@ pub fn thresholds(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: 
     let unseats = static_limit(setup, landscape, wave, direction);
     let energy_bound = landscape.least_speed(setup.mass) / wave.impulse();
     let shifts = unseats.and_then(|unseats| {
-        least(unseats, |amplitude| shaken_over(setup, landscape, wave, direction, amplitude))
+        least(unseats.max(energy_bound), |amplitude| {
+            shaken_over(setup, landscape, wave, direction, amplitude)
+        })
     });
-    Thresholds { unseats, shifts, energy_bound }
+    let largest = |factor: f64| factor * wave.size();
+    Thresholds {
+        unseats: unseats.map(largest),
+        shifts: shifts.map(largest),
+        energy_bound: largest(energy_bound),
+    }
 }
 
 /// Whether the sphere passes the saddle when the valve is shaken with this `amplitude`.

@@ -28,7 +28,7 @@ pub struct FlightSummary {
     pub reason: Option<String>,
 }
 
-/// Least accelerations of the valve, as amplitudes in m/s^2 (of a record: factors on it).
+/// Least accelerations of the valve in m/s^2: amplitudes of a wave, the largest magnitude of a record that is scaled as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct VibrationSummary {
     /// At which the sphere comes off a side of its seat; `None` if this direction presses it in.

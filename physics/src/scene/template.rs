@@ -139,6 +139,7 @@ impl Template {
         let failed = |e: String| Error::Internal(format!("writing the scene file: {e}"));
         let mut table: toml::Table = self.text.parse().map_err(|e: toml::de::Error| failed(e.to_string()))?;
         table.insert("name".into(), name.into());
+        self.take_in_record(&mut table);
         for (field, value) in numbers {
             let number = if field.is_count() { (*value as i64).into() } else { (*value).into() };
             write(&mut table, &field.keys, number);
@@ -147,6 +148,20 @@ impl Template {
             }
         }
         toml::to_string(&table).map_err(|e| failed(e.to_string()))
+    }
+
+    /// Puts the record that `table` names into it: what is written need not lie beside that file.
+    fn take_in_record(&self, table: &mut toml::Table) {
+        let Some(toml::Value::Table(vibration)) = table.get_mut("vibration") else { return };
+        let Some(Checked::Table(values)) = self.values.get("vibration") else { return };
+        if vibration.remove("file").is_none() {
+            return;
+        }
+        for (key, value) in values {
+            if let Checked::Numbers(samples) = value {
+                vibration.insert(key.clone(), samples.clone().into());
+            }
+        }
     }
 }
 

@@ -14,6 +14,12 @@ use std::f64::consts::PI;
 
 /// Euler's constant.
 const GAMMA: f64 = 0.577_215_664_901_532_9;
+/// Power of the force by which the stresses of a course are weighted, and the least weight that counts: nearly the stress under the
+/// largest force, but of two humps that are equally high it is the mean.
+const SHARPNESS: i32 = 20;
+const LEAST_WEIGHT: f64 = 1e-3;
+/// Patch over the plate's thickness from which on a ring is the patch's.
+const WIDE: f64 = 1.724;
 
 /// Forces of outer and inner contact over the time of an impact, from before the first touch on.
 #[derive(Debug, Clone, Default)]
@@ -37,15 +43,16 @@ impl Loads {
         self.force.iter_mut().zip(force).for_each(|(all, one)| all.push(one));
     }
 
-    /// Largest forces in N.
-    pub fn peaks(&self) -> [f64; 2] {
-        [0, 1].map(|i| self.force[i][self.peak(i)])
-    }
-
-    /// Where the force of contact `i` is largest.
-    fn peak(&self, i: usize) -> usize {
-        let force = &self.force[i];
-        (1..force.len()).fold(0, |best, k| if force[k] > force[best] { k } else { best })
+    /// Weights of the samples of contact `i` that count, in the order of time, and the largest force in N.
+    fn weights(&self, i: usize) -> (Vec<(usize, f64)>, f64) {
+        let (time, force) = (&self.time, &self.force[i]);
+        let peak = force.iter().copied().fold(0.0, f64::max);
+        let last = time.len().saturating_sub(1);
+        let weight = |k: usize| {
+            let size = (force[k] / peak).max(0.0).powi(SHARPNESS);
+            (size > LEAST_WEIGHT).then(|| (k, size * (time[(k + 1).min(last)] - time[k.saturating_sub(1)])))
+        };
+        ((0..time.len()).filter_map(weight).collect(), peak)
     }
 }
 
@@ -79,19 +86,25 @@ impl Bending {
         }
     }
 
-    /// Stress in Pa along the faces under outer and inner contact, tension positive, when the forces there are largest.
+    /// Stress in Pa along the faces under outer and inner contact, tension positive, where the forces there are largest.
     pub fn at_peaks(&self, laws: &[Hertz; 2], loads: &Loads) -> [f64; 2] {
         [(0, -1.0), (1, 1.0)].map(|(i, sign)| {
-            let peak = loads.peak(i);
-            let patch = laws[i].contact_radius(loads.force[i][peak]);
-            sign * 6.0 * self.moment(self.ring(patch), loads, peak) / self.thickness.powi(2)
+            let (weights, peak) = loads.weights(i);
+            let ring = self.ring(laws[i].contact_radius(peak));
+            let moments =
+                weights.iter().map(|&(k, weight)| weight * self.moment(ring, loads, k)).sum::<f64>();
+            let all = weights.iter().map(|(_, weight)| weight).sum::<f64>();
+            let moment = if all > 0.0 { moments / all } else { 0.0 };
+            sign * 6.0 * moment / self.thickness.powi(2)
         })
     }
 
     /// Radius in m of the ring that bends the plate in its middle as a patch of the radius `patch` in m does: that of a thin plate's
     /// circle with the stress under the patch (Westergaard 1926, after Timoshenko, article 19), over sqrt(e).
     fn ring(&self, patch: f64) -> f64 {
-        let circle = (1.6 * patch.powi(2) + self.thickness.powi(2)).sqrt() - 0.675 * self.thickness;
+        let t = self.thickness;
+        let circle =
+            if patch < WIDE * t { (1.6 * patch.powi(2) + t.powi(2)).sqrt() - 0.675 * t } else { patch };
         circle * (-0.5_f64).exp()
     }
 
@@ -100,8 +113,12 @@ impl Bending {
         let Loads { time, force: [outer, inner] } = loads;
         let force = |k: usize| outer[k] - inner[k];
         let step = |k: usize| {
+            let rise = force(k) - force(k - 1);
+            if rise == 0.0 {
+                return 0.0;
+            }
             let reach = (self.spreading * (time[end] - 0.5 * (time[k] + time[k - 1]))).min(self.farthest);
-            (force(k) - force(k - 1)) * (reach / ring.powi(2)).max(1.0).ln()
+            rise * (reach / ring.powi(2)).max(1.0).ln()
         };
         (1.0 + self.poisson_ratio) / (8.0 * PI) * (1..=end).map(step).sum::<f64>()
     }

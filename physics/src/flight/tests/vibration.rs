@@ -119,6 +119,13 @@ fn a_record_of_a_shock_is_the_shock() {
     for (coarse, fine) in coarse.into_iter().zip(fine) {
         assert!(coarse.abs() < 3e-3 && (3.5..4.5).contains(&(coarse / fine)), "{coarse} {fine}");
     }
+    // a rectangle ends at once, however few samples it has
+    let rectangle = |samples: u32| {
+        let time: Vec<f64> = (0..=samples).map(|k| 1e-4 * f64::from(k) / f64::from(samples)).collect();
+        Wave::Record { acceleration: vec![3.0; time.len()], time }
+    };
+    let [one, many] = [1, 100].map(|samples| shifts(&rectangle(samples)));
+    assert!((one / many - 1.0).abs() < 1e-6, "{one} {many}");
     let through_zero = Wave::Record { time: vec![0.0, 1.0, 4.0], acceleration: vec![2.0, 2.0, -1.0] };
     assert!((through_zero.impulse() - (2.0 + 2.0 + 0.5)).abs() < 1e-15);
 }

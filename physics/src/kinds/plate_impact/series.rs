@@ -84,7 +84,7 @@ impl Impacts<'_> {
         // virgin contacts below their onset of yield are elastic ones
         if memory.is_elastic() {
             let (result, loads) = self.loaded(options)?;
-            if memory.is_elastic_under(self.system, &loads) {
+            if memory.is_elastic_under(self.system, &loads, result.contacts.map(|c| c.force_peak)) {
                 return Ok((result, Some(memory.clone())));
             }
         }
@@ -124,8 +124,12 @@ impl Impacts<'_> {
             let mut speed = self.system.speed;
             for _ in 0..MOST_RUNS {
                 let system = &self.system.at_speed(speed);
-                let (_, loads) = Impacts { system, ..*self }.loaded(options).ok()?;
-                let growth = (onset.force(i, system, &loads)? / loads.peaks()[i]).powf(5.0 / 6.0);
+                let (result, loads) = Impacts { system, ..*self }.loaded(options).ok()?;
+                if result.is_cut() {
+                    return None;
+                }
+                let onset = onset.force(i, system, &loads)?;
+                let growth = (onset / result.contacts[i].force_peak).powf(5.0 / 6.0);
                 speed *= growth;
                 if (growth - 1.0).abs() < SETTLED {
                     return Some(speed);

@@ -163,7 +163,7 @@ pub(in crate::scene) static VIBRATION: [Field; 8] = [
             required(
                 "acceleration",
                 Kind::Quantities(Dimension::ACCELERATION, Bound::ANY, MOST_SAMPLES),
-                "Accelerations; the thresholds are factors on them",
+                "Accelerations, of which the thresholds are multiples",
             ),
         ),
     ),

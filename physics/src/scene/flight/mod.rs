@@ -12,7 +12,8 @@ pub(super) use read::{flight, vibration};
 pub(super) use record::with_record;
 
 use super::collision::{Collision, Rule, broken};
-use super::{Scene, Setup, Shape};
+use super::tolerances::LANDING_SHARE;
+use super::{Scene, Setup, Shape, Tolerances};
 use crate::flight::{self as physics, Chamber, Drag, Field, Scatter, Vector, Wave};
 
 /// A spring as a scene gives it.
@@ -120,14 +121,29 @@ pub(super) fn collisions(scene: &Scene) -> Vec<Collision> {
         let fields = vec!["vibration.time", "vibration.file"];
         let message = "`vibration.time` and `vibration.acceleration` are no record: it needs as many accelerations as times, at least 2, and times that ascend from 0".into();
         rules.push(Rule { fields, holds: fits, message, help: "give every sample a time" });
+        rules.push(rule(
+            "vibration",
+            acceleration.iter().any(|a| *a != 0.0),
+            "`vibration.acceleration` is 0 m/s^2 throughout, and so is any multiple of it",
+            "give a record that shakes",
+        ));
     }
+    let mut alone = Vec::new();
     match &scene.flight {
-        None => rules.push(rule(
+        None => {
+            alone = scene
+                .tolerances
+                .iter()
+                .filter(|(_, of_model)| of_model.contains_key(LANDING_SHARE))
+                .map(lands_nowhere)
+                .collect();
+            rules.push(rule(
             "vibration",
             scene.vibration.is_none(),
             "`[vibration]` asks what shakes the sphere out of its seat, but there is no `[flight]` that says what holds it there",
             "add a table [flight]",
-        )),
+        ));
+        }
         Some(flight) => {
             // whether the seats hold the sphere is no matter of the restitution
             let setup = flight.setup(scene, flight.restitution.unwrap_or(0.5));
@@ -140,5 +156,18 @@ pub(super) fn collisions(scene: &Scene) -> Vec<Collision> {
             ));
         }
     }
-    broken(rules)
+    alone.extend(broken(rules));
+    alone
+}
+
+/// A tolerance of `model` on a landing that there is not.
+fn lands_nowhere((model, _): (&String, &Tolerances)) -> Collision {
+    let field = format!("tolerances.{model}.{LANDING_SHARE}");
+    Collision {
+        message: format!(
+            "`{field}` bounds how many launches land in the other seat, but there is no `[flight]`"
+        ),
+        fields: vec![field.into()],
+        help: "add a table [flight], or remove the tolerance",
+    }
 }

@@ -124,7 +124,7 @@ fn pull(outer: &Node) -> Result<Inductance> {
                 "the plunger is pulled to where the inductance is larger",
             ));
         }
-        return Ok(Inductance::EvenGap { ends: [start, stop], way: travel });
+        return Ok(Inductance::even_gap([start, stop], travel));
     }
     let rows = outer.tables("curve")?;
     let column = |key: &str| -> Result<Vec<[f64; 2]>> {

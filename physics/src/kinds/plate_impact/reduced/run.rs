@@ -153,7 +153,7 @@ impl Reduced {
         if let (Some(memory), true) = (&self.memory, even_steps) {
             warnings.extend(memory.warnings.iter().cloned());
             warnings.extend(result.error_estimate.filter(|error| *error > memory::CHANGE / 3.0).map(|error| {
-                format!("velocities and force peaks are uncertain by {error:.0e}: ever shorter steps have not settled them")
+                format!("velocities and force peaks are uncertain by {error:.0e}: neither shorter steps nor what the plate's bending changes have settled")
             }));
         }
         if let (Shape::Bender(bender), Some(drive)) = (&setup.outer.shape, system.drive) {
