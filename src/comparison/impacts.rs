@@ -29,6 +29,16 @@ fn of_impact<'a>(
     })
 }
 
+/// What `summary` says of the `quantity` called as in a comparison, which may be one of an impact.
+pub fn value_in(summary: &Summary, quantity: &str) -> Option<f64> {
+    let of_impact = || {
+        let (number, name) = quantity.strip_prefix("impact_")?.split_once('_')?;
+        let number: u64 = number.parse().ok()?;
+        summary.impacts.iter().find(|impact| impact.number == number)?.value(name)
+    };
+    summary.value(quantity).or_else(of_impact)
+}
+
 fn bound<'a>(tolerances: &'a Tolerances, name: &str) -> Option<&'a Tolerance> {
     tolerances.get(&format!("impact_{name}"))
 }

@@ -23,6 +23,7 @@ mod verdict;
 pub use changed_tolerance::ChangedTolerance;
 pub use common_mesh::difference_band;
 pub use discrepancy::{BandVerdict, Discrepancy};
+pub use impacts::value_in;
 pub use integrity::{Check, NO_RESULT, check as integrity};
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
 pub use reference_check::{ReferenceCheck, ReferenceRow};

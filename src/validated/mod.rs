@@ -11,7 +11,7 @@ pub use place::{MEASURES, Place};
 pub use record::{merge, of_store, record, shipped, update};
 pub use vicinity::{NEAR, Vicinity};
 
-use crate::comparison::{Check, Discrepancy, ModelComparison, SceneComparison};
+use crate::comparison::{Check, Discrepancy, ModelComparison, SceneComparison, value_in};
 use crate::reference::revision;
 use crate::result::Summary;
 use crate::scene::{Geometry, Model, Scene};
@@ -121,7 +121,7 @@ impl Validation {
 
     /// The same reference beside a model that now gives `summary`.
     pub fn renewed(&self, summary: &Summary) -> Self {
-        let now = |row: &Row| summary.value(&row.quantity).map_or(row.reduced, rounded);
+        let now = |row: &Row| value_in(summary, &row.quantity).map_or(row.reduced, rounded);
         let rows = self.rows.iter().map(|row| Row { reduced: now(row), ..row.clone() }).collect();
         Validation { modes: summary.modes, program: PROGRAM.into(), rows, ..self.clone() }
     }

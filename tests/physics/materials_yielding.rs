@@ -186,9 +186,11 @@ fn the_plate_s_bending_is_told_where_it_is_known() {
         let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
         let density = "density        = \"7780 kg/m^3\"";
         let text = text.replace(density, &format!("{density}\nyield_strength = \"2 GPa\""));
+        let settings = |line: &&str| !line.starts_with("geometry") && !line.starts_with("elements_per");
+        let text = text.lines().filter(settings).collect::<Vec<_>>().join("\n");
         let text = text.replacen("[outer]", &format!("[outer]\n{outer}"), 1) + more;
         let scene = Scene::parse("bent", &text).unwrap();
-        let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-7).unwrap();
+        let summary = Reduced::new(&scene, Model::B, None).unwrap().run_with_history(1e-6).unwrap().summary;
         let bends = |limit: &&impactcheck::result::Limit| limit.measure.contains("bending");
         (
             summary.limits.iter().any(|limit| bends(&limit)),
