@@ -155,11 +155,14 @@ fn a_film_that_closes_at_the_rim_is_refused_and_does_not_stall() {
     assert_eq!((report.failures, report.beyond_model), (vec![], vec![78_838]));
 }
 
-/// A plate bent by a hundred times its thickness closes the film at the rim, and steps of 1e-14 s lead nowhere.
+/// A plate bent by a hundred times its thickness closes the film at the rim, and steps of 1e-14 s lead nowhere; a foil of rubber closes a
+/// film of 0.4 mm to 1 um, and 300 000 steps lead no farther than a tenth of a contact.
 #[test]
 fn a_film_that_encloses_fluid_is_refused() {
-    let report = run(1, 9_800_001_493, &|| ()).unwrap();
-    assert_eq!((report.failures, report.beyond_model), (vec![], vec![9_800_001_493]));
+    for seed in [9_800_001_493, 12_000_086_149] {
+        let report = run(1, seed, &|| ()).unwrap();
+        assert_eq!((report.failures, report.beyond_model), (vec![], vec![seed]));
+    }
 }
 
 /// A plate of a soft foil lies on the inner body over a wide circle, of which the film's minimum gap hides all but its beginning: 300 000 steps were not enough.

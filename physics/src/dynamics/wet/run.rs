@@ -28,6 +28,8 @@ const MAX_STEPS: u64 = 300_000;
 /// however little: the film's law has a kink where that begins, at which steps don't settle.
 const STALLED: (u64, f64) = (1_000, 1e-6);
 const STALLED_IN_OVERLAP: f64 = 0.03;
+/// The same where the film encloses fluid, which can hardly get out.
+const STALLED_ENCLOSED: f64 = 1e-4;
 /// Step lengths are the base length times 2^-level, level from 0 to this.
 const LAST_LEVEL: i32 = 44;
 /// Longest step without a touch in sight, as a power of 2 of the base length.
@@ -142,6 +144,9 @@ impl Stepper<'_> {
                 }
                 if advanced < STALLED_IN_OVERLAP {
                     self.check_overlap(0.0, |_| true)?;
+                }
+                if advanced < STALLED_ENCLOSED {
+                    self.check_neck()?;
                 }
                 looked = self.time;
             }

@@ -12,21 +12,28 @@ impl Stepper<'_> {
     /// Why no step longer than `h` s meets the tolerance.
     pub(super) fn stalled(&self, h: f64) -> Error {
         // the film's law jumps where an overlap begins, however small
-        if let Err(overlap) = self.check_overlap(0.0, |_| true) {
-            return overlap;
-        }
-        if let Some(neck) = self.load.neck().filter(|neck| neck.width < CLOSED * neck.width_inside) {
-            return beyond_model(
-                self.time,
-                &format!(
-                    "at r = {:.2e} m the film between them is {:.1e} m wide, farther in {:.1e} m, and encloses fluid",
-                    neck.radius, neck.width, neck.width_inside
-                ),
-            );
-        }
-        Error::Solver(format!(
-            "reduced model: the time step fell below {h:.1e} s at t = {:.6e} s without meeting the tolerance",
-            self.time
+        let beyond = self.check_overlap(0.0, |_| true).and_then(|()| self.check_neck());
+        beyond.err().unwrap_or_else(|| {
+            Error::Solver(format!(
+                "reduced model: the time step fell below {h:.1e} s at t = {:.6e} s without meeting the tolerance",
+                self.time
+            ))
+        })
+    }
+
+    /// Looks whether the film encloses fluid.
+    ///
+    /// # Errors
+    /// [`Error::BeyondModel`] if it does.
+    pub(super) fn check_neck(&self) -> Result<()> {
+        let closed = self.load.neck().filter(|neck| neck.width < CLOSED * neck.width_inside);
+        let Some(neck) = closed else { return Ok(()) };
+        Err(beyond_model(
+            self.time,
+            &format!(
+                "at r = {:.2e} m the film between them is {:.1e} m wide, farther in {:.1e} m, and encloses fluid",
+                neck.radius, neck.width, neck.width_inside
+            ),
         ))
     }
 
