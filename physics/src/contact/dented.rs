@@ -55,7 +55,7 @@ pub struct DentedContact {
 
 /// The contact at a pressure.
 struct Pressed {
-    /// In N, m and m.
+    /// In N; approach beyond that at which the dents touch, and radius in m.
     force: f64,
     approach: f64,
     radius: f64,
@@ -179,16 +179,20 @@ impl DentedContact {
         };
         Pressed {
             force: PI * radius * radius * pressure,
-            approach: radius * unit * mean(&recovers) + depths[0] + depths[1],
+            // each by itself: beside the depth of a dent a first touch is lost in rounding
+            approach: radius * unit * mean(&recovers)
+                + (depths[0] - dents[0].depth)
+                + (depths[1] - dents[1].depth),
             radius,
             now,
             depths,
         }
     }
 
-    /// Critical approaches of the weaker surface, if virgin, at the approach `x` in m of both, beyond that at which they touch.
+    /// Critical approaches of the weaker surface, if virgin, at the approach `x` in m of both, which is beyond that at which they touch.
     fn critical_approaches(&self, x: f64) -> f64 {
         let near = self.near[self.weaker];
+        let x = x - self.depth();
         if let Some(found) = root_near(|w| self.pressed(w).approach, x, near, 1.0) {
             return found;
         }
@@ -196,7 +200,7 @@ impl DentedContact {
         let mut ends = [0.9 * near, 1.1 * near];
         let mut values = ends.map(error);
         if values[0] > 0.0 {
-            (ends, values) = ([0.0, ends[0]], [self.depth() - x, values[0]]);
+            (ends, values) = ([0.0, ends[0]], [-x, values[0]]);
         }
         while values[1] < 0.0 {
             (ends, values) = ([ends[1], 2.0 * ends[1]], [values[1], error(2.0 * ends[1])]);
@@ -323,6 +327,25 @@ mod tests {
                 );
                 before = [force, slope];
             }
+        }
+    }
+
+    /// Beside the depth of a dent the first touch after it is below the rounding of the approach; the force begins as a power all the same.
+    #[test]
+    fn a_dent_is_touched_gently() {
+        let mut contact = pair(0.01, [1.0; 2], [None, Some(1e8)]);
+        contact.advance(300.0 * contact.critical_approach());
+        contact.advance(0.0);
+        let depth = contact.depth();
+        let mut before = 0.0;
+        for k in 0..40 {
+            let x = depth + 1e-20 * 2.0_f64.powi(k) * (depth / 1e-5);
+            let [force, slope] = contact.force(x);
+            assert!(
+                force >= before && slope.is_finite() && (x == depth || slope > 0.0),
+                "{k}: {force} {slope}"
+            );
+            before = force;
         }
     }
 
