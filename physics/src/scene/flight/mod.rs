@@ -13,7 +13,7 @@ pub(super) use record::with_record;
 
 use super::collision::{Collision, Rule, broken};
 use super::tolerances::LANDING_SHARE;
-use super::{Scene, Setup, Shape, Tolerances};
+use super::{Scene, Setup, Shape};
 use crate::flight::{self as physics, Chamber, Drag, Field, Scatter, Vector, Wave};
 
 /// A spring as a scene gives it.
@@ -128,22 +128,13 @@ pub(super) fn collisions(scene: &Scene) -> Vec<Collision> {
             "give a record that shakes",
         ));
     }
-    let mut alone = Vec::new();
     match &scene.flight {
-        None => {
-            alone = scene
-                .tolerances
-                .iter()
-                .filter(|(_, of_model)| of_model.contains_key(LANDING_SHARE))
-                .map(lands_nowhere)
-                .collect();
-            rules.push(rule(
+        None => rules.push(rule(
             "vibration",
             scene.vibration.is_none(),
             "`[vibration]` asks what shakes the sphere out of its seat, but there is no `[flight]` that says what holds it there",
             "add a table [flight]",
-        ));
-        }
+        )),
         Some(flight) => {
             // whether the seats hold the sphere is no matter of the restitution
             let setup = flight.setup(scene, flight.restitution.unwrap_or(0.5));
@@ -156,12 +147,13 @@ pub(super) fn collisions(scene: &Scene) -> Vec<Collision> {
             ));
         }
     }
-    alone.extend(broken(rules));
-    alone
+    let landings = scene.tolerances.iter().filter(|(_, of_model)| of_model.contains_key(LANDING_SHARE));
+    let landings = landings.filter(|_| scene.flight.is_none());
+    landings.map(|(model, _)| without_landing(model)).chain(broken(rules)).collect()
 }
 
 /// A tolerance of `model` on a landing that there is not.
-fn lands_nowhere((model, _): (&String, &Tolerances)) -> Collision {
+fn without_landing(model: &str) -> Collision {
     let field = format!("tolerances.{model}.{LANDING_SHARE}");
     Collision {
         message: format!(
