@@ -39,7 +39,7 @@ pub fn frequency_parameters(edge: Edge, poisson_ratio: f64, count: usize) -> Vec
 
 /// The first frequency parameter where Poisson's ratio nears -1 and bending to a paraboloid takes no energy any more, up to
 /// terms in k^4; at most twice the true one elsewhere. None for a clamped plate.
-fn softest(edge: Edge, poisson_ratio: f64) -> Option<f64> {
+pub(super) fn softest(edge: Edge, poisson_ratio: f64) -> Option<f64> {
     let fourth_power = match edge {
         Edge::Clamped => return None,
         Edge::SimplySupported => 48.0 * (1.0 + poisson_ratio) / (1.0 - poisson_ratio),
@@ -49,7 +49,7 @@ fn softest(edge: Edge, poisson_ratio: f64) -> Option<f64> {
 }
 
 /// Zero number `n` of J1 for a free edge, else of J0, to 0.005 (McMahon's expansion; Watson, Bessel Functions, 1944, 15.53).
-fn pole(edge: Edge, n: usize) -> f64 {
+pub(super) fn pole(edge: Edge, n: usize) -> f64 {
     let asymptote = |shift: f64| (n as f64 + shift) * PI;
     match edge {
         Edge::Free => asymptote(0.25) - 0.375 / asymptote(0.25),
@@ -93,7 +93,7 @@ pub fn deflection(edge: Edge, k: f64, radii: &[f64]) -> Vec<f64> {
 }
 
 /// I0(x) by its power series.
-fn bessel_i0(x: f64) -> f64 {
+pub(super) fn bessel_i0(x: f64) -> f64 {
     let (mut term, mut sum) = (1.0, 1.0);
     for n in 1.. {
         term *= (0.5 * x / f64::from(n)).powi(2);
@@ -107,7 +107,7 @@ fn bessel_i0(x: f64) -> f64 {
 
 /// I1(x) / I0(x) by its continued fraction (Gauss), x > 0. Every level n reduces what the levels beyond it lack by the square of
 /// I_n/I_(n-1), about exp(-2 n/x) for n below x: 7 sqrt(x) levels are enough for the last bit.
-fn bessel_i_ratio(x: f64) -> f64 {
+pub(super) fn bessel_i_ratio(x: f64) -> f64 {
     let terms = 30 + (7.0 * x.sqrt()) as usize;
     (1..=terms).rev().fold(0.0, |tail, n| 1.0 / (2.0 * n as f64 / x + tail))
 }

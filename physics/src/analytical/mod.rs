@@ -2,4 +2,6 @@
 
 pub mod circular_plate;
 pub mod hertz;
+pub mod lamb_wave;
+pub mod mindlin_plate;
 pub mod zener;

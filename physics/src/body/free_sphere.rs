@@ -14,11 +14,18 @@
 //! A contact's force is along the axis: on the slope of the sphere it has a part along the surface, and so has the
 //! displacement in its direction. In a half-space that lifts the centre by (1 - 2 nu)(1 + nu)/(2 pi E r).
 
-use crate::scene::Material;
+use crate::scene::{Material, PlateImpact, Shape};
 use std::f64::consts::PI;
 
 /// Terms of the series in radii of the sphere per radius of the patch: what follows is a half-space's.
 const TERMS: f64 = 12.0;
+
+/// Patch over the sphere's radius below which the series is not summed any more.
+const SMALL: f64 = 0.03;
+/// What the series misses of a patch that is not small, since the sphere is not flat under it: powers of Poisson's ratio along the
+/// rows, of patch over radius along the columns. Fitted to finite elements at 0.07 to 0.45, within 0.6 % of the half-space's.
+const CURVED: [[f64; 2]; 5] =
+    [[0.0089, 0.1086], [0.5334, -0.3882], [-0.1959, -0.3957], [-0.4107, 0.7942], [0.2962, 0.2834]];
 
 /// Hankel transform of the unit Hertz pressure over a patch of radius a, x = xi a: 3 (sin x - x cos x)/x^3.
 pub(super) fn patch_transform(x: f64) -> f64 {
@@ -34,6 +41,8 @@ pub(super) fn patch_transform(x: f64) -> f64 {
 pub fn sphere_residual(radius: f64, material: &Material, patch_radius: f64) -> f64 {
     let nu = material.poisson_ratio;
     let shear = material.youngs_modulus / (2.0 * (1.0 + nu));
+    let patch = patch_radius.max(SMALL * radius);
+    let share = patch_radius / radius;
     // U_n times 2 mu
     let yielded = |n: f64| match n {
         0.0 => (1.0 - 2.0 * nu) / (1.0 + nu),
@@ -43,12 +52,27 @@ pub fn sphere_residual(radius: f64, material: &Material, patch_radius: f64) -> f
                 / ((n - 1.0) * (n * n + n + 1.0 + nu * (2.0 * n + 1.0)))
         }
     };
-    let terms = (TERMS * radius / patch_radius).max(40.0) as u32;
+    let terms = (TERMS * radius / patch).max(40.0) as u32;
     let term = |n: f64| {
-        let weight = patch_transform((n + 0.5) * patch_radius / radius);
+        let weight = patch_transform((n + 0.5) * patch / radius);
         weight * weight * ((2.0 * n + 1.0) * yielded(n) - 4.0 * (1.0 - nu))
     };
     let series = (0..terms).map(|n| term(f64::from(n))).sum::<f64>() / (8.0 * PI * shear * radius);
-    let slope = (1.0 - 2.0 * nu) * (1.0 + nu) / (2.0 * PI * material.youngs_modulus * radius);
-    series - slope
+    let unit = 1.0 / (material.youngs_modulus * radius);
+    let slope = (1.0 - 2.0 * nu) * (1.0 + nu) / (2.0 * PI) * unit;
+    // the terms go as the logarithm of a patch that is small
+    let logarithm = (1.0 + nu) * (1.0 - 2.0 * nu).powi(2) / (2.0 * PI) * unit;
+    let curved = CURVED.iter().rev().fold(0.0, |sum, [first, second]| sum * nu + first + second * share);
+    series - slope - logarithm * (patch_radius / patch).ln() + curved * share * unit
+}
+
+/// Residual flexibility in m/N of the outer and the inner body of `setup` under patches of the radii `patch` in m: spheres are free,
+/// compact bodies and the tips of benders and stacks rigid but for their Hertz contact.
+pub fn tip_residuals(setup: &PlateImpact, patch: [f64; 2]) -> [f64; 2] {
+    let tip = |shape: &Shape, material: &Material, patch: f64| match *shape {
+        Shape::Sphere { radius } => sphere_residual(radius, material, patch),
+        Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => 0.0,
+    };
+    let (outer, inner) = (&setup.outer, &setup.inner);
+    [tip(&outer.shape, &outer.material, patch[0]), tip(&inner.shape, &inner.material, patch[1])]
 }

@@ -7,14 +7,17 @@
 //!   2 h/(E* x) on a half-space,  x = xi h, E* = E/(1 - nu^2)
 //!
 //! (I. N. Sneddon, Fourier Transforms, 1951, section 52). Bending is summed over the plate's waves and, beyond the modes,
-//! integrated as on an infinite plate, as squeezing is everywhere: it does not reach as far as the rim. The frequency of a
-//! wave is the lower one of Mindlin's plate with the shear coefficient 5/(6 - nu). For thin plates that is
-//! the continuum plate to three digits; what is lacking is the effect of shear on the rim, and longitudinal modes.
+//! integrated as on an infinite plate, as squeezing is everywhere: it does not reach as far as the rim. With the modes of
+//! [`super::bending`] that is the continuum plate to three digits below the frequency at which the thickness shears; what is
+//! lacking are longitudinal modes.
 
 use super::ModalBody;
+use super::bending::{self, BendingMode};
 use super::continuum::{ContinuumPlate, WEIGHTED};
 use super::free_sphere::patch_transform;
 use crate::analytical::circular_plate::{centre_deflection, deflection, frequency_parameters, rigidity};
+use crate::analytical::lamb_wave::FlexuralWave;
+use crate::analytical::mindlin_plate::Section;
 use crate::contact::{PatchTable, RADII};
 use crate::numerics::quadrature::gauss_legendre;
 use crate::numerics::vectors::axpy;
@@ -23,6 +26,8 @@ use std::f64::consts::PI;
 
 /// x = xi h beyond which a layer yields as a half-space does, to 1e-9.
 const DEEP: f64 = 12.0;
+/// Wave number times thickness up to which the layer yields as its flexural wave, but for a constant.
+const LONG: f64 = 0.2;
 /// Gauss points of a panel.
 const POINTS: usize = 16;
 /// Largest length of a panel in radii of the patch, and in half thicknesses.
@@ -72,7 +77,8 @@ impl Waves {
 
     /// Frequency in rad/s of about mode number `n` as [`Waves::layer`] has it, from the asymptote k = n pi.
     pub fn frequency(&self, n: usize) -> f64 {
-        self.lower_wave(n as f64 * PI / self.plate.radius).0
+        let Plate { radius, thickness, material, .. } = &self.plate;
+        Section::new(*thickness, material).lower_wave(n as f64 * PI / radius).0
     }
 
     /// Kirchhoff's plate with its `modes` lowest elastic modes, and before them the rigid motion of a free one.
@@ -104,30 +110,26 @@ impl Waves {
     }
 
     /// The plate as an elastic layer, for contact patches of the radii `patch` in m (outer, inner face), with its elastic
-    /// modes and the next one. It has no mesh: its number of degrees of freedom is 0.
+    /// modes and the next one: [`bending::modes`], and beyond them waves of Kirchhoff's wave numbers.
     pub fn layer(&self, patch: [f64; 2]) -> ContinuumPlate {
         let plate = &self.plate;
-        let mut layer = ContinuumPlate {
-            omega: Vec::new(),
-            participation: Vec::new(),
-            flexibility: PatchTable::default(),
-            patch_radius: patch,
-            free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
-            damping_ratio: plate.damping_ratio,
-            degrees_of_freedom: 0,
-        };
+        let mut modes = bending::modes(plate, self.parameter.len());
+        modes.extend(self.parameter.iter().zip(&self.centre).skip(modes.len()).map(|(k, centre)| {
+            let wave_number = k / plate.radius;
+            let wave = FlexuralWave::new(wave_number, plate.thickness, &plate.material);
+            BendingMode { wave_number, omega: wave.omega, centre: centre * wave.face, rim: [0.0; 2] }
+        }));
+        elastic_layer(plate, &modes, patch)
+    }
+
+    /// Static flexibility of the layer between patches of the radii `patch` in m, and how it changes with them.
+    pub fn flexibility(&self, patch: [f64; 2]) -> PatchTable {
         let tabulated = |xi: f64| patch.map(|a| RADII.map(|r| patch_transform(xi * r * a)));
+        let mut table = PatchTable::default();
         for share in self.shares(patch[0].max(patch[1]), tabulated) {
-            layer.flexibility.add(share.own, share.mutual, share.weight);
+            table.add(share.own, share.mutual, share.weight);
         }
-        for (k, centre) in self.parameter.iter().zip(&self.centre) {
-            let xi = k / plate.radius;
-            let (omega, share) = self.lower_wave(xi);
-            let phi = centre * share.sqrt();
-            layer.omega.push(omega);
-            layer.participation.push(patch.map(|a| WEIGHTED.map(|r| phi * patch_transform(xi * r * a))));
-        }
-        layer
+        table
     }
 
     /// Flexibility of the elastic layer in m/N between patches of the `radii` in m, the widest last: of each by its own force without the
@@ -145,61 +147,20 @@ impl Waves {
         (own, mutual)
     }
 
-    /// Frequency in rad/s of the lower wave of Mindlin's plate with the wave number `xi` in 1/m, and the share of its mass that
-    /// moves across the plate.
-    fn lower_wave(&self, xi: f64) -> (f64, f64) {
-        let Plate { thickness, material, .. } = &self.plate;
-        let bending = rigidity(material.youngs_modulus, material.poisson_ratio, *thickness);
-        let shear = 5.0 / (6.0 - material.poisson_ratio) * material.youngs_modulus
-            / (2.0 * (1.0 + material.poisson_ratio))
-            * thickness;
-        let (mass, rotary) = (self.mass_per_area(), self.mass_per_area() * thickness.powi(2) / 12.0);
-        // deflection and rotation, mass-normalised: [[a, b], [b, c]]
-        let (a, c) = (shear * xi * xi / mass, (bending * xi * xi + shear) / rotary);
-        let b = shear * xi / (mass * rotary).sqrt();
-        let product = bending * shear * xi.powi(4) / (mass * rotary);
-        let upper = 0.5 * (a + c + (a + c).mul_add(a + c, -4.0 * product).max(0.0).sqrt());
-        let lower = product / upper;
-        (lower.sqrt(), 1.0 / (1.0 + ((a - lower) / b).powi(2)))
-    }
-
     /// Shares of all wave numbers in the flexibilities between patches that are `widest` m wide at most, of which `weight` gives the
     /// transforms.
     fn shares<W>(&self, widest: f64, weight: impl Fn(f64) -> W) -> Vec<Share<W>> {
-        let (plate, modes) = (&self.plate, self.modes());
-        let half = 0.5 * plate.thickness;
-        let half_space = |xi: f64| 1.0 / (plate.material.plane_strain_modulus() * xi);
-        let bent = |xi: f64| half_space(xi) * bending_ratio(xi * half);
-        let squeezed = |xi: f64| half_space(xi) * squeezing_ratio(xi * half);
-        let waves = self.parameter.iter().zip(&self.centre).take(modes);
+        let half = 0.5 * self.plate.thickness;
+        let waves = self.parameter.iter().zip(&self.centre).take(self.modes());
         let mut shares: Vec<Share<W>> = waves
             .map(|(k, centre)| {
-                let xi = k / plate.radius;
-                let bent = centre * centre * self.mass_per_area() * bent(xi);
+                let xi = k / self.plate.radius;
+                let bent = half_space(&self.plate, xi) * bending_ratio(xi * half);
+                let bent = centre * centre * self.mass_per_area() * bent;
                 Share { own: bent, mutual: bent, weight: weight(xi) }
             })
             .collect();
-        let cut = self.cut() / plate.radius;
-        let rule = gauss_legendre(POINTS);
-        let panel = PANEL * widest.recip().min(half.recip());
-        let mut integrate = |from: f64, to: f64, continuous: bool| {
-            let panels = ((to - from) / panel).ceil().max(0.0) as usize;
-            let step = (to - from) / panels as f64;
-            for p in 0..panels {
-                for (x, w) in rule.0.iter().zip(&rule.1) {
-                    let xi = from + step * (p as f64 + 0.5 * (x + 1.0));
-                    let per = 0.5 * step * w * xi / (2.0 * PI);
-                    let bent = if continuous { bent(xi) } else { 0.0 };
-                    shares.push(Share {
-                        own: per * (bent + squeezed(xi) - 2.0 * half_space(xi)),
-                        mutual: per * (bent - squeezed(xi)),
-                        weight: weight(xi),
-                    });
-                }
-            }
-        };
-        integrate(0.0, cut, false);
-        integrate(cut, DEEP / half, true);
+        shares.extend(local(&self.plate, widest, self.cut() / self.plate.radius, weight, |_| 0.0));
         shares
     }
 
@@ -222,6 +183,84 @@ impl Waves {
     fn amplitude(&self) -> f64 {
         1.0 / (self.plate.radius * self.mass_per_area().sqrt())
     }
+}
+
+/// `plate` as an elastic layer with all but the last of its bending `modes` and that as the next, for contact patches of the radii
+/// `patch` in m (outer, inner face). It has no mesh: its number of degrees of freedom is 0.
+pub fn elastic_layer(plate: &Plate, modes: &[BendingMode], patch: [f64; 2]) -> ContinuumPlate {
+    let participation: Vec<_> =
+        modes.iter().map(|mode| patch.map(|a| WEIGHTED.map(|r| mode.under(r * a)))).collect();
+    let mut flexibility = PatchTable::default();
+    let last = modes.len() - 1;
+    for (mode, phi) in modes[..last].iter().zip(&participation) {
+        let share = mode.omega.powi(-2);
+        flexibility.add(share, share, phi.map(|phi| std::array::from_fn(|m| phi[m])));
+    }
+    let cut = 0.5 * (modes[last.saturating_sub(1)].wave_number + modes[last].wave_number);
+    let tabulated = |xi: f64| patch.map(|a| RADII.map(|r| patch_transform(xi * r * a)));
+    for share in local(plate, patch[0].max(patch[1]), cut, tabulated, |xi| beyond_waves(plate, xi)) {
+        flexibility.add(share.own, share.mutual, share.weight);
+    }
+    ContinuumPlate {
+        omega: modes.iter().map(|mode| mode.omega).collect(),
+        participation,
+        flexibility,
+        patch_radius: patch,
+        free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
+        damping_ratio: plate.damping_ratio,
+        degrees_of_freedom: 0,
+    }
+}
+
+/// What the infinite layer bends under a pressure of the wave number `xi` beyond its flexural wave.
+fn beyond_waves(plate: &Plate, xi: f64) -> f64 {
+    let Plate { thickness, material, .. } = plate;
+    // long waves are nearly all, and the rest hardly changes
+    let xi = xi.max(LONG / thickness);
+    let wave = FlexuralWave::new(xi, *thickness, material);
+    let by_waves = (wave.face / wave.omega).powi(2) / (material.density * thickness);
+    half_space(plate, xi) * bending_ratio(0.5 * xi * thickness) - by_waves
+}
+
+/// What a half-space of its material yields under a pressure of the wave number `xi`.
+fn half_space(plate: &Plate, xi: f64) -> f64 {
+    1.0 / (plate.material.plane_strain_modulus() * xi)
+}
+
+/// Shares of the wave numbers of the infinite layer in the flexibilities between patches that are `widest` m wide at most, of which
+/// `weight` gives the transforms; of its bending below the wave number `cut` only what `below` gives.
+fn local<W>(
+    plate: &Plate,
+    widest: f64,
+    cut: f64,
+    weight: impl Fn(f64) -> W,
+    below: impl Fn(f64) -> f64,
+) -> Vec<Share<W>> {
+    let half = 0.5 * plate.thickness;
+    let mut shares = Vec::new();
+    let rule = gauss_legendre(POINTS);
+    let panel = PANEL * widest.recip().min(half.recip());
+    let mut integrate = |from: f64, to: f64, continuous: bool| {
+        let panels = ((to - from) / panel).ceil().max(0.0) as usize;
+        let step = (to - from) / panels as f64;
+        for p in 0..panels {
+            for (x, w) in rule.0.iter().zip(&rule.1) {
+                let xi = from + step * (p as f64 + 0.5 * (x + 1.0));
+                let per = 0.5 * step * w * xi / (2.0 * PI);
+                let half_space = half_space(plate, xi);
+                let bent = if continuous { half_space * bending_ratio(xi * half) } else { below(xi) };
+                let squeezed = half_space * squeezing_ratio(xi * half);
+                shares.push(Share {
+                    own: per * (bent + squeezed - 2.0 * half_space),
+                    mutual: per * (bent - squeezed),
+                    weight: weight(xi),
+                });
+            }
+        }
+    };
+    integrate(0.0, cut, false);
+    integrate(cut, DEEP / half, true);
+    shares
 }
 
 /// Net flexibility of a layer in bending over that of a half-space, x = xi h.

@@ -1,6 +1,7 @@
 //! An elastic body as the impact sees it: modes, their participation at the contact points,
 //! residual flexibility.
 
+pub mod bending;
 pub mod cache;
 pub mod continuum;
 pub mod free_sphere;

@@ -24,9 +24,7 @@ const SMALL_DEFECTS: f64 = 0.8;
 /// And where none is: a plate so light that both forces are nearly one trembles between its contacts by what is wrong step after
 /// step, with less energy than a ledger tells.
 const SMALL_UNDAMPED_DEFECTS: f64 = 3.0;
-/// The largest one where modes are damped by this share of the critical or more: approaches that follow the forces at once hide a part of the
-/// defect.
-const SMALL_DAMPED_DEFECT: f64 = 1.0 / 20.0;
+/// Damping ratio of modes from which on no impact is simple: approaches that follow the forces at once hide a part of the defect.
 const STRONG_DAMPING: f64 = 0.1;
 const FULL_SHARE: f64 = 0.2;
 /// Factor between the tolerances of two solutions.
@@ -71,14 +69,14 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
     let [outer, inner] = &result.contacts;
     let strongly_damped =
         system.oscillators.iter().any(|o| o.omega > 0.0 && o.alpha >= STRONG_DAMPING * o.omega);
-    let share = if strongly_damped { SMALL_DAMPED_DEFECT } else { SMALL_DEFECT };
     let bound = Bounds::new(tolerance).force_defect;
     let sum = if system.is_damped() { SMALL_DEFECTS } else { SMALL_UNDAMPED_DEFECTS };
     let small = |c: &ContactLedger| {
         let within = |defect: f64, share: f64| defect <= share * bound * c.force_peak;
-        within(c.force_defect, share) && within(c.force_defect_sum, sum)
+        within(c.force_defect, SMALL_DEFECT) && within(c.force_defect_sum, sum)
     };
-    outer.contacts + inner.contacts <= FEW_TOUCHES
+    !strongly_damped
+        && outer.contacts + inner.contacts <= FEW_TOUCHES
         && result.steps <= FEW_STEPS
         && result.contacts.iter().all(small)
         && (inner.contacts == 0 || inner.impulse >= FULL_SHARE * outer.impulse)

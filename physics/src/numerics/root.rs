@@ -27,6 +27,8 @@ pub(crate) fn first_fall(
 /// Secants of [`root_near`] at most, and the step, relative, from which on the next one ends at rounding.
 const SECANTS: usize = 12;
 const LAST_STEP: f64 = 1e-9;
+/// Last step of [`root_from`], relative: the root is as near as its square root's next.
+const CLOSE: f64 = 1e-8;
 
 /// Where the positive `f`, about the power `power` of its positive argument, is `value`: by secants of the logarithms from `near` on.
 /// `None` if these don't settle, as they may not across a kink.
@@ -48,6 +50,29 @@ pub(crate) fn root_near(f: impl Fn(f64) -> f64, value: f64, near: f64, power: f6
         }
     }
     None
+}
+
+/// Root of `f` within the `bracket`, found from `near` on, to [`CLOSE`] of it: by secants, and where these leave the bracket by [`root`];
+/// `None` if `f` has the same sign at both ends then.
+pub(crate) fn root_from(f: impl Fn(f64) -> f64, near: f64, bracket: [f64; 2]) -> Option<f64> {
+    let [low, high] = bracket;
+    let (mut old, mut new) = (near, near + 1e-3 * (high - low));
+    let (mut f_old, mut f_new) = (f(old), f(new));
+    for _ in 0..SECANTS {
+        let step = -f_new * (new - old) / (f_new - f_old);
+        (old, f_old) = (new, f_new);
+        new += step;
+        // a step that is not a number leaves it too
+        if !(low..=high).contains(&new) {
+            break;
+        }
+        if step.abs() <= CLOSE * new.abs() {
+            return Some(new);
+        }
+        f_new = f(new);
+    }
+    let values = bracket.map(&f);
+    (values[0] * values[1] <= 0.0).then(|| root(f, bracket, values))
 }
 
 /// Root of `f` within the `bracket`, at whose ends it has the `values`, to rounding: false position, the end that stays

@@ -74,7 +74,7 @@ impl ContinuumPlate {
             omega: Vec::new(),
             participation: Vec::new(),
             // how it changes with the patches
-            flexibility: Waves::new(plate, WAVES).layer(patch_radius).flexibility,
+            flexibility: Waves::new(plate, WAVES).flexibility(patch_radius),
             patch_radius,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
             damping_ratio: plate.damping_ratio,

@@ -10,12 +10,14 @@
 //! with fewer modes tells how many model C needs; built, model C is held against itself with fewer modes (`truncation`), and
 //! has more of them where that finds too large an error.
 
+use super::closed_form;
 use super::errors::COVERED;
 use super::joined::Cut;
 use super::results::PlateQuantities;
 use super::trials::{Lack, RUNGS, Trials};
 use super::truncation::of_continuum;
 use super::validity;
+use crate::body::bending;
 use crate::dynamics::assured;
 use crate::dynamics::integration::Options;
 use crate::dynamics::system::System;
@@ -43,7 +45,7 @@ const REFERENCE_SHARE: f64 = 0.05;
 const LEFT_OUT_SHARE: f64 = 0.25;
 /// Patch radius over the plate's thickness up to which the estimate is a promise: of 1400 random scenes 3 of 32 promises were
 /// broken beyond, 6 of 3027 up to there.
-const PROMISED: f64 = 0.9;
+pub(super) const PROMISED: f64 = 0.9;
 /// Fewest bending modes that model C is built with: with fewer it can't be held against itself.
 const LEAST_BUILT: usize = 4;
 /// Most modes that model C is built with when its first ones turn out to be too few.
@@ -70,6 +72,8 @@ pub(super) struct Plan<'a> {
     pub(super) modes: usize,
     /// The modes that model C is to be built with, unless it stands.
     pub(super) cut: Option<Cut>,
+    /// Whether model C takes its plate in closed form.
+    pub(super) closed_form: bool,
     error: Option<f64>,
     /// Estimated error of the plate of models A and B with any number of modes, if that is too large for them to be tried.
     hopeless: Option<f64>,
@@ -109,11 +113,15 @@ impl<'a> Plan<'a> {
             model: Model::C,
             modes: 0,
             cut: None,
+            closed_form: false,
             error: None,
             hopeless: None,
             second: None,
             refused: None,
         };
+        if plan.takes_closed_form() {
+            return Ok(plan);
+        }
         plan.second = plan.kirchhoff(tolerance);
         match plan.second.filter(|(.., error)| *error <= tolerance) {
             Some((model, modes, error)) => (plan.model, plan.modes, plan.error) = (model, modes, Some(error)),
@@ -123,6 +131,20 @@ impl<'a> Plan<'a> {
             }
         }
         Ok(plan)
+    }
+
+    /// Whether model C with its plate in closed form is estimated to be good enough: as cheap as models A and B.
+    fn takes_closed_form(&mut self) -> bool {
+        let setup = self.trials.setup;
+        let dry = setup.fluid.is_none();
+        if !dry || self.floor.is_none() || !closed_form::holds(setup, self.trials.predictor.patch_radius) {
+            return false;
+        }
+        let (modes, error) = self.continuum();
+        self.error = error.map(|error| error.hypot(closed_form::own_error(&setup.plate)));
+        self.closed_form = self.met() && bending::modes(&setup.plate, modes + 1).len() > modes;
+        self.modes = modes;
+        self.closed_form
     }
 
     /// Tries models A and B until one meets the tolerance, or more modes don't help; the best with its estimate. None is tried if their
@@ -229,7 +251,7 @@ impl<'a> Plan<'a> {
     /// An error with what models with few modes lack and with the floor; `None` where that is not known.
     fn total(&self, error: f64) -> Option<f64> {
         let floor = self.floor?;
-        Some((error + self.trials.undamped(0.0)).hypot(floor)).filter(|error| error.is_finite())
+        Some((error + self.trials.predictor.undamped(&self.trials.setup.plate, 0.0)).hypot(floor)).filter(|error| error.is_finite())
     }
 
     fn met(&self) -> bool {
@@ -272,6 +294,7 @@ impl<'a> Plan<'a> {
                 self.modes,
                 100.0 * error
             ),
+            (_, Some(_), _) if self.closed_form => closed_form::REASON.to_owned(),
             (_, Some(_), _) if self.met() => {
                 let alone = self.hopeless.map_or(String::new(), |error| {
                     format!(

@@ -2,6 +2,7 @@
 
 mod checks;
 pub mod choice;
+mod closed_form;
 pub mod closed_forms;
 mod continua;
 pub mod deflection;

@@ -14,6 +14,8 @@ const SMALLEST_PATCH: f64 = 0.05;
 
 /// Widest patch, over the tip's radius, of a body that is never reached.
 const NEVER_REACHED: f64 = 0.25;
+/// Patch over the thickness that may be known to a quarter.
+const SMALL: f64 = 0.1;
 /// Peak of the inner contact over the outer one's below which kicks do not tell it.
 const WEAK: f64 = 0.15;
 
@@ -27,28 +29,35 @@ pub(super) struct Predictor {
     pub(super) force_peak: [f64; 2],
     /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
     contact_frequency: f64,
+    /// Contacts beyond the first of either body.
+    pub(super) touches: f64,
 }
 
 impl Predictor {
     pub(super) fn of(system: &System) -> Result<Self> {
         let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
         let of = |i: usize| (run.contacts[i].force_peak, run.contacts[i].impulse);
-        Ok(Self::from(system, of(0), (run.contacts[1].contacts > 0).then(|| of(1))))
+        let counts = [0, 1].map(|i| run.contacts[i].contacts);
+        Ok(Self::from(system, of(0), (counts[1] > 0).then(|| of(1)), counts))
     }
 
     /// As [`Predictor::of`], to a few percent where both contacts press alike: patches that are 3 % wider change no force by more than
-    /// 3e-4.
-    pub(super) fn rough(system: &System) -> Result<Self> {
-        let Some([outer, inner]) = kicks::run(system) else { return Self::of(system) };
-        if inner.force_peak < WEAK * outer.force_peak {
+    /// 3e-4. A contact that presses much less is known to a half: its patch, if that matters beside the `thickness` of the plate in
+    /// m, takes a better look.
+    pub(super) fn rough(system: &System, thickness: f64) -> Result<Self> {
+        let Some(run) = kicks::run(system, kicks::step(system)) else { return Self::of(system) };
+        let [outer, inner] = run.contacts;
+        let patch = system.laws[1].contact_radius(inner.force_peak);
+        let unknown = inner.force_peak < WEAK * outer.force_peak && patch > SMALL * thickness;
+        if unknown || inner.force_peak == 0.0 {
             return Self::of(system);
         }
         let of = |contact: Kicked| (contact.force_peak, contact.impulse);
-        Ok(Self::from(system, of(outer), Some(of(inner))))
+        Ok(Self::from(system, of(outer), Some(of(inner)), [outer.contacts, inner.contacts]))
     }
 
-    /// From force peaks in N and impulses in N s.
-    fn from(system: &System, outer: (f64, f64), inner: Option<(f64, f64)>) -> Self {
+    /// From force peaks in N and impulses in N s, and the number of contacts of either body.
+    fn from(system: &System, outer: (f64, f64), inner: Option<(f64, f64)>, counts: [u32; 2]) -> Self {
         let of = |i: usize, (peak, impulse): (f64, f64)| {
             (rounded(system.laws[i].contact_radius(peak)), 2.0 * peak / impulse, peak)
         };
@@ -60,6 +69,7 @@ impl Predictor {
             patch_radius: [outer.0, inner.0],
             force_peak: [outer.2, inner.2],
             contact_frequency: outer.1.max(inner.1),
+            touches: counts.map(|count| f64::from(count.saturating_sub(1))).iter().sum(),
         }
     }
 
@@ -72,6 +82,15 @@ impl Predictor {
     /// Angular frequency in rad/s below which a mode does not follow the contacts' forces.
     pub(super) fn slow(&self) -> f64 {
         self.contact_frequency
+    }
+
+    /// Relative error of a force for want of the damping of what yields under the contacts of `plate`: local waves, about as long as the
+    /// patches are wide, of which a model takes few and leaves those from `omega_next` rad/s on to static flexibilities.
+    pub(super) fn undamped(&self, plate: &Plate, omega_next: f64) -> f64 {
+        let shear = (plate.material.shear_modulus() / plate.material.density).sqrt();
+        let [outer, inner] = self.patch_radius;
+        let local = shear / outer.max(inner);
+        2.0 * plate.damping_ratio * self.slow() / local.max(omega_next)
     }
 
     /// Relative error of a force when the modes from `omega_next` rad/s on follow statically.

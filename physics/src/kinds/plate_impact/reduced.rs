@@ -3,6 +3,7 @@
 mod run;
 
 use super::choice::Plan;
+use super::closed_form;
 use super::continua::Continua;
 use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate};
 use super::results::PlateQuantities;
@@ -110,8 +111,11 @@ impl Reduced {
         let setup = &*scene.plate_impact()?.along_normal();
         require_covered(setup, None)?;
         let normal = Scene { setup: Setup::PlateImpact(Box::new(setup.clone())), ..scene.clone() };
+        if let Some((built, choice)) = closed_form::choose(setup, tolerance)? {
+            return Self::of(built, Model::C, scene.clone(), Some(choice));
+        }
         let mut plan = Plan::new(&normal, tolerance)?;
-        let mut continua: Option<Joined> = None;
+        let mut continua: Option<Joined> = plan.closed_form.then(|| plan.trials.closed_form(plan.modes));
         while let Some(cut) = plan.cut {
             match continuum(setup, Wanted::Below(cut), &plan.trials.predictor, Continua::meshed(cache)) {
                 Ok(built) => {

@@ -5,9 +5,10 @@
 //! costs as much as a run of models A and B.
 
 use super::errors::largest_error;
-use super::joined::{Cut, fluid_forces};
+use super::joined::{Cut, Joined, fluid_forces};
 use super::predictor::Predictor;
 use super::results::{PlateQuantities, quantities};
+use super::validity;
 use crate::analytical::circular_plate::rigidity;
 use crate::body::continuum::ContinuumPlate;
 use crate::body::layer::Waves;
@@ -18,7 +19,7 @@ use crate::dynamics::integration::Options;
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::scene::{DEFAULT_MODES, Material, PlateImpact, Shape};
+use crate::scene::{DEFAULT_MODES, PlateImpact};
 use std::f64::consts::PI;
 
 /// Numbers of modes of the layer that are tried.
@@ -78,7 +79,7 @@ impl<'a> Trials<'a> {
         let most = RUNGS.into_iter().find(enough).unwrap_or(RUNGS[RUNGS.len() - 1]);
         let waves = if most > DEFAULT_MODES { Waves::new(&setup.plate, most) } else { few };
         let layer = waves.layer(predictor.patch_radius);
-        Ok(Self { setup, bodies, waves, layer, predictor, options, tips: tips(setup, &predictor) })
+        Ok(Self { setup, bodies, waves, layer, predictor, options, tips: free_sphere::tip_residuals(setup, predictor.patch_radius) })
     }
 
     /// Models A and B.
@@ -103,6 +104,14 @@ impl<'a> Trials<'a> {
         self.run(self.layer.modal_body(modes, self.predictor.slow()), modes, self.tips)
     }
 
+    /// The same, ready to run, of a dry impact.
+    pub(super) fn closed_form(&self, modes: usize) -> Joined {
+        let plate = self.layer.modal_body(modes, self.predictor.slow());
+        let system = system(self.setup, &self.bodies, plate, self.tips);
+        let warnings = validity::warnings(self.setup, &self.predictor, &system);
+        Joined { system, omega_next: self.layer.omega_next(modes), fluid: None, warnings }
+    }
+
     fn run(&self, plate: ModalBody, modes: usize, tips: [f64; 2]) -> Result<PlateQuantities> {
         self.integrate(&system(self.setup, &self.bodies, plate, tips), modes)
     }
@@ -116,16 +125,6 @@ impl<'a> Trials<'a> {
     /// Relative error of a force in model C when the bending modes beyond `modes` follow statically.
     pub(super) fn truncation(&self, modes: usize) -> f64 {
         slowed(self.setup, &self.predictor, self.layer.omega_next(modes))
-    }
-
-    /// Relative error of a force for want of the damping of what yields under the contacts: local waves, about as long as the
-    /// patches are wide, of which a model takes few and leaves those from `omega_next` rad/s on to static flexibilities.
-    pub(super) fn undamped(&self, omega_next: f64) -> f64 {
-        let plate = &self.setup.plate;
-        let shear = (plate.material.shear_modulus() / plate.material.density).sqrt();
-        let [outer, inner] = self.predictor.patch_radius;
-        let local = shear / outer.max(inner);
-        2.0 * plate.damping_ratio * self.predictor.slow() / local.max(omega_next)
     }
 
     /// Largest estimated error of the quantities covered that model C has with `modes` bending modes for want of more, and the
@@ -179,16 +178,4 @@ fn system(setup: &PlateImpact, bodies: &[MovingBody; 2], plate: ModalBody, tips:
         None => plate,
     };
     System::of(setup, bodies, &plate, tips)
-}
-
-/// Residual flexibilities in m/N of both bodies in closed form.
-fn tips(setup: &PlateImpact, predictor: &Predictor) -> [f64; 2] {
-    let tip = |shape: &Shape, material: &Material, patch: f64| match *shape {
-        Shape::Sphere { radius } => free_sphere::sphere_residual(radius, material, patch),
-        Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => 0.0,
-    };
-    [
-        tip(&setup.outer.shape, &setup.outer.material, predictor.patch_radius[0]),
-        tip(&setup.inner.shape, &setup.inner.material, predictor.patch_radius[1]),
-    ]
 }

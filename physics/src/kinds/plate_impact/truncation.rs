@@ -71,7 +71,7 @@ pub(super) fn estimate(
     let modes = system.bending_modes();
     let mut lack = of(modes);
     // models A and B are held against all modes of their own plate, which are no waves under a contact
-    let undamped = if model == Model::C { trials.undamped(omega_next) } else { 0.0 };
+    let undamped = if model == Model::C { trials.predictor.undamped(&setup.plate, omega_next) } else { 0.0 };
     if model == Model::C && setup.plate.thickness > THIN * setup.plate.radius {
         lack = lack.or(of_continuum(system, omega_next, &options));
     }
