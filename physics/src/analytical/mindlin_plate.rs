@@ -142,3 +142,72 @@ fn rising_ratio(x: f64) -> f64 {
     let terms = [0.5, 0.125, 0.125, 25.0 / 128.0, 13.0 / 32.0, 1073.0 / 1024.0];
     1.0 - terms.into_iter().rev().fold(0.0, |sum, term| (sum + term) / x)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytical::circular_plate::{centre_deflection, frequency_parameters};
+    use approx::assert_relative_eq;
+
+    const EDGES: [Edge; 3] = [Edge::Clamped, Edge::SimplySupported, Edge::Free];
+
+    #[test]
+    fn a_thin_plate_is_kirchhoffs() {
+        for (edge, nu) in EDGES.into_iter().flat_map(|edge| [-0.9, 0.3].map(|nu| (edge, nu))) {
+            let material = Material::elastic("m", 1.0, nu, 1.0);
+            let section = Section::new(1e-4, &material);
+            let exact = frequency_parameters(edge, nu, 12);
+            let modes = section.modes(edge, nu, 1.0, 12);
+            assert_eq!(modes.len(), 12);
+            for (mode, k) in modes.iter().zip(exact) {
+                assert_relative_eq!(mode.wave_number, k, max_relative = 1e-5);
+                let centre = centre_deflection(edge, k) / section.mass.sqrt();
+                assert_relative_eq!(mode.centre, centre, max_relative = 1e-5);
+            }
+        }
+    }
+
+    /// T. Irie, G. Yamada, K. Takagi, J. Appl. Mech. 47, 1980, 652: omega a^2 sqrt(rho h/D) at thickness over radius 0.1, nu 0.3, whose
+    /// shear coefficient pi^2/12 is a sixteenth smaller.
+    #[test]
+    fn a_plate_of_a_tenth_is_that_of_irie_yamada_and_takagi() {
+        let material = Material::elastic("m", 1.0, 0.3, 1.0);
+        let section = Section::new(0.1, &material);
+        for (edge, parameters) in EDGES.into_iter().zip([
+            [9.941, 36.479, 75.664],
+            [4.894, 28.240, 65.942],
+            [8.868, 36.041, 76.676],
+        ]) {
+            for (mode, parameter) in section.modes(edge, 0.3, 1.0, 3).iter().zip(parameters) {
+                let omega = section.lower_wave(mode.wave_number).0;
+                let ours = omega * (section.mass / section.bending).sqrt();
+                assert_relative_eq!(ours, parameter, max_relative = 0.011);
+                assert!(ours > parameter);
+            }
+        }
+    }
+
+    /// Mass of the mode from its shape, by Simpson's rule.
+    #[test]
+    fn modes_are_mass_normalised() {
+        let material = Material::elastic("m", 1.0, 0.3, 1.0);
+        let section = Section::new(0.15, &material);
+        for edge in EDGES {
+            for mode in section.modes(edge, 0.3, 1.0, 4) {
+                let (k, l) = (mode.wave_number, mode.decay);
+                let rotation = section.rim(k, 1.0).rotation;
+                let amplitude = mode.centre / (1.0 + mode.rim);
+                let density = |r: f64| {
+                    let i1 = if r == 0.0 { 0.0 } else { bessel_i_ratio(l * r) * bessel_i0(l * r) };
+                    let w = libm::j0(k * r) + mode.rim * bessel_i0(l * r);
+                    let psi = rotation[0] * libm::j1(k * r) + mode.rim * rotation[1] * i1;
+                    2.0 * PI * r * (section.mass * w * w + section.rotary * psi * psi)
+                };
+                let count = 2000;
+                let weight = |n: usize| if n == 0 || n == count { 1.0 } else { [2.0, 4.0][n % 2] };
+                let sum: f64 = (0..=count).map(|n| weight(n) * density(n as f64 / count as f64)).sum();
+                assert_relative_eq!(amplitude.powi(2) * sum / (3.0 * count as f64), 1.0, max_relative = 1e-7);
+            }
+        }
+    }
+}
