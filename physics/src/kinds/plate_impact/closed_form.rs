@@ -20,7 +20,7 @@ use crate::result::{Candidate, Choice};
 use crate::scene::{Edge, Model, Plate, PlateImpact, Shape};
 
 /// Thickness over radius up to which the closed form is taken.
-const THICKEST: f64 = 0.25;
+pub(super) const THICKEST: f64 = 0.25;
 /// Poisson's ratio from which on it is taken for a simply supported plate: below, the rim decides about the first mode.
 const RIM_DECIDES: f64 = -0.5;
 /// Patch over a sphere's radius up to which the closed form of the sphere is known.
