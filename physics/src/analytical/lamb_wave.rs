@@ -65,7 +65,8 @@ fn exact(x: f64, near: f64, nu: f64) -> (f64, f64) {
 /// [`FlexuralWave::face`] for x = xi h, alpha/xi and beta/xi.
 fn face(x: f64, [a, b]: [f64; 2]) -> f64 {
     let amplitude = -2.0 * a / (1.0 + b * b);
-    let mean = if x < CANCELLING { by_quadrature(x, [a, b], amplitude) } else { integrated(x, [a, b], amplitude) };
+    let mean =
+        if x < CANCELLING { by_quadrature(x, [a, b], amplitude) } else { integrated(x, [a, b], amplitude) };
     (a + amplitude).abs() / mean.sqrt()
 }
 
@@ -78,7 +79,8 @@ fn integrated(x: f64, [a, b]: [f64; 2], amplitude: f64) -> f64 {
         [edge + rest, rest - edge]
     };
     let difference = (a - b) * (a + b) * x;
-    let between = [2.0 * (a * tanh_a - b * tanh_b) / difference, 2.0 * (a * tanh_b - b * tanh_a) / difference];
+    let between =
+        [2.0 * (a * tanh_a - b * tanh_b) / difference, 2.0 * (a * tanh_b - b * tanh_a) / difference];
     let [of_a, of_b] = [alone(a, tanh_a), alone(b, tanh_b)];
     let across = a * a * of_a[0] + 2.0 * a * amplitude * between[0] + amplitude.powi(2) * of_b[0];
     let along = of_a[1] + 2.0 * b * amplitude * between[1] + (b * amplitude).powi(2) * of_b[1];

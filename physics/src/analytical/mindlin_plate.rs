@@ -111,7 +111,9 @@ impl Section {
                 [.., before, last] => 2.0 * last - before,
                 _ => 0.5 * (bracket[0] + bracket[1]),
             };
-            let Some(k) = root_from(characteristic, near.clamp(bracket[0], bracket[1]), bracket) else { break };
+            let Some(k) = root_from(characteristic, near.clamp(bracket[0], bracket[1]), bracket) else {
+                break;
+            };
             found.push(k);
         }
         found.into_iter().map(|k| self.mode(edge, radius, k)).collect()
@@ -173,11 +175,9 @@ mod tests {
     fn a_plate_of_a_tenth_is_that_of_irie_yamada_and_takagi() {
         let material = Material::elastic("m", 1.0, 0.3, 1.0);
         let section = Section::new(0.1, &material);
-        for (edge, parameters) in EDGES.into_iter().zip([
-            [9.941, 36.479, 75.664],
-            [4.894, 28.240, 65.942],
-            [8.868, 36.041, 76.676],
-        ]) {
+        for (edge, parameters) in
+            EDGES.into_iter().zip([[9.941, 36.479, 75.664], [4.894, 28.240, 65.942], [8.868, 36.041, 76.676]])
+        {
             for (mode, parameter) in section.modes(edge, 0.3, 1.0, 3).iter().zip(parameters) {
                 let omega = section.lower_wave(mode.wave_number).0;
                 let ours = omega * (section.mass / section.bending).sqrt();

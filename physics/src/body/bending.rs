@@ -9,8 +9,11 @@
 
 use super::free_sphere::patch_transform;
 use crate::analytical::lamb_wave::FlexuralWave;
-use crate::analytical::mindlin_plate::Section;
+use crate::analytical::mindlin_plate::{Mode, Section};
 use crate::scene::{Edge, Plate};
+
+/// Share of the rim in the centre that is nothing.
+const UNFELT: f64 = 1e-9;
 
 /// A bending mode as the contacts see it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,16 +47,13 @@ fn rising_transform(x: f64) -> f64 {
     3.0 * (x * x.cosh() - x.sinh()) / x.powi(3)
 }
 
-/// Share of the rim in the centre that is nothing.
-const UNFELT: f64 = 1e-9;
-
 /// The `count` lowest elastic ones of `plate`, or as many as there are below the frequency at which its thickness shears.
 pub fn modes(plate: &Plate, count: usize) -> Vec<BendingMode> {
     let Plate { radius, thickness, edge, ref material, .. } = *plate;
     let nu = material.poisson_ratio;
     let section = Section::new(thickness, material);
     let fitted = section.modes(edge, nu, radius, count);
-    let mode = |(n, fit): (usize, crate::analytical::mindlin_plate::Mode)| {
+    let mode = |(n, fit): (usize, Mode)| {
         let (earlier, widened) = match edge {
             Edge::Clamped => shift(nu, fit.wave_number * thickness),
             Edge::SimplySupported | Edge::Free => (0.0, 0.0),

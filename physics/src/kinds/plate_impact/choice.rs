@@ -1,5 +1,7 @@
 //! `auto`: the cheapest reduced model whose estimated error meets a tolerance, before any continuum is meshed.
 //!
+//! Where the plate has a closed form ([`super::closed_form`]) but no number of its modes is enough at a glance, trial impacts tell.
+//!
 //! What models A and B lack is estimated by solving the impact once more with the plate as an elastic layer (`trials`). Their
 //! estimated error is
 //!
@@ -8,7 +10,7 @@
 //! with the share of what the layer corrects that it may itself be off by, the damping under the contacts that models with few
 //! modes lack, and the error that model C was found to have against the finite-element reference as the floor. The same layer
 //! with fewer modes tells how many model C needs; built, model C is held against itself with fewer modes (`truncation`), and
-//! has more of them where that finds too large an error.
+//! has more of them where that finds too large an error. Of a thick plate the layer says little: model C alone is asked.
 
 use super::closed_form;
 use super::errors::COVERED;
@@ -263,7 +265,8 @@ impl<'a> Plan<'a> {
     /// An error with what models with few modes lack and with the floor; `None` where that is not known.
     fn total(&self, error: f64) -> Option<f64> {
         let floor = self.floor?;
-        Some((error + self.trials.predictor.undamped(&self.trials.setup.plate, 0.0)).hypot(floor)).filter(|error| error.is_finite())
+        Some((error + self.trials.predictor.undamped(&self.trials.setup.plate, 0.0)).hypot(floor))
+            .filter(|error| error.is_finite())
     }
 
     /// Whether the layer says little of the plate: what model C needs it says itself.

@@ -79,7 +79,15 @@ impl<'a> Trials<'a> {
         let most = RUNGS.into_iter().find(enough).unwrap_or(RUNGS[RUNGS.len() - 1]);
         let waves = if most > DEFAULT_MODES { Waves::new(&setup.plate, most) } else { few };
         let layer = waves.layer(predictor.patch_radius);
-        Ok(Self { setup, bodies, waves, layer, predictor, options, tips: free_sphere::tip_residuals(setup, predictor.patch_radius) })
+        Ok(Self {
+            setup,
+            bodies,
+            waves,
+            layer,
+            predictor,
+            options,
+            tips: free_sphere::tip_residuals(setup, predictor.patch_radius),
+        })
     }
 
     /// Models A and B.
