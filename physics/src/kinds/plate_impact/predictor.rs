@@ -14,8 +14,6 @@ const SMALLEST_PATCH: f64 = 0.05;
 
 /// Widest patch, over the tip's radius, of a body that is never reached.
 const NEVER_REACHED: f64 = 0.25;
-/// Patch over the thickness that may be known to a quarter.
-const SMALL: f64 = 0.1;
 /// Peak of the inner contact over the outer one's below which kicks do not tell it.
 const WEAK: f64 = 0.15;
 
@@ -42,13 +40,12 @@ impl Predictor {
     }
 
     /// As [`Predictor::of`], to a few percent where both contacts press alike: patches that are 3 % wider change no force by more than
-    /// 3e-4. A contact that presses much less is known to a half: its patch, if that matters beside the `thickness` of the plate in
-    /// m, takes a better look.
-    pub(super) fn rough(system: &System, thickness: f64) -> Result<Self> {
-        let Some(run) = kicks::run(system, kicks::step(system)) else { return Self::of(system) };
-        let [outer, inner] = run.contacts;
+    /// 3e-4. A contact that presses much less is known to a half, its patch to a quarter: unless that is below `negligible` m, it takes a
+    /// better look.
+    pub(super) fn rough(system: &System, negligible: f64) -> Result<Self> {
+        let Some([outer, inner]) = kicks::run(system) else { return Self::of(system) };
         let patch = system.laws[1].contact_radius(inner.force_peak);
-        let unknown = inner.force_peak < WEAK * outer.force_peak && patch > SMALL * thickness;
+        let unknown = inner.force_peak < WEAK * outer.force_peak && patch > negligible;
         if unknown || inner.force_peak == 0.0 {
             return Self::of(system);
         }

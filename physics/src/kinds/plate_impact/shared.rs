@@ -65,7 +65,7 @@ impl SharedBodies {
             return Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, &self.kirchhoff)?);
         }
         let plate = self.kirchhoff.rough_modes(&setup.plate, DEFAULT_MODES)?;
-        Predictor::rough(&join(setup, plate, [0.0; 2])?, setup.plate.thickness)
+        Predictor::rough(&join(setup, plate, [0.0; 2])?, 0.0)
     }
 
     /// The bodies of model C.
