@@ -145,7 +145,7 @@ fn a_looser_tolerance_never_takes_a_dearer_model_and_promises_are_kept_on_table_
                 assert_relative_eq!(ours, exact, max_relative = tolerance + 1e-3);
             }
         }
-        assert!(dearest[1].1 <= 3, "{name}: at 30 % few modes are needed");
+        assert!(dearest[1].1 <= 6, "{name}: at 30 % few modes are needed");
     }
 }
 
@@ -225,8 +225,8 @@ fn column(study: &Study, name: &str) -> Vec<f64> {
 #[test]
 fn a_thin_plate_takes_no_mesh_and_is_the_meshed_one() {
     for (name, tolerance, error) in [
-        ("scaled-plate-r10", 0.003, 6e-4),
-        ("scaled-plate-r6.35", 0.003, 6e-4),
+        ("scaled-plate-r10", 0.003, 1e-3),
+        ("scaled-plate-r6.35", 0.003, 1e-3),
         ("scenes/validation/free-plate.toml", 0.01, 1e-3),
         ("scenes/validation/supported-plate.toml", 0.01, 1e-3),
         ("scenes/validation/inner-gap.toml", 0.01, 1e-3),
