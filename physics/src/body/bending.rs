@@ -3,7 +3,7 @@
 //! Away from the rim a mode is the flexural wave of the elastic layer, exact in three dimensions. How it is reflected by the rim
 //! decides which wave numbers fit: Mindlin's plate tells that of free and simply supported edges to 1e-4 of the frequencies. A
 //! clamped rim also holds what the thickness would do by Poisson's ratio, as if the plate ended a little earlier; that shift over the
-//! thickness depends on Poisson's ratio and the wave number times the thickness alone ([`shift`]).
+//! thickness depends on Poisson's ratio and the wave number times the thickness alone (`shift`).
 //!
 //! That holds below the frequency at which the thickness shears. From there on there are several waves that the rim mixes.
 

@@ -1,6 +1,6 @@
 //! `auto`: the cheapest reduced model whose estimated error meets a tolerance, before any continuum is meshed.
 //!
-//! Where the plate has a closed form ([`super::closed_form`]) but no number of its modes is enough at a glance, trial impacts tell.
+//! Where the plate has a closed form (`closed_form`) but no number of its modes is enough at a glance, trial impacts tell.
 //!
 //! What models A and B lack is estimated by solving the impact once more with the plate as an elastic layer (`trials`). Their
 //! estimated error is
