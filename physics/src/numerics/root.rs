@@ -27,7 +27,7 @@ pub(crate) fn first_fall(
 /// Secants of [`root_near`] at most, and the step, relative, from which on the next one ends at rounding.
 const SECANTS: usize = 12;
 const LAST_STEP: f64 = 1e-9;
-/// Last step of [`root_from`], relative: the root is as near as its square root's next.
+/// Last step of [`root_from`], relative; the error that is left is about its square.
 const CLOSE: f64 = 1e-8;
 
 /// Where the positive `f`, about the power `power` of its positive argument, is `value`: by secants of the logarithms from `near` on.
@@ -52,7 +52,7 @@ pub(crate) fn root_near(f: impl Fn(f64) -> f64, value: f64, near: f64, power: f6
     None
 }
 
-/// Root of `f` within the `bracket`, found from `near` on, to [`CLOSE`] of it: by secants, and where these leave the bracket by [`root`];
+/// Root of `f` within the `bracket`, found from `near` on: by secants to about the square of [`CLOSE`], and where these leave the bracket by [`root`];
 /// `None` if `f` has the same sign at both ends then.
 pub(crate) fn root_from(f: impl Fn(f64) -> f64, near: f64, bracket: [f64; 2]) -> Option<f64> {
     let [low, high] = bracket;
