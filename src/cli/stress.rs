@@ -41,13 +41,13 @@ fn table(report: &StressReport) -> String {
     )];
     if !report.undecided.is_empty() {
         lines.push(format!(
-            "  independent solution too uncertain to compare with, seeds {}",
+            "  too uncertain to compare, be it the independent solution or the result by its own warning, seeds {}",
             report.undecided.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")
         ));
     }
     if !report.beyond_model.is_empty() {
         lines.push(format!(
-            "  refused, since the plate bends around the inner body in the fluid or rattles endlessly: {}",
+            "  refused, since the plate bends around the inner body in the fluid, or rattles or trembles endlessly: {}",
             report.beyond_model.len()
         ));
     }

@@ -19,7 +19,8 @@ const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
 pub(super) enum Comparison {
     /// There is no independent solution at a bearable cost.
     TooDear,
-    /// The independent solution is itself uncertain: at two tolerances it differs by more than a third of the bound.
+    /// The independent solution is itself uncertain: at two tolerances it differs by more than a third of the bound. Or the result
+    /// says itself that it is no more exact.
     Undecided,
     /// Largest difference of a velocity, over the impact speed, and of a force peak, relative (see [`differences`]).
     Differences([f64; 2]),
@@ -59,7 +60,9 @@ pub(super) fn compare(
         None => Comparison::Undecided,
         Some(careful) => {
             let difference = apart(ours, careful);
-            if !within(difference, bound) && !within(apart(quick, careful), bound / 3.0) {
+            let unsure = !within(apart(quick, careful), bound / 3.0)
+                || within(difference, result.error_estimate.unwrap_or(0.0));
+            if !within(difference, bound) && unsure {
                 Comparison::Undecided
             } else {
                 Comparison::Differences(difference)

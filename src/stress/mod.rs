@@ -73,14 +73,15 @@ pub struct StressReport {
     /// Cases that were also solved independently.
     pub compared: u64,
     /// Seeds of those among them that differ from an independent solution which is itself uncertain: at two tolerances it
-    /// differs from itself by more than a third of the bound (many contacts, each a kink that the method does not know of).
+    /// differs from itself by more than a third of the bound (many contacts, each a kink that the method does not know of); or
+    /// whose result warns that it is uncertain by as much.
     pub undecided: Vec<u64>,
     /// Cases that were solved in a fluid as well.
     pub wet: u64,
     /// Of these, compared with an independent solution.
     pub wet_compared: u64,
     /// Seeds of those that the program refuses in a sentence: whose plate in the fluid bends around the inner body, or rattles
-    /// between bodies far heavier than itself more often than it follows.
+    /// or trembles between bodies far heavier than itself more often than it follows.
     pub beyond_model: Vec<u64>,
     /// Cases with more than one contact at the outer or the inner body.
     pub recontacts: u64,

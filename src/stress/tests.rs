@@ -216,3 +216,33 @@ fn a_foil_that_rattles_endlessly_is_refused_as_that() {
     let Err(Error::BeyondModel(sentence)) = solved else { panic!("{solved:?}") };
     assert!(sentence.contains("contacts") && sentence.contains("run.end_time"), "{sentence}");
 }
+
+/// A light inner body that is hardly touched: with velocities and peaks of two tolerances that agree by chance the inner force is 1e-5 off.
+#[test]
+fn agreement_by_chance_does_not_count() {
+    assert_eq!(run(1, 14_000_095_564, &|| ()).unwrap().failures, []);
+}
+
+/// 148 contacts, which amplify errors a hundred thousand times: the result says so.
+#[test]
+fn a_result_that_says_it_is_uncertain_is_undecided() {
+    let report = run(1, 14_000_099_639, &|| ()).unwrap();
+    assert_eq!((report.failures, report.undecided), (vec![], vec![14_000_099_639]));
+}
+
+/// A foil of .1 mm between 23 kg and 23 t trembles at 1e8 rad/s on an inner contact a hundred thousand times as stiff as the outer one:
+/// five million steps follow it through a tenth of the impact.
+#[test]
+fn a_foil_that_trembles_for_ever_is_refused_as_that() {
+    let case = draw(14_000_012_920);
+    let solved = integrate(&case.system, None, &options(&case, 1e-7));
+    let Err(Error::BeyondModel(sentence)) = solved else { panic!("{solved:?}") };
+    assert!(sentence.contains("vibration of 1.") && sentence.contains("run.end_time"), "{sentence}");
+}
+
+/// A plate as soft as rubber leaves the inner body at 7 mm and comes back at 19 mm: there the edge of their overlap was looked for.
+#[test]
+fn a_plate_that_comes_back_to_the_inner_body_is_refused() {
+    let report = run(1, 14_000_069_294, &|| ()).unwrap();
+    assert_eq!((report.failures, report.beyond_model), (vec![], vec![14_000_069_294]));
+}

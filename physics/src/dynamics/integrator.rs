@@ -15,7 +15,7 @@ use super::ladder::Ladder;
 use super::recorder::Recorder;
 use super::stages::{STAGES, Stages};
 use super::step_bounds::{Bounds, EnergyAccount, base_step, force_scale, momentum_scale};
-use super::system::System;
+use super::system::{System, dot};
 use crate::error::{Error, Result};
 use std::sync::LazyLock;
 use wide::f64x4;
@@ -24,6 +24,9 @@ use wide::f64x4;
 const MAX_STEPS: u64 = 5_000_000;
 /// Contacts beyond which that is the impact's nature: a light plate that rattles between heavy bodies which close in on it.
 const RATTLING: u32 = 1000;
+/// Turn of the quickest vibration per step, rad, from which on the steps are no shorter than it needs: then a foil that trembles on a
+/// stiff contact, quicker than any of its modes, does so for too long.
+const TURN_PER_STEP: f64 = 0.1;
 /// Step lengths are the base length times 2^-level, level in this range.
 const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 /// Share of a force's admissible defect at which the sweeps may end.
@@ -35,7 +38,7 @@ const START_LEVEL: i32 = 4;
 ///
 /// # Errors
 /// [`Error::Solver`] if the contact has no equilibrium, the step falls below 2^-44 of its base length, or the run does not end;
-/// [`Error::BeyondModel`] if it does not since the bodies rattle.
+/// [`Error::BeyondModel`] if it does not since the bodies rattle, or tremble on their contacts.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
     let recorder = options.sample_interval.map(|interval| Recorder::new(system, &COLLOCATION, interval));
@@ -240,11 +243,25 @@ impl<'a> Stepper<'a> {
     /// That there is no end, and whether the integration or the impact itself is to blame for it.
     fn endless(&self) -> Error {
         let touches: u32 = self.contacts.iter().map(|contact| contact.contacts).sum();
+        let vibration = self.quickest_vibration();
+        let turned = vibration * self.time;
         let sentence = format!(
-            "reduced model: no end after {MAX_STEPS} steps and {touches} contacts, at t = {:.6e} s; set `run.end_time`",
+            "reduced model: no end after {MAX_STEPS} steps, {touches} contacts and {turned:.1e} rad of a vibration of {vibration:.1e} rad/s between the contacts, at t = {:.6e} s; set `run.end_time`, or take fewer modes",
             self.time
         );
-        if touches > RATTLING { Error::BeyondModel(sentence) } else { Error::Solver(sentence) }
+        if touches > RATTLING || turned > TURN_PER_STEP * self.steps as f64 {
+            Error::BeyondModel(sentence)
+        } else {
+            Error::Solver(sentence)
+        }
+    }
+
+    /// Angular frequency in rad/s of the bodies' quickest vibration while the contacts are as stiff as at their force peaks.
+    fn quickest_vibration(&self) -> f64 {
+        let system = self.solver.system;
+        let stiffness = system.tangent([0, 1].map(|i| system.laws[i].approach(self.contacts[i].force_peak)));
+        let on_contact = |i: usize| (stiffness[i][i] * dot(&system.approach[i], &system.approach[i])).sqrt();
+        on_contact(0).max(on_contact(1)).max(system.highest_frequency())
     }
 
     /// Why no step is short enough; whether the last one could be `solved`.

@@ -226,16 +226,17 @@ impl Film {
 ///
 /// The waves of the plate can bring it to the other body farther out again; that is no end of this overlap.
 fn edge_of_overlap(gap: impl Fn(f64) -> f64, axis_gap: f64, flat: f64, end: f64) -> f64 {
-    // regula falsi after Illinois: the gap is nearly linear in r^2
     let mut low = (0.0, axis_gap);
     let mut high = (flat.min(end), gap(flat.min(end)));
-    while high.1 <= 0.0 {
-        // a plate that bends around the body may have left it and come back
-        let left = (1..OVERLAP_SAMPLES)
-            .map(|i| low.0 + (high.0 - low.0) * f64::from(i) / f64::from(OVERLAP_SAMPLES))
+    // a plate that bends around the body may leave it and come back
+    let left = |low: f64, high: f64| {
+        (1..OVERLAP_SAMPLES)
+            .map(|i| low + (high - low) * f64::from(i) / f64::from(OVERLAP_SAMPLES))
             .map(|at| (at, gap(at)))
-            .find(|(_, gap)| *gap > 0.0);
-        if let Some(left) = left {
+            .find(|(_, gap)| *gap > 0.0)
+    };
+    while high.1 <= 0.0 {
+        if let Some(left) = left(low.0, high.0) {
             high = left;
         } else if high.0 >= end {
             return end;
@@ -244,11 +245,21 @@ fn edge_of_overlap(gap: impl Fn(f64) -> f64, axis_gap: f64, flat: f64, end: f64)
             (low, high) = (high, (next, gap(next)));
         }
     }
+    let root = root_between(&gap, low, high, [1e-14 * -axis_gap, 1e-15 * end]);
+    match left(low.0, root) {
+        Some(first) => root_between(&gap, low, first, [1e-14 * -axis_gap, 1e-15 * end]),
+        None => root,
+    }
+}
+
+/// One of the roots of `gap` between a place with its negative value and one with its positive value, by regula falsi after
+/// Illinois: the gap is nearly linear in r^2. `close` are the value and the width that end the search.
+fn root_between(gap: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64), close: [f64; 2]) -> f64 {
     let mut last = 0;
     for _ in 0..100 {
         let at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
         let value = gap(at);
-        if value.abs() <= 1e-14 * -axis_gap || high.0 - low.0 <= 1e-15 * end {
+        if value.abs() <= close[0] || high.0 - low.0 <= close[1] {
             return at;
         }
         if value > 0.0 {
