@@ -158,13 +158,18 @@ impl<'a> Plan<'a> {
     /// plate alone, with any number of modes, is estimated to be off by more than `bearable`.
     fn kirchhoff(&mut self, bearable: f64) -> Option<Rated> {
         let (layer, speed) = (self.layer?, self.trials.setup.outer.speed);
-        let corrected = Lack::between(&self.trials.converged().ok()?, &layer, speed).error;
+        let kirchhoff = self.trials.converged().ok()?;
+        let corrected = Lack::between(&kirchhoff, &layer, speed).error;
         let plate = &self.trials.setup.plate;
         let (share, safety) = (self.by_thickness(LAYER_SHARE), self.by_thickness(SAFETY));
         let rim = match plate.edge {
             Edge::SimplySupported => {
                 let thickness = plate.thickness / plate.radius;
-                RIM * (thickness / (1.0 + plate.material.poisson_ratio)).powi(2)
+                let rim = RIM * (thickness / (1.0 + plate.material.poisson_ratio)).powi(2);
+                // where the plate might as well not give way, its rim does not matter either
+                let rigid =
+                    self.trials.kirchhoff(0).map(|rigid| Lack::between(&kirchhoff, &rigid, speed).error);
+                rim.min(rigid.unwrap_or(f64::INFINITY))
             }
             Edge::Clamped | Edge::Free => 0.0,
         };
