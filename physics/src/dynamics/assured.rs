@@ -28,7 +28,7 @@ const SMALL_UNDAMPED_DEFECTS: f64 = 3.0;
 const STRONG_DAMPING: f64 = 0.1;
 const FULL_SHARE: f64 = 0.2;
 /// Factor between the tolerances of two solutions. By chance two agree and are both off: of 5 000 that are ten times apart the second was
-/// then off by up to 26 times the first's tolerance, with this factor, which costs a tenth more, by 7 times.
+/// then off by up to 26 times the first's tolerance, with this factor, which takes a seventh more steps, by 7 times.
 const TIGHTER: f64 = 0.03;
 /// Tightest tolerance that is tried.
 const TIGHTEST: f64 = 1e-12;

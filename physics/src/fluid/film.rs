@@ -245,11 +245,9 @@ fn edge_of_overlap(gap: impl Fn(f64) -> f64, axis_gap: f64, flat: f64, end: f64)
             (low, high) = (high, (next, gap(next)));
         }
     }
-    let root = root_between(&gap, low, high, [1e-14 * -axis_gap, 1e-15 * end]);
-    match left(low.0, root) {
-        Some(first) => root_between(&gap, low, first, [1e-14 * -axis_gap, 1e-15 * end]),
-        None => root,
-    }
+    let root = |high| root_between(&gap, low, high, [1e-14 * -axis_gap, 1e-15 * end]);
+    let found = root(high);
+    left(low.0, found).map_or(found, root)
 }
 
 /// One of the roots of `gap` between a place with its negative value and one with its positive value, by regula falsi after
