@@ -111,7 +111,7 @@ impl Reduced {
         let setup = &*scene.plate_impact()?.along_normal();
         require_covered(setup, None)?;
         let normal = Scene { setup: Setup::PlateImpact(Box::new(setup.clone())), ..scene.clone() };
-        if let Some((built, choice)) = closed_form::choose(setup, tolerance)? {
+        if let Some((built, choice)) = closed_form::choose(setup, tolerance, scene.run.end_time)? {
             return Self::of(built, Model::C, scene.clone(), Some(choice));
         }
         let mut plan = Plan::new(&normal, tolerance)?;
