@@ -221,14 +221,14 @@ fn column(study: &Study, name: &str) -> Vec<f64> {
     study.rows.iter().map(|row| number(&row[place])).collect()
 }
 
-/// Closed form and mesh, with as many modes.
+/// Closed form and mesh, with as many modes. So many that it does not matter which of them stretch the plate: the mesh counts those too.
 #[test]
 fn a_thin_plate_takes_no_mesh_and_is_the_meshed_one() {
     for (name, tolerance, error) in [
         ("scaled-plate-r10", 0.003, 1e-3),
         ("scaled-plate-r6.35", 0.003, 1e-3),
         ("scenes/validation/free-plate.toml", 0.01, 1e-3),
-        ("scenes/validation/supported-plate.toml", 0.01, 1e-3),
+        ("scenes/validation/supported-plate.toml", 0.003, 1e-3),
         ("scenes/validation/inner-gap.toml", 0.01, 1e-3),
     ] {
         let scene = Scene::read(resolve(name).unwrap()).unwrap();
