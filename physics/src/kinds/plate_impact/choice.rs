@@ -33,7 +33,7 @@ pub const DEFAULT_TOLERANCE: f64 = 0.01;
 const INTEGRATION_SHARE: f64 = 0.003;
 /// Error of models A and B over the difference to the layer, of a thin plate and per thickness over radius.
 const SAFETY: [f64; 2] = [1.5, 8.0];
-/// Error over what model C is estimated to lack, of a thin plate and per thickness over radius.
+/// Error over what model C is estimated to lack, of a thin plate and per thickness over radius, in an impact of single touches.
 const BUILT_SAFETY: [f64; 2] = [3.0, 2.0];
 /// The same over what half or three quarters of a thick plate's modes change: with half of it 3 of 147 promises were broken.
 const SELF_SAFETY: [f64; 2] = [2.0, 2.0];
@@ -52,8 +52,8 @@ const LEFT_OUT_SHARE: f64 = 0.25;
 /// Patch radius over the plate's thickness up to which the estimate is a promise: of 1400 random scenes 3 of 32 promises were
 /// broken beyond, 6 of 3027 up to there.
 pub(super) const PROMISED: f64 = 0.9;
-/// Fewest bending modes that model C is built with: with fewer it can't be held against itself.
-const LEAST_BUILT: usize = 4;
+/// Fewest bending modes that model C is taken with: held against itself with more or fewer, it would agree by chance too often.
+pub(super) const LEAST: usize = 4;
 /// Most modes that model C is built with when its first ones turn out to be too few.
 const MOST_BUILT: usize = 128;
 /// Share of promises that `study auto` finds to be kept on random scenes, at least: of 409 on plates up to a quarter of their radius
@@ -135,7 +135,7 @@ impl<'a> Plan<'a> {
             None if plan.is_thick() => plan.cut = Some(Cut { omega: f64::INFINITY, modes: FIRST_BUILT }),
             None => {
                 (plan.modes, plan.error) = plan.continuum();
-                plan.cut = Some(plan.trials.cut(plan.modes.max(LEAST_BUILT)));
+                plan.cut = Some(plan.trials.cut(plan.modes));
             }
         }
         Ok(plan)
@@ -149,7 +149,8 @@ impl<'a> Plan<'a> {
             return false;
         }
         let (modes, error) = self.continuum();
-        let own = closed_form::own_error(&setup.plate, self.trials.predictor.touches);
+        let (Some(layer), Ok(misshapen)) = (self.layer, self.trials.misshapen()) else { return false };
+        let own = closed_form::BY_TWICE * Lack::between(&misshapen, &layer, setup.outer.speed).error;
         self.error = error.map(|error| error.hypot(own));
         if let Some(taken) = self.tried.iter_mut().find(|tried| tried.modes == modes) {
             taken.estimated_error = self.error;
@@ -214,8 +215,8 @@ impl<'a> Plan<'a> {
         };
         // without the modes of the contact's own frequency nothing is right
         let possible = |n: &usize| *n == most || *n < most && self.trials.truncation(*n) <= 1.0;
-        let rungs: Vec<usize> = RUNGS.into_iter().filter(possible).collect();
-        let safety = self.by_thickness(BUILT_SAFETY);
+        let rungs: Vec<usize> = RUNGS.into_iter().filter(|n| *n >= LEAST && possible(n)).collect();
+        let safety = self.safety();
         let mut attempt = |modes: usize| {
             let lack = self.trials.truncated(modes, self.layer.as_ref());
             let error = self.total(safety * lack.error);
@@ -246,7 +247,7 @@ impl<'a> Plan<'a> {
         } else {
             let lack = self.trials.truncated(self.modes, self.layer.as_ref());
             let lack = lack.or(of_continuum(built, omega_next, options));
-            Lack { error: self.by_thickness(BUILT_SAFETY) * lack.error, ..lack }
+            Lack { error: self.safety() * lack.error, ..lack }
         };
         self.error = self.total(lack.error);
         self.note(Model::C, self.modes, self.error, lack.quantity);
@@ -272,6 +273,11 @@ impl<'a> Plan<'a> {
     fn by_thickness(&self, [thin, more]: [f64; 2]) -> f64 {
         let plate = &self.trials.setup.plate;
         thin + more * plate.thickness / plate.radius
+    }
+
+    /// Error over what model C is estimated to lack.
+    fn safety(&self) -> f64 {
+        self.by_thickness(BUILT_SAFETY) * closed_form::amplified(self.trials.predictor.touches)
     }
 
     /// An error with what models with few modes lack and with the floor; `None` where that is not known.

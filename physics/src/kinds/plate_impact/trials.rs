@@ -4,6 +4,7 @@
 //! flexibility that Kirchhoff's plate on half-spaces has not; the spheres are Lur'e's ([`crate::body::free_sphere`]). Each
 //! costs as much as a run of models A and B.
 
+use super::closed_form;
 use super::errors::largest_error;
 use super::joined::{Cut, Joined, fluid_forces};
 use super::predictor::Predictor;
@@ -112,7 +113,14 @@ impl<'a> Trials<'a> {
         self.run(self.layer.modal_body(modes, self.predictor.slow()), modes, self.tips)
     }
 
-    /// The same, ready to run, of a dry impact.
+    /// [`Self::continuum`] with all modes, as far off as it may be itself.
+    pub(super) fn misshapen(&self) -> Result<PlateQuantities> {
+        let modes = self.waves.modes();
+        let plate = self.layer.modal_body(modes, self.predictor.slow());
+        self.run(closed_form::misshapen(plate, &self.setup.plate), modes, self.tips)
+    }
+
+    /// [`Self::continuum`], ready to run, of a dry impact.
     pub(super) fn closed_form(&self, modes: usize) -> Joined {
         let plate = self.layer.modal_body(modes, self.predictor.slow());
         let system = system(self.setup, &self.bodies, plate, self.tips);
