@@ -110,9 +110,7 @@ pub(super) fn choose(
     let floor = validity::measured_error(patch, plate.thickness).filter(|_| !wide && holds(setup, patch));
     let Some(floor) = floor else { return Ok(None) };
     let approach = look.laws[0].approach(predictor.force_peak[0]) / predictor.force_peak[0];
-    let total = |lack: f64, next: &BendingMode| {
-        (lack + predictor.undamped(plate, next.omega)).hypot(floor)
-    };
+    let total = |lack: f64, next: &BendingMode| (lack + predictor.undamped(plate, next.omega)).hypot(floor);
     let own = own_error(plate) * amplified(predictor.touches);
     let enough = |modes: &[BendingMode]| {
         let lacks = lacks(plate, modes, &predictor);
