@@ -51,7 +51,7 @@ pub struct Residual {
 
 impl Residual {
     /// The residual `flexibility` of the contacts `laws`, m/N, signed for forces that press. The table is taken as far as the forces
-    /// grow with the approaches, whichever patch is the wider.
+    /// grow with the approaches: of each contact alone, and of both, whichever patch is the wider.
     pub fn new(flexibility: &PatchFlexibility, laws: &[Hertz; 2]) -> Self {
         let mut residual = Self {
             own: flexibility.own,
@@ -61,27 +61,30 @@ impl Residual {
         };
         if residual.per_patch.iter().all(|scale| *scale > 0.0) {
             let step = FARTHEST / TESTED as f64;
-            let margin = |n: usize| residual.convexity(laws, n as f64 * step);
-            let farthest = farthest_positive(TESTED, margin);
-            residual.largest = residual.per_patch.map(|scale| (farthest as f64).max(0.5) * step / scale);
+            let margin = |x: [f64; 2], places: &[[f64; 2]], n: usize| {
+                let share = n as f64 / TESTED as f64;
+                let at = |place: &[f64; 2]| residual.convexity(laws, [0, 1].map(|i| place[i] * share * x[i]));
+                places.iter().map(at).fold(1.0, f64::min)
+            };
+            let farthest =
+                |x, places: &[[f64; 2]]| farthest_positive(TESTED, |n| margin(x, places, n)).max(0.5) * step;
+            let x = [[1.0, 0.0], [0.0, 1.0]].map(|alone| farthest([FARTHEST; 2], &[alone]));
+            let share = farthest(x, &[[1.0, 1.0], [1.0, 0.25], [0.25, 1.0]]) / FARTHEST;
+            residual.largest = [0, 1].map(|i| share * x[i] / residual.per_patch[i]);
         }
         residual
     }
 
-    /// How far U is from not being convex where the wider patch has the square `x` in those of the table: 1 as under half-spaces
+    /// How far U is from not being convex where the patches have the squares `x` in those of the table: 1 as under half-spaces
     /// alone, 0 or less if it is not.
-    fn convexity(&self, laws: &[Hertz; 2], x: f64) -> f64 {
-        let at = |share: [f64; 2]| {
-            let s = self.state(laws, [0, 1].map(|i| share[i] * x / self.per_patch[i]));
-            let [[a, b], [c, e]] = s.slopes([0.0; 3]).approach;
-            let pressed = (0..2).all(|i| share[i] == 0.0 || s.f[i] > 0.0 && s.c[i] > 0.0);
-            if !(pressed && a > 0.0 && e > 0.0 && a * e > b * c) {
-                return 0.0;
-            }
-            (0..2).filter(|i| share[*i] > 0.0).fold(1.0 - b * c / (a * e), |least, i| least.min(s.c[i]))
-        };
-        let places = [[1.0, 1.0], [1.0, 0.25], [0.25, 1.0], [1.0, 0.0], [0.0, 1.0]];
-        places.into_iter().map(at).fold(1.0, f64::min)
+    fn convexity(&self, laws: &[Hertz; 2], x: [f64; 2]) -> f64 {
+        let s = self.state(laws, [0, 1].map(|i| x[i] / self.per_patch[i]));
+        let [[a, b], [c, e]] = s.slopes([0.0; 3]).approach;
+        let pressed = (0..2).all(|i| x[i] == 0.0 || s.f[i] > 0.0 && s.c[i] > 0.0);
+        if !(pressed && a > 0.0 && e > 0.0 && a * e > b * c) {
+            return 0.0;
+        }
+        (0..2).filter(|i| x[*i] > 0.0).fold(1.0 - b * c / (a * e), |least, i| least.min(s.c[i]))
     }
 
     /// Radii in m of the widest patches before the contacts `laws` become punches; infinite without a table.
@@ -209,7 +212,7 @@ impl Residual {
 
 /// How many numbers from 1 to `most` come before the first that has no positive `margin`; between two that have much of it at most
 /// [`STRIDE`] apart all do.
-fn farthest_positive(most: usize, margin: impl Fn(usize) -> f64) -> usize {
+fn farthest_positive(most: usize, margin: impl Fn(usize) -> f64) -> f64 {
     let mut known = 0;
     let mut before = AMPLE;
     while known < most {
@@ -218,14 +221,14 @@ fn farthest_positive(most: usize, margin: impl Fn(usize) -> f64) -> usize {
         if before.min(after) < AMPLE
             && let Some(first) = (known + 1..next).find(|n| margin(*n) <= 0.0)
         {
-            return first - 1;
+            return (first - 1) as f64;
         }
         if after <= 0.0 {
-            return next - 1;
+            return (next - 1) as f64;
         }
         (known, before) = (next, after);
     }
-    most
+    most as f64
 }
 
 #[cfg(test)]
@@ -348,6 +351,20 @@ mod tests {
         // delta - |R| k delta^(3/2) has a maximum far below y
         let residual = constant([[-1e-6, 0.0], [0.0, 0.0]]);
         assert_eq!(residual.solve(&LAWS, [1e-4, -1.0], [1e-6, -1.0]), None);
+    }
+
+    /// A contact whose table reaches far does not become a punch where that of the other ends.
+    #[test]
+    fn each_contact_goes_as_far_as_its_own_table() {
+        let residual = |shrinking: [f64; 2]| {
+            let own = shrinking.map(|s| RADII.map(|r| -s * 1e-10 * (1.0 + r * r)));
+            let table = PatchTable { own, ..PatchTable::default() };
+            let patch = LAWS.map(|law| (law.tip_radius * 1e-5).sqrt());
+            Residual::new(&PatchFlexibility::through(&table, patch), &LAWS)
+        };
+        let (both, one) = (residual([0.0; 2]), residual([0.0, 100.0]));
+        assert_eq!(one.largest[0], both.largest[0]);
+        assert!(one.largest[1] < 0.1 * both.largest[1], "{:?}", one.largest);
     }
 
     /// With a table there is an equilibrium, and one only, whatever the table says.
