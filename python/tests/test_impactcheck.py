@@ -122,7 +122,6 @@ def test_the_reference_has_bands() -> None:
     )
 
 
-@pytest.mark.skipif("IMPACTCHECK_LIVE" not in os.environ, reason="needs FEniCSx, and some seconds")
 def test_a_reference_is_computed_where_the_package_is_installed(tmp_path: Path) -> None:
     script = """
 import impactcheck as ic
