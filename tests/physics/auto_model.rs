@@ -245,7 +245,7 @@ fn a_thin_plate_takes_no_mesh_and_is_the_meshed_one() {
     for (name, tolerance, error) in [
         ("scaled-plate-r10", 0.003, 1e-3),
         ("scaled-plate-r6.35", 0.003, 1e-3),
-        ("scenes/validation/free-plate.toml", 0.03, 1e-3),
+        ("scenes/validation/free-plate.toml", 0.01, 1e-3),
         ("scenes/validation/supported-plate.toml", 0.01, 1e-3),
         ("scenes/validation/inner-gap.toml", 0.01, 1e-3),
     ] {

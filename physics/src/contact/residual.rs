@@ -60,17 +60,19 @@ impl Residual {
             largest: [f64::INFINITY; 2],
         };
         if residual.per_patch.iter().all(|scale| *scale > 0.0) {
-            let step = FARTHEST / TESTED as f64;
-            let margin = |x: [f64; 2], places: &[[f64; 2]], n: usize| {
-                let share = n as f64 / TESTED as f64;
-                let at = |place: &[f64; 2]| residual.convexity(laws, [0, 1].map(|i| place[i] * share * x[i]));
-                places.iter().map(at).fold(1.0, f64::min)
+            // how far of the way to the squares `x` the forces grow at each of the `places`
+            let reach = |x: [f64; 2], places: &[[f64; 2]]| {
+                let margin = |n: usize| {
+                    let share = n as f64 / TESTED as f64;
+                    let at =
+                        |place: &[f64; 2]| residual.convexity(laws, [0, 1].map(|i| share * place[i] * x[i]));
+                    places.iter().map(at).fold(1.0, f64::min)
+                };
+                (farthest_positive(TESTED, margin) as f64).max(0.5) / TESTED as f64
             };
-            let farthest =
-                |x, places: &[[f64; 2]]| farthest_positive(TESTED, |n| margin(x, places, n)).max(0.5) * step;
-            let x = [[1.0, 0.0], [0.0, 1.0]].map(|alone| farthest([FARTHEST; 2], &[alone]));
-            let share = farthest(x, &[[1.0, 1.0], [1.0, 0.25], [0.25, 1.0]]) / FARTHEST;
-            residual.largest = [0, 1].map(|i| share * x[i] / residual.per_patch[i]);
+            let alone = [[1.0, 0.0], [0.0, 1.0]].map(|one| FARTHEST * reach([FARTHEST; 2], &[one]));
+            let together = reach(alone, &[[1.0, 1.0], [1.0, 0.25], [0.25, 1.0]]);
+            residual.largest = [0, 1].map(|i| together * alone[i] / residual.per_patch[i]);
         }
         residual
     }
@@ -212,7 +214,7 @@ impl Residual {
 
 /// How many numbers from 1 to `most` come before the first that has no positive `margin`; between two that have much of it at most
 /// [`STRIDE`] apart all do.
-fn farthest_positive(most: usize, margin: impl Fn(usize) -> f64) -> f64 {
+fn farthest_positive(most: usize, margin: impl Fn(usize) -> f64) -> usize {
     let mut known = 0;
     let mut before = AMPLE;
     while known < most {
@@ -221,14 +223,14 @@ fn farthest_positive(most: usize, margin: impl Fn(usize) -> f64) -> f64 {
         if before.min(after) < AMPLE
             && let Some(first) = (known + 1..next).find(|n| margin(*n) <= 0.0)
         {
-            return (first - 1) as f64;
+            return first - 1;
         }
         if after <= 0.0 {
-            return (next - 1) as f64;
+            return next - 1;
         }
         (known, before) = (next, after);
     }
-    most as f64
+    most
 }
 
 #[cfg(test)]

@@ -65,17 +65,19 @@ pub(super) fn holds(setup: &PlateImpact, patch: [f64; 2]) -> bool {
         && small(&setup.inner.shape, patch[1])
 }
 
-/// Relative error of the shapes of the closed form of `plate` for want of what it does not know of the rim.
+/// Relative error of the closed form of `plate` for want of what it does not know of the rim.
 fn own_error(plate: &Plate) -> f64 {
     let [thin, more] = CLOSED_FORM;
     thin + more * (plate.thickness / plate.radius).powi(4)
 }
 
-/// `body`, the closed form of `plate`, with its elastic modes larger and smaller in turn by what they may be off by.
+/// `body`, the closed form of `plate`, with its elastic modes larger and smaller in turn, so that [`BY_TWICE`] what that changes is what
+/// the closed form may be off by.
 pub(super) fn misshapen(mut body: ModalBody, plate: &Plate) -> ModalBody {
+    let off = own_error(plate) / BY_TWICE;
     let elastic = body.omega.iter().zip(&mut body.participation).filter(|(omega, _)| **omega > 0.0);
-    for (factor, (_, phi)) in [1.0, -1.0].into_iter().cycle().zip(elastic) {
-        *phi = phi.map(|phi| phi * (1.0 + factor * own_error(plate)));
+    for (factor, (_, phi)) in [1.0 + off, 1.0 - off].into_iter().cycle().zip(elastic) {
+        *phi = phi.map(|phi| factor * phi);
     }
     body
 }
