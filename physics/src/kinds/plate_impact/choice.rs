@@ -31,12 +31,13 @@ use crate::scene::{Edge, Model, Scene};
 pub const DEFAULT_TOLERANCE: f64 = 0.01;
 /// Share of the tolerance that is left to the time integration.
 const INTEGRATION_SHARE: f64 = 0.003;
-/// Error of models A and B over the difference to the layer, of a thin plate and per thickness over radius.
+/// Error of models A and B over the difference to the layer, of a thin plate and per thickness over radius up to that of a thick one:
+/// of 157 thicker plates, at 0.3 to 3 %, none was off by more than 0.6 of the estimate.
 const SAFETY: [f64; 2] = [1.5, 8.0];
 /// Error over what model C is estimated to lack, of a thin plate and per thickness over radius, in an impact of single touches.
 const BUILT_SAFETY: [f64; 2] = [3.0, 2.0];
-/// The same over what half or three quarters of a thick plate's modes change: with [2, 2] 2 of 306 promises were broken by it.
-const SELF_SAFETY: [f64; 2] = [3.0, 2.0];
+/// The same of a thick plate over what an eighth to half of its modes change.
+const SELF_SAFETY: f64 = 1.5;
 /// Modes that model C of a thick plate is built with first.
 const FIRST_BUILT: usize = 8;
 /// Share of what the layer corrects of Kirchhoff's plate that it may be off by, of a thin plate and per thickness over radius:
@@ -242,8 +243,8 @@ impl<'a> Plan<'a> {
         self.modes = built.bending_modes();
         let options = &self.trials.options;
         let lack = if self.is_thick() {
-            let lack = by_fewer_modes(built, options, |_| 1.0);
-            Lack { error: self.by_thickness(SELF_SAFETY) * lack.error, ..lack }
+            let lack = by_fewer_modes(built, options, 4..8, |_| 1.0);
+            Lack { error: SELF_SAFETY * lack.error, ..lack }
         } else {
             let lack = self.trials.truncated(self.modes, self.layer.as_ref());
             let lack = lack.or(of_continuum(built, omega_next, options));
@@ -269,10 +270,10 @@ impl<'a> Plan<'a> {
         Ok(())
     }
 
-    /// A factor from that of a thin plate and what it grows by per thickness over radius.
+    /// A factor from that of a thin plate and what it grows by per thickness over radius; of thick plates it grows no further.
     fn by_thickness(&self, [thin, more]: [f64; 2]) -> f64 {
         let plate = &self.trials.setup.plate;
-        thin + more * plate.thickness / plate.radius
+        thin + more * (plate.thickness / plate.radius).min(closed_form::THICKEST)
     }
 
     /// Error over what model C is estimated to lack.

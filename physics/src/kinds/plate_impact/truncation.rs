@@ -111,24 +111,30 @@ fn off_centre(
 /// What the modes that `system`, a model C, leaves out change, from what its own upper ones do: the error goes with the square of
 /// (contact frequency / lowest frequency left out), that of the system being `omega_next` rad/s.
 pub(super) fn of_continuum(system: &System, omega_next: f64, options: &Options) -> Lack {
-    by_fewer_modes(system, options, |modes| {
+    by_fewer_modes(system, options, [4, 6], |modes| {
         let left_out = system.oscillators[system.elastic().start + modes].omega;
         let ratio = (left_out / omega_next).powi(2).min(NEAR);
         ratio / (1.0 - ratio)
     })
 }
 
-/// What half and three quarters of its modes change of `system`, times `share` of so many modes.
-pub(super) fn by_fewer_modes(system: &System, options: &Options, share: impl Fn(usize) -> f64) -> Lack {
+/// The largest of what `eighths` of its modes change of `system`, times `share` of so many modes.
+pub(super) fn by_fewer_modes(
+    system: &System,
+    options: &Options,
+    eighths: impl IntoIterator<Item = usize>,
+    share: impl Fn(usize) -> f64,
+) -> Lack {
     let run = |system: &System| quantities(system, &integrate(system, options)?);
     let unknown = Lack { error: f64::INFINITY, quantity: None };
     let Ok(whole) = run(system) else { return unknown };
-    let part = |modes: usize| {
+    let part = |eighths: usize| {
+        let modes = eighths * system.modes / 8;
         let Ok(part) = run(&system.lowest(modes)) else { return unknown };
         let lack = Lack::between(&part, &whole, system.speed);
         Lack { error: share(modes) * lack.error, ..lack }
     };
-    part(system.modes / 2).or(part(3 * system.modes / 4))
+    eighths.into_iter().map(part).reduce(Lack::or).unwrap_or(unknown)
 }
 
 fn warning(model: Model, modes: usize, lack: Lack, enough: Option<usize>) -> String {
