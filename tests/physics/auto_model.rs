@@ -6,7 +6,7 @@ use assert_cmd::Command;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, WEIGHTED, sphere_residual};
 use impactcheck::body::layer::Waves;
 use impactcheck::body::{bending, free_sphere, kirchhoff};
-use impactcheck::contact::{PatchTable, TABULATED};
+use impactcheck::contact::{PatchTable, RADII, TABULATED, WHOLE};
 use impactcheck::kinds::plate_impact::choice::{COVERAGE, integration_tolerance};
 use impactcheck::kinds::plate_impact::errors::largest_error;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
@@ -95,6 +95,40 @@ fn bending_modes_in_closed_form_are_those_of_the_continuum() {
         for (mode, (omega, phi)) in closed.iter().zip(elements) {
             assert_relative_eq!(mode.omega, *omega, max_relative = 7e-4);
             assert_relative_eq!(mode.under(WEIGHTED[0] * patch[0]), phi[0][0].abs(), max_relative = 2e-3);
+        }
+    }
+}
+
+/// How the plate's flexibility changes with the patch, which waves in closed form tell, and meshes for other patches. Where Poisson's
+/// ratio nears -1 the first mode is felt most, with what its rim adds to its curvature at the centre.
+#[test]
+fn flexibility_changes_with_the_patch_as_on_meshes_for_each_patch() {
+    for (edge, poisson_ratio) in [
+        (Edge::Free, -0.88),
+        (Edge::SimplySupported, -0.8),
+        (Edge::Clamped, -0.88),
+        (Edge::Free, 0.3),
+        (Edge::SimplySupported, 0.3),
+    ] {
+        let plate = Plate { material: material(poisson_ratio), ..plate(edge, 0.074) };
+        let patch = 0.6 * plate.thickness;
+        let of = |radius: f64| {
+            ContinuumPlate::new(&plate, [radius * patch; 2], 1, &MeshOptions::default()).unwrap().flexibility
+        };
+        let own = of(1.0);
+        // of the size of what Hertz's half-space yields
+        let unit = 1.0 / (plate.material.plane_strain_modulus() * patch);
+        for (m, radius) in RADII.into_iter().enumerate() {
+            let mesh = of(radius);
+            for (ours, exact) in [
+                (own.own[0][m] - own.own[0][WHOLE], mesh.own[0][WHOLE] - own.own[0][WHOLE]),
+                (
+                    own.mutual[m][m] - own.mutual[WHOLE][WHOLE],
+                    mesh.mutual[WHOLE][WHOLE] - own.mutual[WHOLE][WHOLE],
+                ),
+            ] {
+                assert_abs_diff_eq!(ours / unit, exact / unit, epsilon = 0.01);
+            }
         }
     }
 }
@@ -191,6 +225,20 @@ fn what_only_some_impacts_are_sensitive_to_is_not_promised() {
         let (error, quantity) = largest_error(&ours, &exact, speed);
         assert!(error < tolerance, "{}: {quantity} is {error:e} off, {:?}", scene.name, auto.choice());
     }
+}
+
+/// A steel disc, nearly as thick as its radius, between tips of plastics: margins that grow with the thickness would have it meshed.
+#[test]
+fn a_thick_plate_that_hardly_gives_way_is_model_a() {
+    let text = include_str!("../fixtures/thick-disc.toml");
+    let scene = Scene::parse("thick-disc.toml", text).unwrap();
+    let auto = Reduced::auto(&scene, 0.01).unwrap();
+    let choice = auto.choice().unwrap();
+    assert!(auto.model() == Model::A && choice.met, "{choice:?}");
+    let exact = Reduced::new(&scene, Model::C, Some(32)).unwrap().point(1e-6).unwrap().quantities;
+    let ours = auto.point(1e-6).unwrap().quantities;
+    let (error, quantity) = largest_error(&ours, &exact, scene.plate_impact().unwrap().outer.speed);
+    assert!(error < choice.estimated_error.unwrap(), "{quantity} is {error:e} off, {choice:?}");
 }
 
 #[test]

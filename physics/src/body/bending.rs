@@ -31,12 +31,17 @@ pub struct BendingMode {
 impl BendingMode {
     /// Displacement under a Hertz pressure of the radius `patch` m at the centre, kg^(-1/2).
     pub fn under(&self, patch: f64) -> f64 {
-        let [decay, share] = self.rim;
-        let wave = patch_transform(self.wave_number * patch);
-        // most modes' rims are not felt in the centre
-        let rim = if share == 0.0 { 0.0 } else { share * rising_transform(decay * patch) };
-        self.centre * (wave + rim) / (1.0 + share)
+        self.centre * under_patch(self.wave_number, self.rim, patch)
     }
+}
+
+/// What a pressure of the radius `patch` m feels of a mode, over its centre: of the wave number `wave` in 1/m, with what decays from the
+/// `rim` (wave number in 1/m, share in the centre, the wave's being 1).
+pub(super) fn under_patch(wave: f64, [decay, share]: [f64; 2], patch: f64) -> f64 {
+    let waving = patch_transform(wave * patch);
+    // most modes' rims are not felt in the centre
+    let rim = if share == 0.0 { 0.0 } else { share * rising_transform(decay * patch) };
+    (waving + rim) / (1.0 + share)
 }
 
 /// Mean of I0(x r) under a Hertz pressure over r < 1, as [`patch_transform`] of J0.

@@ -12,10 +12,12 @@
 //! lacking are longitudinal modes.
 
 use super::ModalBody;
-use super::bending::{self, BendingMode};
+use super::bending::{self, BendingMode, under_patch};
 use super::continuum::{ContinuumPlate, WEIGHTED};
 use super::free_sphere::patch_transform;
-use crate::analytical::circular_plate::{centre_deflection, deflection, frequency_parameters, rigidity};
+use crate::analytical::circular_plate::{
+    centre_deflection, deflection, frequency_parameters, rigidity, share_of_rim,
+};
 use crate::analytical::lamb_wave::FlexuralWave;
 use crate::analytical::mindlin_plate::Section;
 use crate::contact::{PatchTable, RADII};
@@ -124,7 +126,7 @@ impl Waves {
 
     /// Static flexibility of the layer between patches of the radii `patch` in m, and how it changes with them.
     pub fn flexibility(&self, patch: [f64; 2]) -> PatchTable {
-        let tabulated = |xi: f64| patch.map(|a| RADII.map(|r| patch_transform(xi * r * a)));
+        let tabulated = |of: &dyn Fn(f64) -> f64| patch.map(|a| RADII.map(|r| of(r * a)));
         let mut table = PatchTable::default();
         for share in self.shares(patch[0].max(patch[1]), tabulated) {
             table.add(share.own, share.mutual, share.weight);
@@ -137,7 +139,7 @@ impl Waves {
     pub(super) fn flexibilities(&self, radii: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let widest = radii.last().copied().unwrap_or(0.0);
         let (mut own, mut mutual) = (vec![0.0; radii.len()], vec![vec![0.0; radii.len()]; radii.len()]);
-        let all = |xi: f64| radii.iter().map(|a| patch_transform(xi * a)).collect::<Vec<f64>>();
+        let all = |of: &dyn Fn(f64) -> f64| radii.iter().map(|a| of(*a)).collect::<Vec<f64>>();
         for share in self.shares(widest, all) {
             for (i, weight) in share.weight.iter().enumerate() {
                 own[i] += share.own * weight * weight;
@@ -147,9 +149,9 @@ impl Waves {
         (own, mutual)
     }
 
-    /// Shares of all wave numbers in the flexibilities between patches that are `widest` m wide at most, of which `weight` gives the
-    /// transforms.
-    fn shares<W>(&self, widest: f64, weight: impl Fn(f64) -> W) -> Vec<Share<W>> {
+    /// Shares of all waves in the flexibilities between patches that are `widest` m wide at most, of which `weight` takes the radii in m to
+    /// what they feel of a wave.
+    fn shares<W>(&self, widest: f64, weight: impl Fn(&dyn Fn(f64) -> f64) -> W) -> Vec<Share<W>> {
         let half = 0.5 * self.plate.thickness;
         let waves = self.parameter.iter().zip(&self.centre).take(self.modes());
         let mut shares: Vec<Share<W>> = waves
@@ -157,7 +159,8 @@ impl Waves {
                 let xi = k / self.plate.radius;
                 let bent = half_space(&self.plate, xi) * bending_ratio(xi * half);
                 let bent = centre * centre * self.mass_per_area() * bent;
-                Share { own: bent, mutual: bent, weight: weight(xi) }
+                let rim = [xi, share_of_rim(self.plate.edge, *k)];
+                Share { own: bent, mutual: bent, weight: weight(&|a| under_patch(xi, rim, a)) }
             })
             .collect();
         shares.extend(local(&self.plate, widest, self.cut() / self.plate.radius, weight, |_| 0.0));
@@ -197,7 +200,7 @@ pub fn elastic_layer(plate: &Plate, modes: &[BendingMode], patch: [f64; 2]) -> C
         flexibility.add(share, share, phi.map(|phi| std::array::from_fn(|m| phi[m])));
     }
     let cut = 0.5 * (modes[last.saturating_sub(1)].wave_number + modes[last].wave_number);
-    let tabulated = |xi: f64| patch.map(|a| RADII.map(|r| patch_transform(xi * r * a)));
+    let tabulated = |of: &dyn Fn(f64) -> f64| patch.map(|a| RADII.map(|r| of(r * a)));
     for share in local(plate, patch[0].max(patch[1]), cut, tabulated, |xi| beyond_waves(plate, xi)) {
         flexibility.add(share.own, share.mutual, share.weight);
     }
@@ -227,13 +230,13 @@ fn half_space(plate: &Plate, xi: f64) -> f64 {
     1.0 / (plate.material.plane_strain_modulus() * xi)
 }
 
-/// Shares of the wave numbers of the infinite layer in the flexibilities between patches that are `widest` m wide at most, of which
-/// `weight` gives the transforms; of its bending below the wave number `cut` only what `below` gives.
+/// Shares of the waves of the infinite layer in the flexibilities between patches that are `widest` m wide at most, of which `weight`
+/// takes the radii in m to what they feel of a wave; of its bending below the wave number `cut` only what `below` gives.
 fn local<W>(
     plate: &Plate,
     widest: f64,
     cut: f64,
-    weight: impl Fn(f64) -> W,
+    weight: impl Fn(&dyn Fn(f64) -> f64) -> W,
     below: impl Fn(f64) -> f64,
 ) -> Vec<Share<W>> {
     let half = 0.5 * plate.thickness;
@@ -253,7 +256,7 @@ fn local<W>(
                 shares.push(Share {
                     own: per * (bent + squeezed - 2.0 * half_space),
                     mutual: per * (bent - squeezed),
-                    weight: weight(xi),
+                    weight: weight(&|a| patch_transform(xi * a)),
                 });
             }
         }
