@@ -169,6 +169,23 @@ mod tests {
     }
 
     #[test]
+    fn waves_and_rim_are_the_deflection_down_to_a_paraboloid() {
+        for edge in [Edge::Clamped, Edge::SimplySupported, Edge::Free] {
+            let few = frequency_parameters(edge, 0.3, 3);
+            // clamped plates never bend so
+            let low = [5e-4, 0.009, 0.011, 1.3].into_iter().filter(|_| edge != Edge::Clamped);
+            for k in few.into_iter().chain(low) {
+                let c = share_of_rim(edge, k);
+                for r in [0.1, 0.5, 0.9] {
+                    let mode = (libm::j0(k * r) + c * bessel_i0(k * r)) / (1.0 + c);
+                    let exact = deflection(edge, k, &[r])[0] / centre_deflection(edge, k);
+                    assert_relative_eq!(mode, exact, max_relative = 1e-5, epsilon = 1e-8);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn ratio_of_bessel_functions_is_the_series_at_small_and_the_asymptote_at_large_arguments() {
         // I1 = I0'
         for x in [0.5, 5.0, 40.0, 300.0] {
