@@ -8,7 +8,7 @@ use crate::scene::{Material, Plate};
 use serde_json::{Value, json};
 
 /// Sources of the method, in alphabetical order.
-const SOURCES: [(&str, &[u8]); 12] = [
+const SOURCES: [(&str, &[u8]); 14] = [
     ("assembly.rs", include_bytes!("assembly.rs")),
     ("basis.rs", include_bytes!("basis.rs")),
     ("element.rs", include_bytes!("element.rs")),
@@ -21,6 +21,8 @@ const SOURCES: [(&str, &[u8]); 12] = [
     ("plate.rs", include_bytes!("plate.rs")),
     ("sphere.rs", include_bytes!("sphere.rs")),
     ("the layer, a folder above", include_bytes!("../layer.rs")),
+    ("its bending modes", include_bytes!("../bending.rs")),
+    ("its waves", include_bytes!("../../analytical/circular_plate.rs")),
 ];
 
 /// See [`revision`].
@@ -161,7 +163,7 @@ mod tests {
             .collect();
         there.sort();
         assert_eq!(there, SOURCES.map(|(name, _)| name)[..there.len()]);
-        assert_eq!(there.len() + 1, SOURCES.len());
+        assert_eq!(there.len() + 3, SOURCES.len());
     }
 
     #[test]
