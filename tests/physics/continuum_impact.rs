@@ -41,7 +41,7 @@ fn number_of_modes_patch_radius_and_mesh_hardly_matter() {
     assert_eq!(study.rows.len(), 2 * 10);
 }
 
-/// Finite elements (five meshes, the finest extrapolated) of wide contacts: a soft plate whose patches are 0.35 and 0.39 times
+/// Finite elements (five meshes, the finest extrapolated; of the softer impact at `fine`, 2.446 +- 0.003 and 2.363 +- 0.007 N) of wide contacts: a soft plate whose patches are 0.35 and 0.39 times
 /// as wide as it is thick, a softer impact of 0.7, a membrane of 1.04, and foam that bends almost to a paraboloid, 0.81 and 0.95.
 /// Quadratic growth of the residual found no equilibrium in the first, and was 15 % off in the third; without the rim's part of its first
 /// mode the last was 25 % off.
@@ -55,22 +55,38 @@ fn wide_patches_agree_with_finite_elements_whatever_the_number_of_modes() {
         .replace("3.45 mm", "5 mm")
         .replace("5.37 mm", "6 mm")
         .replace("0.6 m/s", "0.8 m/s");
+    // modes that are enough, and one number of which the model says itself that it is not
     let cases = [
-        (text("soft-plate"), [0.4866, 0.7448, 0.6883], [0.004, 0.01, 0.01], vec![32, 40, 48, 64]),
-        (thinner, [0.8429, 2.446, 2.363], [0.002, 0.01, 0.01], vec![16, 32, 48, 64]),
-        (text("wide-patch"), [0.99455, 13.63, 13.60], [0.0005, 0.005, 0.005], vec![4, 8, 16, 32, 48, 64]),
-        (text("auxetic-plate"), [0.5886, 39.19, 39.41], [0.002, 0.01, 0.01], vec![4, 8, 16, 32, 48, 64]),
+        (text("soft-plate"), [0.4866, 0.7448, 0.6883], [0.004, 0.01, 0.01], vec![32, 40, 48, 64], None),
+        (thinner, [0.8429, 2.446, 2.363], [0.002, 0.01, 0.01], vec![32, 48, 64], Some(16)),
+        (
+            text("wide-patch"),
+            [0.99455, 13.63, 13.60],
+            [0.0005, 0.005, 0.005],
+            vec![4, 8, 16, 32, 48, 64],
+            None,
+        ),
+        (
+            text("auxetic-plate"),
+            [0.5886, 39.19, 39.41],
+            [0.002, 0.01, 0.01],
+            vec![8, 16, 32, 48, 64],
+            Some(4),
+        ),
     ];
-    for (text, expected, bounds, modes) in cases {
+    for (text, expected, bounds, enough, too_few) in cases {
         let scene = Scene::parse("scene.toml", &text).unwrap();
-        for modes in modes {
+        for modes in enough.into_iter().chain(too_few) {
             let run = Reduced::new(&scene, Model::C, Some(modes)).unwrap().run(1e-7).unwrap();
             let ours =
                 ["efficiency", "outer_force_peak", "inner_force_peak"].map(|name| run.value(name).unwrap());
             println!("{modes} modes: {ours:?}, energy {:?}", run.energy_residual);
+            let estimate = run.truncation_error.unwrap();
+            if Some(modes) == too_few {
+                assert!(run.warnings.iter().any(|w| w.contains("the modes left out")), "{:?}", run.warnings);
+            }
             for ((ours, expected), bound) in ours.into_iter().zip(expected).zip(bounds) {
-                // too few modes say so
-                let bound = f64::max(bound, run.truncation_error.unwrap());
+                let bound = if Some(modes) == too_few { estimate } else { bound };
                 assert_relative_eq!(ours, expected, max_relative = bound);
             }
             assert!(run.energy_residual.is_some_and(|r| r < 1e-5), "{modes}: {:?}", run.energy_residual);

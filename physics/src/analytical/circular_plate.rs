@@ -81,7 +81,8 @@ pub fn centre_deflection(edge: Edge, k: f64) -> f64 {
 /// As [`centre_deflection`] at the `radii` in 0..=1, of the sign that makes the centre's positive; `k` up to 700.
 pub fn deflection(edge: Edge, k: f64, radii: &[f64]) -> Vec<f64> {
     if k < PARABOLOID {
-        return radii.iter().map(|r| (3.0 / PI).sqrt() * (1.0 - hollow(edge) * r * r)).collect();
+        let square = if edge == Edge::Free { 2.0 } else { 1.0 };
+        return radii.iter().map(|r| (3.0 / PI).sqrt() * (1.0 - square * r * r)).collect();
     }
     let (j0, j1, ratio) = (libm::j0(k), libm::j1(k), bessel_i_ratio(k));
     // w = J0(k r) + g I0(k r)/I0(k); w(0) > 0
@@ -93,25 +94,15 @@ pub fn deflection(edge: Edge, k: f64, radii: &[f64]) -> Vec<f64> {
 
 /// Share of I0(k r) in the centre of the mode with parameter `k`, that of J0(k r) being one.
 pub fn share_of_rim(edge: Edge, k: f64) -> f64 {
-    if k < PARABOLOID {
-        // (J0 + c I0)/(1 + c) = 1 - hollow r^2
-        let steeper = 4.0 * hollow(edge) / (k * k);
-        return (1.0 - steeper) / (1.0 + steeper);
-    }
     at_rim(edge, k) / bessel_i0(k)
 }
 
-/// Share of I0(k r)/I0(k) in a mode, that of J0(k r) being one.
+/// Share of I0(k r)/I0(k) in the mode with parameter `k`, that of J0(k r) being one.
 fn at_rim(edge: Edge, k: f64) -> f64 {
     match edge {
         Edge::Free => -libm::j1(k) / bessel_i_ratio(k),
         Edge::Clamped | Edge::SimplySupported => -libm::j0(k),
     }
-}
-
-/// By how much the rim of a paraboloid is below its centre, of which no net motion is left or which the edge holds.
-fn hollow(edge: Edge) -> f64 {
-    if edge == Edge::Free { 2.0 } else { 1.0 }
 }
 
 /// I0(x) by its power series.

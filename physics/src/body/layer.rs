@@ -20,7 +20,7 @@ use crate::analytical::circular_plate::{
 };
 use crate::analytical::lamb_wave::FlexuralWave;
 use crate::analytical::mindlin_plate::Section;
-use crate::contact::{PatchTable, RADII};
+use crate::contact::{PatchTable, RADII, Tabulated};
 use crate::numerics::quadrature::gauss_legendre;
 use crate::numerics::vectors::axpy;
 use crate::scene::{Edge, Plate};
@@ -126,9 +126,8 @@ impl Waves {
 
     /// Static flexibility of the layer between patches of the radii `patch` in m, and how it changes with them.
     pub fn flexibility(&self, patch: [f64; 2]) -> PatchTable {
-        let tabulated = |of: &dyn Fn(f64) -> f64| patch.map(|a| RADII.map(|r| of(r * a)));
         let mut table = PatchTable::default();
-        for share in self.shares(patch[0].max(patch[1]), tabulated) {
+        for share in self.shares(patch[0].max(patch[1]), tabulated(patch)) {
             table.add(share.own, share.mutual, share.weight);
         }
         table
@@ -200,8 +199,7 @@ pub fn elastic_layer(plate: &Plate, modes: &[BendingMode], patch: [f64; 2]) -> C
         flexibility.add(share, share, phi.map(|phi| std::array::from_fn(|m| phi[m])));
     }
     let cut = 0.5 * (modes[last.saturating_sub(1)].wave_number + modes[last].wave_number);
-    let tabulated = |of: &dyn Fn(f64) -> f64| patch.map(|a| RADII.map(|r| of(r * a)));
-    for share in local(plate, patch[0].max(patch[1]), cut, tabulated, |xi| beyond_waves(plate, xi)) {
+    for share in local(plate, patch[0].max(patch[1]), cut, tabulated(patch), |xi| beyond_waves(plate, xi)) {
         flexibility.add(share.own, share.mutual, share.weight);
     }
     ContinuumPlate {
@@ -213,6 +211,11 @@ pub fn elastic_layer(plate: &Plate, modes: &[BendingMode], patch: [f64; 2]) -> C
         damping_ratio: plate.damping_ratio,
         degrees_of_freedom: 0,
     }
+}
+
+/// What patches of [`RADII`] times the radii `patch` in m feel of a wave, given by what one of any radius does.
+fn tabulated(patch: [f64; 2]) -> impl Fn(&dyn Fn(f64) -> f64) -> [Tabulated; 2] {
+    move |of| patch.map(|a| RADII.map(|r| of(r * a)))
 }
 
 /// What the infinite layer bends under a pressure of the wave number `xi` beyond its flexural wave.
