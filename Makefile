@@ -117,7 +117,8 @@ evidence: setup wheel
 	$(RUN) bench --peer benches/diffsol/target/release/diffsol-peer --out $(OUT)/bench
 	$(RUN) stress --cases 100000
 	$(WHEEL)/bin/python -m pip install --quiet nbclient ipykernel
-	$(WHEEL)/bin/jupyter execute --inplace examples/impact.ipynb
+	cd examples && $(CURDIR)/$(WHEEL)/bin/python -c "import nbclient, nbformat; n = nbformat.read('impact.ipynb', 4); \
+	    nbclient.NotebookClient(n, record_timing=False).execute(); nbformat.write(n, 'impact.ipynb')"
 	$(PYTHON) benches/unneeded.py target/release/impactcheck $(addprefix --before ,$(BEFORE)) --out $(OUT)/unneeded
 	python3 benches/kills.py target/release/impactcheck --out reports/kills.md
 	fuzz/run.sh scene 1800
