@@ -193,18 +193,24 @@ fn what_only_some_impacts_are_sensitive_to_is_not_promised() {
     }
 }
 
-/// A steel disc, nearly as thick as its radius, between tips of plastics: margins that grow with the thickness would have it meshed.
+/// A steel disc, nearly as thick as its radius, between tips of plastics, which Hertz's law knows, or spheres, whose closed form says what
+/// they lack to half-spaces: the margins of a thick plate, taken of all of it, would have it meshed.
 #[test]
 fn a_thick_plate_that_hardly_gives_way_is_model_a() {
-    let text = include_str!("../fixtures/thick-disc.toml");
-    let scene = Scene::parse("thick-disc.toml", text).unwrap();
-    let auto = Reduced::auto(&scene, 0.01).unwrap();
-    let choice = auto.choice().unwrap();
-    assert!(auto.model() == Model::A && choice.met, "{choice:?}");
-    let exact = Reduced::new(&scene, Model::C, Some(32)).unwrap().point(1e-6).unwrap().quantities;
-    let ours = auto.point(1e-6).unwrap().quantities;
-    let (error, quantity) = largest_error(&ours, &exact, scene.plate_impact().unwrap().outer.speed);
-    assert!(error < choice.estimated_error.unwrap(), "{quantity} is {error:e} off, {choice:?}");
+    let tips = include_str!("../fixtures/thick-disc.toml");
+    let tip = "kind       = \"compact\"\nmass       = \"4.6 g\"\ntip_radius = \"10 mm\"";
+    let spheres = tips.replace(tip, "kind = \"sphere\"\nradius = \"5 mm\"").replace("500 mm/s", "5 mm/s");
+    assert_eq!(spheres.matches("sphere").count(), 2);
+    for text in [tips, &spheres] {
+        let scene = Scene::parse("thick-disc.toml", text).unwrap();
+        let auto = Reduced::auto(&scene, 0.01).unwrap();
+        let choice = auto.choice().unwrap();
+        assert!(auto.model() == Model::A && choice.met, "{choice:?}");
+        let exact = Reduced::new(&scene, Model::C, Some(32)).unwrap().point(1e-6).unwrap().quantities;
+        let ours = auto.point(1e-6).unwrap().quantities;
+        let (error, quantity) = largest_error(&ours, &exact, scene.plate_impact().unwrap().outer.speed);
+        assert!(error < choice.estimated_error.unwrap(), "{quantity} is {error:e} off, {choice:?}");
+    }
 }
 
 #[test]

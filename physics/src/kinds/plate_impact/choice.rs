@@ -2,10 +2,11 @@
 //!
 //! Where the plate has a closed form (`closed_form`) but no number of its modes is enough at a glance, trial impacts tell.
 //!
-//! What models A and B lack is estimated by solving the impact once more with the plate as an elastic layer (`trials`). Their
-//! estimated error is
+//! What models A and B lack is estimated by solving the impact once more with spheres that yield as theirs do, which has a closed
+//! form too, and once more with the plate as an elastic layer besides (`trials`). Their estimated error is
 //!
-//!   sqrt((safety |candidate - layer| + share |all Kirchhoff modes - layer| + undamped)^2 + floor^2)
+//!   sqrt((spheres |candidate - yielding| + safety |yielding - layer| + share |all Kirchhoff modes - layer|
+//!         + undamped)^2 + floor^2)
 //!
 //! with the share of what the layer corrects that it may itself be off by, the damping under the contacts that models with few
 //! modes lack, and the error that model C was found to have against the finite-element reference as the floor. The same layer
@@ -16,7 +17,7 @@ use super::closed_form;
 use super::errors::COVERED;
 use super::joined::Cut;
 use super::results::PlateQuantities;
-use super::trials::{Lack, RUNGS, Trials};
+use super::trials::{HALF_SPACES, Lack, RUNGS, Trials};
 use super::truncation::{by_fewer_modes, of_continuum};
 use super::validity;
 use crate::body::bending;
@@ -34,6 +35,10 @@ const INTEGRATION_SHARE: f64 = 0.003;
 /// Error of models A and B over the difference to the layer, of a thin plate and per thickness over radius up to that of a thick one:
 /// of 157 thicker plates none was off by more than 0.6 of an estimate up to 5 %, of 1000 other scenes one by 1.4 of it.
 const SAFETY: [f64; 2] = [1.5, 8.0];
+/// What is added to it per fourth power of thickness over radius: the layer has no longitudinal modes.
+const LONGITUDINAL: f64 = 1.5;
+/// Error of models A and B over what the spheres yield beyond half-spaces, which has a closed form.
+const SPHERES: f64 = 1.25;
 /// Error over what model C is estimated to lack, of a thin plate and per thickness over radius, in an impact of single touches.
 const BUILT_SAFETY: [f64; 2] = [3.0, 2.0];
 /// The same of a thick plate over what an eighth to half of its modes change.
@@ -167,22 +172,11 @@ impl<'a> Plan<'a> {
     /// plate alone, with any number of modes, is estimated to be off by more than `bearable`.
     fn kirchhoff(&mut self, bearable: f64) -> Option<Rated> {
         let (layer, speed) = (self.layer?, self.trials.setup.outer.speed);
-        let kirchhoff = self.trials.converged().ok()?;
-        let corrected = Lack::between(&kirchhoff, &layer, speed).error;
-        let plate = &self.trials.setup.plate;
-        let (share, safety) = (self.by_thickness(LAYER_SHARE), self.by_thickness(SAFETY));
-        let rim = match plate.edge {
-            Edge::SimplySupported => {
-                let thickness = plate.thickness / plate.radius;
-                let rim = RIM * (thickness / (1.0 + plate.material.poisson_ratio)).powi(2);
-                // where the plate might as well not give way, its rim does not matter either
-                let rigid =
-                    self.trials.kirchhoff(0).map(|rigid| Lack::between(&kirchhoff, &rigid, speed).error);
-                rim.min(rigid.unwrap_or(f64::INFINITY))
-            }
-            Edge::Clamped | Edge::Free => 0.0,
-        };
-        self.hopeless = self.total(share * corrected + rim).filter(|error| *error > bearable);
+        let tips = self.trials.tips;
+        let kirchhoff = self.trials.converged(tips).ok()?;
+        let own = self.kirchhoff_error(&kirchhoff, &layer);
+        let safety = self.by_thickness(SAFETY) + LONGITUDINAL * self.thickness_ratio().powi(4);
+        self.hopeless = self.total(own).filter(|error| *error > bearable);
         if self.hopeless.is_some() {
             return None;
         }
@@ -190,10 +184,13 @@ impl<'a> Plan<'a> {
         let mut best: Option<Rated> = None;
         for modes in KIRCHHOFF_RUNGS.into_iter().take_while(|n| *n <= most) {
             let model = if modes == 1 { Model::A } else { Model::B };
-            let Ok(ours) = self.trials.kirchhoff(modes) else { break };
-            let lack = Lack::between(&ours, &layer, speed);
-            let error = self.total(safety * lack.error + share * corrected + rim);
-            self.note(model, modes, error, lack.quantity);
+            let Ok(ours) = self.trials.kirchhoff(modes, HALF_SPACES) else { break };
+            let yielding = if tips == HALF_SPACES { Ok(ours) } else { self.trials.kirchhoff(modes, tips) };
+            let Ok(yielding) = yielding else { break };
+            let spheres = Lack::between(&ours, &yielding, speed).times(SPHERES);
+            let plate = Lack::between(&yielding, &layer, speed).times(safety);
+            let error = self.total(spheres.error + plate.error + own);
+            self.note(model, modes, error, spheres.or(plate).quantity);
             let Some(error) = error else { break };
             if best.is_none_or(|(.., least)| error < least) {
                 best = Some((model, modes, error));
@@ -203,6 +200,24 @@ impl<'a> Plan<'a> {
             }
         }
         best
+    }
+
+    /// What Kirchhoff's plate, of which `kirchhoff` has all modes, may be off by beyond its difference to the `layer`, which is none itself.
+    fn kirchhoff_error(&self, kirchhoff: &PlateQuantities, layer: &PlateQuantities) -> f64 {
+        let Trials { setup, tips, .. } = self.trials;
+        let lack = |ours: &PlateQuantities| Lack::between(kirchhoff, ours, setup.outer.speed).error;
+        let rim = match setup.plate.edge {
+            Edge::SimplySupported => {
+                let rim = (self.thickness_ratio() / (1.0 + setup.plate.material.poisson_ratio)).powi(2);
+                // where the plate might as well not give way, its rim does not matter either
+                let rigid = self.trials.kirchhoff(0, tips);
+                rigid.map_or(f64::INFINITY, |rigid| lack(&rigid)).min(RIM * rim)
+            }
+            Edge::Clamped | Edge::Free => 0.0,
+        };
+        // all of the force on an inner body that is not reached, if it almost is
+        let missed = layer.inner_force_peak == 0.0 && self.trials.nearly_reach().unwrap_or(true);
+        self.by_thickness(LAYER_SHARE) * lack(layer) + rim + f64::from(u8::from(missed))
     }
 
     /// The smallest number of bending modes of model C that is enough, by bisection, and its estimate.
@@ -244,11 +259,11 @@ impl<'a> Plan<'a> {
         let options = &self.trials.options;
         let lack = if self.is_thick() {
             let lack = by_fewer_modes(built, options, 4..8, |_| 1.0);
-            Lack { error: SELF_SAFETY * lack.error, ..lack }
+            lack.times(SELF_SAFETY)
         } else {
             let lack = self.trials.truncated(self.modes, self.layer.as_ref());
             let lack = lack.or(of_continuum(built, omega_next, options));
-            Lack { error: self.safety() * lack.error, ..lack }
+            lack.times(self.safety())
         };
         self.error = self.total(lack.error);
         self.note(Model::C, self.modes, self.error, lack.quantity);
@@ -272,8 +287,7 @@ impl<'a> Plan<'a> {
 
     /// A factor from that of a thin plate and what it grows by per thickness over radius; of thick plates it grows no further.
     fn by_thickness(&self, [thin, more]: [f64; 2]) -> f64 {
-        let plate = &self.trials.setup.plate;
-        thin + more * (plate.thickness / plate.radius).min(closed_form::THICKEST)
+        thin + more * self.thickness_ratio().min(closed_form::THICKEST)
     }
 
     /// Error over what model C is estimated to lack.
@@ -290,8 +304,13 @@ impl<'a> Plan<'a> {
 
     /// Whether the layer says little of the plate: what model C needs it says itself.
     fn is_thick(&self) -> bool {
+        self.thickness_ratio() > closed_form::THICKEST
+    }
+
+    /// Thickness over radius.
+    fn thickness_ratio(&self) -> f64 {
         let plate = &self.trials.setup.plate;
-        plate.thickness > closed_form::THICKEST * plate.radius
+        plate.thickness / plate.radius
     }
 
     fn met(&self) -> bool {

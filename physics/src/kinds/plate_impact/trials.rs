@@ -32,6 +32,11 @@ const SAFETY: f64 = 1.15;
 /// what the layer, which has no longitudinal modes, tells.
 const TRUNCATION_SHARE: f64 = 0.1;
 
+/// Gap of an inner body, over its own, that the layer has to miss for the continuum to miss it for sure.
+const NEARER: f64 = 0.5;
+/// What bodies yield beyond half-spaces if they are none else, m/N.
+pub(super) const HALF_SPACES: [f64; 2] = [0.0; 2];
+
 /// What a model lacks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Lack {
@@ -46,6 +51,11 @@ impl Lack {
     pub(super) fn between(candidate: &PlateQuantities, exact: &PlateQuantities, speed: f64) -> Self {
         let (error, name) = largest_error(candidate, exact, speed);
         Self { error, quantity: Some(name) }
+    }
+
+    /// So many times as much.
+    pub(super) fn times(self, factor: f64) -> Self {
+        Self { error: factor * self.error, ..self }
     }
 
     /// The larger of two; what is not a number is the largest of all.
@@ -63,7 +73,8 @@ pub(super) struct Trials<'a> {
     layer: ContinuumPlate,
     pub(super) predictor: Predictor,
     pub(super) options: Options,
-    tips: [f64; 2],
+    /// What the spheres yield beyond half-spaces, m/N.
+    pub(super) tips: [f64; 2],
 }
 
 impl<'a> Trials<'a> {
@@ -75,7 +86,7 @@ impl<'a> Trials<'a> {
     pub(super) fn new(setup: &'a PlateImpact, resolution: f64, options: Options) -> Result<Self> {
         let bodies = MovingBody::both(setup)?;
         let few = Waves::new(&setup.plate, DEFAULT_MODES);
-        let predictor = Predictor::of(&system(setup, &bodies, few.kirchhoff(DEFAULT_MODES), [0.0; 2]))?;
+        let predictor = Predictor::of(&system(setup, &bodies, few.kirchhoff(DEFAULT_MODES), HALF_SPACES))?;
         let enough = |n: &usize| slowed(setup, &predictor, few.frequency(*n + 1)) <= resolution;
         let most = RUNGS.into_iter().find(enough).unwrap_or(RUNGS[RUNGS.len() - 1]);
         let waves = if most > DEFAULT_MODES { Waves::new(&setup.plate, most) } else { few };
@@ -91,19 +102,19 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// Models A and B.
-    pub(super) fn kirchhoff(&self, modes: usize) -> Result<PlateQuantities> {
-        self.run(self.waves.kirchhoff(modes), modes, [0.0; 2])
+    /// Models A and B, whose bodies are [`HALF_SPACES`] to the contacts; or the same with ones that yield by `tips` m/N more.
+    pub(super) fn kirchhoff(&self, modes: usize, tips: [f64; 2]) -> Result<PlateQuantities> {
+        self.run(self.waves.kirchhoff(modes), modes, tips)
     }
 
-    /// Kirchhoff's plate with all modes: what is beyond those there are yields as under a static force, the sum of
+    /// [`Self::kirchhoff`] with all modes: what is beyond those there are yields as under a static force, the sum of
     /// (w(0)/omega)^2 over k with w(0)^2 = k/2 and omega = k^2 in the plate's units, pi apart.
-    pub(super) fn converged(&self) -> Result<PlateQuantities> {
+    pub(super) fn converged(&self, tips: [f64; 2]) -> Result<PlateQuantities> {
         let modes = self.waves.modes();
         let plate = &self.setup.plate;
         let bending = rigidity(plate.material.youngs_modulus, plate.material.poisson_ratio, plate.thickness);
         let rest = plate.radius.powi(2) / (4.0 * PI * self.waves.cut().powi(2) * bending);
-        let system = system(self.setup, &self.bodies, self.waves.kirchhoff(modes), [0.0; 2]);
+        let system = system(self.setup, &self.bodies, self.waves.kirchhoff(modes), tips);
         // the inner contact closes when the plate moves down
         self.integrate(&system.softer([rest, -rest, rest]), modes)
     }
@@ -111,6 +122,15 @@ impl<'a> Trials<'a> {
     /// Model C with a layer in the place of the continuum.
     pub(super) fn continuum(&self, modes: usize) -> Result<PlateQuantities> {
         self.run(self.layer.modal_body(modes, self.predictor.slow()), modes, self.tips)
+    }
+
+    /// Whether the layer with all its modes would reach an inner body [`NEARER`].
+    pub(super) fn nearly_reach(&self) -> Result<bool> {
+        let modes = self.waves.modes();
+        let plate = self.layer.modal_body(modes, self.predictor.slow());
+        let mut system = system(self.setup, &self.bodies, plate, self.tips);
+        system.gap[1] *= NEARER;
+        Ok(self.integrate(&system, modes)?.inner_force_peak > 0.0)
     }
 
     /// [`Self::continuum`] with all modes, as far off as it may be itself.
@@ -163,7 +183,7 @@ impl<'a> Trials<'a> {
         let rigid = plate.omega.iter().filter(|omega| **omega == 0.0).count();
         let modal = plate.omega.iter().zip(&plate.participation).skip(rigid + modes);
         let flexibility: f64 = modal.map(|(omega, phi)| (phi[0] / omega).powi(2)).sum();
-        let system = system(self.setup, &self.bodies, plate.clone(), [0.0; 2]);
+        let system = system(self.setup, &self.bodies, plate.clone(), HALF_SPACES);
         let of = |i: usize| {
             let force = self.predictor.force_peak[i];
             flexibility * force / system.laws[i].approach(force)

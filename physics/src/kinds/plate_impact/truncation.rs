@@ -6,7 +6,7 @@
 
 use super::joined::off_centre_system;
 use super::results::quantities;
-use super::trials::{Lack, RUNGS, Trials};
+use super::trials::{HALF_SPACES, Lack, RUNGS, Trials};
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
@@ -56,13 +56,13 @@ pub(super) fn estimate(
     let resolution = RESOLUTION[usize::from(model < Model::C)];
     let trials = Trials::new(&dry, resolution, options)?;
     let converged = match model {
-        Model::A | Model::B => trials.converged(),
+        Model::A | Model::B => trials.converged(HALF_SPACES),
         Model::C => trials.continuum(trials.waves.modes()),
     }
     .ok();
     let of = |modes: usize| match (model, &converged) {
         (Model::C, layer) => trials.truncated(modes, layer.as_ref()),
-        (_, Some(all)) => match trials.kirchhoff(modes) {
+        (_, Some(all)) => match trials.kirchhoff(modes, HALF_SPACES) {
             Ok(ours) => Lack::between(&ours, all, setup.outer.speed),
             Err(_) => Lack { error: trials.truncation(modes), quantity: None },
         },
