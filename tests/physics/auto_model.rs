@@ -176,12 +176,15 @@ fn auto_has_the_first_mode_of_a_plate_that_bends_to_a_paraboloid_for_nothing() {
     }
 }
 
-/// Errors of the estimate that only some impacts show: one that takes small errors far, one in which few modes are right by chance.
+/// Errors of the estimate that only some impacts show: one that takes small errors far, one in which few modes are right by chance, one
+/// whose plate all but misses the inner body, one whose plate is hardly a plate.
 #[test]
 fn what_only_some_impacts_are_sensitive_to_is_not_promised() {
     for (text, tolerance, modes) in [
         (include_str!("../fixtures/late-inner-contact.toml"), 0.003, 32),
         (include_str!("../fixtures/foil.toml"), 0.01, 64),
+        (include_str!("../fixtures/almost-reached.toml"), 0.03, 96),
+        (include_str!("../fixtures/short-cylinder.toml"), 0.03, 64),
     ] {
         let scene = Scene::parse("scene.toml", text).unwrap();
         let speed = scene.plate_impact().unwrap().outer.speed;
