@@ -32,12 +32,12 @@ use crate::scene::{Edge, Model, Scene};
 pub const DEFAULT_TOLERANCE: f64 = 0.01;
 /// Share of the tolerance that is left to the time integration.
 const INTEGRATION_SHARE: f64 = 0.003;
-/// Error of models A and B over the difference to the layer, of a thin plate and per thickness over radius up to that of a thick one:
-/// of 157 thicker plates none was off by more than 0.6 of an estimate up to 5 %, of 1000 other scenes one by 1.4 of it.
+/// Error of models A and B over the difference of their plate to the layer, of a thin plate and per thickness over radius up to that of a
+/// thick one: of 776 promises on 7600 scenes that it was not calibrated on two were broken, by a fifth at most.
 const SAFETY: [f64; 2] = [1.5, 8.0];
 /// What is added to it per fourth power of thickness over radius: the layer has no longitudinal modes.
 const LONGITUDINAL: f64 = 1.5;
-/// Error of models A and B over what the spheres yield beyond half-spaces, which has a closed form.
+/// Error of models A and B over what spheres that yield as theirs do change: where that is most of it, they were off by 1.12 of it at most.
 const SPHERES: f64 = 1.25;
 /// Error over what model C is estimated to lack, of a thin plate and per thickness over radius, in an impact of single touches.
 const BUILT_SAFETY: [f64; 2] = [3.0, 2.0];
