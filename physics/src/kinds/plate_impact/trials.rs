@@ -34,7 +34,7 @@ const TRUNCATION_SHARE: f64 = 0.1;
 
 /// Gap of an inner body, over its own, that the layer has to miss for the continuum to miss it for sure.
 const NEARER: f64 = 0.5;
-/// What bodies yield beyond half-spaces if they are none else, m/N.
+/// What half-spaces yield beyond half-spaces: `tips` of models A and B, m/N.
 pub(super) const HALF_SPACES: [f64; 2] = [0.0; 2];
 
 /// What a model lacks.
