@@ -258,12 +258,10 @@ impl<'a> Plan<'a> {
         self.modes = built.bending_modes();
         let options = &self.trials.options;
         let lack = if self.is_thick() {
-            let lack = by_fewer_modes(built, options, 4..8, |_| 1.0);
-            lack.times(SELF_SAFETY)
+            by_fewer_modes(built, options, 4..8, |_| SELF_SAFETY)
         } else {
             let lack = self.trials.truncated(self.modes, self.layer.as_ref());
-            let lack = lack.or(of_continuum(built, omega_next, options));
-            lack.times(self.safety())
+            lack.or(of_continuum(built, omega_next, options)).times(self.safety())
         };
         self.error = self.total(lack.error);
         self.note(Model::C, self.modes, self.error, lack.quantity);

@@ -121,14 +121,13 @@ impl<'a> Trials<'a> {
 
     /// Model C with a layer in the place of the continuum.
     pub(super) fn continuum(&self, modes: usize) -> Result<PlateQuantities> {
-        self.run(self.layer.modal_body(modes, self.predictor.slow()), modes, self.tips)
+        self.integrate(&self.layered(modes), modes)
     }
 
     /// Whether the layer with all its modes would reach an inner body [`NEARER`].
     pub(super) fn nearly_reach(&self) -> Result<bool> {
         let modes = self.waves.modes();
-        let plate = self.layer.modal_body(modes, self.predictor.slow());
-        let mut system = system(self.setup, &self.bodies, plate, self.tips);
+        let mut system = self.layered(modes);
         system.gap[1] *= NEARER;
         Ok(self.integrate(&system, modes)?.inner_force_peak > 0.0)
     }
@@ -142,10 +141,15 @@ impl<'a> Trials<'a> {
 
     /// [`Self::continuum`], ready to run, of a dry impact.
     pub(super) fn closed_form(&self, modes: usize) -> Joined {
-        let plate = self.layer.modal_body(modes, self.predictor.slow());
-        let system = system(self.setup, &self.bodies, plate, self.tips);
+        let system = self.layered(modes);
         let warnings = validity::warnings(self.setup, &self.predictor, &system);
         Joined { system, omega_next: self.layer.omega_next(modes), fluid: None, warnings }
+    }
+
+    /// The layer with `modes` bending modes between the spheres.
+    fn layered(&self, modes: usize) -> System {
+        let plate = self.layer.modal_body(modes, self.predictor.slow());
+        system(self.setup, &self.bodies, plate, self.tips)
     }
 
     fn run(&self, plate: ModalBody, modes: usize, tips: [f64; 2]) -> Result<PlateQuantities> {

@@ -100,7 +100,7 @@ fn off_centre(
         (Ok(ours), Ok(more)) => Lack::between(&ours, &more, setup.outer.speed),
         _ => Lack { error: f64::INFINITY, quantity: None },
     };
-    let lack = Lack { error: 2.0 * lack.error, ..lack };
+    let lack = lack.times(2.0);
     let error = lack.error;
     let enough = (system.modes as f64 * error / LARGEST).ceil() as usize;
     let warning = (error > LARGEST)
@@ -131,8 +131,7 @@ pub(super) fn by_fewer_modes(
     let part = |eighths: usize| {
         let modes = eighths * system.modes / 8;
         let Ok(part) = run(&system.lowest(modes)) else { return unknown };
-        let lack = Lack::between(&part, &whole, system.speed);
-        Lack { error: share(modes) * lack.error, ..lack }
+        Lack::between(&part, &whole, system.speed).times(share(modes))
     };
     eighths.into_iter().map(part).reduce(Lack::or).unwrap_or(unknown)
 }
