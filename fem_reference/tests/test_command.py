@@ -279,7 +279,7 @@ def test_killed_run_leaves_no_result(tmp_path: Path, deadly: signal.Signals) -> 
                 break
         assert list(tmp_path.glob(f"{PARTIAL_PREFIX}*"))
         process.send_signal(deadly)
-        assert process.wait(timeout=30) == -deadly
+        assert process.wait(timeout=300) == -deadly
     finally:
         process.kill()
         process.stdout.close()

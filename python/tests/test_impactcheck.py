@@ -286,32 +286,40 @@ def test_other_threads_go_on_meanwhile() -> None:
         while not done.wait(1e-3):
             moments.append(time.monotonic())
 
+    def watched_in_the_middle() -> bool:
+        moments.clear()
+        start = time.monotonic()
+        ic.sweep([scene] * 1000, model="C", threads=1)
+        end = time.monotonic()
+        return any(abs(t - (start + end) / 2) < (end - start) / 4 for t in moments)
+
     watcher = threading.Thread(target=watch)
     watcher.start()
-    start = time.monotonic()
-    ic.sweep([scene] * 1000, model="C", threads=1)
-    end = time.monotonic()
+    # a busy machine may not run the watcher in each sweep's middle
+    watched = any(watched_in_the_middle() for _ in range(100))
     done.set()
     watcher.join()
-    assert [t for t in moments if abs(t - (start + end) / 2) < (end - start) / 4]
+    assert watched
 
 
 def test_an_interruption_ends_a_sweep() -> None:
     script = """
+import signal, threading
 import impactcheck as ic
-scenes = [ic.Scene.read("scaled-plate-r10")] * 20000
-print("begins", flush=True)
+# a program started in the background ignores interruptions
+signal.signal(signal.SIGINT, signal.default_int_handler)
+scenes = [ic.Scene.read("scaled-plate-r10")] * 100000
 try:
+    threading.Timer(0.3, lambda: print("runs", flush=True)).start()
     ic.sweep(scenes, model="C")
 except KeyboardInterrupt:
     print("interrupted")
 print(ic.reduced(scenes[0], model="B").efficiency)
 """
     running = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
-    assert running.stdout is not None and running.stdout.readline() == "begins\n"
-    time.sleep(0.5)
+    assert running.stdout is not None and running.stdout.readline() == "runs\n"
     running.send_signal(signal.SIGINT)
-    said, _ = running.communicate(timeout=60)
+    said, _ = running.communicate(timeout=600)
     assert running.returncode == 0 and said.startswith("interrupted\n0.69")
 
 

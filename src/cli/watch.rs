@@ -21,8 +21,7 @@ pub(super) fn watch(files: &[PathBuf], job: impl Fn() -> Result<ExitStatus>) -> 
     let mut first = true;
     loop {
         let seen = stamps(files);
-        let now = chrono::Utc::now().format("%H:%M:%S UTC");
-        super::print(&format!("{CLEAR}{now}: watching {}; Ctrl-C ends", told(files)))?;
+        super::print(CLEAR)?;
         let status = match job() {
             Err(error @ Error::Usage(_)) if first => return Err(error),
             Err(error) => {
@@ -33,6 +32,8 @@ pub(super) fn watch(files: &[PathBuf], job: impl Fn() -> Result<ExitStatus>) -> 
         };
         interrupt::ends_with(status as u8);
         first = false;
+        let now = chrono::Utc::now().format("%H:%M:%S UTC");
+        super::print(&format!("{now}: watching {}; Ctrl-C ends", told(files)))?;
         wait_for_change(files, seen);
     }
 }

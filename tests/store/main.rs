@@ -11,3 +11,5 @@ mod store_solve;
 
 #[path = "../support/store_fixture.rs"]
 mod store_fixture;
+#[path = "../support/waiting.rs"]
+mod waiting;

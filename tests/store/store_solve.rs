@@ -3,11 +3,13 @@
 #![cfg(unix)]
 
 use crate::store_fixture::*;
+use crate::waiting::wait_until;
 use impactcheck::reference::{Lookup, Progress, Resolution, Store, Wish, solve_with};
 use impactcheck::scene::Scene;
 use impactcheck::{Error, ExitStatus, Result};
 use serde_json::json;
 use std::fs::{self, File};
+use std::io::Write;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -297,26 +299,48 @@ fn scenes_of_one_name_solved_at_once_are_all_kept() {
 #[test]
 fn who_asks_for_what_is_being_computed_waits_and_takes_it() {
     let bench = Bench::new();
-    let python = bench.solver(&format!("echo run >> \"$here/runs\"; sleep 1; {COPY}"));
+    // a run ends when as many others wait for it as it is told to expect
+    let count = r#"wc -l < "$here/others""#;
+    let script = format!(
+        "echo run >> \"$here/runs\"; while [ $({count}) -lt $(cat \"$here/wanted\") ]; do sleep 0.01; done; {COPY}"
+    );
+    let python = bench.solver(&script);
     let runs = || fs::read_to_string(bench.path("runs")).unwrap_or_default().lines().count();
+    let other = || {
+        let mut others = File::options().append(true).create(true).open(bench.path("others")).expect("file");
+        writeln!(others, "other").expect("line");
+    };
+    let wanted = |count: &str| {
+        fs::write(bench.path("others"), "").expect("file");
+        fs::write(bench.path("wanted"), count).expect("file");
+    };
     let solve = |wish: &Wish| {
-        let mut told = Vec::new();
-        solve_with(&python, &scene(), PAPER, &bench.store, wish, &mut |p| told.push(p.phase.clone()))
-            .expect("success");
-        told.contains(&"waiting".to_owned())
+        let mut waited = false;
+        let mut progress = |p: &Progress| {
+            if p.phase == "waiting" && !waited {
+                waited = true;
+                other();
+            }
+        };
+        solve_with(&python, &scene(), PAPER, &bench.store, wish, &mut progress).expect("success");
+        waited
     };
     let plain = Wish::default();
+    wanted("2");
     let waited: usize = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..3).map(|_| scope.spawn(|| usize::from(solve(&plain)))).collect();
         workers.into_iter().map(|worker| worker.join().expect("thread")).sum()
     });
     assert_eq!((runs(), waited, bench.contents()), (1, 2, vec!["paper".to_owned()]));
     // what nobody computes is not waited for, and fields are everyone's own
+    wanted("0");
     assert!(!solve(&plain));
+    wanted("1");
     std::thread::scope(|scope| {
         scope.spawn(|| solve(&plain));
-        std::thread::sleep(Duration::from_millis(300));
-        solve(&Wish { fields: 4, ..Wish::default() });
+        wait_until(|| runs() == 3, || "the first run does not start".to_owned());
+        let fields = Wish { fields: 4, ..Wish::default() };
+        assert!(solve(&fields));
     });
     assert_eq!(runs(), 4);
 }
