@@ -252,7 +252,10 @@ def test_convergence_lists_all_meshes_and_explains_the_bands(
         assert entry["band"] == summary["uncertainty"][name]
 
 
-@pytest.mark.parametrize("deadly", [signal.SIGTERM, signal.SIGKILL])
+ENDING = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
+
+
+@pytest.mark.parametrize("deadly", [*ENDING, signal.SIGKILL])
 def test_killed_run_leaves_no_result(tmp_path: Path, deadly: signal.Signals) -> None:
     scene = scene_file(tmp_path, reference__elements_per_contact_radius=12)
     process = subprocess.Popen(
@@ -286,16 +289,7 @@ def test_killed_run_leaves_no_result(tmp_path: Path, deadly: signal.Signals) -> 
         process.wait()
     left = {path.name for path in tmp_path.iterdir()} - {"scene.json"}
     assert all(name.startswith(PARTIAL_PREFIX) for name in left)
-
-
-def test_a_compiler_that_does_not_answer_is_not_taken_for_a_full_disk(tmp_path: Path) -> None:
-    late = TimeoutError("JIT compilation timed out")
-    with (
-        pytest.raises(SolverError, match="compile a form: JIT compilation timed out"),
-        result_folder(tmp_path / "out"),
-    ):
-        raise late
-    assert not any(tmp_path.iterdir())
+    assert not left or deadly == signal.SIGKILL
 
 
 def test_failure_while_writing_keeps_the_old_result(tmp_path: Path) -> None:
