@@ -225,7 +225,7 @@ def solver(scene: Scene, resolution: str, comm: Any, options: Options) -> MeshSo
 
         def leads(solution: Any) -> list[Any]:
             impacts = [len(solution.runs), solution.reach] if scene.yields else []
-            return [*solution.radii, *impacts]
+            return [*solution.radii, *solution.refinement, *impacts]
 
     def write(folder: Path, solution: Any, meshes: list[MeshResult]) -> None:
         _write(folder, scene, solution, resolution, meshes, options)

@@ -50,12 +50,30 @@ class Resolution:
         }
 
 
-def elements_per_wavelength(scene: Scene, mesh: ImpactMesh, duration: float) -> tuple[float, float]:
-    """Least number of elements per wavelength in any body, and that wavelength, m."""
-    return min(
-        (wavelength / float(edge_lengths(body.points, body.quads).max()), wavelength)
+def per_wavelength(
+    scene: Scene, mesh: ImpactMesh, duration: float
+) -> tuple[tuple[float, float], ...]:
+    """Elements per shortest wavelength, and that wavelength (m), of outer body, plate, inner body.
+
+    Infinite of a body without elements.
+    """
+    return tuple(
+        (
+            wavelength / float(edge_lengths(body.points, body.quads).max())
+            if body.quads.size
+            else math.inf,
+            wavelength,
+        )
         for wavelength, body in zip(shortest_wavelengths(scene, duration), mesh.bodies, strict=True)
-        if body.quads.size
+    )
+
+
+def within_zones(mesh: ImpactMesh, run: Run, share: float) -> bool:
+    """Whether each contact stayed within a share of the radius of its matching nodes."""
+    surfaces = (mesh.outer_contact, mesh.inner_contact)
+    return all(
+        contact.outermost_radius < share * surface.radii[-1]
+        for contact, surface in zip(run.contacts, surfaces, strict=True)
     )
 
 
@@ -76,7 +94,7 @@ def resolution_of(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> 
         for contact, body in zip(run.contacts, (scene.outer, scene.inner), strict=True)
     ]
     edges = np.concatenate([edge_lengths(body.points, body.quads) for body in mesh.bodies])
-    per_wavelength, wavelength = elements_per_wavelength(scene, mesh, duration)
+    least, wavelength = min(per_wavelength(scene, mesh, duration))
     size = mesh.settings.contact_element
     peaks = [contact.force_peak for contact in run.contacts]
     outer, inner = (
@@ -87,7 +105,7 @@ def resolution_of(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> 
         outer=outer,
         inner=inner,
         wavelength=wavelength,
-        per_wavelength=per_wavelength,
+        per_wavelength=least,
         smallest=float(edges.min()),
         largest=float(edges.max()),
     )
