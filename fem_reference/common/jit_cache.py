@@ -59,11 +59,9 @@ def _clear(form: Path, alone: bool) -> None:
     """Remove the files of a form if it is unusable; one that may be being compiled stays."""
     source, ready = form.with_suffix(".c"), form.with_suffix(_READY)
     libraries = [form.with_suffix(suffix) for suffix in EXTENSION_SUFFIXES]
-    if ready.exists():
-        usable = source.exists() and any(map(is_whole, libraries))
-    else:
-        usable = not alone
-    if not usable:
+    is_ready = ready.exists()
+    usable = source.exists() and any(map(is_whole, libraries))
+    if (is_ready and not usable) or (alone and not is_ready):
         # the mark of a form being compiled goes last
         for path in (ready, *libraries, source):
             path.unlink(missing_ok=True)

@@ -14,6 +14,8 @@ from ..axisymmetric.modal import first_frequency
 from ..axisymmetric.system import AxisymmetricSystem
 from ..common.arrays import Floats
 from ..common.errors import SolverError
+from ..common.fenicsx import alone
+from ..common.memory import AXISYMMETRIC, require_memory
 from ..common.series import Report
 from ..common.settings import Settings
 from ..explicit.frames import Recorder
@@ -21,6 +23,7 @@ from ..explicit.supervision import stable_run
 from .axisymmetric_motion import AxisymmetricMotion, integrate_axisymmetric
 from .dents import Memory
 from .estimate import (
+    FIELD_DURATIONS,
     MOST_MESHES,
     WAVE_FREQUENCY,
     ContactEstimate,
@@ -49,6 +52,8 @@ REFINEMENTS = 8
 """Meshes, at most, on the way to elements that are small enough for the waves."""
 REFINED_BY = 1.05
 """On what the largest element is too large by: numbers of elements are rounded."""
+SECONDS_PER_DOF = 3e-9
+"""Of a step with sub-cycling, on one core; see the package's README."""
 Refinement = tuple[float, float, float]
 """See `mesh_settings`."""
 
@@ -219,6 +224,28 @@ def _refined(
     )
 
 
+def _cost(scene: Scene, system: AxisymmetricSystem, estimate: ContactEstimate) -> str:
+    """What the first run on a mesh takes, about."""
+    end = scene.end_time or FIELD_DURATIONS * estimate.duration
+    steps = end / (0.9 * float(system.element_steps.min()))
+    seconds = SECONDS_PER_DOF * system.inverse_mass.size * steps
+    return (
+        f"{system.mass.size} nodes, at least {steps:.2g} steps, about {seconds:.1g} s on one core"
+    )
+
+
+def _note(refinement: Refinement) -> str:
+    """Why a mesh has more elements than asked for."""
+    bodies = ("outer body", "plate", "inner body")
+    finer = [
+        f"{n:.2g} times in the {b}" for n, b in zip(refinement, bodies, strict=True) if n > 1.0
+    ]
+    return (
+        "far from the contacts the waves need smaller elements than "
+        f"reference.elements_per_contact_radius gives: {', '.join(finer)}"
+    )
+
+
 def compute(
     scene: Scene,
     factor: float,
@@ -256,8 +283,10 @@ def compute(
             refinement = like.refinement
             mesh = mesh_impact(scene, mesh_settings(scene, *radii, factor, refinement))
         nodes = sum(body.points.shape[0] for body in mesh.bodies)
-        report("assembly", 0.0, f"{nodes} nodes")
+        report("assembly", 0.0, require_memory(nodes, AXISYMMETRIC, alone()))
         system = build_system(scene, mesh, reach)
+        if like is None and refinement != NOT_REFINED:
+            report("note", 1.0, f"{_note(refinement)}; {_cost(scene, system, estimate)}")
         stepper = _Stepper(scene, system, estimate.duration, settings, report, like)
 
         def suits(run: Run, motion: AxisymmetricMotion, mesh: ImpactMesh = mesh) -> Suitability:

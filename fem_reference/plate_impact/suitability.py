@@ -25,7 +25,10 @@ class Resolution:
     outer: float
     """Elements per contact radius at the outer body's peak force."""
     inner: float
-    """The same for the inner body; infinite for a contact of less than `MINOR_FORCE`."""
+    """The same for the inner body; infinite for a contact that never closed.
+
+    A contact of less than `MINOR_FORCE` counts as one of just that much.
+    """
     wavelength: float
     """Shortest wavelength that matters, m."""
     per_wavelength: float
@@ -89,18 +92,19 @@ def _contact_radius(scene: Scene, contact: ContactRecord, body: Body) -> float:
 
 def resolution_of(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Resolution:
     """What a mesh resolves of a run, by the contact radii found."""
-    found = [
-        _contact_radius(scene, contact, body)
-        for contact, body in zip(run.contacts, (scene.outer, scene.inner), strict=True)
-    ]
     edges = np.concatenate([edge_lengths(body.points, body.quads) for body in mesh.bodies])
     least, wavelength = min(per_wavelength(scene, mesh, duration))
     size = mesh.settings.contact_element
-    peaks = [contact.force_peak for contact in run.contacts]
-    outer, inner = (
-        radius / size if peak >= MINOR_FORCE * max(peaks) else math.inf
-        for radius, peak in zip(found, peaks, strict=True)
-    )
+    most = max(contact.force_peak for contact in run.contacts)
+
+    def elements(contact: ContactRecord, body: Body) -> float:
+        peak = contact.force_peak
+        if peak <= 0.0:
+            return math.inf
+        at_least = max(1.0, MINOR_FORCE * most / peak) ** (1.0 / 3.0)
+        return at_least * _contact_radius(scene, contact, body) / size
+
+    outer, inner = map(elements, run.contacts, (scene.outer, scene.inner))
     return Resolution(
         outer=outer,
         inner=inner,
