@@ -196,7 +196,7 @@ class _Stepper:
         return stable_run(attempt, lambda made: made[0].account(len(made[1].loop.levels)))
 
 
-def _refined(
+def refined(
     scene: Scene, radii: tuple[float, float], factor: float, duration: float
 ) -> tuple[ImpactMesh, Refinement]:
     """A mesh whose elements are small enough for the waves in every body.
@@ -278,7 +278,7 @@ def compute(
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
         if like is None:
-            mesh, refinement = _refined(scene, radii, factor, estimate.duration)
+            mesh, refinement = refined(scene, radii, factor, estimate.duration)
         else:
             refinement = like.refinement
             mesh = mesh_impact(scene, mesh_settings(scene, *radii, factor, refinement))

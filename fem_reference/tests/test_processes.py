@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 from fem_reference.common.parent import PARENT
+from fem_reference.common.processes import busy_cores, crowded
 from fem_reference.common.versions import MODULES
 from fem_reference.tests.conftest import document
 from fem_reference.tests.program import ROOT
@@ -83,6 +84,16 @@ def test_a_run_started_by_hand_is_left_alone() -> None:
         check=True,
     )
     assert told.stdout.strip() == "0"
+
+
+def test_processes_that_would_wait_for_each_other_are_named(tmp_path: Path) -> None:
+    """Two processes beside one busy program on two cores took three times as long as one."""
+    assert crowded(1, 2.0, 2) is None
+    assert crowded(2, 0.1, 2) is None
+    said = crowded(2, 1.0, 2)
+    assert said is not None and said.startswith("other programs keep 1.0 of 2 cores busy: 2 proce")
+    assert 0.0 <= busy_cores() <= (os.cpu_count() or 1)
+    assert busy_cores(tmp_path) == 0.0
 
 
 def _imported(source: Path) -> set[str]:

@@ -11,8 +11,7 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Scene file of kind seal-seat, the name of a shipped scene, or `-` for standard input
     scene: String,
-    /// The mesh file, .vtu; its description goes into the .json file of the same name. Only earlier meshes are replaced
-    /// [default: the scene's name]
+    /// The mesh file, .vtu; a description .json appears beside it [default: the scene's name]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// How fine the mesh is
