@@ -21,7 +21,8 @@ struct Open {
     status: Option<u8>,
 }
 
-static OPEN: Mutex<Open> = Mutex::new(Open { children: Vec::new(), paths: Vec::new(), parents: Vec::new(), status: None });
+static OPEN: Mutex<Open> =
+    Mutex::new(Open { children: Vec::new(), paths: Vec::new(), parents: Vec::new(), status: None });
 
 fn open() -> MutexGuard<'static, Open> {
     OPEN.lock().unwrap_or_else(PoisonError::into_inner)
@@ -97,7 +98,8 @@ mod unix {
     pub(super) fn is_ignored(signal: i32) -> bool {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|m| m >> (signal - 1) & 1 == 1)
+        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+            .is_some_and(|m| m >> (signal - 1) & 1 == 1)
     }
 
     /// How long a child may take to end its own.

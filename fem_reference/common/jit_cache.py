@@ -70,7 +70,7 @@ def _clear(form: Path, alone: bool) -> None:
 def compiles(function: F) -> F:
     """A function that lets FEniCSx compile a form, whose errors then name the cache folder."""
     # cffi's errors of compiler and linker are no OSError
-    from cffi import VerificationError
+    from cffi import VerificationError  # type: ignore[import-untyped]
 
     @wraps(function)
     def named(*arguments: Any, **options: Any) -> Any:

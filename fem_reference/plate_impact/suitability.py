@@ -101,7 +101,7 @@ def resolution_of(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> 
         peak = contact.force_peak
         if peak <= 0.0:
             return math.inf
-        at_least = max(1.0, MINOR_FORCE * most / peak) ** (1.0 / 3.0)
+        at_least = math.cbrt(max(1.0, MINOR_FORCE * most / peak))
         return at_least * _contact_radius(scene, contact, body) / size
 
     outer, inner = map(elements, run.contacts, (scene.outer, scene.inner))

@@ -47,12 +47,16 @@ def end_of_zeros(library: Path) -> None:
     os.truncate(library, size)
 
 
+def zeros(library: Path) -> None:
+    library.write_bytes(b"\0" * library.stat().st_size)
+
+
 DAMAGES: list[Callable[[Path], None]] = [
     lambda library: os.truncate(library, 0),
     half,
     end_of_zeros,
     lambda library: os.truncate(library, library.stat().st_size - 1),
-    lambda library: library.write_bytes(b"\0" * library.stat().st_size) and None,
+    zeros,
     Path.unlink,
 ]
 

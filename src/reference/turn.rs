@@ -3,7 +3,7 @@
 use crate::interrupt::Temporary;
 use crate::scene::hash::sha256_hex;
 use std::fs::{File, TryLockError};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 /// Between two looks at a lock that someone else holds.
@@ -39,7 +39,7 @@ impl Turn {
 ///
 /// Its owner removes it before it is unlocked: a lock of a file that is no longer at `path` is one that two can have, and is
 /// taken again.
-fn lock(path: &PathBuf, waiting: &mut dyn FnMut()) -> Option<File> {
+fn lock(path: &Path, waiting: &mut dyn FnMut()) -> Option<File> {
     loop {
         let file = File::options().create(true).append(true).open(path).ok()?;
         loop {
@@ -61,7 +61,8 @@ fn lock(path: &PathBuf, waiting: &mut dyn FnMut()) -> Option<File> {
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let identity = |m: std::fs::Metadata| (m.dev(), m.ino());
-    matches!((file.metadata(), path.metadata()), (Ok(own), Ok(there)) if identity(own) == identity(there))
+    let (own, there) = (file.metadata().map(identity), path.metadata().map(identity));
+    own.ok().zip(there.ok()).is_some_and(|(own, there)| own == there)
 }
 
 /// Other systems remove no file that is open.
@@ -72,7 +73,7 @@ fn is_at(_: &File, _: &Path) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Turn, lock};
+    use super::{Temporary, Turn, lock};
     use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
     #[test]
@@ -85,7 +86,11 @@ mod tests {
                 scope.spawn(|| {
                     for _ in 0..20 {
                         let file = lock(&path, &mut || {}).expect("locked");
-                        let turn = Turn { _file: Some(crate::interrupt::Temporary::new(path.clone())), _lock: Some(file), waited: false };
+                        let turn = Turn {
+                            _file: Some(Temporary::new(path.clone())),
+                            _lock: Some(file),
+                            waited: false,
+                        };
                         assert_eq!(inside.fetch_add(1, SeqCst), 0, "two have the turn");
                         inside.fetch_sub(1, SeqCst);
                         drop(turn);

@@ -148,12 +148,15 @@ fn the_shipped_meshes_belong_to_their_scenes_and_a_changed_one_to_none() {
 #[test]
 fn a_mesh_replaces_no_file_of_the_users() {
     let scene = Scene::read(scene_file(DESIGNS[0])).expect("valid scene");
-    for (name, text) in [("seat.json", "{\"kind\": \"seal-seat\"}"), ("seat.json", "[1]"), ("seat.vtu", "<VTKFile/>")] {
+    for (name, text) in
+        [("seat.json", "{\"kind\": \"seal-seat\"}"), ("seat.json", "[1]"), ("seat.vtu", "<VTKFile/>")]
+    {
         let folder = tempfile::tempdir().expect("temporary folder");
         let own = folder.path().join(name);
         std::fs::write(&own, text).expect("written");
         let out = folder.path().join("seat.vtu");
-        let error = make_seat_mesh(Path::new("no-python"), &scene, Resolution::Coarse, 1.0, &out).expect_err("refused");
+        let error = make_seat_mesh(Path::new("no-python"), &scene, Resolution::Coarse, 1.0, &out)
+            .expect_err("refused");
         assert_eq!(error.exit_status(), impactcheck::ExitStatus::Usage, "{error}");
         assert!(error.to_string().contains(name), "{error}");
         assert_eq!(std::fs::read_to_string(&own).expect("there"), text);
@@ -164,7 +167,8 @@ fn a_mesh_replaces_no_file_of_the_users() {
     let shipped = root().join("meshes").join(format!("{}.json", DESIGNS[0]));
     std::fs::copy(shipped, folder.path().join("seat.json")).expect("copied");
     let out = folder.path().join("seat.vtu");
-    let error = make_seat_mesh(Path::new("no-python"), &scene, Resolution::Coarse, 1.0, &out).expect_err("no Python");
+    let error =
+        make_seat_mesh(Path::new("no-python"), &scene, Resolution::Coarse, 1.0, &out).expect_err("no Python");
     assert_eq!(error.exit_status(), impactcheck::ExitStatus::Solver, "{error}");
 }
 
