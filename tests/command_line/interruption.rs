@@ -58,8 +58,8 @@ fn interrupted_in(before: &str, signals: &[&str], number: i32, script: &str) {
     assert!(is_running(pid.trim()));
     let start = Instant::now();
     let signal = signals.join(", ");
-    for signal in signals {
-        let kill = Command::new("kill").args([signal, &program.id().to_string()]).status();
+    for sent in signals {
+        let kill = Command::new("kill").args([*sent, &program.id().to_string()]).status();
         assert!(kill.expect("kill").success());
     }
     let status = program.wait().expect("ends");
