@@ -230,7 +230,7 @@ def _cost(scene: Scene, system: AxisymmetricSystem, estimate: ContactEstimate) -
     steps = end / (0.9 * float(system.element_steps.min()))
     seconds = SECONDS_PER_DOF * system.inverse_mass.size * steps
     return (
-        f"{system.mass.size} nodes, at least {steps:.2g} steps, about {seconds:.1g} s on one core"
+        f"{system.mass.size} nodes, about {steps:.1g} steps, about {seconds:.1g} s on one core"
     )
 
 
