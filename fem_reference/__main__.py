@@ -5,11 +5,13 @@ from __future__ import annotations
 import argparse
 import json
 import logging
+import os
 import sys
 from pathlib import Path
 
+from .common.cache import use_writable_cache
 from .common.errors import RunError, SceneError, SolverError
-from .common.parent import end_with_parent
+from .common.parent import EndedBySignalError, end_by_signal, end_with_parent
 from .common.progress import Progress
 from .common.reader import read_document
 from .common.settings import SOLVERS
@@ -128,6 +130,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
         print(json.dumps({"fem_reference": package(), **versions()}, indent=2))
         return
+    use_writable_cache()
     try:
         if arguments.command == "bands":
             from .studies.bands import report
@@ -183,17 +186,28 @@ def _run(arguments: argparse.Namespace) -> None:
 def main() -> int:
     """Run; returns the exit status."""
     end_with_parent()
+    end_by_signal()
     arguments = _parser().parse_args()
     # FFCx and its compiler driver log through the root logger.
     logging.disable(logging.WARNING)
     try:
         _run(arguments)
     except RunError as error:
-        if arguments.command == "solve":
-            Progress().error(str(error))
-        print(f"error: {error}", file=sys.stderr)
-        return error.exit_status
+        return _failed(arguments, error)
+    except MemoryError as error:
+        return _failed(arguments, SolverError(f"the memory is used up: {error or 'no more left'}"))
+    except EndedBySignalError as ended:
+        # as the signal would have ended it
+        os.kill(os.getpid(), ended.args[0])
     return 0
+
+
+def _failed(arguments: argparse.Namespace, error: RunError) -> int:
+    """Say why a command failed; the exit status."""
+    if arguments.command == "solve":
+        Progress().error(str(error))
+    print(f"error: {error}", file=sys.stderr)
+    return error.exit_status
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
-//! Ctrl-C and SIGTERM: what runs is ended, what is half made goes, then the program ends as the signal wants it to.
+//! Ctrl-C, SIGTERM and a closed terminal: what runs is ended, what is half made goes, then the program ends as the signal
+//! wants it to.
 //!
 //! Nothing else is needed for children whose parent dies without a word: `fem_reference` asks the system to be told
 //! (`fem_reference/common/parent.py`).
@@ -12,33 +13,51 @@ use tempfile::TempDir;
 /// What an interruption has to clear away.
 struct Open {
     children: Vec<u32>,
-    folders: Vec<PathBuf>,
+    /// Folders and files.
+    paths: Vec<PathBuf>,
+    /// Folders that go if they are empty by then.
+    parents: Vec<PathBuf>,
     /// The exit status of a program that ends in no other way; `None` = it ends by the signal.
     status: Option<u8>,
 }
 
-static OPEN: Mutex<Open> = Mutex::new(Open { children: Vec::new(), folders: Vec::new(), status: None });
+static OPEN: Mutex<Open> =
+    Mutex::new(Open { children: Vec::new(), paths: Vec::new(), parents: Vec::new(), status: None });
 
 fn open() -> MutexGuard<'static, Open> {
     OPEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From now on Ctrl-C and SIGTERM leave no child and no [`Scratch`] folder behind. For programs, called once.
+impl Open {
+    /// Removes all that is open.
+    fn clear(&self) {
+        for path in &self.paths {
+            let _ = std::fs::remove_dir_all(path).or_else(|_| std::fs::remove_file(path));
+        }
+        for parent in &self.parents {
+            let _ = std::fs::remove_dir(parent);
+        }
+    }
+}
+
+/// From now on Ctrl-C, SIGTERM and SIGHUP leave no child, no [`Scratch`] folder and no [`Temporary`] file behind. A SIGHUP that
+/// is ignored (`nohup`) stays ignored. For programs, called once.
 ///
 /// # Errors
 /// What the system says if it refuses.
 #[cfg(unix)]
 pub fn listen() -> io::Result<()> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM])?;
+    if !unix::is_ignored(SIGHUP) {
+        signals.handle().add_signal(SIGHUP)?;
+    }
     let end = move || {
         if let Some(signal) = signals.forever().next() {
             // Held until the end: whoever waits for a child that ends now does not get to say that it failed.
             let open = open();
             unix::end(&open.children);
-            for folder in &open.folders {
-                let _ = std::fs::remove_dir_all(folder);
-            }
+            open.clear();
             if let Some(status) = open.status {
                 std::process::exit(status.into());
             }
@@ -74,6 +93,14 @@ mod unix {
     use rustix::process::{Pid, Signal, kill_process, kill_process_group, test_kill_process};
     use std::thread::sleep;
     use std::time::{Duration, Instant};
+
+    /// Whether this process ignores a signal, as Linux tells; elsewhere no.
+    pub(super) fn is_ignored(signal: i32) -> bool {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+        mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+            .is_some_and(|m| m >> (signal - 1) & 1 == 1)
+    }
 
     /// How long a child may take to end its own.
     const PATIENCE: Duration = Duration::from_millis(300);
@@ -167,7 +194,7 @@ impl Scratch {
     pub fn new_in(parent: &Path, prefix: &str) -> io::Result<Self> {
         let mut open = open();
         let folder = tempfile::Builder::new().prefix(prefix).tempdir_in(parent)?;
-        open.folders.push(folder.path().to_path_buf());
+        open.paths.push(folder.path().to_path_buf());
         Ok(Scratch(folder))
     }
 
@@ -179,6 +206,62 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        open().folders.retain(|folder| folder != self.0.path());
+        forget(self.0.path());
+    }
+}
+
+fn forget(path: &Path) {
+    open().paths.retain(|other| other != path);
+}
+
+/// A file that goes with its owner, or when the program is interrupted.
+#[derive(Debug)]
+pub struct Temporary(PathBuf);
+
+impl Temporary {
+    /// The file at `path`, which is there.
+    pub fn new(path: PathBuf) -> Self {
+        open().paths.push(path.clone());
+        Temporary(path)
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+        forget(&self.0);
+    }
+}
+
+/// A folder that goes with its owner, or when the program is interrupted, unless something is in it.
+#[derive(Debug)]
+pub struct Parent(PathBuf);
+
+impl Parent {
+    /// The folder at `path`, made if need be.
+    ///
+    /// # Errors
+    /// What the system says if it can't be made.
+    pub fn new(path: &Path) -> io::Result<Self> {
+        let mut open = open();
+        std::fs::create_dir_all(path)?;
+        let path = path.canonicalize()?;
+        open.parents.push(path.clone());
+        Ok(Parent(path))
+    }
+
+    /// Where it is, absolute.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for Parent {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir(&self.0);
+        let mut open = open();
+        if let Some(own) = open.parents.iter().position(|path| *path == self.0) {
+            open.parents.swap_remove(own);
+        }
     }
 }

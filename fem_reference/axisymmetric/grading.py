@@ -7,6 +7,10 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
+LEAST_OF_TWO = 1.25
+"""Length over that of the first element from which there are two: a shorter second one is a sliver.
+"""
+
 
 @dataclass(frozen=True)
 class Segment:
@@ -52,7 +56,9 @@ def graded(length: float, first: float, cap: float, ratio: float) -> list[Segmen
     rest = length - grown
     if rest > 0.5 * cap:
         return [Segment(grown, growing, exact), Segment(rest, max(1, round(rest / cap)))]
-    count = 1
+    if length < LEAST_OF_TWO * first:
+        return [Segment(length, 1)]
+    count = 2
     while first * _sum(count, ratio) < length * (1.0 - 1e-9):
         count += 1
     return [_fit(length, first, count)]

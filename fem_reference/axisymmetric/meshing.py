@@ -85,10 +85,10 @@ def _generate(name: str) -> BodyMesh:
     return BodyMesh(name, points, quads)
 
 
-def _moved_radius(settings: MeshSettings, r: Floats) -> Floats:
-    """Takes even radii in the contact zone to those of the matching nodes, m."""
+def _moved_radius(settings: MeshSettings, radii: Floats, r: Floats) -> Floats:
+    """Takes even radii in the contact zone to those of the matching nodes (``radii``), m."""
     even = settings.contact_element * np.arange(settings.contact_elements + 1)
-    return np.asarray(np.interp(r, even, settings.zone_radii()))
+    return np.asarray(np.interp(r, even, radii))
 
 
 def _rim(settings: MeshSettings) -> list[Segment]:
@@ -132,7 +132,7 @@ def mesh_plate(plate: Plate, settings: MeshSettings) -> BodyMesh:
         mesh = _generate("plate")
     points = mesh.points.copy()
     inside = points[:, 0] < zone * (1.0 - 1e-9)
-    points[inside, 0] = _moved_radius(settings, points[inside, 0])
+    points[inside, 0] = _moved_radius(settings, settings.zone_radii(), points[inside, 0])
     return BodyMesh(mesh.name, points, mesh.quads)
 
 
@@ -144,8 +144,11 @@ def modal_plate_mesh(plate: Plate) -> BodyMesh:
     return mesh_plate(plate, MeshSettings(size, 1, size, size, 1.2, 1.2))
 
 
-def _half_disc(sphere: Sphere, settings: MeshSettings, name: str) -> BodyMesh:
-    """Mesh of a sphere that touches z = 0 from above, without corrections."""
+def _half_disc(sphere: Sphere, settings: MeshSettings, name: str, along: float) -> BodyMesh:
+    """Mesh of a sphere that touches z = 0 from above, without corrections.
+
+    ``along`` is a factor on the number of elements along the way from the contact.
+    """
     radius, zone = sphere.radius, settings.contact_zone
     n = settings.contact_elements
 
@@ -187,8 +190,8 @@ def _half_disc(sphere: Sphere, settings: MeshSettings, name: str) -> BodyMesh:
         ring_arcs = [_arc(ring[i], ring_centre, ring[i + 1], even) for i in (0, 1)]
         _block(spokes[0], ring_arcs[0], -spokes[1], -right)
         _block(spokes[1], ring_arcs[1], -spokes[2], -lid)
-        # Shells up to the equator, elements about twice as long as wide.
-        ratio = 1.0 + 2.0 * math.pi / (4.0 * n)
+        # Shells up to the equator, elements about twice as long as wide where none are asked for.
+        ratio = (1.0 + 2.0 * math.pi / (4.0 * n)) ** (1.0 / along)
         shells = Segment(
             0.0, max(2, round(math.log(2.0 * radius / shell) / math.log(ratio))), ratio
         )
@@ -202,7 +205,7 @@ def _half_disc(sphere: Sphere, settings: MeshSettings, name: str) -> BodyMesh:
         _block(rays[0], halves[0], -rays[1], -ring_arcs[0])
         _block(rays[1], halves[1], -rays[2], -ring_arcs[1])
         # The far half: three blocks about one point.
-        half = Segment(0.0, max(2, round(n / 2)))
+        half = Segment(0.0, max(2, round(along * n / 2)))
         out = [
             _arc(equator[0], centre, far[0], half),
             _line(equator[1], far[1], half),
@@ -240,10 +243,12 @@ def _with_exact_volume(mesh: BodyMesh, sphere: Sphere, surface: Ints, radii: Flo
 
 
 def mesh_sphere(
-    sphere: Sphere, settings: MeshSettings, name: str, radii: Floats
+    sphere: Sphere, settings: MeshSettings, name: str, number: int
 ) -> tuple[BodyMesh, Ints]:
-    """Sphere above z = 0, and its contact nodes by increasing radius."""
-    raw = _half_disc(sphere, settings, name)
+    """Outer (``number`` 0) or inner (1) sphere above z = 0, and its contact nodes outwards."""
+    along = settings.sphere_refinement[number]
+    settings, radii = settings.of_sphere(number)
+    raw = _half_disc(sphere, settings, name, along)
     original = raw
     on_surface = (
         np.abs(np.hypot(raw.points[:, 0], raw.points[:, 1] - sphere.radius) - sphere.radius)
@@ -258,7 +263,7 @@ def mesh_sphere(
     inside = (points[:, 0] < zone) & (points[:, 1] < 3.0 * zone)
     r, z = points[inside].T
     fade = np.clip((3.0 * zone - z) / (2.0 * zone), 0.0, 1.0)
-    moved = r + fade * (_moved_radius(settings, r) - r)
+    moved = r + fade * (_moved_radius(settings, radii, r) - r)
     points[inside, 0] = moved
     points[inside, 1] += fade * (
         sphere_profile(sphere.radius, moved) - sphere_profile(sphere.radius, r)

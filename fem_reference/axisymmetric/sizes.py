@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,11 +38,26 @@ class MeshSettings:
     """Element length at the plate's rim, m; None: the rim is not refined."""
     factor: float = 1.0
     """On the number of elements asked for."""
+    sphere_elements: tuple[int | None, int | None] = (None, None)
+    """Elements of the zone that outer and inner sphere share with the plate; None: all."""
+    sphere_refinement: tuple[float, float] = (1.0, 1.0)
+    """On the number of elements of outer and inner sphere along the waves that leave the contact.
+    """
 
     @property
     def contact_zone(self) -> float:
         """Radius of the zone of matching nodes, m."""
         return self.contact_element * self.contact_elements
+
+    def of_sphere(self, number: int) -> tuple[MeshSettings, Floats]:
+        """Settings for the zone of the outer (0) or inner (1) sphere, and its matching radii, m."""
+        count, radii = self.sphere_elements[number], self.zone_radii()
+        if count is None or count >= self.contact_elements:
+            return self, radii
+        radii = radii[: count + 1]
+        return replace(
+            self, contact_element=float(radii[-1]) / count, contact_elements=count
+        ), radii
 
     def zone_radii(self) -> Floats:
         """(n,) radii of the matching nodes, m.

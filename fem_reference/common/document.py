@@ -102,6 +102,7 @@ def summary(
     targeted: tuple[Target, ...],
     solver: dict[str, Any],
     undetermined: tuple[str, ...] = (),
+    warnings: tuple[str, ...] = (),
     **special: Any,
 ) -> dict[str, Any]:
     """The summary of a solution.
@@ -117,11 +118,12 @@ def summary(
         targeted: quantities whose relative band counts.
         solver: versions; levels, processes, memory.
         undetermined: quantities that mean nothing in this scene.
+        warnings: what a user has to know before relying on the result, a sentence each.
         special: what only this kind of scene has.
     """
     values, found = meshes[0].values, estimates(meshes)
     found = {name: estimate for name, estimate in found.items() if name not in undetermined}
-    special = dict(special)
+    special = {**special, **({"warnings": list(warnings)} if warnings else {})}
     if run.in_contact_at_end:
         special["at_end"] = {
             name: {"value": value, "band": found[name].band}

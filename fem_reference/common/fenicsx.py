@@ -23,9 +23,9 @@ except ImportError as error:  # pragma: no cover - a dolfinx without PETSc
     raise ImportError("dolfinx was built without PETSc") from error
 
 from .arrays import Floats, Ints
-from .jit_cache import clear_unfinished
+from .jit_cache import clear_unusable, compiles
 
-clear_unfinished()
+clear_unusable()
 
 # FFCx logs through the root logger, at INFO and WARNING.
 for _name in ("FFCx", "UFL", "ffcx", "root"):
@@ -40,6 +40,7 @@ def _coordinate_element(cell: str, dimension: int) -> Any:
     return basix.ufl.element("Lagrange", cell, 1, shape=(dimension,))
 
 
+@compiles
 def _mesh(comm: Any, points: Floats, cells: Ints, cell: str) -> Any:
     points, cells = np.ascontiguousarray(points), np.ascontiguousarray(cells)
     domain = ufl.Mesh(_coordinate_element(cell, points.shape[1]))
@@ -49,6 +50,7 @@ def _mesh(comm: Any, points: Floats, cells: Ints, cell: str) -> Any:
         return create_mesh(comm, cells, domain, points)
 
 
+@compiles
 def _function_space(mesh: Any, family: str, degree: int, shape: tuple[int, ...]) -> Any:
     if hasattr(fem, "functionspace"):
         return fem.functionspace(mesh, (family, degree, shape) if shape else (family, degree))
@@ -116,6 +118,7 @@ class Domain:
         """A constant that does not trigger recompilation when it changes."""
         return fem.Constant(self.mesh, PETSc.ScalarType(value))
 
+    @compiles
     def matrix(self, form: Any) -> scipy.sparse.csr_matrix:
         """Assemble a bilinear form; row and column components * node + component."""
         matrix = fem_petsc.assemble_matrix(fem.form(form))
@@ -125,6 +128,7 @@ class Domain:
         matrix.destroy()
         return result
 
+    @compiles
     def vector(self, form: Any) -> Floats:
         """Assemble a linear form."""
         vector = fem_petsc.assemble_vector(fem.form(form))
@@ -139,6 +143,7 @@ class Domain:
         array[:] = values.ravel()
         return function
 
+    @compiles
     def cell_values(self, expression: Any, size: int) -> Floats:
         """(m, size) values of a vector expression at the elements' midpoints."""
         space = _function_space(self.mesh, "DG", 0, (size,))
@@ -170,6 +175,7 @@ class TetDomain:
         """For each of dolfinx's elements its number as handed in."""
         return np.asarray(self.mesh.topology.original_cell_index, dtype=np.int64)
 
+    @compiles
     def petsc_matrix(self, form: Any) -> Any:
         """Assemble a bilinear form: a PETSc matrix in blocks of 3, row 3 * node + component."""
         matrix = fem_petsc.assemble_matrix(fem.form(form))
@@ -182,6 +188,7 @@ class TetDomain:
         function.x.array[:] = values.ravel()
         return function
 
+    @compiles
     def cell_values(self, expression: Any, size: int) -> Floats:
         """(m, size) values of a vector expression at the elements' midpoints, as handed in."""
         space = _function_space(self.mesh, "DG", 0, (size,))

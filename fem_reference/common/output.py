@@ -136,9 +136,6 @@ def result_folder(target: Path) -> Iterator[Path]:
         partial.replace(target)
         if old is not None:
             shutil.rmtree(old, ignore_errors=True)
-    except TimeoutError as error:
-        # Of a form's compiler, not of a file.
-        raise SolverError(f"FEniCSx could not compile a form: {error}") from error
     except OSError as error:
         raise SolverError(f"the output folder {target} cannot be written: {error}") from error
     finally:

@@ -1,4 +1,4 @@
-"""Who started this process, and with whom it ends."""
+"""Who started this process, and how it ends: with its parent, or by a signal."""
 
 from __future__ import annotations
 
@@ -35,3 +35,29 @@ def end_with_parent() -> None:
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
     if not launched() and os.getppid() != int(parent):
         sys.exit("the program that started this run is gone")
+
+
+class EndedBySignalError(BaseException):
+    """A signal that ends the process once what is half made is gone."""
+
+
+def end_by_signal() -> None:
+    """Let a closed terminal, SIGTERM and Ctrl-C end a run that was started by hand in good order.
+
+    What is half made goes then. The program that starts runs clears up after them itself, and
+    launchers end their processes at once. A signal that the shell has ignored (nohup) stays so.
+    """
+    if PARENT in os.environ or launched():
+        return
+
+    # PETSc would end the process on the spot
+    options = os.environ.get("PETSC_OPTIONS", "")
+    os.environ["PETSC_OPTIONS"] = f"{options} -no_signal_handler".strip()
+
+    def ended(number: int, _: object) -> None:
+        signal.signal(number, signal.SIG_DFL)
+        raise EndedBySignalError(number)
+
+    for number in (signal.SIGHUP, signal.SIGTERM, signal.SIGINT):
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, ended)

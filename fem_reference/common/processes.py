@@ -6,8 +6,10 @@ import argparse
 import os
 import shutil
 import sys
+import time
 import traceback
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from .errors import RunError, SolverError
@@ -15,11 +17,42 @@ from .groups import affinity, quota
 from .parent import launched
 from .progress import Progress
 
+LOOK = 0.3
+"""Time in which the load of the machine is measured, s."""
+SPARE = 0.3
+"""Cores' worth of other work that does not count."""
 INHERITED = (
     *("PMIX_", "PMI_", "OMPI_COMM_", "OMPI_UNIVERSE"),
     *("OMPI_MCA_ess", "OMPI_MCA_orte", "OMPI_MCA_pmix"),
 )
 """What a process that has used MPI leaves in the environment of those it starts."""
+
+
+def busy_cores(system: Path = Path("/")) -> float:
+    """Cores that the machine's programs keep busy now; 0 where the system does not say."""
+
+    def times() -> tuple[float, float]:
+        fields = (system / "proc/stat").read_text(encoding="ascii").split("\n", 1)[0].split()[1:]
+        return sum(map(float, fields[:8])), float(fields[3]) + float(fields[4])
+
+    try:
+        total, idle = times()
+        time.sleep(LOOK)
+        after, idle_after = times()
+    except (OSError, ValueError, IndexError):
+        return 0.0
+    spent = after - total
+    return (os.cpu_count() or 1) * (1.0 - (idle_after - idle) / spent) if spent > 0.0 else 0.0
+
+
+def crowded(processes: int, busy: float, cores: int) -> str | None:
+    """A sentence where processes that wait for each other would have to share their cores."""
+    if processes == 1 or processes + busy <= cores + SPARE:
+        return None
+    return (
+        f"other programs keep {busy:.1f} of {cores} cores busy: {processes} processes wait for "
+        "each other at every step and may take several times as long as one; --np 1 does not wait"
+    )
 
 
 def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str, str]]:
@@ -59,6 +92,9 @@ def _launch(processes: int) -> None:
     Raises:
         SolverError: there is no mpirun.
     """
+    said = crowded(processes, busy_cores(), len(affinity()))
+    if said is not None:
+        Progress().report("note", 1.0, said)
     again = [sys.executable, "-m", "fem_reference", *sys.argv[1:]]
     command, environment = launched_by(again, processes)
     sys.stdout.flush()

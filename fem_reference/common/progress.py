@@ -22,6 +22,8 @@ class Progress:
     def report(self, phase: str, done: float, message: str, series: float | None = None) -> None:
         """Report ``done`` (0..1) of ``phase`` (mesh, assembly, stepping, writing).
 
+        A ``note`` is what a user should read and keep, whatever the run does.
+
         ``series`` is the share (0..1) of all meshes together, where there are several.
         """
         now = time.monotonic()
@@ -64,5 +66,5 @@ class MeshOfSeries(Progress):
             self._reached = max(self._reached, done)
         before, own = sum(self._costs[: self._number - 1]), self._costs[self._number - 1]
         share = (before + own * self._reached) / sum(self._costs)
-        label = f"mesh {self._number} of {len(self._costs)}: "
+        label = "" if phase == "note" else f"mesh {self._number} of {len(self._costs)}: "
         self._progress.report(phase, done, label + message, share)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import shutil
+import zipfile
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
@@ -270,7 +272,8 @@ class Series(Generic[S]):
             threads=threads_per_process(options.threads, self.comm),
         )
         if number == finest:
-            settings = replace(settings, frames=options.frames, frame_times=options.stress_times)
+            instants = (*options.stress_times, *options.frame_times)
+            settings = replace(settings, frames=options.frames, frame_times=instants)
         return self.solver.compute(self._factor(number), settings, report, self.lead)
 
     def _result(self, number: int, solution: S) -> MeshResult:
@@ -311,7 +314,8 @@ class Series(Generic[S]):
             return
         path = self.folder / f"{self._label(number)}.json"
         self.folder.mkdir(parents=True, exist_ok=True)
-        np.savez(path.with_name(f"{path.stem}-curves.npz"), times=mesh.times, rows=mesh.rows)
+        curves = path.with_name(f"{path.stem}-curves.npz")
+        np.savez(curves, times=mesh.times, rows=mesh.rows)
         # The description is written last: without it the curves are not used.
         temporary = path.with_name(f".partial-{path.name}")
         document = {
@@ -319,18 +323,27 @@ class Series(Generic[S]):
             "quantities": mesh.values,
             "numbers": mesh.numbers,
         }
-        write_json(temporary, document)
+        write_json(temporary, document | {"checksum": _checksum(document, curves)})
         temporary.replace(path)
 
     def _load(self, number: int) -> MeshResult | None:
         path = self.folder / f"{self._label(number)}.json"
         try:
             document = json.loads(path.read_text(encoding="utf-8"))
-            if document["identity"] != self._identity(number):
+            curves = path.with_name(f"{path.stem}-curves.npz")
+            intact = document.pop("checksum") == _checksum(document, curves)
+            if not intact or document["identity"] != self._identity(number):
                 return None
-            with np.load(path.with_name(f"{path.stem}-curves.npz"), allow_pickle=False) as file:
+            with np.load(curves, allow_pickle=False) as file:
                 times, rows = file["times"], file["rows"]
             values, numbers = document["quantities"], document["numbers"]
             return MeshResult(self._factor(number), values, times, rows, numbers)
-        except (OSError, ValueError, KeyError):
+        except (OSError, ValueError, KeyError, zipfile.BadZipFile):
             return None
+
+
+def _checksum(document: dict[str, Any], curves: Path) -> str:
+    """Of a kept mesh's description and the file of its curves."""
+    digest = hashlib.sha256(json.dumps(document, sort_keys=True).encode())
+    digest.update(curves.read_bytes())
+    return digest.hexdigest()

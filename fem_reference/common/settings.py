@@ -38,6 +38,16 @@ def require_instants(instants: tuple[float, ...], end_time: float | None) -> Non
             raise SceneError(f"--stress-at is {instant:g} s; it must lie between 0 and the end")
 
 
+def missed_instants(instants: tuple[float, ...], end: float) -> list[str]:
+    """A sentence about each instant that lies behind the end of the run; both in s."""
+    return [
+        f"there are no fields at {instant:g} s: the run ended at {end:.4g} s, when no further "
+        "contact was possible"
+        for instant in instants
+        if instant > end
+    ]
+
+
 def require_share(target_error: float | None) -> None:
     """A relative error to be reached.
 
@@ -58,6 +68,8 @@ class Options:
     """Instants at which fields are written, s."""
     frames: int = 0
     """Fields are written at least so many times, evenly over the run; 0: not."""
+    frame_times: tuple[float, ...] = ()
+    """And at these instants, s, as far as the run comes."""
     checkpoint: Path | None = None
     """Folder; by default ``.checkpoint-<name>`` beside the result."""
     checkpoint_interval: float = 60.0
@@ -76,6 +88,7 @@ class Options:
             arguments.courant,
             arguments.stress_at,
             arguments.fields,
+            (),
             arguments.checkpoint,
             arguments.checkpoint_interval,
             arguments.target_error,

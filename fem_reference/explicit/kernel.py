@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..common.arrays import Floats
+from ..common.cache import LOOPS, cache_folder, is_whole
 from ..common.compiler import compiler, compiler_version
 from ..common.errors import SolverError
 from .structures import (
@@ -89,23 +90,6 @@ def _processor() -> str:
     return "".join(sorted({x for x in lines if x.startswith(("model name", "flags", "Features"))}))
 
 
-def _cache_folder() -> Path:
-    base = os.environ.get("XDG_CACHE_HOME")
-    folder = Path(base) if base else Path.home() / ".cache"
-    folder = folder / "impactcheck" / "kernels"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if os.access(folder, os.W_OK):
-            return folder
-    except OSError:
-        pass
-    fallback = Path(tempfile.gettempdir()) / f"impactcheck-kernels-{os.getuid()}"
-    fallback.mkdir(mode=0o700, exist_ok=True)
-    if fallback.stat().st_uid != os.getuid():
-        raise SolverError(f"cache folder {fallback} belongs to another user; set XDG_CACHE_HOME")
-    return fallback
-
-
 def _compiled(components: int) -> ctypes.CDLL:
     """The library for 2 or 3 components, built once per source, flags, compiler and processor."""
     program = compiler()
@@ -113,26 +97,39 @@ def _compiled(components: int) -> ctypes.CDLL:
     parts = (" ".join(flags), compiler_version(), _processor())
     sources = [path.read_bytes() for path in sorted(_SOURCE.parent.glob("*.c"))]
     content = b"\0".join([*sources, *(part.encode() for part in parts)])
-    folder = _cache_folder()
+    folder = cache_folder() / LOOPS
     library = folder / f"kernel-{components}-{hashlib.sha256(content).hexdigest()[:24]}.so"
-    if library.exists():
+    try:
+        if not is_whole(library):
+            folder.mkdir(parents=True, exist_ok=True)
+            _compile([program, *flags], library)
         return ctypes.CDLL(str(library))
-    handle, temporary = tempfile.mkstemp(suffix=".so", prefix=".build-", dir=folder)
+    except OSError as error:
+        raise SolverError(
+            f"the time loop cannot be compiled into the cache folder {folder}: {error}"
+        ) from error
+
+
+def _compile(command: list[str], library: Path) -> None:
+    """Compile the time loop; what lies at ``library`` is replaced when it is complete."""
+    handle, temporary = tempfile.mkstemp(suffix=".so", prefix=".build-", dir=library.parent)
     os.close(handle)
     try:
         result = subprocess.run(
-            [program, *flags, "-o", temporary, str(_SOURCE), "-lm"],
+            [*command, "-o", temporary, str(_SOURCE), "-lm"],
             capture_output=True,
             text=True,
             check=False,
         )
         if result.returncode != 0:
             detail = (result.stderr.strip().splitlines() or ["no message"])[0]
-            raise SolverError(f"{program} could not compile the time loop: {detail}")
+            raise SolverError(
+                f"{command[0]} could not compile the time loop into the cache folder "
+                f"{library.parent}: {detail}"
+            )
         Path(temporary).replace(library)
     finally:
         Path(temporary).unlink(missing_ok=True)
-    return ctypes.CDLL(str(library))
 
 
 def load(components: int) -> ctypes.CDLL:

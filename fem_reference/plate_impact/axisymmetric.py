@@ -14,6 +14,8 @@ from ..axisymmetric.modal import first_frequency
 from ..axisymmetric.system import AxisymmetricSystem
 from ..common.arrays import Floats
 from ..common.errors import SolverError
+from ..common.fenicsx import alone
+from ..common.memory import AXISYMMETRIC, require_memory
 from ..common.series import Report
 from ..common.settings import Settings
 from ..explicit.frames import Recorder
@@ -21,16 +23,24 @@ from ..explicit.supervision import stable_run
 from .axisymmetric_motion import AxisymmetricMotion, integrate_axisymmetric
 from .dents import Memory
 from .estimate import (
+    FIELD_DURATIONS,
     MOST_MESHES,
     WAVE_FREQUENCY,
     ContactEstimate,
     estimate_contact,
 )
-from .meshing import YIELDING_REACH, ImpactMesh, build_system, mesh_impact, mesh_settings
+from .meshing import (
+    NOT_REFINED,
+    YIELDING_REACH,
+    ImpactMesh,
+    build_system,
+    mesh_impact,
+    mesh_settings,
+)
 from .run import Run
 from .scene import Scene
 from .series import Kept, strike
-from .suitability import Resolution, Suitability, elements_per_wavelength, resolution_of
+from .suitability import Resolution, Suitability, per_wavelength, resolution_of, within_zones
 
 REVISION = 2
 """Counts changes of the method that make kept results useless."""
@@ -38,6 +48,14 @@ REVISION = 2
 LEAST_ELEMENTS_PER_WAVELENGTH = 12.0
 """Elements with incompatible modes then miss the wave's frequency by 0.6 %, at a frequency that
 carries 1 % of the pulse."""
+REFINEMENTS = 8
+"""Meshes, at most, on the way to elements that are small enough for the waves."""
+REFINED_BY = 1.05
+"""On what the largest element is too large by: numbers of elements are rounded."""
+SECONDS_PER_DOF = 3e-9
+"""Of a step with sub-cycling, on one core; see the package's README."""
+Refinement = tuple[float, float, float]
+"""See `mesh_settings`."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +80,8 @@ class Solution:
     """Contact radii the mesh is made for, outer and inner, m."""
     reach: float
     """Radius and depth of the boxes that may yield over that of the matching nodes."""
+    refinement: Refinement
+    """Of the elements far from the contacts, for the waves."""
     recorder: Recorder
     plastic_strain: Floats | None
     """(elements,) accumulated, of all bodies one after the other; None if nothing can yield."""
@@ -108,6 +128,7 @@ class Solution:
             "growth": settings.growth,
             "through_growth": settings.through_growth,
             "meshes_tried": self.meshes_tried,
+            "refinement": list(self.refinement),
             "estimated_contact_radius": {
                 "outer": self.estimate.outer_radius,
                 "inner": self.estimate.inner_radius,
@@ -175,6 +196,56 @@ class _Stepper:
         return stable_run(attempt, lambda made: made[0].account(len(made[1].loop.levels)))
 
 
+def refined(
+    scene: Scene, radii: tuple[float, float], factor: float, duration: float
+) -> tuple[ImpactMesh, Refinement]:
+    """A mesh whose elements are small enough for the waves in every body.
+
+    Raises:
+        SceneError: the scene is outside the method.
+        SolverError: meshing failed, or elements stayed too large.
+    """
+    refinement = NOT_REFINED
+    for _ in range(REFINEMENTS):
+        mesh = mesh_impact(scene, mesh_settings(scene, *radii, factor, refinement))
+        found = per_wavelength(scene, mesh, duration)
+        outer, plate, inner = (LEAST_ELEMENTS_PER_WAVELENGTH / count for count, _ in found)
+        if max(outer, plate, inner) <= 1.0:
+            return mesh, refinement
+        refinement = (
+            refinement[0] * (REFINED_BY * outer if outer > 1.0 else 1.0),
+            refinement[1] * (REFINED_BY * plate if plate > 1.0 else 1.0),
+            refinement[2] * (REFINED_BY * inner if inner > 1.0 else 1.0),
+        )
+    least, wavelength = min(found)
+    raise SolverError(
+        f"after {REFINEMENTS} meshes there are still only {least:.3g} elements per wavelength of "
+        f"{wavelength:.3g} m, at least {LEAST_ELEMENTS_PER_WAVELENGTH:g} are required"
+    )
+
+
+def _cost(scene: Scene, system: AxisymmetricSystem, estimate: ContactEstimate) -> str:
+    """What the first run on a mesh takes, about."""
+    end = scene.end_time or FIELD_DURATIONS * estimate.duration
+    steps = end / (0.9 * float(system.element_steps.min()))
+    seconds = SECONDS_PER_DOF * system.inverse_mass.size * steps
+    return (
+        f"{system.mass.size} nodes, about {steps:.1g} steps, about {seconds:.1g} s on one core"
+    )
+
+
+def _note(refinement: Refinement) -> str:
+    """Why a mesh has more elements than asked for."""
+    bodies = ("outer body", "plate", "inner body")
+    finer = [
+        f"{n:.2g} times in the {b}" for n, b in zip(refinement, bodies, strict=True) if n > 1.0
+    ]
+    return (
+        "far from the contacts the waves need smaller elements than "
+        f"reference.elements_per_contact_radius gives: {', '.join(finer)}"
+    )
+
+
 def compute(
     scene: Scene,
     factor: float,
@@ -206,27 +277,24 @@ def compute(
     asked = scene.elements_per_contact_radius * factor
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
-        sizes = mesh_settings(scene, *radii, factor)
-        mesh = mesh_impact(scene, sizes)
-        per_wavelength, wavelength = elements_per_wavelength(scene, mesh, estimate.duration)
-        if like is None and per_wavelength < LEAST_ELEMENTS_PER_WAVELENGTH:
-            raise SolverError(
-                f"only {per_wavelength:.3g} elements per wavelength of {wavelength:.3g} m, "
-                f"at least {LEAST_ELEMENTS_PER_WAVELENGTH:g} are required; raise "
-                "reference.elements_per_contact_radius"
-            )
+        if like is None:
+            mesh, refinement = refined(scene, radii, factor, estimate.duration)
+        else:
+            refinement = like.refinement
+            mesh = mesh_impact(scene, mesh_settings(scene, *radii, factor, refinement))
         nodes = sum(body.points.shape[0] for body in mesh.bodies)
-        report("assembly", 0.0, f"{nodes} nodes")
+        report("assembly", 0.0, require_memory(nodes, AXISYMMETRIC, alone()))
         system = build_system(scene, mesh, reach)
+        if like is None and refinement != NOT_REFINED:
+            report("note", 1.0, f"{_note(refinement)}; {_cost(scene, system, estimate)}")
         stepper = _Stepper(scene, system, estimate.duration, settings, report, like)
 
         def suits(run: Run, motion: AxisymmetricMotion, mesh: ImpactMesh = mesh) -> Suitability:
             resolution = resolution_of(scene, mesh, run, estimate.duration)
-            zone = mesh.settings.contact_zone
             return Suitability(
                 resolution,
                 asked,
-                all(contact.outermost_radius < 0.999 * zone for contact in run.contacts),
+                within_zones(mesh, run, 0.999),
                 motion.dents is None or not motion.dents.reach_the_edge(),
             )
 
@@ -252,10 +320,10 @@ def compute(
                     found.resolution,
                     estimate,
                 ),
-                *(attempt, factor, radii, reach, stepper.recorder),
+                *(attempt, factor, radii, reach, refinement, stepper.recorder),
                 dents.plastic_strain(cells) if dents else None,
             )
-        radii = found.radii(sizes.contact_element, radii)
+        radii = found.radii(mesh.settings.contact_element, radii)
         reach = reach if found.reach_left else 1.4 * reach
         print(f"mesh {attempt}: {found}; meshing again with what was found", file=sys.stderr)
     raise SolverError(f"after {MOST_MESHES} meshes there are still {found}")

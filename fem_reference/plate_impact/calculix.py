@@ -36,7 +36,7 @@ from .meshing import ImpactMesh, build_system, mesh_impact, mesh_settings
 from .motion import SIDES
 from .run import LONGEST_RUN, Run
 from .scene import Scene
-from .suitability import Resolution, Suitability, resolution_of
+from .suitability import Resolution, Suitability, resolution_of, within_zones
 
 NAME = "CalculiX"
 REVISION = 1
@@ -253,8 +253,7 @@ def compute(
             scene, mesh, factor, estimate.duration, settings, report, end
         )
         resolution = resolution_of(scene, mesh, run, estimate.duration)
-        reach = SLAVES * sizes.contact_zone
-        inside = all(contact.outermost_radius < reach for contact in run.contacts)
+        inside = within_zones(mesh, run, SLAVES)
         found = Suitability(resolution, asked, inside, True)
         if like is not None or found.accepted:
             return Solution(

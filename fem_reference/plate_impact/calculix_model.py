@@ -36,7 +36,7 @@ def require_supported(scene: Scene, options: Options) -> None:
         SceneError: naming the field, its value and what it must be.
     """
     asked = {
-        "fields are asked for; there are none": bool(options.stress_times),
+        "fields are asked for; there are none": bool(options.stress_times or options.frame_times),
         "fluid is given; it must be absent": scene.fluid is not None,
         "series is given; it must be absent": scene.series is not None,
         f"friction is {scene.friction:g}; it must be 0": scene.friction > 0.0,
@@ -82,7 +82,8 @@ def _true(mesh: BodyMesh, sphere: Sphere, pole: float, side: float) -> BodyMesh:
 
 def model(scene: Scene, mesh: ImpactMesh) -> Model:
     """The deck on the elements of a mesh."""
-    half, zone = 0.5 * scene.plate.thickness, mesh.settings.contact_zone
+    half = 0.5 * scene.plate.thickness
+    zones = [float(surface.radii[-1]) for surface in (mesh.outer_contact, mesh.inner_contact)]
     poles = (half, -half - scene.gap)
     spheres = [body for body in (scene.outer, scene.inner) if isinstance(body, Sphere)]
     places = list(zip(spheres, poles, SIDES, strict=True))
@@ -105,8 +106,8 @@ def model(scene: Scene, mesh: ImpactMesh) -> Model:
         parts.append(Part(name, solid, material, clamped, rim, speed))
         node, element = solid.nodes[-1][0] + 1, element + len(plane.quads)
     contacts = []
-    for part, face, (sphere, _, side), centre in zip(
-        (parts[0], parts[2]), (half, -half), places, centres, strict=True
+    for part, face, (sphere, _, side), centre, zone in zip(
+        (parts[0], parts[2]), (half, -half), places, centres, zones, strict=True
     ):
         points, plate = part.wedge.plane.points, parts[1].wedge
         from_centre = np.hypot(points[:, 0], points[:, 1] - centre[1])

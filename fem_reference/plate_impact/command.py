@@ -56,8 +56,7 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
             )
         from .estimate import field_times
 
-        instants = (*options.stress_times, *field_times(scene, options.frames))
-        options = replace(options, stress_times=instants, frames=0)
+        options = replace(options, frame_times=field_times(scene, options.frames), frames=0)
 
     def work(comm: Any) -> None:
         from .result import solve

@@ -78,7 +78,10 @@ class Dents:
         axial, (outer, inner) = self.at_rest()[1::2], self._system.matched
         heights = [-axial[outer.candidates], axial[outer.opposite]]
         heights += [-axial[inner.opposite], axial[inner.candidates]]
-        return np.column_stack([outer.radii, *heights])
+        radii = max(outer.radii, inner.radii, key=len)
+        # a body that is too small to touch out to there has no dent there
+        padded = [np.pad(height, (0, radii.size - height.size)) for height in heights]
+        return np.column_stack([radii, *padded])
 
     def plastic_strain(self, cells: Ints) -> Floats:
         """(k,) accumulated, the mean of each of the system's ``cells`` (k, 4 nodes)."""

@@ -34,53 +34,97 @@ from .scene import Scene
 
 CONTACT_ZONE = 1.3
 """Radius with matching nodes over the largest contact radius expected."""
+LEAST_TIP = 4.0 * CONTACT_ZONE
+"""Least radius of a body's tip over the radius of its own contact."""
+MOST_ELEMENTS = 400
+"""Across the contact zone."""
+MOST_ALONG = 3.0
+"""Most elements of a sphere along the way from the contact, over those that contact alone asks for:
+elements are then about as long as wide."""
+NOT_REFINED = (1.0, 1.0, 1.0)
+"""Elements far from the contacts as contact radius and thickness ask for them."""
 YIELDING_REACH = 3.0
 """Radius and depth of the boxes that may yield over the radius with matching nodes."""
 
 
 def mesh_settings(
-    scene: Scene, outer_radius: float, inner_radius: float, factor: float
+    scene: Scene,
+    outer_radius: float,
+    inner_radius: float,
+    factor: float,
+    refinement: tuple[float, float, float] = NOT_REFINED,
 ) -> MeshSettings:
     """Settings for the contact radii (m) expected, with ``factor`` from `RESOLUTIONS`.
+
+    ``refinement`` is a factor on the number of elements far from the contacts, of outer body, plate
+    and inner body.
 
     Raises:
         SceneError: the contact is too large for plate or spheres, or the mesh too large.
     """
     plate = scene.plate
-    per_radius = scene.elements_per_contact_radius * factor
+    radii = (outer_radius, inner_radius)
+    for name, radius, contact in (
+        (f"outer.{scene.outer.RADIUS_KEY}", scene.outer.tip_radius, outer_radius),
+        (f"inner.{scene.inner.RADIUS_KEY}", scene.inner.tip_radius, inner_radius),
+        ("plate.radius", plate.radius, max(radii)),
+    ):
+        if LEAST_TIP * contact > radius:
+            raise SceneError(
+                f"{name} is {radius:g} m, but a contact radius of {contact:.3g} m "
+                f"is expected; {LEAST_TIP:g} times as much is the least"
+            )
+    of_spheres = refinement[0], refinement[2]
+    # Elements wide enough for the waves take more elements around the contact, too.
+    around = max(1.0, *(asked / MOST_ALONG for asked in of_spheres))
+    per_radius = scene.elements_per_contact_radius * factor * around
     # Along the plate four elements per thickness carry the waves: the incompatible modes bend. The
     # stress at a clamped rim's corners is singular and would make the plate too stiff by the
     # length of the elements there: fine elements at the rim hold the first frequency to 0.01 %.
-    along = min(plate.thickness / 4.0, plate.radius / 48.0) / factor
-    through = min(plate.thickness / 8.0, plate.radius / 48.0) / factor
+    along = min(plate.thickness / 4.0, plate.radius / 48.0) / factor / refinement[1]
+    through = min(plate.thickness / 8.0, plate.radius / 48.0) / factor / refinement[1]
     rim = (
         None if plate.edge == "free" else min(plate.thickness / 32.0, plate.radius / 96.0) / factor
     )
-    per_contact = min(outer_radius, inner_radius) / per_radius
-    size = min(per_contact, along / 2.0, through)
-    zone = CONTACT_ZONE * max(outer_radius, inner_radius)
-    for name, radius in (
-        (f"outer.{scene.outer.RADIUS_KEY}", scene.outer.tip_radius),
-        (f"inner.{scene.inner.RADIUS_KEY}", scene.inner.tip_radius),
-        ("plate.radius", plate.radius),
-    ):
-        if 4.0 * zone > radius:
-            raise SceneError(
-                f"{name} is {radius:g} m, but a contact radius of {zone / CONTACT_ZONE:.3g} m "
-                f"is expected; {4.0 * CONTACT_ZONE:g} times as much is the least"
-            )
+    size = min(min(radii) / per_radius, along / 2.0, through)
+    zone = CONTACT_ZONE * max(radii)
     # An even count at factor 1: then the zone is the same at 2/3 and 3/2 of it, up to rounding.
     count = max(4, round(2.0 * math.ceil(zone / (2.0 * size * factor) - 1e-9) * factor))
-    if count > 400:
+    if count > MOST_ELEMENTS:
         raise SceneError(
-            f"the scene needs {count} elements across the contact zone, more than 400: its two "
-            "contacts or contact and plate differ too much in size"
+            f"the scene needs {count} elements across the contact zone, more than "
+            f"{MOST_ELEMENTS}: its two contacts or contact and plate differ too much in size"
         )
     # What yields lies up to twice the contact radius deep.
     through_ratio = 1.35 if scene.plate.material.yielding is None else 1.12
     growth, through_growth = (ratio ** (1.0 / factor) for ratio in (1.2, through_ratio))
-    edge = (min(outer_radius, inner_radius), max(outer_radius, inner_radius))
-    return MeshSettings(size, count, along, through, growth, through_growth, edge, rim, factor)
+    settings = MeshSettings(
+        *(size, count, along, through, growth, through_growth),
+        edge=(min(radii), max(radii)),
+        rim_element=rim,
+        factor=factor,
+        sphere_refinement=(of_spheres[0] / around, of_spheres[1] / around),
+    )
+    tips = (scene.outer.tip_radius, scene.inner.tip_radius)
+    return replace(settings, sphere_elements=_own_zones(settings, tips, radii))
+
+
+def _own_zones(
+    settings: MeshSettings, tips: tuple[float, float], contacts: tuple[float, float]
+) -> tuple[int | None, int | None]:
+    """Elements of the zone of each body; of one that is too small for the larger contact's its own.
+
+    Args:
+        settings: of the zone of both.
+        tips: radii of the bodies' tips, m.
+        contacts: their contact radii, m.
+    """
+    found: list[int | None] = []
+    for tip, contact in zip(tips, contacts, strict=True):
+        whole = LEAST_TIP * max(contacts) <= tip
+        own = int(np.searchsorted(settings.zone_radii(), CONTACT_ZONE * contact))
+        found.append(None if whole else max(4, own))
+    return found[0], found[1]
 
 
 @dataclass(frozen=True)
@@ -133,20 +177,19 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     across = max(2, round(ACROSS * settings.factor))
     stack = StackBody(scene.outer, across) if isinstance(scene.outer, Stack) else None
     plate = mesh_plate(scene.plate, settings)
-    radii = settings.zone_radii()
     half = scene.plate.thickness / 2.0
 
-    def above(body: Body, name: str) -> tuple[BodyMesh, Ints]:
+    def above(body: Body, name: str, number: int) -> tuple[BodyMesh, Ints]:
         if isinstance(body, Sphere):
-            return mesh_sphere(body, settings, name, radii)
+            return mesh_sphere(body, settings, name, number)
         # All nodes of a beam or a stack at its tip, which is the last.
         count = body.beam.mass.size if isinstance(body, Bender) else 1
         count = stack.count if stack is not None and body is scene.outer else count
         tip = BodyMesh(name, np.zeros((count, 2)), np.zeros((0, 4), dtype=np.int64))
-        return tip, np.full(radii.size, count - 1)
+        return tip, np.full(settings.of_sphere(number)[1].size, count - 1)
 
-    upper, upper_nodes = above(scene.outer, "outer")
-    lower, lower_nodes = above(scene.inner, "inner")
+    upper, upper_nodes = above(scene.outer, "outer", 0)
+    lower, lower_nodes = above(scene.inner, "inner", 1)
     outer = BodyMesh("outer", upper.points + np.array([0.0, half]), upper.quads)
     # Mirrored, hence the elements' sense of rotation reversed.
     inner = BodyMesh(
@@ -156,18 +199,19 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     )
     quality = min(check_elements(body) for body in (outer, plate, inner) if body.quads.size)
 
-    def face(z: float) -> Ints:
-        nodes = face_nodes(plate.points, z)[: radii.size]
-        if not np.allclose(plate.points[nodes, 0], radii, rtol=0.0, atol=1e-9 * radii[-1]):
+    def surface(number: int, nodes: Ints, z: float) -> ContactSurface:
+        radii = settings.of_sphere(number)[1]
+        opposite = face_nodes(plate.points, z)[: radii.size]
+        if not np.allclose(plate.points[opposite, 0], radii, rtol=0.0, atol=1e-9 * radii[-1]):
             raise SolverError("the plate's surface nodes do not match the spheres' contact nodes")
-        return nodes
+        return ContactSurface(radii, nodes, opposite)
 
     return ImpactMesh(
         outer,
         plate,
         inner,
-        ContactSurface(radii, upper_nodes, face(half)),
-        ContactSurface(radii, lower_nodes, face(-half)),
+        surface(0, upper_nodes, half),
+        surface(1, lower_nodes, -half),
         settings,
         quality,
         stack,

@@ -24,9 +24,9 @@ from ..common.series import (
     estimates,
     solve_series,
 )
-from ..common.settings import RESOLUTIONS, Options, Settings
+from ..common.settings import RESOLUTIONS, Options, Settings, missed_instants
 from ..common.versions import versions
-from .estimate import ContactEstimate
+from .estimate import MINOR_FORCE, ContactEstimate
 from .history import HISTORY_COLUMNS, curve_bands, history
 from .motion import SPHERES, Yielded
 from .run import Run
@@ -188,7 +188,7 @@ def solver(scene: Scene, resolution: str, comm: Any, options: Options) -> MeshSo
     Raises:
         SceneError: fields are asked for of what yields.
     """
-    if scene.yields and options.stress_times:
+    if scene.yields and (options.stress_times or options.frame_times):
         raise SceneError(
             "fields are asked for, but a material yields: the stress they show is the elastic one"
         )
@@ -225,7 +225,7 @@ def solver(scene: Scene, resolution: str, comm: Any, options: Options) -> MeshSo
 
         def leads(solution: Any) -> list[Any]:
             impacts = [len(solution.runs), solution.reach] if scene.yields else []
-            return [*solution.radii, *impacts]
+            return [*solution.radii, *solution.refinement, *impacts]
 
     def write(folder: Path, solution: Any, meshes: list[MeshResult]) -> None:
         _write(folder, scene, solution, resolution, meshes, options)
@@ -298,6 +298,19 @@ def write_dents(path: Path, runs: list[Run]) -> None:
     write_history(path, columns, np.vstack(rows), np.zeros((sum(map(len, rows)), 0)), digits=6)
 
 
+def _minor_contacts(run: Run, meshes: list[MeshResult]) -> list[str]:
+    """A sentence about a contact with less force than any for which a mesh is made."""
+    most = max(contact.force_peak for contact in run.contacts)
+    found = estimates(meshes)
+    return [
+        f"the peak force of the {name} contact is only {100.0 * contact.force_peak / most:.2g} % "
+        f"of the other contact's; meshes are made for {100.0 * MINOR_FORCE:g} % at least: its "
+        f"95 % band is {100.0 * found[f'{name}_force_peak'].band / contact.force_peak:.2g} % wide"
+        for name, contact in zip(SPHERES, run.contacts, strict=True)
+        if 0.0 < contact.force_peak < MINOR_FORCE * most
+    ]
+
+
 def _write(
     folder: Path,
     scene: Scene,
@@ -320,6 +333,10 @@ def _write(
         targeted(scene),
         {"versions": found, **solution.machine()},
         OF_NO_STACK if isinstance(scene.outer, Stack) else (),
+        (
+            *missed_instants(options.stress_times, float(run.times[-1])),
+            *_minor_contacts(run, meshes),
+        ),
         outer_contacts=None if run.in_contact_at_end else run.contacts[0].count,
         inner_contacts=None if run.in_contact_at_end else run.contacts[1].count,
         mesh=solution.mesh_report(),

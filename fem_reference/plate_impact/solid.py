@@ -13,6 +13,7 @@ import numpy as np
 
 from ..common.errors import SolverError
 from ..common.hertz import effective_modulus, hertz_contact_radius
+from ..common.memory import SOLID, memory_needed, peak_memory, require_memory
 from ..common.series import Report
 from ..common.settings import Settings
 from ..explicit.checkpoint import checkpoint_of
@@ -21,7 +22,7 @@ from ..explicit.loop import Loop
 from ..explicit.spectrum import body_translation, first_frequency
 from ..explicit.supervision import stable_run
 from ..solid.elasticity import write_fields
-from ..solid.memory import machine, memory_needed, peak_memory, require_memory
+from ..solid.machine import machine
 from ..solid.mesh import edge_lengths, mesh_report
 from ..solid.system import make_loop
 from .estimate import (
@@ -217,7 +218,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         report(
             "assembly",
             0.0,
-            require_memory(nodes, scene.element_order, comm, refinement=settings.refinement),
+            require_memory(nodes, SOLID[scene.element_order], comm, refinement=settings.refinement),
         )
         loop, run, recorder = _stepped(
             scene, plate, estimate.duration, settings, f"-{attempt}", comm, report
@@ -237,7 +238,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
                 wavelength,
                 per_wave,
                 recorder,
-                memory_needed(nodes, scene.element_order, comm.size),
+                memory_needed(nodes, SOLID[scene.element_order], comm.size),
                 peak_memory(comm),
             )
         grow = 1.0 if inside else 1.3

@@ -25,7 +25,10 @@ class Resolution:
     outer: float
     """Elements per contact radius at the outer body's peak force."""
     inner: float
-    """The same for the inner body; infinite for a contact of less than `MINOR_FORCE`."""
+    """The same for the inner body; infinite for a contact that never closed.
+
+    A contact of less than `MINOR_FORCE` counts as one of just that much.
+    """
     wavelength: float
     """Shortest wavelength that matters, m."""
     per_wavelength: float
@@ -50,12 +53,30 @@ class Resolution:
         }
 
 
-def elements_per_wavelength(scene: Scene, mesh: ImpactMesh, duration: float) -> tuple[float, float]:
-    """Least number of elements per wavelength in any body, and that wavelength, m."""
-    return min(
-        (wavelength / float(edge_lengths(body.points, body.quads).max()), wavelength)
+def per_wavelength(
+    scene: Scene, mesh: ImpactMesh, duration: float
+) -> tuple[tuple[float, float], ...]:
+    """Elements per shortest wavelength, and that wavelength (m), of outer body, plate, inner body.
+
+    Infinite of a body without elements.
+    """
+    return tuple(
+        (
+            wavelength / float(edge_lengths(body.points, body.quads).max())
+            if body.quads.size
+            else math.inf,
+            wavelength,
+        )
         for wavelength, body in zip(shortest_wavelengths(scene, duration), mesh.bodies, strict=True)
-        if body.quads.size
+    )
+
+
+def within_zones(mesh: ImpactMesh, run: Run, share: float) -> bool:
+    """Whether each contact stayed within a share of the radius of its matching nodes."""
+    surfaces = (mesh.outer_contact, mesh.inner_contact)
+    return all(
+        contact.outermost_radius < share * surface.radii[-1]
+        for contact, surface in zip(run.contacts, surfaces, strict=True)
     )
 
 
@@ -71,23 +92,24 @@ def _contact_radius(scene: Scene, contact: ContactRecord, body: Body) -> float:
 
 def resolution_of(scene: Scene, mesh: ImpactMesh, run: Run, duration: float) -> Resolution:
     """What a mesh resolves of a run, by the contact radii found."""
-    found = [
-        _contact_radius(scene, contact, body)
-        for contact, body in zip(run.contacts, (scene.outer, scene.inner), strict=True)
-    ]
     edges = np.concatenate([edge_lengths(body.points, body.quads) for body in mesh.bodies])
-    per_wavelength, wavelength = elements_per_wavelength(scene, mesh, duration)
+    least, wavelength = min(per_wavelength(scene, mesh, duration))
     size = mesh.settings.contact_element
-    peaks = [contact.force_peak for contact in run.contacts]
-    outer, inner = (
-        radius / size if peak >= MINOR_FORCE * max(peaks) else math.inf
-        for radius, peak in zip(found, peaks, strict=True)
-    )
+    most = max(contact.force_peak for contact in run.contacts)
+
+    def elements(contact: ContactRecord, body: Body) -> float:
+        peak = contact.force_peak
+        if peak <= 0.0:
+            return math.inf
+        at_least = math.cbrt(max(1.0, MINOR_FORCE * most / peak))
+        return at_least * _contact_radius(scene, contact, body) / size
+
+    outer, inner = map(elements, run.contacts, (scene.outer, scene.inner))
     return Resolution(
         outer=outer,
         inner=inner,
         wavelength=wavelength,
-        per_wavelength=per_wavelength,
+        per_wavelength=least,
         smallest=float(edges.min()),
         largest=float(edges.max()),
     )

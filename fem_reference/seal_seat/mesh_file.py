@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import math
 import re
 from pathlib import Path
@@ -40,13 +41,34 @@ def check_geometry(path: Path, scene: SeatScene) -> None:
         raise SolverError(f"mesh {path} is not one of this seat: it was made for another geometry")
 
 
+def require_replaceable(path: Path) -> None:
+    """Refuse to put a mesh where files lie that are no mesh of this program with its description.
+
+    Raises:
+        SolverError: naming the file that would be lost.
+    """
+    there = next((file for file in (path, path.with_suffix(".json")) if file.exists()), None)
+    if there is None:
+        return
+    try:
+        described = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
+        if {"geometry_hash", "sha256"} <= described.keys():
+            return
+    except (OSError, ValueError, AttributeError):
+        pass
+    raise SolverError(
+        f"{there} exists and is no mesh of this program with its description; choose another --out"
+    )
+
+
 def write_seat_mesh(path: Path, scene: SeatScene, resolution: str, size_factor: float) -> None:
     """Mesh the seat, write it as an uncompressed .vtu and what it was made from as .json beside it.
 
     Raises:
         SceneError: the size factor is not sound.
-        SolverError: meshing failed or the files cannot be written.
+        SolverError: meshing failed, the files cannot be written, or others would be lost.
     """
+    require_replaceable(path)
     if not (math.isfinite(size_factor) and 0.1 <= size_factor <= 10.0):
         raise SceneError(f"--size-factor is {size_factor:g}; it must lie between 0.1 and 10")
     mesh = seat_mesh(scene, RESOLUTIONS[resolution] / size_factor)

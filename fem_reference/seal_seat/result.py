@@ -11,11 +11,11 @@ from ..common import document
 from ..common.output import write_history, write_json
 from ..common.progress import Progress
 from ..common.series import MeshResult, MeshSolver, Target, solve_series
-from ..common.settings import RESOLUTIONS, Options
+from ..common.settings import RESOLUTIONS, Options, missed_instants
 from ..common.uncertainty import bands
 from ..common.versions import versions
 from ..solid.elasticity import write_fields
-from ..solid.memory import machine
+from ..solid.machine import machine
 from ..solid.mesh import mesh_report
 from .mesh_file import record_geometry
 from .run import contact_duration
@@ -85,6 +85,7 @@ def _write(
             "versions": found,
             **machine(solution.loop, solution.memory_stated, solution.memory_used),
         },
+        warnings=tuple(missed_instants(options.stress_times, float(run.times[-1]))),
         intended_angle=scene.intended_angle,
         mesh={
             **mesh_report([solution.seat.mesh]),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..common.arrays import Floats
+from ..common.memory import SOLID, memory_needed, peak_memory, require_memory
 from ..common.output import SAMPLES
 from ..common.series import Report
 from ..common.settings import Settings
@@ -17,7 +18,6 @@ from ..explicit.frames import Recorder
 from ..explicit.loop import Loop
 from ..explicit.spectrum import first_frequency
 from ..explicit.supervision import stable_run
-from ..solid.memory import memory_needed, peak_memory, require_memory
 from ..solid.system import make_loop
 from .meshing import seat_mesh, sphere_mesh
 from .model import SEAT, SeatModel, seat_model
@@ -102,7 +102,7 @@ def compute(
     report(
         "assembly",
         0.0,
-        require_memory(nodes, scene.element_order, comm, refinement=settings.refinement),
+        require_memory(nodes, SOLID[scene.element_order], comm, refinement=settings.refinement),
     )
 
     def attempt(most_levels: int) -> tuple[Loop, SeatRun, Recorder]:
@@ -123,7 +123,7 @@ def compute(
     loop, run, recorder = stable_run(
         attempt, lambda made: account(made[1], scene, len(made[0].levels))
     )
-    needed = memory_needed(nodes, scene.element_order, comm.size)
+    needed = memory_needed(nodes, SOLID[scene.element_order], comm.size)
     return Solution(run, seat, loop, recorder, needed, peak_memory(comm))
 
 

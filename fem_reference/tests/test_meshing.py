@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,11 +12,21 @@ from fem_reference.axisymmetric.elasticity import assemble
 from fem_reference.axisymmetric.grading import graded
 from fem_reference.axisymmetric.mesh import BodyMesh, check_elements, edge_lengths, element_volumes
 from fem_reference.common.errors import SceneError, SolverError
+from fem_reference.plate_impact.axisymmetric import LEAST_ELEMENTS_PER_WAVELENGTH, refined
 from fem_reference.plate_impact.estimate import estimate_contact
-from fem_reference.plate_impact.meshing import ImpactMesh, mesh_impact, mesh_settings
+from fem_reference.plate_impact.meshing import (
+    CONTACT_ZONE,
+    NOT_REFINED,
+    ImpactMesh,
+    build_system,
+    mesh_impact,
+    mesh_settings,
+)
 from fem_reference.plate_impact.scene import Scene, parse_scene
+from fem_reference.plate_impact.suitability import per_wavelength
+from fem_reference.studies.random_scenes import draw
 
-from .conftest import document
+from .conftest import document, integrate
 
 
 def build(scene: Scene, factor: float = 1.0) -> ImpactMesh:
@@ -160,3 +171,77 @@ def test_clockwise_element_is_refused(mesh: ImpactMesh) -> None:
 def test_too_small_a_plate_is_refused() -> None:
     with pytest.raises(SceneError, match=r"plate\.radius"):
         build(parse_scene(document(plate__radius=0.001)))
+
+
+@pytest.mark.parametrize("seed", [6, 25, 49])
+def test_elements_follow_the_waves_in_every_body(seed: int) -> None:
+    """Random scenes with 1.9, 5.7 and 2.6 elements per wavelength by contact and thickness."""
+    scene = draw(seed)
+    estimate = estimate_contact(scene)
+    radii = (estimate.outer_radius, estimate.inner_radius)
+    asked = mesh_impact(scene, mesh_settings(scene, *radii, 2.0 / 3.0))
+    least, _ = min(per_wavelength(scene, asked, estimate.duration))
+    assert least < 0.5 * LEAST_ELEMENTS_PER_WAVELENGTH
+    mesh, refinement = refined(scene, radii, 2.0 / 3.0, estimate.duration)
+    found = per_wavelength(scene, mesh, estimate.duration)
+    assert min(count for count, _ in found) >= LEAST_ELEMENTS_PER_WAVELENGTH
+    assert min(count for count, _ in found) < 1.3 * LEAST_ELEMENTS_PER_WAVELENGTH
+    # bodies that have enough get no more than elements around the contact bring along
+    few = [number > 1.0 for number in refinement]
+    assert few == [
+        count < LEAST_ELEMENTS_PER_WAVELENGTH
+        for count, _ in per_wavelength(scene, asked, estimate.duration)
+    ]
+    assert mesh.min_quality > 0.4
+
+
+def test_a_mesh_that_suits_the_waves_is_the_one_asked_for(scene: Scene, mesh: ImpactMesh) -> None:
+    estimate = estimate_contact(scene)
+    radii = (estimate.outer_radius, estimate.inner_radius)
+    same, refinement = refined(scene, radii, 1.0, estimate.duration)
+    assert refinement == NOT_REFINED
+    for one, other in zip(same.bodies, mesh.bodies, strict=True):
+        assert np.array_equal(one.points, other.points) and np.array_equal(one.quads, other.quads)
+
+
+def test_each_contact_has_its_own_radius() -> None:
+    """The inner sphere is ten times as small as the outer one, and fits its own contact."""
+    light = parse_scene(document(inner__radius=0.0006, plate__radius=0.025, outer__radius=0.006))
+    estimate = estimate_contact(light)
+    assert 5.2 * estimate.outer_radius > light.inner.tip_radius > 5.2 * estimate.inner_radius
+    mesh = build(light)
+    zone = mesh.inner_contact.radii[-1]
+    assert CONTACT_ZONE * estimate.inner_radius <= zone < 0.25 * light.inner.tip_radius
+    assert mesh.inner_contact.radii.size < mesh.outer_contact.radii.size
+    nodes = mesh.inner.points[mesh.inner_contact.body_nodes]
+    assert np.allclose(nodes[:, 0], mesh.inner_contact.radii, rtol=0.0, atol=1e-15)
+    fast = parse_scene(document(outer__speed=400.0))
+    own = estimate_contact(fast).outer_radius
+    with pytest.raises(SceneError, match=f"outer.radius is 0.01 m, but .* of {own:.3g} m"):
+        build(fast)
+
+
+def test_a_zone_of_its_own_gives_what_the_zone_of_both_gives() -> None:
+    light = parse_scene(document(inner__radius=0.004, run__end_time=4e-5))
+    estimate = estimate_contact(light)
+    settings = mesh_settings(light, estimate.outer_radius, estimate.inner_radius, 2.0)
+    own = int(np.searchsorted(settings.zone_radii(), CONTACT_ZONE * estimate.inner_radius))
+    assert settings.sphere_elements == (None, None) and own < 0.8 * settings.contact_elements
+    runs = [
+        integrate(build_system(light, mesh_impact(light, made)), light, estimate.duration)
+        for made in (settings, replace(settings, sphere_elements=(None, own)))
+    ]
+    peaks = [run.contacts[1].force_peak for run in runs]
+    assert peaks[1] == pytest.approx(peaks[0], rel=5e-3)
+    assert runs[1].inner_velocity == pytest.approx(runs[0].inner_velocity, rel=2e-3)
+    assert runs[1].outer_velocity == pytest.approx(runs[0].outer_velocity, rel=1e-3)
+    assert runs[1].momentum_residual < 1e-9
+
+
+@pytest.mark.parametrize("length", [0.3, 1.0, 1.0004, 1.2, 1.3, 1.99, 7.0])
+def test_a_division_of_one_element_or_two(length: float) -> None:
+    """Hardly longer than its first element: one, and no sliver beside it."""
+    (segment,) = graded(length, 1.0, 100.0, 1.2)
+    sizes = segment.ratio ** np.arange(segment.count)
+    sizes *= length / sizes.sum()
+    assert sizes.min() > 0.2 * min(length, 1.0) and sizes.max() < 2.5

@@ -5,16 +5,19 @@ from __future__ import annotations
 import ast
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from fem_reference.common.parent import PARENT
+from fem_reference.common.processes import busy_cores, crowded
 from fem_reference.common.versions import MODULES
 from fem_reference.tests.conftest import document
 from fem_reference.tests.program import ROOT
@@ -86,6 +89,16 @@ def test_a_run_started_by_hand_is_left_alone() -> None:
     assert told.stdout.strip() == "0"
 
 
+def test_processes_that_would_wait_for_each_other_are_named(tmp_path: Path) -> None:
+    """Two processes beside one busy program on two cores took three times as long as one."""
+    assert crowded(1, 2.0, 2) is None
+    assert crowded(2, 0.1, 2) is None
+    said = crowded(2, 1.0, 2)
+    assert said is not None and said.startswith("other programs keep 1.0 of 2 cores busy: 2 proce")
+    assert 0.0 <= busy_cores() <= (os.cpu_count() or 1)
+    assert busy_cores(tmp_path) == 0.0
+
+
 def _imported(source: Path) -> set[str]:
     names: set[str] = set()
     for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
@@ -110,25 +123,27 @@ def test_versions_asks_for_everything_that_is_imported() -> None:
 def test_a_compilation_that_was_killed_does_not_stop_the_next_run(tmp_path: Path) -> None:
     cache = tmp_path / "fenics"
     cache.mkdir()
+    library = f"libffcx_forms_1{EXTENSION_SUFFIXES[0]}"
     names = ("libffcx_forms_0.c", "libffcx_forms_1.c", "libffcx_forms_1.c.cached", "other.c")
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
-    code = "import fem_reference.common.jit_cache as j; j.clear_unfinished(); "
+    code = "import fem_reference.common.jit_cache as j; j.clear_unusable(); "
 
     def left() -> list[str]:
         for name in names:
             (cache / name).touch()
+        shutil.copy(sys.executable, cache / library)
         command = [sys.executable, "-c", code]
         subprocess.run(command, cwd=ROOT, env=environment, check=True)
         return sorted(path.name for path in cache.iterdir() if not path.name.startswith("."))
 
-    assert left() == sorted(names[1:])
+    assert left() == sorted([*names[1:], library])
     # While another run lives, which may be compiling, all stay.
     other = [sys.executable, "-c", code + "print(flush=True); input()"]
     pipe = subprocess.PIPE
     with subprocess.Popen(other, cwd=ROOT, env=environment, stdin=pipe, stdout=pipe) as living:
         assert living.stdout is not None
         living.stdout.readline()
-        assert left() == sorted(names)
+        assert left() == sorted([*names, library])
 
 
 def test_a_missing_module_is_told_before_a_run(tmp_path: Path) -> None:

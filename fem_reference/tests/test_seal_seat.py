@@ -342,6 +342,20 @@ def test_the_mesh_file_is_what_others_read(tmp_path: Path) -> None:
     assert refused.returncode == 3 and "--size-factor is 0.01" in refused.stderr
 
 
+@pytest.mark.parametrize("name", ["seat.json", "seat.vtu"])
+def test_a_mesh_replaces_no_file_of_the_users(tmp_path: Path, name: str) -> None:
+    scene, text = tmp_path / "seat.json", json.dumps(seat_document(True))
+    if name != scene.name:
+        scene = tmp_path / "scene.json"
+    scene.write_text(text, encoding="utf-8")
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    before = sorted(tmp_path.iterdir())
+    done = run_program("mesh", "--scene", scene, "--out", tmp_path / "seat.vtu")
+    assert done.returncode == 12 and f"{name} exists and is no mesh" in done.stderr
+    assert (tmp_path / name).read_text(encoding="utf-8") == text
+    assert sorted(tmp_path.iterdir()) == before
+
+
 def test_the_result_folder_is_complete(tmp_path: Path) -> None:
     document = seat_document(True, run={"end_time": 3e-6}, reference__element_order=1)
     document["reference"]["elements_per_ring_radius"] = 4.0

@@ -203,6 +203,25 @@ def test_meshes_kept_by_a_failed_series_are_used_by_the_same_method_only(
     assert len(solve(revision=2).factors) == series.MESHES
 
 
+def test_a_kept_mesh_that_was_edited_is_solved_again(
+    solve: Callable[..., Convergent], tmp_path: Path
+) -> None:
+    with pytest.raises(SolverError):
+        solve(target_error=1e-5)
+    kept = sorted((tmp_path / "kept").glob("mesh+*.json"))[0]
+    text = kept.read_text(encoding="utf-8")
+    value = json.loads(text)["quantities"]["value"]
+    kept.write_text(text.replace(repr(value), repr(value + 0.1)), encoding="utf-8")
+    method = solve()
+    assert len(method.factors) == 2
+    assert value in {mesh.values["value"] for mesh in method.meshes}
+    with pytest.raises(SolverError):
+        solve(target_error=1e-5)
+    curves = kept.with_name(f"{kept.stem}-curves.npz")
+    curves.write_bytes(curves.read_bytes()[:-20])
+    assert len(solve().factors) == 2
+
+
 def test_meshes_are_reported_as_one_series(tmp_path: Path) -> None:
     stream = io.StringIO()
     method = Convergent(2.0)

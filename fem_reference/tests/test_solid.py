@@ -16,6 +16,7 @@ from fem_reference.common.bodies import Material, Sphere, sphere_profile
 from fem_reference.common.errors import SolverError
 from fem_reference.common.fenicsx import alone, petsc_rows
 from fem_reference.common.hertz import effective_modulus, hertz_contact_radius, hertz_stiffness
+from fem_reference.common.memory import SOLID, memory_free, require_memory
 from fem_reference.explicit.contact import RigidBody, SphereContact, SurfaceContact, guided
 from fem_reference.explicit.energies import energies_of
 from fem_reference.explicit.loop import Loop
@@ -23,7 +24,6 @@ from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.plate_impact.solid import RADIUS_STEP, rounded
 from fem_reference.solid import meshing
 from fem_reference.solid.elasticity import Assembly, cell_stress, lumped_mass, mass_form, von_mises
-from fem_reference.solid.memory import memory_free, memory_needed, require_memory
 from fem_reference.solid.mesh import TetMesh, check_elements, surface, tetrahedra
 from fem_reference.solid.meshing import SizeField, part_of_sphere
 from fem_reference.solid.model import ElasticBody, Model, nodal_areas, project, symmetry_plane
@@ -331,13 +331,13 @@ def test_order_one_and_two_have_the_same_corners() -> None:
 
 
 def test_too_little_memory_is_refused() -> None:
-    needed = memory_needed(1_000_000, 2, 1)
-    assert "3000000 dofs" in require_memory(1_000_000, 2, alone(), 2.0 * needed)
-    with pytest.raises(SolverError, match=r"3000000 dofs and needs about .* GB of memory"):
-        require_memory(1_000_000, 2, alone(), needed)
+    needed = SOLID[2].per_node * 1_000_000
+    assert "3000000 dofs" in require_memory(1_000_000, SOLID[2], alone(), 2.0 * needed)
+    with pytest.raises(SolverError, match=r"3000000 dofs and needs about .* GB more memory"):
+        require_memory(1_000_000, SOLID[2], alone(), needed)
     # the finest mesh of the series is known before the first is solved
     with pytest.raises(SolverError, match=r"finest mesh of the series has about 24000000 dofs"):
-        require_memory(1_000_000, 2, alone(), 2.0 * needed, refinement=2.0)
+        require_memory(1_000_000, SOLID[2], alone(), 2.0 * needed, refinement=2.0)
 
 
 def test_memory_left_is_that_of_the_tightest_limit(

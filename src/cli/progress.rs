@@ -32,7 +32,10 @@ pub fn watched<T>(context: &Context, what: &str, work: impl FnOnce() -> T) -> T 
 }
 
 /// Bar over the phases of a reference solution.
-pub struct Bar(ProgressBar);
+pub struct Bar(ProgressBar, Context);
+
+/// The phase of a solver's message that is to be read and kept, whatever the run does.
+const NOTE: &str = "note";
 
 impl Bar {
     /// A bar titled `title`; hidden when the context is quiet or standard error is no terminal.
@@ -47,11 +50,14 @@ impl Bar {
             bar.set_style(style);
         }
         bar.set_prefix(title.to_owned());
-        Self(bar)
+        Self(bar, context.clone())
     }
 
-    /// Shows how far the solution is.
+    /// Shows how far the solution is; a note stays.
     pub fn show(&self, progress: &Progress) {
+        if progress.phase == NOTE {
+            return self.0.suspend(|| self.1.note(&progress.message));
+        }
         // of several meshes the bar shows all together, and the time left is that of all
         let share = progress.series.unwrap_or(progress.done);
         let Progress { phase, message, done, .. } = progress;

@@ -9,6 +9,9 @@ use crate::scene::{Geometry, Scene};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
+/// Most processes, threads or instants that the solver takes.
+const MOST: i64 = 100_000;
+
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Arguments {
@@ -27,10 +30,10 @@ pub struct Arguments {
     #[arg(long, value_name = "ERROR", conflicts_with = "resolution")]
     target_error: Option<TargetError>,
     /// Number of processes (three-dimensional references only)
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST))]
     np: u32,
     /// Processor cores for the time loop, all processes together [default: those there are]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST))]
     threads: Option<u32>,
     /// Compute even if there is a stored solution
     #[arg(long)]
@@ -39,7 +42,7 @@ pub struct Arguments {
     #[arg(long, value_delimiter = ',', value_name = "T,…")]
     stress_at: Vec<f64>,
     /// Write fields (.vtu and a .pvd series) at this many instants over the run, or somewhat more
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=MOST))]
     fields: u32,
     #[command(flatten)]
     json: JsonArgument,

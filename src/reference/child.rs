@@ -10,7 +10,7 @@ use std::thread::JoinHandle;
 /// How far a solver is.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Progress {
-    /// What it does: mesh, assembly, stepping, writing.
+    /// What it does: mesh, assembly, stepping, writing; `note`: nothing, the message is to be kept.
     pub phase: String,
     /// Share of the phase that is done, 0 to 1.
     pub done: f64,

@@ -91,6 +91,10 @@ pub fn seat_mesh_with(
     let path = folder.join("meshes").join(format!("{name}.vtu"));
     if intact(&path).is_none() {
         std::fs::create_dir_all(folder.join("meshes")).map_err(|e| Error::io("writing", &path, e))?;
+        // a damaged one of the cache is this program's own
+        for file in [path.clone(), path.with_extension("json")] {
+            let _ = std::fs::remove_file(file);
+        }
         progress(&Progress { phase: "mesh".into(), done: 0.0, message: "gmsh".into(), series: None });
         make_seat_mesh(&python::python()?, scene, resolution, 1.0, &path)?;
     }
@@ -120,10 +124,28 @@ pub fn mesh_to_follow(scene: &Scene, path: Option<&Path>) -> Result<Option<SeatM
     SeatMesh::open(&path).map(Some)
 }
 
+/// What the file beside the mesh file at `path` describes, if it is a description.
+fn described(path: &Path) -> Option<SeatMeshInfo> {
+    let text = std::fs::read_to_string(path.with_extension("json")).ok()?;
+    serde_json::from_str(&text).ok()
+}
+
+/// Refuses to put a mesh at `path` where a file lies that is no mesh of this program, or no description of one.
+fn require_replaceable(path: &Path) -> Result<()> {
+    let there = [path.to_path_buf(), path.with_extension("json")].into_iter().find(|file| file.exists());
+    match there {
+        Some(file) if described(path).is_none() => Err(Error::Usage(format!(
+            "{} exists and is no mesh of this program with its description; choose another --out (a .vtu file; the \
+             description goes into the .json file of the same name)",
+            file.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// The description of the mesh file at `path`, if both are there and belong together.
 fn intact(path: &Path) -> Option<SeatMeshInfo> {
-    let text = std::fs::read_to_string(path.with_extension("json")).ok()?;
-    let info: SeatMeshInfo = serde_json::from_str(&text).ok()?;
+    let info = described(path)?;
     let bytes = std::fs::read(path).ok()?;
     (sha256_hex(&bytes) == info.sha256).then_some(info)
 }
@@ -132,8 +154,8 @@ fn intact(path: &Path) -> Option<SeatMeshInfo> {
 /// `python` is the interpreter, see [`super::python`].
 ///
 /// # Errors
-/// [`Error::Scene`] if it is no seal seat, [`Error::Usage`] if `out` is no `.vtu` file, [`Error::Solver`] if meshing
-/// fails, [`Error::Io`] if no temporary file can be written.
+/// [`Error::Scene`] if it is no seal seat, [`Error::Usage`] if `out` is no `.vtu` file or a file of the user's would be
+/// replaced, [`Error::Solver`] if meshing fails, [`Error::Io`] if no temporary file can be written.
 pub fn make_seat_mesh(
     python: &Path,
     scene: &Scene,
@@ -145,6 +167,7 @@ pub fn make_seat_mesh(
     if out.extension().is_none_or(|e| e != "vtu") {
         return Err(Error::Usage(format!("{} has to end in .vtu", out.display())));
     }
+    require_replaceable(out)?;
     let out = std::path::absolute(out).map_err(|e| Error::io("finding", out, e))?;
     let folder = std::env::temp_dir();
     let folder =

@@ -8,7 +8,7 @@
 use super::entry::{self, Damage, MeshFiles, Stored};
 use super::turn::Turn;
 use super::{Resolution, identity};
-use crate::interrupt::Scratch;
+use crate::interrupt::{Parent, Scratch};
 use crate::project;
 use crate::scene::Scene;
 use crate::{Error, Result};
@@ -201,16 +201,15 @@ impl Store {
     /// A new work folder on the file system of the entry, after removing what dead runs left.
     pub(super) fn work_folder(&self, scene: &Scene) -> Result<WorkFolder> {
         let parent = self.root.join(&scene.name);
-        fs::create_dir_all(&parent).map_err(|e| Error::io("creating", &parent, e))?;
         // Others' solvers get an absolute path: they run in another folder.
-        let parent = parent.canonicalize().map_err(|e| Error::io("finding", &parent, e))?;
-        remove_leftovers(&parent);
-        let failed = |e| Error::io("creating a work folder in", &parent, e);
-        let folder = Scratch::new_in(&parent, PARTIAL_PREFIX).map_err(failed)?;
+        let parent = Parent::new(&parent).map_err(|e| Error::io("creating", &parent, e))?;
+        remove_leftovers(parent.path());
+        let failed = |e| Error::io("creating a work folder in", parent.path(), e);
+        let folder = Scratch::new_in(parent.path(), PARTIAL_PREFIX).map_err(failed)?;
         let lock = File::create(folder.path().join(LOCK)).map_err(failed)?;
         // Where locks don't work, leftovers go by their age.
         let _ = lock.lock();
-        Ok(WorkFolder { folder, _lock: lock, _parent: Parent(parent) })
+        Ok(WorkFolder { folder, _lock: lock, _parent: parent })
     }
 
     /// Puts the complete folder `made` in the place of the entry of `scene` at `resolution`.
@@ -338,17 +337,6 @@ pub(super) struct WorkFolder {
     _lock: File,
     // goes last
     _parent: Parent,
-}
-
-/// The folder of a scene, which goes with its last entry.
-#[derive(Debug)]
-struct Parent(PathBuf);
-
-impl Drop for Parent {
-    fn drop(&mut self) {
-        // one that is not empty stays
-        let _ = fs::remove_dir(&self.0);
-    }
 }
 
 impl WorkFolder {

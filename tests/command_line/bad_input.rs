@@ -96,6 +96,8 @@ fn command_lines_that_make_no_sense_end_with_2() {
         &["reduced", "scaled-plate-r10", "--tolerance", "2"],
         &["reference", "scaled-plate-r10", "--resolution", "finest"],
         &["reference", "scaled-plate-r10", "--np", "2"],
+        &["reference", "scaled-plate-r10", "--fields", "4294967295"],
+        &["reference", "scaled-plate-r10", "--threads", "4294967295"],
         &["compare", "scaled-plate-r10", "scaled-plate-r10"],
         &["frobnicate"],
     ] {

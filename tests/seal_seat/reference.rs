@@ -3,7 +3,7 @@
 //! where it is meant to go.
 
 use impactcheck::kinds::seal_seat::SeatQuantities;
-use impactcheck::reference::{Lookup, Resolution, Store, Stored, seat_meshes};
+use impactcheck::reference::{Lookup, Resolution, Store, Stored, make_seat_mesh, seat_meshes};
 use impactcheck::result::{Source, Summary};
 use impactcheck::scene::{Scene, Template, resolve};
 use std::path::{Path, PathBuf};
@@ -143,6 +143,33 @@ fn the_shipped_meshes_belong_to_their_scenes_and_a_changed_one_to_none() {
         std::fs::write(&copy, &bytes).expect("written");
         assert!(seat_meshes(folder.path(), &scene).expect("meshes").is_empty());
     }
+}
+
+#[test]
+fn a_mesh_replaces_no_file_of_the_users() {
+    let scene = Scene::read(scene_file(DESIGNS[0])).expect("valid scene");
+    for (name, text) in
+        [("seat.json", "{\"kind\": \"seal-seat\"}"), ("seat.json", "[1]"), ("seat.vtu", "<VTKFile/>")]
+    {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let own = folder.path().join(name);
+        std::fs::write(&own, text).expect("written");
+        let out = folder.path().join("seat.vtu");
+        let error = make_seat_mesh(Path::new("no-python"), &scene, Resolution::Coarse, 1.0, &out)
+            .expect_err("refused");
+        assert_eq!(error.exit_status(), impactcheck::ExitStatus::Usage, "{error}");
+        assert!(error.to_string().contains(name), "{error}");
+        assert_eq!(std::fs::read_to_string(&own).expect("there"), text);
+        assert_eq!(std::fs::read_dir(folder.path()).expect("folder").count(), 1);
+    }
+    // an earlier mesh is replaced: here the solver is reached
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let shipped = root().join("meshes").join(format!("{}.json", DESIGNS[0]));
+    std::fs::copy(shipped, folder.path().join("seat.json")).expect("copied");
+    let out = folder.path().join("seat.vtu");
+    let error =
+        make_seat_mesh(Path::new("no-python"), &scene, Resolution::Coarse, 1.0, &out).expect_err("no Python");
+    assert_eq!(error.exit_status(), impactcheck::ExitStatus::Solver, "{error}");
 }
 
 #[test]

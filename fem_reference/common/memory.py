@@ -4,29 +4,39 @@ from __future__ import annotations
 
 import contextlib
 import resource
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..common.errors import SolverError
-from ..common.groups import control_groups
-from ..explicit.loop import Loop
+from .errors import SolverError
+from .groups import control_groups
 
-BASE = 0.25e9
-"""Interpreter, modules and the compiler of the forms, bytes per process.
+BASE = 0.2e9
+"""Interpreter and modules, bytes per process; measured: 0.17e9, and 0.22e9 while forms compile."""
 
-Measured: 0.21e9, and 0.22e9 where the forms are not in FEniCSx' cache yet."""
-PER_NODE = {1: 6.0e3, 2: 2.5e3}
-"""Largest use per node by element order, bytes.
 
-Measured: 4.5e3 while gmsh makes the mesh (98 000 nodes), and 0.8e3 in the loop and the fields
-(10 000 to 137 000 nodes)."""
+@dataclass(frozen=True)
+class Elements:
+    """Of a geometry."""
+
+    components: int
+    """Displacements of a node."""
+    per_node: float
+    """Largest use per node beyond `BASE`, bytes."""
+
+
+AXISYMMETRIC = Elements(2, 9.0e3)
+"""Measured while matrices are assembled and factorised: MEASURED_A."""
+SOLID = {1: Elements(3, 4.6e3), 2: Elements(3, 0.9e3)}
+"""By element order. Measured: 4.3e3 while gmsh makes the mesh of linear elements (49 000 nodes),
+0.6e3 of quadratic ones (59 000), and 0.8e3 in the loop and the fields (10 000 to 137 000)."""
 SHARE = 0.9
 """Of the free memory that may be used."""
 
 
-def memory_needed(nodes: int, order: int, processes: int) -> float:
+def memory_needed(nodes: int, elements: Elements, processes: int) -> float:
     """Bytes, all processes together."""
-    return BASE * processes + PER_NODE[order] * nodes
+    return BASE * processes + elements.per_node * nodes
 
 
 def memory_free(processes: int = 1, system: Path = Path("/")) -> float | None:
@@ -86,17 +96,17 @@ def _file_cache(group: Path) -> int:
 
 
 def require_memory(
-    nodes: int, order: int, comm: Any, free: float | None = None, refinement: float = 1.0
+    nodes: int, elements: Elements, comm: Any, free: float | None = None, refinement: float = 1.0
 ) -> str:
     """State the memory needed; all processes are taken to share one machine's.
 
     Args:
         nodes: of the mesh at hand.
-        order: of its elements.
+        elements: that it has.
         comm: of the processes.
         free: bytes, by default what `memory_free` finds.
         refinement: of the finest mesh of the series over this one, in every direction: memory that
-            it will not have is told before hours are spent on the others.
+            it will not have is stated before hours are spent on the others.
 
     Returns:
         A sentence for the progress.
@@ -104,25 +114,27 @@ def require_memory(
     Raises:
         SolverError: more than is free.
     """
-    finest = round(nodes * refinement**3)
-    needed = memory_needed(finest, order, comm.size)
+    finest = round(nodes * refinement**elements.components)
+    # what these processes are already is not free any more
+    more = elements.per_node * finest
     # one answer for all: a process that goes on alone would wait for the others
     if free is None:
         free = comm.bcast(memory_free(comm.size) if comm.rank == 0 else None)
     which = "the run has" if refinement == 1.0 else "the finest mesh of the series has about"
-    text = f"{nodes} nodes, {3 * nodes} dofs"
+    dofs = elements.components * nodes
+    text = f"{nodes} nodes, {dofs} dofs"
     if refinement > 1.0:
-        text += f", about {3 * finest} on the finest mesh"
-    text += f": about {needed / 1e9:.2g} GB"
+        text += f", about {elements.components * finest} on the finest mesh"
+    text += f": about {memory_needed(finest, elements, comm.size) / 1e9:.2g} GB"
     if free is None:
         return text
-    if needed > SHARE * free:
+    if more > SHARE * free:
         raise SolverError(
-            f"{which} {3 * finest} dofs and needs about {needed / 1e9:.3g} GB of memory, "
-            f"{SHARE * free / 1e9:.3g} GB are free for it; lower "
+            f"{which} {elements.components * finest} dofs and needs about {more / 1e9:.3g} GB more "
+            f"memory, {SHARE * free / 1e9:.3g} GB are free for it; lower "
             "reference.elements_per_contact_radius or use a machine with more memory"
         )
-    return f"{text} of {free / 1e9:.2g} GB free"
+    return f"{text}, {free / 1e9:.2g} GB free"
 
 
 def peak_memory(comm: Any) -> float:
@@ -133,17 +145,3 @@ def peak_memory(comm: Any) -> float:
         lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
         own = int(next(line for line in lines if line.startswith("VmHWM")).split()[1])
     return float(comm.allreduce(own * 1024.0))
-
-
-def machine(loop: Loop, stated: float, used: float) -> dict[str, Any]:
-    """What a run needed: levels, contact solver, processes, memory stated and used, bytes."""
-    state = loop.problem.state
-    return {
-        "nodes_per_level": list(loop.levels),
-        "contact_sweeps_per_step": state.sweeps / max(1, state.step),
-        "contact_unconverged_steps": state.unconverged,
-        "processes": loop.comm.size,
-        "threads": loop.threads,
-        "peak_memory": used,
-        "memory_stated": stated,
-    }
