@@ -124,9 +124,11 @@ def _parser() -> argparse.ArgumentParser:
 def _run(arguments: argparse.Namespace) -> None:
     # Only `versions` must work without the finite-element modules: import late.
     if arguments.command == "versions":
-        from .common.versions import package, versions
+        from .common.versions import package, refused, versions
 
-        print(json.dumps({"fem_reference": package(), **versions()}, indent=2))
+        reason = refused()
+        found = {"fem_reference": package(), **versions()} | ({"refused": reason} if reason else {})
+        print(json.dumps(found, indent=2))
         return
     try:
         if arguments.command == "bands":

@@ -6,8 +6,10 @@ import argparse
 import os
 import shutil
 import sys
+import sysconfig
 import traceback
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from .errors import RunError, SolverError
@@ -16,10 +18,25 @@ from .parent import launched
 from .progress import Progress
 
 INHERITED = (
-    *("PMIX_", "PMI_", "OMPI_COMM_", "OMPI_UNIVERSE"),
+    *("PMIX_", "PMI_", "HYDI_", "OMPI_COMM_", "OMPI_UNIVERSE"),
     *("OMPI_MCA_ess", "OMPI_MCA_orte", "OMPI_MCA_pmix"),
 )
 """What a process that has used MPI leaves in the environment of those it starts."""
+
+
+def launcher() -> str | None:
+    """Path of mpirun: that of this Python's environment, else the first on PATH.
+
+    PyPI's mpi4py takes libmpi and mpirun from the environment. The launcher of another MPI starts
+    processes that do not find each other.
+    """
+    own = os.pathsep.join([str(Path(sys.executable).parent), sysconfig.get_path("scripts")])
+    for path in (own, None):
+        for name in ("mpirun", "mpiexec"):
+            program = shutil.which(name, path=path)
+            if program:
+                return program
+    return None
 
 
 def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str, str]]:
@@ -31,9 +48,12 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
     kept = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
     if processes == 1:
         return command, kept
-    program = shutil.which("mpirun") or shutil.which("mpiexec")
+    program = launcher()
     if program is None:
-        raise SolverError("mpirun is missing; --np needs it: install openmpi-bin")
+        raise SolverError(
+            "mpirun is missing; --np needs it: `pip install mpich` beside PyPI's mpi4py, "
+            "openmpi-bin beside Debian's"
+        )
     # Libraries have one thread, the loop is told its own; no refusal for root: who may start the
     # solver may start it so.
     settings = {
@@ -50,6 +70,7 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
     if processes >= (os.cpu_count() or 1):
         # Somebody else needs a processor too: waiting must not keep it busy.
         settings["OMPI_MCA_mpi_yield_when_idle"] = "1"
+        settings["MPIR_CVAR_POLLS_BEFORE_YIELD"] = "1"
     return [program, "-n", str(processes), *command], {**settings, **kept}
 
 
@@ -87,9 +108,14 @@ def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> 
     """
     if arguments.np > 1 and not launched():
         _launch(arguments.np)
-    from .fenicsx import world
+    from .fenicsx import mpi_library, world
 
     comm = world()
+    if launched() and comm.size == 1:
+        raise SolverError(
+            f"the launcher that started the processes does not belong to {mpi_library()} of "
+            f"{sys.executable}: each process is alone; use the mpirun of the same MPI"
+        )
     try:
         work(comm)
     except RunError as error:

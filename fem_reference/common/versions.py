@@ -7,29 +7,28 @@ from importlib import import_module
 from pkgutil import walk_packages
 
 PACKAGE = __name__.partition(".")[0]
-MODULES = {
-    "dolfinx": ("dolfinx", "__version__"),
-    "ufl": ("ufl", "__version__"),
-    "basix": ("basix", "__version__"),
-    "ffcx": ("ffcx", "__version__"),
-    "cffi": ("cffi", "__version__"),
-    "mpi4py": ("mpi4py", "__version__"),
-    "petsc4py": ("petsc4py", "__version__"),
-    "slepc4py": ("slepc4py", "__version__"),
-    "gmsh": ("gmsh", "__version__"),
-    "numpy": ("numpy", "__version__"),
-    "scipy": ("scipy", "__version__"),
-    "meshio": ("meshio", "__version__"),
-}
+MODULES = (
+    "dolfinx",
+    "ufl",
+    "basix",
+    "ffcx",
+    "cffi",
+    "mpi4py",
+    "petsc4py",
+    "slepc4py",
+    "gmsh",
+    "numpy",
+    "scipy",
+    "meshio",
+)
 
 
-def _version(module: str, attribute: str) -> str | None:
+def _version(module: str) -> str | None:
     try:
         found = import_module(module)
     except Exception:  # a broken installation must be reported like a missing one
         return None
-    version = getattr(found, attribute, None)
-    return str(version) if version is not None else "unknown"
+    return str(getattr(found, "__version__", "unknown"))
 
 
 def _petsc() -> str | None:
@@ -51,12 +50,26 @@ def _compiler() -> str | None:
 
 def versions() -> dict[str, str | None]:
     """Version per program or module; None where it is missing."""
+    # The wheels of PyPI find the libmpi that mpi4py has loaded, and no other.
+    _version("mpi4py.MPI")
     found: dict[str, str | None] = {"python": platform.python_version()}
-    for name, (module, attribute) in MODULES.items():
-        found[name] = _version(module, attribute)
+    found |= {name: _version(name) for name in MODULES}
     found["petsc"] = _petsc()
     found["compiler"] = _compiler()
     return found
+
+
+def refused() -> str | None:
+    """Why the FEniCSx that is there is not supported; None if it is, or if there is none."""
+    from .errors import SolverError
+
+    try:
+        import_module(".supported", __package__)
+    except SolverError as error:
+        return str(error)
+    except Exception:  # missing or broken, as in `_version`
+        return None
+    return None
 
 
 def package() -> str | None:
