@@ -6,6 +6,7 @@ import argparse
 import json
 import logging
 import sys
+import traceback
 from pathlib import Path
 
 from .common.errors import RunError, SceneError, SolverError
@@ -124,11 +125,9 @@ def _parser() -> argparse.ArgumentParser:
 def _run(arguments: argparse.Namespace) -> None:
     # Only `versions` must work without the finite-element modules: import late.
     if arguments.command == "versions":
-        from .common.versions import package, refused, versions
+        from .common.versions import installed
 
-        reason = refused()
-        found = {"fem_reference": package(), **versions()} | ({"refused": reason} if reason else {})
-        print(json.dumps(found, indent=2))
+        print(json.dumps(installed(), indent=2))
         return
     try:
         if arguments.command == "bands":
@@ -178,8 +177,15 @@ def _run(arguments: argparse.Namespace) -> None:
         commands[arguments.command](document, arguments)
     except ImportError as error:
         raise SolverError(
-            f"a Python module is missing: {error}; install dolfinx, gmsh, scipy and meshio"
+            f"a Python module is missing: {error}; `impactcheck doctor` says what installs it"
         ) from error
+
+
+def _unexpected(error: Exception) -> str:
+    """A sentence with the place in this package; the traceback follows on standard error."""
+    here = [f for f in traceback.extract_tb(error.__traceback__) if "fem_reference" in f.filename]
+    place = f"{Path(here[-1].filename).name}, line {here[-1].lineno}" if here else "start"
+    return f"unexpected {type(error).__name__} ({place}): {error}"
 
 
 def main() -> int:
@@ -195,6 +201,10 @@ def main() -> int:
             Progress().error(str(error))
         print(f"error: {error}", file=sys.stderr)
         return error.exit_status
+    except Exception as error:
+        if arguments.command == "solve":
+            Progress().error(_unexpected(error))
+        raise
     return 0
 
 

@@ -201,11 +201,6 @@ def world() -> Any:
     return MPI.COMM_WORLD
 
 
-def mpi_library() -> str:
-    """Name and version of the MPI library in use."""
-    return str(MPI.Get_library_version()).splitlines()[0].strip("\0 ")
-
-
 def on_this_machine(comm: Any) -> Any:
     """The processes of ``comm`` that share this machine's memory."""
     return comm.Split_type(MPI.COMM_TYPE_SHARED)

@@ -108,13 +108,13 @@ def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> 
     """
     if arguments.np > 1 and not launched():
         _launch(arguments.np)
-    from .fenicsx import mpi_library, world
+    from .fenicsx import world
 
     comm = world()
     if launched() and comm.size == 1:
         raise SolverError(
-            f"the launcher that started the processes does not belong to {mpi_library()} of "
-            f"{sys.executable}: each process is alone; use the mpirun of the same MPI"
+            f"the mpirun that started the processes belongs to another MPI than that of "
+            f"{sys.executable}: each process is alone; `impactcheck doctor` names the right one"
         )
     try:
         work(comm)

@@ -38,6 +38,15 @@ def _petsc() -> str | None:
         return None
 
 
+def _mpi() -> str | None:
+    """First line that the MPI library prints about itself."""
+    try:
+        about = str(import_module("mpi4py.MPI").Get_library_version())
+    except Exception:
+        return None
+    return " ".join(about.splitlines()[0].strip("\0").split())
+
+
 def _compiler() -> str | None:
     from .compiler import compiler_version
     from .errors import SolverError
@@ -50,16 +59,16 @@ def _compiler() -> str | None:
 
 def versions() -> dict[str, str | None]:
     """Version per program or module; None where it is missing."""
-    # The wheels of PyPI find the libmpi that mpi4py has loaded, and no other.
-    _version("mpi4py.MPI")
+    mpi = _mpi()  # first: the wheels of PyPI find the libmpi that mpi4py has loaded, and no other
     found: dict[str, str | None] = {"python": platform.python_version()}
     found |= {name: _version(name) for name in MODULES}
     found["petsc"] = _petsc()
+    found["mpi"] = mpi
     found["compiler"] = _compiler()
     return found
 
 
-def refused() -> str | None:
+def _refused() -> str | None:
     """Why the FEniCSx that is there is not supported; None if it is, or if there is none."""
     from .errors import SolverError
 
@@ -85,3 +94,11 @@ def package() -> str | None:
     except Exception:  # as in `_version`
         return None
     return str(root.__path__[0])
+
+
+def installed() -> dict[str, str | None]:
+    """What the program asks an interpreter for: package, versions, MPI's launcher, refusal."""
+    from .processes import launcher
+
+    found = {"fem_reference": package(), **versions()}
+    return {**found, "mpirun": launcher(), "refused": _refused()}
