@@ -69,15 +69,18 @@ def versions() -> dict[str, str | None]:
 
 
 def _refused() -> str | None:
-    """Why the FEniCSx that is there is not supported; None if it is, or if there is none."""
+    """Why a module that is there cannot be used; None if all can, or are missing."""
     from .errors import SolverError
 
-    try:
-        import_module(".supported", __package__)
-    except SolverError as error:
-        return str(error)
-    except Exception:  # missing or broken, as in `_version`
-        return None
+    for module in (*MODULES, f"{__package__}.supported"):
+        try:
+            import_module(module)
+        except ModuleNotFoundError:
+            continue
+        except SolverError as error:
+            return str(error)
+        except Exception as error:
+            return f"{module} cannot be imported: {error}"
     return None
 
 

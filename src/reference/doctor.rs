@@ -7,7 +7,6 @@ use crate::project::project_root;
 use crate::scene::{Scene, shipped};
 use serde::Serialize;
 use std::io::ErrorKind;
-use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// Environment variable that names CalculiX's program.
@@ -93,17 +92,10 @@ fn chosen(survey: &Survey) -> Option<&Interpreter> {
 
 /// Python and all modules that a reference needs, as the package itself imports them.
 fn interpreter(survey: &Survey, chosen: Option<&Interpreter>) -> Vec<Check> {
-    let version = |i: &Interpreter, name: &str| i.modules.get(name).cloned().flatten();
-    let others = survey.iter().filter(|(c, _)| chosen.is_none_or(|i| i.path != c.path)).map(|(c, probed)| {
-        let state = match probed {
-            Ok(i) => {
-                i.fault().or_else(|| Some(format!("dolfinx {}", version(i, "dolfinx")?))).unwrap_or_default()
-            }
-            Err(reason) => reason.clone(),
-        };
-        format!("; also looked at {}: {state}", c.path.display())
-    });
-    let others: String = others.collect();
+    let others = survey.iter().filter(|(c, _)| chosen.is_none_or(|i| i.path != c.path));
+    let others: Vec<String> =
+        others.map(|(c, probed)| format!("{}: {}", c.path.display(), state(probed))).collect();
+    let others = if others.is_empty() { String::new() } else { format!("; not {}", others.join(", not ")) };
     let check = |name: &str, found: Option<String>| {
         let (needed_for, _) = purpose(name);
         Check {
@@ -125,6 +117,17 @@ fn interpreter(survey: &Survey, chosen: Option<&Interpreter>) -> Vec<Check> {
         _ => check(name, found.clone()),
     });
     modules.collect()
+}
+
+/// Which FEniCSx an interpreter has that was not chosen, or why it has none.
+fn state(probed: &std::result::Result<Interpreter, String>) -> String {
+    match probed {
+        Err(reason) => reason.clone(),
+        Ok(i) => match i.modules.get("dolfinx").cloned().flatten() {
+            None => "no FEniCSx".to_owned(),
+            Some(version) => i.fault().unwrap_or_else(|| format!("dolfinx {version}, comes later")),
+        },
+    }
 }
 
 /// Whether a small reference can be solved, from mesh to files.
@@ -149,11 +152,10 @@ fn trial(chosen: Option<&Interpreter>) -> Check {
 
 /// MPI's launcher: the one that belongs to the interpreter's MPI, else the first on `PATH`.
 fn launcher(chosen: Option<&Interpreter>) -> Check {
-    let path = chosen.and_then(|i| i.launcher.as_deref());
+    let path = chosen.and_then(|i| i.launcher.clone()).unwrap_or_else(|| "mpirun".to_owned());
     Check {
         name: "mpirun".to_owned(),
-        found: version_of(path.unwrap_or("mpirun"))
-            .map(|version| format!("{} ({version})", path.unwrap_or("on PATH"))),
+        found: version_of(&path).map(|_| path),
         needed_for: "several processes (`reference --np`)".to_owned(),
         install: install(chosen, "mpirun"),
         optional: false,

@@ -46,8 +46,8 @@ fn every_command_runs() {
             fs::copy(file.path(), there.join(file.file_name())).unwrap();
         }
     }
-    // the system's python3 is the one that has SciPy
-    let path = format!("/usr/bin:{}", std::env::var("PATH").unwrap());
+    // the python3 of `make setup` or of the system has SciPy
+    let path = format!(concat!(env!("CARGO_MANIFEST_DIR"), "/target/python-tools/bin:/usr/bin:{}"), std::env::var("PATH").unwrap());
     let mut commands = 0;
     for chapter in chapters() {
         let text = fs::read_to_string(Path::new(ROOT).join("guide/src").join(&chapter)).unwrap();
