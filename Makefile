@@ -4,7 +4,7 @@
 # make wheel    the Python package, into target/wheels, and a clean environment with it: target/wheel-python
 # make solutions computes the stored references of the shipped scenes again
 # make evidence  slow evidence: references of all scenes and the truth of their bands, model C on the validation scenes,
-#                studies, run time against error, random impacts, killed runs, FEniCSx 0.9 (an hour or more; the last
+#                studies, run time against error, random impacts, killed runs, FEniCSx's releases (an hour or more; the last
 #                needs root)
 
 # the environment that .ci/setup makes, with FEniCSx and what the checks need
@@ -118,4 +118,4 @@ evidence: setup wheel
 	fuzz/run.sh scene 1800
 	fuzz/run.sh store 1800
 	PROPTEST_CASES=200000 cargo test --release --test store random_input
-	.ci/fenicsx-0.9
+	.ci/fenicsx-versions
