@@ -3,6 +3,7 @@
 #   docker build --tag impactcheck .
 #   docker run --rm --user "$(id -u)" --volume "$PWD:/work" impactcheck gate my-impact.toml --compute
 #   docker run --rm --user "$(id -u)" --volume "$PWD:/work" --entrypoint python3 impactcheck my-script.py   # import impactcheck
+# FEniCSx's wheels are for x86-64: with `--platform linux/amd64` the image is built and runs on Apple silicon too.
 FROM rust:1.89-bookworm AS build
 WORKDIR /source
 COPY . .
@@ -10,16 +11,20 @@ COPY . .
 RUN PYO3_BUILD_EXTENSION_MODULE=1 cargo build --release --locked --package impactcheck --package impactcheck-python \
     && strip target/release/impactcheck target/release/lib_core.so
 
-FROM debian:bookworm-slim
-# a release of Debian fixes the versions: results are those of its FEniCSx 0.5.2
+FROM python:3.12-slim-bookworm
+# a compiler for kernels, CalculiX, and the libraries that gmsh's wheel takes from the system
 # hadolint ignore=DL3008
 RUN apt-get update \
     && DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends \
-        calculix-ccx gcc libc6-dev openmpi-bin python3-cffi python3-dolfinx python3-gmsh python3-meshio \
+        calculix-ccx gcc libc6-dev libglu1-mesa libxcursor1 libxft2 libxinerama1 \
     && rm -rf /var/lib/apt/lists/*
 COPY --from=build /source/target/release/impactcheck /usr/local/bin/
-COPY python/impactcheck /usr/local/lib/python3.11/dist-packages/impactcheck
-COPY --from=build /source/target/release/lib_core.so /usr/local/lib/python3.11/dist-packages/impactcheck/_core.abi3.so
+COPY --from=build /source/pyproject.toml /tmp/
+# what the extra [reference] lists
+RUN python3 -c 'import tomllib; print(*tomllib.load(open("/tmp/pyproject.toml", "rb"))["project"]["optional-dependencies"]["reference"], sep="\n")' > /tmp/reference.txt \
+    && pip install --no-cache-dir --requirement /tmp/reference.txt
+COPY python/impactcheck /usr/local/lib/python3.12/site-packages/impactcheck
+COPY --from=build /source/target/release/lib_core.so /usr/local/lib/python3.12/site-packages/impactcheck/_core.abi3.so
 COPY scenes /usr/local/share/impactcheck/scenes
 COPY meshes /usr/local/share/impactcheck/meshes
 COPY fem_reference /usr/local/share/impactcheck/fem_reference

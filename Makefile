@@ -1,18 +1,16 @@
-# make test      installs what is missing (Debian, root or sudo) and runs every check
-# make setup     only the installation
+# make test      installs what is missing and runs every check
+# make setup     only the installation, into target/python-tools; no root where there is Python 3.12 or later
 # make report    the report of the shipped scenes, into reports/
 # make wheel    the Python package, into target/wheels, and a clean environment with it: target/wheel-python
 # make solutions computes the stored references of the shipped scenes again
 # make evidence  slow evidence: references of all scenes and the truth of their bands, model C on the validation scenes,
-#                studies, run time against error, random impacts, killed runs, FEniCSx 0.9 (an hour or more; the last
+#                studies, run time against error, random impacts, killed runs, FEniCSx's releases (an hour or more; the last
 #                needs root)
 
-# The python that has (or gets) FEniCSx; Debian's packages belong to /usr/bin/python3.
-PYTHON := $(or $(IMPACTCHECK_PYTHON),/usr/bin/python3)
-SUDO   := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
-DEBIAN := python3-dolfinx python3-gmsh python3-cffi python3-meshio python3-pytest python3-venv gcc openmpi-bin calculix-ccx chromium git
+# the environment that .ci/setup makes, with FEniCSx and what the checks need
 VENV   := target/python-tools
 TOOL   := $(VENV)/bin/python
+PYTHON := $(or $(IMPACTCHECK_PYTHON),$(TOOL))
 WHEEL  := target/wheel-python
 # a program built before a change, that `make evidence` is to hold this one's instructions against
 BEFORE :=
@@ -32,11 +30,7 @@ test: setup rust python live gate
 	@echo "all checks passed"
 
 setup:
-	@{ $(PYTHON) -c "import dolfinx, gmsh, cffi, meshio, pytest, venv, ensurepip" && command -v mpirun && command -v ccx && command -v chromium && command -v git; } >/dev/null 2>&1 || \
-	    { $(SUDO) apt-get update && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y $(DEBIAN); }
-	@[ -x $(VENV)/bin/ruff ] && [ -x $(VENV)/bin/mypy ] && [ -x $(VENV)/bin/maturin ] && ls -d $(VENV)/lib/*/site-packages/mujoco >/dev/null 2>&1 && ls $(VENV)/lib/*/site-packages/axe_playwright_python >/dev/null 2>&1 || \
-	    { $(PYTHON) -m venv --system-site-packages $(VENV) && $(TOOL) -m pip install --quiet ruff mypy maturin mujoco && \
-	    $(TOOL) -m pip install --quiet --no-deps axe-playwright-python; }
+	@.ci/setup
 
 rust:
 	cargo fmt --all --check
@@ -124,4 +118,4 @@ evidence: setup wheel
 	fuzz/run.sh scene 1800
 	fuzz/run.sh store 1800
 	PROPTEST_CASES=200000 cargo test --release --test store random_input
-	.ci/fenicsx-0.9
+	.ci/fenicsx-versions

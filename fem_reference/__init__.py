@@ -14,6 +14,9 @@ from .common.parent import launched
 # their time lost, and that of the thread it waits for.
 os.environ.setdefault("GOMP_SPINCOUNT", "1000")
 
+# Matrices are too small for threads of BLAS, whose waiting takes the processor from other programs.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # Open MPI starts a daemon beside a single process, and keeps a folder for it that a killed one
 # leaves behind; nobody else joins such a process.
 if not launched():

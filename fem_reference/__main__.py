@@ -7,6 +7,7 @@ import json
 import logging
 import os
 import sys
+import traceback
 from pathlib import Path
 
 from .common.cache import use_writable_cache
@@ -126,9 +127,9 @@ def _parser() -> argparse.ArgumentParser:
 def _run(arguments: argparse.Namespace) -> None:
     # Only `versions` must work without the finite-element modules: import late.
     if arguments.command == "versions":
-        from .common.versions import package, versions
+        from .common.versions import installed
 
-        print(json.dumps({"fem_reference": package(), **versions()}, indent=2))
+        print(json.dumps(installed(), indent=2))
         return
     use_writable_cache()
     try:
@@ -179,8 +180,15 @@ def _run(arguments: argparse.Namespace) -> None:
         commands[arguments.command](document, arguments)
     except ImportError as error:
         raise SolverError(
-            f"a Python module is missing: {error}; install dolfinx, gmsh, scipy and meshio"
+            f"a Python module is missing: {error}; `impactcheck doctor` says what installs it"
         ) from error
+
+
+def _unexpected(error: Exception) -> str:
+    """A sentence with the place in this package; the traceback follows on standard error."""
+    here = [f for f in traceback.extract_tb(error.__traceback__) if "fem_reference" in f.filename]
+    place = f"{Path(here[-1].filename).name}, line {here[-1].lineno}" if here else "start"
+    return f"unexpected {type(error).__name__} ({place}): {error}"
 
 
 def main() -> int:
@@ -199,6 +207,10 @@ def main() -> int:
     except EndedBySignalError as ended:
         # as the signal would have ended it
         os.kill(os.getpid(), ended.args[0])
+    except Exception as error:
+        if arguments.command == "solve":
+            Progress().error(_unexpected(error))
+        raise
     return 0
 
 

@@ -1,29 +1,26 @@
-"""The only module that touches dolfinx: its API differs between releases (0.5 to 0.10).
+"""The only module that touches dolfinx: its API differs between the supported releases.
 
-Written against 0.5.2; the branches for later releases follow their published API.
+Developed with 0.11 (PyPI); Debian's 0.5 and 0.9 take other branches.
 """
 
 from __future__ import annotations
 
+import inspect
 import logging
 from typing import Any
 
-import dolfinx
 import numpy as np
 import scipy.sparse
-import ufl
-from dolfinx import fem
-from dolfinx.mesh import create_mesh
-from mpi4py import MPI
-from petsc4py import PETSc
-
-try:  # up to 0.5 the functions hang off fem.petsc only after an explicit import
-    from dolfinx.fem import petsc as fem_petsc
-except ImportError as error:  # pragma: no cover - a dolfinx without PETSc
-    raise ImportError("dolfinx was built without PETSc") from error
 
 from .arrays import Floats, Ints
 from .jit_cache import clear_unusable, compiles
+from .supported import MPI, PETSc, dolfinx
+
+# isort: split
+import ufl
+from dolfinx import fem
+from dolfinx.fem import petsc as fem_petsc  # 0.5 has it only after an explicit import
+from dolfinx.mesh import create_mesh
 
 clear_unusable()
 
@@ -44,10 +41,9 @@ def _coordinate_element(cell: str, dimension: int) -> Any:
 def _mesh(comm: Any, points: Floats, cells: Ints, cell: str) -> Any:
     points, cells = np.ascontiguousarray(points), np.ascontiguousarray(cells)
     domain = ufl.Mesh(_coordinate_element(cell, points.shape[1]))
-    try:
-        return create_mesh(comm, cells, points, domain)
-    except TypeError:  # since 0.10 the coordinate element comes before the points
-        return create_mesh(comm, cells, domain, points)
+    if "e" in inspect.signature(create_mesh).parameters:  # since 0.10
+        return create_mesh(comm, cells, e=domain, x=points)
+    return create_mesh(comm, cells, points, domain)
 
 
 @compiles

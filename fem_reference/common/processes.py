@@ -6,6 +6,7 @@ import argparse
 import os
 import shutil
 import sys
+import sysconfig
 import time
 import traceback
 from collections.abc import Callable
@@ -22,7 +23,7 @@ LOOK = 0.3
 SPARE = 0.3
 """Cores' worth of other work that does not count."""
 INHERITED = (
-    *("PMIX_", "PMI_", "OMPI_COMM_", "OMPI_UNIVERSE"),
+    *("PMIX_", "PMI_", "HYDI_", "OMPI_COMM_", "OMPI_UNIVERSE"),
     *("OMPI_MCA_ess", "OMPI_MCA_orte", "OMPI_MCA_pmix"),
 )
 """What a process that has used MPI leaves in the environment of those it starts."""
@@ -55,6 +56,21 @@ def crowded(processes: int, busy: float, cores: int) -> str | None:
     )
 
 
+def launcher() -> str | None:
+    """Path of mpirun: that of this Python's environment, else the first on PATH.
+
+    PyPI's mpi4py takes libmpi and mpirun from the environment. The launcher of another MPI starts
+    processes that do not find each other.
+    """
+    own = os.pathsep.join([str(Path(sys.executable).parent), sysconfig.get_path("scripts")])
+    for path in (own, None):
+        for name in ("mpirun", "mpiexec"):
+            program = shutil.which(name, path=path)
+            if program:
+                return program
+    return None
+
+
 def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str, str]]:
     """The command that runs ``command`` in so many processes, and its environment.
 
@@ -64,9 +80,12 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
     kept = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
     if processes == 1:
         return command, kept
-    program = shutil.which("mpirun") or shutil.which("mpiexec")
+    program = launcher()
     if program is None:
-        raise SolverError("mpirun is missing; --np needs it: install openmpi-bin")
+        raise SolverError(
+            "mpirun is missing; --np needs it: `pip install mpich` beside PyPI's mpi4py, "
+            "openmpi-bin beside Debian's"
+        )
     # Libraries have one thread, the loop is told its own; no refusal for root: who may start the
     # solver may start it so.
     settings = {
@@ -83,6 +102,7 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
     if processes >= (os.cpu_count() or 1):
         # Somebody else needs a processor too: waiting must not keep it busy.
         settings["OMPI_MCA_mpi_yield_when_idle"] = "1"
+        settings["MPIR_CVAR_POLLS_BEFORE_YIELD"] = "1"
     return [program, "-n", str(processes), *command], {**settings, **kept}
 
 
@@ -126,6 +146,11 @@ def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> 
     from .fenicsx import world
 
     comm = world()
+    if launched() and comm.size == 1:
+        raise SolverError(
+            f"the mpirun that started the processes belongs to another MPI than that of "
+            f"{sys.executable}: each process is alone; `impactcheck doctor` names the right one"
+        )
     try:
         work(comm)
     except RunError as error:

@@ -7,29 +7,28 @@ from importlib import import_module
 from pkgutil import walk_packages
 
 PACKAGE = __name__.partition(".")[0]
-MODULES = {
-    "dolfinx": ("dolfinx", "__version__"),
-    "ufl": ("ufl", "__version__"),
-    "basix": ("basix", "__version__"),
-    "ffcx": ("ffcx", "__version__"),
-    "cffi": ("cffi", "__version__"),
-    "mpi4py": ("mpi4py", "__version__"),
-    "petsc4py": ("petsc4py", "__version__"),
-    "slepc4py": ("slepc4py", "__version__"),
-    "gmsh": ("gmsh", "__version__"),
-    "numpy": ("numpy", "__version__"),
-    "scipy": ("scipy", "__version__"),
-    "meshio": ("meshio", "__version__"),
-}
+MODULES = (
+    "dolfinx",
+    "ufl",
+    "basix",
+    "ffcx",
+    "cffi",
+    "mpi4py",
+    "petsc4py",
+    "slepc4py",
+    "gmsh",
+    "numpy",
+    "scipy",
+    "meshio",
+)
 
 
-def _version(module: str, attribute: str) -> str | None:
+def _version(module: str) -> str | None:
     try:
         found = import_module(module)
     except Exception:  # a broken installation must be reported like a missing one
         return None
-    version = getattr(found, attribute, None)
-    return str(version) if version is not None else "unknown"
+    return str(getattr(found, "__version__", "unknown"))
 
 
 def _petsc() -> str | None:
@@ -37,6 +36,15 @@ def _petsc() -> str | None:
         return ".".join(str(part) for part in import_module("petsc4py.PETSc").Sys.getVersion())
     except Exception:
         return None
+
+
+def _mpi() -> str | None:
+    """First line that the MPI library prints about itself."""
+    try:
+        about = str(import_module("mpi4py.MPI").Get_library_version())
+    except Exception:
+        return None
+    return " ".join(about.splitlines()[0].strip("\0").split())
 
 
 def _compiler() -> str | None:
@@ -51,12 +59,29 @@ def _compiler() -> str | None:
 
 def versions() -> dict[str, str | None]:
     """Version per program or module; None where it is missing."""
+    mpi = _mpi()  # first: the wheels of PyPI find the libmpi that mpi4py has loaded, and no other
     found: dict[str, str | None] = {"python": platform.python_version()}
-    for name, (module, attribute) in MODULES.items():
-        found[name] = _version(module, attribute)
+    found |= {name: _version(name) for name in MODULES}
     found["petsc"] = _petsc()
+    found["mpi"] = mpi
     found["compiler"] = _compiler()
     return found
+
+
+def _refused() -> str | None:
+    """Why a module that is there cannot be used; None if all can, or are missing."""
+    from .errors import SolverError
+
+    for module in (*MODULES, f"{__package__}.supported"):
+        try:
+            import_module(module)
+        except ModuleNotFoundError:
+            continue
+        except SolverError as error:
+            return str(error)
+        except Exception as error:
+            return f"{module} cannot be imported: {error}"
+    return None
 
 
 def package() -> str | None:
@@ -72,3 +97,11 @@ def package() -> str | None:
     except Exception:  # as in `_version`
         return None
     return str(root.__path__[0])
+
+
+def installed() -> dict[str, str | None]:
+    """What the program asks an interpreter for: package, versions, MPI's launcher, refusal."""
+    from .processes import launcher
+
+    found = {"fem_reference": package(), **versions()}
+    return {**found, "mpirun": launcher(), "refused": _refused()}

@@ -68,11 +68,11 @@ class Exchange:
         for end, _ in self._coming:
             self._library.unpack(x, *end)
 
-    def free(self) -> None:
-        """Give back what MPI has prepared."""
-        for request in self._requests:
-            request.Free()
-        self._requests = []
+    def __del__(self) -> None:
+        """Return what MPI has prepared."""
+        if not MPI.Is_finalized():
+            for request in self._requests:
+                request.Free()
 
 
 class Sum(Exchange):

@@ -94,8 +94,6 @@ class ParallelLoop(SerialLoop):
 
     def _meet(self, node: Ints, count: int) -> None:
         """Prepare the sums at nodes that move with each level, or a faster one."""
-        for exchange in self._sums:
-            exchange.free()
         stride = kernel.LANES[COMPONENTS]
         self._sums = [self._sum(node <= level, stride) for level in range(count)]
 

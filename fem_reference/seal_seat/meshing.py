@@ -226,7 +226,7 @@ def sphere_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
     return mesh
 
 
-def _corner_mesh(scene: SeatScene, factor: float, unit: float) -> tuple[Floats, Ints]:
+def _corner_mesh_in(scene: SeatScene, factor: float, unit: float) -> tuple[Floats, Ints]:
     """Points (n, 3), m, and elements (m, 4) of the half seat, its CAD model built in ``unit``.
 
     Raises:
@@ -237,13 +237,13 @@ def _corner_mesh(scene: SeatScene, factor: float, unit: float) -> tuple[Floats, 
     return points * unit, corners
 
 
-def _generated(scene: SeatScene, factor: float) -> tuple[Floats, Ints]:
+def corner_mesh(scene: SeatScene, factor: float) -> tuple[Floats, Ints]:
     """The same in the first unit with which gmsh succeeds."""
     *others, last = CAD_UNITS
     for unit in others:
         with contextlib.suppress(SolverError):
-            return _corner_mesh(scene, factor, unit)
-    return _corner_mesh(scene, factor, last)
+            return _corner_mesh_in(scene, factor, unit)
+    return _corner_mesh_in(scene, factor, last)
 
 
 def seat_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
@@ -252,7 +252,7 @@ def seat_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
     Raises:
         SolverError: gmsh failed, an element is inverted or degenerate, or the ring is no edge.
     """
-    points, corners = _generated(scene, factor)
+    points, corners = corner_mesh(scene, factor)
     points, corners = collapse_short_edges(points, corners)
     length = scene.seat.membrane_radius
     # What lies on the plane of symmetry and on the underside up to rounding, lies there exactly.

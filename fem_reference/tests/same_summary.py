@@ -1,6 +1,7 @@
-"""Compares two result folders: ``same_summary ONE OTHER SHARE [BANDS]``; exit status 1 if unlike.
+"""Compares two result folders: ``same_summary ONE OTHER band|relative LIMIT [BANDS]``.
 
-Every quantity has to agree within SHARE of its band, which stands in ONE or in the folder BANDS.
+Every quantity has to agree within LIMIT times its band, which is in ONE or in the folder BANDS, or
+within LIMIT times its value. Exit status 1 if one does not.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ def found(summary: dict[str, Any], name: str) -> tuple[float, float]:
     return summary[name], summary["uncertainty"].get(name, 0.0)
 
 
-def main(one: Path, other: Path, share: float, bands: Path) -> int:
+def main(one: Path, other: Path, kind: str, limit: float, bands: Path) -> int:
     """Print the differences; 0 if all are small enough."""
     a, b, c = (
         json.loads((folder / "summary.json").read_text(encoding="utf-8"))
@@ -31,13 +32,16 @@ def main(one: Path, other: Path, share: float, bands: Path) -> int:
     for name in (name for name in {**c["uncertainty"], **c.get("at_end", {})} if name in a):
         (one_value, _), (other_value, _), (_, bound) = (found(each, name) for each in (a, b, c))
         difference = abs(one_value - other_value)
-        part = difference / bound if bound > 0.0 else float(difference > 0.0)
+        scale = bound if kind == "band" else abs(one_value)
+        part = difference / scale if scale > 0.0 else float(difference > 0.0)
         worst = max(worst, part)
-        print(f"{name:22} {one_value: .10g} {other_value: .10g}  difference {part:.2g} of the band")
-    print(f"nodes {meshes[0]} and {meshes[1]}; largest difference {worst:.2g}, allowed {share:g}")
-    return 0 if worst <= share else 1
+        print(f"{name:22} {one_value: .10g} {other_value: .10g}  difference {part:.2g} ({kind})")
+    print(f"nodes {meshes[0]} and {meshes[1]}; largest difference {worst:.2g}, allowed {limit:g}")
+    return 0 if worst <= limit else 1
 
 
 if __name__ == "__main__":
     first, second = Path(sys.argv[1]), Path(sys.argv[2])
-    sys.exit(main(first, second, float(sys.argv[3]), Path([*sys.argv, sys.argv[1]][4])))
+    sys.exit(
+        main(first, second, sys.argv[3], float(sys.argv[4]), Path([*sys.argv, sys.argv[1]][5]))
+    )

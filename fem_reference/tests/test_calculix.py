@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +18,7 @@ from fem_reference.axisymmetric.sizes import MeshSettings
 from fem_reference.calculix import program
 from fem_reference.calculix.deck import MILLI, Deck, Part, Steps
 from fem_reference.calculix.printed import Printed, frequencies
+from fem_reference.calculix.program import VARIABLE
 from fem_reference.calculix.wedge import SHARE, quadratic, wedge
 from fem_reference.common.bodies import Plate
 from fem_reference.common.errors import SceneError, SolverError
@@ -69,6 +72,12 @@ def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
     assert made.masses == pytest.approx([found[n] for n in ("OUTER", "PLATE", "INNER")], rel=1e-4)
 
 
+needs_calculix = pytest.mark.skipif(
+    shutil.which(os.environ.get(VARIABLE) or "ccx") is None, reason="CalculiX is not installed"
+)
+
+
+@needs_calculix
 @pytest.mark.parametrize(("edge", "eigenvalue"), [("clamped", 10.2158), ("free", 9.0031)])
 def test_a_thin_plate_vibrates_as_kirchhoff_says(
     tmp_path: Path, edge: str, eigenvalue: float
@@ -89,6 +98,7 @@ def test_a_thin_plate_vibrates_as_kirchhoff_says(
     assert found == pytest.approx(exact, rel=2e-3)
 
 
+@needs_calculix
 def test_a_coarse_impact_keeps_its_balances_and_agrees_with_explicit_elements(
     tmp_path: Path,
 ) -> None:
@@ -108,6 +118,7 @@ def test_a_coarse_impact_keeps_its_balances_and_agrees_with_explicit_elements(
     )
 
 
+@needs_calculix
 def test_the_momentum_of_a_free_plate_and_both_spheres_lasts(tmp_path: Path) -> None:
     scene = small(plate__edge="free", run={"end_time": 2e-5}, inner__gap=1e-6)
     solution = solved(scene, tmp_path, 0.4)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from fem_reference.common.arrays import Floats
+from fem_reference.common.arrays import Floats, Ints
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.common.fenicsx import alone
 from fem_reference.explicit.checkpoint import Checkpoint
@@ -21,7 +21,7 @@ from fem_reference.explicit.contact import SphereContact
 from fem_reference.explicit.loop import Loop
 from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.seal_seat import meshing
-from fem_reference.seal_seat.meshing import build, cad_volume, seat_mesh, seat_size, sphere_mesh
+from fem_reference.seal_seat.meshing import cad_volume, seat_mesh, sphere_mesh
 from fem_reference.seal_seat.modal import seat_modes
 from fem_reference.seal_seat.model import ELASTIC_SPHERE, LEFT, RIGHT, SeatModel, seat_model
 from fem_reference.seal_seat.motion import sphere_motion
@@ -99,14 +99,25 @@ def test_what_gmsh_cannot_mesh_in_metres_it_meshes_in_millimetres(
         seat_mesh(design, 0.6)
 
 
-def test_an_edge_of_the_geometry_that_is_far_too_short_is_no_edge_of_the_mesh() -> None:
-    # At this tilt the crest between the cones meets the side of the island 3 um from its top edge.
+def with_short_edge(points: Floats, corners: Ints) -> tuple[Floats, Ints]:
+    """The mesh with a node more, at a thousandth of the first element's first edge."""
+    start, end, new = corners[0, 0], corners[0, 1], len(points)
+    around = (corners == start).any(axis=1) & (corners == end).any(axis=1)
+    near, far = (np.where(corners[around] == old, new, corners[around]) for old in (end, start))
+    place = points[start] + 1e-3 * (points[end] - points[start])
+    return np.vstack([points, place]), np.vstack([corners[~around], near, far])
+
+
+def test_an_edge_that_is_far_too_short_is_no_edge_of_the_mesh() -> None:
+    # At this tilt the crest between the cones meets the side of the island 3 um from its top edge:
+    # gmsh 4.8 keeps that edge, 4.15 does not. The other edge is short in both.
     design = scene(seat__tilt=20.0 * DEGREE)
-    points, corners = generate("seat", lambda: build(design), seat_size(design, 2.0 / 3.0))
+    made = meshing.corner_mesh(design, 2.0 / 3.0)
+    points, corners = with_short_edge(*made)
     assert qualities(points, corners).min() < 0.05
     mended_points, mended = collapse_short_edges(points, corners)
     assert qualities(mended_points, mended).min() > 0.05
-    assert 0 < len(corners) - len(mended) < 10
+    assert len(made[1]) - 10 < len(mended) <= len(made[1])
     volume = TetMesh("seat", mended_points, mended).volume()
     assert volume == pytest.approx(TetMesh("seat", points, corners).volume(), rel=1e-6)
 

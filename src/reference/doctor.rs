@@ -1,10 +1,11 @@
 //! What the reference needs and what of it is there.
 
-use super::{Lookup, Resolution, Store, python};
+use super::python::{self, Candidate, Interpreter};
+use super::trial::solve_trial;
+use super::{Lookup, Resolution, Store};
 use crate::project::project_root;
 use crate::scene::{Scene, shipped};
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::process::{Command, Stdio};
 
@@ -26,11 +27,14 @@ pub struct Check {
     pub optional: bool,
 }
 
-/// Checks the project's files, Python and all it will import, the C compiler, MPI's launcher, the store and its entries for
-/// the shipped scenes.
+/// Checks the project's files, Python and all it will import, a small reference, the C compiler, MPI's launcher, the store
+/// and its entries for the shipped scenes.
 pub fn doctor(store: &Store) -> Vec<Check> {
     let mut checks = vec![project()];
-    checks.extend(interpreter());
+    let survey = python::survey();
+    let chosen = chosen(&survey);
+    checks.extend(interpreter(&survey, chosen));
+    checks.push(trial(chosen));
     checks.push(Check {
         name: "C compiler".to_owned(),
         found: compiler(),
@@ -38,13 +42,7 @@ pub fn doctor(store: &Store) -> Vec<Check> {
         install: "sudo apt-get install gcc libc6-dev".to_owned(),
         optional: false,
     });
-    checks.push(Check {
-        name: "mpirun".to_owned(),
-        found: version_of("mpirun"),
-        needed_for: "several processes (`reference --np`)".to_owned(),
-        install: "sudo apt-get install openmpi-bin".to_owned(),
-        optional: false,
-    });
+    checks.push(launcher(chosen));
     checks.push(Check {
         name: "CalculiX".to_owned(),
         found: calculix(),
@@ -83,28 +81,85 @@ fn project() -> Check {
     }
 }
 
+type Survey = [(Candidate, std::result::Result<Interpreter, String>)];
+
+/// The first interpreter that can compute references, else the one that lacks least.
+fn chosen(survey: &Survey) -> Option<&Interpreter> {
+    let running = survey.iter().filter_map(|(_, probed)| probed.as_ref().ok());
+    running
+        .min_by_key(|i| (i.fault().is_some(), i.modules.values().filter(|version| version.is_none()).count()))
+}
+
 /// Python and all modules that a reference needs, as the package itself imports them.
-fn interpreter() -> Vec<Check> {
-    let (modules, why) = match python::best() {
-        Ok(mut best) => {
-            best.modules.entry("python".to_owned()).and_modify(|version| {
-                *version = version.take().map(|version| format!("{version} ({})", best.path.display()));
-            });
-            (best.modules, String::new())
-        }
-        Err(why) => (BTreeMap::from([("python".to_owned(), None)]), format!("; {why}")),
-    };
-    let check = |(name, found): (String, Option<String>)| {
-        let (needed_for, package) = purpose(&name);
+fn interpreter(survey: &Survey, chosen: Option<&Interpreter>) -> Vec<Check> {
+    let others = survey.iter().filter(|(c, _)| chosen.is_none_or(|i| i.path != c.path));
+    let others: Vec<String> =
+        others.map(|(c, probed)| format!("{}: {}", c.path.display(), state(probed))).collect();
+    let others = if others.is_empty() { String::new() } else { format!("; not {}", others.join(", not ")) };
+    let check = |name: &str, found: Option<String>| {
+        let (needed_for, _) = purpose(name);
         Check {
             found,
-            needed_for: format!("computing references{needed_for}{why}"),
-            install: format!("sudo apt-get install {package}"),
-            name: if name == "python" { "Python".to_owned() } else { name },
+            needed_for: format!("computing references{needed_for}"),
+            install: install(chosen, name),
+            name: if name == "python" { "Python".to_owned() } else { name.to_owned() },
             optional: false,
         }
     };
-    modules.into_iter().map(check).collect()
+    let Some(chosen) = chosen else {
+        let mut missing = check("python", None);
+        missing.needed_for += &others;
+        return vec![missing];
+    };
+    let about = |version: String| format!("{version} ({}; {}{others})", chosen.path.display(), chosen.origin);
+    let modules = chosen.modules.iter().map(|(name, found)| match name.as_str() {
+        "python" => check(name, found.clone().map(about)),
+        _ => check(name, found.clone()),
+    });
+    modules.collect()
+}
+
+/// Which FEniCSx an interpreter has that was not chosen, or why it has none.
+fn state(probed: &std::result::Result<Interpreter, String>) -> String {
+    match probed {
+        Err(reason) => reason.clone(),
+        Ok(i) => match i.modules.get("dolfinx").cloned().flatten() {
+            None => "no FEniCSx".to_owned(),
+            Some(version) => i.fault().unwrap_or_else(|| format!("dolfinx {version}, comes later")),
+        },
+    }
+}
+
+/// Whether a small reference can be solved, from mesh to files.
+fn trial(chosen: Option<&Interpreter>) -> Check {
+    let solved = match chosen.map(|i| (i.fault(), &i.path)) {
+        None => Err("there is no Python".to_owned()),
+        Some((Some(fault), _)) => Err(fault),
+        Some((None, path)) => solve_trial(path).map_err(|error| error.to_string()),
+    };
+    let (found, why) = match solved {
+        Ok(took) => (Some(format!("solved in {:.1} s", took.as_secs_f64())), String::new()),
+        Err(why) => (None, format!("; {why}")),
+    };
+    Check {
+        name: "small reference".to_owned(),
+        found,
+        needed_for: format!("computing references{why}"),
+        install: install(chosen, "dolfinx"),
+        optional: false,
+    }
+}
+
+/// MPI's launcher: the one that belongs to the interpreter's MPI, else the first on `PATH`.
+fn launcher(chosen: Option<&Interpreter>) -> Check {
+    let path = chosen.and_then(|i| i.launcher.clone()).unwrap_or_else(|| "mpirun".to_owned());
+    Check {
+        name: "mpirun".to_owned(),
+        found: version_of(&path).map(|_| path),
+        needed_for: "several processes (`reference --np`)".to_owned(),
+        install: install(chosen, "mpirun"),
+        optional: false,
+    }
 }
 
 /// What a module is for, and Debian's package of it.
@@ -117,8 +172,25 @@ fn purpose(module: &str) -> (&'static str, &'static str) {
         "numpy" => (": arrays", "python3-numpy"),
         "scipy" => (": sparse matrices", "python3-scipy"),
         "slepc4py" => (": eigenmodes", "python3-slepc4py"),
+        "mpirun" => ("", "openmpi-bin"),
         _ => (": finite elements", "python3-dolfinx"),
     }
+}
+
+/// The command that brings a module: Debian's package into the system's Python, a wheel into another.
+fn install(interpreter: Option<&Interpreter>, module: &str) -> String {
+    let debian = format!("sudo apt-get install {}", purpose(module).1);
+    let Some(chosen) = interpreter.filter(|i| !i.path.starts_with("/usr/bin")) else { return debian };
+    let wheel = match module {
+        "python" => return "make setup".to_owned(),
+        "gmsh" | "meshio" | "cffi" | "numpy" | "scipy" => module,
+        "mpirun" => "mpich",
+        _ => "dolfinx-solver-real",
+    };
+    format!(
+        "{} -m pip install {wheel} (Linux x86-64, Python 3.12 or later; else {debian})",
+        chosen.path.display()
+    )
 }
 
 /// First line a C compiler says about itself.

@@ -18,6 +18,7 @@ mod seat_mesh;
 mod section;
 mod solve;
 mod store;
+mod trial;
 mod turn;
 
 pub use child::Progress;

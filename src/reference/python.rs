@@ -11,19 +11,39 @@ use std::sync::OnceLock;
 /// Environment variable that names the interpreter to use.
 const PYTHON_VARIABLE: &str = "IMPACTCHECK_PYTHON";
 
-/// How the modules are installed on Debian.
-pub(super) const INSTALL: &str = "`sudo apt-get update` and `sudo apt-get install python3-dolfinx python3-slepc4py python3-gmsh python3-meshio python3-scipy`";
+/// How FEniCSx is installed.
+const INSTALL: &str = if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+    "install them with `pip install \"impactcheck[reference]\"` (Python 3.12 or later; `make setup` in a checkout), or on Debian with `sudo apt-get update` and `sudo apt-get install python3-dolfinx python3-slepc4py python3-gmsh python3-meshio python3-scipy`"
+} else {
+    "there are wheels of FEniCSx for Linux on x86-64 only: use the container (`docker build --platform linux/amd64 .`) or conda-forge's fenics-dolfinx"
+};
+
+/// The environment that `make setup` makes in a checkout.
+const OWN_ENVIRONMENT: &str = "target/python-tools/bin/python";
+
+/// A Python, and why it is looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) path: PathBuf,
+    pub(super) origin: &'static str,
+}
 
 /// An interpreter and the versions of what it can import; `None` = missing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Interpreter {
     pub(super) path: PathBuf,
+    pub(super) origin: &'static str,
     pub(super) modules: BTreeMap<String, Option<String>>,
+    /// MPI's launcher that belongs to it.
+    pub(super) launcher: Option<String>,
+    /// Why its FEniCSx is not supported.
+    refused: Option<String>,
 }
 
 impl Interpreter {
     /// Lets the interpreter import all that a reference needs; a module that is there but broken counts as missing.
-    fn probe(path: &Path) -> std::result::Result<Self, String> {
+    pub(super) fn probe(candidate: &Candidate) -> std::result::Result<Self, String> {
+        let Candidate { path, origin } = candidate;
         let mut command = fem_reference(path).map_err(|e| e.to_string())?;
         let output = command.arg("versions").output().map_err(|e| format!("it can't be run ({e})"))?;
         let text = String::from_utf8_lossy(&output.stdout);
@@ -34,12 +54,18 @@ impl Interpreter {
             let last = log.lines().last().map(|line| format!(": {line}")).unwrap_or_default();
             return Err(format!("it is no working Python ({}{last})", output.status));
         };
-        BTreeMap::remove(&mut modules, "compiler");
-        Ok(Interpreter { path: path.to_path_buf(), modules })
+        let mut take = |name: &str| BTreeMap::remove(&mut modules, name).flatten();
+        let (launcher, refused) = (take("mpirun"), take("refused"));
+        take("compiler");
+        Ok(Interpreter { path: path.clone(), origin, modules, launcher, refused })
     }
 
-    fn missing(&self) -> Vec<&str> {
-        self.modules.iter().filter(|(_, version)| version.is_none()).map(|(name, _)| name.as_str()).collect()
+    /// Why it can't compute a reference; `None` if it should.
+    pub(super) fn fault(&self) -> Option<String> {
+        let missing = self.modules.iter().filter(|(_, version)| version.is_none());
+        let missing: Vec<&str> = missing.map(|(name, _)| name.as_str()).collect();
+        let missing = (!missing.is_empty()).then(|| format!("it has no {}", missing.join(", ")));
+        self.refused.clone().or(missing)
     }
 }
 
@@ -51,77 +77,60 @@ pub fn prefer_python(interpreter: PathBuf) {
     OWN.get_or_init(|| interpreter);
 }
 
-/// The Python that runs `fem_reference`: the one the environment variable `IMPACTCHECK_PYTHON`
-/// names, else the first of the one that [`prefer_python`] was told, `/usr/bin/python3` and every `python3` on `PATH` that can import it with all that it needs.
+/// The Python that runs `fem_reference`: the one the environment variable `IMPACTCHECK_PYTHON` names, else the first that can
+/// import all that a reference needs, in a supported release, of these: the one of [`prefer_python`], the one that
+/// `make setup` made, every `python3` on `PATH`, `/usr/bin/python3`.
 ///
 /// # Errors
 /// [`Error::Solver`] if there is none; it says where was looked and what was missing. As [`project_root`].
 pub fn python() -> Result<PathBuf> {
-    project_root()?;
-    find(asked(), &std::env::var_os("PATH").unwrap_or_default())
+    let root = project_root()?;
+    find(&candidates(named(), &root, &std::env::var_os("PATH").unwrap_or_default()))
 }
 
-fn find(asked: Option<PathBuf>, path: &OsStr) -> Result<PathBuf> {
-    let mut looked = Vec::new();
-    for path in candidates(asked.clone(), path) {
-        match Interpreter::probe(&path) {
-            Ok(interpreter) if interpreter.missing().is_empty() => return Ok(interpreter.path),
-            Ok(interpreter) => {
-                looked.push(format!("{} has no {}", path.display(), interpreter.missing().join(", ")))
-            }
-            Err(reason) => looked.push(format!("{}: {reason}", path.display())),
+fn find(candidates: &[Candidate]) -> Result<PathBuf> {
+    let mut faults = Vec::new();
+    for candidate in candidates {
+        match Interpreter::probe(candidate).map(|interpreter| interpreter.fault()) {
+            Ok(None) => return Ok(candidate.path.clone()),
+            Ok(Some(fault)) | Err(fault) => faults.push(format!("{}: {fault}", candidate.path.display())),
         }
     }
-    Err(Error::Solver(match asked {
-        Some(_) => format!(
-            "the Python named by {PYTHON_VARIABLE} can't run the reference: {}; name one that imports dolfinx, gmsh and meshio, or install them on Debian with {INSTALL}",
-            looked.join("; ")
-        ),
-        None => format!(
-            "the reference needs a Python that imports dolfinx, gmsh and meshio; looked at: {}; install them on Debian with {INSTALL}, or name an interpreter in {PYTHON_VARIABLE}",
-            if looked.is_empty() {
-                "/usr/bin/python3 and PATH, no python3 there".to_owned()
-            } else {
-                looked.join("; ")
-            }
-        ),
-    }))
+    let faults = if faults.is_empty() { "no python3 was found".to_owned() } else { faults.join("; ") };
+    Err(Error::Solver(format!(
+        "the reference needs a Python that imports dolfinx, gmsh and meshio; {faults}; {INSTALL}, or name another interpreter in {PYTHON_VARIABLE}"
+    )))
 }
 
-/// The best interpreter there is, complete or not.
-///
-/// # Errors
-/// Why none of the candidates runs.
-pub(super) fn best() -> std::result::Result<Interpreter, String> {
+/// All interpreters that [`python`] looks at, in its order, each with its reason if it does not run.
+pub(super) fn survey() -> Vec<(Candidate, std::result::Result<Interpreter, String>)> {
     let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut reasons = Vec::new();
-    let mut found: Vec<Interpreter> = Vec::new();
-    for path in candidates(asked(), &path) {
-        match Interpreter::probe(&path) {
-            Ok(interpreter) => found.push(interpreter),
-            Err(reason) => reasons.push(format!("{}: {reason}", path.display())),
-        }
-    }
-    found.into_iter().min_by_key(|i| i.missing().len()).ok_or_else(|| reasons.join("; "))
+    let candidates = candidates(named(), &project_root().unwrap_or_default(), &path);
+    candidates.into_iter().map(|c| (c.clone(), Interpreter::probe(&c))).collect()
 }
 
-fn asked() -> Option<PathBuf> {
+fn named() -> Option<PathBuf> {
     std::env::var_os(PYTHON_VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from)
 }
 
-fn candidates(asked: Option<PathBuf>, path: &OsStr) -> Vec<PathBuf> {
-    if let Some(path) = asked {
-        return vec![path];
+fn candidates(named: Option<PathBuf>, root: &Path, path: &OsStr) -> Vec<Candidate> {
+    let of = |origin| move |path| Candidate { path, origin };
+    if let Some(path) = named {
+        return vec![Candidate { path, origin: PYTHON_VARIABLE }];
     }
     let on_path = std::env::split_paths(path).map(|folder| folder.join("python3"));
-    let mut found: Vec<PathBuf> = Vec::new();
+    let all = OWN.get().cloned().map(of("it runs this package")).into_iter();
+    let all = all.chain([root.join(OWN_ENVIRONMENT)].map(of("made by `make setup`")));
+    let all = all
+        .chain(on_path.map(of("on PATH")))
+        .chain([PathBuf::from("/usr/bin/python3")].map(of("the system's")));
+    let mut found: Vec<Candidate> = Vec::new();
     let mut seen: Vec<PathBuf> = Vec::new();
-    let first = OWN.get().cloned().into_iter().chain([PathBuf::from("/usr/bin/python3")]);
-    for candidate in first.chain(on_path) {
+    for candidate in all {
         // /bin is often a link to /usr/bin: the same program is asked once. The file name stays,
-        // because a virtual environment is told by the path it is started from.
-        let Some(folder) = candidate.parent().and_then(|f| f.canonicalize().ok()) else { continue };
-        if candidate.is_file() && !seen.contains(&folder) {
+        // because a virtual environment is known by the path it is started from.
+        let Some(folder) = candidate.path.parent().and_then(|f| f.canonicalize().ok()) else { continue };
+        if candidate.path.is_file() && !seen.contains(&folder) {
             seen.push(folder);
             found.push(candidate);
         }
@@ -159,15 +168,21 @@ mod tests {
         path
     }
 
+    fn named(path: PathBuf) -> Vec<Candidate> {
+        candidates(Some(path), Path::new("/none"), OsStr::new("/usr/bin"))
+    }
+
     const COMPLETE: &str =
         r#"{"python": "3.11.2", "dolfinx": "0.5.2", "gmsh": "4.8.4", "meshio": "5.3.4", "compiler": null}"#;
     const BARE: &str = r#"{"python": "3.11.2", "dolfinx": null, "gmsh": "4.8.4", "meshio": null}"#;
+    const TOO_NEW: &str =
+        r#"{"python": "3.14.1", "dolfinx": "0.12.0", "refused": "dolfinx 0.12.0 is not supported"}"#;
 
     #[test]
     fn an_interpreter_without_dolfinx_is_named_with_what_installs_it() {
         let folder = tempfile::tempdir().expect("folder");
         let bare = fake(folder.path(), "bare", BARE, 0);
-        let error = find(Some(bare.clone()), OsStr::new("")).expect_err("incomplete");
+        let error = find(&named(bare.clone())).expect_err("incomplete");
         assert_eq!(error.exit_status(), crate::ExitStatus::Solver);
         let said = error.to_string();
         let bare = bare.to_string_lossy();
@@ -181,20 +196,36 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let broken = fake(folder.path(), "broken", "Segmentation fault", 139);
         for (path, word) in [(folder.path().join("none"), "can't be run"), (broken, "no working Python")] {
-            let said = find(Some(path), OsStr::new("/usr/bin")).expect_err("unusable").to_string();
+            let said = find(&named(path)).expect_err("unusable").to_string();
             assert!(said.contains(word), "{said}");
         }
     }
 
+    /// The environment of `make setup` comes before PATH; every folder of PATH is looked at once.
     #[test]
-    fn every_python3_on_the_path_is_asked_in_turn() {
+    fn candidates_have_an_order() {
         let (first, second) = (tempfile::tempdir().expect("folder"), tempfile::tempdir().expect("folder"));
+        let root = tempfile::tempdir().expect("folder");
+        let bin = root.path().join("target/python-tools/bin");
+        std::fs::create_dir_all(&bin).expect("folder");
+        let own = fake(&bin, "python", TOO_NEW, 0);
         fake(first.path(), "python3", BARE, 0);
         let complete = fake(second.path(), "python3", COMPLETE, 0);
         let path = std::env::join_paths([first.path(), second.path(), first.path()]).expect("path");
-        let asked = candidates(None, &path);
-        let on_path: Vec<&PathBuf> = asked.iter().filter(|p| !p.starts_with("/usr/bin")).collect();
-        assert_eq!(on_path, [&first.path().join("python3"), &complete]);
-        assert_eq!(find(Some(complete.clone()), &path).expect("complete"), complete);
+        let found = candidates(None, root.path(), &path);
+        let apart: Vec<&PathBuf> =
+            found.iter().map(|c| &c.path).filter(|p| !p.starts_with("/usr/bin")).collect();
+        assert_eq!(apart, [&own, &first.path().join("python3"), &complete]);
+        assert_eq!(found[0].origin, "made by `make setup`");
+        assert_eq!(find(&found).expect("complete"), complete);
+    }
+
+    /// All modules are there, yet the solver would end in a traceback.
+    #[test]
+    fn an_unsupported_release_is_refused_with_its_reason() {
+        let folder = tempfile::tempdir().expect("folder");
+        let error = find(&named(fake(folder.path(), "new", TOO_NEW, 0))).expect_err("too new");
+        assert_eq!(error.exit_status(), crate::ExitStatus::Solver);
+        assert!(error.to_string().contains("dolfinx 0.12.0 is not supported"), "{error}");
     }
 }

@@ -175,12 +175,40 @@ fn doctor_tells_what_the_solver_cannot_import_and_where_the_files_are() {
     let told = checks(&[]);
     let check = |name: &str| told.iter().find(|c| c["name"] == name).unwrap_or_else(|| panic!("{name}"));
     assert!(check("meshio")["found"].is_null() && check("fem_reference")["found"].is_null());
-    assert!(check("meshio")["install"].as_str().expect("text").contains("python3-meshio"));
+    let install = check("meshio")["install"].as_str().expect("text");
+    assert!(
+        install.contains("python -m pip install meshio") && install.contains("python3-meshio"),
+        "{install}"
+    );
     assert_eq!(check("dolfinx")["found"], "0.5.2");
+    assert!(check("Python")["found"].as_str().expect("text").contains("IMPACTCHECK_PYTHON"));
+    assert!(
+        check("small reference")["needed_for"]
+            .as_str()
+            .expect("text")
+            .contains("it has no fem_reference, meshio")
+    );
     let root = check("project files")["found"].as_str().expect("text").to_owned();
     assert!(Path::new(&root).starts_with(elsewhere.path("home")), "{root}");
     let lost = checks(&[("IMPACTCHECK_HOME", Path::new("/none"))]);
     let files = lost.iter().find(|c| c["name"] == "project files").expect("a check");
     assert!(files["found"].is_null() && files["needed_for"].as_str().expect("text").contains("/none"));
     assert!(lost.iter().any(|c| c["name"] == "Python" && c["found"].is_null()));
+}
+
+/// All modules are there, but the solver does not run: versions alone would not show it.
+#[test]
+fn doctor_solves_a_small_reference() {
+    let elsewhere = Elsewhere::new();
+    let script = "#!/bin/sh\ncase $3 in\nversions) echo '{\"python\": \"3.12\", \"dolfinx\": \"0.11.0\"}' ;;\n\
+                  solve) echo '{\"phase\": \"error\", \"message\": \"unexpected TypeError in create_mesh\"}'; exit 1 ;;\nesac\n";
+    fs::write(elsewhere.path("python"), script).expect("script");
+    let output = elsewhere.run("here", &["doctor", "--json"], &[]);
+    assert_eq!(output.status.code(), Some(12), "ill");
+    let checks: Vec<serde_json::Value> = serde_json::from_slice(&output.stdout).expect("JSON");
+    let trial = checks.iter().find(|c| c["name"] == "small reference").expect("a check");
+    assert!(trial["found"].is_null());
+    let why = trial["needed_for"].as_str().expect("text");
+    assert!(why.contains("unexpected TypeError in create_mesh"), "{why}");
+    assert!(!elsewhere.path("home/.local/share/impactcheck/solutions").exists(), "nothing is stored");
 }

@@ -60,8 +60,8 @@ fn every_command_runs() {
     let chosen = std::env::var("IMPACTCHECK_GUIDE").ok();
     let language = chosen.as_ref().map_or("console".to_owned(), |kind| format!("console {kind}"));
     let folder = folder();
-    // the system's python3 is the one that has SciPy
-    let path = format!("/usr/bin:{}", std::env::var("PATH").unwrap());
+    // the python3 of `make setup` or of the system has SciPy
+    let path = format!("{ROOT}/target/python-tools/bin:/usr/bin:{}", std::env::var("PATH").unwrap());
     let mut commands = 0;
     for chapter in chapters() {
         let text = fs::read_to_string(Path::new(ROOT).join("guide/src").join(&chapter)).unwrap();
