@@ -8,12 +8,20 @@ mod align;
 mod area;
 mod compare;
 mod filter;
+mod finding;
+mod flight;
+mod judge;
+pub mod noise;
 mod record;
+mod screen;
+mod shift;
+mod structure;
 
 pub use align::{AlignedRecord, ChannelCorrection, Speed, align};
 pub use area::Area;
 pub use compare::{Measured, Partner, Series, compare};
 pub use filter::{Filtered, low_pass};
+pub use finding::{Finding, FindingKind};
 pub use record::{Channel, Record};
 
 /// Bandwidth in Hz of the paper's vibrometers.
