@@ -1,7 +1,8 @@
 //! Lays a record over a model: offset, drift and shift in time, by [`super::RULE`].
 
 use super::filter::Filtered;
-use super::finding::Finding;
+use super::duplicate;
+use super::finding::{Finding, FindingKind};
 use super::flight::{FEWEST, Flight, FreeFlight};
 use super::judge::{Judged, Seen};
 use super::record::{Channel, Record};
@@ -19,8 +20,8 @@ const ROUNDS: usize = 2;
 const LONGER_CONTACT: f64 = 1.1;
 /// Distance from the model, root mean square over the span, beyond which a record does not show the scene's impact.
 const WORST_MISFIT: f64 = 0.25;
-/// Further impacts that are cut off the free flight of a signal, one before the other.
-const EVENTS: usize = 4;
+/// Further impacts that are cut off the free flight of a signal, one before the other, and vibrations that are taken out.
+const DISTURBANCES: usize = 4;
 
 /// Where the outer body's speed before the impact comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -76,6 +77,12 @@ pub struct AlignedRecord {
     pub efficiency_uncertainty: Option<f64>,
     /// What is wrong with the record.
     pub findings: Vec<Finding>,
+    /// Standard deviation of every signal in free flight. Shape (signals).
+    #[serde(skip)]
+    pub noise: Vec<f64>,
+    /// Time in s from the first touch at which something else than the impact acts on a signal; infinite without. Shape (signals).
+    #[serde(skip)]
+    pub ends: Vec<f64>,
     /// Time in s from the first touch. Shape (samples).
     #[serde(skip)]
     pub time: Vec<f64>,
@@ -117,6 +124,30 @@ pub fn align(
     Alignment { record, model, quantities, setup, bandwidth, speed }.run(findings)
 }
 
+/// [`align`] of several records, with the findings that take them together.
+///
+/// # Errors
+/// As [`align`].
+pub fn align_all(
+    records: &[Record],
+    model: &Filtered,
+    quantities: &PlateQuantities,
+    setup: &PlateImpact,
+    how: (f64, Speed),
+) -> Result<Vec<AlignedRecord>> {
+    let aligned = records.iter().map(|record| align(record, model, quantities, setup, how));
+    let mut aligned = aligned.collect::<Result<Vec<_>>>()?;
+    duplicate::mark(&mut aligned);
+    Ok(aligned)
+}
+
+impl AlignedRecord {
+    /// Whether the record is that of an impact that no other record shows.
+    pub fn is_an_impact_of_its_own(&self) -> bool {
+        self.findings.iter().all(|finding| finding.kind != FindingKind::Duplicate)
+    }
+}
+
 impl Alignment<'_> {
     fn run(&self, mut findings: Vec<Finding>) -> Result<AlignedRecord> {
         let all: Vec<usize> = (0..self.record.channels.len()).collect();
@@ -135,7 +166,7 @@ impl Alignment<'_> {
                 .values
                 .iter()
                 .zip(&time)
-                .map(|(y, t)| y - seen.correction.offset - seen.correction.drift * t)
+                .map(|(y, t)| y - seen.taken_out(*t))
                 .collect(),
         };
         let signals = self.record.channels.iter().zip(&seen).map(corrected).collect();
@@ -146,6 +177,8 @@ impl Alignment<'_> {
             file: self.record.file.clone(),
             samples: self.record.time.len(),
             shift,
+            noise: seen.iter().map(|seen| seen.flight.noise).collect(),
+            ends: seen.iter().map(|seen| seen.ends).collect(),
             channels: seen.into_iter().map(|seen| seen.correction).collect(),
             outer_velocity_initial,
             inner_velocity_final: inner,
@@ -242,18 +275,27 @@ impl Alignment<'_> {
     fn seen(&self, k: usize, shift: f64) -> Result<Seen> {
         let quantity = self.record.channels[k].quantity;
         let mut free = self.free_flight(k, shift)?;
-        let mut events = Vec::new();
-        let mut disturbance = None;
-        for _ in 0..EVENTS {
-            disturbance = free.disturbance(self.bandwidth);
-            let Some(Disturbance::Event { time, change }) = disturbance else { break };
-            events.push((time, change));
-            disturbance = None;
-            // begun earlier by what the instrument smears
-            let end = time - 1.0 / self.bandwidth;
-            free.after.retain(|(t, _)| *t < end);
-            if free.after.len() < FEWEST {
-                free.after.clear();
+        let (mut events, mut hums, mut disturbance, mut ends) = (Vec::new(), Vec::new(), None, f64::INFINITY);
+        for _ in 0..DISTURBANCES {
+            match free.disturbance(self.bandwidth) {
+                Some(Disturbance::Event { time, change, earliest }) => {
+                    events.push((time, change));
+                    // the instrument smears it
+                    let end = earliest - 1.0 / self.bandwidth;
+                    free.after.retain(|(t, _)| *t < end);
+                    ends = end;
+                    if free.after.len() < FEWEST {
+                        free.after.clear();
+                    }
+                }
+                Some(Disturbance::Hum(found)) => {
+                    free.subtract(&found);
+                    hums.push(found);
+                }
+                other => {
+                    disturbance = other;
+                    break;
+                }
             }
         }
         let flight = self.fitted(k, &free)?;
@@ -265,6 +307,6 @@ impl Alignment<'_> {
         let (before, left) = if trusted { (measured, 0.0) } else { (known, measured - known) };
         let (offset, drift) = if free.is_velocity { (left, flight.slope) } else { (flight.level, left) };
         let correction = ChannelCorrection { quantity, offset, drift };
-        Ok(Seen { correction, flight, free, before, events, disturbance })
+        Ok(Seen { correction, flight, free, before, events, ends, hums, disturbance })
     }
 }

@@ -4,13 +4,13 @@ use super::align::{Alignment, ChannelCorrection};
 use super::finding::{Finding, FindingKind};
 use super::flight::{Flight, FreeFlight};
 use super::noise::NORMAL_95;
-use super::structure::Disturbance;
+use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
 use crate::scene::Shape;
 
 /// Standard errors from which on a drift counts as found, and what it makes up over the record, over the step of the impact.
 const SIGNIFICANT_DRIFT: f64 = 5.0;
-const LARGE_DRIFT: f64 = 0.03;
+const LARGE_DRIFT: f64 = 0.01;
 /// Offset over the span of a signal beyond which the signal is hardly that of the scene.
 const LARGE_OFFSET: f64 = 0.5;
 /// Distance from the model over the contact beyond the noise, root mean square over the span: more than experiments of the scene
@@ -30,6 +30,10 @@ pub(super) struct Seen {
     pub before: f64,
     /// Further impacts: time in s from the first touch, change of the velocity in m/s.
     pub events: Vec<(f64, f64)>,
+    /// Time in s from the first touch of what ends the free flight; infinite without.
+    pub ends: f64,
+    /// Vibrations of the mains that were taken out.
+    pub hums: Vec<Hum>,
     /// What else disturbs the free flight.
     pub disturbance: Option<Disturbance>,
 }
@@ -45,6 +49,12 @@ pub(super) struct Judged {
 }
 
 impl Seen {
+    /// What the signal has at `time`, s from the first touch, besides the motion.
+    pub fn taken_out(&self, time: f64) -> f64 {
+        let hums: f64 = self.hums.iter().map(|hum| hum.at(time)).sum();
+        self.correction.offset + self.correction.drift * time + hums
+    }
+
     /// Velocity after the impact with its standard error.
     fn after(&self) -> Option<(f64, f64)> {
         self.flight.step.map(|(step, error)| (self.before + step, error))
@@ -108,15 +118,19 @@ impl Alignment<'_> {
             findings.push(Finding::new(kind, [time + shift, end], effect));
         }
         let unit = if seen.free.is_velocity { "m/s" } else { "m" };
+        findings.extend(seen.hums.iter().map(|hum| {
+            let effect = format!(
+                "{quantity}: a hum of {} Hz with an amplitude of {:.2e} {unit} is taken out; what its fit leaves enters the velocities",
+                hum.frequency,
+                hum.parts[0].hypot(hum.parts[1])
+            );
+            Finding::new(FindingKind::Hum, self.whole(), effect)
+        }));
         let of_disturbance = seen.disturbance.and_then(|disturbance| match disturbance {
-            Disturbance::Event { .. } => None,
+            Disturbance::Event { .. } | Disturbance::Hum(_) => None,
             Disturbance::AcCoupled { time_constant } => Some((
                 FindingKind::AcCoupled,
                 format!("{quantity}: the signal decays with a time constant of {time_constant:.2e} s, as an AC-coupled sensor's does; its velocities and the efficiency from them are wrong"),
-            )),
-            Disturbance::Hum { frequency, amplitude } => Some((
-                FindingKind::Hum,
-                format!("{quantity}: a hum of {frequency} Hz with an amplitude of {amplitude:.2e} {unit}; it adds to the uncertainty of its velocities"),
             )),
             Disturbance::Curved { change } => Some((
                 FindingKind::Drift,
@@ -159,7 +173,7 @@ impl Alignment<'_> {
 
     /// Distance of a signal from the model over the contact beyond its noise, root mean square.
     fn misfit(&self, shift: f64, seen: &Seen) -> f64 {
-        let ChannelCorrection { quantity, offset, drift } = seen.correction;
+        let quantity = seen.correction.quantity;
         let channel = self.record.channels.iter().find(|channel| channel.quantity == quantity);
         let (Some(curve), Some(channel)) = (self.model.curve(quantity), channel) else { return 0.0 };
         let contact = self.contact(quantity);
@@ -170,7 +184,7 @@ impl Alignment<'_> {
             .map(|t| t - shift)
             .zip(&channel.values)
             .filter(|(t, _)| (contact.start..contact.end).contains(t))
-            .map(|(t, y)| (y - offset - drift * t - curve(t)).powi(2))
+            .map(|(t, y)| (y - seen.taken_out(t) - curve(t)).powi(2))
             .collect();
         let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
         (mean - seen.flight.noise.powi(2)).max(0.0).sqrt()
@@ -236,7 +250,7 @@ impl Alignment<'_> {
         );
         if share - uncertainty > brought {
             return Err(Error::Scene(miette::miette!(
-                help = "check units and scale of the signals, the bodies' masses in the scene, and what happens after the impact (stops, further strikes, padding)",
+                help = "check units and scale of the signals, the outer body's speed and the masses in the scene, and what happens after the impact (stops, further strikes, padding)",
                 "{}: {effect}: no impact gives energy",
                 self.record.file.display()
             )));

@@ -7,6 +7,7 @@
 mod align;
 mod area;
 mod compare;
+mod duplicate;
 mod filter;
 mod finding;
 mod flight;
@@ -17,7 +18,7 @@ mod screen;
 mod shift;
 mod structure;
 
-pub use align::{AlignedRecord, ChannelCorrection, Speed, align};
+pub use align::{AlignedRecord, ChannelCorrection, Speed, align, align_all};
 pub use area::Area;
 pub use compare::{Measured, Partner, Series, compare};
 pub use filter::{Filtered, low_pass};

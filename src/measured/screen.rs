@@ -13,8 +13,10 @@ const CLIPPED: usize = 8;
 const OFTENER: usize = 4;
 /// Part of neighbouring samples that may be equal in a signal whose resolution shows its noise.
 const EQUAL: f64 = 0.02;
+/// Part of the samples at which the curvature changes its sign: more than a smooth course has.
+const ROUGH: f64 = 0.08;
 /// Fewest neighbouring samples from which that is judged.
-const PAIRS: usize = 20;
+const PAIRS: u32 = 20;
 /// Jump of a signal into zeros that no body makes, over the signal's span.
 const JUMP: f64 = 0.2;
 
@@ -86,15 +88,21 @@ fn extremes(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
 }
 
-/// Whether neighbouring samples differ, apart from those `left_out`: equal ones are then no chance.
+/// Whether the signal has noise that its resolution shows, apart from the samples `left_out`: equal ones are then no chance.
 fn shows_noise(values: &[f64], left_out: impl Fn(usize) -> bool) -> bool {
-    let pairs = (1..values.len()).filter(|k| !left_out(*k) && !left_out(*k - 1));
-    let (mut count, mut equal) = (0, 0);
-    for k in pairs {
-        count += 1;
+    let (mut pairs, mut equal, mut bends, mut last) = (0, 0, 0, 0.0);
+    for k in 2..values.len() {
+        if left_out(k) || left_out(k - 1) || left_out(k - 2) {
+            continue;
+        }
+        pairs += 1;
         equal += usize::from(values[k] == values[k - 1]);
+        let bend = values[k] - 2.0 * values[k - 1] + values[k - 2];
+        bends += usize::from(bend * last < 0.0);
+        last = bend;
     }
-    count >= PAIRS && (equal as f64) < EQUAL * count as f64
+    let part = |count: usize| count as f64 / f64::from(pairs);
+    pairs >= PAIRS && part(equal) < EQUAL && part(bends) > ROUGH
 }
 
 fn clipped(time: &[f64], channel: &Channel) -> Option<Finding> {
@@ -105,7 +113,7 @@ fn clipped(time: &[f64], channel: &Channel) -> Option<Finding> {
         let others = values.iter().copied().filter(|v| *v != limit);
         let next = others.min_by(|a, b| (a - limit).abs().total_cmp(&(b - limit).abs()))?;
         let beside = values.iter().filter(|v| **v == next).count();
-        if at_limit.len() < CLIPPED.max(OFTENER * beside) || !shows_noise(values, |k| values[k] == limit) {
+        if at_limit.len() < CLIPPED.max(OFTENER * beside) || !shows_noise(values, |k| values[k] == low || values[k] == high) {
             return None;
         }
         let Range { start, end } = at_limit[0]..at_limit[at_limit.len() - 1];

@@ -21,14 +21,30 @@ const BETTER: f64 = 0.7;
 /// What disturbs a free flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Disturbance {
-    /// The velocity changes again: by `change` m/s, at the earliest at `time` in s from the first touch.
-    Event { time: f64, change: f64 },
+    /// The velocity changes again: by `change` m/s, about `time` and not before `earliest`, s from the first touch.
+    Event { time: f64, earliest: f64, change: f64 },
     /// The signal decays with this time constant in s.
     AcCoupled { time_constant: f64 },
-    /// A vibration with this frequency in Hz, and its amplitude in the signal's unit.
-    Hum { frequency: f64, amplitude: f64 },
+    /// A vibration.
+    Hum(Hum),
     /// The slope changes by this much over the record, in the signal's unit per second.
     Curved { change: f64 },
+}
+
+/// A vibration, times in s from the first touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Hum {
+    /// Hz.
+    pub frequency: f64,
+    /// Amplitudes of sine and cosine, in the signal's unit.
+    pub parts: [f64; 2],
+}
+
+impl Hum {
+    pub fn at(&self, time: f64) -> f64 {
+        let (sine, cosine) = (2.0 * PI * self.frequency * time).sin_cos();
+        self.parts[0] * sine + self.parts[1] * cosine
+    }
 }
 
 /// A possible disturbance with the columns that describe it.
@@ -51,7 +67,7 @@ impl FreeFlight {
             let columns = &candidate.columns - &space * space.tr_mul(&candidate.columns);
             let directions = orthonormal(&columns);
             let rest = left.norm_squared() - directions.tr_mul(&left).norm_squared();
-            if matches!(candidate.kind, Disturbance::Hum { .. }) { rest / BETTER } else { rest }
+            if matches!(candidate.kind, Disturbance::Hum(_)) { rest / BETTER } else { rest }
         };
         let best = self
             .candidates(&grouped)
@@ -80,18 +96,25 @@ impl FreeFlight {
         }
         let of = |k: usize| found.coefficients[first + k];
         Some(match best.kind {
-            Disturbance::Event { time, .. } => Disturbance::Event { time, change: of(0) },
+            Disturbance::Event { time, earliest, .. } => Disturbance::Event { time, earliest, change: of(0) },
             // a signal that grows by itself is no sensor's
             Disturbance::AcCoupled { .. } if of(0) > 0.0 => return None,
             Disturbance::AcCoupled { .. } => Disturbance::AcCoupled { time_constant: -1.0 / of(0) },
-            Disturbance::Hum { frequency, .. } => {
-                Disturbance::Hum { frequency, amplitude: of(0).hypot(of(1)) }
+            Disturbance::Hum(Hum { frequency, .. }) => {
+                Disturbance::Hum(Hum { frequency, parts: [of(0), of(1)] })
             }
             Disturbance::Curved { .. } => {
                 let length = grouped.time[grouped.time.len() - 1] - grouped.time[0];
                 Disturbance::Curved { change: 2.0 * of(0) * length }
             }
         })
+    }
+
+    /// Takes a vibration out of the samples.
+    pub fn subtract(&mut self, hum: &Hum) {
+        for (time, value) in self.before.iter_mut().chain(&mut self.after) {
+            *value -= hum.at(*time);
+        }
     }
 
     fn candidates(&self, grouped: &Grouped) -> Vec<Candidate> {
@@ -109,7 +132,8 @@ impl FreeFlight {
                 (true, true) => 1.0,
                 (true, false) => time[k] - start,
             };
-            found.push(column(Disturbance::Event { time: start, change: 0.0 }, &of));
+            let earliest = start - width;
+            found.push(column(Disturbance::Event { time: start, earliest, change: 0.0 }, &of));
         }
         if self.is_velocity {
             // a high-pass of first order: true = signal + integral of the signal over the time constant
@@ -123,10 +147,10 @@ impl FreeFlight {
         let length = (time[early.end - 1] - time[0]).max(time[count - 1] - time[late.start]);
         for frequency in MAINS.into_iter().filter(|f| f * length > LEAST_PERIOD) {
             let columns = DMatrix::from_fn(count, 2, |k, j| {
-                let phase = 2.0 * PI * frequency * time[k];
-                if j == 0 { phase.sin() } else { phase.cos() }
+                let parts = [[1.0, 0.0], [0.0, 1.0]][j];
+                Hum { frequency, parts }.at(time[k])
             });
-            found.push(Candidate { kind: Disturbance::Hum { frequency, amplitude: 0.0 }, columns });
+            found.push(Candidate { kind: Disturbance::Hum(Hum { frequency, parts: [0.0; 2] }), columns });
         }
         found
     }
