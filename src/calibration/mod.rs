@@ -106,8 +106,7 @@ pub fn calibrate(
     let how = (bandwidth, speed);
     let aligned = align_all(records, &filtered, &quantities, setup, how)?;
     let used: Vec<CalibrationRecord> = aligned.iter().map(CalibrationRecord::of).collect();
-    let aligned: Vec<AlignedRecord> =
-        aligned.into_iter().filter(AlignedRecord::is_an_impact_of_its_own).collect();
+    let aligned: Vec<AlignedRecord> = aligned.into_iter().filter(|record| !record.is_copy).collect();
     let end = start.history.time.last().copied().unwrap_or(0.0) + 2.0 / bandwidth;
     let signals = Signals::of(&aligned, end, how);
     let differences = |all: &[f64]| {

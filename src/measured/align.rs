@@ -2,7 +2,7 @@
 
 use super::filter::Filtered;
 use super::duplicate;
-use super::finding::{Finding, FindingKind};
+use super::finding::Finding;
 use super::flight::{FEWEST, Flight, FreeFlight};
 use super::judge::{Judged, Seen};
 use super::record::{Channel, Record};
@@ -77,6 +77,9 @@ pub struct AlignedRecord {
     pub efficiency_uncertainty: Option<f64>,
     /// What is wrong with the record.
     pub findings: Vec<Finding>,
+    /// Whether it repeats an earlier record.
+    #[serde(skip)]
+    pub is_copy: bool,
     /// Standard deviation of every signal in free flight. Shape (signals).
     #[serde(skip)]
     pub noise: Vec<f64>,
@@ -141,13 +144,6 @@ pub fn align_all(
     Ok(aligned)
 }
 
-impl AlignedRecord {
-    /// Whether the record is that of an impact that no other record shows.
-    pub fn is_an_impact_of_its_own(&self) -> bool {
-        self.findings.iter().all(|finding| finding.kind != FindingKind::Duplicate)
-    }
-}
-
 impl Alignment<'_> {
     fn run(&self, mut findings: Vec<Finding>) -> Result<AlignedRecord> {
         let all: Vec<usize> = (0..self.record.channels.len()).collect();
@@ -185,6 +181,7 @@ impl Alignment<'_> {
             efficiency: efficiency.map(|(value, _)| value),
             efficiency_uncertainty: efficiency.map(|(_, uncertainty)| uncertainty),
             findings,
+            is_copy: false,
             time,
             signals,
         })

@@ -70,7 +70,7 @@ impl Measured {
     pub fn standard_uncertainty(&self) -> Option<f64> {
         let series = self.efficiency.as_ref()?;
         let count = series.count as f64;
-        let impacts = self.records.iter().filter(|record| record.is_an_impact_of_its_own());
+        let impacts = self.records.iter().filter(|record| !record.is_copy);
         let bands = impacts.filter_map(|record| record.efficiency_uncertainty);
         let noise = bands.map(|band| (band / COVERAGE).powi(2)).sum::<f64>() / count;
         let scatter = series.standard_deviation.map_or(0.0, |deviation| deviation.powi(2));
@@ -153,7 +153,7 @@ pub fn compare(
     let efficiency = Series::of(
         records
             .iter()
-            .filter(|record| record.is_an_impact_of_its_own())
+            .filter(|record| !record.is_copy)
             .filter_map(|record| record.efficiency)
             .collect(),
     );

@@ -12,32 +12,35 @@ const LEAST_NOISE: f64 = 1e-5;
 /// Adds a finding to each of `records` that repeats an earlier one, and to each that shows no inner body while another shows no outer
 /// one: both belong to one impact.
 pub(super) fn mark(records: &mut [AlignedRecord]) {
-    let found: Vec<Option<Finding>> = (0..records.len()).map(|k| of(records, k)).collect();
-    for (record, finding) in records.iter_mut().zip(found) {
+    let found: Vec<(bool, Option<Finding>)> = (0..records.len()).map(|k| of(records, k)).collect();
+    for (record, (is_copy, finding)) in records.iter_mut().zip(found) {
+        record.is_copy = is_copy;
         record.findings.extend(finding);
     }
 }
 
-fn of(records: &[AlignedRecord], k: usize) -> Option<Finding> {
+/// Whether record number `k` is a copy, and what is wrong with it.
+fn of(records: &[AlignedRecord], k: usize) -> (bool, Option<Finding>) {
     let record = &records[k];
     let finding = |effect: String| {
         let clock = [0, record.time.len() - 1].map(|i| record.time[i] + record.shift);
-        Some(Finding::new(FindingKind::Duplicate, clock, effect))
+        Finding::new(FindingKind::Duplicate, clock, effect)
     };
     if let Some(first) = records[..k].iter().find(|first| are_same(first, record)) {
-        return finding(format!(
-            "the record is the same as {}, noise included; it is not counted as an impact of its own",
-            first.file.display()
-        ));
+        let effect = format!("the record is the same as {}, noise included; it is not used", first.file.display());
+        return (true, Some(finding(effect)));
     }
     let lacks = |record: &AlignedRecord, body: &str| {
         record.signals.iter().all(|signal| !signal.quantity.starts_with(body))
     };
-    let other = records.iter().find(|other| lacks(record, "inner") && lacks(other, "outer"))?;
-    finding(format!(
-        "the record shows only the outer body and {} only the inner one: if that is one impact, put all signals into one file",
-        other.file.display()
-    ))
+    let other = records.iter().find(|other| lacks(record, "inner") && lacks(other, "outer"));
+    let effect = |other: &AlignedRecord| {
+        finding(format!(
+            "the record shows only the outer body and {} only the inner one: if that is one impact, put all signals into one file",
+            other.file.display()
+        ))
+    };
+    (false, other.map(effect))
 }
 
 fn are_same(a: &AlignedRecord, b: &AlignedRecord) -> bool {

@@ -28,7 +28,7 @@ pub enum FindingKind {
     Duplicate,
     /// The curves are not those of the scene.
     OtherScene,
-    /// More energy after the impact than before, within the uncertainty.
+    /// More energy after the impact than before, as far as its uncertainty tells.
     Energy,
 }
 

@@ -20,6 +20,9 @@ const OTHER_SCENE: f64 = 0.05;
 const DELAY: f64 = 0.3;
 const DELAY_EXPLAINS: f64 = 0.5;
 
+/// Half widths of the 95 % interval by which an excess of energy is more than chance.
+const IMPOSSIBLE: f64 = 2.0;
+
 /// What one signal shows.
 pub(super) struct Seen {
     pub correction: ChannelCorrection,
@@ -222,7 +225,7 @@ impl Alignment<'_> {
         Ok(seen.iter().zip(&own).skip(1).filter_map(late).collect())
     }
 
-    /// Refuses more kinetic energy after the impact than before; names it where the uncertainty leaves it open.
+    /// Refuses more kinetic energy after the impact than before; a finding where the uncertainty leaves it open.
     fn energy(
         &self,
         shift: f64,
@@ -239,7 +242,8 @@ impl Alignment<'_> {
         ];
         let brought = 1.0 + masses[1] / masses[0] * (self.setup.inner.speed / self.setup.outer.speed).powi(2);
         let (share, uncertainty) = (inner.0 + outer.0, inner.1.hypot(outer.1));
-        if share <= brought {
+        let excess = share - brought;
+        if excess < uncertainty && inner.0 <= brought {
             return Ok(None);
         }
         let effect = format!(
@@ -248,7 +252,7 @@ impl Alignment<'_> {
             100.0 * inner.0 / brought,
             100.0 * uncertainty / brought
         );
-        if share - uncertainty > brought {
+        if excess > IMPOSSIBLE * uncertainty {
             return Err(Error::Scene(miette::miette!(
                 help = "check units and scale of the signals, the outer body's speed and the masses in the scene, and what happens after the impact (stops, further strikes, padding)",
                 "{}: {effect}: no impact gives energy",
