@@ -180,13 +180,23 @@ fn document(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measured::{BANDWIDTH, Channel};
+    use crate::measured::{BANDWIDTH, Channel, low_pass};
     use std::path::PathBuf;
 
     const SCENE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
 
-    /// A record of the scene with other numbers, as an instrument shows it, with noise of a share of the largest value.
+    /// A record of the scene with other numbers, as an instrument shows it, with white noise of a share of the largest value.
     fn record(template: &Template, numbers: &[(&Field, f64)], noise: f64, seed: u64) -> Record {
+        record_with(template, numbers, (noise, None), seed)
+    }
+
+    /// The same with noise below a frequency in Hz.
+    fn record_with(
+        template: &Template,
+        numbers: &[(&Field, f64)],
+        (noise, corner): (f64, Option<f64>),
+        seed: u64,
+    ) -> Record {
         let scene = template.with(numbers).expect("valid");
         let outcome = Reduced::new(&scene, Model::B, None).unwrap().run_with_history(TOLERANCE).unwrap();
         let filtered = Filtered::new(&outcome.history, BANDWIDTH).unwrap();
@@ -197,7 +207,14 @@ mod tests {
             let curve = filtered.curve(quantity).expect("measurable");
             let clean: Vec<f64> = time.iter().map(|t| curve(*t)).collect();
             let largest = clean.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-            Channel { quantity, values: clean.iter().map(|v| v + noise * largest * normal()).collect() }
+            let mut random: Vec<f64> = clean.iter().map(|_| normal()).collect();
+            if let Some(corner) = corner {
+                random = low_pass(&random, 0.25e-6, corner).expect("filtered");
+                let deviation = (random.iter().map(|r| r * r).sum::<f64>() / random.len() as f64).sqrt();
+                random.iter_mut().for_each(|r| *r /= deviation);
+            }
+            let values = clean.iter().zip(random).map(|(v, r)| v + noise * largest * r).collect();
+            Channel { quantity, values }
         };
         let channels = vec![channel("outer_velocity"), channel("inner_velocity")];
         // the instrument's clock begins with the record
@@ -220,6 +237,44 @@ mod tests {
             let deviation = input.standard_deviation.expect("told");
             assert!((input.value - truth).abs() < 3.5 * deviation, "{found:?}");
             assert!(deviation < 0.01 * truth, "{found:?}");
+        }
+    }
+
+    /// As if its samples were independent, noise below 20 kHz would lead to a standard deviation several times too small.
+    #[test]
+    fn noise_of_a_narrow_band_widens_the_standard_deviations() {
+        let template = Template::parse("scene", SCENE).expect("shipped scene");
+        let field = template.field("plate.thickness").expect("there");
+        let names = [field.path().to_owned()];
+        let mut squares = 0.0;
+        for seed in 0..6 {
+            let record = record_with(&template, &[(&field, 2.04e-3)], (0.004, Some(20e3)), seed);
+            let found =
+                calibrate(&template, &names, &[record], Model::B, (BANDWIDTH, Speed::Scene)).expect("a fit");
+            let input = &found.inputs[0];
+            squares += ((input.value - 2.04e-3) / input.standard_deviation.expect("told")).powi(2);
+        }
+        let z = (squares / 6.0).sqrt();
+        assert!((0.4..1.7).contains(&z), "root mean square of (value - truth) / standard deviation: {z}");
+    }
+
+    /// A sphere's contact knows E/(1 - nu^2) alone.
+    #[test]
+    fn modulus_and_poisson_s_ratio_of_a_sphere_are_named_as_not_identifiable() {
+        let text = SCENE.replace("[plate]", "[materials.ball]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = 0.3\ndensity = \"7780 kg/m^3\"\n\n[plate]");
+        let (before, outer) = text.split_once("[outer]").expect("an outer body");
+        let text = format!("{before}[outer]{}", outer.replacen("\"steel\"", "\"ball\"", 1));
+        let template = Template::parse("scene", &text).expect("valid");
+        let fields = ["materials.ball.youngs_modulus", "materials.ball.poisson_ratio"]
+            .map(|name| template.field(name).expect("there"));
+        let names = fields.each_ref().map(|field| field.path().to_owned());
+        let numbers: Vec<(&Field, f64)> = fields.iter().zip([190e9, 0.25]).collect();
+        for seed in 0..3 {
+            let record = record(&template, &numbers, 0.002, seed);
+            let found =
+                calibrate(&template, &names, &[record], Model::B, (BANDWIDTH, Speed::Scene)).expect("a fit");
+            assert_eq!(found.untold.len(), 1, "{found:?}");
+            assert!(found.inputs.iter().all(|input| input.standard_deviation.is_none()), "{found:?}");
         }
     }
 

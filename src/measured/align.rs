@@ -2,7 +2,7 @@
 
 use super::filter::Filtered;
 use super::duplicate;
-use super::finding::Finding;
+use super::finding::{Finding, FindingKind};
 use super::flight::{FEWEST, Flight, FreeFlight};
 use super::judge::{Judged, Seen};
 use super::record::{Channel, Record};
@@ -168,7 +168,9 @@ impl Alignment<'_> {
         let signals = self.record.channels.iter().zip(&seen).map(corrected).collect();
         let Judged { outer_velocity_initial, inner, efficiency, findings: further } =
             self.judged(shift, &seen)?;
-        findings.extend(further);
+        // a signal at its limit differs from every scene
+        let is_clipped = findings.iter().any(|finding| finding.kind == FindingKind::Clipped);
+        findings.extend(further.into_iter().filter(|f| !(is_clipped && f.kind == FindingKind::OtherScene)));
         Ok(AlignedRecord {
             file: self.record.file.clone(),
             samples: self.record.time.len(),

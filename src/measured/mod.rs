@@ -35,4 +35,5 @@ on each side. Before the impact the inner body is at rest and the outer one has 
 the speed is read from the signal, which then has no offset). A displacement is zero at the first touch. The shift in time \
 is the one that minimises the squared distance to the reference, filtered to the instrument's bandwidth, over the contact and \
 as much time before and after it; each signal over its noise in free flight (at least 1 % of its span) and with any offset, drift \
-and amplitude, so that another speed or efficiency hardly moves it. The efficiency is that of the measured velocities.";
+and amplitude, so that another speed or efficiency hardly moves it. The efficiency is that of the measured velocities. Its 95 % interval \
+follows from the noise in free flight and its correlation in time. Padding and what follows a further impact are not used.";
