@@ -6,15 +6,25 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 use serde::Serialize;
 
-/// Half the step of the differences from which slopes come, in scales of the parameters.
-const STEP: f64 = 1e-4;
+/// Half the step of the differences from which slopes come, in scales of the parameters: small against what the parameters are
+/// uncertain by, large against the rounding of a model's run.
+const STEP: f64 = 1e-3;
+/// The same along a direction of small slope, where rounding counts.
+const LONG_STEP: f64 = 1e-2;
+/// Slope over the largest below which a direction is one of small slope.
+const SMALL_SLOPE: f64 = 0.1;
+/// Part of a small slope that has to be there over the long step too: less is rounding.
+const CONFIRMED: f64 = 0.3;
+/// Change of a parameter, in its scale, below which it takes no part in a direction whatever its standard deviation is.
+const LEAST_PART: f64 = 1e-3;
 /// Standard deviation along a direction, in scales of the parameters, from which on the data don't tell it.
 const UNTOLD: f64 = 0.5;
 /// Smallest singular value over the largest that is more than rounding.
 const ROUNDING: f64 = 1e-6;
 /// Differences where the model has no result, over the largest at the start.
 const FAR: f64 = 1e3;
-/// Component from which on a parameter takes part in a direction.
+/// Component from which on a parameter takes part in a direction; a smaller one does if that leaves it more uncertain than the other
+/// directions do.
 const PART: f64 = 0.1;
 
 /// The parameters that fit.
@@ -22,7 +32,7 @@ const PART: f64 = 0.1;
 pub struct Fitted {
     /// Their values. Shape (parameters).
     pub values: Vec<f64>,
-    /// Their standard deviations; `None` of those that the data don't tell. Shape (parameters).
+    /// Their standard deviations (1.96 of them are 95 %); `None` of those that the data don't tell. Shape (parameters).
     pub standard_deviations: Vec<Option<f64>>,
     /// Their correlations, along what the data tell. Shape (parameters, parameters).
     pub correlations: Vec<Vec<f64>>,
@@ -48,6 +58,15 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> Problem<'_, F> {
     fn of(&self, at: &DVector<f64>) -> Option<DVector<f64>> {
         let values: Vec<f64> = at.iter().zip(self.scales).map(|(x, scale)| x * scale).collect();
         (self.residuals)(&values).map(DVector::from_vec)
+    }
+
+    /// Whether the data change along `direction` by their `slope` over a long step too.
+    fn is_confirmed(&self, direction: &DVector<f64>, slope: f64) -> bool {
+        let moved = |step: f64| self.of(&(&self.at + direction * step));
+        // where the model has no result the short step is all there is
+        moved(LONG_STEP).zip(moved(-LONG_STEP)).is_none_or(|(after, before)| {
+            (after - before).norm() / (2.0 * LONG_STEP) > CONFIRMED * slope
+        })
     }
 
     fn slopes(&self) -> Option<DMatrix<f64>> {
@@ -84,11 +103,17 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> LeastSquaresProblem<f64, Dyn, Dyn> for P
 }
 
 /// Minimises the sum of the squares of `residuals` from `start` on (Levenberg and Marquardt, as in MINPACK); `scales` are the sizes of
-/// the parameters: a direction in which they are uncertain by half of these is not told by the data.
+/// the parameters: a direction in which they are uncertain by half of these is not told by the data. `covariance` gives that of the data from
+/// what the fit leaves and its slopes, block by block along the data (see [`independent`]).
 ///
 /// # Errors
-/// [`Error::Solver`] if the residuals are not defined at the start, are fewer than the parameters, or no minimum is found.
-pub fn fit(start: &[f64], scales: &[f64], residuals: impl Fn(&[f64]) -> Option<Vec<f64>>) -> Result<Fitted> {
+/// [`Error::Solver`] if the residuals are not defined at the start, are too few for the parameters, or no minimum is found.
+pub fn fit(
+    start: &[f64],
+    scales: &[f64],
+    residuals: impl Fn(&[f64]) -> Option<Vec<f64>>,
+    covariance: impl Fn(&DVector<f64>, &DMatrix<f64>) -> Option<Vec<DMatrix<f64>>>,
+) -> Result<Fitted> {
     let undefined = || Error::Solver("the model has no result at the inputs that the fit tries".into());
     let first = residuals(start).ok_or_else(undefined)?;
     let largest = first.iter().fold(1.0_f64, |most, r| most.max(r.abs()));
@@ -108,29 +133,64 @@ pub fn fit(start: &[f64], scales: &[f64], residuals: impl Fn(&[f64]) -> Option<V
         return Err(Error::Solver(format!("{count} data don't determine {unknowns} inputs")));
     }
     let scatter = (left.norm_squared() / (count - unknowns) as f64).sqrt();
-    Ok(told(&problem.at, scales, scatter, slopes))
+    let blocks = covariance(&left, &slopes)
+        .ok_or_else(|| Error::Solver(format!("{count} data are too few to tell how {unknowns} inputs scatter")))?;
+    Ok(told(&problem, scatter, slopes, &blocks))
 }
 
-/// What the `slopes` at the solution `at` tell, the data scattering by `scatter`.
-fn told(at: &DVector<f64>, scales: &[f64], scatter: f64, slopes: DMatrix<f64>) -> Fitted {
-    let unknowns = at.len();
-    let parts = slopes.svd(false, true);
-    let singular: Vec<f64> = parts.singular_values.iter().copied().collect();
-    let largest = singular.iter().copied().fold(0.0, f64::max);
-    let mut order: Vec<usize> = (0..singular.len()).collect();
-    order.sort_by(|a, b| singular[*b].total_cmp(&singular[*a]));
-    let mut covariance = DMatrix::<f64>::zeros(unknowns, unknowns);
-    let mut untold = Vec::new();
-    let directions = parts.v_t.unwrap_or_else(|| DMatrix::zeros(singular.len(), unknowns));
-    for k in &order {
-        let direction = directions.row(*k);
-        if singular[*k] > ROUNDING * largest && scatter / singular[*k] < UNTOLD {
-            covariance += direction.transpose() * direction * (scatter / singular[*k]).powi(2);
-        } else {
-            untold.push((0..unknowns).filter(|j| direction[*j].abs() > PART).collect::<Vec<usize>>());
-        }
+/// Covariance of `left` if all of it is independent and scatters alike.
+pub fn independent(left: &DVector<f64>, slopes: &DMatrix<f64>) -> Option<Vec<DMatrix<f64>>> {
+    let freedom = slopes.nrows().checked_sub(slopes.ncols()).filter(|freedom| *freedom > 0)?;
+    let variance = left.norm_squared() / freedom as f64;
+    Some(vec![DMatrix::from_diagonal_element(1, 1, variance); left.len()])
+}
+
+/// `directions' C directions` of the covariance C that consists of `blocks`.
+fn along(directions: &DMatrix<f64>, blocks: &[DMatrix<f64>]) -> DMatrix<f64> {
+    let mut start = 0;
+    let mut total = DMatrix::zeros(directions.ncols(), directions.ncols());
+    for block in blocks {
+        let part = directions.rows(start, block.nrows());
+        total += part.tr_mul(&(block * part));
+        start += block.nrows();
     }
-    let deviation = |j: usize| covariance[(j, j)].sqrt();
+    total
+}
+
+/// What the `slopes` at the solution tell, the data having the covariance of `blocks`.
+fn told<F: Fn(&[f64]) -> Option<Vec<f64>>>(
+    problem: &Problem<F>,
+    scatter: f64,
+    slopes: DMatrix<f64>,
+    blocks: &[DMatrix<f64>],
+) -> Fitted {
+    let (at, scales) = (&problem.at, problem.scales);
+    let unknowns = at.len();
+    let parts = slopes.svd(true, true);
+    let singular = parts.singular_values;
+    let largest = singular.max();
+    let mut order: Vec<usize> = (0..unknowns).collect();
+    order.sort_by(|a, b| singular[*b].total_cmp(&singular[*a]));
+    let directions = parts.v_t.unwrap_or_else(|| DMatrix::zeros(unknowns, unknowns));
+    let of_data = along(&parts.u.unwrap_or_else(|| DMatrix::zeros(at.len(), unknowns)), blocks);
+    let deviation = |k: usize| of_data[(k, k)].max(0.0).sqrt() / singular[k];
+    let is_told = |k: &usize| {
+        let slope = singular[*k];
+        slope > ROUNDING * largest
+            && deviation(*k) < UNTOLD
+            && (slope > SMALL_SLOPE * largest || problem.is_confirmed(&directions.row(*k).transpose(), slope))
+    };
+    let (known, unknown): (Vec<usize>, Vec<usize>) = order.iter().copied().partition(is_told);
+    let scaled = DMatrix::from_fn(unknowns, known.len(), |i, k| directions[(known[k], i)] / singular[known[k]]);
+    let inner = DMatrix::from_fn(known.len(), known.len(), |i, j| of_data[(known[i], known[j])]);
+    let covariance = &scaled * inner * scaled.transpose();
+    let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
+    let takes_part = |k: usize, j: usize| {
+        let part = directions[(k, j)].abs();
+        part > PART || UNTOLD * part > deviation(j).max(LEAST_PART)
+    };
+    let untold: Vec<Vec<usize>> =
+        unknown.iter().map(|k| (0..unknowns).filter(|j| takes_part(*k, *j)).collect()).collect();
     let is_told = |j: &usize| !untold.iter().any(|direction| direction.contains(j));
     let correlation =
         |i: usize, j: usize| covariance[(i, j)] / (deviation(i) * deviation(j)).max(f64::MIN_POSITIVE);
@@ -168,7 +228,7 @@ mod tests {
         for seed in 0..200 {
             let data = noisy(seed);
             let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) - y).collect());
-            let found = fit(&[1.8, 29.8, 0.5], &[2.0, 30.0, 0.5], residuals).expect("a minimum");
+            let found = fit(&[1.8, 29.8, 0.5], &[2.0, 30.0, 0.5], residuals, independent).expect("a minimum");
             assert!(found.untold.is_empty(), "{found:?}");
             assert!((found.scatter / 0.05 - 1.0).abs() < 0.25, "{found:?}");
             for (k, inside) in inside.iter_mut().enumerate() {
@@ -185,7 +245,7 @@ mod tests {
         let data = noisy(7);
         let product = |p: &[f64], t: f64| model(&[p[0] * p[3], p[1], p[2]], t);
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
-        let found = fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals).expect("a minimum");
+        let found = fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
         assert_eq!(found.untold, [[0, 3]], "{found:?}");
         assert_eq!(
             found.standard_deviations.iter().map(Option::is_some).collect::<Vec<_>>(),
@@ -194,13 +254,37 @@ mod tests {
         assert!((found.values[0] * found.values[3] - 2.0).abs() < 0.1, "{found:?}");
         // what does not act at all is not told either
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) - y).collect());
-        let found = fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals).expect("a minimum");
+        let found = fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
+        assert_eq!(found.untold, [[3]], "{found:?}");
+    }
+
+    /// A small part of an unidentifiable direction makes an input as uncertain as it is: the second input acts through the
+    /// first times (1 + 0.05 times it).
+    #[test]
+    fn a_small_part_of_a_direction_counts_where_it_is_more_than_the_deviation() {
+        let data = noisy(7);
+        let product = |p: &[f64], t: f64| model(&[p[0] * (0.95 + 0.05 * p[3]), p[1], p[2]], t);
+        let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
+        let found =
+            fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
+        assert_eq!(found.untold, [[0, 3]], "{found:?}");
+    }
+
+    /// A model's rounding looks like a small slope of an input that does nothing.
+    #[test]
+    fn rounding_is_no_slope() {
+        let data = noisy(7);
+        let rounding = |p: f64, t: f64| 2e-4 * (1e7 * p + 1e3 * t).sin();
+        let residuals =
+            |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) + rounding(p[3], *t) - y).collect());
+        let found =
+            fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
         assert_eq!(found.untold, [[3]], "{found:?}");
     }
 
     #[test]
     fn too_few_data_are_told() {
         let few = |p: &[f64]| Some(vec![p[0] - 1.0]);
-        assert!(matches!(fit(&[2.0, 1.0], &[1.0, 1.0], few), Err(Error::Solver(_))));
+        assert!(matches!(fit(&[2.0, 1.0], &[1.0, 1.0], few, independent), Err(Error::Solver(_))));
     }
 }

@@ -1,21 +1,22 @@
 //! Calibration: inputs of a scene from measured histories, by least squares on a reduced model.
 
 pub mod fit;
+mod residuals;
 
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::kinds::plate_impact::shared::SharedBodies;
-use crate::measured::{AlignedRecord, Filtered, Record, Speed, align};
+use crate::measured::{AlignedRecord, Filtered, Finding, FindingKind, Record, Speed, align_all};
 use crate::result::{CUT, SCHEMA_VERSION};
 use crate::scene::{Field, Model, Template};
 use fit::{Fitted, fit};
+use residuals::Signals;
 use serde::Serialize;
+use std::path::PathBuf;
 
 /// Relative error of the efficiency that the time integration may have: far below what slopes are taken over.
 const TOLERANCE: f64 = 1e-8;
-/// Samples that are compared per period of the bandwidth: closer ones are not independent of each other.
-const PER_PERIOD: f64 = 2.0;
 /// Range, over the nominal value, in which inputs are looked for.
 const REACH: f64 = 0.3;
 /// Impacts that a fit may be expected to take.
@@ -36,10 +37,28 @@ pub struct Calibration {
     pub correlations: Vec<Vec<f64>>,
     /// Number of samples compared.
     pub samples: usize,
-    /// Root mean square of the differences before and after, over the span of the signals.
+    /// Root mean square of the differences before and after, over the span of the signals; offset and drift are taken out.
     pub misfit: [f64; 2],
+    /// The records.
+    pub records: Vec<CalibrationRecord>,
     /// What the records don't tell, in sentences.
     pub untold: Vec<String>,
+}
+
+/// A record that was used.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CalibrationRecord {
+    /// Where it comes from.
+    pub file: PathBuf,
+    /// What is wrong with it; whether it is that of the scene, whose inputs are looked for, is not judged.
+    pub findings: Vec<Finding>,
+}
+
+impl CalibrationRecord {
+    fn of(record: &AlignedRecord) -> Self {
+        let findings = record.findings.iter().filter(|finding| finding.kind != FindingKind::OtherScene);
+        CalibrationRecord { file: record.file.clone(), findings: findings.cloned().collect() }
+    }
 }
 
 /// One input.
@@ -53,19 +72,9 @@ pub struct Calibrated {
     pub nominal: f64,
     /// What fits.
     pub value: f64,
-    /// Its standard deviation; `None` if the records don't tell it.
+    /// Its standard deviation (1.96 of it are 95 %), offset, drift and time of the records being unknown and their noise limited to
+    /// a band; `None` if the records don't tell it.
     pub standard_deviation: Option<f64>,
-}
-
-/// A sample of a record.
-#[derive(Debug, Clone, Copy)]
-struct Sample {
-    record: usize,
-    quantity: &'static str,
-    time: f64,
-    value: f64,
-    /// What its difference is measured by: the span of the signal.
-    span: f64,
 }
 
 /// The fields named `names` of the scene in `template`, from `records` taken with a `bandwidth` in Hz. Every record may be shifted in time besides.
@@ -94,19 +103,15 @@ pub fn calibrate(
         PlateQuantities::of_table(&start.summary.quantities).ok_or_else(|| Error::Solver(CUT.into()))?;
     let filtered = Filtered::new(&start.history, bandwidth)?;
     let setup = template.scene().plate_impact()?;
-    let aligned = records
-        .iter()
-        .map(|record| align(record, &filtered, &quantities, setup, (bandwidth, speed)))
-        .collect::<Result<Vec<AlignedRecord>>>()?;
+    let how = (bandwidth, speed);
+    let aligned = align_all(records, &filtered, &quantities, setup, how)?;
+    let used: Vec<CalibrationRecord> = aligned.iter().map(CalibrationRecord::of).collect();
+    let aligned: Vec<AlignedRecord> = aligned.into_iter().filter(|record| !record.is_copy).collect();
     let end = start.history.time.last().copied().unwrap_or(0.0) + 2.0 / bandwidth;
-    let samples: Vec<Sample> =
-        aligned.iter().enumerate().flat_map(|(k, record)| thinned(k, record, end, bandwidth)).collect();
+    let signals = Signals::of(&aligned, end, how);
     let differences = |all: &[f64]| {
         let (values, shifts) = all.split_at(fields.len());
-        let filtered = Filtered::new(&run(values).ok()?.history, bandwidth).ok()?;
-        let difference =
-            |s: &Sample| Some((filtered.curve(s.quantity)?(s.time - shifts[s.record]) - s.value) / s.span);
-        samples.iter().map(difference).collect::<Option<Vec<f64>>>()
+        signals.differences(&Filtered::new(&run(values).ok()?.history, bandwidth).ok()?, shifts)
     };
     let root_mean_square = |all: &[f64]| {
         differences(all).map_or(f64::NAN, |d| (d.iter().map(|d| d * d).sum::<f64>() / d.len() as f64).sqrt())
@@ -114,9 +119,12 @@ pub fn calibrate(
     let shifts = |scale: f64| std::iter::repeat_n(scale, aligned.len());
     let first: Vec<f64> = nominal.iter().copied().chain(shifts(0.0)).collect();
     let scales: Vec<f64> = nominal.iter().map(|x| x.abs()).chain(shifts(1.0 / bandwidth)).collect();
-    let found = fit(&first, &scales, differences)?;
+    let found = fit(&first, &scales, differences, |left, slopes| signals.covariance(left, slopes))?;
     let misfit = [root_mean_square(&first), root_mean_square(&found.values)];
-    Ok(document(template, (&fields, &nominal), model, &found, (samples.len(), misfit)))
+    Ok(Calibration {
+        records: used,
+        ..document(template, (&fields, &nominal), model, &found, (signals.samples(), misfit))
+    })
 }
 
 /// What the scene has in `field`, about which it is looked for.
@@ -127,29 +135,6 @@ fn nominal(template: &Template, field: &Field) -> Result<f64> {
     }
     let value = template.number(field).ok_or_else(|| refused("the scene file does not state it"))?;
     if value == 0.0 { Err(refused("it is 0, which has no size to look about")) } else { Ok(value) }
-}
-
-/// The samples of record number `k` around the impact, as many as are independent.
-fn thinned(k: usize, record: &AlignedRecord, end: f64, bandwidth: f64) -> Vec<Sample> {
-    let of = |channel: &crate::measured::Channel| {
-        let inside =
-            record.time.iter().zip(&channel.values).filter(|(t, _)| (-1.0 / bandwidth..end).contains(*t));
-        let pairs: Vec<(f64, f64)> = inside.map(|(t, v)| (*t, *v)).collect();
-        let (low, high) =
-            pairs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (_, v)| (l.min(*v), h.max(*v)));
-        let span = (high - low).max(f64::MIN_POSITIVE);
-        let step = 1.0 / (PER_PERIOD * bandwidth);
-        let mut next = f64::NEG_INFINITY;
-        let mut kept = Vec::new();
-        for (time, value) in pairs {
-            if time >= next {
-                kept.push(Sample { record: k, quantity: channel.quantity, time, value, span });
-                next = time + step;
-            }
-        }
-        kept
-    };
-    record.signals.iter().flat_map(of).collect()
 }
 
 fn document(
@@ -187,6 +172,7 @@ fn document(
         correlations: found.correlations[..count].iter().map(|row| row[..count].to_vec()).collect(),
         samples,
         misfit,
+        records: Vec::new(),
         untold: found.untold.iter().map(sentence).collect(),
     }
 }
@@ -194,13 +180,23 @@ fn document(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measured::{BANDWIDTH, Channel};
+    use crate::measured::{BANDWIDTH, Channel, low_pass};
     use std::path::PathBuf;
 
     const SCENE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
 
-    /// A record of the scene with other numbers, as an instrument shows it, with noise of a share of the largest value.
+    /// A record of the scene with other numbers, as an instrument shows it, with white noise of a share of the largest value.
     fn record(template: &Template, numbers: &[(&Field, f64)], noise: f64, seed: u64) -> Record {
+        record_with(template, numbers, (noise, None), seed)
+    }
+
+    /// The same with noise below a frequency in Hz.
+    fn record_with(
+        template: &Template,
+        numbers: &[(&Field, f64)],
+        (noise, corner): (f64, Option<f64>),
+        seed: u64,
+    ) -> Record {
         let scene = template.with(numbers).expect("valid");
         let outcome = Reduced::new(&scene, Model::B, None).unwrap().run_with_history(TOLERANCE).unwrap();
         let filtered = Filtered::new(&outcome.history, BANDWIDTH).unwrap();
@@ -211,7 +207,14 @@ mod tests {
             let curve = filtered.curve(quantity).expect("measurable");
             let clean: Vec<f64> = time.iter().map(|t| curve(*t)).collect();
             let largest = clean.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-            Channel { quantity, values: clean.iter().map(|v| v + noise * largest * normal()).collect() }
+            let mut random: Vec<f64> = clean.iter().map(|_| normal()).collect();
+            if let Some(corner) = corner {
+                random = low_pass(&random, 0.25e-6, corner).expect("filtered");
+                let deviation = (random.iter().map(|r| r * r).sum::<f64>() / random.len() as f64).sqrt();
+                random.iter_mut().for_each(|r| *r /= deviation);
+            }
+            let values = clean.iter().zip(random).map(|(v, r)| v + noise * largest * r).collect();
+            Channel { quantity, values }
         };
         let channels = vec![channel("outer_velocity"), channel("inner_velocity")];
         // the instrument's clock begins with the record
@@ -234,6 +237,44 @@ mod tests {
             let deviation = input.standard_deviation.expect("told");
             assert!((input.value - truth).abs() < 3.5 * deviation, "{found:?}");
             assert!(deviation < 0.01 * truth, "{found:?}");
+        }
+    }
+
+    /// As if its samples were independent, noise below 20 kHz would lead to a standard deviation several times too small.
+    #[test]
+    fn noise_of_a_narrow_band_widens_the_standard_deviations() {
+        let template = Template::parse("scene", SCENE).expect("shipped scene");
+        let field = template.field("plate.thickness").expect("there");
+        let names = [field.path().to_owned()];
+        let mut squares = 0.0;
+        for seed in 0..6 {
+            let record = record_with(&template, &[(&field, 2.04e-3)], (0.004, Some(20e3)), seed);
+            let found =
+                calibrate(&template, &names, &[record], Model::B, (BANDWIDTH, Speed::Scene)).expect("a fit");
+            let input = &found.inputs[0];
+            squares += ((input.value - 2.04e-3) / input.standard_deviation.expect("told")).powi(2);
+        }
+        let z = (squares / 6.0).sqrt();
+        assert!((0.4..1.7).contains(&z), "root mean square of (value - truth) / standard deviation: {z}");
+    }
+
+    /// A sphere's contact knows E/(1 - nu^2) alone.
+    #[test]
+    fn modulus_and_poisson_s_ratio_of_a_sphere_are_named_as_not_identifiable() {
+        let text = SCENE.replace("[plate]", "[materials.ball]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = 0.3\ndensity = \"7780 kg/m^3\"\n\n[plate]");
+        let (before, outer) = text.split_once("[outer]").expect("an outer body");
+        let text = format!("{before}[outer]{}", outer.replacen("\"steel\"", "\"ball\"", 1));
+        let template = Template::parse("scene", &text).expect("valid");
+        let fields = ["materials.ball.youngs_modulus", "materials.ball.poisson_ratio"]
+            .map(|name| template.field(name).expect("there"));
+        let names = fields.each_ref().map(|field| field.path().to_owned());
+        let numbers: Vec<(&Field, f64)> = fields.iter().zip([190e9, 0.25]).collect();
+        for seed in 0..3 {
+            let record = record(&template, &numbers, 0.002, seed);
+            let found =
+                calibrate(&template, &names, &[record], Model::B, (BANDWIDTH, Speed::Scene)).expect("a fit");
+            assert_eq!(found.untold.len(), 1, "{found:?}");
+            assert!(found.inputs.iter().all(|input| input.standard_deviation.is_none()), "{found:?}");
         }
     }
 

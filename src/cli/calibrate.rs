@@ -44,6 +44,11 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let records = arguments.measured.iter().map(|file| Record::read(file)).collect::<Result<Vec<_>>>()?;
     let how = (arguments.bandwidth, arguments.speed);
     let found = calibrate(&template, &arguments.over, &records, arguments.model, how)?;
+    for record in &found.records {
+        for finding in &record.findings {
+            context.note(format_args!("warning: {}: {}", record.file.display(), finding.effect));
+        }
+    }
     for sentence in &found.untold {
         context.note(format_args!("note: {sentence}"));
     }

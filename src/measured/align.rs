@@ -1,31 +1,27 @@
 //! Lays a record over a model: offset, drift and shift in time, by [`super::RULE`].
 
 use super::filter::Filtered;
+use super::duplicate;
+use super::finding::{Finding, FindingKind};
+use super::flight::{FEWEST, Flight, FreeFlight};
+use super::judge::{Judged, Seen};
 use super::record::{Channel, Record};
+use super::screen::screened;
+use super::structure::Disturbance;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::PlateQuantities;
-use crate::numerics::least_squares::fit;
 use crate::scene::PlateImpact;
-use argmin::core::{CostFunction, Executor, State};
-use argmin::solver::brent::BrentOpt;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Fewest samples of a stretch of free flight.
-const FEWEST: usize = 8;
-/// Most samples of a signal in the coarse search.
-const COARSE_SAMPLES: usize = 300;
 /// Rounds of looking for the shift: the first may end on the edge of its reach.
 const ROUNDS: usize = 2;
 /// How much later than the model's the measured contact may end before its end counts as free flight.
 const LONGER_CONTACT: f64 = 1.1;
-
-/// Part of a contact that the record has to show.
-const RISE: f64 = 0.4;
 /// Distance from the model, root mean square over the span, beyond which a record does not show the scene's impact.
 const WORST_MISFIT: f64 = 0.25;
-/// Noise of a signal, relative to its span, that is assumed at least: models are not better than that.
-const LEAST_NOISE: f64 = 0.01;
+/// Further impacts that are cut off the free flight of a signal, one before the other, and vibrations that are taken out.
+const DISTURBANCES: usize = 4;
 
 /// Where the outer body's speed before the impact comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -77,8 +73,19 @@ pub struct AlignedRecord {
     pub inner_velocity_final: Option<f64>,
     /// Eq. (1) from the measured velocities; `None` if the record does not show the inner body's free flight.
     pub efficiency: Option<f64>,
-    /// Half width of its 95 % band from the noise of the inner body's signal.
+    /// Half width of its 95 % interval from the noise of the signals, whose samples are not independent.
     pub efficiency_uncertainty: Option<f64>,
+    /// What is wrong with the record.
+    pub findings: Vec<Finding>,
+    /// Whether it repeats an earlier record.
+    #[serde(skip)]
+    pub is_copy: bool,
+    /// Standard deviation of every signal in free flight. Shape (signals).
+    #[serde(skip)]
+    pub noise: Vec<f64>,
+    /// Time in s from the first touch at which something else than the impact acts on a signal; infinite without. Shape (signals).
+    #[serde(skip)]
+    pub ends: Vec<f64>,
     /// Time in s from the first touch. Shape (samples).
     #[serde(skip)]
     pub time: Vec<f64>,
@@ -89,36 +96,26 @@ pub struct AlignedRecord {
 
 /// Contact of a body: the instants between which it may not fly freely.
 #[derive(Debug, Clone, Copy)]
-struct Contact {
-    start: f64,
-    end: f64,
+pub(super) struct Contact {
+    pub start: f64,
+    pub end: f64,
 }
 
-/// Free flight of one signal.
-#[derive(Debug, Clone, Copy)]
-struct Flight {
-    offset: f64,
-    drift: f64,
-    /// Standard deviation of the signal about its fit.
-    noise: f64,
-    /// Velocity before the impact and after it, with its standard error.
-    before: f64,
-    after: Option<(f64, f64)>,
-}
-
-struct Alignment<'a> {
-    record: &'a Record,
-    model: &'a Filtered,
-    quantities: &'a PlateQuantities,
-    setup: &'a PlateImpact,
-    bandwidth: f64,
-    speed: Speed,
+/// A record that is laid over a model.
+pub(super) struct Alignment<'a> {
+    pub record: Record,
+    pub model: &'a Filtered,
+    pub quantities: &'a PlateQuantities,
+    pub setup: &'a PlateImpact,
+    pub bandwidth: f64,
+    pub speed: Speed,
 }
 
 /// Lays `record` over `model`, the filtered history of a partner with the results `quantities` in the impact `setup`.
 ///
 /// # Errors
-/// [`Error::Scene`] if the record shows no free flight before the impact.
+/// [`Error::Scene`] if the record shows no free flight before the impact, no impact like that of the scene, or more energy after
+/// it than before.
 pub fn align(
     record: &Record,
     model: &Filtered,
@@ -126,78 +123,104 @@ pub fn align(
     setup: &PlateImpact,
     (bandwidth, speed): (f64, Speed),
 ) -> Result<AlignedRecord> {
-    Alignment { record, model, quantities, setup, bandwidth, speed }.run()
+    let (record, findings) = screened(record, bandwidth);
+    Alignment { record, model, quantities, setup, bandwidth, speed }.run(findings)
+}
+
+/// [`align`] of several records, with the findings that take them together.
+///
+/// # Errors
+/// As [`align`].
+pub fn align_all(
+    records: &[Record],
+    model: &Filtered,
+    quantities: &PlateQuantities,
+    setup: &PlateImpact,
+    how: (f64, Speed),
+) -> Result<Vec<AlignedRecord>> {
+    let aligned = records.iter().map(|record| align(record, model, quantities, setup, how));
+    let mut aligned = aligned.collect::<Result<Vec<_>>>()?;
+    duplicate::mark(&mut aligned);
+    Ok(aligned)
 }
 
 impl Alignment<'_> {
-    fn run(&self) -> Result<AlignedRecord> {
-        let (mut shift, misfit) = self.coarse();
-        if misfit > WORST_MISFIT {
-            return Err(Error::Scene(miette::miette!(
-                help = "check columns, units, signs (z points from the inner to the outer side) and that the file belongs to this scene",
-                "{}: nowhere in the record is an impact like that of the scene: the signals are off by {:.0} % of their span at best, at most {:.0} % is taken for a match",
-                self.record.file.display(),
-                100.0 * misfit,
-                100.0 * WORST_MISFIT
-            )));
-        }
+    fn run(&self, mut findings: Vec<Finding>) -> Result<AlignedRecord> {
+        let all: Vec<usize> = (0..self.record.channels.len()).collect();
+        let mut shift = self.matching(&all)?;
         for round in 0..ROUNDS {
             let flights = self.flights(shift)?;
             // the search narrows as the shift settles
             let reach = 2.0 / self.bandwidth * 0.5_f64.powi(round as i32);
-            shift = self.refined(shift, reach, &flights)?;
+            shift = self.refined(&all, shift, reach, &flights)?.0;
         }
-        let flights = self.flights(shift)?;
+        let seen = all.iter().map(|k| self.seen(*k, shift)).collect::<Result<Vec<Seen>>>()?;
         let time: Vec<f64> = self.record.time.iter().map(|t| t - shift).collect();
-        let corrected = |(channel, flight): (&Channel, &Flight)| Channel {
+        let corrected = |(channel, seen): (&Channel, &Seen)| Channel {
             quantity: channel.quantity,
             values: channel
                 .values
                 .iter()
                 .zip(&time)
-                .map(|(y, t)| y - flight.offset - flight.drift * t)
+                .map(|(y, t)| y - seen.taken_out(*t))
                 .collect(),
         };
-        let channels = self.record.channels.iter().zip(&flights);
-        let signals = channels.clone().map(corrected).collect();
-        let corrections = channels.map(|(channel, flight)| ChannelCorrection {
-            quantity: channel.quantity,
-            offset: flight.offset,
-            drift: flight.drift,
-        });
-        // a velocity is the better witness of a velocity
-        let of = |body: &str| {
-            ["velocity", "displacement"].into_iter().find_map(|kind| {
-                let name = format!("{body}_{kind}");
-                let k = self.record.channels.iter().position(|channel| channel.quantity == name)?;
-                Some(flights[k])
-            })
-        };
-        let outer_velocity_initial = of("outer").map_or(-self.setup.outer.speed, |flight| flight.before);
-        let inner = of("inner").and_then(|flight| flight.after);
-        let masses = [
-            self.setup.outer.shape.mass(&self.setup.outer.material),
-            self.setup.inner.shape.mass(&self.setup.inner.material),
-        ];
-        let efficiency =
-            |velocity: f64| masses[1] * velocity.powi(2) / (masses[0] * outer_velocity_initial.powi(2));
+        let signals = self.record.channels.iter().zip(&seen).map(corrected).collect();
+        let Judged { outer_velocity_initial, inner, efficiency, findings: further } =
+            self.judged(shift, &seen)?;
+        // a signal at its limit differs from every scene
+        let is_clipped = findings.iter().any(|finding| finding.kind == FindingKind::Clipped);
+        findings.extend(further.into_iter().filter(|f| !(is_clipped && f.kind == FindingKind::OtherScene)));
         Ok(AlignedRecord {
             file: self.record.file.clone(),
             samples: self.record.time.len(),
             shift,
-            channels: corrections.collect(),
+            noise: seen.iter().map(|seen| seen.flight.noise).collect(),
+            ends: seen.iter().map(|seen| seen.ends).collect(),
+            channels: seen.into_iter().map(|seen| seen.correction).collect(),
             outer_velocity_initial,
-            inner_velocity_final: inner.map(|(velocity, _)| velocity),
-            efficiency: inner.map(|(velocity, _)| efficiency(velocity)),
-            efficiency_uncertainty: inner
-                .map(|(velocity, error)| 1.96 * 2.0 * efficiency(velocity) * (error / velocity).abs()),
+            inner_velocity_final: inner,
+            efficiency: efficiency.map(|(value, _)| value),
+            efficiency_uncertainty: efficiency.map(|(_, uncertainty)| uncertainty),
+            findings,
+            is_copy: false,
             time,
             signals,
         })
     }
 
+    /// The shift about which the record resembles the model.
+    fn matching(&self, all: &[usize]) -> Result<f64> {
+        let refused = |help: String, reason: String| {
+            Err(Error::Scene(miette::miette!(help = help, "{}: {reason}", self.record.file.display())))
+        };
+        for k in all {
+            let quantity = self.record.channels[*k].quantity;
+            let [as_is, negated] = [1.0, -1.0].map(|sign| self.coarse(&[*k], sign));
+            if negated.is_clearly_better(&as_is, WORST_MISFIT) {
+                let share = [as_is, negated].map(|found| 100.0 * found.misfit);
+                return refused(
+                    format!("negate {quantity} in the file: z points from the inner to the outer side, so that an outer body that strikes and an inner body that flies off have negative velocities"),
+                    format!("{quantity} has the wrong sign: negated it differs from the scene's impact by {:.0} % of its span, as it is by {:.0} %", share[1], share[0]),
+                );
+            }
+        }
+        let found = self.coarse(all, 1.0);
+        if found.misfit > WORST_MISFIT {
+            return refused(
+                "check columns, units, signs (z points from the inner to the outer side) and that the file belongs to this scene".into(),
+                format!(
+                    "nowhere in the record is an impact like that of the scene: the signals are off by {:.0} % of their span at best, at most {:.0} % is taken for a match",
+                    100.0 * found.misfit,
+                    100.0 * WORST_MISFIT
+                ),
+            );
+        }
+        Ok(found.shift)
+    }
+
     /// The contact of the body that the signal `quantity` belongs to, widened by what the instrument smears.
-    fn contact(&self, quantity: &str) -> Contact {
+    pub fn contact(&self, quantity: &str) -> Contact {
         let end = if quantity.starts_with("outer") {
             self.quantities.outer_contact_end
         } else {
@@ -207,62 +230,30 @@ impl Alignment<'_> {
         Contact { start: -smear, end: LONGER_CONTACT * end + smear }
     }
 
-    /// Span of the model's curve over its contact: what distances are measured by.
-    fn span(&self, quantity: &str) -> f64 {
-        let Some(curve) = self.model.curve(quantity) else { return 1.0 };
-        let Contact { start, end } = self.contact(quantity);
-        let values = (0..=200).map(|k| curve(start + (end - start) * f64::from(k) / 200.0));
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-        (high - low).max(f64::MIN_POSITIVE)
-    }
-
-    /// The shift on a grid that fits best when every signal may have any offset, and the distance that is left, root
-    /// mean square over the signals' spans. A drift could make up for an impact that is not there.
-    fn coarse(&self) -> (f64, f64) {
-        let time = &self.record.time;
-        let (first, last) = (time[0], time[time.len() - 1]);
-        let step = 1.0 / (8.0 * self.bandwidth);
-        let count = ((last - first) / step).ceil() as usize;
-        let spans: Vec<f64> = self.record.channels.iter().map(|c| self.span(c.quantity)).collect();
-        // distance with and without what is missing, shift
-        let mut best = (f64::INFINITY, 1.0, first);
-        for k in 1..count {
-            let shift = first + step * k as f64;
-            let (mut misfit, mut missing) = (0.0, 0.0);
-            for (channel, span) in self.record.channels.iter().zip(&spans) {
-                let Some(curve) = self.model.curve(channel.quantity) else { continue };
-                let end = self.contact(channel.quantity).end;
-                // samples around the impact, some before and some after
-                let window = time.partition_point(|t| *t < shift - end)
-                    ..time.partition_point(|t| *t < shift + 2.0 * end);
-                let stride = window.len().div_ceil(COARSE_SAMPLES).max(1);
-                let rows: Vec<([f64; 1], f64)> = window
-                    .step_by(stride)
-                    .map(|i| ([1.0], channel.values[i] - curve(time[i] - shift)))
-                    .collect();
-                misfit += fit(&rows).map_or(1.0, |found| (found.scatter / span).powi(2));
-                // without its rise an impact looks like free flight, of which there is plenty
-                missing += 1.0 - ((last - shift) / (RISE * end)).min(1.0);
-            }
-            if misfit + missing < best.0 {
-                best = (misfit + missing, misfit, shift);
-            }
-        }
-        (best.2, (best.1 / self.record.channels.len() as f64).sqrt())
-    }
-
-    /// Offset, drift and velocities of every signal, from its free flight if the first touch is at `shift`.
+    /// Offset, drift and step of every signal, from its free flight if the first touch is at `shift`.
     fn flights(&self, shift: f64) -> Result<Vec<Flight>> {
-        self.record.channels.iter().map(|channel| self.flight(channel, shift)).collect()
+        (0..self.record.channels.len()).map(|k| self.fitted(k, &self.free_flight(k, shift)?)).collect()
     }
 
-    fn flight(&self, channel: &Channel, shift: f64) -> Result<Flight> {
+    fn fitted(&self, k: usize, free: &FreeFlight) -> Result<Flight> {
+        free.fitted(self.bandwidth).ok_or_else(|| {
+            Error::Scene(miette::miette!(
+                "{}: the free flight of {} can't be fitted",
+                self.record.file.display(),
+                self.record.channels[k].quantity
+            ))
+        })
+    }
+
+    /// The samples of signal number `k` outside its contact.
+    fn free_flight(&self, k: usize, shift: f64) -> Result<FreeFlight> {
+        let channel = &self.record.channels[k];
         let Contact { start, end } = self.contact(channel.quantity);
         let samples = || self.record.time.iter().map(|t| t - shift).zip(channel.values.iter().copied());
-        let early = samples().take_while(|(t, _)| *t < 0.0).count();
         let before: Vec<(f64, f64)> = samples().filter(|(t, _)| *t < start).collect();
-        let after: Vec<(f64, f64)> = samples().filter(|(t, _)| *t > end).collect();
+        let mut after: Vec<(f64, f64)> = samples().filter(|(t, _)| *t > end).collect();
         if before.len() < FEWEST {
+            let early = samples().take_while(|(t, _)| *t < 0.0).count();
             return Err(Error::Scene(miette::miette!(
                 help = "record from before the first touch, at least some periods of the bandwidth",
                 "{}: {} has {early} samples before the first touch, {} of them earlier than {:.3e} s before it, as far as the bandwidth of {:.3e} Hz smears the impact; at least {FEWEST} are needed there for its offset",
@@ -273,96 +264,48 @@ impl Alignment<'_> {
                 self.bandwidth
             )));
         }
-        let outer = channel.quantity.starts_with("outer");
+        if after.len() < FEWEST {
+            after.clear();
+        }
+        Ok(FreeFlight { is_velocity: channel.quantity.ends_with("velocity"), before, after })
+    }
+
+    /// What signal number `k` shows, its free flight ending with the first further impact.
+    fn seen(&self, k: usize, shift: f64) -> Result<Seen> {
+        let quantity = self.record.channels[k].quantity;
+        let mut free = self.free_flight(k, shift)?;
+        let (mut events, mut hums, mut disturbance, mut ends) = (Vec::new(), Vec::new(), None, f64::INFINITY);
+        for _ in 0..DISTURBANCES {
+            match free.disturbance(self.bandwidth) {
+                Some(Disturbance::Event { time, change, earliest }) => {
+                    events.push((time, change));
+                    // the instrument smears it
+                    let end = earliest - 1.0 / self.bandwidth;
+                    free.after.retain(|(t, _)| *t < end);
+                    ends = end;
+                    if free.after.len() < FEWEST {
+                        free.after.clear();
+                    }
+                }
+                Some(Disturbance::Hum(found)) => {
+                    free.subtract(&found);
+                    hums.push(found);
+                }
+                other => {
+                    disturbance = other;
+                    break;
+                }
+            }
+        }
+        let flight = self.fitted(k, &free)?;
+        let outer = quantity.starts_with("outer");
         let known = if outer { -self.setup.outer.speed } else { self.setup.inner.speed };
         let trusted = outer && self.speed == Speed::Measured;
-        let singular = || {
-            Error::Scene(miette::miette!(
-                "{}: the free flight of {} can't be fitted",
-                self.record.file.display(),
-                channel.quantity
-            ))
-        };
-        if channel.quantity.ends_with("velocity") {
-            let (level, drift, step, noise) = if after.len() < FEWEST {
-                // without free flight on the other side drift and contact can't be told apart
-                let rows: Vec<([f64; 1], f64)> = before.iter().map(|(_, y)| ([1.0], *y)).collect();
-                let found = fit(&rows).ok_or_else(singular)?;
-                (found.coefficients[0], 0.0, None, found.scatter)
-            } else {
-                let row = |jump: f64| move |(t, y): &(f64, f64)| ([1.0, *t, jump], *y);
-                let rows: Vec<([f64; 3], f64)> =
-                    before.iter().map(row(0.0)).chain(after.iter().map(row(1.0))).collect();
-                let found = fit(&rows).ok_or_else(singular)?;
-                let [level, drift, step] = found.coefficients;
-                (level, drift, Some((step, found.errors[2])), found.scatter)
-            };
-            let (velocity, offset) = if trusted { (level, 0.0) } else { (known, level - known) };
-            let after = step.map(|(step, error)| (velocity + step, error));
-            return Ok(Flight { offset, drift, noise, before: velocity, after });
-        }
-        let line = |side: &[(f64, f64)]| {
-            let rows: Vec<([f64; 2], f64)> = side.iter().map(|(t, y)| ([1.0, *t], *y)).collect();
-            fit(&rows)
-        };
-        let found = line(&before).ok_or_else(singular)?;
-        let [offset, slope] = found.coefficients;
-        let (velocity, drift) = if trusted { (slope, 0.0) } else { (known, slope - known) };
-        let later = (after.len() >= FEWEST).then(|| line(&after)).flatten();
-        let after = later.map(|l| (l.coefficients[1] - drift, l.errors[1].hypot(found.errors[1])));
-        Ok(Flight { offset, drift, noise: found.scatter, before: velocity, after })
-    }
-
-    /// The shift within `reach` of `shift` that fits best when every signal may have any offset, drift and amplitude.
-    fn refined(&self, shift: f64, reach: f64, flights: &[Flight]) -> Result<f64> {
-        let time = &self.record.time;
-        let mut signals = Vec::new();
-        for (channel, flight) in self.record.channels.iter().zip(flights) {
-            let end = self.contact(channel.quantity).end;
-            let window =
-                time.partition_point(|t| *t < shift - end)..time.partition_point(|t| *t < shift + 2.0 * end);
-            let points: Vec<(f64, f64)> = window.map(|i| (time[i] - shift, channel.values[i])).collect();
-            let scale = flight.noise.hypot(LEAST_NOISE * self.span(channel.quantity));
-            signals.push(Signal { quantity: channel.quantity, scale, points });
-        }
-        let misfit = Misfit { model: self.model, signals: &signals };
-        let solver = BrentOpt::new(-reach, reach).set_tolerance(1e-9, 1e-12);
-        let result = Executor::new(misfit, solver)
-            .configure(|state| state.max_iters(60))
-            .run()
-            .map_err(|e| Error::Internal(format!("Brent's method: {e}")))?;
-        Ok(shift + result.state().get_best_param().copied().unwrap_or(0.0))
-    }
-}
-
-/// One signal around the impact.
-struct Signal {
-    quantity: &'static str,
-    /// What its distances are measured by.
-    scale: f64,
-    /// Time from the shift that is tried around, and value.
-    points: Vec<(f64, f64)>,
-}
-
-/// Squared distance of all signals from the model as a function of a further shift.
-struct Misfit<'a> {
-    model: &'a Filtered,
-    signals: &'a [Signal],
-}
-
-impl CostFunction for Misfit<'_> {
-    type Param = f64;
-    type Output = f64;
-
-    fn cost(&self, further: &f64) -> std::result::Result<f64, argmin::core::Error> {
-        let mut total = 0.0;
-        for Signal { quantity, scale, points } in self.signals {
-            let Some(curve) = self.model.curve(quantity) else { continue };
-            let row = |(t, y): &(f64, f64)| ([1.0, *t, curve(t - further)], *y);
-            let rows: Vec<([f64; 3], f64)> = points.iter().map(row).collect();
-            total += fit(&rows)
-                .map_or(rows.len() as f64, |found| (rows.len() - 3) as f64 * (found.scatter / scale).powi(2));
-        }
-        Ok(total)
+        // the part of the fit that the motion leaves
+        let measured = if free.is_velocity { flight.level } else { flight.slope };
+        let (before, left) = if trusted { (measured, 0.0) } else { (known, measured - known) };
+        let (offset, drift) = if free.is_velocity { (left, flight.slope) } else { (flight.level, left) };
+        let correction = ChannelCorrection { quantity, offset, drift };
+        Ok(Seen { correction, flight, free, before, events, ends, hums, disturbance })
     }
 }

@@ -2,7 +2,7 @@
 //! of repeated impacts.
 
 use super::RULE;
-use super::align::{AlignedRecord, Speed, align};
+use super::align::{AlignedRecord, Speed, align_all};
 use super::area::Area;
 use super::filter::{Filtered, SIGNALS};
 use super::record::Record;
@@ -26,7 +26,7 @@ pub struct Measured {
     pub speed: Speed,
     /// The records, in the order given.
     pub records: Vec<AlignedRecord>,
-    /// Efficiency over the records; `None` if none of them shows one.
+    /// Efficiency over the records, each impact once; `None` if none of them shows one.
     pub efficiency: Option<Series>,
     /// Reference and models against the first record.
     pub partners: Vec<Partner>,
@@ -70,7 +70,8 @@ impl Measured {
     pub fn standard_uncertainty(&self) -> Option<f64> {
         let series = self.efficiency.as_ref()?;
         let count = series.count as f64;
-        let bands = self.records.iter().filter_map(|record| record.efficiency_uncertainty);
+        let impacts = self.records.iter().filter(|record| !record.is_copy);
+        let bands = impacts.filter_map(|record| record.efficiency_uncertainty);
         let noise = bands.map(|band| (band / COVERAGE).powi(2)).sum::<f64>() / count;
         let scatter = series.standard_deviation.map_or(0.0, |deviation| deviation.powi(2));
         // the scatter has the noise in it already
@@ -139,10 +140,7 @@ pub fn compare(
     let model = Filtered::new(&reference.history, bandwidth)?;
     let quantities = PlateQuantities::of_table(&reference.summary.quantities)
         .ok_or_else(|| Error::Reference(format!("the reference of `{}`: {CUT}", scene.name)))?;
-    let records = records
-        .iter()
-        .map(|record| align(record, &model, &quantities, setup, (bandwidth, speed)))
-        .collect::<Result<Vec<_>>>()?;
+    let records = align_all(records, &model, &quantities, setup, (bandwidth, speed))?;
     let first = records.first().ok_or_else(|| Error::Usage("no measured file is given".into()))?;
     let window = CommonAxis { end: window.end.min(first.time.last().copied().unwrap_or(0.0)), ..window };
     if window.end <= window.start {
@@ -152,7 +150,13 @@ pub fn compare(
         )));
     }
     let curves = sampled(first, window);
-    let efficiency = Series::of(records.iter().filter_map(|record| record.efficiency).collect());
+    let efficiency = Series::of(
+        records
+            .iter()
+            .filter(|record| !record.is_copy)
+            .filter_map(|record| record.efficiency)
+            .collect(),
+    );
     // another program need not give the curves that are measured
     let shows = |outcome: &&Outcome| SIGNALS.iter().all(|signal| outcome.history.curve(signal).is_some());
     let outcomes = std::iter::once(("reference".to_owned(), reference)).chain(

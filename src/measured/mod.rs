@@ -7,13 +7,22 @@
 mod align;
 mod area;
 mod compare;
+mod duplicate;
 mod filter;
+mod finding;
+mod flight;
+mod judge;
+pub mod noise;
 mod record;
+mod screen;
+mod shift;
+mod structure;
 
-pub use align::{AlignedRecord, ChannelCorrection, Speed, align};
+pub use align::{AlignedRecord, ChannelCorrection, Speed, align, align_all};
 pub use area::Area;
 pub use compare::{Measured, Partner, Series, compare};
 pub use filter::{Filtered, low_pass};
+pub use finding::{Finding, FindingKind};
 pub use record::{Channel, Record};
 
 /// Bandwidth in Hz of the paper's vibrometers.
@@ -26,4 +35,5 @@ on each side. Before the impact the inner body is at rest and the outer one has 
 the speed is read from the signal, which then has no offset). A displacement is zero at the first touch. The shift in time \
 is the one that minimises the squared distance to the reference, filtered to the instrument's bandwidth, over the contact and \
 as much time before and after it; each signal over its noise in free flight (at least 1 % of its span) and with any offset, drift \
-and amplitude, so that another speed or efficiency hardly moves it. The efficiency is that of the measured velocities.";
+and amplitude, so that another speed or efficiency hardly moves it. The efficiency is that of the measured velocities. Its 95 % interval \
+follows from the noise in free flight and its correlation in time. Padding and what follows a further impact are not used.";

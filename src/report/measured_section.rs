@@ -50,6 +50,14 @@ fn name(record: &AlignedRecord) -> String {
     record.file.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
+/// What is wrong with the records: name of the record, sentence.
+pub(super) fn effects(measured: &Measured) -> impl Iterator<Item = (String, &str)> {
+    let of = |record| (name(record), record);
+    measured.records.iter().map(of).flat_map(|(name, record)| {
+        record.findings.iter().map(move |finding| (name.clone(), finding.effect.as_str()))
+    })
+}
+
 fn alignment(measured: &Measured) -> Rows {
     let heading = ["record", "samples", "first touch at", "offset and drift", "efficiency", "95 % band"];
     let row = |record: &AlignedRecord| {
@@ -172,6 +180,7 @@ pub(super) fn measured_html(report: &SceneReport) -> Markup {
     };
     html! {
         p { (sentence(measured)) }
+        @for (record, effect) in effects(measured) { p { strong { "Warning, " (record) ": " } (prose(effect)) } }
         figure {
             @if let Some((wide, narrow)) = measured_figure(report, Theme::Inline).zip(phone_measured_figure(report)) {
                 (drawn(&wide, &narrow))
@@ -207,10 +216,12 @@ pub(super) fn measured_markdown(report: &SceneReport) -> String {
         }
         text
     };
+    let warnings: String =
+        effects(measured).map(|(record, effect)| format!("**Warning, {record}:** {effect}\n\n")).collect();
     let validation =
         validation(measured).map_or_else(String::new, |rows| format!("{}\n{VALIDATION}\n\n", table(rows)));
     format!(
-        "\n### Measurement\n\n{} {}\n\n![Measured displacement and velocity]({}-measured.svg)\n\n{}\n{}\n{validation}{}\n",
+        "\n### Measurement\n\n{} {}\n\n{warnings}![Measured displacement and velocity]({}-measured.svg)\n\n{}\n{}\n{validation}{}\n",
         sentence(measured),
         bandwidth(measured),
         report.comparison.scene,

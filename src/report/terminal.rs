@@ -1,7 +1,7 @@
 //! A short table for the terminal.
 
 use super::Report;
-use super::presentation;
+use super::{measured_section, presentation};
 use super::summary_column::Column;
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
 use crate::result::{Outcome, Summary};
@@ -45,6 +45,9 @@ pub(super) fn findings(comparison: &SceneComparison) -> String {
     for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
         line("reference", super::junit::integrity_failure(check));
     }
+    for (record, effect) in comparison.measured.iter().flat_map(measured_section::effects) {
+        line(&format!("{warning}: {record}"), effect.to_owned());
+    }
     for model in &comparison.models {
         for of_model in &model.summary.warnings {
             line(&format!("{warning}: {}", model.model), of_model.clone());
@@ -85,7 +88,7 @@ pub fn terminal(report: &Report) -> String {
             text += &format!("  {:<10}{row}  {}\n", check.program, check.words());
         }
         if let Some(measured) = &comparison.measured {
-            text += &format!("  {}\n", super::measured_section::sentence(measured));
+            text += &format!("  {}\n", measured_section::sentence(measured));
         }
         text += &findings(comparison);
         text += &super::validation_section::validation_text(comparison);

@@ -240,11 +240,11 @@ impl<'a> Checker<'a> {
 
     fn name(&mut self, place: &Place, value: &Spanned<DeValue>, text: &str) -> Option<Checked> {
         let plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
-        if (1..=MAX_NAME).contains(&text.len()) && text.chars().all(plain) && !text.starts_with('.') {
+        if (1..=MAX_NAME).contains(&text.len()) && text.chars().all(plain) && !text.starts_with(['.', '-']) {
             return Some(Checked::Text(text.to_owned()));
         }
         let help = format!(
-            "it names a folder: 1 to {MAX_NAME} of the characters A-Z a-z 0-9 . _ -, not starting with a dot"
+            "it names a folder: 1 to {MAX_NAME} of the characters A-Z a-z 0-9 . _ -, not starting with a dot or a dash"
         );
         self.fault(place, value, "which can't be a name", "not a valid name", help)
     }

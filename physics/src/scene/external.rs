@@ -105,6 +105,7 @@ mod tests {
             (entry("reference"), "which is taken"),
             (entry("mine") + &entry("Mine"), "which is taken"),
             (entry("../mine"), "can't be a name"),
+            (entry("-rf"), "can't be a name"),
             (entry("mine") + "[tolerances.yours]\nefficiency = 0.1", "there are A, B, C, mine"),
             (entry("mine").replace("[\"true\"]", "\"true\""), "but it has to be a list"),
             (entry("mine").replace("\"true\"", "\"\""), "1 to 64 texts, the first not empty"),

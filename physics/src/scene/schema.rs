@@ -116,7 +116,7 @@ fn value(kind: &Kind) -> Value {
     match kind {
         Kind::Text | Kind::Material => json!({ "type": "string" }),
         Kind::Name => json!({
-            "type": "string", "pattern": "^[A-Za-z0-9_-][A-Za-z0-9._-]*$", "maxLength": MAX_NAME,
+            "type": "string", "pattern": "^[A-Za-z0-9_][A-Za-z0-9._-]*$", "maxLength": MAX_NAME,
         }),
         Kind::Texts(most) => json!({
             "type": "array", "items": { "type": "string" }, "minItems": 1, "maxItems": most,

@@ -1,0 +1,104 @@
+//! Differences of a model from records, without the offset and drift that the instruments have.
+
+use crate::measured::noise::{Noise, groups, means, orthonormal};
+use crate::measured::{AlignedRecord, Channel, Filtered, Speed};
+use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
+
+/// Groups of samples per period of the bandwidth: samples are compared by their means.
+const PER_PERIOD: f64 = 2.0;
+/// Groups of free flight on either side of the impact that are compared at most.
+const FREE_FLIGHT: f64 = 100.0;
+
+/// One signal of a record.
+struct Signal {
+    record: usize,
+    quantity: &'static str,
+    /// Samples: time in s from the first touch, value.
+    time: Vec<f64>,
+    values: Vec<f64>,
+    groups: Vec<Range<usize>>,
+    /// Mean time of every group.
+    means: Vec<f64>,
+    /// What its difference is measured by.
+    span: f64,
+    /// Orthonormal courses that offset and drift give to the groups.
+    nuisance: DMatrix<f64>,
+}
+
+/// The signals of all records.
+pub(super) struct Signals {
+    signals: Vec<Signal>,
+    bandwidth: f64,
+}
+
+impl Signals {
+    /// Of `records` taken with a `bandwidth` in Hz, around an impact that lasts until `end` in s from the first touch.
+    pub fn of(records: &[AlignedRecord], end: f64, (bandwidth, speed): (f64, Speed)) -> Self {
+        let width = 1.0 / (PER_PERIOD * bandwidth);
+        let margin = FREE_FLIGHT * width;
+        let of = |(k, record, channel, last): (usize, &AlignedRecord, &Channel, f64)| {
+            let inside = -margin..(end + margin).min(last);
+            let (time, values): (Vec<f64>, Vec<f64>) =
+                record.time.iter().zip(&channel.values).filter(|(t, _)| inside.contains(t)).unzip();
+            let groups = groups(&time, width);
+            let means = means(&time, &groups);
+            let (low, high) =
+                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v: &f64| (l.min(*v), h.max(*v)));
+            // a signal that is trusted has no offset of its velocity
+            let trusted = channel.quantity.starts_with("outer") && speed == Speed::Measured;
+            let unknown = 2 - usize::from(trusted) * if channel.quantity.ends_with("velocity") { 2 } else { 1 };
+            let scaled = DMatrix::from_fn(means.len(), unknown, |i, j| (means[i] * bandwidth).powi(j as i32));
+            let nuisance = orthonormal(&scaled);
+            let span = (high - low).max(f64::MIN_POSITIVE);
+            Signal { record: k, quantity: channel.quantity, time, values, groups, means, span, nuisance }
+        };
+        let each = records.iter().enumerate().flat_map(|(k, record)| {
+            record.signals.iter().zip(&record.ends).map(move |(channel, last)| (k, record, channel, *last))
+        });
+        Signals { signals: each.map(of).filter(|signal| signal.means.len() > 2).collect(), bandwidth }
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.signals.iter().map(|signal| signal.time.len()).sum()
+    }
+
+    /// Differences of the groups, over the signals' spans and without what offset and drift may explain; every record is later by its
+    /// one of `shifts` in s.
+    pub fn differences(&self, model: &Filtered, shifts: &[f64]) -> Option<Vec<f64>> {
+        let mut all = Vec::new();
+        for signal in &self.signals {
+            let curve = model.curve(signal.quantity)?;
+            let shift = shifts[signal.record];
+            let samples: Vec<f64> = signal
+                .time
+                .iter()
+                .zip(&signal.values)
+                .map(|(t, value)| (curve(t - shift) - value) / signal.span)
+                .collect();
+            let differences = DVector::from_vec(means(&samples, &signal.groups));
+            let left = &differences - &signal.nuisance * signal.nuisance.tr_mul(&differences);
+            all.extend(left.iter());
+        }
+        Some(all)
+    }
+
+    /// Covariance of the differences, signal by signal, from what a fit with these `slopes` has `left` of them. `None` if they are too few.
+    pub fn covariance(&self, left: &DVector<f64>, slopes: &DMatrix<f64>) -> Option<Vec<DMatrix<f64>>> {
+        let mut start = 0;
+        let mut blocks = Vec::new();
+        for Signal { means, nuisance, .. } in &self.signals {
+            let count = means.len();
+            let of_fit = slopes.rows(start, count);
+            let basis = DMatrix::from_fn(count, nuisance.ncols() + of_fit.ncols(), |i, j| {
+                if j < nuisance.ncols() { nuisance[(i, j)] } else { of_fit[(i, j - nuisance.ncols())] }
+            });
+            let values = left.rows(start, count).into_owned();
+            let noise = Noise::of((means, &values), &basis, &[0..count], self.bandwidth)?;
+            blocks.push(noise.covariance(means));
+            start += count;
+        }
+        Some(blocks)
+    }
+}

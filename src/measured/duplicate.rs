@@ -1,0 +1,69 @@
+//! Records that are not impacts of their own.
+
+use super::align::AlignedRecord;
+use super::finding::{Finding, FindingKind};
+use crate::curves::MonotoneCubic;
+
+/// Difference of two records, root mean square over the noise of one: that of two impacts is 1.4.
+const SAME: f64 = 0.7;
+/// Noise over the span of a signal below which a record is a computed one, whose likeness shows nothing.
+const LEAST_NOISE: f64 = 1e-5;
+
+/// Adds a finding to each of `records` that repeats an earlier one, and to each that shows no inner body while another shows no outer
+/// one: both belong to one impact.
+pub(super) fn mark(records: &mut [AlignedRecord]) {
+    let found: Vec<(bool, Option<Finding>)> = (0..records.len()).map(|k| of(records, k)).collect();
+    for (record, (is_copy, finding)) in records.iter_mut().zip(found) {
+        record.is_copy = is_copy;
+        record.findings.extend(finding);
+    }
+}
+
+/// Whether record number `k` is a copy, and what is wrong with it.
+fn of(records: &[AlignedRecord], k: usize) -> (bool, Option<Finding>) {
+    let record = &records[k];
+    let finding = |effect: String| {
+        let clock = [0, record.time.len() - 1].map(|i| record.time[i] + record.shift);
+        Finding::new(FindingKind::Duplicate, clock, effect)
+    };
+    if let Some(first) = records[..k].iter().find(|first| are_same(first, record)) {
+        let effect = format!("the record is the same as {}, noise included; it is not used", first.file.display());
+        return (true, Some(finding(effect)));
+    }
+    let lacks = |record: &AlignedRecord, body: &str| {
+        record.signals.iter().all(|signal| !signal.quantity.starts_with(body))
+    };
+    let other = records.iter().find(|other| lacks(record, "inner") && lacks(other, "outer"));
+    let effect = |other: &AlignedRecord| {
+        finding(format!(
+            "the record shows only the outer body and {} only the inner one: if that is one impact, put all signals into one file",
+            other.file.display()
+        ))
+    };
+    (false, other.map(effect))
+}
+
+fn are_same(a: &AlignedRecord, b: &AlignedRecord) -> bool {
+    if a.time == b.time && a.signals == b.signals {
+        return true;
+    }
+    a.signals.len() == b.signals.len()
+        && a.signals.iter().zip(&a.noise).all(|(signal, noise)| {
+            let Some(other) = b.signals.iter().find(|other| other.quantity == signal.quantity) else {
+                return false;
+            };
+            let (low, high) =
+                signal.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+            let course = MonotoneCubic::new(&b.time, &other.values);
+            let within = b.time[0]..b.time[b.time.len() - 1];
+            let differences: Vec<f64> = a
+                .time
+                .iter()
+                .zip(&signal.values)
+                .filter(|(t, _)| within.contains(t))
+                .map(|(t, y)| y - course.at(*t))
+                .collect();
+            let mean = differences.iter().map(|d| d * d).sum::<f64>() / differences.len().max(1) as f64;
+            *noise > LEAST_NOISE * (high - low) && mean.sqrt() < SAME * noise
+        })
+}

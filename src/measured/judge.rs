@@ -1,0 +1,264 @@
+//! What the aligned signals of a record show, and whether that can be.
+
+use super::align::{Alignment, ChannelCorrection};
+use super::finding::{Finding, FindingKind};
+use super::flight::{Flight, FreeFlight};
+use super::noise::NORMAL_95;
+use super::structure::{Disturbance, Hum};
+use crate::error::{Error, Result};
+use crate::scene::Shape;
+
+/// Standard errors from which on a drift counts as found, and what it makes up over the record, over the step of the impact.
+const SIGNIFICANT_DRIFT: f64 = 5.0;
+const LARGE_DRIFT: f64 = 0.01;
+/// Offset over the span of a signal beyond which the signal is hardly that of the scene.
+const LARGE_OFFSET: f64 = 0.5;
+/// Distance from the model over the contact beyond the noise, root mean square over the span: more than experiments of the scene
+/// differ from it.
+const OTHER_SCENE: f64 = 0.05;
+/// Delay of a signal over the period of the bandwidth that counts, and the part of the squares that it has to take away.
+const DELAY: f64 = 0.3;
+const DELAY_EXPLAINS: f64 = 0.5;
+
+/// Half widths of the 95 % interval by which an excess of energy is more than chance.
+const IMPOSSIBLE: f64 = 2.0;
+
+/// What one signal shows.
+pub(super) struct Seen {
+    pub correction: ChannelCorrection,
+    pub flight: Flight,
+    /// Up to the first further impact.
+    pub free: FreeFlight,
+    /// Velocity before the impact, m/s.
+    pub before: f64,
+    /// Further impacts: time in s from the first touch, change of the velocity in m/s.
+    pub events: Vec<(f64, f64)>,
+    /// Time in s from the first touch of what ends the free flight; infinite without.
+    pub ends: f64,
+    /// Vibrations of the mains that were taken out.
+    pub hums: Vec<Hum>,
+    /// What else disturbs the free flight.
+    pub disturbance: Option<Disturbance>,
+}
+
+/// What a record shows.
+pub(super) struct Judged {
+    pub outer_velocity_initial: f64,
+    /// Final velocity of the inner body.
+    pub inner: Option<f64>,
+    /// Efficiency and the half width of its 95 % interval.
+    pub efficiency: Option<(f64, f64)>,
+    pub findings: Vec<Finding>,
+}
+
+impl Seen {
+    /// What the signal has at `time`, s from the first touch, besides the motion.
+    pub fn taken_out(&self, time: f64) -> f64 {
+        let hums: f64 = self.hums.iter().map(|hum| hum.at(time)).sum();
+        self.correction.offset + self.correction.drift * time + hums
+    }
+
+    /// Velocity after the impact with its standard error.
+    fn after(&self) -> Option<(f64, f64)> {
+        self.flight.step.map(|(step, error)| (self.before + step, error))
+    }
+}
+
+impl Alignment<'_> {
+    /// Velocities and efficiency of a record whose first touch is at `shift`, and what is wrong with them.
+    pub fn judged(&self, shift: f64, seen: &[Seen]) -> Result<Judged> {
+        // a velocity is the better witness of a velocity
+        let of = |body: &str| {
+            ["velocity", "displacement"].into_iter().find_map(|kind| {
+                let name = format!("{body}_{kind}");
+                seen.iter().find(|seen| seen.correction.quantity == name)
+            })
+        };
+        let outer_velocity_initial = of("outer").map_or(-self.setup.outer.speed, |seen| seen.before);
+        let [inner, outer] = ["inner", "outer"].map(|body| of(body).and_then(Seen::after));
+        let masses = [
+            self.setup.outer.shape.mass(&self.setup.outer.material),
+            self.setup.inner.shape.mass(&self.setup.inner.material),
+        ];
+        // kinetic energy over that of the outer body before the impact, and the half width of its 95 % interval
+        let share = |mass: f64, (velocity, error): (f64, f64)| {
+            let scale = mass / (masses[0] * outer_velocity_initial.powi(2));
+            (scale * velocity.powi(2), NORMAL_95 * 2.0 * scale * (velocity * error).abs())
+        };
+        let efficiency = inner.map(|after| share(masses[1], after));
+        let mut findings: Vec<Finding> = seen.iter().flat_map(|seen| self.of_signal(shift, seen)).collect();
+        findings.extend(self.delay(shift, seen)?);
+        findings.extend(self.energy(shift, efficiency, outer.map(|after| share(masses[0], after)))?);
+        Ok(Judged { outer_velocity_initial, inner: inner.map(|(velocity, _)| velocity), efficiency, findings })
+    }
+
+    /// Begin and end of the record on its own clock, s.
+    fn whole(&self) -> [f64; 2] {
+        let time = &self.record.time;
+        [time[0], time[time.len() - 1]]
+    }
+
+    fn of_signal(&self, shift: f64, seen: &Seen) -> Vec<Finding> {
+        let Seen { correction: ChannelCorrection { quantity, offset, drift }, flight, .. } = seen;
+        let mut findings = Vec::new();
+        let [_, end] = self.whole();
+        let rest = if flight.step.is_some() {
+            "its free flight is used up to there alone"
+        } else {
+            "too little free flight is left to read its velocity from"
+        };
+        for (time, change) in &seen.events {
+            // a push away from the plate is a strike, one back is a stop
+            let strike = if quantity.starts_with("inner") { *change < 0.0 } else { *change > 0.0 };
+            let (kind, what) = if strike {
+                (FindingKind::SecondStrike, "is struck again")
+            } else {
+                (FindingKind::EndStop, "is stopped or returned")
+            };
+            let effect = format!(
+                "{quantity}: the body {what} {time:.3e} s after the first touch, where its velocity changes by {change:.3} m/s; {rest}"
+            );
+            findings.push(Finding::new(kind, [time + shift, end], effect));
+        }
+        let unit = if seen.free.is_velocity { "m/s" } else { "m" };
+        findings.extend(seen.hums.iter().map(|hum| {
+            let effect = format!(
+                "{quantity}: a hum of {} Hz with an amplitude of {:.2e} {unit} is taken out; what its fit leaves enters the velocities",
+                hum.frequency,
+                hum.parts[0].hypot(hum.parts[1])
+            );
+            Finding::new(FindingKind::Hum, self.whole(), effect)
+        }));
+        let of_disturbance = seen.disturbance.and_then(|disturbance| match disturbance {
+            Disturbance::Event { .. } | Disturbance::Hum(_) => None,
+            Disturbance::AcCoupled { time_constant } => Some((
+                FindingKind::AcCoupled,
+                format!("{quantity}: the signal decays with a time constant of {time_constant:.2e} s, as an AC-coupled sensor's does; its velocities and the efficiency from them are wrong"),
+            )),
+            Disturbance::Curved { change } => Some((
+                FindingKind::Drift,
+                format!("{quantity}: the free flight is curved, its slope changes by {change:.3e} {unit}/s; a constant drift is taken out, the rest enters its velocities"),
+            )),
+        });
+        findings.extend(of_disturbance.map(|(kind, effect)| Finding::new(kind, self.whole(), effect)));
+        if seen.disturbance.is_none() && self.drifts(seen) {
+            let effect = format!(
+                "{quantity}: a drift of {drift:.3} m/s^2 is taken out; if it is not constant, the velocities after the impact are wrong"
+            );
+            findings.push(Finding::new(FindingKind::Drift, self.whole(), effect));
+        }
+        let span = self.span(quantity);
+        let misfit = self.misfit(shift, seen) / span;
+        if seen.free.is_velocity && offset.abs() > LARGE_OFFSET * span {
+            let effect = format!(
+                "{quantity}: an offset of {offset:.3} m/s was taken out, {:.0} % of the span of the scene's signal; check sign, unit and scene",
+                100.0 * offset.abs() / span
+            );
+            findings.push(Finding::new(FindingKind::OtherScene, self.whole(), effect));
+        } else if misfit > OTHER_SCENE {
+            let effect = format!(
+                "{quantity}: it differs from the scene by {:.1} % of its span during the contact (root mean square beyond its noise); the record may be that of another scene",
+                100.0 * misfit
+            );
+            findings.push(Finding::new(FindingKind::OtherScene, self.whole(), effect));
+        }
+        findings
+    }
+
+    /// Whether the drift of a velocity is large and no chance.
+    fn drifts(&self, seen: &Seen) -> bool {
+        let [start, end] = self.whole();
+        let Some((step, _)) = seen.flight.step.filter(|_| seen.free.is_velocity) else { return false };
+        let drift = seen.flight.slope.abs();
+        drift * (end - start) > LARGE_DRIFT * step.abs()
+            && seen.free.drift_error(self.bandwidth).is_some_and(|error| drift > SIGNIFICANT_DRIFT * error)
+    }
+
+    /// Distance of a signal from the model over the contact beyond its noise, root mean square.
+    fn misfit(&self, shift: f64, seen: &Seen) -> f64 {
+        let quantity = seen.correction.quantity;
+        let channel = self.record.channels.iter().find(|channel| channel.quantity == quantity);
+        let (Some(curve), Some(channel)) = (self.model.curve(quantity), channel) else { return 0.0 };
+        let contact = self.contact(quantity);
+        let squares: Vec<f64> = self
+            .record
+            .time
+            .iter()
+            .map(|t| t - shift)
+            .zip(&channel.values)
+            .filter(|(t, _)| (contact.start..contact.end).contains(t))
+            .map(|(t, y)| (y - seen.taken_out(t) - curve(t)).powi(2))
+            .collect();
+        let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
+        (mean - seen.flight.noise.powi(2)).max(0.0).sqrt()
+    }
+
+    /// Signals whose first touch is later than that of the first one.
+    fn delay(&self, shift: f64, seen: &[Seen]) -> Result<Vec<Finding>> {
+        if seen.len() < 2 {
+            return Ok(Vec::new());
+        }
+        let flights: Vec<Flight> = seen.iter().map(|seen| seen.flight).collect();
+        let period = 1.0 / self.bandwidth;
+        let mut own = Vec::new();
+        for k in 0..seen.len() {
+            let coarse = self.coarse(&[k], 1.0).shift;
+            let (found, [_, squares]) = self.refined(&[k], coarse, period, &flights)?;
+            let (_, [joint, _]) = self.refined(&[k], shift, period, &flights)?;
+            own.push((found, squares, joint));
+        }
+        let explained = own.iter().map(|(_, squares, _)| squares).sum::<f64>()
+            < DELAY_EXPLAINS * own.iter().map(|(_, _, joint)| joint).sum::<f64>();
+        let late = |(seen, (found, ..)): (&Seen, &(f64, f64, f64))| {
+            let delay = found - own[0].0;
+            (explained && delay.abs() > DELAY * period).then(|| {
+                let effect = format!(
+                    "{} is {:.2e} s {} relative to {}; one shift for both fits neither, the time of the first touch is wrong by a part of that",
+                    seen.correction.quantity,
+                    delay.abs(),
+                    if delay > 0.0 { "late" } else { "early" },
+                    self.record.channels[0].quantity
+                );
+                Finding::new(FindingKind::Delay, self.whole(), effect)
+            })
+        };
+        Ok(seen.iter().zip(&own).skip(1).filter_map(late).collect())
+    }
+
+    /// Refuses more kinetic energy after the impact than before; a finding where the uncertainty leaves it open.
+    fn energy(
+        &self,
+        shift: f64,
+        inner: Option<(f64, f64)>,
+        outer: Option<(f64, f64)>,
+    ) -> Result<Option<Finding>> {
+        // an elastic outer body has energy besides that of its motion, a driven one gets more
+        let rigid = matches!(self.setup.outer.shape, Shape::Sphere { .. } | Shape::Compact { .. });
+        let Some(inner) = inner.filter(|_| rigid) else { return Ok(None) };
+        let outer = outer.unwrap_or((0.0, 0.0));
+        let masses = [
+            self.setup.outer.shape.mass(&self.setup.outer.material),
+            self.setup.inner.shape.mass(&self.setup.inner.material),
+        ];
+        let brought = 1.0 + masses[1] / masses[0] * (self.setup.inner.speed / self.setup.outer.speed).powi(2);
+        let (share, uncertainty) = (inner.0 + outer.0, inner.1.hypot(outer.1));
+        let excess = share - brought;
+        if excess < uncertainty && inner.0 <= brought {
+            return Ok(None);
+        }
+        let effect = format!(
+            "the bodies have {:.1} % of the energy after the impact that they had before, the inner one {:.1} % (95 % interval ±{:.1} %)",
+            100.0 * share / brought,
+            100.0 * inner.0 / brought,
+            100.0 * uncertainty / brought
+        );
+        if excess > IMPOSSIBLE * uncertainty {
+            return Err(Error::Scene(miette::miette!(
+                help = "check units and scale of the signals, the outer body's speed and the masses in the scene, and what happens after the impact (stops, further strikes, padding)",
+                "{}: {effect}: no impact gives energy",
+                self.record.file.display()
+            )));
+        }
+        Ok(Some(Finding::new(FindingKind::Energy, [shift, self.whole()[1]], effect)))
+    }
+}
