@@ -2,20 +2,28 @@
 //!
 //! Both bear one pressure over one circle, and what each loses of its curvature adds up to that of the tip: a/R = sum a/rho. An elastic
 //! surface gives way under a pressure as a yielding one comes back from it; so where only one of them yields it takes the more of the
-//! flattening the more it yields. With equal materials this is the law of Jackson and Green for the pair.
+//! flattening the more it yields.
+//!
+//! The approach follows from the energy: on the way to a deeper dent F dx = dW + sum dD, with the elastic energy W of both surfaces and
+//! what each has dissipated, D. Unloading returns W. D never falls, so a closed loop never returns more than it took.
 
 use super::Hertz;
 use super::elastic_plastic::{ElasticPlastic, Flattened};
 use crate::material::Material;
-use crate::numerics::quadrature::gauss_legendre;
 use crate::numerics::root::{root, root_near};
 use std::f64::consts::PI;
 
-/// Gauss points of the work of a step.
-const WORK_POINTS: usize = 2;
-
-/// Critical approaches at least from which those of the next step are looked for.
+/// Least square of the overload from which that of the next step is looked for.
 const LEAST_NEAR: f64 = 1e-3;
+
+/// Onset of yield of a plate over that of a sphere from which the sphere dents more in the end.
+const WEAKER_SPHERE: f64 = 0.8;
+
+/// Squares of the overload between which a contact begins to yield, halvings of the search, and growth of the dissipated energy that is
+/// none.
+const LIMITS: [f64; 2] = [1e-6, 1e6];
+const LIMIT_STEPS: usize = 60;
+const ROUNDING: f64 = 1e-12;
 
 /// What a surface has been through.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,12 +32,14 @@ pub struct Dent {
     deepest: Flattened,
     /// Curvature that it has lost for good, 1/m.
     curvature: f64,
-    /// Depth in m.
+    /// Energy that it has dissipated, J.
+    lost: f64,
+    /// Its share in the approach at which the dents touch, m.
     depth: f64,
 }
 
 impl Dent {
-    const NONE: Dent = Dent { deepest: Flattened::NONE, curvature: 0.0, depth: 0.0 };
+    const NONE: Dent = Dent { deepest: Flattened::NONE, curvature: 0.0, lost: 0.0, depth: 0.0 };
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,31 +54,58 @@ pub struct DentedContact {
     hertz: Hertz,
     /// E* in Pa.
     modulus: f64,
-    /// Of body and plate; `None`: elastic. Which of them yields first.
+    /// Of body and plate; `None`: elastic. Which of them yields more in the end.
     surfaces: [Option<Surface>; 2],
     weaker: usize,
-    /// Approach at the end of the last step, m, critical approaches of both surfaces there, and the work done on the contact so far, J.
-    last: f64,
+    /// Squares of the overloads of both surfaces at the end of the last step.
     near: [f64; 2],
-    taken: f64,
+    /// Up to where it is elastic.
+    limit: Limit,
+    /// Elastic energy now, and what has been dissipated so far on all spots, J.
+    stored: f64,
+    dissipated: f64,
+}
+
+/// The end of the elastic branch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Limit {
+    /// Square of the overload of the weaker surface.
+    w: f64,
+    /// In N; approach beyond that at which the dents touch, m; elastic energy and what both dents have dissipated, J.
+    force: f64,
+    approach: f64,
+    energy: f64,
+}
+
+impl Limit {
+    const NONE: Limit = Limit { w: 0.0, force: 0.0, approach: 0.0, energy: 0.0 };
 }
 
 /// The contact at a pressure.
 struct Pressed {
-    /// In N; approach beyond that at which the dents touch, and radius in m.
+    /// In N, and radius in m.
     force: f64,
-    approach: f64,
     radius: f64,
+    /// Approach in m and energy in J that unloading gives back.
+    recovers: f64,
+    stored: f64,
     /// The surfaces as they would be if virgin.
     now: [Option<Flattened>; 2],
-    /// Depths of the dents, m.
-    depths: [f64; 2],
+    /// Energies that the surfaces have dissipated, J.
+    lost: [f64; 2],
 }
 
-/// Which of `surfaces` yields first.
+impl Pressed {
+    /// Energy in J that a virgin contact would have taken.
+    fn energy(&self) -> f64 {
+        self.stored + self.lost[0] + self.lost[1]
+    }
+}
+
+/// Which of `surfaces` of body and plate yields more in the end: a sphere of equal material is the weaker one in a deep dent.
 fn weaker(surfaces: &[Option<Surface>; 2]) -> usize {
     let onset = surfaces.map(|s| s.map_or(f64::INFINITY, |s| s.law.onset_pressure()));
-    usize::from(onset[1] < onset[0])
+    usize::from(onset[1] < WEAKER_SPHERE * onset[0])
 }
 
 impl DentedContact {
@@ -77,12 +114,24 @@ impl DentedContact {
     pub fn new(hertz: Hertz, pair: [&Material; 2], yield_strength: [Option<f64>; 2]) -> Option<Self> {
         let modulus = 1.0 / pair.iter().map(|m| 1.0 / m.plane_strain_modulus()).sum::<f64>();
         let surfaces = [0, 1].map(|i| {
-            let law = |y| ElasticPlastic::new(pair[i].plane_strain_modulus(), y, pair[i].poisson_ratio);
+            let law = |y| {
+                ElasticPlastic::new(pair[i].plane_strain_modulus(), y, pair[i].poisson_ratio, i == 0)
+            };
             yield_strength[i].map(|y| Surface { law: law(y), dent: Dent::NONE })
         });
         let weaker = weaker(&surfaces);
         surfaces[weaker]?;
-        Some(Self { hertz, modulus, surfaces, weaker, last: 0.0, near: [1.0; 2], taken: 0.0 })
+        let contact = Self {
+            hertz,
+            modulus,
+            surfaces,
+            weaker,
+            near: [1.0; 2],
+            limit: Limit::NONE,
+            stored: 0.0,
+            dissipated: 0.0,
+        };
+        Some(contact.with_elastic_limit())
     }
 
     /// The same if virgin, on a plate that is pulled along its face by `stress` Pa; a contact with dents stays as they were made.
@@ -91,13 +140,14 @@ impl DentedContact {
         if let (true, Some(plate)) = (self.is_virgin(), &mut self.surfaces[1]) {
             plate.law = plate.law.pulled(stress);
             self.weaker = weaker(&self.surfaces);
+            return self.with_elastic_limit();
         }
         self
     }
 
     /// Whether nothing has yielded yet.
     pub fn is_virgin(&self) -> bool {
-        self.depth() == 0.0
+        self.surfaces.iter().flatten().all(|surface| surface.dent.lost == 0.0)
     }
 
     /// Force in N up to which the contact is elastic while virgin.
@@ -107,7 +157,8 @@ impl DentedContact {
 
     /// x_c = (3 pi p/(4 E*))^2 R with the mean pressure p at the onset, m.
     pub fn critical_approach(&self) -> f64 {
-        let pressure = self.weaker_law().onset_pressure();
+        let onsets = self.surfaces.iter().flatten().map(|surface| surface.law.onset_pressure());
+        let pressure = onsets.fold(f64::INFINITY, f64::min);
         (0.75 * PI * pressure / self.modulus).powi(2) * self.hertz.tip_radius
     }
 
@@ -118,16 +169,34 @@ impl DentedContact {
 
     /// Work in J done on the contact so far: what it stores and what it has lost.
     pub fn taken(&self) -> f64 {
-        self.taken
+        self.stored + self.dissipated
+    }
+
+    /// Energy in J dissipated so far.
+    pub fn dissipated(&self) -> f64 {
+        self.dissipated
     }
 
     /// The same with a fresh spot of the body.
     #[must_use]
     pub fn on_a_fresh_spot(mut self) -> Self {
-        if let Some(body) = &mut self.surfaces[0] {
-            body.dent = Dent::NONE;
+        let Some(body) = &mut self.surfaces[0] else { return self };
+        body.dent = Dent::NONE;
+        self.with_elastic_limit()
+    }
+
+    /// The same with the elastic limit that its dents leave it.
+    fn with_elastic_limit(mut self) -> Self {
+        let lost = self.surfaces.iter().flatten().map(|surface| surface.dent.lost).sum::<f64>();
+        let deepens = |w: f64| self.pressed(w).lost.iter().sum::<f64>() > lost * (1.0 + ROUNDING);
+        let [mut low, mut high] = LIMITS.map(f64::ln);
+        for _ in 0..LIMIT_STEPS {
+            let middle = 0.5 * (low + high);
+            if deepens(middle.exp()) { high = middle } else { low = middle }
         }
-        self.last = self.depth();
+        let w = low.exp();
+        let at = self.pressed(w);
+        self.limit = Limit { w, force: at.force, approach: at.recovers, energy: at.energy() };
         self
     }
 
@@ -136,67 +205,98 @@ impl DentedContact {
         &weaker.expect("`new` sees that one yields").law
     }
 
-    /// The contact where the weaker surface, if virgin, would have come by `w` critical approaches.
+    /// Both surfaces if virgin, at the square `w` of the weaker one's overload, and the shear stress in Pa that they bear.
+    fn virgin(&self, w: f64) -> ([Option<Flattened>; 2], f64) {
+        let at = |of_weaker: Flattened| {
+            let shear = of_weaker.pressure * of_weaker.shears();
+            let other = 1 - self.weaker;
+            let mut now = [Some(of_weaker); 2];
+            now[other] = self.surfaces[other].map(|surface| surface.law.sheared(shear, w, self.near[other]));
+            (now, shear)
+        };
+        let law = self.weaker_law();
+        let alone = at(law.flattened(w));
+        let (0, [Some(body), Some(plate)]) = (self.weaker, alone.0) else { return alone };
+        if body.approach <= 1.0 {
+            return alone;
+        }
+        // the sphere slopes by what both surfaces are flattened: the more it does the less pressure flattens the plate
+        let plate_at = |slope: f64| at(law.flattened_at(w, slope)).0[1].map_or(0.0, |plate| plate.flattening);
+        let error = |slope: f64| body.flattening + plate_at(slope) - slope;
+        let ends = [body.flattening, body.flattening + plate.flattening];
+        at(law.flattened_at(w, root(error, ends, ends.map(error))))
+    }
+
+    /// The contact at the square `w` of the overload that the weaker surface would have if virgin.
     fn pressed(&self, w: f64) -> Pressed {
-        let of_weaker = self.weaker_law().flattened(w);
-        let shear = of_weaker.pressure * of_weaker.shears();
-        let now = [0, 1].map(|i| {
-            let law = &self.surfaces[i].as_ref()?.law;
-            let is_weaker = i == self.weaker || law == self.weaker_law();
-            Some(if is_weaker { of_weaker } else { law.sheared(shear, w, self.near[i]) })
-        });
+        let (now, shear) = self.virgin(w);
         let dents = self.surfaces.map(|s| s.map_or(Dent::NONE, |s| s.dent));
-        // how even the pressure is: as each dent has made it, by their depths
+        // how even the pressure is: as each dent has made it, by what they have lost of their curvature
         let deepest = [0, 1].map(|i| {
             let now = now[i].unwrap_or(Flattened::NONE);
             if now.approach > dents[i].deepest.approach { now } else { dents[i].deepest }
         });
-        let stays = deepest[0].stays + deepest[1].stays;
+        let lasting = deepest[0].lasting + deepest[1].lasting;
         let mean = |of: &dyn Fn(&Flattened) -> f64| {
-            if stays == 0.0 {
+            if lasting == 0.0 {
                 return of(&Flattened::NONE);
             }
-            deepest.iter().filter(|d| d.stays > 0.0).map(|d| d.stays / stays * of(d)).sum()
+            deepest.iter().filter(|d| d.lasting > 0.0).map(|d| d.lasting / lasting * of(d)).sum()
         };
         let pressure = shear / mean(&Flattened::shears);
         let unit = pressure / self.modulus;
-        let bends = unit * mean(&Flattened::bends);
-        let lasting = now.map(|now| now.map_or(0.0, |now| now.lasting));
-        // a/R = what is elastic + sum max(a kappa, lasting): from below by Newton's method, which ends after as many steps as there are dents
-        let (mut flowing, mut left) = (bends + lasting[0] + lasting[1], 1.0 / self.hertz.tip_radius);
-        let mut resting = [false; 2];
-        let radius = loop {
-            let radius = flowing / left;
-            let rests = |i: &usize| !resting[*i] && radius * dents[*i].curvature > lasting[*i];
-            let Some(i) = (0..2).find(rests) else { break radius };
-            resting[i] = true;
-            (flowing, left) = (flowing - lasting[i], left - dents[i].curvature);
-        };
-        let depths = [0, 1].map(|i| dents[i].depth.max(radius * now[i].map_or(0.0, |now| now.stays)));
+        let radius = self.radius(unit * mean(&Flattened::bends), now, dents);
+        let force = PI * radius * radius * pressure;
         let recovers = |d: &Flattened| {
             let eased = if d.pressure > 0.0 { shear / (d.pressure * d.shears()) } else { 1.0 };
-            d.recovers * eased.powf(3.0 / d.exponent - 2.0)
+            d.recovers() * eased.powf(3.0 / d.exponent() - 2.0)
         };
+        let recovers = radius * unit * mean(&recovers);
         Pressed {
-            force: PI * radius * radius * pressure,
-            // each by itself: beside the depth of a dent a first touch is lost in rounding
-            approach: radius * unit * mean(&recovers)
-                + (depths[0] - dents[0].depth)
-                + (depths[1] - dents[1].depth),
+            force,
             radius,
+            recovers,
+            stored: force * recovers / (1.0 + mean(&Flattened::exponent)),
             now,
-            depths,
+            lost: [0, 1].map(|i| dents[i].lost.max(now[i].map_or(0.0, |now| now.lost * radius.powi(3)))),
         }
     }
 
-    /// Critical approaches of the weaker surface, if virgin, at the approach `x` in m of both, which is beyond that at which they touch.
-    fn critical_approaches(&self, x: f64) -> f64 {
+    /// Radius of the contact in m where an elastic surface loses the curvature `bends`/a, from a/R = bends + sum max(a kappa, lasting) of the
+    /// surfaces `now` and their `dents`: from below by Newton's method, which ends after as many steps as there are dents.
+    fn radius(&self, bends: f64, now: [Option<Flattened>; 2], dents: [Dent; 2]) -> f64 {
+        let lasting = now.map(|now| now.map_or(0.0, |now| now.lasting));
+        let (mut flowing, mut left) = (bends + lasting[0] + lasting[1], 1.0 / self.hertz.tip_radius);
+        let mut resting = [false; 2];
+        loop {
+            let radius = flowing / left;
+            let rests = |i: &usize| !resting[*i] && radius * dents[*i].curvature > lasting[*i];
+            let Some(i) = (0..2).find(rests) else { return radius };
+            resting[i] = true;
+            (flowing, left) = (flowing - lasting[i], left - dents[i].curvature);
+        }
+    }
+
+    /// Approach in m of the contact `at` the square `w` of the weaker surface's overload, beyond that at which the dents touch: by itself, since
+    /// beside the depth of a dent a first touch is lost in rounding.
+    fn approach(&self, w: f64, at: &Pressed) -> f64 {
+        let Limit { force, approach, energy, .. } = self.limit;
+        if w <= self.limit.w {
+            return at.recovers;
+        }
+        // of second order, as the steps are, and exact in energy
+        approach + 2.0 * (at.energy() - energy) / (force + at.force)
+    }
+
+    /// Square of the overload of the weaker surface, if virgin, at the approach `x` in m of both, which is beyond that at which they touch.
+    fn overload(&self, x: f64) -> f64 {
         let near = self.near[self.weaker];
         let x = x - self.depth();
-        if let Some(found) = root_near(|w| self.pressed(w).approach, x, near, 1.0) {
+        let approach = |w: f64| self.approach(w, &self.pressed(w));
+        if let Some(found) = root_near(approach, x, near, 1.0) {
             return found;
         }
-        let error = |w: f64| self.pressed(w).approach - x;
+        let error = |w: f64| approach(w) - x;
         let mut ends = [0.9 * near, 1.1 * near];
         let mut values = ends.map(error);
         if values[0] > 0.0 {
@@ -213,37 +313,41 @@ impl DentedContact {
         if x <= self.depth() {
             return [0.0; 2];
         }
-        let w = self.critical_approaches(x);
-        let [at, beyond] = [w, (1.0 + 1e-6) * w].map(|w| self.pressed(w));
-        [at.force, (beyond.force - at.force) / (beyond.approach - at.approach)]
+        let w = self.overload(x);
+        let beyond = (1.0 + 1e-6) * w;
+        let [at, next] = [w, beyond].map(|w| self.pressed(w));
+        let approach = self.approach(beyond, &next) - self.approach(w, &at);
+        [at.force, (next.force - at.force) / approach]
     }
 
     /// Ends a step at the approach `x` in m.
     pub fn advance(&mut self, x: f64) {
-        let [from, to] = [self.last, x].map(|x| x.max(self.depth()));
-        self.last = x;
-        if from == to {
-            return;
-        }
-        let (points, weights) = gauss_legendre(WORK_POINTS);
-        let [middle, half] = [0.5 * (from + to), 0.5 * (to - from)];
-        let force = |p: &f64| self.pressed(self.critical_approaches(middle + half * p)).force;
-        self.taken += half * points.iter().zip(weights).map(|(p, w)| w * force(p)).sum::<f64>();
+        self.stored = 0.0;
         if x <= self.depth() {
             return;
         }
-        let w = self.critical_approaches(x);
-        let Pressed { radius, now, depths, .. } = self.pressed(w);
-        self.near = [0, 1].map(|i| now[i].map_or(w, |now| now.approach).max(LEAST_NEAR));
+        let w = self.overload(x);
+        let at = self.pressed(w);
+        self.stored = at.stored;
+        self.near = [0, 1].map(|i| at.now[i].map_or(w, |now| now.approach).max(LEAST_NEAR));
+        if w <= self.limit.w {
+            return;
+        }
+        let deeper = x - at.recovers - self.depth();
+        let lost = [0, 1].map(|i| at.lost[i] - self.surfaces[i].map_or(0.0, |s| s.dent.lost));
+        let all = lost[0] + lost[1];
+        self.dissipated += all;
         for (i, surface) in self.surfaces.iter_mut().enumerate() {
-            if let (Some(Surface { dent, .. }), Some(now)) = (surface, now[i]) {
-                dent.depth = depths[i];
-                dent.curvature = dent.curvature.max(now.lasting / radius);
+            if let (Some(Surface { dent, .. }), Some(now)) = (surface, at.now[i]) {
+                dent.lost = at.lost[i];
+                dent.depth += if all > 0.0 { deeper * lost[i] / all } else { 0.0 };
+                dent.curvature = dent.curvature.max(now.lasting / at.radius);
                 if now.approach > dent.deepest.approach.max(1.0) {
                     dent.deepest = now;
                 }
             }
         }
+        self.limit = Limit { w, force: at.force, approach: at.recovers, energy: at.energy() };
     }
 }
 
