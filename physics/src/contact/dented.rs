@@ -114,9 +114,8 @@ impl DentedContact {
     pub fn new(hertz: Hertz, pair: [&Material; 2], yield_strength: [Option<f64>; 2]) -> Option<Self> {
         let modulus = 1.0 / pair.iter().map(|m| 1.0 / m.plane_strain_modulus()).sum::<f64>();
         let surfaces = [0, 1].map(|i| {
-            let law = |y| {
-                ElasticPlastic::new(pair[i].plane_strain_modulus(), y, pair[i].poisson_ratio, i == 0)
-            };
+            let law =
+                |y| ElasticPlastic::new(pair[i].plane_strain_modulus(), y, pair[i].poisson_ratio, i == 0);
             yield_strength[i].map(|y| Surface { law: law(y), dent: Dent::NONE })
         });
         let weaker = weaker(&surfaces);
@@ -367,7 +366,24 @@ mod tests {
         DentedContact::new(hertz, [&body, &plate], yield_strength).unwrap()
     }
 
-    /// Jackson and Green's eqs. (16) to (23) as they stand there, of a sphere on a rigid flat: force in N at `w` critical approaches.
+    /// The contact driven from one approach in m to another in small steps, and the work done on it, J.
+    fn driven(mut contact: DentedContact, [from, to]: [f64; 2]) -> (DentedContact, f64) {
+        let mut work = 0.0;
+        let mut before = contact.force(from)[0];
+        for k in 1..=STEPS {
+            let x = from + (to - from) * f64::from(k) / f64::from(STEPS);
+            let force = contact.force(x)[0];
+            work += 0.5 * (before + force) * (to - from) / f64::from(STEPS);
+            before = force;
+            contact.advance(x);
+        }
+        (contact, work)
+    }
+
+    const STEPS: u32 = 400;
+    const STRENGTH: f64 = 600e6;
+
+    /// Jackson and Green's eqs. (16) to (23), of a sphere on a rigid flat: force in N at `w` critical approaches.
     fn jackson_and_green(radius: f64, modulus: f64, strength: f64, w: f64) -> f64 {
         let factor = 1.295 * (0.736_f64 * 0.3).exp();
         let critical = (0.5 * PI * factor * strength / modulus).powi(2) * radius;
@@ -380,31 +396,31 @@ mod tests {
                 + 4.0 * hardness / (factor * strength) * (1.0 - (-w.powf(5.0 / 9.0) / 25.0).exp()) * w)
     }
 
-    const STRENGTH: f64 = 600e6;
-
+    /// Other people's finite elements, with large deformations, in their range of 110 critical approaches.
     #[test]
-    fn on_a_rigid_flat_it_is_the_law_of_jackson_and_green() {
-        for yields in [[Some(STRENGTH), None], [None, Some(STRENGTH)]] {
-            let factors = yields.map(|y| if y.is_some() { 1.0 } else { 1e9 });
-            let contact = pair(0.01, factors, yields);
-            for w in [3.0, 10.0, 40.0, 100.0] {
-                let force = contact.force(w * contact.critical_approach())[0];
-                let expected = jackson_and_green(0.01, 210e9 / 0.91, STRENGTH, w);
-                assert_relative_eq!(force, expected, max_relative = 1e-6);
-            }
+    fn on_a_rigid_flat_the_force_is_about_that_of_jackson_and_green() {
+        let contact = pair(0.01, [1.0, 1e9], [Some(STRENGTH), None]);
+        for w in [3.0, 10.0, 40.0, 100.0] {
+            let x = w * contact.critical_approach();
+            let force = driven(contact, [0.0, x]).0.force(x)[0];
+            let expected = jackson_and_green(0.01, 210e9 / 0.91, STRENGTH, w);
+            assert_relative_eq!(force, expected, max_relative = 0.05);
         }
     }
 
-    /// Two equal surfaces meet in a plane, which is a rigid flat to each: half the approach, twice the radius.
+    /// Two equal surfaces meet in a plane, which is a rigid flat to each: half the approach, twice the radius. The slope of the sphere beside
+    /// the contact is no matter at so small a strength.
     #[test]
     fn equal_surfaces_are_mirror_images() {
-        let mut both = pair(0.01, [1.0; 2], [Some(STRENGTH); 2]);
-        let mut one = pair(0.02, [1.0, 1e9], [Some(STRENGTH), None]);
-        for x in [0.5e-6, 4e-6, 9e-6, 7e-6, 11e-6, 8e-6] {
-            assert_relative_eq!(both.force(x)[0], one.force(0.5 * x)[0], max_relative = 1e-6);
-            both.advance(x);
-            one.advance(0.5 * x);
-            assert_relative_eq!(both.depth(), 2.0 * one.depth(), max_relative = 1e-6);
+        let weak = Some(0.05 * STRENGTH);
+        let mut both = pair(0.01, [1.0; 2], [weak; 2]);
+        let mut one = pair(0.02, [1.0, 1e9], [weak, None]);
+        let mut from = 0.0;
+        for x in [10.0, 40.0, 20.0, 60.0, 50.0].map(|w| w * both.critical_approach()) {
+            (both, one) = (driven(both, [from, x]).0, driven(one, [0.5 * from, 0.5 * x]).0);
+            from = x;
+            assert_relative_eq!(both.force(x)[0], one.force(0.5 * x)[0], max_relative = 3e-3);
+            assert_relative_eq!(both.depth(), 2.0 * one.depth(), max_relative = 3e-3);
         }
     }
 
@@ -414,9 +430,9 @@ mod tests {
         for strengths in
             [[None, Some(3e8)], [Some(4e8), Some(3e8)], [Some(3e8), Some(3.001e8)], [Some(9e8), Some(3e8)]]
         {
-            let contact = pair(0.01, [1.0, 0.4], strengths);
+            let mut contact = pair(0.01, [1.0, 0.4], strengths);
             let critical = contact.critical_approach();
-            let mut before = [0.0; 2];
+            let mut before = 0.0;
             for k in 1..6000 {
                 let x = 0.02 * f64::from(k) * critical;
                 let [force, slope] = contact.force(x);
@@ -424,12 +440,13 @@ mod tests {
                 if x < critical {
                     assert_relative_eq!(force, elastic, max_relative = 1e-9);
                 }
-                assert!(force > before[0] && force < 1.03 * elastic && slope > 0.0, "{strengths:?} {k}");
+                assert!(force > before && force < 1.001 * elastic && slope > 0.0, "{strengths:?} {k}");
                 assert!(
-                    force - before[0] < 2.0 * 0.02 * critical * contact.hertz.tangent(x),
+                    force - before < 1.01 * 0.02 * critical * contact.hertz.tangent(x),
                     "{strengths:?} {k}"
                 );
-                before = [force, slope];
+                before = force;
+                contact.advance(x);
             }
         }
     }
@@ -453,43 +470,88 @@ mod tests {
         }
     }
 
-    /// Let go and pressed again it is elastic, F = F_m ((x - x_r)/(x_m - x_r))^n (Etsion, Kligerman & Kadin 2005, eqs. 13 and 15), whichever
-    /// surface yields.
+    /// Let go and pressed again it is elastic, F = F_m ((x - x_r)/(x_m - x_r))^n, whichever surface yields.
     #[test]
     fn a_dent_is_elastic_up_to_the_force_that_made_it() {
         for strengths in [[Some(STRENGTH); 2], [None, Some(STRENGTH)], [Some(STRENGTH), None]] {
-            let mut contact = pair(0.01, [1.0; 2], strengths);
+            let contact = pair(0.01, [1.0; 2], strengths);
             let x_m = 30.0 * contact.critical_approach();
+            let (contact, _) = driven(contact, [0.0, x_m]);
             let [f_m, _] = contact.force(x_m);
-            contact.advance(x_m);
-            let (x_r, taken) = (contact.depth(), contact.taken());
+            let x_r = contact.depth();
             assert!(x_r > 0.2 * x_m && x_r < 0.7 * x_m);
-            let exponent =
-                1.5 * contact.surfaces.iter().flatten().next().unwrap().dent.deepest.approach.powf(-0.0331);
+            let exponent = contact.surfaces.iter().flatten().next().unwrap().dent.deepest.exponent();
             for share in [0.1, 0.5, 0.9, 0.999] {
                 let [force, slope] = contact.force(x_r + share * (x_m - x_r));
-                assert_relative_eq!(force, f_m * share.powf(exponent), max_relative = 1e-6);
-                assert_relative_eq!(slope, exponent * force / (share * (x_m - x_r)), max_relative = 1e-4);
+                assert_relative_eq!(force, f_m * share.powf(exponent), max_relative = 2e-2);
+                assert_relative_eq!(slope, exponent * force / (share * (x_m - x_r)), max_relative = 2e-2);
             }
             assert_eq!(contact.force(x_r), [0.0; 2]);
             let mut again = contact;
             for x in [x_r, x_m, 0.5 * (x_r + x_m), x_r] {
                 again.advance(x);
             }
-            assert_relative_eq!(again.depth(), x_r, max_relative = 1e-9);
-            // what it gives back is less than what it took
-            assert!(again.taken() < 0.8 * taken && again.taken() > 0.1 * taken);
+            assert_relative_eq!(again.depth(), x_r, max_relative = 1e-6);
+            assert_relative_eq!(again.dissipated(), contact.dissipated(), max_relative = 1e-6);
             again.advance(1.1 * x_m);
-            assert!(again.depth() > x_r);
+            assert!(again.depth() > x_r && again.dissipated() > contact.dissipated());
+        }
+    }
+
+    /// The rebound falls from 1 without a jump, and never rises above it: just past first yield the old law returned more than it took.
+    #[test]
+    fn the_rebound_is_continuous_through_the_onset_of_yield() {
+        for strengths in
+            [[Some(STRENGTH), None], [None, Some(STRENGTH)], [Some(1.3e9); 2], [Some(1.1e9), Some(1e9)]]
+        {
+            let virgin = pair(0.01, [1.0; 2], strengths);
+            let mut before = 1.0;
+            for k in 0..60 {
+                let x = (0.9 + 0.02 * f64::from(k)) * virgin.critical_approach();
+                let (pressed, work) = driven(virgin, [0.0, x]);
+                let share = pressed.dissipated() / work;
+                assert!(share >= 0.0 && (x > virgin.critical_approach() || share == 0.0), "{k}: {share}");
+                assert!(1.0 - share <= before && before - (1.0 - share) < 0.01, "{k}: {share}");
+                before = 1.0 - share;
+            }
+        }
+    }
+
+    /// Work on closed loops, by the force alone, is what the contact says that it has dissipated, and never negative: random strengths, moduli
+    /// (a flat a thousand times softer too), depths and fresh spots.
+    #[test]
+    fn no_closed_loop_returns_more_than_it_took() {
+        let mut state = 12345_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for case in 0..60 {
+            let strengths = [0, 1].map(|i| (case % 3 != i).then(|| STRENGTH * 4.0_f64.powf(random() - 0.5)));
+            let mut contact = pair(0.01, [1.0, 10.0_f64.powf(1.0 - 4.0 * random())], strengths);
+            let critical = contact.critical_approach();
+            for _ in 0..4 {
+                let (start, lost) = (contact.depth(), contact.dissipated());
+                let x = start + critical * 1.05 * 100.0_f64.powf(random());
+                let (pressed, up) = driven(contact, [start, x]);
+                let (free, down) = driven(pressed, [x, start]);
+                assert!(pressed.dissipated() >= lost && free.dissipated() == pressed.dissipated(), "{case}");
+                assert!(up + down > -1e-4 * up, "{case}: {up} {down}");
+                let error = (up + down - (free.dissipated() - lost)).abs() / up;
+                assert!(error < 3e-3, "{case}: {error} {strengths:?}");
+                contact = if random() < 0.3 { free.on_a_fresh_spot() } else { free };
+            }
         }
     }
 
     /// The contact after a `force` in N.
-    fn after(contact: &DentedContact, force: f64) -> DentedContact {
-        let error = |x: f64| contact.force(x)[0] - force;
-        let ends = [contact.depth(), contact.depth() + 1000.0 * contact.critical_approach()];
-        let mut contact = *contact;
-        contact.advance(root(error, ends, ends.map(error)));
+    fn after(mut contact: DentedContact, force: f64) -> DentedContact {
+        let step = 0.02 * contact.critical_approach();
+        let mut x = contact.depth();
+        while contact.force(x)[0] < force {
+            x += step.max(0.01 * (x - contact.depth()));
+            contact.advance(x);
+        }
         contact
     }
 
@@ -501,12 +563,12 @@ mod tests {
         let one = pair(0.01, [1.0; 2], [None, Some(STRENGTH)]);
         let share = |load: f64| {
             let [one, both] =
-                [&one, &both].map(|contact| after(contact, load * both.critical_force()).depth());
+                [one, both].map(|contact| after(contact, load * both.critical_force()).dissipated());
             one / both
         };
         assert_relative_eq!(share(1.2), 0.5, epsilon = 0.1);
         for load in [10.0, 50.0, 300.0] {
-            assert!(share(load) > 0.8 && share(load) < 1.0, "{}", share(load));
+            assert!(share(load) > 0.8 && share(load) < 1.05, "{}", share(load));
         }
     }
 
@@ -516,15 +578,16 @@ mod tests {
     fn a_fresh_spot_keeps_the_other_dent() {
         let virgin = pair(0.01, [1.0; 2], [Some(STRENGTH); 2]);
         let force = 100.0 * virgin.critical_force();
-        let dented = after(&virgin, force);
+        let dented = after(virgin, force);
         let fresh = dented.on_a_fresh_spot();
-        assert_relative_eq!(fresh.depth(), 0.5 * dented.depth(), max_relative = 1e-9);
+        assert_eq!(fresh.depth(), dented.surfaces[1].unwrap().dent.depth);
+        assert_relative_eq!(fresh.depth(), 0.5 * dented.depth(), max_relative = 0.1);
         let [again, first] =
-            [&fresh, &virgin].map(|contact| after(contact, 0.3 * force).surfaces[0].unwrap().dent.depth);
-        assert!(again < 0.9 * first && again > 0.1 * first, "{again} {first}");
-        let soft = after(&pair(0.01, [1.0; 2], [Some(4.0 * STRENGTH), Some(STRENGTH)]), force);
+            [fresh, virgin].map(|contact| after(contact, 0.3 * force).surfaces[0].unwrap().dent.lost);
+        assert!(again < 0.9 * first && again > 0.05 * first, "{again} {first}");
+        let soft = after(pair(0.01, [1.0; 2], [Some(4.0 * STRENGTH), Some(STRENGTH)]), force);
         assert_eq!(soft.on_a_fresh_spot().depth(), soft.depth());
         let x = soft.depth() + soft.critical_approach();
-        assert_eq!(soft.on_a_fresh_spot().force(x), soft.force(x));
+        assert_relative_eq!(soft.on_a_fresh_spot().force(x)[0], soft.force(x)[0], max_relative = 1e-9);
     }
 }

@@ -238,8 +238,15 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
+    const MODULUS: f64 = 210e9 / (1.0 - 0.09);
+
     fn steel(yield_strength: f64) -> ElasticPlastic {
-        ElasticPlastic::new(210e9 / (1.0 - 0.09), yield_strength, 0.3)
+        ElasticPlastic::new(MODULUS, yield_strength, 0.3, false)
+    }
+
+    /// State at E' a/(Y rho).
+    fn at(law: &ElasticPlastic, strain: f64) -> Flattened {
+        law.flattened((strain * law.yield_strength / law.modulus / law.onset).powi(2))
     }
 
     /// Onset where the largest pressure, 3/2 of the mean one, is about 1.6 yield strengths (Johnson, Contact Mechanics, section 6.2).
@@ -259,39 +266,83 @@ mod tests {
         assert!(law.pulled(9e8).onset_pressure() > 0.0);
     }
 
-    /// Full plasticity: the mean pressure grows towards 2.84 Y, less for a strong material, 2 % beyond for a soft one.
+    /// Up to half as far again as the curves were found.
     #[test]
-    fn the_pressure_grows_from_the_onset_to_the_hardness() {
+    fn everything_grows_with_the_flattening() {
         for yield_strength in [100e6, 600e6, 2000e6] {
             let law = steel(yield_strength);
             let mut before = Flattened::NONE;
-            for k in 1..3000 {
+            for k in 1..2400 {
                 let w = (0.005 * f64::from(k)).exp() * 0.01;
                 let state = law.flattened(w);
-                assert!(state.pressure >= before.pressure && state.flattening > before.flattening, "{w}");
-                assert!(state.stays >= before.stays && state.lasting >= before.lasting, "{w}");
-                if w < 0.999 * law.hardest[0] {
-                    assert_relative_eq!(
-                        law.sheared(state.pressure * state.shears(), 0.0, 1.0).approach,
-                        w,
-                        max_relative = 1e-6
-                    );
-                }
+                assert!(state.pressure > before.pressure && state.flattening > before.flattening, "{w}");
+                assert!(state.lost >= before.lost && state.lasting >= before.lasting, "{w}");
+                let shear = state.pressure * state.shears();
+                assert_relative_eq!(law.sheared(shear, 0.0, 1.0).approach, w, max_relative = 1e-6);
                 before = state;
             }
             let hardness = before.pressure / yield_strength;
-            assert!(hardness < 1.03 * HARDNESS && hardness > 2.3, "{hardness}");
+            assert!(hardness < 3.1 && hardness > 2.8, "{hardness}");
         }
     }
 
-    /// Jackson and Green's pressure and Etsion, Kligerman and Kadin's recovery, which were fitted apart from each other, come from
-    /// Hertz's distribution to an even one: a depth of 3 pi/4 p a/E' becomes 2 p a/E'.
+    /// Mean pressure over Y at E' a/(Y rho), and what a rigid indenter rebounds with, of static finite elements (20 elements per contact radius,
+    /// the rim half an element inside the last node that touches).
     #[test]
-    fn what_comes_back_is_the_depth_under_a_pressure_that_becomes_even() {
-        let law = steel(350e6);
-        assert_relative_eq!(law.flattened(1.0 + 1e-12).recovers, HERTZ, max_relative = 1e-6);
-        for w in [8.0, 12.0, 20.0, 34.0, 60.0, 110.0] {
-            assert_relative_eq!(law.flattened(w).recovers, 2.0, max_relative = 0.05);
+    fn a_half_space_is_as_in_static_finite_elements() {
+        let law = steel(600e6);
+        for (strain, pressure, rebound) in [
+            (4.0, 1.55, 0.949),
+            (8.7, 2.09, 0.788),
+            (11.7, 2.249, 0.726),
+            (25.0, 2.617, 0.574),
+            (39.0, 2.786, 0.492),
+            (58.5, 2.877, 0.425),
+            (78.0, 2.913, 0.381),
+        ] {
+            let state = at(&law, strain);
+            assert_relative_eq!(state.pressure / 600e6, pressure, max_relative = 0.025);
+            let stored = state.energy() * state.pressure.powi(2) / MODULUS;
+            assert_relative_eq!((stored / (stored + state.lost)).sqrt(), rebound, max_relative = 0.015);
+        }
+    }
+
+    /// The same of a sphere on a rigid flat: mean pressure over Y at a/R and E' a/(Y R).
+    #[test]
+    fn a_sphere_is_softer_as_in_static_finite_elements() {
+        for (slope, strain, pressure) in [(0.195, 78.0, 2.397), (0.0975, 39.0, 2.60), (0.0975, 78.0, 2.661)] {
+            let law = ElasticPlastic::new(MODULUS, MODULUS * slope / strain, 0.3, true);
+            assert_relative_eq!(
+                at(&law, strain).pressure / law.yield_strength,
+                pressure,
+                max_relative = 0.02
+            );
+        }
+    }
+
+    /// Hertz's energy is 2/5 F d; an even pressure moves the surface by 16/(3 pi) p a/E' in the mean (Johnson 1985, section 3.4).
+    #[test]
+    fn elastic_energies_are_those_of_the_half_space() {
+        assert_relative_eq!(Flattened::NONE.energy(), 0.4 * PI * HERTZ, max_relative = 1e-12);
+        assert_relative_eq!(Flattened::NONE.exponent(), 1.5, max_relative = 1e-12);
+        let even = Flattened { evenness: 1.0, ..Flattened::NONE };
+        assert_relative_eq!(even.energy(), 0.5 * PI * 16.0 / (3.0 * PI), max_relative = 1e-12);
+    }
+
+    /// Etsion, Kligerman & Kadin, Int. J. Solids Struct. 42 (2005) 3716, eq. (13): what comes back of the approach of w critical ones, over
+    /// p a/E' of Jackson and Green's loading, at the same flattening.
+    #[test]
+    fn what_comes_back_is_that_of_published_finite_elements() {
+        let law = steel(600e6);
+        for (w, overload, recovers) in [
+            (3.8, 2.044, 2.151),
+            (6.7, 2.836, 2.075),
+            (14.4, 4.41, 1.990),
+            (26.6, 6.28, 1.963),
+            (48.5, 8.86, 1.985),
+        ] {
+            let found = law.flattened(overload * overload).recovers();
+            assert!((found / recovers - 1.0).abs() < 0.025, "{w}: {found}");
         }
     }
 }
