@@ -98,7 +98,7 @@ def rigid_node(mass: float) -> BodyMatrices:
 
 
 def with_rigid_part(matrices: BodyMatrices, rigid: Mask, mass: float) -> tuple[BodyMatrices, Ints]:
-    """A body whose ``rigid`` nodes (n,) move as one, the last node, and the new number of each node.
+    """A body whose ``rigid`` nodes (n,) are one, the last, and the new number of each node.
 
     That node gets what the others leave of the body's ``mass`` (kg).
     """
@@ -107,7 +107,9 @@ def with_rigid_part(matrices: BodyMatrices, rigid: Mask, mass: float) -> tuple[B
     elements = replace(matrices.elements, nodes=place[matrices.elements.nodes])
     others = matrices.mass[~rigid]
     lumped = np.append(others, mass - others.sum())
-    return BodyMatrices(scatter(elements.nodes, elements.stiffness, count + 1), lumped, elements), place
+    return BodyMatrices(
+        scatter(elements.nodes, elements.stiffness, count + 1), lumped, elements
+    ), place
 
 
 def beam_body(beam: Beam) -> BodyMatrices:

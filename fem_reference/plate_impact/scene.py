@@ -292,7 +292,7 @@ def _require_elastic(
         if material.yielding is not None and not (may_yield and geometry != "solid" and not wet):
             raise SceneError(
                 f"{name}.material yields (hardening {material.yielding.hardening:g} Pa); this "
-                "solver has that between spheres, compact bodies and plate in axisymmetric geometry, dry"
+                "solver has that between spheres, compact bodies and plate, axisymmetric and dry"
             )
         if material.yielding is not None and relaxing:
             raise SceneError(

@@ -64,6 +64,8 @@ pub struct DentedContact {
     /// Elastic energy now, and what has been dissipated so far on all spots, J.
     stored: f64,
     dissipated: f64,
+    /// Largest radius at which it has yielded so far, on all spots, m.
+    widest: f64,
 }
 
 /// The end of the elastic branch.
@@ -129,6 +131,7 @@ impl DentedContact {
             limit: Limit::NONE,
             stored: 0.0,
             dissipated: 0.0,
+            widest: 0.0,
         };
         Some(contact.with_elastic_limit())
     }
@@ -174,6 +177,11 @@ impl DentedContact {
     /// Energy in J dissipated so far.
     pub fn dissipated(&self) -> f64 {
         self.dissipated
+    }
+
+    /// Largest radius of the contact over that of the tip at which it has yielded so far.
+    pub fn widest(&self) -> f64 {
+        self.widest / self.hertz.tip_radius
     }
 
     /// The same with a fresh spot of the body.
@@ -257,7 +265,11 @@ impl DentedContact {
             recovers,
             stored: force * recovers / (1.0 + mean(&Flattened::exponent)),
             now,
-            lost: [0, 1].map(|i| dents[i].lost.max(now[i].map_or(0.0, |now| now.lost * radius.powi(3)))),
+            lost: [0, 1].map(|i| {
+                // a dent that a wider contact rests in does not flow
+                let flows = |now: Flattened| (now.lasting / dents[i].curvature).min(radius);
+                dents[i].lost.max(now[i].map_or(0.0, |now| now.lost * flows(now).powi(3)))
+            }),
         }
     }
 
@@ -336,6 +348,7 @@ impl DentedContact {
         let lost = [0, 1].map(|i| at.lost[i] - self.surfaces[i].map_or(0.0, |s| s.dent.lost));
         let all = lost[0] + lost[1];
         self.dissipated += all;
+        self.widest = self.widest.max(at.radius);
         for (i, surface) in self.surfaces.iter_mut().enumerate() {
             if let (Some(Surface { dent, .. }), Some(now)) = (surface, at.now[i]) {
                 dent.lost = at.lost[i];
