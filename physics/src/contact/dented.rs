@@ -30,8 +30,9 @@ const ROUNDING: f64 = 1e-12;
 pub struct Dent {
     /// Where it was flattened furthest.
     deepest: Flattened,
-    /// Curvature that it has lost for good, 1/m.
+    /// Curvature that it has lost for good, 1/m, and the largest slope at the rim that went with it.
     curvature: f64,
+    slope: f64,
     /// Energy that it has dissipated, J.
     lost: f64,
     /// Its share in the approach at which the dents touch, m.
@@ -39,7 +40,13 @@ pub struct Dent {
 }
 
 impl Dent {
-    const NONE: Dent = Dent { deepest: Flattened::NONE, curvature: 0.0, lost: 0.0, depth: 0.0 };
+    /// Flattening for good of a contact with the radius `radius` in m under which a virgin surface would be flattened by `lasting`: within
+    /// the dent that of its curvature, beyond its rim no more.
+    fn flattening(&self, radius: f64, lasting: f64) -> f64 {
+        lasting.max((radius * self.curvature).min(self.slope))
+    }
+
+    const NONE: Dent = Dent { deepest: Flattened::NONE, curvature: 0.0, slope: 0.0, lost: 0.0, depth: 0.0 };
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -243,16 +250,17 @@ impl DentedContact {
             let now = now[i].unwrap_or(Flattened::NONE);
             if now.approach > dents[i].deepest.approach { now } else { dents[i].deepest }
         });
-        let lasting = deepest[0].lasting + deepest[1].lasting;
+        let all = deepest[0].lasting + deepest[1].lasting;
         let mean = |of: &dyn Fn(&Flattened) -> f64| {
-            if lasting == 0.0 {
+            if all == 0.0 {
                 return of(&Flattened::NONE);
             }
-            deepest.iter().filter(|d| d.lasting > 0.0).map(|d| d.lasting / lasting * of(d)).sum()
+            deepest.iter().filter(|d| d.lasting > 0.0).map(|d| d.lasting / all * of(d)).sum()
         };
         let pressure = shear / mean(&Flattened::shears);
         let unit = pressure / self.modulus;
-        let radius = self.radius(unit * mean(&Flattened::bends), now, dents);
+        let lasting = now.map(|now| now.map_or(0.0, |now| now.lasting));
+        let radius = self.radius(unit * mean(&Flattened::bends), lasting, &dents);
         let force = PI * radius * radius * pressure;
         let recovers = |d: &Flattened| {
             let eased = if d.pressure > 0.0 { shear / (d.pressure * d.shears()) } else { 1.0 };
@@ -266,26 +274,34 @@ impl DentedContact {
             stored: force * recovers / (1.0 + mean(&Flattened::exponent)),
             now,
             lost: [0, 1].map(|i| {
-                // a dent that a wider contact rests in does not flow
-                let flows = |now: Flattened| (now.lasting / dents[i].curvature).min(radius);
-                dents[i].lost.max(now[i].map_or(0.0, |now| now.lost * flows(now).powi(3)))
+                let Some(now) = now[i] else { return 0.0 };
+                // where a dent is wider than a virgin surface would be flattened it does not flow
+                let flows = (now.lasting / dents[i].flattening(radius, now.lasting)).min(1.0);
+                dents[i].lost.max(now.lost * (flows * radius).powi(3))
             }),
         }
     }
 
-    /// Radius of the contact in m where an elastic surface loses the curvature `bends`/a, from a/R = bends + sum max(a kappa, lasting) of the
-    /// surfaces `now` and their `dents`: from below by Newton's method, which ends after as many steps as there are dents.
-    fn radius(&self, bends: f64, now: [Option<Flattened>; 2], dents: [Dent; 2]) -> f64 {
-        let lasting = now.map(|now| now.map_or(0.0, |now| now.lasting));
-        let (mut flowing, mut left) = (bends + lasting[0] + lasting[1], 1.0 / self.hertz.tip_radius);
-        let mut resting = [false; 2];
-        loop {
-            let radius = flowing / left;
-            let rests = |i: &usize| !resting[*i] && radius * dents[*i].curvature > lasting[*i];
-            let Some(i) = (0..2).find(rests) else { return radius };
-            resting[i] = true;
-            (flowing, left) = (flowing - lasting[i], left - dents[i].curvature);
+    /// Radius a of the contact in m where elastic surfaces are flattened by `bends`: a/R = bends + what the `dents` are flattened for good where
+    /// virgin surfaces would be by `lasting`. Both sides are linear between the radii at which a dent begins to be filled, and is.
+    fn radius(&self, bends: f64, lasting: [f64; 2], dents: &[Dent; 2]) -> f64 {
+        let tip = self.hertz.tip_radius;
+        let error = |a: f64| {
+            a / tip - bends - dents[0].flattening(a, lasting[0]) - dents[1].flattening(a, lasting[1])
+        };
+        let filled = |i: usize| [lasting[i], dents[i].slope].map(|slope| slope / dents[i].curvature);
+        let [[a, b], [c, d]] = [filled(0), filled(1)];
+        let mut kinks = [a, b, c, d];
+        kinks.sort_unstable_by(f64::total_cmp);
+        let mut low = [0.0, error(0.0)];
+        for a in kinks.into_iter().filter(|a| a.is_finite()) {
+            let high = [a, error(a)];
+            if high[1] >= 0.0 && a > low[0] {
+                return low[0] - low[1] * (high[0] - low[0]) / (high[1] - low[1]);
+            }
+            low = high;
         }
+        low[0] - low[1] * tip
     }
 
     /// Approach in m of the contact `at` the square `w` of the weaker surface's overload, beyond that at which the dents touch: by itself, since
@@ -353,7 +369,8 @@ impl DentedContact {
             if let (Some(Surface { dent, .. }), Some(now)) = (surface, at.now[i]) {
                 dent.lost = at.lost[i];
                 dent.depth += if all > 0.0 { deeper * lost[i] / all } else { 0.0 };
-                dent.curvature = dent.curvature.max(now.lasting / at.radius);
+                dent.curvature = dent.flattening(at.radius, now.lasting) / at.radius;
+                dent.slope = dent.slope.max(now.lasting);
                 if now.approach > dent.deepest.approach.max(1.0) {
                     dent.deepest = now;
                 }
