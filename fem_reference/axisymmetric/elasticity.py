@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import scipy.sparse
 import ufl
 
-from ..common.arrays import Floats, Ints
+from ..common.arrays import Floats, Ints, Mask
 from ..common.beam import Beam
 from ..common.bodies import Material
 from ..common.fenicsx import Domain
@@ -95,6 +95,21 @@ def rigid_node(mass: float) -> BodyMatrices:
     nodes, none = np.zeros((1, 4), dtype=np.int64), np.zeros((1, 8, 8))
     elements = ElementMatrices(nodes, none, np.full((1, 4), 0.25 * mass))
     return BodyMatrices(scatter(nodes, none, 1), np.array([mass]), elements)
+
+
+def with_rigid_part(matrices: BodyMatrices, rigid: Mask, mass: float) -> tuple[BodyMatrices, Ints]:
+    """A body whose ``rigid`` nodes (n,) are one, the last, and the new number of each node.
+
+    That node gets what the others leave of the body's ``mass`` (kg).
+    """
+    count = int(np.count_nonzero(~rigid))
+    place = np.where(rigid, count, np.cumsum(~rigid) - 1)
+    elements = replace(matrices.elements, nodes=place[matrices.elements.nodes])
+    others = matrices.mass[~rigid]
+    lumped = np.append(others, mass - others.sum())
+    return BodyMatrices(
+        scatter(elements.nodes, elements.stiffness, count + 1), lumped, elements
+    ), place
 
 
 def beam_body(beam: Beam) -> BodyMatrices:

@@ -18,7 +18,7 @@ from contextlib import contextmanager
 import gmsh
 import numpy as np
 
-from ..common.arrays import Floats, Ints
+from ..common.arrays import Floats, Ints, Mask
 from ..common.bodies import Plate, Sphere, sphere_profile
 from ..common.errors import SolverError
 from .grading import Segment, graded
@@ -270,3 +270,20 @@ def mesh_sphere(
     )
     raw = BodyMesh(name, points, original.quads)
     return _with_exact_volume(raw, sphere, surface, radii), surface
+
+
+def mesh_tip(
+    sphere: Sphere, settings: MeshSettings, name: str, number: int
+) -> tuple[BodyMesh, Ints]:
+    """The half of a sphere at z = 0, as `mesh_sphere`."""
+    whole, surface = mesh_sphere(sphere, settings, name, number)
+    near = whole.points[whole.quads].mean(axis=1)[:, 1] < sphere.radius
+    nodes, quads = np.unique(whole.quads[near], return_inverse=True)
+    half = BodyMesh(name, whole.points[nodes], quads.reshape(-1, 4))
+    return half, np.searchsorted(nodes, surface)
+
+
+def flat_face(mesh: BodyMesh, pole: float) -> Mask:
+    """(n,) nodes of a tip that are farthest from its ``pole`` (m) along the axis."""
+    height = np.abs(mesh.points[:, 1] - pole)
+    return np.asarray(height > (1.0 - 1e-9) * height.max())

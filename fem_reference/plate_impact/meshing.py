@@ -8,10 +8,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.sparse
 
-from ..axisymmetric.elasticity import BodyMatrices, assemble, beam_body, rigid_node
+from ..axisymmetric.elasticity import (
+    BodyMatrices,
+    assemble,
+    beam_body,
+    rigid_node,
+    with_rigid_part,
+)
 from ..axisymmetric.film import facing_nodes, squeeze_film
 from ..axisymmetric.mesh import BodyMesh, check_elements, face_nodes
-from ..axisymmetric.meshing import mesh_plate, mesh_sphere
+from ..axisymmetric.meshing import flat_face, mesh_plate, mesh_sphere, mesh_tip
 from ..axisymmetric.plastic import boxes, plasticity, together, with_box
 from ..axisymmetric.sizes import MeshSettings
 from ..axisymmetric.stack import ACROSS, StackBody
@@ -43,6 +49,8 @@ MOST_ALONG = 3.0
 elements are then about as long as wide."""
 NOT_REFINED = (1.0, 1.0, 1.0)
 """Elements far from the contacts as contact radius and thickness ask for them."""
+TIP_SHARE = 0.5
+"""Largest share of a compact body's mass that its meshed tip may have."""
 YIELDING_REACH = 3.0
 """Radius and depth of the boxes that may yield over the radius with matching nodes."""
 
@@ -182,6 +190,8 @@ def mesh_impact(scene: Scene, settings: MeshSettings) -> ImpactMesh:
     def above(body: Body, name: str, number: int) -> tuple[BodyMesh, Ints]:
         if isinstance(body, Sphere):
             return mesh_sphere(body, settings, name, number)
+        if _has_meshed_tip(body):
+            return mesh_tip(Sphere(body.tip_radius, body.material), settings, name, number)
         # All nodes of a beam or a stack at its tip, which is the last.
         count = body.beam.mass.size if isinstance(body, Bender) else 1
         count = stack.count if stack is not None and body is scene.outer else count
@@ -249,18 +259,52 @@ def _watched(scene: Scene, plate: BodyMesh) -> tuple[Ints, Floats]:
     return np.concatenate(nodes), np.concatenate(shares)
 
 
+def _has_meshed_tip(body: Body | Plate) -> bool:
+    return isinstance(body, Compact) and body.material.yielding is not None
+
+
+@dataclass(frozen=True)
+class _Discretised:
+    matrices: BodyMatrices
+    points: Floats
+    """(n, 2) of its nodes, m."""
+    fixed: Ints
+    """Components (2 * node + component)."""
+    place: Ints
+    """Node of each point of the mesh."""
+
+
 def _discretised(
-    body: BodyMesh, made: Body | Plate, stack: StackBody | None
-) -> tuple[BodyMatrices, Ints]:
-    """Matrices of a body and its fixed components (2 * node + component)."""
+    body: BodyMesh, made: Body | Plate, pole: float, stack: StackBody | None
+) -> _Discretised:
+    """A body whose contact, or one of them, lies at z = ``pole`` (m)."""
+    itself = np.arange(body.points.shape[0])
     if isinstance(made, Stack) and stack is not None:
-        return stack.matrices, stack.fixed
+        return _Discretised(stack.matrices, body.points, stack.fixed, itself)
     if isinstance(made, Bender):
-        return beam_body(made.beam), np.arange(2)
+        return _Discretised(beam_body(made.beam), body.points, np.arange(2), itself)
     if isinstance(made, Compact):
-        return rigid_node(made.mass), axis_constraints(body)
+        return _compact(body, made, pole)
     fixed = plate_constraints(made, body) if isinstance(made, Plate) else axis_constraints(body)
-    return assemble(body, made.material), fixed
+    return _Discretised(assemble(body, made.material), body.points, fixed, itself)
+
+
+def _compact(body: BodyMesh, made: Compact, pole: float) -> _Discretised:
+    """Rigid, but for the half of a sphere below its mass if its tip yields.
+
+    The tip's density has no part in the scene: it is the material's, or less in a light body.
+    """
+    if not _has_meshed_tip(made):
+        return _Discretised(
+            rigid_node(made.mass), body.points, axis_constraints(body), np.zeros(1, dtype=np.int64)
+        )
+    density = min(made.material.density, TIP_SHARE * made.mass / body.volume())
+    rigid = flat_face(body, pole)
+    matrices = assemble(body, replace(made.material, density=density))
+    matrices, place = with_rigid_part(matrices, rigid, made.mass)
+    points = np.vstack([body.points[~rigid], [0.0, body.points[rigid, 1].mean()]])
+    axis = 2 * np.flatnonzero(points[:, 0] == 0.0)
+    return _Discretised(matrices, points, axis, place)
 
 
 def _place(outer: Body) -> float:
@@ -289,10 +333,11 @@ def build_system(
     first = np.zeros(4, dtype=np.int64)
     of_scene = (scene.outer, scene.plate, scene.inner)
     for index, (body, made) in enumerate(zip(mesh.bodies, of_scene, strict=True)):
-        matrices, fixed = _discretised(body, made, mesh.stack)
+        part = _discretised(body, made, next(iter(mesh.poles[index].values())), mesh.stack)
+        matrices, fixed = part.matrices, part.fixed
         if not matrices.mass.min() > 0.0:
             node = int(np.argmin(matrices.mass))
-            r, z = body.points[node]
+            r, z = part.points[node]
             raise SolverError(
                 f"node {node} of body '{body.name}' at r = {r:.6g} m, z = {z:.6g} m has the mass "
                 f"{matrices.mass[node]:.3g} kg; it must be positive"
@@ -300,8 +345,8 @@ def build_system(
         box = None
         if made.material.yielding is not None:
             size = yielding_reach * mesh.settings.contact_zone
-            box = boxes(body.points, matrices.elements.nodes, mesh.poles[index], size)
-            matrices = with_box(matrices, body.points, made.material, box)
+            box = boxes(part.points, matrices.elements.nodes, mesh.poles[index], size)
+            matrices = with_box(matrices, part.points, made.material, box)
         number = renumbering(matrices)
         order = np.argsort(number)
         rows = (2 * order[:, None] + np.arange(2)).ravel()
@@ -310,14 +355,15 @@ def build_system(
         body_inverse = np.repeat(1.0 / matrices.mass, 2)
         body_inverse[fixed] = 0.0
         inverse.append(body_inverse[rows])
-        points.append(body.points[order])
-        numbers.append(number + first[index])
-        supports.append(numbers[index][fixed[fixed % 2 == 1] // 2])
+        points.append(part.points[order])
+        number = number + first[index]
+        numbers.append(number[part.place])
+        supports.append(number[fixed[fixed % 2 == 1] // 2])
         elements = matrices.elements
         if box is not None:
-            part = plasticity(elements.nodes, body.points, made.material, box)
-            yielding.append(replace(part, nodes=numbers[index][part.nodes]))
-        element_nodes.append(numbers[index][elements.nodes])
+            yields = plasticity(elements.nodes, part.points, made.material, box)
+            yielding.append(replace(yields, nodes=number[yields.nodes]))
+        element_nodes.append(number[elements.nodes])
         element_stiffness.append(elements.stiffness)
         element_steps.append(elements.critical_time_steps())
         first[index + 1] = first[index] + order.size
@@ -327,7 +373,7 @@ def build_system(
         ("inner", mesh.inner_contact, 2, scene.gap, -1.0),
     ):
         made = scene.outer if index == 0 else scene.inner
-        yields = not isinstance(made, Sphere)
+        deforms = not (isinstance(made, Sphere) or _has_meshed_tip(made))
         contacts.append(
             MatchedContact(
                 name,
@@ -336,7 +382,7 @@ def build_system(
                 numbers[1][surface.plate_nodes],
                 surface.radii,
                 gap + sphere_profile(made.tip_radius, surface.radii),
-                tip_flexibility(made.material, surface.radii) if yields else None,
+                tip_flexibility(made.material, surface.radii) if deforms else None,
                 scene.friction,
             )
         )

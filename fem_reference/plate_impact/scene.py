@@ -284,15 +284,15 @@ def _geometry(reference: Reader) -> tuple[str, int, tuple[str, ...]]:
 
 
 def _require_elastic(
-    materials: dict[str, Material], geometry: str, spheres: bool, wet: bool
+    materials: dict[str, Material], geometry: str, may_yield: bool, wet: bool
 ) -> None:
     """Refuse what yields where this solver has no yielding, and beside what relaxes."""
     relaxing = [name for name, material in materials.items() if material.relaxation]
     for name, material in materials.items():
-        if material.yielding is not None and not (spheres and geometry != "solid" and not wet):
+        if material.yielding is not None and not (may_yield and geometry != "solid" and not wet):
             raise SceneError(
                 f"{name}.material yields (hardening {material.yielding.hardening:g} Pa); this "
-                "solver has that between spheres and plate in axisymmetric geometry, dry"
+                "solver has that between spheres, compact bodies and plate, axisymmetric and dry"
             )
         if material.yielding is not None and relaxing:
             raise SceneError(
@@ -367,7 +367,8 @@ def parse_scene(document: Any) -> Scene:
             "must be 0"
         )
     materials = {"plate": plate.material, **{n: body.material for n, body in bodies.items()}}
-    _require_elastic(materials, geometry, _are_spheres(bodies), fluid is not None)
+    may_yield = all(isinstance(body, Sphere | Compact) for body in bodies.values())
+    _require_elastic(materials, geometry, may_yield, fluid is not None)
     relaxing = [name for name, material in materials.items() if material.relaxation]
     if relaxing and (offset != 0.0 or angle != 0.0):
         raise SceneError(

@@ -14,6 +14,7 @@ from fem_reference.common.bodies import Material
 from fem_reference.common.errors import SceneError
 from fem_reference.common.hertz import effective_modulus, hertz_stiffness, hertz_time_scale
 from fem_reference.plate_impact.result import quantities
+from fem_reference.plate_impact.run import Run
 from fem_reference.plate_impact.scene import Scene, parse_scene
 
 from .conftest import STEEL, document, integrate, make_loop, make_system, solve_once
@@ -164,6 +165,54 @@ def test_rigid_tips_are_those_of_the_solid_reference() -> None:
     assert solution.run.momentum_residual < 1e-9
     assert solution.run.energy_residual < 1e-5
     assert 0.0 <= solution.run.contact_loss < 1e-6
+
+
+YIELDS = {**STEEL, "yield_strength": 600e6, "hardening": 2.1e9}
+
+
+def first_contact(outer: dict[str, Any], plate: dict[str, Any]) -> Run:
+    """The first contact of an outer body with the plate of Table 1."""
+    scene = parse_scene(
+        document(
+            outer={**outer, "speed": 0.55},
+            plate__material=plate,
+            run__end_time=6e-5,
+            reference__elements_per_contact_radius=4,
+        )
+    )
+    system, duration = make_system(scene)
+    return integrate(system, scene, duration, end_time=scene.end_time, most_levels=1)
+
+
+def test_compact_body_that_yields_is_the_sphere_of_its_mass_and_tip() -> None:
+    sphere = first_contact({"kind": "sphere", "radius": 0.01, "material": YIELDS}, STEEL)
+    body = first_contact(compact(YIELDS), STEEL)
+    assert sphere.yielded is not None and body.yielded is not None
+    assert body.yielded.work[0] == pytest.approx(sphere.yielded.work[0], rel=0.01)
+    assert body.yielded.work[0] > 0.05 * body.initial_energy
+    assert body.outer_velocity == pytest.approx(sphere.outer_velocity, abs=0.005 * 0.55)
+    assert body.contacts[0].force_peak == pytest.approx(sphere.contacts[0].force_peak, rel=0.01)
+    assert body.energy_residual < 1e-5
+    assert body.momentum_residual < 1e-9
+
+
+def test_light_compact_body_that_yields_keeps_its_mass() -> None:
+    """A tenth of the sphere below its tip: the tip's density is lowered."""
+    body = first_contact({**compact(YIELDS), "mass": 0.05 * MASS}, STEEL)
+    assert body.initial_energy == pytest.approx(0.5 * 0.05 * MASS * 0.55**2, rel=1e-12)
+    assert body.yielded is not None and body.yielded.work[0] > 0.0
+    assert body.energy_residual < 1e-5
+    assert body.momentum_residual < 1e-9
+
+
+def test_elastic_compact_body_dents_a_plate_that_yields() -> None:
+    """As the sphere does, but for the waves in it."""
+    sphere = first_contact({"kind": "sphere", "radius": 0.01, "material": STEEL}, YIELDS)
+    body = first_contact(compact(), YIELDS)
+    assert sphere.yielded is not None and body.yielded is not None
+    assert body.yielded.work[0] == pytest.approx(sphere.yielded.work[0], rel=0.03)
+    assert body.contacts[0].force_peak == pytest.approx(sphere.contacts[0].force_peak, rel=0.02)
+    assert body.energy_residual < 1e-5
 
 
 def test_multipliers_are_complementary_wherever_the_plate_bulges() -> None:

@@ -2,34 +2,51 @@
 //!
 //! Both bear one pressure over one circle, and what each loses of its curvature adds up to that of the tip: a/R = sum a/rho. An elastic
 //! surface gives way under a pressure as a yielding one comes back from it; so where only one of them yields it takes the more of the
-//! flattening the more it yields. With equal materials this is the law of Jackson and Green for the pair.
+//! flattening the more it yields.
+//!
+//! The approach follows from the energy: on the way to a deeper dent F dx = dW + sum dD, with the elastic energy W of both surfaces and
+//! what each has dissipated, D. Unloading returns W. D never falls, so a closed loop never returns more than it took.
 
 use super::Hertz;
 use super::elastic_plastic::{ElasticPlastic, Flattened};
 use crate::material::Material;
-use crate::numerics::quadrature::gauss_legendre;
 use crate::numerics::root::{root, root_near};
 use std::f64::consts::PI;
 
-/// Gauss points of the work of a step.
-const WORK_POINTS: usize = 2;
-
-/// Critical approaches at least from which those of the next step are looked for.
+/// Least square of the overload from which that of the next step is looked for.
 const LEAST_NEAR: f64 = 1e-3;
+
+/// Onset of yield of a plate over that of a sphere from which the sphere dents more in the end.
+const WEAKER_SPHERE: f64 = 0.8;
+
+/// Squares of the overload between which a contact begins to yield, halvings of the search, and growth of the dissipated energy that is
+/// none.
+const LIMITS: [f64; 2] = [1e-6, 1e6];
+const LIMIT_STEPS: usize = 60;
+const ROUNDING: f64 = 1e-12;
 
 /// What a surface has been through.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dent {
     /// Where it was flattened furthest.
     deepest: Flattened,
-    /// Curvature that it has lost for good, 1/m.
+    /// Curvature that it has lost for good, 1/m, and the largest slope at the rim that went with it.
     curvature: f64,
-    /// Depth in m.
+    slope: f64,
+    /// Energy that it has dissipated, J.
+    lost: f64,
+    /// Its share in the approach at which the dents touch, m.
     depth: f64,
 }
 
 impl Dent {
-    const NONE: Dent = Dent { deepest: Flattened::NONE, curvature: 0.0, depth: 0.0 };
+    /// Flattening for good of a contact with the radius `radius` in m under which a virgin surface would be flattened by `lasting`: within
+    /// the dent that of its curvature, beyond its rim no more.
+    fn flattening(&self, radius: f64, lasting: f64) -> f64 {
+        lasting.max((radius * self.curvature).min(self.slope))
+    }
+
+    const NONE: Dent = Dent { deepest: Flattened::NONE, curvature: 0.0, slope: 0.0, lost: 0.0, depth: 0.0 };
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,31 +61,60 @@ pub struct DentedContact {
     hertz: Hertz,
     /// E* in Pa.
     modulus: f64,
-    /// Of body and plate; `None`: elastic. Which of them yields first.
+    /// Of body and plate; `None`: elastic. Which of them yields more in the end.
     surfaces: [Option<Surface>; 2],
     weaker: usize,
-    /// Approach at the end of the last step, m, critical approaches of both surfaces there, and the work done on the contact so far, J.
-    last: f64,
+    /// Squares of the overloads of both surfaces at the end of the last step.
     near: [f64; 2],
-    taken: f64,
+    /// Up to where it is elastic.
+    limit: Limit,
+    /// Elastic energy now, and what has been dissipated so far on all spots, J.
+    stored: f64,
+    dissipated: f64,
+    /// Largest radius at which it has yielded so far, on all spots, m.
+    widest: f64,
+}
+
+/// The end of the elastic branch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Limit {
+    /// Square of the overload of the weaker surface.
+    w: f64,
+    /// In N; approach beyond that at which the dents touch, m; elastic energy and what both dents have dissipated, J.
+    force: f64,
+    approach: f64,
+    energy: f64,
+}
+
+impl Limit {
+    const NONE: Limit = Limit { w: 0.0, force: 0.0, approach: 0.0, energy: 0.0 };
 }
 
 /// The contact at a pressure.
 struct Pressed {
-    /// In N; approach beyond that at which the dents touch, and radius in m.
+    /// In N, and radius in m.
     force: f64,
-    approach: f64,
     radius: f64,
+    /// Approach in m and energy in J that unloading gives back.
+    recovers: f64,
+    stored: f64,
     /// The surfaces as they would be if virgin.
     now: [Option<Flattened>; 2],
-    /// Depths of the dents, m.
-    depths: [f64; 2],
+    /// Energies that the surfaces have dissipated, J.
+    lost: [f64; 2],
 }
 
-/// Which of `surfaces` yields first.
+impl Pressed {
+    /// Energy in J that a virgin contact would have taken.
+    fn energy(&self) -> f64 {
+        self.stored + self.lost[0] + self.lost[1]
+    }
+}
+
+/// Which of `surfaces` of body and plate yields more in the end: a sphere of equal material is the weaker one in a deep dent.
 fn weaker(surfaces: &[Option<Surface>; 2]) -> usize {
     let onset = surfaces.map(|s| s.map_or(f64::INFINITY, |s| s.law.onset_pressure()));
-    usize::from(onset[1] < onset[0])
+    usize::from(onset[1] < WEAKER_SPHERE * onset[0])
 }
 
 impl DentedContact {
@@ -77,12 +123,24 @@ impl DentedContact {
     pub fn new(hertz: Hertz, pair: [&Material; 2], yield_strength: [Option<f64>; 2]) -> Option<Self> {
         let modulus = 1.0 / pair.iter().map(|m| 1.0 / m.plane_strain_modulus()).sum::<f64>();
         let surfaces = [0, 1].map(|i| {
-            let law = |y| ElasticPlastic::new(pair[i].plane_strain_modulus(), y, pair[i].poisson_ratio);
+            let law =
+                |y| ElasticPlastic::new(pair[i].plane_strain_modulus(), y, pair[i].poisson_ratio, i == 0);
             yield_strength[i].map(|y| Surface { law: law(y), dent: Dent::NONE })
         });
         let weaker = weaker(&surfaces);
         surfaces[weaker]?;
-        Some(Self { hertz, modulus, surfaces, weaker, last: 0.0, near: [1.0; 2], taken: 0.0 })
+        let contact = Self {
+            hertz,
+            modulus,
+            surfaces,
+            weaker,
+            near: [1.0; 2],
+            limit: Limit::NONE,
+            stored: 0.0,
+            dissipated: 0.0,
+            widest: 0.0,
+        };
+        Some(contact.with_elastic_limit())
     }
 
     /// The same if virgin, on a plate that is pulled along its face by `stress` Pa; a contact with dents stays as they were made.
@@ -91,13 +149,14 @@ impl DentedContact {
         if let (true, Some(plate)) = (self.is_virgin(), &mut self.surfaces[1]) {
             plate.law = plate.law.pulled(stress);
             self.weaker = weaker(&self.surfaces);
+            return self.with_elastic_limit();
         }
         self
     }
 
     /// Whether nothing has yielded yet.
     pub fn is_virgin(&self) -> bool {
-        self.depth() == 0.0
+        self.surfaces.iter().flatten().all(|surface| surface.dent.lost == 0.0)
     }
 
     /// Force in N up to which the contact is elastic while virgin.
@@ -107,7 +166,8 @@ impl DentedContact {
 
     /// x_c = (3 pi p/(4 E*))^2 R with the mean pressure p at the onset, m.
     pub fn critical_approach(&self) -> f64 {
-        let pressure = self.weaker_law().onset_pressure();
+        let onsets = self.surfaces.iter().flatten().map(|surface| surface.law.onset_pressure());
+        let pressure = onsets.fold(f64::INFINITY, f64::min);
         (0.75 * PI * pressure / self.modulus).powi(2) * self.hertz.tip_radius
     }
 
@@ -118,16 +178,39 @@ impl DentedContact {
 
     /// Work in J done on the contact so far: what it stores and what it has lost.
     pub fn taken(&self) -> f64 {
-        self.taken
+        self.stored + self.dissipated
+    }
+
+    /// Energy in J dissipated so far.
+    pub fn dissipated(&self) -> f64 {
+        self.dissipated
+    }
+
+    /// Largest radius of the contact over that of the tip at which it has yielded so far.
+    pub fn widest(&self) -> f64 {
+        self.widest / self.hertz.tip_radius
     }
 
     /// The same with a fresh spot of the body.
     #[must_use]
     pub fn on_a_fresh_spot(mut self) -> Self {
-        if let Some(body) = &mut self.surfaces[0] {
-            body.dent = Dent::NONE;
+        let Some(body) = &mut self.surfaces[0] else { return self };
+        body.dent = Dent::NONE;
+        self.with_elastic_limit()
+    }
+
+    /// The same with the elastic limit that its dents leave it.
+    fn with_elastic_limit(mut self) -> Self {
+        let lost = self.surfaces.iter().flatten().map(|surface| surface.dent.lost).sum::<f64>();
+        let deepens = |w: f64| self.pressed(w).lost.iter().sum::<f64>() > lost * (1.0 + ROUNDING);
+        let [mut low, mut high] = LIMITS.map(f64::ln);
+        for _ in 0..LIMIT_STEPS {
+            let middle = 0.5 * (low + high);
+            if deepens(middle.exp()) { high = middle } else { low = middle }
         }
-        self.last = self.depth();
+        let w = low.exp();
+        let at = self.pressed(w);
+        self.limit = Limit { w, force: at.force, approach: at.recovers, energy: at.energy() };
         self
     }
 
@@ -136,67 +219,111 @@ impl DentedContact {
         &weaker.expect("`new` sees that one yields").law
     }
 
-    /// The contact where the weaker surface, if virgin, would have come by `w` critical approaches.
+    /// Both surfaces if virgin, at the square `w` of the weaker one's overload, and the shear stress in Pa that they bear.
+    fn virgin(&self, w: f64) -> ([Option<Flattened>; 2], f64) {
+        let at = |of_weaker: Flattened| {
+            let shear = of_weaker.pressure * of_weaker.shears();
+            let other = 1 - self.weaker;
+            let mut now = [Some(of_weaker); 2];
+            now[other] = self.surfaces[other].map(|surface| surface.law.sheared(shear, w, self.near[other]));
+            (now, shear)
+        };
+        let law = self.weaker_law();
+        let alone = at(law.flattened(w));
+        let (0, [Some(body), Some(plate)]) = (self.weaker, alone.0) else { return alone };
+        if body.approach <= 1.0 {
+            return alone;
+        }
+        // the sphere slopes by what both surfaces are flattened: the more it does the less pressure flattens the plate
+        let plate_at = |slope: f64| at(law.flattened_at(w, slope)).0[1].map_or(0.0, |plate| plate.flattening);
+        let error = |slope: f64| body.flattening + plate_at(slope) - slope;
+        let ends = [body.flattening, body.flattening + plate.flattening];
+        at(law.flattened_at(w, root(error, ends, ends.map(error))))
+    }
+
+    /// The contact at the square `w` of the overload that the weaker surface would have if virgin.
     fn pressed(&self, w: f64) -> Pressed {
-        let of_weaker = self.weaker_law().flattened(w);
-        let shear = of_weaker.pressure * of_weaker.shears();
-        let now = [0, 1].map(|i| {
-            let law = &self.surfaces[i].as_ref()?.law;
-            let is_weaker = i == self.weaker || law == self.weaker_law();
-            Some(if is_weaker { of_weaker } else { law.sheared(shear, w, self.near[i]) })
-        });
+        let (now, shear) = self.virgin(w);
         let dents = self.surfaces.map(|s| s.map_or(Dent::NONE, |s| s.dent));
-        // how even the pressure is: as each dent has made it, by their depths
+        // how even the pressure is: as each dent has made it, by what they have lost of their curvature
         let deepest = [0, 1].map(|i| {
             let now = now[i].unwrap_or(Flattened::NONE);
             if now.approach > dents[i].deepest.approach { now } else { dents[i].deepest }
         });
-        let stays = deepest[0].stays + deepest[1].stays;
+        let all = deepest[0].lasting + deepest[1].lasting;
         let mean = |of: &dyn Fn(&Flattened) -> f64| {
-            if stays == 0.0 {
+            if all == 0.0 {
                 return of(&Flattened::NONE);
             }
-            deepest.iter().filter(|d| d.stays > 0.0).map(|d| d.stays / stays * of(d)).sum()
+            deepest.iter().filter(|d| d.lasting > 0.0).map(|d| d.lasting / all * of(d)).sum()
         };
         let pressure = shear / mean(&Flattened::shears);
         let unit = pressure / self.modulus;
-        let bends = unit * mean(&Flattened::bends);
         let lasting = now.map(|now| now.map_or(0.0, |now| now.lasting));
-        // a/R = what is elastic + sum max(a kappa, lasting): from below by Newton's method, which ends after as many steps as there are dents
-        let (mut flowing, mut left) = (bends + lasting[0] + lasting[1], 1.0 / self.hertz.tip_radius);
-        let mut resting = [false; 2];
-        let radius = loop {
-            let radius = flowing / left;
-            let rests = |i: &usize| !resting[*i] && radius * dents[*i].curvature > lasting[*i];
-            let Some(i) = (0..2).find(rests) else { break radius };
-            resting[i] = true;
-            (flowing, left) = (flowing - lasting[i], left - dents[i].curvature);
-        };
-        let depths = [0, 1].map(|i| dents[i].depth.max(radius * now[i].map_or(0.0, |now| now.stays)));
+        let radius = self.radius(unit * mean(&Flattened::bends), lasting, &dents);
+        let force = PI * radius * radius * pressure;
         let recovers = |d: &Flattened| {
             let eased = if d.pressure > 0.0 { shear / (d.pressure * d.shears()) } else { 1.0 };
-            d.recovers * eased.powf(3.0 / d.exponent - 2.0)
+            d.recovers() * eased.powf(3.0 / d.exponent() - 2.0)
         };
+        let recovers = radius * unit * mean(&recovers);
         Pressed {
-            force: PI * radius * radius * pressure,
-            // each by itself: beside the depth of a dent a first touch is lost in rounding
-            approach: radius * unit * mean(&recovers)
-                + (depths[0] - dents[0].depth)
-                + (depths[1] - dents[1].depth),
+            force,
             radius,
+            recovers,
+            stored: force * recovers / (1.0 + mean(&Flattened::exponent)),
             now,
-            depths,
+            lost: [0, 1].map(|i| {
+                let Some(now) = now[i] else { return 0.0 };
+                // where a dent is wider than a virgin surface would be flattened it does not flow
+                let flows = (now.lasting / dents[i].flattening(radius, now.lasting)).min(1.0);
+                dents[i].lost.max(now.lost * (flows * radius).powi(3))
+            }),
         }
     }
 
-    /// Critical approaches of the weaker surface, if virgin, at the approach `x` in m of both, which is beyond that at which they touch.
-    fn critical_approaches(&self, x: f64) -> f64 {
+    /// Radius a of the contact in m where elastic surfaces are flattened by `bends`: a/R = bends + what the `dents` are flattened for good where
+    /// virgin surfaces would be by `lasting`. Both sides are linear between the radii at which a dent begins to be filled, and is.
+    fn radius(&self, bends: f64, lasting: [f64; 2], dents: &[Dent; 2]) -> f64 {
+        let tip = self.hertz.tip_radius;
+        let error = |a: f64| {
+            a / tip - bends - dents[0].flattening(a, lasting[0]) - dents[1].flattening(a, lasting[1])
+        };
+        let filled = |i: usize| [lasting[i], dents[i].slope].map(|slope| slope / dents[i].curvature);
+        let [[a, b], [c, d]] = [filled(0), filled(1)];
+        let mut kinks = [a, b, c, d];
+        kinks.sort_unstable_by(f64::total_cmp);
+        let mut low = [0.0, error(0.0)];
+        for a in kinks.into_iter().filter(|a| a.is_finite()) {
+            let high = [a, error(a)];
+            if high[1] >= 0.0 && a > low[0] {
+                return low[0] - low[1] * (high[0] - low[0]) / (high[1] - low[1]);
+            }
+            low = high;
+        }
+        low[0] - low[1] * tip
+    }
+
+    /// Approach in m of the contact `at` the square `w` of the weaker surface's overload, beyond that at which the dents touch: by itself, since
+    /// beside the depth of a dent a first touch is lost in rounding.
+    fn approach(&self, w: f64, at: &Pressed) -> f64 {
+        let Limit { force, approach, energy, .. } = self.limit;
+        if w <= self.limit.w {
+            return at.recovers;
+        }
+        // of second order, as the steps are, and exact in energy
+        approach + 2.0 * (at.energy() - energy) / (force + at.force)
+    }
+
+    /// Square of the overload of the weaker surface, if virgin, at the approach `x` in m of both, which is beyond that at which they touch.
+    fn overload(&self, x: f64) -> f64 {
         let near = self.near[self.weaker];
         let x = x - self.depth();
-        if let Some(found) = root_near(|w| self.pressed(w).approach, x, near, 1.0) {
+        let approach = |w: f64| self.approach(w, &self.pressed(w));
+        if let Some(found) = root_near(approach, x, near, 1.0) {
             return found;
         }
-        let error = |w: f64| self.pressed(w).approach - x;
+        let error = |w: f64| approach(w) - x;
         let mut ends = [0.9 * near, 1.1 * near];
         let mut values = ends.map(error);
         if values[0] > 0.0 {
@@ -213,37 +340,43 @@ impl DentedContact {
         if x <= self.depth() {
             return [0.0; 2];
         }
-        let w = self.critical_approaches(x);
-        let [at, beyond] = [w, (1.0 + 1e-6) * w].map(|w| self.pressed(w));
-        [at.force, (beyond.force - at.force) / (beyond.approach - at.approach)]
+        let w = self.overload(x);
+        let beyond = (1.0 + 1e-6) * w;
+        let [at, next] = [w, beyond].map(|w| self.pressed(w));
+        let approach = self.approach(beyond, &next) - self.approach(w, &at);
+        [at.force, (next.force - at.force) / approach]
     }
 
     /// Ends a step at the approach `x` in m.
     pub fn advance(&mut self, x: f64) {
-        let [from, to] = [self.last, x].map(|x| x.max(self.depth()));
-        self.last = x;
-        if from == to {
-            return;
-        }
-        let (points, weights) = gauss_legendre(WORK_POINTS);
-        let [middle, half] = [0.5 * (from + to), 0.5 * (to - from)];
-        let force = |p: &f64| self.pressed(self.critical_approaches(middle + half * p)).force;
-        self.taken += half * points.iter().zip(weights).map(|(p, w)| w * force(p)).sum::<f64>();
+        self.stored = 0.0;
         if x <= self.depth() {
             return;
         }
-        let w = self.critical_approaches(x);
-        let Pressed { radius, now, depths, .. } = self.pressed(w);
-        self.near = [0, 1].map(|i| now[i].map_or(w, |now| now.approach).max(LEAST_NEAR));
+        let w = self.overload(x);
+        let at = self.pressed(w);
+        self.stored = at.stored;
+        self.near = [0, 1].map(|i| at.now[i].map_or(w, |now| now.approach).max(LEAST_NEAR));
+        if w <= self.limit.w {
+            return;
+        }
+        let deeper = x - at.recovers - self.depth();
+        let lost = [0, 1].map(|i| at.lost[i] - self.surfaces[i].map_or(0.0, |s| s.dent.lost));
+        let all = lost[0] + lost[1];
+        self.dissipated += all;
+        self.widest = self.widest.max(at.radius);
         for (i, surface) in self.surfaces.iter_mut().enumerate() {
-            if let (Some(Surface { dent, .. }), Some(now)) = (surface, now[i]) {
-                dent.depth = depths[i];
-                dent.curvature = dent.curvature.max(now.lasting / radius);
+            if let (Some(Surface { dent, .. }), Some(now)) = (surface, at.now[i]) {
+                dent.lost = at.lost[i];
+                dent.depth += if all > 0.0 { deeper * lost[i] / all } else { 0.0 };
+                dent.curvature = dent.flattening(at.radius, now.lasting) / at.radius;
+                dent.slope = dent.slope.max(now.lasting);
                 if now.approach > dent.deepest.approach.max(1.0) {
                     dent.deepest = now;
                 }
             }
         }
+        self.limit = Limit { w, force: at.force, approach: at.recovers, energy: at.energy() };
     }
 }
 
@@ -263,7 +396,24 @@ mod tests {
         DentedContact::new(hertz, [&body, &plate], yield_strength).unwrap()
     }
 
-    /// Jackson and Green's eqs. (16) to (23) as they stand there, of a sphere on a rigid flat: force in N at `w` critical approaches.
+    /// The contact driven from one approach in m to another in small steps, and the work done on it, J.
+    fn driven(mut contact: DentedContact, [from, to]: [f64; 2]) -> (DentedContact, f64) {
+        let mut work = 0.0;
+        let mut before = contact.force(from)[0];
+        for k in 1..=STEPS {
+            let x = from + (to - from) * f64::from(k) / f64::from(STEPS);
+            let force = contact.force(x)[0];
+            work += 0.5 * (before + force) * (to - from) / f64::from(STEPS);
+            before = force;
+            contact.advance(x);
+        }
+        (contact, work)
+    }
+
+    const STEPS: u32 = 400;
+    const STRENGTH: f64 = 600e6;
+
+    /// Jackson and Green's eqs. (16) to (23), of a sphere on a rigid flat: force in N at `w` critical approaches.
     fn jackson_and_green(radius: f64, modulus: f64, strength: f64, w: f64) -> f64 {
         let factor = 1.295 * (0.736_f64 * 0.3).exp();
         let critical = (0.5 * PI * factor * strength / modulus).powi(2) * radius;
@@ -276,31 +426,31 @@ mod tests {
                 + 4.0 * hardness / (factor * strength) * (1.0 - (-w.powf(5.0 / 9.0) / 25.0).exp()) * w)
     }
 
-    const STRENGTH: f64 = 600e6;
-
+    /// Other people's finite elements, with large deformations, in their range of 110 critical approaches.
     #[test]
-    fn on_a_rigid_flat_it_is_the_law_of_jackson_and_green() {
-        for yields in [[Some(STRENGTH), None], [None, Some(STRENGTH)]] {
-            let factors = yields.map(|y| if y.is_some() { 1.0 } else { 1e9 });
-            let contact = pair(0.01, factors, yields);
-            for w in [3.0, 10.0, 40.0, 100.0] {
-                let force = contact.force(w * contact.critical_approach())[0];
-                let expected = jackson_and_green(0.01, 210e9 / 0.91, STRENGTH, w);
-                assert_relative_eq!(force, expected, max_relative = 1e-6);
-            }
+    fn on_a_rigid_flat_the_force_is_about_that_of_jackson_and_green() {
+        let contact = pair(0.01, [1.0, 1e9], [Some(STRENGTH), None]);
+        for w in [3.0, 10.0, 40.0, 100.0] {
+            let x = w * contact.critical_approach();
+            let force = driven(contact, [0.0, x]).0.force(x)[0];
+            let expected = jackson_and_green(0.01, 210e9 / 0.91, STRENGTH, w);
+            assert_relative_eq!(force, expected, max_relative = 0.05);
         }
     }
 
-    /// Two equal surfaces meet in a plane, which is a rigid flat to each: half the approach, twice the radius.
+    /// Two equal surfaces meet in a plane, which is a rigid flat to each: half the approach, twice the radius. The slope of the sphere beside
+    /// the contact is no matter at so small a strength.
     #[test]
     fn equal_surfaces_are_mirror_images() {
-        let mut both = pair(0.01, [1.0; 2], [Some(STRENGTH); 2]);
-        let mut one = pair(0.02, [1.0, 1e9], [Some(STRENGTH), None]);
-        for x in [0.5e-6, 4e-6, 9e-6, 7e-6, 11e-6, 8e-6] {
-            assert_relative_eq!(both.force(x)[0], one.force(0.5 * x)[0], max_relative = 1e-6);
-            both.advance(x);
-            one.advance(0.5 * x);
-            assert_relative_eq!(both.depth(), 2.0 * one.depth(), max_relative = 1e-6);
+        let weak = Some(0.05 * STRENGTH);
+        let mut both = pair(0.01, [1.0; 2], [weak; 2]);
+        let mut one = pair(0.02, [1.0, 1e9], [weak, None]);
+        let mut from = 0.0;
+        for x in [10.0, 40.0, 20.0, 60.0, 50.0].map(|w| w * both.critical_approach()) {
+            (both, one) = (driven(both, [from, x]).0, driven(one, [0.5 * from, 0.5 * x]).0);
+            from = x;
+            assert_relative_eq!(both.force(x)[0], one.force(0.5 * x)[0], max_relative = 3e-3);
+            assert_relative_eq!(both.depth(), 2.0 * one.depth(), max_relative = 3e-3);
         }
     }
 
@@ -310,9 +460,9 @@ mod tests {
         for strengths in
             [[None, Some(3e8)], [Some(4e8), Some(3e8)], [Some(3e8), Some(3.001e8)], [Some(9e8), Some(3e8)]]
         {
-            let contact = pair(0.01, [1.0, 0.4], strengths);
+            let mut contact = pair(0.01, [1.0, 0.4], strengths);
             let critical = contact.critical_approach();
-            let mut before = [0.0; 2];
+            let mut before = 0.0;
             for k in 1..6000 {
                 let x = 0.02 * f64::from(k) * critical;
                 let [force, slope] = contact.force(x);
@@ -320,12 +470,13 @@ mod tests {
                 if x < critical {
                     assert_relative_eq!(force, elastic, max_relative = 1e-9);
                 }
-                assert!(force > before[0] && force < 1.03 * elastic && slope > 0.0, "{strengths:?} {k}");
+                assert!(force > before && force < 1.001 * elastic && slope > 0.0, "{strengths:?} {k}");
                 assert!(
-                    force - before[0] < 2.0 * 0.02 * critical * contact.hertz.tangent(x),
+                    force - before < 1.01 * 0.02 * critical * contact.hertz.tangent(x),
                     "{strengths:?} {k}"
                 );
-                before = [force, slope];
+                before = force;
+                contact.advance(x);
             }
         }
     }
@@ -349,43 +500,88 @@ mod tests {
         }
     }
 
-    /// Let go and pressed again it is elastic, F = F_m ((x - x_r)/(x_m - x_r))^n (Etsion, Kligerman & Kadin 2005, eqs. 13 and 15), whichever
-    /// surface yields.
+    /// Let go and pressed again it is elastic, F = F_m ((x - x_r)/(x_m - x_r))^n, whichever surface yields.
     #[test]
     fn a_dent_is_elastic_up_to_the_force_that_made_it() {
         for strengths in [[Some(STRENGTH); 2], [None, Some(STRENGTH)], [Some(STRENGTH), None]] {
-            let mut contact = pair(0.01, [1.0; 2], strengths);
+            let contact = pair(0.01, [1.0; 2], strengths);
             let x_m = 30.0 * contact.critical_approach();
+            let (contact, _) = driven(contact, [0.0, x_m]);
             let [f_m, _] = contact.force(x_m);
-            contact.advance(x_m);
-            let (x_r, taken) = (contact.depth(), contact.taken());
+            let x_r = contact.depth();
             assert!(x_r > 0.2 * x_m && x_r < 0.7 * x_m);
-            let exponent =
-                1.5 * contact.surfaces.iter().flatten().next().unwrap().dent.deepest.approach.powf(-0.0331);
+            let exponent = contact.surfaces.iter().flatten().next().unwrap().dent.deepest.exponent();
             for share in [0.1, 0.5, 0.9, 0.999] {
                 let [force, slope] = contact.force(x_r + share * (x_m - x_r));
-                assert_relative_eq!(force, f_m * share.powf(exponent), max_relative = 1e-6);
-                assert_relative_eq!(slope, exponent * force / (share * (x_m - x_r)), max_relative = 1e-4);
+                assert_relative_eq!(force, f_m * share.powf(exponent), max_relative = 2e-2);
+                assert_relative_eq!(slope, exponent * force / (share * (x_m - x_r)), max_relative = 2e-2);
             }
             assert_eq!(contact.force(x_r), [0.0; 2]);
             let mut again = contact;
             for x in [x_r, x_m, 0.5 * (x_r + x_m), x_r] {
                 again.advance(x);
             }
-            assert_relative_eq!(again.depth(), x_r, max_relative = 1e-9);
-            // what it gives back is less than what it took
-            assert!(again.taken() < 0.8 * taken && again.taken() > 0.1 * taken);
+            assert_relative_eq!(again.depth(), x_r, max_relative = 1e-6);
+            assert_relative_eq!(again.dissipated(), contact.dissipated(), max_relative = 1e-6);
             again.advance(1.1 * x_m);
-            assert!(again.depth() > x_r);
+            assert!(again.depth() > x_r && again.dissipated() > contact.dissipated());
+        }
+    }
+
+    /// The rebound falls from 1 without a jump, and never rises above it: just past first yield the old law returned more than it took.
+    #[test]
+    fn the_rebound_is_continuous_through_the_onset_of_yield() {
+        for strengths in
+            [[Some(STRENGTH), None], [None, Some(STRENGTH)], [Some(1.3e9); 2], [Some(1.1e9), Some(1e9)]]
+        {
+            let virgin = pair(0.01, [1.0; 2], strengths);
+            let mut before = 1.0;
+            for k in 0..60 {
+                let x = (0.9 + 0.02 * f64::from(k)) * virgin.critical_approach();
+                let (pressed, work) = driven(virgin, [0.0, x]);
+                let share = pressed.dissipated() / work;
+                assert!(share >= 0.0 && (x > virgin.critical_approach() || share == 0.0), "{k}: {share}");
+                assert!(1.0 - share <= before && before - (1.0 - share) < 0.01, "{k}: {share}");
+                before = 1.0 - share;
+            }
+        }
+    }
+
+    /// Work on closed loops, by the force alone, is what the contact says that it has dissipated, and never negative: random strengths, moduli
+    /// (a flat a thousand times softer too), depths and fresh spots.
+    #[test]
+    fn no_closed_loop_returns_more_than_it_took() {
+        let mut state = 12345_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for case in 0..60 {
+            let strengths = [0, 1].map(|i| (case % 3 != i).then(|| STRENGTH * 4.0_f64.powf(random() - 0.5)));
+            let mut contact = pair(0.01, [1.0, 10.0_f64.powf(1.0 - 4.0 * random())], strengths);
+            let critical = contact.critical_approach();
+            for _ in 0..4 {
+                let (start, lost) = (contact.depth(), contact.dissipated());
+                let x = start + critical * 1.05 * 100.0_f64.powf(random());
+                let (pressed, up) = driven(contact, [start, x]);
+                let (free, down) = driven(pressed, [x, start]);
+                assert!(pressed.dissipated() >= lost && free.dissipated() == pressed.dissipated(), "{case}");
+                assert!(up + down > -1e-4 * up, "{case}: {up} {down}");
+                let error = (up + down - (free.dissipated() - lost)).abs() / up;
+                assert!(error < 3e-3, "{case}: {error} {strengths:?}");
+                contact = if random() < 0.3 { free.on_a_fresh_spot() } else { free };
+            }
         }
     }
 
     /// The contact after a `force` in N.
-    fn after(contact: &DentedContact, force: f64) -> DentedContact {
-        let error = |x: f64| contact.force(x)[0] - force;
-        let ends = [contact.depth(), contact.depth() + 1000.0 * contact.critical_approach()];
-        let mut contact = *contact;
-        contact.advance(root(error, ends, ends.map(error)));
+    fn after(mut contact: DentedContact, force: f64) -> DentedContact {
+        let step = 0.02 * contact.critical_approach();
+        let mut x = contact.depth();
+        while contact.force(x)[0] < force {
+            x += step.max(0.01 * (x - contact.depth()));
+            contact.advance(x);
+        }
         contact
     }
 
@@ -397,12 +593,12 @@ mod tests {
         let one = pair(0.01, [1.0; 2], [None, Some(STRENGTH)]);
         let share = |load: f64| {
             let [one, both] =
-                [&one, &both].map(|contact| after(contact, load * both.critical_force()).depth());
+                [one, both].map(|contact| after(contact, load * both.critical_force()).dissipated());
             one / both
         };
         assert_relative_eq!(share(1.2), 0.5, epsilon = 0.1);
         for load in [10.0, 50.0, 300.0] {
-            assert!(share(load) > 0.8 && share(load) < 1.0, "{}", share(load));
+            assert!(share(load) > 0.8 && share(load) < 1.05, "{}", share(load));
         }
     }
 
@@ -412,15 +608,16 @@ mod tests {
     fn a_fresh_spot_keeps_the_other_dent() {
         let virgin = pair(0.01, [1.0; 2], [Some(STRENGTH); 2]);
         let force = 100.0 * virgin.critical_force();
-        let dented = after(&virgin, force);
+        let dented = after(virgin, force);
         let fresh = dented.on_a_fresh_spot();
-        assert_relative_eq!(fresh.depth(), 0.5 * dented.depth(), max_relative = 1e-9);
+        assert_eq!(fresh.depth(), dented.surfaces[1].unwrap().dent.depth);
+        assert_relative_eq!(fresh.depth(), 0.5 * dented.depth(), max_relative = 0.1);
         let [again, first] =
-            [&fresh, &virgin].map(|contact| after(contact, 0.3 * force).surfaces[0].unwrap().dent.depth);
-        assert!(again < 0.9 * first && again > 0.1 * first, "{again} {first}");
-        let soft = after(&pair(0.01, [1.0; 2], [Some(4.0 * STRENGTH), Some(STRENGTH)]), force);
+            [fresh, virgin].map(|contact| after(contact, 0.3 * force).surfaces[0].unwrap().dent.lost);
+        assert!(again < 0.9 * first && again > 0.05 * first, "{again} {first}");
+        let soft = after(pair(0.01, [1.0; 2], [Some(4.0 * STRENGTH), Some(STRENGTH)]), force);
         assert_eq!(soft.on_a_fresh_spot().depth(), soft.depth());
         let x = soft.depth() + soft.critical_approach();
-        assert_eq!(soft.on_a_fresh_spot().force(x), soft.force(x));
+        assert_relative_eq!(soft.on_a_fresh_spot().force(x)[0], soft.force(x)[0], max_relative = 1e-9);
     }
 }

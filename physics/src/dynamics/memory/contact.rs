@@ -46,6 +46,22 @@ impl Contact {
         }
     }
 
+    /// Energy in J that it has dissipated by yielding, if it can.
+    pub(super) fn dissipated(&self) -> Option<f64> {
+        match self {
+            Contact::Dented(contact) => Some(contact.dissipated()),
+            _ => None,
+        }
+    }
+
+    /// Largest contact radius over the tip's at which it has yielded; 0 of one that has not.
+    pub(super) fn widest(&self) -> f64 {
+        match self {
+            Contact::Dented(contact) => contact.widest(),
+            _ => 0.0,
+        }
+    }
+
     /// Force in N up to which the contact is elastic; negative if it is not even without one.
     pub(super) fn critical_force(&self) -> f64 {
         match self {

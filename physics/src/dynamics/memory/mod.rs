@@ -43,10 +43,13 @@ const SETTLED: f64 = 1e-5;
 /// Representative plastic strain under a sphere over the contact radius over its own (Tabor, The Hardness of Metals, 1951).
 const TABOR: f64 = 0.2;
 
-/// Approaches over the critical one up to which the law of a contact that yields was found (Jackson & Green 2005), and up to which it is
-/// taken: beyond, contacts last so much longer than Hertz's that steps of his are the wrong ones.
+/// Approaches over the critical one up to which the law of a contact that yields was compared with finite elements, and up to which it is
+/// used: beyond, contacts last so much longer than Hertz's that steps of his are the wrong ones.
 const PROVEN_OVERLOAD: f64 = 110.0;
 const MOST_OVERLOAD: f64 = 1e4;
+
+/// Largest contact radius over the tip's for which the finite elements, of small strains, were solved.
+const WIDEST: f64 = 1.0 / 5.2;
 
 /// Share of the yield strength that hardening under a contact may come to before it is told.
 const HARDENED: f64 = 0.05;
@@ -184,6 +187,16 @@ impl Memory {
         self.bodies.contacts.iter().any(|c| matches!(c, Contact::Dented(contact) if contact.is_virgin()))
     }
 
+    /// A sentence if a contact has yielded over a larger part of its tip than its law was found for.
+    pub fn too_wide(&self) -> Option<String> {
+        let widest = self.bodies.contacts.iter().map(Contact::widest).fold(0.0, f64::max);
+        (widest > WIDEST).then(|| {
+            format!(
+                "a contact that yields is {widest:.2} of its tip radius wide; its law is for small strains and was compared with finite elements up to {WIDEST:.2}"
+            )
+        })
+    }
+
     /// Whether outer and inner contact can yield.
     pub fn yields(&self) -> [bool; 2] {
         [0, 1].map(|i| matches!(self.bodies.contacts[i], Contact::Dented(_)))
@@ -262,7 +275,7 @@ fn overloaded(contacts: &[Contact; 2], hits: &[HertzImpact; 2]) -> Result<Option
     let overload = |i: usize| contacts[i].overload(hits[i].approach_peak());
     let overload = overload(0).max(overload(1));
     let told = format!(
-        "a contact approaches by about {overload:.1e} times what begins to yield; the law of a contact that yields was found up to {PROVEN_OVERLOAD} times"
+        "a contact approaches by about {overload:.1e} times what begins to yield; the law of a contact that yields was compared with finite elements up to {PROVEN_OVERLOAD} times"
     );
     if overload > MOST_OVERLOAD {
         return Err(Error::Solver(format!(

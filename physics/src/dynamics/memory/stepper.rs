@@ -379,7 +379,11 @@ impl<'a> Stepper<'a> {
                 / (system.masses[0] * system.speed),
             losses: Losses {
                 plate_damping: self.modal_loss + plate_loss,
-                contacts: Some(contact_losses),
+                // what yields knows what it has dissipated, which is never negative
+                contacts: Some([0, 1].map(|i| {
+                    let dissipated = self.bodies.contacts[i].dissipated();
+                    dissipated.map_or(contact_losses[i], |all| all - self.taken[i])
+                })),
                 ..Losses::default()
             },
             steps: self.steps,

@@ -40,8 +40,8 @@ pub(super) struct Done {
     pub(super) memory: Option<Memory>,
     /// All impacts; none without a series.
     pub(super) impacts: Vec<Impact>,
-    /// Said if the last of a series still yields.
-    pub(super) warning: Option<String>,
+    /// Said if the last of a series still yields, or a contact became too wide.
+    pub(super) warnings: Vec<String>,
 }
 
 impl Impacts<'_> {
@@ -52,7 +52,8 @@ impl Impacts<'_> {
     pub(super) fn all(&self, options: &Options) -> Result<Done> {
         let (mut last, mut after) = self.one(options, self.memory)?;
         let Some(series) = self.series else {
-            return Ok(Done { last, memory: self.memory.cloned(), impacts: Vec::new(), warning: None });
+            let warnings = after.iter().filter_map(Memory::too_wide).collect();
+            return Ok(Done { last, memory: self.memory.cloned(), impacts: Vec::new(), warnings });
         };
         let mut before = self.memory.cloned();
         let mut impacts = vec![self.row(1, &last)];
@@ -68,7 +69,8 @@ impl Impacts<'_> {
                 impacts.len()
             )
         });
-        Ok(Done { last, memory: before, impacts, warning })
+        let warnings = warning.into_iter().chain(after.iter().filter_map(Memory::too_wide)).collect();
+        Ok(Done { last, memory: before, impacts, warnings })
     }
 
     /// One impact, and what the materials remember after it.

@@ -49,9 +49,9 @@ impl Reduced {
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>)> {
         let start = Instant::now();
         let options = Options { heat: true, ..self.options(tolerance) };
-        let Done { last, impacts, memory, warning } = self.impacts().all(&options)?;
+        let Done { last, impacts, memory, warnings } = self.impacts().all(&options)?;
         let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
-        summary.warnings.extend(warning);
+        summary.warnings.extend(warnings);
         let elastic_efficiency = self.impacts().elastic_efficiency(&options);
         let elastic_limit = self.elastic_limit(&options)?;
         Ok((Summary { impacts, elastic_efficiency, elastic_limit, ..summary }, memory))
