@@ -1,4 +1,4 @@
-//! The GitHub Action's steps, with programs in the place of the built one and of `gh` that write down what they are told.
+//! The GitHub Action's steps, with programs in the place of the built one and of `gh` that write down their arguments.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -14,10 +14,10 @@ fn script(step: &str) -> String {
     lines.map(|line| line.trim_start().to_owned() + "\n").collect()
 }
 
-/// What a step makes `program` be told, an argument a line, then its standard input.
-fn told(step: &str, program: &str, folder: &Path, environment: &[(&str, &str)]) -> String {
+/// The arguments that a step gives to `program`, one a line, then its standard input.
+fn received(step: &str, program: &str, folder: &Path, environment: &[(&str, &str)]) -> String {
     let file = folder.join(program);
-    fs::write(&file, "#!/bin/sh\nprintf '%s\\n' \"$@\" > told\ncat >> told\n").unwrap();
+    fs::write(&file, "#!/bin/sh\nprintf '%s\\n' \"$@\" > received\ncat >> received\n").unwrap();
     fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).unwrap();
     let mut command = Command::new("bash");
     // as GitHub runs it
@@ -26,7 +26,7 @@ fn told(step: &str, program: &str, folder: &Path, environment: &[(&str, &str)]) 
     command.env("PROGRAM", &file).env("REPORT", "report").env("GITHUB_OUTPUT", "output");
     command.envs(environment.iter().copied()).stdin(std::process::Stdio::null());
     assert!(command.status().unwrap().success(), "{step}");
-    fs::read_to_string(folder.join("told")).unwrap()
+    fs::read_to_string(folder.join("received")).unwrap()
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn scenes_may_be_a_line_each() {
     let folder = tempfile::tempdir().unwrap();
     let gate = |scenes: &str, arguments: &str, store: &str| {
         let environment = [("SCENES", scenes), ("ARGUMENTS", arguments), ("STORE", store)];
-        told("Gate", "impactcheck", folder.path(), &environment).replace('\n', " ")
+        received("Gate", "impactcheck", folder.path(), &environment).replace('\n', " ")
     };
     let out = "--out report --junit report/gate.xml ";
     assert_eq!(gate("a.toml b.toml", "", ""), format!("gate a.toml b.toml {out}"));
@@ -52,7 +52,7 @@ fn the_comment_is_the_summary_with_a_link_to_the_report() {
     fs::write(folder.path().join("report/comparison.md"), "# impactcheck: pass\n").unwrap();
     let environment =
         [("ARTIFACT", "https://host/artifact/7"), ("GITHUB_REPOSITORY", "me/mine"), ("PULL_REQUEST", "3")];
-    let told = told("Comment", "gh", folder.path(), &environment);
-    assert!(told.contains("--body-file\n-\n# impactcheck: pass\n"), "{told}");
-    assert!(told.ends_with("(https://host/artifact/7)\n"), "{told}");
+    let received = received("Comment", "gh", folder.path(), &environment);
+    assert!(received.contains("--body-file\n-\n# impactcheck: pass\n"), "{received}");
+    assert!(received.ends_with("(https://host/artifact/7)\n"), "{received}");
 }

@@ -147,9 +147,9 @@ fn velocities_that_mechanics_forbids_are_refused() {
     assert!((stored.summary.value("efficiency").expect("shown") - 0.6960).abs() < 1e-3);
 }
 
-/// A file is told of by its own line, whatever was skipped before it.
+/// A line keeps its number, whatever was skipped before it.
 #[test]
-fn a_value_that_is_none_is_told_with_its_line() {
+fn an_unreadable_value_is_reported_with_its_line() {
     let folder = tempfile::tempdir().expect("folder");
     let text = fs::read_to_string(recipe("abaqus.rpt")).expect("report");
     let line = text.lines().nth(9).expect("a row");

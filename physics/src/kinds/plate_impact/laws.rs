@@ -1,5 +1,5 @@
-//! What mechanics allows of an impact, whoever computed it: no energy comes from nothing, contacts push and never pull, bodies
-//! that are done with each other move apart, and all of it happens at the scale of the scene.
+//! Laws of mechanics that every result of an impact obeys: no energy is gained, contacts push and never pull, the bodies move
+//! apart after the last contact, and forces, depths and times fit the energy and the natural period of the scene.
 //!
 //! A result from outside may state a few numbers only, each possible by itself: a wrong sign, unit or column then contradicts
 //! nothing but these laws. Bounds are exact up to a factor that covers what they leave out, such as the shear of a thick plate.
@@ -9,7 +9,7 @@ use crate::analytical::hertz::HertzImpact;
 use crate::contact::Hertz;
 use crate::kinds::consistency::{RunningIntegral, VELOCITY_SLACK, not_negative, peak};
 use crate::result::{History, Statement, Summary};
-use crate::scene::{Edge, PlateImpact};
+use crate::scene::{Edge, Material, PlateImpact};
 use std::f64::consts::PI;
 
 /// Share of the initial energy by which the final one may exceed it: what the velocities' own errors make of it.
@@ -26,6 +26,7 @@ const STATICS_SLACK: f64 = 1.5;
 const LONGEST_PUSH: f64 = 30.0;
 /// Most natural periods until the last contact ends: weak ones may follow late.
 const LONGEST_CONTACT: f64 = 1000.0;
+
 /// Statements about a `summary`, and about the curves of `history` where they can be sampled. `is_cut`: the run ends at a time
 /// of the scene's, so that bodies may touch again.
 pub(super) fn laws(
@@ -71,8 +72,8 @@ fn common_velocity(setup: &PlateImpact) -> Option<f64> {
     }
     let (outer, inner) = masses(setup);
     let momentum = inner * setup.inner.speed - outer * setup.outer.normal_speed();
-    let is_own = setup.outer.is_centred() && !setup.outer.shape.is_held();
-    is_own.then(|| momentum / (outer + setup.plate.mass() + inner))
+    let is_conserved = setup.outer.is_centred() && !setup.outer.shape.is_held();
+    is_conserved.then(|| momentum / (outer + setup.plate.mass() + inner))
 }
 
 /// The inner body's velocity never rises.
@@ -126,8 +127,7 @@ impl Scales {
         let (outer, inner) = masses(setup);
         let energy = 0.5 * outer * setup.outer.speed.powi(2) + 0.5 * inner * setup.inner.speed.powi(2);
         let plate = &setup.plate;
-        let is_elastic =
-            |material: &crate::scene::Material| material.is_elastic() && plate.material.is_elastic();
+        let is_elastic = |material: &Material| material.is_elastic() && plate.material.is_elastic();
         let contacts =
             [(&setup.outer.shape, &setup.outer.material), (&setup.inner.shape, &setup.inner.material)].map(
                 |(shape, material)| {
@@ -190,46 +190,45 @@ impl Scales {
 
     /// The bodies get no farther and no deeper than their energy takes them, in a time that fits the scene.
     fn motion(&self, setup: &PlateImpact, history: &History) -> Vec<Statement> {
-        let fastest = self.masses.map(|mass| (2.0 * self.energy / mass).sqrt());
-        let [outer, inner] = fastest;
+        let [outer, inner] = self.masses.map(|mass| (2.0 * self.energy / mass).sqrt());
         let bodies = [("outer", outer), ("inner", inner), ("plate", 10.0 * outer.max(inner))];
         let paths = bodies.into_iter().filter_map(|(body, fastest)| path(history, body, fastest));
         let mut laws: Vec<Statement> = paths.collect();
-        let displacement = |body: &str| history.curve(&format!("{body}_displacement"));
-        if let Some(motion) = displacement("inner").filter(|_| !self.is_wet) {
-            let beyond = |(t, u): (&f64, &f64)| u - motion[0] - setup.inner.speed * t;
-            let highest = history.time.iter().zip(motion).map(beyond).fold(f64::NEG_INFINITY, f64::max);
-            laws.push(Statement::at_most(
-                "inner_displacement_direction",
-                "m",
-                highest,
-                0.0,
-                0.05 * peak(motion),
-            ));
-        }
-        let deepest = |motion: &[f64]| motion.iter().copied().fold(f64::INFINITY, f64::min);
-        let (duration, rigid) = self.rigid;
-        let is_dense = history.time[1] < 0.25 * duration && history.time[history.len() - 1] > duration;
-        if let Some(motion) = displacement("outer").filter(|_| is_dense) {
-            let least = -0.3 * rigid;
-            laws.push(Statement::at_most("outer_displacement_direction", "m", deepest(motion), least, 0.0));
-        }
+        laws.extend(self.displacement_directions(history));
         let velocity = self.outer_velocity(history);
-        if let Some(velocity) = &velocity {
-            let change = |k: usize| (velocity[k] - velocity[0]).abs();
-            let half = 0.5 * change(velocity.len() - 1);
-            let at = (0..velocity.len()).find(|k| change(*k) >= half).map_or(0.0, |k| history.time[k]);
-            // one that hardly changes tells no time
-            if half > NODE_SLACK * setup.outer.speed {
-                laws.push(Statement::at_most("outer_push_time", "s", at, LONGEST_PUSH * self.period, 0.0));
-            }
-        }
-        let path = velocity.map(|velocity| RunningIntegral::of(&history.time, &velocity).values);
-        let motion = displacement("outer").map(<[f64]>::to_vec).or(path);
+        laws.extend(velocity.as_ref().and_then(|velocity| self.push_time(setup, history, velocity)));
+        let by_velocity = velocity.map(|velocity| RunningIntegral::of(&history.time, &velocity).values);
+        let motion = history.curve("outer_displacement").map(<[f64]>::to_vec).or(by_velocity);
         if let (Some(motion), Some(depth)) = (motion, self.depth) {
-            laws.push(Statement::at_least("outer_depth", "m", deepest(&motion), -depth, 0.0));
+            laws.push(Statement::at_least("outer_depth", "m", lowest(&motion), -depth, 0.0));
         }
         laws
+    }
+
+    /// The inner body never lags behind its first velocity, and the outer one gets deeper than in a rigid plate.
+    fn displacement_directions(&self, history: &History) -> Vec<Statement> {
+        let displacement = |body: &str| history.curve(&format!("{body}_displacement"));
+        let inner = displacement("inner").filter(|_| !self.is_wet).map(|motion| {
+            let beyond = history.time.iter().zip(motion).map(|(t, u)| u - motion[0] - self.start[1] * t);
+            let slack = 0.05 * peak(motion);
+            Statement::at_most("inner_displacement_direction", "m", beyond.fold(0.0, f64::max), 0.0, slack)
+        });
+        let (duration, rigid) = self.rigid;
+        let is_dense = history.time[1] < 0.25 * duration && history.time[history.len() - 1] > duration;
+        let outer = displacement("outer").filter(|_| is_dense).map(|motion| {
+            Statement::at_most("outer_displacement_direction", "m", lowest(motion), -0.3 * rigid, 0.0)
+        });
+        inner.into_iter().chain(outer).collect()
+    }
+
+    /// How long the outer body takes to change half of its `velocity` in m/s; nothing if it hardly changes.
+    fn push_time(&self, setup: &PlateImpact, history: &History, velocity: &[f64]) -> Option<Statement> {
+        let change = |k: usize| (velocity[k] - velocity[0]).abs();
+        let half = 0.5 * change(velocity.len() - 1);
+        let at = (0..velocity.len()).find(|k| change(*k) >= half)?;
+        let longest = LONGEST_PUSH * self.period;
+        (half > NODE_SLACK * setup.outer.speed)
+            .then(|| Statement::at_most("outer_push_time", "s", history.time[at], longest, 0.0))
     }
 
     /// The outer body's velocity in m/s, by the impulse of its force where it is not given.
@@ -241,6 +240,11 @@ impl Scales {
         let given = history.curve("outer_velocity").map(<[f64]>::to_vec);
         given.or_else(|| history.curve("outer_force").map(by_force))
     }
+}
+
+/// Smallest of `values`.
+fn lowest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 /// Where a body is farthest beyond what it can reach at the speed `fastest` in m/s.
