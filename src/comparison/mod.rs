@@ -72,11 +72,6 @@ impl Comparison {
         let checks = self.scenes.iter().filter_map(|scene| scene.reference_check.as_ref());
         checks.into_iter().any(|check| check.verdict == BandVerdict::Beyond)
     }
-
-    /// Name and verdict of every scene.
-    pub fn verdicts(&self) -> impl Iterator<Item = (&str, Verdict)> {
-        self.scenes.iter().map(|s| (&*s.scene, s.verdict))
-    }
 }
 
 /// One scene: its reference and the reduced models compared with it.

@@ -245,7 +245,7 @@ mod tests {
         let wide = DAT.replacen("-3.288653E-01", "*************", 1);
         assert!(
             dat(&wide).is_err_and(
-                |reason| reason.starts_with("line 18: ") && reason.contains("no row of velocities")
+                |reason| reason.starts_with("line 19: ") && reason.contains("no row of velocities")
             )
         );
     }
@@ -281,12 +281,12 @@ mod tests {
 
  internal energy (element, energy) for set EALL and time  {time:.7E}
 
-         1  2.000000E-05
-         2  4.000000E-05
+         1  1.000000E+00
+         2  3.000000E+00
 
  total internal energy for set EALL and time  {time:.7E}
 
-        6.000000E-05
+        4.000000E+00
 
 "
             )
@@ -298,7 +298,7 @@ mod tests {
         for (line, [velocity, force]) in lines.zip([["-1e0", "-1.25e1"], ["-5e-1", "-2.5e1"]]) {
             assert_eq!(line[of("velocities BALL vz")], velocity);
             assert_eq!(line[of("total surface force LOWER UPPER fz")], force);
-            assert_eq!(line[of("internal energy EALL energy")], "3e-5");
+            assert_eq!(line[of("internal energy EALL energy")], "2e0");
         }
     }
 
