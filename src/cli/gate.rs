@@ -29,7 +29,7 @@ pub struct Arguments {
     /// How quantities count whose verdict the reference's 95 % band leaves open: fail, warn (they pass, and are told) or pass
     #[arg(long, default_value = "warn", value_name = "fail|warn|pass")]
     undecided: Undecided,
-    /// Let a scene fail of which nothing is gated
+    /// Let a scene fail of which nothing is gated, or whose reference has no value for a tolerance
     #[arg(long)]
     require_tolerances: bool,
     /// Change what fails in the scene files (known bias; bound of a residual) so that it passes, and accept the references as
@@ -88,7 +88,7 @@ fn conclude(
             "if this is right after all: the same command with --update --reason \"why\" changes the tolerances and keeps the reason",
         );
     }
-    let refused = comparison.verdicts().any(|(_, verdict)| rules.refuse(verdict)) || job.refuses(&comparison);
+    let refused = comparison.scenes.iter().any(|scene| scene.is_refused(rules)) || job.refuses(&comparison);
     Ok(if refused { ExitStatus::ToleranceExceeded } else { ExitStatus::Pass })
 }
 
@@ -96,18 +96,26 @@ fn conclude(
 /// --quiet must not hide that less was shown than a pass says.
 fn tell_verdicts(job: &Job, report: &Report) {
     let rules = report.rules;
-    for (scene, verdict) in report.comparison().verdicts() {
-        let word = if rules.refuse(verdict) { "error" } else { "warning" };
+    for comparison in report.scenes.iter().map(|scene| &scene.comparison) {
+        let SceneComparison { scene, verdict, .. } = comparison;
+        let is_refused = comparison.is_refused(rules);
+        let word = if is_refused { "error" } else { "warning" };
+        let lacking = comparison.without_reference();
         match verdict {
             Verdict::NotGated => {
                 let file =
-                    job.scenes.iter().find(|(_, s)| s.name == scene).map_or(Path::new(""), |(file, _)| file);
+                    job.scenes.iter().find(|(_, s)| s.name == *scene).map_or(Path::new(""), |(file, _)| file);
                 super::tell(format_args!(
                     "{word}: nothing of scene `{scene}` is gated: {} has no tolerances of the models compared; add for example tolerances.C = {{ efficiency = {{ relative = 0.01 }} }}",
                     file.display()
                 ));
             }
-            Verdict::Undecided if rules.undecided != Undecided::Pass => super::tell(format_args!(
+            _ if rules.undecided == Undecided::Pass && !is_refused => {}
+            _ if !lacking.is_empty() => super::tell(format_args!(
+                "{word}: the reference of scene `{scene}` has no value for these tolerances, which stay undecided: {}",
+                lacking.join(", ")
+            )),
+            Verdict::Undecided => super::tell(format_args!(
                 "{word}: scene `{scene}` is undecided: the band of its reference leaves tolerances open; each such quantity says what would decide it"
             )),
             _ => {}

@@ -3,8 +3,8 @@
 use super::{Context, reference};
 use crate::error::{Error, Result};
 use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
-use crate::scene::Scene;
-use std::path::PathBuf;
+use crate::scene::{self, Scene};
+use std::path::{Path, PathBuf};
 
 /// The references of `scenes`, from the store or computed.
 ///
@@ -26,14 +26,15 @@ pub(super) fn look_up(
                 found.push(reference::compute(context, scene, resolution, &store, &wish)?);
             }
             other => {
-                let mut problem = reference::problem(scene, resolution, &other);
+                let problem = reference::problem(scene, resolution, &other);
+                let mut problem = format!("{problem}; {}", advice(context, file, scene, resolution, &other));
                 let shipped = Store::shipped().ok().filter(|shipped| *shipped != store);
                 for store in [Some(&store), shipped.as_ref()].into_iter().flatten() {
                     let there: Vec<String> =
                         store.resolutions(scene).into_iter().map(Resolution::argument).collect();
                     if !there.is_empty() {
                         problem += &format!(
-                            "; there is one for `--resolution {}` in {}",
+                            "; or compare with one that is there: add `--resolution {}` (in {})",
                             there.join("`, `--resolution "),
                             store.root().display()
                         );
@@ -60,14 +61,30 @@ pub(super) fn tell_reused(context: &Context, stored: &Stored) {
     }
 }
 
+/// The command that makes a reference that can't be used one that can.
+fn advice(context: &Context, file: &Path, scene: &Scene, resolution: Resolution, lookup: &Lookup) -> String {
+    let is_shipped = scene::resolve(&scene.name).is_ok_and(|shipped| shipped == file);
+    let named = if is_shipped { scene.name.clone() } else { file.display().to_string() };
+    let store = context.store.as_ref().map_or(String::new(), |root| format!(" --store {}", root.display()));
+    let command = |rest: &str| format!("`impactcheck{store} reference {rest}`");
+    let own = match resolution {
+        Resolution::Paper => named.clone(),
+        other => format!("{named} --resolution {}", other.argument()),
+    };
+    match lookup {
+        _ if resolution == Resolution::Imported => {
+            format!("take one in with {}", command(&format!("import {named} --from FILE")))
+        }
+        Lookup::Damaged { .. } => format!("compute it again with {}", command(&format!("{own} --fresh"))),
+        _ => format!("compute it with {} (seconds to minutes), or add `--compute`", command(&own)),
+    }
+}
+
 /// One error that names every reference that can't be used, if there is any.
 fn all_found(mut problems: Vec<String>) -> Result<()> {
     if problems.is_empty() {
         return Ok(());
     }
-    problems.push(
-        "compute references with `impactcheck reference SCENE` or `--compute` (`impactcheck doctor` tells what that needs)"
-            .into(),
-    );
+    problems.push("`impactcheck doctor` shows what a computation needs".into());
     Err(Error::Reference(problems.join("\n  ")))
 }

@@ -1,7 +1,7 @@
 //! The difference of one quantity between reduced model and reference, against its bound.
 
 use super::validation::Assessment;
-use super::verdict::Verdict;
+use super::verdict::{GateRules, Verdict};
 use crate::scene::Tolerance;
 use serde::Serialize;
 
@@ -162,6 +162,26 @@ impl Discrepancy {
             Verdict::worst([Some(reduced), reference.map(Some)].into_iter().flatten().map(of))
         });
         Discrepancy { tolerance: width, verdict, ..row }
+    }
+
+    /// The row of a tolerance for which the reference has no value.
+    pub(super) fn undecided(self) -> Self {
+        Discrepancy { verdict: Verdict::Undecided, ..self }
+    }
+
+    /// Whether a tolerance is undecided because the reference has no value for it.
+    pub fn lacks_reference(&self) -> bool {
+        self.verdict == Verdict::Undecided && self.reference.is_none()
+    }
+
+    /// Whether the scene states a tolerance for it.
+    pub fn is_gated(&self) -> bool {
+        self.tolerance.is_some() || self.lacks_reference()
+    }
+
+    /// Whether the row stops at the gate: where tolerances are required, each needs a value to be compared with.
+    pub fn is_refused(&self, rules: GateRules) -> bool {
+        rules.refuse(self.verdict) || (rules.require_tolerances && self.lacks_reference())
     }
 
     /// Judges the row by the 95 % band of the difference itself, of half width `band`.

@@ -2,7 +2,8 @@
 //! and the verdict.
 //!
 //! The verdict of a model is the worst of its rows': fail if a discrepancy exceeds its tolerance beyond
-//! the reference's band or a value is not a number, undecided if the band leaves that open, not gated only if nothing is.
+//! the reference's band or a value is not a number, undecided if the band leaves that open or another program's reference has no
+//! value, not gated only if nothing is.
 //! It is fail, too, if one of the two results contradicts itself ([`Check`]): a history that does not
 //! belong to its summary proves nothing, whatever the summary says.
 
@@ -71,11 +72,6 @@ impl Comparison {
         let checks = self.scenes.iter().filter_map(|scene| scene.reference_check.as_ref());
         checks.into_iter().any(|check| check.verdict == BandVerdict::Beyond)
     }
-
-    /// Name and verdict of every scene.
-    pub fn verdicts(&self) -> impl Iterator<Item = (&str, Verdict)> {
-        self.scenes.iter().map(|s| (&*s.scene, s.verdict))
-    }
 }
 
 /// One scene: its reference and the reduced models compared with it.
@@ -108,6 +104,21 @@ pub struct SceneComparison {
 }
 
 impl SceneComparison {
+    /// Whether the scene stops at the gate.
+    pub fn is_refused(&self, rules: GateRules) -> bool {
+        let mut rows = self.models.iter().flat_map(|model| &model.discrepancies);
+        rules.refuse(self.verdict) || rows.any(|row| row.is_refused(rules))
+    }
+
+    /// Tolerances for which the reference has no value, as `MODEL.QUANTITY`.
+    pub fn without_reference(&self) -> Vec<String> {
+        let of = |model: &ModelComparison| {
+            let rows = model.discrepancies.iter().filter(|row| row.lacks_reference());
+            rows.map(|row| format!("{}.{}", model.model, row.quantity)).collect::<Vec<_>>()
+        };
+        self.models.iter().flat_map(of).collect()
+    }
+
     /// Adds checks of the reference; one that fails makes the scene and all its models fail.
     pub fn add_reference_checks(&mut self, checks: Vec<Check>) {
         let sound = Verdict::of_soundness(checks.iter().map(|check| check.verdict));
@@ -248,7 +259,7 @@ impl ModelComparison {
 
     /// Verdicts of the rows that have a tolerance.
     pub fn gated_verdicts(&self) -> impl Iterator<Item = Verdict> {
-        self.discrepancies.iter().filter(|row| row.tolerance.is_some()).map(|row| row.verdict)
+        self.discrepancies.iter().filter(|row| row.is_gated()).map(|row| row.verdict)
     }
 
     /// Number of rows that have a tolerance.
@@ -353,14 +364,17 @@ fn quantities(
         // belongs to none is its own peak.
         let curve = kind.curves().iter().find(|curve| name.starts_with(curve.name));
         let peak = curve.and_then(|curve| reference.history.curve(curve.name)).map_or(size, peak);
-        Discrepancy::new(
+        // another program's result need not state it
+        let is_open = value.is_none() && reference.summary.source == Source::External;
+        let tolerance = tolerances.get(name);
+        let row = Discrepancy::new(
             (name, unit),
             (reduced.value(name), value),
             Scales { value: size, peak },
-            // what another program's result does not state can't be judged by it
-            tolerances.get(name).filter(|_| value.is_some() || reference.summary.source != Source::External),
+            tolerance.filter(|_| !is_open),
             reference.summary.band(name),
-        )
+        );
+        if is_open && tolerance.is_some() { row.undecided() } else { row }
     };
     kind.quantities().iter().map(row).collect()
 }
@@ -387,13 +401,15 @@ fn curve_distances(
         ];
         for (kind, distance) in distances {
             let quantity = format!("{name}_{kind}");
-            rows.push(Discrepancy::new(
+            let tolerance = tolerances.get(&quantity);
+            let row = Discrepancy::new(
                 (&quantity, unit),
-                (Some(distance).filter(|_| is_given), Some(0.0)),
+                (Some(distance).filter(|_| is_given), Some(0.0).filter(|_| is_judged)),
                 Scales { value: peak, peak },
-                tolerances.get(&quantity).filter(|_| is_judged),
+                tolerance.filter(|_| is_judged),
                 sides[0].summary.band(&quantity),
-            ));
+            );
+            rows.push(if !is_judged && tolerance.is_some() { row.undecided() } else { row });
         }
     }
     rows

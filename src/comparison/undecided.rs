@@ -1,4 +1,4 @@
-//! What would decide a row that the reference's band leaves open.
+//! What would decide a row that the reference leaves open: by its band, or because it has no value.
 
 use super::discrepancy::Discrepancy;
 use super::verdict::Verdict;
@@ -25,6 +25,9 @@ fn targeted_band(reference: &Summary) -> Option<f64> {
 
 /// With the band narrowed to the distance from the bound, the row is decided. All bands shrink alike with the mesh.
 fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
+    if row.lacks_reference() {
+        return Some("the reference has no value of it: use one that has, or remove the tolerance".into());
+    }
     let (tolerance, band) = (row.tolerance?, row.band()?);
     let needed = (tolerance - row.checked()).abs();
     let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };

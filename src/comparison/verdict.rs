@@ -10,7 +10,7 @@ pub enum Verdict {
     NotGated,
     /// Within its bound, wherever the truth lies in the reference's band.
     Pass,
-    /// The reference's band leaves open whether it is within its bound.
+    /// The reference's band leaves open whether it is within its bound, or it has no value to compare with.
     Undecided,
     /// Outside its bound, wherever the truth lies in the reference's band; or not a number.
     Fail,
@@ -108,12 +108,12 @@ impl std::str::FromStr for Undecided {
 pub struct GateRules {
     /// How undecided verdicts count.
     pub undecided: Undecided,
-    /// Whether a scene of which nothing is gated is refused.
+    /// Whether a scene is refused of which nothing is gated, or whose reference has no value for a tolerance.
     pub require_tolerances: bool,
 }
 
 impl GateRules {
-    /// Whether a scene with this verdict stops at the gate.
+    /// Whether this verdict stops at the gate.
     pub fn refuse(self, verdict: Verdict) -> bool {
         match verdict {
             Verdict::NotGated => self.require_tolerances,

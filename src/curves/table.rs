@@ -6,6 +6,9 @@ use crate::scene::{quantity_in, suggestion};
 /// Most rows: a second at 20 MHz.
 const MOST: usize = 20_000_000;
 
+/// What some programs put before a text in UTF-8.
+pub const BYTE_ORDER_MARK: char = '\u{feff}';
+
 /// A column that is wanted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
@@ -101,7 +104,7 @@ pub fn read(rows: &mut csv::Reader<&[u8]>, columns: &[Column], fewest: usize) ->
         let line = row.position().map_or(0, csv::Position::line);
         for (values, Column { name, index, factor, offset }) in values.iter_mut().zip(columns) {
             let text = row.get(*index).ok_or_else(|| format!("line {line}: {name} is missing"))?;
-            let number: Option<f64> = text.parse().ok().filter(|n: &f64| n.is_finite());
+            let number = self::number(text).filter(|n| n.is_finite());
             let number =
                 number.ok_or_else(|| format!("line {line}: {name} is `{text}`, not a finite number"))?;
             values.push(number * factor + offset);
@@ -124,6 +127,22 @@ pub fn read(rows: &mut csv::Reader<&[u8]>, columns: &[Column], fewest: usize) ->
     Ok(Columns { time, values: others.collect() })
 }
 
+/// A number as C or Fortran writes it: Fortran has D as the exponent's letter, too, and leaves it out before three digits
+/// (`1.5-110`).
+pub fn number(text: &str) -> Option<f64> {
+    text.parse().ok().or_else(|| {
+        let by_letter = text.split_once(['d', 'D']).filter(|(mantissa, _)| !mantissa.contains(['e', 'E']));
+        let by_sign = || {
+            let (mantissa, exponent) = text.split_at_checked(text.len().checked_sub(4)?)?;
+            let is_exponent =
+                exponent.starts_with(['+', '-']) && exponent[1..].bytes().all(|b| b.is_ascii_digit());
+            (is_exponent && mantissa.contains('.')).then_some((mantissa, exponent))
+        };
+        let (mantissa, exponent) = by_letter.or_else(by_sign)?;
+        format!("{mantissa}e{exponent}").parse().ok()
+    })
+}
+
 /// A reader of CSV with a header; lines that begin with `#` are skipped.
 pub fn csv_reader(bytes: &[u8], delimiter: u8) -> csv::Reader<&[u8]> {
     csv::ReaderBuilder::new()
@@ -132,4 +151,26 @@ pub fn csv_reader(bytes: &[u8], delimiter: u8) -> csv::Reader<&[u8]> {
         .trim(csv::Trim::All)
         .delimiter(delimiter)
         .from_reader(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn numbers_of_fortran_are_numbers() {
+        for (text, value) in [
+            ("-7.66720-110", -7.6672e-110),
+            ("1.5+100", 1.5e100),
+            ("1.0D-03", 1e-3),
+            ("-2.5d+02", -250.0),
+            ("3.25E-004", 3.25e-4),
+        ] {
+            assert_eq!(number(text), Some(value), "{text}");
+        }
+        // two numbers without a space, a date, a range
+        for text in ["1.5E+00-110", "1.5-1", "2026-110", "0.125-1.5", "D", "1D", "1.5-11O", "--1.5-110"] {
+            assert_eq!(number(text), None, "{text}");
+        }
+    }
 }

@@ -21,12 +21,16 @@ const SHOWN: usize = 60;
 /// One sentence that says what is wrong with it.
 pub fn read(scene: &Scene, name: &str, text: &[u8]) -> Result<(Summary, History), String> {
     let kind = kinds::of(scene);
-    let text = std::str::from_utf8(text).map_err(|e| format!("it is no text in UTF-8: {e}"))?.trim();
+    let text = std::str::from_utf8(text).map_err(|e| format!("it is no text in UTF-8: {e}"))?;
+    let text = text.trim_start_matches(table::BYTE_ORDER_MARK).trim();
     if text.is_empty() {
         return Err("it is empty".into());
     }
     if text.starts_with('{') {
         return document(scene, name, text);
+    }
+    if let Some(what) = not_an_object(text) {
+        return Err(format!("it is a JSON {what}, not an object"));
     }
     let history = rows(kind, text)?;
     Ok((summary(scene, name, Table::new(kind.quantities()), &history), history))
@@ -41,6 +45,18 @@ pub fn summary(scene: &Scene, name: &str, stated: Table, history: &History) -> S
         }
     }
     Summary::new(scene, (Source::External, Some(name.to_owned())), table)
+}
+
+/// What a JSON document is that is no object; `None` of what is no document.
+fn not_an_object(text: &str) -> Option<&'static str> {
+    match serde_json::from_str(text).ok()? {
+        Value::Array(_) => Some("list"),
+        Value::String(_) => Some("string"),
+        Value::Null => Some("null"),
+        Value::Bool(_) => Some("boolean"),
+        Value::Number(_) => Some("number"),
+        Value::Object(_) => None,
+    }
 }
 
 fn document(scene: &Scene, name: &str, text: &str) -> Result<(Summary, History), String> {

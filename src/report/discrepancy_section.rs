@@ -62,7 +62,7 @@ fn undecided(rows: &[Discrepancy]) -> Markup {
     let open = || rows.iter().filter_map(|row| Some((row, row.would_decide.as_ref()?)));
     html! {
         @if open().next().is_some() {
-            p { (badge(Verdict::Undecided)) " The 95 % band reaches across the bound:" }
+            p { (badge(Verdict::Undecided)) " What would decide these quantities:" }
             ul { @for (row, how) in open() { li { (words(&row.quantity)) ": " (prose(how)) } } }
         }
     }

@@ -65,8 +65,10 @@ fn annotations_of(
 ) -> Vec<Annotation> {
     let (file, text) = place(&comparison.scene);
     let annotation = |finding: Finding| {
+        let is_refused =
+            finding.row.map_or_else(|| rules.refuse(finding.verdict), |row| row.is_refused(rules));
         let level = match finding.verdict {
-            verdict if rules.refuse(verdict) => "error",
+            _ if is_refused => "error",
             _ if rules.undecided == Undecided::Pass => return None,
             _ => "warning",
         };

@@ -33,8 +33,7 @@ fn suite(comparison: &SceneComparison, rules: GateRules) -> TestSuite {
         suite.add_test_case(named(&comparison.scene, "gate", "tolerances", Some(message)));
     }
     for model in &comparison.models {
-        let rows =
-            model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d, rules.undecided));
+        let rows = model.discrepancies.iter().map(|d| case(&comparison.scene, &model.model, d, rules));
         suite.add_test_cases(rows);
         let checks = model.integrity.iter();
         suite.add_test_cases(checks.map(|c| integrity_case(&comparison.scene, &model.model, c)));
@@ -59,21 +58,19 @@ fn classed(scene: &str, source: &str, mut case: TestCase) -> TestCase {
     case
 }
 
-fn case(scene: &str, model: &str, row: &Discrepancy, undecided: Undecided) -> TestCase {
+fn case(scene: &str, model: &str, row: &Discrepancy, rules: GateRules) -> TestCase {
     let skipped = |message: String| {
         let mut status = TestCaseStatus::skipped();
         status.set_message(message);
         classed(scene, model, TestCase::new(row.quantity.as_str(), status))
     };
-    let mut case = match (row.verdict, undecided) {
-        (Verdict::NotGated, _) => skipped("not gated: the scene has no tolerance for it".to_owned()),
-        (Verdict::Undecided, Undecided::Warn) => skipped(told(row)),
-        (Verdict::Pass, _) | (Verdict::Undecided, Undecided::Pass) => {
-            named(scene, model, &row.quantity, None)
-        }
-        (Verdict::Fail, _) | (Verdict::Undecided, Undecided::Fail) => {
+    let mut case = match (row.verdict, rules.undecided) {
+        _ if row.is_refused(rules) && row.verdict != Verdict::NotGated => {
             named(scene, model, &row.quantity, Some(told(row)))
         }
+        (Verdict::NotGated, _) => skipped("not gated: the scene has no tolerance for it".to_owned()),
+        (Verdict::Undecided, Undecided::Warn) => skipped(told(row)),
+        _ => named(scene, model, &row.quantity, None),
     };
     case.add_property(Property::new("verdict", row.verdict.name()));
     case.add_property(Property::new("unit", row.unit.as_str()));
@@ -116,6 +113,9 @@ pub(crate) fn told(row: &Discrepancy) -> String {
     let side = |value: Option<f64>| value.map_or("not determined".into(), |v| in_unit(short(v), unit));
     let numbers = format!("{quantity}: reduced {}, reference {}", side(row.reduced), side(row.reference));
     let Some(difference) = row.difference else {
+        if let Some(how) = &row.would_decide {
+            return format!("{numbers}: undecided; {how}");
+        }
         return format!("{numbers}; a tolerance needs both: set a later `run.end_time`, or none");
     };
     // what 100 % is, so that bounds stand in the same measure as the difference
@@ -158,7 +158,5 @@ pub(crate) fn integrity_failure(check: &Check) -> String {
     // all digits: many of these bounds are a matter of rounding
     let Check { check, unit, found, expected, bound, .. } = check;
     let [found, expected, bound] = [found, expected, bound].map(|value| in_unit(value.to_string(), unit));
-    format!(
-        "{check}: the history says {found}, the summary or the scene {expected}; they may differ by {bound}"
-    )
+    format!("{check}: found {found}, expected {expected} within {bound}")
 }

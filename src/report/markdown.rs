@@ -7,36 +7,81 @@ use super::validated_map::{self, ValidatedMap};
 use super::{Report, SceneReport, presentation};
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison};
 
-/// Markdown of the whole report.
+/// Most characters of the document: comments on GitHub hold 65 536, and what posts it may add a link.
+const MOST: usize = 60_000;
+/// Most of them for the table of verdicts.
+const MOST_ROWS: usize = 35_000;
+
+/// Markdown of the whole report, as far as it fits into a comment on GitHub.
 pub fn markdown(report: &Report) -> String {
     of(report, &standing::of_run(report))
 }
 
-/// Markdown of all scenes whose results stand in a folder; those that are kept have their tables on their pages.
+/// Markdown of all scenes whose results stand in a folder; those that are kept have their tables on their pages. So have
+/// those for which there is no room, the scenes with the better verdicts first.
 pub(super) fn of(report: &Report, scenes: &[Standing]) -> String {
+    let urgency = |scene: &Standing| std::cmp::Reverse(scene.overview.verdict);
+    let rows = scenes.iter().map(|scene| {
+        let rows = scene.overview.models.iter().map(|model| row(&scene.overview.scene, model));
+        (urgency(scene), [rows.collect(), String::new()])
+    });
     let mut text = format!(
         "# impactcheck: {}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy of the summary |\n|---|---|---|--:|--:|---|\n",
         standing::verdict(scenes)
     );
-    for scene in scenes {
-        text.extend(scene.overview.models.iter().map(|model| row(&scene.overview.scene, model)));
+    let (rows, left_out) = fitted(rows.collect(), MOST_ROWS);
+    text += &rows;
+    if left_out > 0 {
+        text += &format!(
+            "\n{left_out} more scenes, with no worse verdicts, are in `index.html` and `comparison.json`.\n"
+        );
     }
     text += &format!("\n{AMONG}\n");
     if ValidatedMap::of(report.validated(), None).is_some() {
         text += &format!("\n![Where the models were held against references]({})\n", validated_map::FILE);
     }
-    for scene in &report.scenes {
-        text += &section(scene);
+    let kept = scenes.iter().filter(|scene| scene.is_kept());
+    let kept = kept.map(|scene| (urgency(scene), [(); 2].map(|()| brief(scene, &scene.when()))));
+    let own = report.scenes.iter().filter_map(|own| {
+        let scene = scenes.iter().find(|scene| scene.overview.scene == own.comparison.scene)?;
+        Some((urgency(scene), [section(own), brief(scene, "")]))
+    });
+    let room = MOST.saturating_sub(text.chars().count());
+    text + &fitted(own.chain(kept).collect(), room).0
+}
+
+/// The pieces in their order, each in its longer form if there is room, else in its shorter one or not at all; what is urgent
+/// has its room first. With the number of those left out.
+fn fitted<O: Ord>(pieces: Vec<(O, [String; 2])>, room: usize) -> (String, usize) {
+    let size = |text: &String| text.chars().count();
+    let mut order: Vec<usize> = (0..pieces.len()).collect();
+    order.sort_by_key(|k| &pieces[*k].0);
+    let mut left = room;
+    let mut chosen = vec![None; pieces.len()];
+    // the shorter forms of all come before the longer form of any
+    for form in [1, 0] {
+        for &k in &order {
+            let [longer, shorter] = &pieces[k].1;
+            let (text, before) = if form == 1 { (shorter, 0) } else { (longer, chosen[k].map_or(0, size)) };
+            if (form == 1 && text.is_empty()) || size(text) > left + before {
+                continue;
+            }
+            left = left + before - size(text);
+            chosen[k] = Some(text);
+        }
     }
-    for kept in scenes.iter().filter(|scene| scene.is_kept()) {
-        let Overview { scene, verdict, command, .. } = &kept.overview;
-        text += &format!(
-            "\n## {0}: {verdict}\n\n{1} Its tables are on [its page]({scene}.html).\n\nMade by:\n\n    {command}\n",
-            escape(scene),
-            kept.when()
-        );
-    }
-    text
+    let left_out = chosen.iter().filter(|text| text.is_none()).count();
+    (chosen.into_iter().flatten().map(String::as_str).collect(), left_out)
+}
+
+/// Verdict of a scene whose tables are on its page, and the command that makes it.
+fn brief(scene: &Standing, when: &str) -> String {
+    let Overview { scene, verdict, command, .. } = &scene.overview;
+    let when = if when.is_empty() { String::new() } else { format!("{when} ") };
+    format!(
+        "\n## {0}: {verdict}\n\n{when}Its tables are on [its page]({scene}.html).\n\nMade by:\n\n    {command}\n",
+        escape(scene)
+    )
 }
 
 /// A model's row in the table of verdicts.

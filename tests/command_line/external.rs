@@ -163,3 +163,38 @@ fn a_program_that_misbehaves_is_told_of_and_stops_nothing() {
     let misspelt = judged.model("forks")["summary"]["warnings"][0].as_str().unwrap();
     assert!(misspelt.contains("did you mean `efficiency`?"), "{misspelt}");
 }
+
+/// What is possible in itself and not in this impact, a list in the place of a document, and one with a byte order mark.
+#[test]
+fn an_answer_has_to_be_a_document_that_mechanics_allows() {
+    let programs = [
+        (
+            "sign",
+            r#"echo '{"efficiency": 0.6947, "outer_velocity_final": -0.2957, "inner_velocity_final": 0.4584}'"#,
+        ),
+        (
+            "microseconds",
+            r#"echo '{"history": {"time": [0, 40, 80, 120, 160, 200], "outer_velocity": [-0.55, -0.4, -0.1, 0.1, 0.25, 0.2957]}}'"#,
+        ),
+        ("list", r#"echo '[{"efficiency": 0.6947}]'"#),
+        ("mark", r#"printf '\357\273\277{"efficiency": 0.6947}'"#),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let file = scene(folder.path(), &programs, "[tolerances.mark]\nefficiency = 0.001\n");
+    let judged = gate(&file, &["--models", "external", "--allow-external"], None);
+    assert_eq!(judged.status, Some(12), "{}", judged.told);
+    for (name, laws) in [
+        ("sign", &["inner_velocity_final_direction", "outer_velocity_final_direction"]),
+        ("microseconds", &["outer_push_time", "outer_depth"]),
+    ] {
+        let model = judged.model(name);
+        let checks = model["integrity"].as_array().unwrap();
+        let broken = checks.iter().filter(|check| check["verdict"] == "fail");
+        let broken: Vec<_> = broken.map(|check| check["check"].as_str().unwrap()).collect();
+        let all = laws.iter().all(|law| broken.contains(law));
+        assert!(model["verdict"] == "fail" && all, "{name}: {broken:?}");
+    }
+    let failure = judged.model("list")["summary"]["failure"].as_str().unwrap();
+    assert!(failure.contains("it is a JSON list, not an object"), "{failure}");
+    assert_eq!(judged.model("mark")["verdict"], "pass");
+}

@@ -44,12 +44,11 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// The user's folder: examples as the guide names them, and the shipped solutions in a store of its own.
+/// A reader's folder is a checkout: what is there has the same places; the shipped solutions are in a store of its own.
 fn folder() -> tempfile::TempDir {
     let (folder, project) = (tempfile::tempdir().unwrap(), Path::new(ROOT));
-    copy(&project.join("scenes/examples"), folder.path());
-    for part in ["external", "import", "uncertainty"] {
-        copy(&project.join("examples").join(part), &folder.path().join("examples").join(part));
+    for part in ["scenes/examples", "examples/external", "examples/import", "examples/uncertainty"] {
+        copy(&project.join(part), &folder.path().join(part));
     }
     copy(&project.join("fem_reference/solutions"), &folder.path().join("store"));
     folder

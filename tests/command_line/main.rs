@@ -1,5 +1,7 @@
 //! Tests of the program as a user calls it.
 
+#[cfg(unix)]
+mod action;
 mod animations;
 mod bad_input;
 mod coverage;

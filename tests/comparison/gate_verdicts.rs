@@ -97,3 +97,59 @@ fn what_the_reference_cannot_tell_is_undecided_and_the_user_says_how_it_counts()
     assert!(status == 0 && !said.contains("undecided"), "{said}");
     assert_eq!(status_and_said(&gate(&file, &["--undecided", "maybe"])).0, 2);
 }
+
+/// A result of another program that states velocities alone is the reference.
+#[test]
+fn a_tolerance_without_a_value_to_compare_with_is_undecided_and_fails_where_tolerances_are_required() {
+    let tolerances = "[tolerances.B]\nefficiency = { absolute = 0.01 }\nouter_force_peak = { relative = 0.2 }\nouter_force_rms = { relative_to_peak = 0.2 }\n";
+    let (folder, file) = scene(tolerances);
+    let run = |arguments: &[&str]| {
+        let mut command = Command::cargo_bin("impactcheck").unwrap();
+        command.args(arguments).current_dir(&folder).env_remove("GITHUB_ACTIONS");
+        command.env("IMPACTCHECK_STORE", folder.path().join("store")).output().unwrap()
+    };
+    let reduced = run(&["reduced", "scene.toml", "--model", "B", "--history", "all.csv"]);
+    assert!(reduced.status.success(), "{reduced:?}");
+    let all = std::fs::read_to_string(folder.path().join("all.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = all.lines().map(|line| line.split(',').collect()).collect();
+    let of = |name: &str| rows[0].iter().position(|heading| *heading == name).unwrap();
+    let kept = ["time", "outer_velocity", "inner_velocity"].map(of);
+    let row = |row: &Vec<&str>| kept.map(|k| row[k]).join(",");
+    let mut text = rows.iter().map(row).collect::<Vec<_>>().join("\n");
+    // both bodies fly on
+    let last = rows.last().unwrap();
+    let end: f64 = last[kept[0]].parse().unwrap();
+    for k in 1..=rows.len() / 10 {
+        text += &format!("\n{},{},{}", end + 1e-7 * k as f64, last[kept[1]], last[kept[2]]);
+    }
+    std::fs::write(folder.path().join("velocities.csv"), text).unwrap();
+    let imported = run(&["reference", "import", "scene.toml", "--from", "velocities.csv"]);
+    assert!(imported.status.success(), "{}", String::from_utf8_lossy(&imported.stderr));
+
+    let gate = |rules: &[&str]| {
+        let arguments = ["gate", "scene.toml", "--models", "B", "--resolution", "imported", "--json"];
+        let output = run(&[&arguments[..], rules, &["--out", "report"]].concat());
+        (document(&output), status_and_said(&output))
+    };
+    let told = "B.outer_force_peak, B.outer_force_rms";
+    let (found, (status, said)) = gate(&[]);
+    assert!(status == 0 && said.contains("warning: ") && said.contains(told), "{said}");
+    let rows = found["scenes"][0]["models"][0]["discrepancies"].as_array().unwrap();
+    let verdict = |name: &str| &rows.iter().find(|row| row["quantity"] == name).unwrap()["verdict"];
+    assert_eq!(found["verdict"], "undecided");
+    assert_eq!(
+        ["efficiency", "outer_force_peak", "outer_force_rms", "inner_force_rms"].map(verdict),
+        ["pass", "undecided", "undecided", "not_gated"]
+    );
+    for rules in [
+        &["--require-tolerances"][..],
+        &["--undecided", "fail"],
+        &["--require-tolerances", "--undecided", "pass"],
+    ] {
+        let (_, (status, said)) = gate(rules);
+        assert!(status == 10 && said.contains("error: ") && said.contains(told), "{rules:?}: {said}");
+        let failure = "<failure message=\"outer_force_peak: reduced";
+        assert!(junit(&file).contains(failure) && junit(&file).contains("has no value of it"), "{rules:?}");
+    }
+    assert_eq!(gate(&["--undecided", "pass"]).1.0, 0);
+}

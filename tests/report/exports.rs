@@ -3,7 +3,7 @@
 use crate::report_data::{Data, between};
 use crate::synthetic_impact;
 use crate::synthetic_impact::reduced_of;
-use impactcheck::comparison::Verdict;
+use impactcheck::comparison::{GateRules, Verdict};
 use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::report::{
@@ -228,7 +228,7 @@ fn damaged_history_still_gives_a_report() {
     assert!(scene_page(&report.scenes[0]).contains("contradicts itself"));
     assert_eq!(document(&report)["verdict"], "fail");
     assert_eq!(curves_csv(&report.scenes[0]).unwrap().lines().count(), 1);
-    assert!(markdown(&report).contains("not_finite: the history says 1, the summary or the scene 0"));
+    assert!(markdown(&report).contains("not_finite: found 1, expected 0 within 0"));
 }
 
 #[test]
@@ -270,4 +270,38 @@ fn junit_cases_carry_their_figures() {
         }
     }
     assert!(compared > 100);
+}
+
+/// A comment on GitHub holds 65 536 characters: as many scenes as there may be have their verdicts in it, and the worst their tables.
+#[test]
+fn the_document_of_many_scenes_fits_into_a_comment() {
+    let data = Data::new();
+    let one = data.report().scenes.remove(0);
+    let many = |count: usize| {
+        let scenes = (0..count).map(|k| {
+            let mut scene = one.clone();
+            scene.comparison.scene = format!("plate-{k:03}");
+            // one fails, far behind
+            scene.comparison.verdict = if k == count - 2 { Verdict::Fail } else { Verdict::Pass };
+            scene
+        });
+        markdown(&Report { scenes: scenes.collect(), rules: GateRules::default() })
+    };
+    let tables = |text: &str| text.matches("| quantity | reduced |").count();
+    for count in [1, 2, 6, 47, 400] {
+        let text = many(count);
+        assert!(text.chars().count() < 65_536 - 2_000, "{count}: {}", text.chars().count());
+        let listed = (0..count).filter(|k| text.contains(&format!("| plate-{k:03} |"))).count();
+        let left_out = text.contains(&format!("{} more scenes", count - listed));
+        assert!(listed == count || (count == 400 && left_out), "{listed} of {count}");
+        if count > 1 {
+            let failed = format!("\n## plate-{:03}: fail\n", count - 2);
+            let (_, after) = text.split_once(&failed).expect("the one that fails is there");
+            assert!(after.split("\n## ").next().is_some_and(|section| tables(section) == 2), "{count}");
+        }
+    }
+    let whole = many(1).chars().count();
+    assert_eq!(tables(&many(2)), 4, "a scene has {whole} characters");
+    let text = many(47);
+    assert!(tables(&text) >= 2 && text.contains("Its tables are on [its page](plate-044.html)."));
 }

@@ -23,6 +23,18 @@ pub(crate) fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |p, v| p.max(v.abs()))
 }
 
+/// Endings of the names of results that are never negative.
+const NOT_NEGATIVE: [&str; 5] = ["efficiency", "_peak", "_end", "_speed", "first_frequency"];
+
+/// Results of a summary that can't be negative are not.
+pub(crate) fn not_negative(summary: &Summary) -> Vec<Statement> {
+    let is_one = |name: &str| NOT_NEGATIVE.iter().any(|ending| name.ends_with(ending));
+    let known = summary.quantities.iter().filter(|quantity| is_one(quantity.name));
+    known
+        .filter_map(|q| Some(Statement::at_least(format!("{}_sign", q.name), q.unit, q.value?, 0.0, 0.0)))
+        .collect()
+}
+
 /// What a summary states of a contact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stated {
@@ -119,15 +131,15 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Integral from the first instant to each, by the trapezoidal rule.
-struct RunningIntegral {
-    values: Vec<f64>,
+pub(crate) struct RunningIntegral {
+    pub(crate) values: Vec<f64>,
     /// Largest difference to the integral over every other sample: above the error of the
     /// full one, which is about a third of it for a smooth curve.
     sampling_error: f64,
 }
 
 impl RunningIntegral {
-    fn of(time: &[f64], curve: &[f64]) -> Self {
+    pub(crate) fn of(time: &[f64], curve: &[f64]) -> Self {
         let accumulated = |stride: usize| {
             let mut sum = 0.0;
             let mut values = vec![0.0];

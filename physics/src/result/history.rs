@@ -75,9 +75,11 @@ impl History {
     }
 
     /// Rate at which the curve called `name` goes on after the last sample, in free flight; `None` if a contact is closed
-    /// there, or the curve is one of an elastic body.
+    /// there, if the body's own contact force is not given, or if the curve is one of an elastic body.
     pub fn rate_after_end(&self, name: &str) -> Option<f64> {
         let curve = self.curves.iter().find(|curve| curve.name == name && !curve.is_elastic)?;
+        let (body, _) = name.split_once('_')?;
+        self.curve(&format!("{body}_force"))?;
         let mut forces = self.curves.iter().filter(|curve| curve.unit == "N");
         if !forces.all(|force| force.values.last() == Some(&0.0)) {
             return None;

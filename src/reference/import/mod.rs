@@ -67,6 +67,7 @@ fn history(
     mapping: &Mapping,
 ) -> std::result::Result<History, String> {
     let text = std::str::from_utf8(bytes).map_err(|e| format!("is no text in UTF-8: {e}"))?;
+    let text = text.trim_start_matches(table::BYTE_ORDER_MARK);
     let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let comma = Form::default();
     let (text, form) = match ending.as_deref() {
@@ -85,20 +86,24 @@ fn history(
     external::assembled(kind, from_first_touch(table::read(&mut reader, &columns, FEWEST)?)?)
 }
 
-/// A table of text as CSV with headings, which are numbers where it has none.
+/// A table of text as CSV with headings, which are numbers where it has none. Every line keeps its place.
 fn plain<'f>(text: &str, form: &'f Form) -> std::result::Result<(String, &'f Form), String> {
-    let rows = text.lines().skip(form.skip).filter(|line| !line.trim().is_empty());
     let spaces = form.delimiter == "spaces";
-    let separated = |line: &str| match spaces {
+    let separated = |(k, line): (usize, &str)| match spaces {
+        _ if k < form.skip => String::new(),
         true => line.split_whitespace().collect::<Vec<_>>().join(","),
         false => line.trim_end().to_owned(),
     };
-    let mut lines: Vec<String> = rows.map(separated).collect();
+    let mut lines: Vec<String> = text.lines().enumerate().map(separated).collect();
     if !form.headings {
-        let first = lines.first().ok_or("has no row")?;
+        let first = lines.iter().position(|line| !line.is_empty()).ok_or("has no row")?;
         let separator = if spaces { "," } else { &form.delimiter };
-        let count = first.split(separator).count();
-        lines.insert(0, (1..=count).map(|k| k.to_string()).collect::<Vec<_>>().join(separator));
+        let count = lines[first].split(separator).count();
+        let headings = (1..=count).map(|k| k.to_string()).collect::<Vec<_>>().join(separator);
+        match first.checked_sub(1) {
+            Some(blank) => lines[blank] = headings,
+            None => lines.insert(0, headings),
+        }
     }
     Ok((lines.join("\n"), form))
 }

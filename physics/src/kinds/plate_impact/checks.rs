@@ -1,11 +1,13 @@
 //! What a result of a plate impact must obey by itself: it starts as the scene says, its summary is found again in its
 //! history, and its balances close.
 
+use super::laws::laws;
+use super::shown::shown;
 use crate::kinds::consistency::{
     EFFICIENCY_SLACK, FORCE_FLOOR, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance,
     momentum_balance, peak,
 };
-use crate::result::{History, Outcome, Statement, Summary};
+use crate::result::{History, Outcome, Source, Statement, Summary};
 use crate::scene::{PlateImpact, Shape};
 
 /// Share of the largest force of all contacts that may be missed in the peak of another.
@@ -14,7 +16,8 @@ const UNSEEN_FORCE: f64 = 1e-4;
 const PLATE_SLACK: f64 = 0.05;
 
 /// Statements about a result: of its curves only if they can be sampled, and each only if the curves it needs are there.
-pub(super) fn checks(setup: &PlateImpact, outcome: &Outcome) -> Vec<Statement> {
+/// `is_cut`: the run ends at a time of the scene's.
+pub(super) fn checks(setup: &PlateImpact, outcome: &Outcome, is_cut: bool) -> Vec<Statement> {
     let summary = &outcome.summary;
     let sampled = Some(&outcome.history).filter(|history| history.can_be_sampled());
     let mut checks: Vec<Statement> = sampled.into_iter().flat_map(|history| start(setup, history)).collect();
@@ -22,6 +25,9 @@ pub(super) fn checks(setup: &PlateImpact, outcome: &Outcome) -> Vec<Statement> {
     checks.extend(sampled.into_iter().flat_map(|history| end(setup, summary, history)));
     checks.extend(efficiency(setup, summary));
     checks.extend(sampled.into_iter().flat_map(|history| balances(setup, summary, history)));
+    if summary.source == Source::External {
+        checks.extend(laws(setup, is_cut, summary, sampled));
+    }
     checks
 }
 
@@ -67,17 +73,21 @@ fn contacts(summary: &Summary, history: &History) -> Vec<Statement> {
     ["outer", "inner"].into_iter().zip(stated).filter_map(of_body).flatten().collect()
 }
 
-/// Final velocities, where they are determined. The last sample tells if it lies in free flight.
+/// Final velocities, where they are determined. The last sample tells if it lies in free flight; without forces the curves
+/// of the velocities do.
 fn end(setup: &PlateImpact, summary: &Summary, history: &History) -> Vec<Statement> {
     let bound = VELOCITY_SLACK * setup.outer.speed;
-    let flies = ["outer", "inner"].map(|body| of(history, body, "force").and_then(|force| force.last()));
+    let forces = ["outer", "inner"].map(|body| of(history, body, "force").and_then(|force| force.last()));
+    let by_curves = (forces == [None; 2]).then(|| shown(setup, history));
     let velocity = |body: &str| {
-        let (name, found) = (format!("{body}_velocity_final"), of(history, body, "velocity")?.last()?);
-        Some(Statement::new(&*name, "m/s", *found, summary.value(&name)?, bound))
+        let name = format!("{body}_velocity_final");
+        let last = || of(history, body, "velocity")?.last().copied();
+        let found = by_curves.as_ref().map_or_else(last, |shown| shown.value(&name))?;
+        Some(Statement::new(&*name, "m/s", found, summary.value(&name)?, bound))
     };
     // In a fluid the inner body slows down after the last contact.
     let bodies: &[&str] = if setup.fluid.is_none() { &["outer", "inner"] } else { &["outer"] };
-    let bodies = if flies == [Some(&0.0); 2] { bodies } else { &[] };
+    let bodies = if by_curves.is_some() || forces == [Some(&0.0); 2] { bodies } else { &[] };
     bodies.iter().copied().filter_map(velocity).collect()
 }
 

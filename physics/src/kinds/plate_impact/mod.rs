@@ -8,6 +8,7 @@ mod continua;
 pub mod deflection;
 pub mod errors;
 mod joined;
+mod laws;
 mod limits;
 mod predictor;
 pub mod reduced;
@@ -62,6 +63,7 @@ impl super::Kind for Kind {
     }
 
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {
-        scene.plate_impact().map_or_else(|_| Vec::new(), |setup| checks::checks(setup, outcome))
+        let is_cut = scene.run.end_time.is_some();
+        scene.plate_impact().map_or_else(|_| Vec::new(), |setup| checks::checks(setup, outcome, is_cut))
     }
 }

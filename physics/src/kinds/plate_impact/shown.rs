@@ -30,9 +30,12 @@ pub(super) fn shown(setup: &PlateImpact, history: &History) -> Table {
         set(&format!("{body}_contact_end"), is_over.then(|| last.map_or(0.0, |k| history.time[k])));
         set(&format!("{body}_contacts"), is_over.then_some(begins as f64));
     }
-    let outer = final_velocity(setup, history, "outer");
+    // what touches nothing now may be struck again while the other body still is
+    let is_over = ["outer", "inner"].into_iter().all(|body| flies(setup, history, body));
+    let last = |body: &str| history.curve(&format!("{body}_velocity"))?.last().copied().filter(|_| is_over);
+    let outer = last("outer");
     // in a fluid the inner body slows down after the last contact
-    let inner = final_velocity(setup, history, "inner").filter(|_| setup.fluid.is_none());
+    let inner = last("inner").filter(|_| setup.fluid.is_none());
     set("outer_velocity_final", outer);
     set("inner_velocity_final", inner);
     let mass_ratio =
@@ -44,13 +47,19 @@ pub(super) fn shown(setup: &PlateImpact, history: &History) -> Table {
     table
 }
 
-/// Velocity in m/s of a body that flies freely at the end of the history.
-fn final_velocity(setup: &PlateImpact, history: &History, body: &str) -> Option<f64> {
-    let velocity = history.curve(&format!("{body}_velocity"))?;
-    let last = *velocity.last()?;
-    let flight = velocity.len() - ((FLIGHT * velocity.len() as f64).ceil() as usize).clamp(2, velocity.len());
-    let flies = velocity[flight..].iter().all(|v| (v - last).abs() <= VELOCITY_SLACK * setup.outer.speed);
-    flies.then_some(last)
+/// Whether a body flies freely at the end of the history, as far as its curves tell: its velocity does not change any more,
+/// and its force is zero. In a fluid the inner body slows down.
+fn flies(setup: &PlateImpact, history: &History, body: &str) -> bool {
+    let steady = |velocity: &[f64]| {
+        let count = ((FLIGHT * velocity.len() as f64).ceil() as usize).clamp(2, velocity.len());
+        let flight = &velocity[velocity.len() - count..];
+        flight.iter().all(|v| (v - flight[count - 1]).abs() <= VELOCITY_SLACK * setup.outer.speed)
+    };
+    let velocity = history.curve(&format!("{body}_velocity"));
+    let force = history.curve(&format!("{body}_force"));
+    let is_drifting = body == "inner" && setup.fluid.is_some();
+    velocity.is_none_or(|velocity| is_drifting || steady(velocity))
+        && force.is_none_or(|force| force[force.len() - 1] <= FORCE_FLOOR * peak(force))
 }
 
 #[cfg(test)]
@@ -86,6 +95,15 @@ mod tests {
         for open in ["efficiency", "outer_contact_end", "inner_velocity_final"] {
             assert_eq!(found.value(open), None, "{open}");
         }
+        // the inner body flies, and the outer one still touches: without forces, too
+        let half = ours.history.time.partition_point(|t| *t < 1.3e-4);
+        let velocities = ours.history.curves.iter().filter(|curve| curve.name.ends_with("velocity"));
+        let mut cut = History {
+            time: ours.history.time[..half].to_vec(),
+            curves: velocities.filter(|curve| !curve.is_elastic).cloned().collect(),
+        };
+        cut.curves.iter_mut().for_each(|curve| curve.values.truncate(half));
+        assert!(shown(setup, &cut).iter().all(|quantity| quantity.value.is_none()));
         assert!(shown(setup, &History::new(&CURVES)).iter().all(|quantity| quantity.value.is_none()));
     }
 }

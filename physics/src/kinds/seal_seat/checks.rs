@@ -3,27 +3,52 @@
 
 use super::{SeatCurves, SeatQuantities};
 use crate::kinds::consistency::{
-    EFFICIENCY_SLACK, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance, momentum_balance, peak,
+    EFFICIENCY_SLACK, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance, momentum_balance,
+    not_negative, peak,
 };
-use crate::result::{Outcome, Statement};
+use crate::result::{Outcome, Source, Statement, Summary};
 use crate::scene::SealSeat;
 
-/// Statements about a result whose curves are all there and can be sampled.
+/// Share of the initial energy by which a result from outside may exceed it.
+const ENERGY_SLACK: f64 = 5e-3;
+
+/// Statements about a result: of its curves if all are there and can be sampled.
 pub(super) fn checks(setup: &SealSeat, outcome: &Outcome) -> Vec<Statement> {
     let summary = &outcome.summary;
     let whole = Some(&outcome.history).filter(|history| history.can_be_sampled());
-    let Some(history) = whole.and_then(SeatCurves::of) else { return Vec::new() };
-    let mut checks = start(setup, &history);
-    let of =
-        |name, force| contact(name, summary.source, (history.time, force), Stated::of(summary, name), 0.0);
-    checks.extend(of("sphere", history.sphere_force));
-    checks.extend(of("actuator", history.actuator_force));
-    if let Some(q) = SeatQuantities::of_table(&summary.quantities) {
-        checks.extend(velocities(setup, &q, &history));
+    let history = whole.and_then(SeatCurves::of);
+    let mut checks = Vec::new();
+    if let Some(history) = &history {
+        checks.extend(start(setup, history));
+        let of = |name, force| {
+            contact(name, summary.source, (history.time, force), Stated::of(summary, name), 0.0)
+        };
+        checks.extend(of("sphere", history.sphere_force));
+        checks.extend(of("actuator", history.actuator_force));
     }
-    checks.push(components(&history));
-    checks.extend(balances(setup, summary.sample_interval.unwrap_or(0.0), &history));
+    checks.extend(relations(setup, summary));
+    if let Some(history) = &history {
+        if let Some(q) = SeatQuantities::of_table(&summary.quantities) {
+            checks.extend(velocities(setup, &q, history));
+        }
+        checks.push(components(history));
+        checks.extend(balances(setup, summary.sample_interval.unwrap_or(0.0), history));
+    }
+    if summary.source == Source::External {
+        checks.extend(not_negative(summary));
+        checks.extend(energy(setup, summary));
+    }
     checks
+}
+
+/// Energy that sphere and actuator have gained, relative to what the actuator had.
+fn energy(setup: &SealSeat, summary: &Summary) -> Option<Statement> {
+    let before = setup.actuator.mass * setup.actuator.speed.powi(2);
+    let sphere = summary.value("sphere_speed").map(|v| setup.sphere.mass * v.powi(2) / before);
+    let sphere = [sphere, summary.value("efficiency")].into_iter().flatten().reduce(f64::max)?;
+    let actuator = summary.value("actuator_velocity_final").unwrap_or(0.0);
+    let after = sphere + setup.actuator.mass * actuator.powi(2) / before;
+    Some(Statement::at_most("energy_gained", "1", after - 1.0, 0.0, ENERGY_SLACK))
 }
 
 fn start(setup: &SealSeat, history: &SeatCurves) -> Vec<Statement> {
@@ -40,20 +65,32 @@ fn start(setup: &SealSeat, history: &SeatCurves) -> Vec<Statement> {
     ]
 }
 
-/// Velocities and what follows from them: speed, direction, efficiency.
+/// What follows from the sphere's velocity, where it is determined: speed, direction, efficiency.
+fn relations(setup: &SealSeat, summary: &Summary) -> Vec<Statement> {
+    let value = |name: &str| summary.value(name);
+    let (Some(x), Some(z)) = (value("sphere_velocity_x"), value("sphere_velocity_z")) else {
+        return Vec::new();
+    };
+    let mass_ratio = setup.sphere.mass / setup.actuator.mass;
+    let efficiency = mass_ratio * (x * x + z * z) / setup.actuator.speed.powi(2);
+    let speed = VELOCITY_SLACK * setup.actuator.speed;
+    let relations = [
+        ("sphere_speed", "m/s", x.hypot(z), speed),
+        ("sphere_angle", "rad", x.atan2(z), 1e-6),
+        ("efficiency", "1", efficiency, EFFICIENCY_SLACK * efficiency),
+    ];
+    let statement =
+        |(name, unit, expected, bound)| Some(Statement::new(name, unit, value(name)?, expected, bound));
+    relations.into_iter().filter_map(statement).collect()
+}
+
+/// Final velocities, where the last sample lies in free flight.
 fn velocities(setup: &SealSeat, q: &SeatQuantities, history: &SeatCurves) -> Vec<Statement> {
     let last = history.time.len() - 1;
     let bound = VELOCITY_SLACK * setup.actuator.speed;
     let velocity = |name: &str, found: f64, stated: f64| Statement::new(name, "m/s", found, stated, bound);
     let (x, z) = (q.sphere_velocity_x, q.sphere_velocity_z);
-    let mass_ratio = setup.sphere.mass / setup.actuator.mass;
-    let efficiency = mass_ratio * (x * x + z * z) / setup.actuator.speed.powi(2);
-    let mut checks = vec![
-        velocity("sphere_speed", q.sphere_speed, x.hypot(z)),
-        Statement::new("sphere_angle", "rad", q.sphere_angle, x.atan2(z), 1e-6),
-        Statement::new("efficiency", "1", q.efficiency, efficiency, EFFICIENCY_SLACK * efficiency),
-    ];
-    // The last sample tells if it lies in free flight.
+    let mut checks = Vec::new();
     if history.sphere_force[last] == 0.0 {
         checks.push(velocity("sphere_velocity_x", history.sphere_velocity[0][last], x));
         checks.push(velocity("sphere_velocity_z", history.sphere_velocity[1][last], z));
