@@ -160,7 +160,7 @@ impl Residual {
         if y[0] <= 0.0 && y[1] <= 0.0 {
             return Some((y, [0.0; 2]));
         }
-        self.solve_near(laws, y, guess).or_else(|| self.follow(laws, y))
+        self.solve_near(laws, y, guess).or_else(|| self.follow(laws, y)).or_else(|| { if std::env::var("A2").is_ok() { eprintln!("FAIL {self:?} {laws:?} y {y:?} guess {guess:?}"); } None })
     }
 
     /// [`Self::solve`] by solutions at growing parts of `y`.

@@ -69,8 +69,8 @@ fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> Search {
             if gap <= 1e-14 * scale && rate < 0.0 {
                 return Search::Found(Flight::Touch(time));
             }
-            step =
-                step.min(bound.safe_step(gap.max(0.0), rate)).min(horizon.max(1e-3 * bound.shortest_period));
+            let safe = bound.safe_step(gap.max(0.0), rate).max(bound.out_of_reach(time));
+            step = step.min(safe).min(horizon.max(1e-3 * bound.shortest_period));
         }
         if step.is_infinite() || time > limit {
             return Search::Found(Flight::Over);
@@ -190,6 +190,18 @@ impl GapBounds {
             Some((self.elastic - gap) / self.rigid_rate)
         } else {
             Some(f64::INFINITY)
+        }
+    }
+
+    /// Time in s from `time` on for which the gap of the rigid motions alone exceeds all amplitudes together.
+    fn out_of_reach(&self, time: f64) -> f64 {
+        let beyond = self.rigid_gap + self.rigid_rate * time - self.elastic;
+        if beyond <= 0.0 {
+            0.0
+        } else if self.rigid_rate < 0.0 {
+            beyond / -self.rigid_rate
+        } else {
+            f64::INFINITY
         }
     }
 

@@ -268,6 +268,11 @@ impl System {
         self.initial_energy() + 0.5 * self.masses[1] * self.inner_velocity().powi(2)
     }
 
+    /// Momenta of outer and inner body before the impact in N s, without their signs: the scale of momentum residuals.
+    pub fn initial_momentum(&self) -> f64 {
+        self.masses[0] * self.speed + self.masses[1] * self.inner_velocity().abs()
+    }
+
     /// Velocity of the inner body before the impact in m/s, signed along z.
     pub fn inner_velocity(&self) -> f64 {
         dot(&self.bodies[1], &self.start[1])
