@@ -33,7 +33,7 @@ pub(super) fn of(report: &Report, scenes: &[Standing]) -> String {
         text += &format!(
             "\n## {0}: {verdict}\n\n{1} Its tables are on [its page]({scene}.html).\n\nMade by:\n\n    {command}\n",
             escape(scene),
-            kept.when()
+            kept.kept()
         );
     }
     text

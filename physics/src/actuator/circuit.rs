@@ -45,6 +45,13 @@ pub struct Mode {
     admittance: Complex<f64>,
 }
 
+impl Mode {
+    /// Whether it decays without a vibration.
+    pub fn is_decay(&self) -> bool {
+        self.pole.im == 0.0
+    }
+}
+
 /// A stack with its supply.
 #[derive(Debug, Clone)]
 pub struct Circuit {

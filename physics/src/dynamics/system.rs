@@ -304,6 +304,19 @@ impl System {
         }
     }
 
+    /// The energy in J but for what a stack's circuit still charges without vibrating, and the speed in m/s at which that moves the free
+    /// tip, from now on ever more slowly; `None` without a circuit.
+    pub fn energy_but_charging(&self, q: &[f64], v: &[f64]) -> Option<(f64, f64)> {
+        let circuit = self.circuit.as_ref()?;
+        let (mut own_q, mut own_v) = (self.of_outer(q), self.of_outer(v));
+        let mut speed = 0.0;
+        for (k, mode) in circuit.modes.iter().enumerate().filter(|(_, mode)| mode.is_decay()) {
+            speed += (mode.tip * own_v[k]).abs();
+            (own_q[k], own_v[k]) = (0.0, 0.0);
+        }
+        Some((circuit.account(&own_q, &own_v).available + self.energy_beside_outer(q, v), speed))
+    }
+
     /// Kinetic and strain energy of all but the outer body in J.
     fn energy_beside_outer(&self, q: &[f64], v: &[f64]) -> f64 {
         let of = |k: usize| 0.5 * (v[k] * v[k] + (self.oscillators[k].omega * q[k]).powi(2));
