@@ -100,6 +100,12 @@ impl Circuit {
         self.stack.stroke * self.final_voltage() / self.stack.voltage
     }
 
+    /// Time constant in s with which the free stack charges, R C of stack and buffer in series.
+    pub fn charging_time(&self) -> f64 {
+        self.supply.resistance * self.stack.capacitance
+            / (1.0 + self.stack.capacitance * self.buffer_elastance())
+    }
+
     /// A and its derivative.
     fn admittance(&self, s: Complex<f64>) -> [Complex<f64>; 2] {
         let mut sums = [Complex::from(0.0); 2];

@@ -382,7 +382,8 @@ mod tests {
     #[test]
     fn a_table_that_holds_for_tiny_patches_alone_has_an_equilibrium_all_the_same() {
         let table = PatchTable { own: [[0.2; 4], [0.38; 4]], mutual: [[0.3; 4]; 4] };
-        let laws = [Hertz { stiffness: 1.17e6, tip_radius: 5e-4 }, Hertz { stiffness: 2.28e6, tip_radius: 2e-3 }];
+        let laws =
+            [Hertz { stiffness: 1.17e6, tip_radius: 5e-4 }, Hertz { stiffness: 2.28e6, tip_radius: 2e-3 }];
         let residual = Residual::new(&PatchFlexibility::through(&table, [3.6e-5, 5.8e-5]), &laws);
         for y in [[5.1e-8, -7.4e-8], [5e-8, 3e-8], [-2e-8, 4e-8], [1e-6, 1e-6]] {
             let (p, f) = residual.solve(&laws, y, y).expect("an equilibrium");

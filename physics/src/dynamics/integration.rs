@@ -163,8 +163,7 @@ impl Closing<'_> {
             contacts: self.contacts,
             energy_residual: unaccounted.abs() / initial,
             energy_gained: unaccounted / initial,
-            momentum_residual: unexplained_momentum(system, v, contacts, &fluid)
-                / system.initial_momentum(),
+            momentum_residual: unexplained_momentum(system, v, contacts, &fluid) / system.initial_momentum(),
             losses: Losses {
                 plate_damping: if damped { initial - end - contact_work + fluid.work } else { 0.0 },
                 squeeze_film: fluid.dissipated[0],

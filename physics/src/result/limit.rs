@@ -121,8 +121,15 @@ impl Limit {
 
     /// If the bound is exceeded: by what, and what that means, in one sentence.
     pub fn warning(&self) -> Option<String> {
-        let theories =
-            [HERTZ, SMALL_STRAIN, SMALL_DEFLECTION, SMALL_ROTATION, QUASI_STATIC, ELASTICITY, ELASTIC_BENDING];
+        let theories = [
+            HERTZ,
+            SMALL_STRAIN,
+            SMALL_DEFLECTION,
+            SMALL_ROTATION,
+            QUASI_STATIC,
+            ELASTICITY,
+            ELASTIC_BENDING,
+        ];
         let theory = theories.iter().find(|theory| self.measure.ends_with(theory.measure))?;
         let measure = self.measure.replace('_', " ");
         self.is_exceeded()

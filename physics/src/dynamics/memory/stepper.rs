@@ -281,6 +281,10 @@ impl<'a> Stepper<'a> {
                 best = trial;
             } else if fraction > LEAST_FRACTION {
                 fraction *= 0.5;
+            } else if best.size() > ROUNDING * scale {
+                // where a contact turns from loading to unloading the slope is that of the other side: beyond it is the right one
+                best = self.trial(free, [best.x[0] - step[0], best.x[1] - step[1]], best.patch);
+                (step, fraction) = (self.newton(&best), 1.0);
             } else {
                 break;
             }
