@@ -31,7 +31,7 @@ pub fn reduced(scene: &Scene, asked: &Asked, bodies: &SharedBodies) -> Result<Ou
     if let Some(tolerance) = asked.tolerance {
         within_bounds(tolerance, &format!("tolerance {tolerance}")).map_err(Error::Usage)?;
     }
-    kinds::of(scene).reduced(&QUIET, scene, asked, bodies)
+    kinds::of(scene).reduced(&QUIET, scene, asked, bodies, true)
 }
 
 /// A scene and its file, which is empty if there is none.

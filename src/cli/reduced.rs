@@ -40,7 +40,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     let (_, scene) = super::read_scene(&arguments.scene)?;
     let outcome = progress::watched(context, &scene.name, || {
-        kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default())
+        let curves = arguments.history.is_some() || arguments.page.is_some();
+        kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default(), curves)
     })?;
     if let Some(file) = &arguments.page {
         write_file(file, report::model_page(&scene, &outcome).as_bytes())?;

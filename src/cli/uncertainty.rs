@@ -174,7 +174,9 @@ fn of_quantity(name: &str, of: &QuantityScatter) -> Vec<String> {
             "share of the variance", "alone", "with interactions", "± one deviation"
         ),
     ];
-    let share = |value: f64, interval| format!("{:.3} ± {:.3}", value, half(interval));
+    // the interval may be cut at 0 or 1
+    let share =
+        |value: f64, [low, high]: [f64; 2]| format!("{value:.3} ± {:.3}", (high - value).max(value - low));
     for (inputs, Share { first, first_interval, total, total_interval }) in of.ranking() {
         let moved = of.local.get(inputs).map_or(String::new(), |local| {
             let [low, high] =

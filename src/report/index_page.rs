@@ -169,7 +169,7 @@ fn row(scene: &Standing, model: &ModelOverview) -> Markup {
             }
             (number("reduced", own, prefixed("1", 1.0), 4))
             td data-sort=(drifting) { @if recorded > 0 { (drifting) " of " (recorded) } @else { "–" } }
-            td.left.soft { (marked(&scene.when())) }
+            td.left.soft { (marked(&scene.date())) }
         }
     }
 }

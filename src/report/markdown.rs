@@ -41,7 +41,7 @@ pub(super) fn of(report: &Report, scenes: &[Standing]) -> String {
         text += &format!("\n![Where the models were held against references]({})\n", validated_map::FILE);
     }
     let kept = scenes.iter().filter(|scene| scene.is_kept());
-    let kept = kept.map(|scene| (urgency(scene), [(); 2].map(|()| brief(scene, &scene.when()))));
+    let kept = kept.map(|scene| (urgency(scene), [(); 2].map(|()| brief(scene, &scene.kept()))));
     let own = report.scenes.iter().filter_map(|own| {
         let scene = scenes.iter().find(|scene| scene.overview.scene == own.comparison.scene)?;
         Some((urgency(scene), [section(own), brief(scene, "")]))

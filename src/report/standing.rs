@@ -27,14 +27,19 @@ impl Standing {
         self.kept.is_some()
     }
 
-    /// When it was compared, and whether in another run than this.
-    pub(super) fn when(&self) -> String {
-        let compared = self.overview.compared.as_deref().unwrap_or("at an unknown time");
-        if self.is_kept() {
-            format!("Kept from an earlier run, not compared again: compared {compared}.")
-        } else {
-            format!("Compared {compared}.")
-        }
+    /// When it was compared, for a column of that name, and whether in another run than this.
+    pub(super) fn date(&self) -> String {
+        let compared = self.compared();
+        if self.is_kept() { format!("{compared}, kept from an earlier run") } else { compared.to_owned() }
+    }
+
+    /// The same of one that is kept, as a sentence.
+    pub(super) fn kept(&self) -> String {
+        format!("Kept from an earlier run, not compared again: compared {}.", self.compared())
+    }
+
+    fn compared(&self) -> &str {
+        self.overview.compared.as_deref().unwrap_or("at an unknown time")
     }
 }
 

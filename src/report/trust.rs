@@ -30,7 +30,7 @@ pub(super) fn accuracy(columns: &[Column], model: &ModelComparison) -> String {
         |row: &&Discrepancy| model.summary.quantities.get(&row.quantity).is_some_and(|q| q.is_count);
     for row in model.discrepancies.iter().filter(counted).filter(|row| row.difference != Some(0.0)) {
         if let Some((own, reference)) = row.reduced.zip(row.reference) {
-            phrases.push(format!("{own} {} instead of {reference}", words(&row.quantity)));
+            phrases.push(format!("{}: {own} instead of {reference}", words(&row.quantity)));
         }
     }
     let truncation = model.summary.truncation_error.filter(|error| *error > SMALL);

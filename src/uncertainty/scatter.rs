@@ -122,15 +122,17 @@ pub(super) struct Impacts {
     pub(super) rows: Vec<Row>,
 }
 
-/// `None` for what is not finite.
+/// `None` for what is not finite. An index lies between 0 and 1: an estimate beyond is taken as the nearer of them.
 fn share(Indices { first, total }: Indices) -> Option<Share> {
     let there = [first, total].iter().all(|index| index.value.is_finite());
-    there.then(|| Share {
-        first: first.value,
-        first_interval: first.interval(),
-        total: total.value,
-        total_interval: total.interval(),
-    })
+    // a sum with 0 has no negative zero
+    let possible = |value: f64| value.clamp(0.0, 1.0) + 0.0;
+    let within = |index: Estimate| {
+        let index = Estimate { value: possible(index.value), ..index };
+        (index.value, index.interval().map(possible))
+    };
+    let ((first, first_interval), (total, total_interval)) = (within(first), within(total));
+    there.then_some(Share { first, first_interval, total, total_interval })
 }
 
 impl QuantityScatter {

@@ -3,6 +3,7 @@
 mod auto_model;
 mod bench_structure;
 mod bender;
+mod bounded_runs;
 mod continuum_cache;
 mod continuum_impact;
 mod continuum_plate_flexibility;

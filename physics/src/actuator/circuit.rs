@@ -45,6 +45,13 @@ pub struct Mode {
     admittance: Complex<f64>,
 }
 
+impl Mode {
+    /// Whether it decays without a vibration.
+    pub fn is_decay(&self) -> bool {
+        self.pole.im == 0.0
+    }
+}
+
 /// A stack with its supply.
 #[derive(Debug, Clone)]
 pub struct Circuit {
@@ -91,6 +98,12 @@ impl Circuit {
     /// Extension in m at which the free stack comes to rest.
     pub fn final_extension(&self) -> f64 {
         self.stack.stroke * self.final_voltage() / self.stack.voltage
+    }
+
+    /// Time constant in s with which the free stack charges, R C of stack and buffer in series.
+    pub fn charging_time(&self) -> f64 {
+        self.supply.resistance * self.stack.capacitance
+            / (1.0 + self.stack.capacitance * self.buffer_elastance())
     }
 
     /// A and its derivative.

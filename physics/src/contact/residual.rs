@@ -32,6 +32,8 @@ const MAX_ITERATIONS: usize = 60;
 const FARTHEST: f64 = 9.0;
 /// Places at which the table is tested.
 const TESTED: usize = 360;
+/// Halvings of the first of them where even there U is not convex.
+const HALVINGS: usize = 100;
 /// Places from one that is looked at to the next while U is convex by [`AMPLE`], of 1 under half-spaces alone.
 const STRIDE: usize = 15;
 const AMPLE: f64 = 0.25;
@@ -62,13 +64,20 @@ impl Residual {
         if residual.per_patch.iter().all(|scale| *scale > 0.0) {
             // how far of the way to the squares `x` the forces grow at each of the `places`
             let reach = |x: [f64; 2], places: &[[f64; 2]]| {
-                let margin = |n: usize| {
-                    let share = n as f64 / TESTED as f64;
+                let margin = |share: f64| {
                     let at =
                         |place: &[f64; 2]| residual.convexity(laws, [0, 1].map(|i| share * place[i] * x[i]));
                     places.iter().map(at).fold(1.0, f64::min)
                 };
-                (farthest_positive(TESTED, margin) as f64).max(0.5) / TESTED as f64
+                let least = 1.0 / TESTED as f64;
+                match farthest_positive(TESTED, |n| margin(n as f64 * least)) {
+                    // small patches are those of half-spaces, whatever the table says
+                    0 => {
+                        let halves = std::iter::successors(Some(0.5 * least), |share| Some(0.5 * share));
+                        halves.take(HALVINGS).find(|share| margin(*share) > 0.0).unwrap_or(0.0)
+                    }
+                    farthest => farthest as f64 * least,
+                }
             };
             let alone = [[1.0, 0.0], [0.0, 1.0]].map(|one| FARTHEST * reach([FARTHEST; 2], &[one]));
             let together = reach(alone, &[[1.0, 1.0], [1.0, 0.25], [0.25, 1.0]]);
@@ -367,6 +376,21 @@ mod tests {
         let (both, one) = (residual([0.0; 2]), residual([0.0, 100.0]));
         assert_eq!(one.largest[0], both.largest[0]);
         assert!(one.largest[1] < 0.1 * both.largest[1], "{:?}", one.largest);
+    }
+
+    /// Of a thin soft plate the table may hold for no patch of its own size: an outer face that moves more with the inner one than by itself.
+    #[test]
+    fn a_table_that_holds_for_tiny_patches_alone_has_an_equilibrium_all_the_same() {
+        let table = PatchTable { own: [[0.2; 4], [0.38; 4]], mutual: [[0.3; 4]; 4] };
+        let laws =
+            [Hertz { stiffness: 1.17e6, tip_radius: 5e-4 }, Hertz { stiffness: 2.28e6, tip_radius: 2e-3 }];
+        let residual = Residual::new(&PatchFlexibility::through(&table, [3.6e-5, 5.8e-5]), &laws);
+        for y in [[5.1e-8, -7.4e-8], [5e-8, 3e-8], [-2e-8, 4e-8], [1e-6, 1e-6]] {
+            let (p, f) = residual.solve(&laws, y, y).expect("an equilibrium");
+            let error = residual.state(&laws, p).error([0.0; 3], y, p);
+            assert!(error.iter().all(|e| e.abs() < 1e-12 * y[0].abs().max(y[1].abs())), "{y:?} {error:?}");
+            assert!(f.iter().all(|f| *f >= 0.0), "{f:?}");
+        }
     }
 
     /// With a table there is an equilibrium, and one only, whatever the table says.

@@ -69,8 +69,8 @@ fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> Search {
             if gap <= 1e-14 * scale && rate < 0.0 {
                 return Search::Found(Flight::Touch(time));
             }
-            step =
-                step.min(bound.safe_step(gap.max(0.0), rate)).min(horizon.max(1e-3 * bound.shortest_period));
+            let safe = bound.safe_step(gap.max(0.0), rate).max(bound.out_of_reach(time));
+            step = step.min(safe).min(horizon.max(1e-3 * bound.shortest_period));
         }
         if step.is_infinite() || time > limit {
             return Search::Found(Flight::Over);
@@ -117,14 +117,19 @@ pub fn advance(system: &System, time: f64, q: &mut [f64], v: &mut [f64]) {
 
 /// Whether the inner body recedes and is beyond what the plate can reach with all the energy there is.
 ///
-/// A bender swings back to the plate for ever; what it does to the plate then can't concern the inner body any more.
+/// A bender swings back to the plate for ever; what it does to the plate then can't concern the inner body any more. Nor does a stack that
+/// is charged so slowly that its tip falls behind the inner body.
 fn inner_is_out_of_reach(system: &System, bounds: &GapBounds, q: &[f64], v: &[f64]) -> bool {
-    let energy = system.energy_left(q, v) - 0.5 * v[INNER].powi(2);
+    let own = 0.5 * v[INNER].powi(2);
     let plate = system.oscillators.iter().zip(&system.approach[1]).enumerate().filter(|(k, _)| *k != INNER);
     // |sum of b q|^2 <= (sum of b^2/omega^2) (sum of omega^2 q^2), infinite for a free plate
     let flexibility: f64 =
         plate.filter(|(_, (_, b))| **b != 0.0).map(|(_, (o, b))| (b / o.omega).powi(2)).sum();
-    bounds.rigid_rate >= 0.0 && bounds.rigid_gap > (2.0 * energy * flexibility).sqrt()
+    let gone = |energy: f64, speed: f64| {
+        bounds.rigid_rate >= speed && bounds.rigid_gap > (2.0 * (energy - own) * flexibility).sqrt()
+    };
+    gone(system.energy_left(q, v), 0.0)
+        || system.energy_but_charging(q, v).is_some_and(|(energy, speed)| gone(energy, speed))
 }
 
 /// Bounds on the gap of one contact during free flight.
@@ -190,6 +195,18 @@ impl GapBounds {
             Some((self.elastic - gap) / self.rigid_rate)
         } else {
             Some(f64::INFINITY)
+        }
+    }
+
+    /// Time in s from `time` on for which the gap of the rigid motions alone exceeds all amplitudes together.
+    fn out_of_reach(&self, time: f64) -> f64 {
+        let beyond = self.rigid_gap + self.rigid_rate * time - self.elastic;
+        if beyond <= 0.0 {
+            0.0
+        } else if self.rigid_rate < 0.0 {
+            beyond / -self.rigid_rate
+        } else {
+            f64::INFINITY
         }
     }
 

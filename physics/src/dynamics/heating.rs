@@ -1,10 +1,12 @@
 //! Heat in the resistor of a stack's drive: the square of a current with all frequencies of the rod, summed up over each step.
 
 use super::collocation::Collocation;
+use super::duhamel::Oscillator;
 use super::stages::{STAGES, Stages};
 use super::system::{System, dot};
 
-/// Radians of the quickest oscillator of the circuit between two of Gauss's points at most, on an average.
+/// Radians of the quickest vibration of the circuit between two of Gauss's points at most, on an average; of a decay in the first panel,
+/// after which panels double.
 const PANEL: f64 = 0.5;
 
 /// Heat in J of the `h` s from the state (`q`, `v`) on, under the outer contact's forces `force` in N at the nodes; none without a circuit.
@@ -16,12 +18,19 @@ pub(super) fn heat(
     force: &Stages,
 ) -> f64 {
     let Some(circuit) = &system.circuit else { return 0.0 };
-    let quickest = system.feeds.iter().map(|(k, _)| system.oscillators[*k].omega).fold(0.0, f64::max);
-    let panels = (quickest * h / (PANEL * STAGES as f64)).ceil().max(1.0);
-    let mut sum = 0.0;
-    for panel in 0..panels as usize {
+    let modes = || system.feeds.iter().map(|(k, _)| system.oscillators[*k]);
+    let longest = |of: fn(&Oscillator) -> bool| {
+        let quickest = modes().filter(of).map(|mode| mode.omega).fold(0.0, f64::max);
+        PANEL * STAGES as f64 / quickest
+    };
+    let even = h / (h / longest(|mode| mode.alpha < mode.omega)).ceil().max(1.0);
+    // what only decays has died away the later the slower
+    let first = longest(|mode| mode.alpha >= mode.omega);
+    let (mut sum, mut from) = (0.0, 0.0);
+    while from < h * (1.0 - 1e-12) {
+        let panel = even.min(first.max(from)).min(h - from);
         for (node, weight) in collocation.nodes.iter().zip(&collocation.weights) {
-            let t = h * (panel as f64 + node) / panels;
+            let t = from + panel * node;
             let at = |(k, feed): &(usize, _)| {
                 let oscillator = &system.oscillators[*k];
                 let free = oscillator.after(t, [q[*k], v[*k]]);
@@ -33,8 +42,9 @@ pub(super) fn heat(
                 (moved(0), moved(1))
             };
             let (q, v): (Vec<f64>, Vec<f64>) = system.feeds.iter().map(at).unzip();
-            sum += weight * h / panels * circuit.heating(&q, &v);
+            sum += weight * panel * circuit.heating(&q, &v);
         }
+        from += panel;
     }
     sum
 }

@@ -6,6 +6,9 @@ use super::free_flight;
 use super::system::{PLATE, System};
 use crate::result::{History, Losses};
 
+/// Samples between the ends of steps and flights that a requested history has at most: 9 MB.
+pub const SAMPLES_BETWEEN: usize = 1 << 17;
+
 /// What the user may choose about the integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
@@ -15,6 +18,8 @@ pub struct Options {
     pub end_time: Option<f64>,
     /// Largest distance of samples in s; `None` = no history is kept.
     pub sample_interval: Option<f64>,
+    /// Most samples of a history between the ends of steps and flights: a long flight has wider intervals.
+    pub samples_between: usize,
     /// Relative error of the force peaks from looking for them within the steps; 0 = as exact as rounding permits.
     pub peak_error: f64,
     /// Whether the heat in the drive of a stack is summed up, for its ledger of energy.
@@ -23,7 +28,14 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 1e-7, end_time: None, sample_interval: None, peak_error: 0.0, heat: false }
+        Self {
+            tolerance: 1e-7,
+            end_time: None,
+            sample_interval: None,
+            samples_between: SAMPLES_BETWEEN,
+            peak_error: 0.0,
+            heat: false,
+        }
     }
 }
 
@@ -65,7 +77,7 @@ impl Integration {
 }
 
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
-pub(super) const NEGLIGIBLE: f64 = 1e-8;
+pub(crate) const NEGLIGIBLE: f64 = 1e-8;
 
 /// What a fluid did in a run; nothing in a dry one.
 #[derive(Debug, Clone, Copy, Default)]
@@ -151,8 +163,7 @@ impl Closing<'_> {
             contacts: self.contacts,
             energy_residual: unaccounted.abs() / initial,
             energy_gained: unaccounted / initial,
-            momentum_residual: unexplained_momentum(system, v, contacts, &fluid)
-                / (system.masses[0] * system.speed),
+            momentum_residual: unexplained_momentum(system, v, contacts, &fluid) / system.initial_momentum(),
             losses: Losses {
                 plate_damping: if damped { initial - end - contact_work + fluid.work } else { 0.0 },
                 squeeze_film: fluid.dissipated[0],

@@ -41,7 +41,7 @@ const START_LEVEL: i32 = 4;
 /// [`Error::BeyondModel`] if it does not since the bodies rattle, or tremble on their contacts.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
-    let recorder = options.sample_interval.map(|interval| Recorder::new(system, &COLLOCATION, interval));
+    let recorder = Recorder::new(system, &COLLOCATION, options);
     Stepper::new(system, &COLLOCATION, options, recorder).go()
 }
 

@@ -1,6 +1,7 @@
 //! Sampling of the course over time; a run that is not asked for its history has no recorder.
 
 use super::collocation::{Collocation, POINTS};
+use super::integration::Options;
 use super::stages::Stages;
 use super::system::{System, dot};
 use crate::error::Result;
@@ -36,21 +37,28 @@ pub(super) fn sample(system: &System, motion: [&[f64]; 2], local: [f64; 2], forc
     ]
 }
 
-/// Collects a [`History`] with samples at most `interval` s apart and at the end of every step.
+/// Collects a [`History`] with samples at the end of every step and, as long as there is room, at most `interval` s apart.
+///
+/// The room for samples within steps and flights is bounded: one that is so long that it would take more than half of what is left has
+/// wider intervals.
 pub struct Recorder<'a, const P: usize = POINTS> {
     system: &'a System,
     collocation: &'a Collocation<P>,
     interval: f64,
+    /// Samples that may still lie within steps and flights.
+    room: usize,
     history: History,
 }
 
 impl<'a, const P: usize> Recorder<'a, P> {
-    /// Starts with the sample at t = 0.
-    pub fn new(system: &'a System, collocation: &'a Collocation<P>, interval: f64) -> Self {
-        let mut recorder = Self { system, collocation, interval, history: History::new(&CURVES) };
+    /// Starts with the sample at t = 0; `None` if the `options` request no history.
+    pub fn new(system: &'a System, collocation: &'a Collocation<P>, options: &Options) -> Option<Self> {
+        let interval = options.sample_interval?;
+        let room = options.samples_between;
+        let mut recorder = Self { system, collocation, interval, room, history: History::new(&CURVES) };
         let (q, v) = system.initial_state();
         recorder.push(0.0, &q, &v);
-        recorder
+        Some(recorder)
     }
 
     /// Samples the step of length `h` that starts at `time` in the state (`q`, `v`) under `forces` at the nodes.
@@ -77,7 +85,8 @@ impl<'a, const P: usize> Recorder<'a, P> {
         outer: Stages,
         forces: impl Fn(usize) -> Stages,
     ) -> Result<()> {
-        let count = (h / self.interval).ceil().max(1.0) as usize;
+        let count = (h / self.interval).ceil().clamp(1.0, 1.0 + (self.room / 2) as f64) as usize;
+        self.room -= count - 1;
         let (mut q_at, mut v_at) = (vec![0.0; q.len()], vec![0.0; q.len()]);
         for sample in 1..=count {
             let t = h * sample as f64 / count as f64;

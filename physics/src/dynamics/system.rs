@@ -268,6 +268,11 @@ impl System {
         self.initial_energy() + 0.5 * self.masses[1] * self.inner_velocity().powi(2)
     }
 
+    /// Momenta of outer and inner body before the impact in N s, without their signs: the scale of momentum residuals.
+    pub fn initial_momentum(&self) -> f64 {
+        self.masses[0] * self.speed + self.masses[1] * self.inner_velocity().abs()
+    }
+
     /// Velocity of the inner body before the impact in m/s, signed along z.
     pub fn inner_velocity(&self) -> f64 {
         dot(&self.bodies[1], &self.start[1])
@@ -297,6 +302,19 @@ impl System {
                 available + self.energy_beside_outer(q, v)
             }
         }
+    }
+
+    /// The energy in J but for what a stack's circuit still charges without vibrating, and the speed in m/s at which that moves the free
+    /// tip, from now on ever more slowly; `None` without a circuit.
+    pub fn energy_but_charging(&self, q: &[f64], v: &[f64]) -> Option<(f64, f64)> {
+        let circuit = self.circuit.as_ref()?;
+        let (mut own_q, mut own_v) = (self.of_outer(q), self.of_outer(v));
+        let mut speed = 0.0;
+        for (k, mode) in circuit.modes.iter().enumerate().filter(|(_, mode)| mode.is_decay()) {
+            speed += (mode.tip * own_v[k]).abs();
+            (own_q[k], own_v[k]) = (0.0, 0.0);
+        }
+        Some((circuit.account(&own_q, &own_v).available + self.energy_beside_outer(q, v), speed))
     }
 
     /// Kinetic and strain energy of all but the outer body in J.

@@ -19,7 +19,8 @@ pub(super) type Compared = (Vec<Outcome>, Vec<Cost>);
 
 /// The reduced models of a kind of scene.
 pub(super) trait Models: Sync {
-    /// Runs the model that is `asked` for, one of a series of impacts that share `bodies`.
+    /// Runs the model that is `asked` for, one of a series of impacts that share `bodies`; without `curves` its history has no more
+    /// samples than its limits need.
     ///
     /// # Errors
     /// Those of the arguments and of the model.
@@ -29,6 +30,7 @@ pub(super) trait Models: Sync {
         scene: &Scene,
         asked: &Asked,
         bodies: &SharedBodies,
+        curves: bool,
     ) -> Result<Outcome>;
 
     /// Whether [`Models::beside`] solves on the very mesh of the reference.

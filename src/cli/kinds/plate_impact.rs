@@ -22,7 +22,14 @@ const COMPARISON_TOLERANCE: f64 = 1e-7;
 pub(super) struct Plates;
 
 impl Models for Plates {
-    fn reduced(&self, _: &Context, scene: &Scene, asked: &Asked, bodies: &SharedBodies) -> Result<Outcome> {
+    fn reduced(
+        &self,
+        _: &Context,
+        scene: &Scene,
+        asked: &Asked,
+        bodies: &SharedBodies,
+        curves: bool,
+    ) -> Result<Outcome> {
         if let Some(mesh) = &asked.mesh {
             return Err(Error::Usage(format!(
                 "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
@@ -47,8 +54,7 @@ impl Models for Plates {
                 (Reduced::auto(scene, tolerance)?, choice::integration_tolerance(tolerance))
             }
         };
-        // with its history, of which the deflection is judged
-        reduced.run_with_history(tolerance)
+        if curves { reduced.run_with_history(tolerance) } else { reduced.run_judged(tolerance) }
     }
 
     fn takes(&self, scene: &Scene, model: Model) -> bool {

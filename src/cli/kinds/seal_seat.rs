@@ -18,7 +18,14 @@ use crate::scene::{Model, Scene};
 pub(super) struct Seats;
 
 impl Models for Seats {
-    fn reduced(&self, context: &Context, scene: &Scene, asked: &Asked, _: &SharedBodies) -> Result<Outcome> {
+    fn reduced(
+        &self,
+        context: &Context,
+        scene: &Scene,
+        asked: &Asked,
+        _: &SharedBodies,
+        _: bool,
+    ) -> Result<Outcome> {
         let model = match asked.model {
             Some(AskedModel::Named(model)) => model,
             Some(AskedModel::Auto) => {

@@ -20,6 +20,8 @@ const ROUNDING: f64 = 1e-10;
 
 /// Part of the time since the last contact that a flight takes in one go: what recovers, recovers the slower the later.
 const GRADED: f64 = 0.1;
+/// e-folds of the time since the last contact in which the samples of a flight are used up: longer than any run.
+const FOLDS: f64 = 32.0;
 /// Most doublings of a step in flight.
 const MAX_DOUBLINGS: usize = 40;
 
@@ -81,6 +83,8 @@ pub(super) struct Stepper<'a> {
     centre: f64,
     loads: Loads,
     sample_interval: f64,
+    /// Samples per e-fold of the time since the last contact at most.
+    samples_per_fold: f64,
     history: Option<History>,
 }
 
@@ -125,6 +129,7 @@ impl<'a> Stepper<'a> {
             centre: 0.0,
             loads: Loads::default(),
             sample_interval: options.sample_interval.unwrap_or(0.0),
+            samples_per_fold: (options.samples_between as f64 / FOLDS).max(1.0),
             history: options.sample_interval.map(|_| History::new(&CURVES)),
             bodies,
         };
@@ -159,7 +164,9 @@ impl<'a> Stepper<'a> {
         };
         let [outer, inner] = self.clearances().map(closing);
         let recovering = self.loaded.map_or(f64::INFINITY, |loaded| GRADED * (self.time - loaded));
-        let kept = self.history.as_ref().map_or(f64::INFINITY, |_| self.sample_interval);
+        let since = self.time - self.loaded.unwrap_or(0.0);
+        let kept = self.sample_interval.max(since / self.samples_per_fold);
+        let kept = self.history.as_ref().map_or(f64::INFINITY, |_| kept);
         let end = end_time.map_or(f64::INFINITY, |end| end - self.time);
         let steps = outer.min(inner).min(recovering).min(kept).min(end) / self.h * (1.0 + 1e-12);
         if steps < 2.0 { 0 } else { (steps.log2() as usize).min(MAX_DOUBLINGS) }
@@ -274,6 +281,10 @@ impl<'a> Stepper<'a> {
                 best = trial;
             } else if fraction > LEAST_FRACTION {
                 fraction *= 0.5;
+            } else if best.size() > ROUNDING * scale {
+                // where a contact turns from loading to unloading the slope is that of the other side: beyond it is the right one
+                best = self.trial(free, [best.x[0] - step[0], best.x[1] - step[1]], best.patch);
+                (step, fraction) = (self.newton(&best), 1.0);
             } else {
                 break;
             }
@@ -376,7 +387,7 @@ impl<'a> Stepper<'a> {
             energy_residual: residual / initial,
             energy_gained: gained / initial,
             momentum_residual: unexplained_momentum(system, &v, &self.contacts, &FluidAccount::default())
-                / (system.masses[0] * system.speed),
+                / system.initial_momentum(),
             losses: Losses {
                 plate_damping: self.modal_loss + plate_loss,
                 // what yields knows what it has dissipated, which is never negative

@@ -42,7 +42,7 @@ const LONGEST: i32 = -8;
 /// not end.
 pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Result<Integration> {
     let collocation = Collocation::radau();
-    let recorder = options.sample_interval.map(|interval| Recorder::new(system, &collocation, interval));
+    let recorder = Recorder::new(system, &collocation, options);
     let hit = system.hertz_impact();
     let (q, v) = system.initial_state();
     let mut start = FluidLoad::default();

@@ -3,9 +3,9 @@
 use super::PlateCurves;
 use crate::contact::Hertz;
 use crate::dynamics::memory::{Bending, Loads};
-use crate::result::limit::{self, ELASTIC_BENDING, QUASI_STATIC, SMALL_DEFLECTION};
+use crate::result::limit::{self, ELASTIC_BENDING, QUASI_STATIC, SMALL_DEFLECTION, SMALL_ROTATION};
 use crate::result::{ContactPressure, History, Limit, Summary};
-use crate::scene::{Edge, Material, PlateImpact};
+use crate::scene::{Edge, Material, PlateImpact, Shape};
 
 /// Adds contact pressures and limits to the `summary` of any model or reference; without `history` deflection and bending
 /// are not known.
@@ -38,6 +38,9 @@ pub(super) fn judge(setup: &PlateImpact, summary: &mut Summary, history: Option<
     if let (Some(strength), Some(loads)) = (plate.yield_strength, loads) {
         let [outer, inner] = Bending::new(&setup.plate).at_peaks(&laws, &loads).map(f64::abs);
         limits.push(ELASTIC_BENDING.at("plate", outer.max(inner) / strength));
+    }
+    if let (Shape::Bender(beam), Some(bender)) = (&setup.outer.shape, summary.bender) {
+        limits.push(SMALL_ROTATION.at("outer", bender.drive.tip_deflection.abs() / beam.length));
     }
     let slowest = [plate, &setup.outer.material, &setup.inner.material].map(Material::bar_wave_speed);
     let slowest = slowest.into_iter().fold(f64::INFINITY, f64::min);

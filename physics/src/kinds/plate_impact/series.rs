@@ -62,7 +62,7 @@ impl Impacts<'_> {
             (last, after) = self.one(options, before.as_ref())?;
             impacts.push(self.row(impacts.len() as u64 + 1, &last));
         }
-        let left = self.plastic_work(&last) / self.system.initial_energy();
+        let left = self.plastic_work(&last) / self.system.kinetic_energy();
         let warning = (!self.has_shaken_down(&last)).then(|| {
             format!(
                 "the last of {} impacts still loses {left:.1e} of its energy to yielding: the series has not shaken down (below {SHAKEN_DOWN:.0e})",
@@ -100,7 +100,9 @@ impl Impacts<'_> {
     /// The elastic impact, and the course of its forces.
     fn loaded(&self, options: &Options) -> Result<(Integration, Loads)> {
         let interval = self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT;
-        let sampled = Options { sample_interval: options.sample_interval.or(Some(interval)), ..*options };
+        // nothing is loaded in flight
+        let alone = Options { sample_interval: Some(interval), samples_between: 0, ..*options };
+        let sampled = if options.sample_interval.is_some() { *options } else { alone };
         let mut result = self.elastic(&sampled)?;
         let loads = result.history.as_ref().and_then(Loads::of);
         let loads = loads.ok_or_else(|| Error::Internal("a history was asked for".into()))?;
@@ -145,7 +147,7 @@ impl Impacts<'_> {
     }
 
     fn has_shaken_down(&self, impact: &Integration) -> bool {
-        impact.is_cut() || self.plastic_work(impact) < SHAKEN_DOWN * self.system.initial_energy()
+        impact.is_cut() || self.plastic_work(impact) < SHAKEN_DOWN * self.system.kinetic_energy()
     }
 
     /// Energy in J lost in contacts that yield.

@@ -37,10 +37,13 @@ pub(super) fn measured_error(patch: [f64; 2], thickness: f64) -> Option<f64> {
     })
 }
 
-/// What a user has to know of a squeeze film that takes `share` of the energy of the impact.
-pub(super) fn film_warning(share: f64) -> Option<String> {
-    let error = FILM_EXCESS * share;
-    (error > FILM_ERROR).then(|| {
+/// What a user has to know of a squeeze film that dissipates `loss` J in an impact of `system`.
+///
+/// The share is of the energy of both bodies; the efficiency relates to that of the outer one.
+pub(super) fn film_warning(loss: f64, system: &System) -> Option<String> {
+    let share = loss / system.kinetic_energy();
+    let error = FILM_EXCESS * loss / system.initial_energy();
+    (FILM_EXCESS * share > FILM_ERROR).then(|| {
         format!(
             "the squeeze film takes {:.1} % of the energy, of which up to a quarter is too much, since it knows no dents of plate and inner body: the efficiency may be {error:.3} too low; compare with the reference before relying on it",
             100.0 * share

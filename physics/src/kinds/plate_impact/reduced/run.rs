@@ -2,9 +2,10 @@
 
 use super::{Point, Reduced};
 use crate::dynamics::assured;
-use crate::dynamics::integration::{Integration, Options};
+use crate::dynamics::integration::{Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
 use crate::dynamics::ledger_check;
 use crate::dynamics::memory::{self, Memory, OnsetOfYield};
+use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
 use crate::kinds::plate_impact::Kind;
@@ -15,6 +16,20 @@ use crate::kinds::plate_impact::validity::film_warning;
 use crate::result::{BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary};
 use crate::scene::{self, Shape};
 use std::time::Instant;
+
+/// Samples within steps and flights of a history that only the limits need: the deflection is sampled.
+const JUDGED_SAMPLES: usize = 1 << 12;
+
+/// Change of the inner body's velocity over the impact speed, in tolerances, below which its results are the integration's error.
+fn unresolved(system: &System, result: &Integration, tolerance: f64) -> Option<String> {
+    let change = (result.velocity[1] - system.inner_velocity()).abs();
+    let error = assured::ENOUGH * tolerance * system.speed;
+    (result.contacts[1].force_peak > 0.0 && change < error).then(|| {
+        format!(
+            "the velocity of the inner body changes by {change:.1e} m/s, less than the {error:.1e} m/s that the time integration may be wrong by: its results show no more than that the plate hardly moves it"
+        )
+    })
+}
 
 /// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
 const PEAK_ERROR: f64 = 0.1;
@@ -95,16 +110,32 @@ impl Reduced {
         self.run_with_history_until(tolerance, 0.0)
     }
 
+    /// As [`Reduced::run_with_history`] with a history of no more samples in flight than the limits need, which does not count as one
+    /// that was kept.
+    ///
+    /// # Errors
+    /// As [`Reduced::run`].
+    pub fn run_judged(&self, tolerance: f64) -> Result<Outcome> {
+        let mut outcome = self.sampled(tolerance, 0.0, JUDGED_SAMPLES)?;
+        outcome.summary.samples = None;
+        Ok(outcome)
+    }
+
     /// As [`Reduced::run_with_history`]; a history that would end earlier, because no further contact is possible, goes on
     /// until `end` (s) unless the scene names its end.
     ///
     /// # Errors
     /// As [`Reduced::run`].
     pub fn run_with_history_until(&self, tolerance: f64, end: f64) -> Result<Outcome> {
+        self.sampled(tolerance, end, SAMPLES_BETWEEN)
+    }
+
+    /// A run until `end` s with at most `samples_between` samples within steps and flights.
+    fn sampled(&self, tolerance: f64, end: f64, samples_between: usize) -> Result<Outcome> {
         let (mut summary, memory) = self.unjudged(tolerance)?;
         let system = &self.system;
         let sample_interval = Some(system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
-        let options = Options { sample_interval, ..self.options(tolerance) };
+        let options = Options { sample_interval, samples_between, ..self.options(tolerance) };
         let record = |options: &Options| -> Result<_> {
             let (result, _) = self.impacts().one(options, memory.as_ref())?;
             result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))
@@ -144,7 +175,7 @@ impl Reduced {
         if setup.friction > 0.0 {
             warnings.push("friction is left out: Hertz's contact is smooth; the reference has it".into());
         }
-        warnings.extend(film_warning(result.losses.squeeze_film / system.initial_energy()));
+        warnings.extend(film_warning(result.losses.squeeze_film, system));
         warnings.extend(unsure.map(|error| {
             format!(
                 "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
@@ -166,10 +197,18 @@ impl Reduced {
             }));
         }
         for (body, contact) in ["outer", "inner"].iter().zip(&result.contacts) {
-            if contact.contacts == 0 {
-                warnings.push(format!("the {body} body and the plate never touch"));
+            if contact.contacts > 0 {
+                continue;
             }
+            warnings.push(match contact.force_peak > 0.0 {
+                false => format!("the {body} body and the plate never touch"),
+                true => format!(
+                    "the {body} body and the plate touch with an impulse of {:.1e} N s, below {NEGLIGIBLE:.0e} of the outer body's momentum: it does not count as a contact",
+                    contact.impulse
+                ),
+            });
         }
+        warnings.extend(unresolved(system, result, tolerance));
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if self.scene.plate_impact()?.outer.angle != 0.0 {
             warnings.push(
