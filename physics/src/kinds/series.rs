@@ -70,7 +70,7 @@ impl SeriesModel {
     /// As [`Reduced::point`] and [`SeatModel::point`].
     pub fn point(&self, tolerance: f64) -> Result<Point<Table>> {
         match self {
-            Self::Plate(model) => model.point(tolerance).map(|point| point.map(|found| found.table())),
+            Self::Plate(model) => model.all_within(tolerance).map(|point| point.map(|found| found.table())),
             Self::Seat(model) => model.point(tolerance).map(|point| point.map(|found| found.table())),
         }
     }
