@@ -65,10 +65,11 @@ fn a_peak_of_a_chattering_contact_is_that_of_another_integration() {
     assert!((point.quantities.outer_force_peak / 161.7714 - 1.0).abs() < 1e-3, "{point:?}");
 }
 
-/// Where no error is small enough the point says so: a light plate between heavy bodies.
+/// A thin plate between heavy bodies: many contacts, a near miss among them.
 #[test]
-fn a_point_that_amplifies_every_error_is_solved_again() {
-    let model = Reduced::in_series(scene(0.5e-3, 20e-3, 12e-3), Model::B, None, &SharedBodies::default()).unwrap();
+fn a_thin_plate_keeps_any_tolerance() {
+    let model =
+        Reduced::in_series(scene(0.5e-3, 20e-3, 12e-3), Model::B, None, &SharedBodies::default()).unwrap();
     let exact = model.point(1e-9).unwrap();
     for tolerance in [1e-2, 1e-3, 1e-4] {
         let point = model.all_within(tolerance).unwrap();

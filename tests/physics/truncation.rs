@@ -88,7 +88,7 @@ inner = { kind = "compact", mass = "7.77 g", tip_radius = "2.8 mm", material = "
     assert!(exact > 5e-3 && exact < estimated && estimated < 4.0 * exact, "{estimated} for {exact}");
 }
 
-/// Table 1's impact a little beside the centre: twice as few modes would all have nodal diameters near it.
+/// Table 1's impact a little beside the centre: twice as many modes may all have nodal diameters through it.
 #[test]
 fn modes_beside_the_centre_tell_their_distance_from_many() {
     let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();

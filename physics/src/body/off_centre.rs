@@ -123,7 +123,11 @@ mod tests {
                 each.map(|(omega, phi)| phi[i] * phi[j] / omega.powi(2)).sum()
             };
             assert_relative_eq!(sum(0, 0) + rest[0], (1.0 - c * c).powi(2) * unit, max_relative = 2e-3);
-            assert_relative_eq!(sum(0, 1) + rest[1], (1.0 - c * c + 2.0 * c * c * c.ln()) * unit, max_relative = 2e-3);
+            assert_relative_eq!(
+                sum(0, 1) + rest[1],
+                (1.0 - c * c + 2.0 * c * c * c.ln()) * unit,
+                max_relative = 2e-3
+            );
             assert_relative_eq!(sum(1, 1) + rest[2], unit, max_relative = 2e-3);
         }
     }

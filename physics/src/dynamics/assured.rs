@@ -37,18 +37,17 @@ pub const ROUGH: f64 = 1e-4;
 /// Difference of velocities and force peaks that is in order, in tolerances.
 pub const ENOUGH: f64 = 10.0;
 
-/// Share of the error that all results may have ([`Options::results`]) which is the tolerance of their first solution, down to the
-/// second value. Of 3000 random impacts around Table 1 force peaks were then wrong by up to 0.3 of the error, times of separation by 0.06.
+/// Tolerance of the first solution over the error that all results may have ([`Options::results`]), and its least value. Of 3000 random
+/// impacts around Table 1 force peaks and times of separation then had up to 0.6 of that error.
 const FIRST_SOLUTION: (f64, f64) = (3e-3, 1e-7);
-/// Contacts of both bodies and steps up to which, and impulse of the inner contact over the outer one from which on, such a solution has
-/// all results right, if no contact is a near miss.
+/// Such a solution has all results right with at most so many contacts of both bodies and steps, and at least such a share of the outer
+/// impulse at the inner contact, if no contact is nearly missed.
 const CLEAR_CONTACTS: u32 = 30;
-const CLEAR_STEPS: u64 = 2000;
+const CLEAR_STEPS: u64 = 1500;
 const CLEAR_SHARE: f64 = 1e-3;
 
-/// `options` for results that are all right to `error`, relative: velocities over the impact speed, force peaks and times of separation,
-/// with the right numbers of contacts. Errors below 1e-4 are those of velocities and force peaks alone, as [`Options::tolerance`]
-/// has them, at most 1e-7 of it.
+/// `options` for results with the relative `error` at most: velocities over the impact speed, force peaks, times of separation; and with
+/// the right numbers of contacts. An error below 3e-5 is that of the velocities alone, as [`Options::tolerance`] has it.
 pub fn all_within(error: f64, options: Options) -> Options {
     let (share, least) = FIRST_SOLUTION;
     Options {
@@ -116,8 +115,8 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
         && (inner.contacts == 0 || inner.impulse >= FULL_SHARE * outer.impulse)
 }
 
-/// Whether the solution has all results right to `error`: there are few contacts, the inner body is not struck by the way, and no error of
-/// an approach, over its peak, that is as large as `error` changes their number.
+/// Whether all results of the first solution are right to `error`: it has few contacts, the inner one is not negligible, and no error of an
+/// approach, over its peak, up to `error` changes their number.
 fn is_clear(result: &Integration, error: f64) -> bool {
     let [outer, inner] = &result.contacts;
     outer.contacts + inner.contacts <= CLEAR_CONTACTS

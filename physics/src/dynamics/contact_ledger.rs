@@ -47,8 +47,8 @@ pub struct ContactLedger {
     pub least_turn: f64,
     /// Largest local approach so far, m.
     approach_peak: f64,
-    /// Latest change of the local approach in m; 0 where it is not known.
-    change: f64,
+    /// Latest change of the local approach in m, 0 where it is not known, and how long it took in s.
+    change: (f64, f64),
 }
 
 impl ContactLedger {
@@ -76,7 +76,9 @@ impl ContactLedger {
         self.impulse += course.h * stages.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
         self.work += course.work;
         for point in 1..P {
-            self.turn([course.local_approach[point - 1], course.local_approach[point]]);
+            let place = course.local_approach[point - 1];
+            let took = course.h * (collocation.points[point] - collocation.points[point - 1]);
+            self.turn(place, (course.local_approach[point] - place, took));
             let released = || course.time + course.h * release(collocation, course, point);
             self.pass(course.local_approach[point] > 0.0, before, released);
         }
@@ -85,17 +87,22 @@ impl ContactLedger {
     /// Books a flight that left the contact open by about `depth` m.
     pub fn book_flight(&mut self, depth: f64) {
         self.least_turn = self.least_turn.min(depth / self.approach_peak);
-        self.change = 0.0;
+        self.change = (0.0, 0.0);
     }
 
-    /// Notes where the local approach turns, from its values in m at two points of a step that follow on each other.
+    /// Notes where the local approach turns, by the parabola through three points; from the second, `place` m, it changes by so many m in
+    /// so many s.
     #[inline(always)]
-    fn turn(&mut self, [before, now]: [f64; 2]) {
-        let change = now - before;
-        if change * self.change < 0.0 {
-            self.least_turn = self.least_turn.min(before.abs() / self.approach_peak);
+    fn turn(&mut self, place: f64, change: (f64, f64)) {
+        if change.0 * self.change.0 < 0.0 {
+            let [(first, took), (second, takes)] = [self.change, change];
+            let [before, after] = [first / took, second / takes];
+            let slope = (before * takes + after * took) / (took + takes);
+            let top = place - 0.25 * slope * slope * (took + takes) / (after - before);
+            let distance = if top * place > 0.0 { top.abs() } else { 0.0 };
+            self.least_turn = self.least_turn.min(distance / self.approach_peak);
         }
-        self.approach_peak = self.approach_peak.max(now);
+        self.approach_peak = self.approach_peak.max(place + change.0);
         self.change = change;
     }
 

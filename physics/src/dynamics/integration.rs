@@ -17,8 +17,8 @@ pub struct Options {
     pub sample_interval: Option<f64>,
     /// Relative error of the force peaks from looking for them within the steps; 0 = as exact as rounding permits.
     pub peak_error: f64,
-    /// Relative error that force peaks and times of separation may have too, with numbers of contacts that are right, if the impact is
-    /// solved again until they are ([`crate::dynamics::assured`]); `None` where velocities and force peaks to ten tolerances are enough.
+    /// Relative error of force peaks and times of separation, with right numbers of contacts, for which the impact is solved again where
+    /// necessary ([`crate::dynamics::assured`]); `None` where ten tolerances of velocities and force peaks are enough.
     pub results: Option<f64>,
     /// Whether the heat in the drive of a stack is summed up, for its ledger of energy.
     pub heat: bool,
@@ -26,7 +26,14 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 1e-7, end_time: None, sample_interval: None, peak_error: 0.0, results: None, heat: false }
+        Self {
+            tolerance: 1e-7,
+            end_time: None,
+            sample_interval: None,
+            peak_error: 0.0,
+            results: None,
+            heat: false,
+        }
     }
 }
 

@@ -64,7 +64,9 @@ impl From<Point<Table>> for Outcome {
 /// Name and unit of the numbers of a result of `kind`.
 pub(super) fn results(kind: &dyn Kind) -> Vec<(&'static str, &'static str)> {
     let quantities = kind.quantities().iter().map(|quantity| (quantity.name, quantity.unit));
-    quantities.chain(["energy_residual", "momentum_residual", "steps", "converged"].map(|name| (name, "1"))).collect()
+    quantities
+        .chain(["energy_residual", "momentum_residual", "steps", "converged"].map(|name| (name, "1")))
+        .collect()
 }
 
 /// First line of a log of the sweep with the identity `hash`.

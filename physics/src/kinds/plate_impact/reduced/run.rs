@@ -93,7 +93,8 @@ impl Reduced {
         let options = Options { peak_error: PEAK_ERROR * options.tolerance, ..options };
         let result = self.impacts().all(&options)?.last;
         ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.kept_tolerance))?;
-        let enough = options.results.unwrap_or(assured::ENOUGH * options.tolerance).max(result.kept_tolerance);
+        let enough =
+            options.results.unwrap_or(assured::ENOUGH * options.tolerance).max(result.kept_tolerance);
         Ok(Point {
             quantities: self.of_all_energy(quantities(&self.system, &result)?),
             energy_residual: result.energy_residual,
