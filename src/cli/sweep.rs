@@ -16,7 +16,7 @@ pub const EXAMPLE: &str = r#"A sweep file (TOML):
   scene     = "scaled-plate-r10"     # a file beside this one, or a shipped scene
   model     = "B"                    # A, B, C or several, ["B", "C"]; absent = the scene's, else B; a seal seat has C only
   modes     = 16                     # absent = the scene's, else the model's
-  tolerance = 1e-4                   # relative error of the efficiency; absent = 1e-3 (force peaks: 2e-3)
+  tolerance = 1e-4                   # relative error of efficiency, velocities, force peaks and times; absent = 1e-3
   mesh      = "seat.vtu"             # of a seal seat, beside this file; absent = a coarse one
   sampling  = "grid"                 # or "latin-hypercube", with samples = 10000 and seed = 1
 
@@ -172,6 +172,12 @@ fn finish(
     }
     let [done, invalid, failed] = table.counts();
     let mut text = format!("{done} impacts, {invalid} scenes that are not valid, {failed} failures");
+    let open = table.unconverged();
+    if open > 0 {
+        text += &format!(
+            "\n{open} impacts did not converge to the tolerance: their column `converged` is 0, and their contacts amplify every error"
+        );
+    }
     if let Some((record, efficiency)) = table.best() {
         text += &format!(
             "\nhighest efficiency {efficiency:.4} at point {} (model {})",

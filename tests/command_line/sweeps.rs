@@ -114,7 +114,7 @@ fn recorded(dir: &Path) -> BTreeMap<usize, usize> {
     let text = fs::read_to_string(dir.join("1-of-1.records")).unwrap_or_default();
     for line in text.lines().skip(1) {
         if let [_, index, "ok", ref rest @ ..] = line.split(' ').collect::<Vec<_>>()[..]
-            && rest.len() == 13
+            && rest.len() == 14
         {
             *seen.entry(index.parse().unwrap()).or_insert(0) += 1;
         }

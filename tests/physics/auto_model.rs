@@ -367,3 +367,24 @@ fn what_makes_no_sense_with_auto_is_refused_in_a_sentence() {
         assert!(status == 2 && error.contains(said), "{arguments:?}: {error}");
     }
 }
+
+/// An inner body that the impact nearly stops: its efficiency is a small difference of large velocities, and its error relative to itself.
+#[test]
+fn an_inner_body_that_is_nearly_stopped_keeps_the_tolerance_of_its_efficiency() {
+    let text = r#"
+name = "nearly-stopped"
+kind = "plate-impact"
+materials.plate = { youngs_modulus = "2.6 GPa", poisson_ratio = 0.38, density = 1320 }
+materials.outer = { youngs_modulus = "1100 GPa", poisson_ratio = 0.07, density = 3515 }
+materials.inner = { youngs_modulus = "350 GPa", poisson_ratio = 0.27, density = 3980 }
+plate = { radius = 0.0354043650449601, thickness = 0.004304128099354573, edge = "simply-supported", material = "plate" }
+outer = { kind = "sphere", radius = 0.019279360451022978, material = "outer", speed = 0.8782087060707845 }
+inner = { kind = "compact", mass = 0.10156616250964785, tip_radius = 0.008157765699649587, material = "inner", gap = 0.0010867127009273748, speed = 0.7491220616478821 }
+"#;
+    let scene = Scene::parse("nearly-stopped.toml", text).unwrap();
+    let model = Reduced::auto(&scene, 0.03).unwrap();
+    let choice = model.choice().unwrap();
+    let efficiency = model.point(integration_tolerance(0.03)).unwrap().quantities.efficiency;
+    // model C with 64 modes
+    assert!(choice.met && (efficiency / 0.0041371 - 1.0).abs() < 0.03, "{efficiency} {choice:?}");
+}

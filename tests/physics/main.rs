@@ -18,6 +18,7 @@ mod shared_bodies;
 mod squeeze_film;
 mod stack;
 mod studies_paper;
+mod sweep_accuracy;
 mod table1_paper;
 mod table2_paper;
 mod truncation;

@@ -87,3 +87,25 @@ inner = { kind = "compact", mass = "7.77 g", tip_radius = "2.8 mm", material = "
     let (estimated, _, exact) = estimated_and_true(&scene, Model::C, 10, (Model::C, 128));
     assert!(exact > 5e-3 && exact < estimated && estimated < 4.0 * exact, "{estimated} for {exact}");
 }
+
+/// Table 1's impact a little beside the centre: twice as many modes may all have nodal diameters through it.
+#[test]
+fn modes_beside_the_centre_tell_their_distance_from_many() {
+    let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
+    for (offset, model, modes) in [
+        ("0.5 mm", Model::A, 1),
+        ("0.5 mm", Model::B, 4),
+        ("0.5 mm", Model::B, 8),
+        ("8 mm", Model::A, 1),
+        ("8 mm", Model::B, 16),
+    ] {
+        let text = text.replace("[outer]", &format!("[outer]\noffset = \"{offset}\""));
+        let scene = Scene::parse("beside.toml", &text).unwrap();
+        let (estimated, warned, exact) = estimated_and_true(&scene, model, modes, (Model::B, 256));
+        assert!(
+            exact <= estimated && estimated <= 1.5 * exact + 1e-3,
+            "{offset}, {modes}: {estimated} for {exact}"
+        );
+        assert_eq!(warned, estimated > 0.01);
+    }
+}

@@ -2,12 +2,16 @@
 
 use super::ModalBody;
 use super::kirchhoff::UnitPlate;
+use crate::analytical::circular_plate::rigidity;
 use crate::error::Result;
+use crate::numerics::quadrature::gauss_legendre;
 use crate::scene::Plate;
 use std::f64::consts::PI;
 
 /// Wave number by which the edge raises the modes, and some more.
 const EDGE: f64 = 6.0;
+/// Points of the quadrature over the waves left out.
+const QUADRATURE: usize = 64;
 
 /// The lowest `modes` modes of `plate`, clamped or simply supported, that move the point at `offset` in m from its centre, where the
 /// outer body strikes; the inner one faces the centre, which modes with nodal diameters leave at rest.
@@ -38,6 +42,25 @@ pub fn modes(plate: &Plate, offset: f64, modes: usize) -> Result<ModalBody> {
         participation,
         residual: None,
     })
+}
+
+/// Static flexibility in m/N of the modes of `plate` beyond the angular frequency `omega` in rad/s: at the point `offset` m from the centre,
+/// between both, at the centre.
+///
+/// An endless plate has its waves evenly spread over the plane of wave numbers, so that those beyond the wave number k yield
+/// integral of J_0(s d) / (2 pi D s^3) ds over s > k between points at the distance d: 1/(4 pi D k^2) at one point, and a share of
+/// that, integral of J_0(k d/sqrt(u)) du over 0..1, between two.
+pub fn flexibility_beyond(plate: &Plate, offset: f64, omega: f64) -> [f64; 3] {
+    let material = &plate.material;
+    let bending = rigidity(material.youngs_modulus, material.poisson_ratio, plate.thickness);
+    let mass = material.density * plate.thickness;
+    let squared_wave_number = omega * (mass / bending).sqrt();
+    let own = 1.0 / (4.0 * PI * bending * squared_wave_number);
+    let way = squared_wave_number.sqrt() * offset;
+    let (points, weights) = gauss_legendre(QUADRATURE);
+    let at = |x: f64| libm::j0(way / (0.5 * (1.0 + x)).sqrt());
+    let share: f64 = points.iter().zip(&weights).map(|(x, weight)| 0.5 * weight * at(*x)).sum();
+    [own, share * own, own]
 }
 
 #[cfg(test)]
@@ -83,6 +106,29 @@ mod tests {
             let unit = plate.radius.powi(2) / (16.0 * PI * stiffness);
             assert_relative_eq!(sum(0, 0), (1.0 - c * c).powi(2) * unit, max_relative = 4e-3);
             assert_relative_eq!(sum(0, 1), (1.0 - c * c + 2.0 * c * c * c.ln()) * unit, max_relative = 1e-4);
+        }
+    }
+
+    /// Few modes and what the waves beyond them yield, against the same closed forms.
+    #[test]
+    fn modes_and_the_waves_beyond_them_yield_as_all_modes() {
+        let plate = plate(Edge::Clamped);
+        let unit = plate.radius.powi(2)
+            / (16.0 * PI * rigidity(plate.material.youngs_modulus, 0.3, plate.thickness));
+        for c in [0.015_f64, 0.2, 0.5] {
+            let body = modes(&plate, c * plate.radius, 150).expect("modes");
+            let rest = flexibility_beyond(&plate, c * plate.radius, body.omega[149]);
+            let sum = |i: usize, j: usize| -> f64 {
+                let each = body.omega.iter().zip(&body.participation);
+                each.map(|(omega, phi)| phi[i] * phi[j] / omega.powi(2)).sum()
+            };
+            assert_relative_eq!(sum(0, 0) + rest[0], (1.0 - c * c).powi(2) * unit, max_relative = 2e-3);
+            assert_relative_eq!(
+                sum(0, 1) + rest[1],
+                (1.0 - c * c + 2.0 * c * c * c.ln()) * unit,
+                max_relative = 2e-3
+            );
+            assert_relative_eq!(sum(1, 1) + rest[2], unit, max_relative = 2e-3);
         }
     }
 }

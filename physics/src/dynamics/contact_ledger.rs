@@ -42,13 +42,20 @@ pub struct ContactLedger {
     negligible: f64,
     /// Impulse when the present contact began, N s.
     impulse_at_touch: f64,
+    /// Least distance from zero at which the local approach turned so far, over its largest value until then: a smaller error loses no
+    /// contact and makes none.
+    pub least_turn: f64,
+    /// Largest local approach so far, m.
+    approach_peak: f64,
+    /// Latest change of the local approach in m, 0 where it is not known, and how long it took in s.
+    change: (f64, f64),
 }
 
 impl ContactLedger {
     /// An account that does not count contacts of less than `negligible` N s: a static residual flexibility lets
     /// the far face answer before a wave can reach it, with a graze of no consequence.
     pub fn new(negligible: f64) -> Self {
-        Self { negligible, ..Self::default() }
+        Self { negligible, least_turn: f64::INFINITY, ..Self::default() }
     }
 
     /// Books a step from `time` s of `h` s in which force in N and local approach in m change evenly between their `values` at start and
@@ -69,9 +76,34 @@ impl ContactLedger {
         self.impulse += course.h * stages.iter().zip(&collocation.weights).map(|(f, w)| f * w).sum::<f64>();
         self.work += course.work;
         for point in 1..P {
+            let place = course.local_approach[point - 1];
+            let took = course.h * (collocation.points[point] - collocation.points[point - 1]);
+            self.turn(place, (course.local_approach[point] - place, took));
             let released = || course.time + course.h * release(collocation, course, point);
             self.pass(course.local_approach[point] > 0.0, before, released);
         }
+    }
+
+    /// Books a flight that left the contact open by about `depth` m.
+    pub fn book_flight(&mut self, depth: f64) {
+        self.least_turn = self.least_turn.min(depth / self.approach_peak);
+        self.change = (0.0, 0.0);
+    }
+
+    /// Notes where the local approach turns, by the parabola through three points; from the second, `place` m, it changes by so many m in
+    /// so many s.
+    #[inline(always)]
+    fn turn(&mut self, place: f64, change: (f64, f64)) {
+        if change.0 * self.change.0 < 0.0 {
+            let [(first, took), (second, takes)] = [self.change, change];
+            let [before, after] = [first / took, second / takes];
+            let slope = (before * takes + after * took) / (took + takes);
+            let top = place - 0.25 * slope * slope * (took + takes) / (after - before);
+            let distance = if top * place > 0.0 { top.abs() } else { 0.0 };
+            self.least_turn = self.least_turn.min(distance / self.approach_peak);
+        }
+        self.approach_peak = self.approach_peak.max(place + change.0);
+        self.change = change;
     }
 
     /// Books the `defect` in N of a step's force.

@@ -22,6 +22,9 @@ pub struct Options {
     pub samples_between: usize,
     /// Relative error of the force peaks from looking for them within the steps; 0 = as exact as rounding permits.
     pub peak_error: f64,
+    /// Relative error of force peaks and times of separation, with right numbers of contacts, for which the impact is solved again where
+    /// necessary ([`crate::dynamics::assured`]); `None` where ten tolerances of velocities and force peaks are enough.
+    pub results: Option<f64>,
     /// Whether the heat in the drive of a stack is summed up, for its ledger of energy.
     pub heat: bool,
 }
@@ -34,6 +37,7 @@ impl Default for Options {
             sample_interval: None,
             samples_between: SAMPLES_BETWEEN,
             peak_error: 0.0,
+            results: None,
             heat: false,
         }
     }

@@ -160,8 +160,15 @@ impl<'a> Stepper<'a> {
             bytemuck::cast_slice_mut(&mut self.v),
         );
         self.time += flight;
+        let (bank, v) = (&self.solver.bank, &self.v);
+        let approach = self.solver.system.modal_approach(flat(&self.q));
+        let rates = bank.approach_rate(v);
+        for ((contact, approach), rate) in self.contacts.iter_mut().zip(approach).zip(rates) {
+            // a parabola that comes back to zero at this rate was a quarter of it times its duration deep
+            contact.book_flight((0.25 * rate * flight).max(-approach));
+        }
         // exact flight keeps the energy of undamped bodies; of others it is not asked for
-        self.course = at_rest(self.solver.system.modal_approach(flat(&self.q)), self.course.motion);
+        self.course = at_rest(approach, self.course.motion);
         self.level = self.level.max(START_LEVEL);
         Ok(more)
     }

@@ -64,13 +64,13 @@ impl Series {
 }
 
 impl SeriesModel {
-    /// The results alone; `tolerance` bounds the error of the time integration.
+    /// The results alone; `tolerance` bounds the error of the time integration in all of them.
     ///
     /// # Errors
-    /// As [`Reduced::point`] and [`SeatModel::point`].
+    /// As [`Reduced::all_within`] and [`SeatModel::point`].
     pub fn point(&self, tolerance: f64) -> Result<Point<Table>> {
         match self {
-            Self::Plate(model) => model.point(tolerance).map(|point| point.map(|found| found.table())),
+            Self::Plate(model) => model.all_within(tolerance).map(|point| point.map(|found| found.table())),
             Self::Seat(model) => model.point(tolerance).map(|point| point.map(|found| found.table())),
         }
     }

@@ -11,12 +11,14 @@ pub struct Point<Q> {
     pub momentum_residual: f64,
     /// Time steps taken.
     pub steps: u64,
+    /// Whether the time integration met its tolerance, as far as that is known.
+    pub converged: bool,
 }
 
 impl<Q> Point<Q> {
     /// The same with other quantities.
     pub fn map<R>(self, of: impl FnOnce(Q) -> R) -> Point<R> {
-        let Self { quantities, energy_residual, momentum_residual, steps } = self;
-        Point { quantities: of(quantities), energy_residual, momentum_residual, steps }
+        let Self { quantities, energy_residual, momentum_residual, steps, converged } = self;
+        Point { quantities: of(quantities), energy_residual, momentum_residual, steps, converged }
     }
 }

@@ -14,11 +14,10 @@ use serde_json::{Value, json};
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
-/// Relative error of the efficiency that the time integration aims at when the file names none. The errors are smaller: over 1000
-/// scenes around Table 1 at most 2e-4 of the efficiency, in 99 % of them below 1.3e-4, and there below 2e-3 of the force peaks (6e-3 at most).
+/// Relative error that the time integration may have in all results when the file names none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 /// Counts changes of the numbers that the same sweep gives.
-const METHOD: u32 = 3;
+const METHOD: u32 = 4;
 /// Most points of a sweep.
 const MOST_POINTS: usize = 100_000_000;
 

@@ -55,7 +55,8 @@ impl Outcome {
 impl From<Point<Table>> for Outcome {
     fn from(point: Point<Table>) -> Self {
         let values = point.quantities.iter().map(|quantity| quantity.value.unwrap_or(f64::NAN));
-        let rest = [point.energy_residual, point.momentum_residual, point.steps as f64];
+        let converged = f64::from(u8::from(point.converged));
+        let rest = [point.energy_residual, point.momentum_residual, point.steps as f64, converged];
         Outcome::Done(values.chain(rest).collect())
     }
 }
@@ -63,7 +64,9 @@ impl From<Point<Table>> for Outcome {
 /// Name and unit of the numbers of a result of `kind`.
 pub(super) fn results(kind: &dyn Kind) -> Vec<(&'static str, &'static str)> {
     let quantities = kind.quantities().iter().map(|quantity| (quantity.name, quantity.unit));
-    quantities.chain(["energy_residual", "momentum_residual", "steps"].map(|name| (name, "1"))).collect()
+    quantities
+        .chain(["energy_residual", "momentum_residual", "steps", "converged"].map(|name| (name, "1")))
+        .collect()
 }
 
 /// First line of a log of the sweep with the identity `hash`.

@@ -81,6 +81,11 @@ impl<'a> Table<'a> {
             .map(|status| self.records.iter().filter(|record| record.outcome.status() == status).count())
     }
 
+    /// Number of impacts whose time integration did not converge to the tolerance.
+    pub fn unconverged(&self) -> usize {
+        self.records.iter().filter(|record| self.plan.value(record, "converged") == Some(0.0)).count()
+    }
+
     /// The point with the highest efficiency.
     pub fn best(&self) -> Option<(&Record, f64)> {
         let rated = self.records.iter().filter_map(|r| Some((r, self.plan.value(r, "efficiency")?)));

@@ -5,8 +5,8 @@ use super::results::PlateQuantities;
 /// The quantities that an estimated error covers, each by itself. The inner body's velocity goes with the efficiency; times of
 /// release and numbers of contacts are not covered: a contact that just closes once more changes them by a jump.
 pub const COVERED: [&str; 4] = ["efficiency", "outer_velocity_final", "outer_force_peak", "inner_force_peak"];
-/// Errors of the efficiency are relative to it, or to this if it is smaller.
-const SMALL_EFFICIENCY: f64 = 0.05;
+/// Errors of the efficiency are relative to it, or to this if it is smaller: that of an inner body with 3 % of the impact speed.
+const SMALL_EFFICIENCY: f64 = 1e-3;
 
 /// Largest relative error of the quantities [`COVERED`] in `candidate` against `exact`, and its name; `speed` in m/s is that of
 /// the impact.

@@ -7,6 +7,7 @@
 use super::joined::off_centre_system;
 use super::results::quantities;
 use super::trials::{HALF_SPACES, Lack, RUNGS, Trials};
+use crate::body::off_centre;
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
@@ -21,6 +22,11 @@ const RESOLUTION: [f64; 2] = [5e-4, 5e-6];
 const INTEGRATION: f64 = 1e-5;
 /// Thickness over radius up to which the layer knows the plate well enough alone.
 const THIN: f64 = 0.1;
+/// Modes that stand for all of a plate that is struck beside its centre, at least, and over those of the model.
+const MANY: usize = 256;
+const MORE: usize = 4;
+/// Its error over the difference to them.
+const OFF_CENTRE_SAFETY: f64 = 1.2;
 /// Largest ratio of two models' errors that is trusted.
 const NEAR: f64 = 0.9;
 
@@ -85,8 +91,8 @@ pub(super) fn estimate(
     Ok(Truncation { error: lack.error, warning })
 }
 
-/// The same of a plate that is struck beside its centre, from what as many modes again change: what is left to a point goes with
-/// the inverse of their number.
+/// The same of a plate that is struck beside its centre, from its difference to many modes and the static flexibility of the waves
+/// beyond them. Twice as many modes would not do: near the centre they may all be ones whose nodal diameters pass through it.
 fn off_centre(
     setup: &PlateImpact,
     model: Model,
@@ -95,12 +101,16 @@ fn off_centre(
 ) -> Result<Truncation> {
     let options = Options { tolerance: INTEGRATION, end_time, ..Options::default() };
     let run = |system: &System| quantities(system, &integrate(system, &options)?);
-    let twice = off_centre_system(setup, 2 * system.modes)?;
-    let lack = match (run(system), run(&twice)) {
+    let many = off_centre_system(setup, MANY.max(MORE * system.modes))?;
+    let [outer, mutual, inner] =
+        off_centre::flexibility_beyond(&setup.plate, setup.outer.offset, many.highest_frequency());
+    // the inner contact closes when the plate moves down
+    let all = many.softer([outer, -mutual, inner]);
+    let lack = match (run(system), run(&all)) {
         (Ok(ours), Ok(more)) => Lack::between(&ours, &more, setup.outer.speed),
         _ => Lack { error: f64::INFINITY, quantity: None },
     };
-    let lack = lack.times(2.0);
+    let lack = lack.times(OFF_CENTRE_SAFETY);
     let error = lack.error;
     let enough = (system.modes as f64 * error / LARGEST).ceil() as usize;
     let warning = (error > LARGEST)

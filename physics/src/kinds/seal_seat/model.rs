@@ -249,6 +249,7 @@ impl SeatModel {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.tally.steps,
+            converged: true,
         })
     }
 

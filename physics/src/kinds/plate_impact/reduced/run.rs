@@ -91,14 +91,31 @@ impl Reduced {
     /// # Errors
     /// As [`Reduced::run`], [`Error::Solver`] if the run is cut during a contact.
     pub fn point(&self, tolerance: f64) -> Result<Point> {
-        let options = Options { peak_error: PEAK_ERROR * tolerance, ..self.options(tolerance) };
+        self.solved(tolerance, self.options(tolerance))
+    }
+
+    /// As [`Reduced::point`] with all results right to `error`, as [`assured::all_within`] has it, or
+    /// [`Point::converged`] false.
+    ///
+    /// # Errors
+    /// As [`Reduced::point`].
+    pub fn all_within(&self, error: f64) -> Result<Point> {
+        self.solved(error, assured::all_within(error, self.options(error)))
+    }
+
+    /// The results with `options`, whose ledger balances to `tolerance`.
+    fn solved(&self, tolerance: f64, options: Options) -> Result<Point> {
+        let options = Options { peak_error: PEAK_ERROR * options.tolerance, ..options };
         let result = self.impacts().all(&options)?.last;
         ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.kept_tolerance))?;
+        let enough =
+            options.results.unwrap_or(assured::ENOUGH * options.tolerance).max(result.kept_tolerance);
         Ok(Point {
             quantities: self.of_all_energy(quantities(&self.system, &result)?),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
+            converged: result.error_estimate.is_none_or(|error| error <= enough),
         })
     }
 
