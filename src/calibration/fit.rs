@@ -64,9 +64,9 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> Problem<'_, F> {
     fn is_confirmed(&self, direction: &DVector<f64>, slope: f64) -> bool {
         let moved = |step: f64| self.of(&(&self.at + direction * step));
         // where the model has no result the short step is all there is
-        moved(LONG_STEP).zip(moved(-LONG_STEP)).is_none_or(|(after, before)| {
-            (after - before).norm() / (2.0 * LONG_STEP) > CONFIRMED * slope
-        })
+        moved(LONG_STEP)
+            .zip(moved(-LONG_STEP))
+            .is_none_or(|(after, before)| (after - before).norm() / (2.0 * LONG_STEP) > CONFIRMED * slope)
     }
 
     fn slopes(&self) -> Option<DMatrix<f64>> {
@@ -133,8 +133,9 @@ pub fn fit(
         return Err(Error::Solver(format!("{count} data don't determine {unknowns} inputs")));
     }
     let scatter = (left.norm_squared() / (count - unknowns) as f64).sqrt();
-    let blocks = covariance(&left, &slopes)
-        .ok_or_else(|| Error::Solver(format!("{count} data are too few to tell how {unknowns} inputs scatter")))?;
+    let blocks = covariance(&left, &slopes).ok_or_else(|| {
+        Error::Solver(format!("{count} data are too few to tell how {unknowns} inputs scatter"))
+    })?;
     Ok(told(&problem, scatter, slopes, &blocks))
 }
 
@@ -181,7 +182,8 @@ fn told<F: Fn(&[f64]) -> Option<Vec<f64>>>(
             && (slope > SMALL_SLOPE * largest || problem.is_confirmed(&directions.row(*k).transpose(), slope))
     };
     let (known, unknown): (Vec<usize>, Vec<usize>) = order.iter().copied().partition(is_told);
-    let scaled = DMatrix::from_fn(unknowns, known.len(), |i, k| directions[(known[k], i)] / singular[known[k]]);
+    let scaled =
+        DMatrix::from_fn(unknowns, known.len(), |i, k| directions[(known[k], i)] / singular[known[k]]);
     let inner = DMatrix::from_fn(known.len(), known.len(), |i, j| of_data[(known[i], known[j])]);
     let covariance = &scaled * inner * scaled.transpose();
     let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
@@ -245,7 +247,8 @@ mod tests {
         let data = noisy(7);
         let product = |p: &[f64], t: f64| model(&[p[0] * p[3], p[1], p[2]], t);
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
-        let found = fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
+        let found =
+            fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
         assert_eq!(found.untold, [[0, 3]], "{found:?}");
         assert_eq!(
             found.standard_deviations.iter().map(Option::is_some).collect::<Vec<_>>(),
@@ -254,7 +257,8 @@ mod tests {
         assert!((found.values[0] * found.values[3] - 2.0).abs() < 0.1, "{found:?}");
         // what does not act at all is not told either
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) - y).collect());
-        let found = fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
+        let found =
+            fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
         assert_eq!(found.untold, [[3]], "{found:?}");
     }
 

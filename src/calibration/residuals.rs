@@ -43,11 +43,13 @@ impl Signals {
                 record.time.iter().zip(&channel.values).filter(|(t, _)| inside.contains(t)).unzip();
             let groups = groups(&time, width);
             let means = means(&time, &groups);
-            let (low, high) =
-                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v: &f64| (l.min(*v), h.max(*v)));
+            let (low, high) = values
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v: &f64| (l.min(*v), h.max(*v)));
             // a signal that is trusted has no offset of its velocity
             let trusted = channel.quantity.starts_with("outer") && speed == Speed::Measured;
-            let unknown = 2 - usize::from(trusted) * if channel.quantity.ends_with("velocity") { 2 } else { 1 };
+            let unknown =
+                2 - usize::from(trusted) * if channel.quantity.ends_with("velocity") { 2 } else { 1 };
             let scaled = DMatrix::from_fn(means.len(), unknown, |i, j| (means[i] * bandwidth).powi(j as i32));
             let nuisance = orthonormal(&scaled);
             let span = (high - low).max(f64::MIN_POSITIVE);

@@ -1,7 +1,7 @@
 //! Lays a record over a model: offset, drift and shift in time, by [`super::RULE`].
 
-use super::filter::Filtered;
 use super::duplicate;
+use super::filter::Filtered;
 use super::finding::{Finding, FindingKind};
 use super::flight::{FEWEST, Flight, FreeFlight};
 use super::judge::{Judged, Seen};
@@ -158,12 +158,7 @@ impl Alignment<'_> {
         let time: Vec<f64> = self.record.time.iter().map(|t| t - shift).collect();
         let corrected = |(channel, seen): (&Channel, &Seen)| Channel {
             quantity: channel.quantity,
-            values: channel
-                .values
-                .iter()
-                .zip(&time)
-                .map(|(y, t)| y - seen.taken_out(*t))
-                .collect(),
+            values: channel.values.iter().zip(&time).map(|(y, t)| y - seen.taken_out(*t)).collect(),
         };
         let signals = self.record.channels.iter().zip(&seen).map(corrected).collect();
         let Judged { outer_velocity_initial, inner, efficiency, findings: further } =
@@ -200,8 +195,13 @@ impl Alignment<'_> {
             if negated.is_clearly_better(&as_is, WORST_MISFIT) {
                 let share = [as_is, negated].map(|found| 100.0 * found.misfit);
                 return refused(
-                    format!("negate {quantity} in the file: z points from the inner to the outer side, so that an outer body that strikes and an inner body that flies off have negative velocities"),
-                    format!("{quantity} has the wrong sign: negated it differs from the scene's impact by {:.0} % of its span, as it is by {:.0} %", share[1], share[0]),
+                    format!(
+                        "negate {quantity} in the file: z points from the inner to the outer side, so that an outer body that strikes and an inner body that flies off have negative velocities"
+                    ),
+                    format!(
+                        "{quantity} has the wrong sign: negated it differs from the scene's impact by {:.0} % of its span, as it is by {:.0} %",
+                        share[1], share[0]
+                    ),
                 );
             }
         }

@@ -151,11 +151,7 @@ pub fn compare(
     }
     let curves = sampled(first, window);
     let efficiency = Series::of(
-        records
-            .iter()
-            .filter(|record| !record.is_copy)
-            .filter_map(|record| record.efficiency)
-            .collect(),
+        records.iter().filter(|record| !record.is_copy).filter_map(|record| record.efficiency).collect(),
     );
     // another program need not give the curves that are measured
     let shows = |outcome: &&Outcome| SIGNALS.iter().all(|signal| outcome.history.curve(signal).is_some());

@@ -27,7 +27,8 @@ fn of(records: &[AlignedRecord], k: usize) -> (bool, Option<Finding>) {
         Finding::new(FindingKind::Duplicate, clock, effect)
     };
     if let Some(first) = records[..k].iter().find(|first| are_same(first, record)) {
-        let effect = format!("the record is the same as {}, noise included; it is not used", first.file.display());
+        let effect =
+            format!("the record is the same as {}, noise included; it is not used", first.file.display());
         return (true, Some(finding(effect)));
     }
     let lacks = |record: &AlignedRecord, body: &str| {
@@ -52,8 +53,10 @@ fn are_same(a: &AlignedRecord, b: &AlignedRecord) -> bool {
             let Some(other) = b.signals.iter().find(|other| other.quantity == signal.quantity) else {
                 return false;
             };
-            let (low, high) =
-                signal.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+            let (low, high) = signal
+                .values
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
             let course = MonotoneCubic::new(&b.time, &other.values);
             let within = b.time[0]..b.time[b.time.len() - 1];
             let differences: Vec<f64> = a

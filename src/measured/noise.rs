@@ -7,9 +7,9 @@ use std::ops::Range;
 
 /// Corner frequencies that are tried besides white noise, over the instrument's bandwidth: lowest, highest, number.
 const CORNERS: (f64, f64, usize) = (0.05, 4.0, 20);
-/// Standard errors by which the ratio of von Neumann is lowered: in a short record it tells the corner poorly, and a corner
-/// that is too high makes the intervals too narrow.
-const LOWERED: f64 = 0.75;
+/// Part by which the ratio of von Neumann is lowered, times the number of values: few values tell the corner poorly, and a corner that
+/// is too high makes the intervals too narrow.
+const LOWERED: f64 = 3.5;
 /// Quantile of the normal distribution for intervals of 95 %.
 pub const NORMAL_95: f64 = 1.96;
 
@@ -76,7 +76,7 @@ impl Noise {
         let neighbours = |v: &dyn Fn(usize) -> f64| -> f64 {
             segments.iter().flat_map(|s| (s.start + 1..s.end).map(|k| (v(k) - v(k - 1)).powi(2))).sum()
         };
-        let ratio = neighbours(&|k| left[k]) / squares * (1.0 - LOWERED / (count as f64).sqrt());
+        let ratio = neighbours(&|k| left[k]) / squares * (1.0 - LOWERED / count as f64).max(0.0);
         let expected = |corner: f64| {
             let covariance = correlation(time, corner);
             // P V P with P = 1 - Q Q'

@@ -30,17 +30,23 @@ pub(super) fn screened(record: &Record, bandwidth: f64) -> (Record, Vec<Finding>
             findings.push(Finding::new(
                 FindingKind::Padding,
                 [record.time[range.start], record.time[range.end - 1]],
-                format!("the record {end} with {} equal samples that nothing measured; they are not used", range.len()),
+                format!(
+                    "the record {end} with {} equal samples that nothing measured; they are not used",
+                    range.len()
+                ),
             ));
         }
     }
     let keep = first..count - last;
-    let channels = record.channels.iter().map(|channel| Channel {
-        quantity: channel.quantity,
-        values: channel.values[keep.clone()].to_vec(),
-    });
-    let record =
-        Record { file: record.file.clone(), time: record.time[keep.clone()].to_vec(), channels: channels.collect() };
+    let channels = record
+        .channels
+        .iter()
+        .map(|channel| Channel { quantity: channel.quantity, values: channel.values[keep.clone()].to_vec() });
+    let record = Record {
+        file: record.file.clone(),
+        time: record.time[keep.clone()].to_vec(),
+        channels: channels.collect(),
+    };
     findings.extend(record.channels.iter().filter_map(|channel| clipped(&record.time, channel)));
     findings.extend(record.time.windows(2).filter(|pair| pair[1] - pair[0] > gap(&record.time, bandwidth)).map(|pair| {
         let effect = format!(
@@ -62,14 +68,21 @@ fn padding(record: &Record) -> [usize; 2] {
         for channel in &record.channels {
             let length = run(&channel.values);
             let range = if end == 0 { 0..length } else { count - length..count };
-            if (PADDING..count).contains(&length) && shows_noise(&channel.values, |k| range.contains(&k)) {
+            // at a limit of the signal it is rather clipped
+            let (low, high) = extremes(&channel.values);
+            let is_inside = (low..high).contains(&channel.values[place(0)]) && channel.values[place(0)] > low;
+            if is_inside
+                && (PADDING..count).contains(&length)
+                && shows_noise(&channel.values, |k| range.contains(&k))
+            {
                 *found = length.max(*found);
             }
         }
         // without noise only a jump of the signals tells
-        let zeros = record.channels.iter().map(|channel| {
-            (0..count).take_while(|k| channel.values[place(*k)] == 0.0).count()
-        });
+        let zeros = record
+            .channels
+            .iter()
+            .map(|channel| (0..count).take_while(|k| channel.values[place(*k)] == 0.0).count());
         let zeros = zeros.min().unwrap_or(0);
         let jumps = |channel: &Channel| channel.values[place(zeros)].abs() > JUMP * span(&channel.values);
         if (ZEROS..count).contains(&zeros) && record.channels.iter().any(jumps) {

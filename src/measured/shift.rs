@@ -106,10 +106,8 @@ impl Alignment<'_> {
         let failed = |e: argmin::core::Error| Error::Internal(format!("Brent's method: {e}"));
         let before = misfit.cost(&0.0).map_err(failed)?;
         let solver = BrentOpt::new(-reach, reach).set_tolerance(1e-9, 1e-12);
-        let result = Executor::new(misfit, solver)
-            .configure(|state| state.max_iters(60))
-            .run()
-            .map_err(failed)?;
+        let result =
+            Executor::new(misfit, solver).configure(|state| state.max_iters(60)).run().map_err(failed)?;
         let further = result.state().get_best_param().copied().unwrap_or(0.0);
         Ok((shift + further, [before, result.state().get_best_cost()]))
     }

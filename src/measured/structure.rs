@@ -13,7 +13,7 @@ const LEAST_PERIOD: f64 = 0.5;
 /// Groups on either side of a further impact.
 const MARGIN: usize = 3;
 /// Standard errors from which on a disturbance counts as found, and its size over the step of the impact.
-const SIGNIFICANT: f64 = 5.0;
+const SIGNIFICANT: f64 = 7.0;
 const LEAST_SIZE: f64 = 0.01;
 /// Part of the squares left by a simpler explanation that a hum, which adapts to much, must not exceed.
 const BETTER: f64 = 0.7;
@@ -139,8 +139,7 @@ impl FreeFlight {
             // a high-pass of first order: true = signal + integral of the signal over the time constant
             let mut integral = vec![0.0; count];
             for k in 1..count {
-                integral[k] =
-                    integral[k - 1] + 0.5 * (values[k] + values[k - 1]) * (time[k] - time[k - 1]);
+                integral[k] = integral[k - 1] + 0.5 * (values[k] + values[k - 1]) * (time[k] - time[k - 1]);
             }
             found.push(column(Disturbance::AcCoupled { time_constant: 0.0 }, &|k| integral[k]));
         }

@@ -1,8 +1,8 @@
 //! A short table for the terminal.
 
 use super::Report;
-use super::{measured_section, presentation};
 use super::summary_column::Column;
+use super::{measured_section, presentation};
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
 use crate::result::{Outcome, Summary};
 use crate::scene::Scene;

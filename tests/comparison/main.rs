@@ -10,8 +10,8 @@ mod gate_updates;
 mod gate_verdicts;
 mod harness;
 mod measured_signals;
-mod record_faults;
 mod range_of_validity;
+mod record_faults;
 mod validated;
 
 #[path = "../support/synthetic_impact.rs"]

@@ -33,7 +33,8 @@ impl Bench {
     fn record(&self, seed: u64, end: f64) -> Record {
         let mut random = fastrand::Rng::with_seed(seed);
         let mut normal = || (-2.0 * (1.0 - random.f64()).ln()).sqrt() * (2.0 * PI * random.f64()).cos();
-        let time: Vec<f64> = (0..).map(|k| -200e-6 + 0.5e-6 * f64::from(k)).take_while(|t| *t < end).collect();
+        let time: Vec<f64> =
+            (0..).map(|k| -200e-6 + 0.5e-6 * f64::from(k)).take_while(|t| *t < end).collect();
         let channels = [("outer_velocity", 0.03), ("inner_velocity", -0.01)].map(|(quantity, offset)| {
             let curve = self.model.curve(quantity).unwrap();
             let values = time.iter().map(|t| curve(*t) + offset + 2e-3 * normal()).collect();
@@ -99,16 +100,36 @@ fn each_fault_is_named_and_the_efficiency_kept_where_it_can_be() {
     };
     // efficiency within its stated uncertainty, where the fault can be cut off or taken out
     for (name, record, kind, is_kept) in [
-        ("stop", changed(&clean, |k, t, v| if k == 1 && t > 700e-6 { -0.6 * v } else { v }), FindingKind::EndStop, true),
+        (
+            "stop",
+            changed(&clean, |k, t, v| if k == 1 && t > 700e-6 { -0.6 * v } else { v }),
+            FindingKind::EndStop,
+            true,
+        ),
         (
             "strike",
             changed(&clean, |k, t, v| v + [0.2, -0.15][k] * ((t - 600e-6) / 50e-6).clamp(0.0, 1.0)),
             FindingKind::SecondStrike,
             true,
         ),
-        ("zeros", changed(&clean, |_, t, v| if late(1.0 - 20.0 / count, t) { 0.0 } else { v }), FindingKind::Padding, true),
-        ("clipped", changed(&clean, |k, _, v| if k == 0 { v.max(-0.5) } else { v }), FindingKind::Clipped, true),
-        ("both limits", changed(&clean, |k, _, v| if k == 0 { v.clamp(-0.5, 0.2) } else { v }), FindingKind::Clipped, true),
+        (
+            "zeros",
+            changed(&clean, |_, t, v| if late(1.0 - 20.0 / count, t) { 0.0 } else { v }),
+            FindingKind::Padding,
+            true,
+        ),
+        (
+            "clipped",
+            changed(&clean, |k, _, v| if k == 0 { v.max(-0.5) } else { v }),
+            FindingKind::Clipped,
+            true,
+        ),
+        (
+            "both limits",
+            changed(&clean, |k, _, v| if k == 0 { v.clamp(-0.5, 0.2) } else { v }),
+            FindingKind::Clipped,
+            true,
+        ),
         ("gap", missing, FindingKind::Gap, true),
         ("delay", delayed, FindingKind::Delay, true),
         ("drift", changed(&clean, |k, t, v| if k == 1 { v + 37.0 * t } else { v }), FindingKind::Drift, true),
@@ -118,14 +139,18 @@ fn each_fault_is_named_and_the_efficiency_kept_where_it_can_be() {
         assert!(kinds(&found).contains(&kind), "{name}: {:?}", found.findings);
         let (efficiency, uncertainty) = (found.efficiency.unwrap(), found.efficiency_uncertainty.unwrap());
         let error = (efficiency - bench.efficiency()).abs();
-        assert!(!is_kept || error < 1.5 * uncertainty && uncertainty < 0.01, "{name}: {efficiency} +- {uncertainty}");
+        assert!(
+            !is_kept || error < 1.5 * uncertainty && uncertainty < 0.01,
+            "{name}: {efficiency} +- {uncertainty}"
+        );
     }
 }
 
 #[test]
 fn a_hum_is_taken_out() {
     let bench = Bench::of("scaled-plate-r10");
-    let hum = changed(&bench.record(1, 20e-3), |k, t, v| v + 0.02 * (k as f64) * (2.0 * PI * 50.0 * t + 1.0).sin());
+    let hum =
+        changed(&bench.record(1, 20e-3), |k, t, v| v + 0.02 * (k as f64) * (2.0 * PI * 50.0 * t + 1.0).sin());
     let found = bench.align(&hum).unwrap();
     assert_eq!(kinds(&found), [FindingKind::Hum], "{:?}", found.findings);
     assert!((found.efficiency.unwrap() - bench.efficiency()).abs() < 0.01, "{:?}", found.efficiency);
@@ -151,7 +176,10 @@ fn a_record_of_another_scene_or_a_negated_signal_is_not_taken() {
     // a gain of 1.35 in the inner signal: 127 % of the energy
     let gain = changed(&clean, |k, _, v| if k == 1 { 1.35 * v } else { v });
     let said = bench.align(&gain).unwrap_err().to_string();
-    assert!(said.contains("no impact gives energy") || said.contains("gives energy"), "{said}");
+    assert!(said.contains("no impact gives energy"), "{said}");
+    // 1.1 in both: 119 %, which is not the efficiency's alone
+    let found = bench.align(&changed(&clean, |_, _, v| 1.1 * v)).unwrap();
+    assert!(kinds(&found).contains(&FindingKind::Energy), "{:?}", found.findings);
 }
 
 #[test]
@@ -160,7 +188,8 @@ fn one_impact_counts_once() {
     let [first, second] = [1, 2].map(|seed| bench.record(seed, 400e-6));
     let mut again = first.clone();
     again.time.iter_mut().for_each(|t| *t += 1e-3);
-    let [outer, inner] = [0, 1].map(|k| Record { channels: vec![first.channels[k].clone()], ..first.clone() });
+    let [outer, inner] =
+        [0, 1].map(|k| Record { channels: vec![first.channels[k].clone()], ..first.clone() });
     let found = |records: &[Record]| {
         let how = (BANDWIDTH, Speed::Scene);
         let aligned = align_all(records, &bench.model, &bench.quantities, &bench.setup, how).unwrap();
