@@ -100,6 +100,7 @@ fn modes_beside_the_centre_tell_their_distance_from_many() {
         ("8 mm", Model::B, 16),
     ] {
         let text = text.replace("[outer]", &format!("[outer]\noffset = \"{offset}\""));
+        let text = text.replace("\"axisymmetric\"", "\"solid\"");
         let scene = Scene::parse("beside.toml", &text).unwrap();
         let (estimated, warned, exact) = estimated_and_true(&scene, model, modes, (Model::B, 256));
         assert!(

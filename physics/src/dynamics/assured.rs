@@ -45,6 +45,8 @@ const FIRST_SOLUTION: (f64, f64) = (3e-3, 1e-7);
 const CLEAR_CONTACTS: u32 = 30;
 const CLEAR_STEPS: u64 = 1500;
 const CLEAR_SHARE: f64 = 1e-3;
+/// Distance from zero, over the peak and the error, up to which a turn of an approach is a near miss.
+const NEARLY_MISSED: f64 = 3.0;
 
 /// `options` for results with the relative `error` at most: velocities over the impact speed, force peaks, times of separation; and with
 /// the right numbers of contacts. An error below 3e-5 is that of the velocities alone, as [`Options::tolerance`] has it.
@@ -115,14 +117,14 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
         && (inner.contacts == 0 || inner.impulse >= FULL_SHARE * outer.impulse)
 }
 
-/// Whether all results of the first solution are right to `error`: it has few contacts, the inner one is not negligible, and no error of an
-/// approach, over its peak, up to `error` changes their number.
+/// Whether all results of the first solution are right to `error`: it has few contacts, the inner one is not negligible, and no contact is
+/// nearly missed.
 fn is_clear(result: &Integration, error: f64) -> bool {
     let [outer, inner] = &result.contacts;
     outer.contacts + inner.contacts <= CLEAR_CONTACTS
         && result.steps <= CLEAR_STEPS
         && (inner.contacts == 0 || inner.impulse >= CLEAR_SHARE * outer.impulse)
-        && result.contacts.iter().all(|contact| contact.least_turn > error)
+        && result.contacts.iter().all(|contact| contact.least_turn > NEARLY_MISSED * error)
 }
 
 /// Largest relative difference of the times of separation; infinite if the numbers of contacts differ.
