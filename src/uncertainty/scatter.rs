@@ -245,3 +245,22 @@ fn curved(name: &str, of: &QuantityScatter) -> Option<String> {
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_index_beyond_what_is_possible_is_the_nearest_that_is() {
+        let of = |value: f64| Estimate { value, half_width: 0.03 };
+        let share = share(Indices { first: of(-0.0004), total: of(1.02) }).unwrap();
+        assert_eq!(format!("{:.3} {:.3}", share.first, share.total), "0.000 1.000");
+        let within =
+            |[low, high]: [f64; 2], [least, most]: [f64; 2]| low == least && (high - most).abs() < 1e-12;
+        assert!(within(share.first_interval, [0.0, 0.03]), "{share:?}");
+        assert!(
+            (share.total_interval[0] - 0.97).abs() < 1e-12 && share.total_interval[1] == 1.0,
+            "{share:?}"
+        );
+    }
+}
