@@ -246,11 +246,12 @@ impl DentedContact {
     fn pressed(&self, w: f64) -> Pressed {
         let (now, shear) = self.virgin(w);
         let dents = self.surfaces.map(|s| s.map_or(Dent::NONE, |s| s.dent));
-        // how even the pressure is: as each dent has made it, by their depths
         let deepest = [0, 1].map(|i| {
             let now = now[i].unwrap_or(Flattened::NONE);
             if now.approach > dents[i].deepest.approach { now } else { dents[i].deepest }
         });
+        // the dent that is more even sets the pressure; what comes back is shared by their depths
+        let even = deepest[usize::from(deepest[1].evenness > deepest[0].evenness)];
         let depth = deepest.map(|d| if d.lost > 0.0 { d.lost / d.pressure } else { 0.0 });
         let mean = |of: &dyn Fn(&Flattened) -> f64| {
             let all = depth[0] + depth[1];
@@ -259,10 +260,10 @@ impl DentedContact {
             }
             (0..2).filter(|&i| depth[i] > 0.0).map(|i| depth[i] / all * of(&deepest[i])).sum()
         };
-        let pressure = shear / mean(&Flattened::shears);
+        let pressure = shear / even.shears();
         let unit = pressure / self.modulus;
         let lasting = now.map(|now| now.map_or(0.0, |now| now.lasting));
-        let radius = self.radius(unit * mean(&Flattened::bends), lasting, &dents);
+        let radius = self.radius(unit * even.bends(), lasting, &dents);
         let force = PI * radius * radius * pressure;
         let recovers = |d: &Flattened| {
             let eased = if d.pressure > 0.0 { shear / (d.pressure * d.shears()) } else { 1.0 };
