@@ -135,7 +135,7 @@ fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
         let ours = efficiencies(&summary);
         assert_relative_eq!(ours[0], found[0], max_relative = 0.025);
         for k in 1..3 {
-            assert_relative_eq!(ours[k], found[k], max_relative = 0.025);
+            assert_relative_eq!(ours[k], found[k], max_relative = 0.03);
         }
         assert_relative_eq!(*ours.last().unwrap(), found[3], max_relative = 0.015);
         assert!(summary.energy_residual.unwrap() < 1e-3, "{:?}", summary.energy_residual);
