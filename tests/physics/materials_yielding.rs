@@ -133,22 +133,14 @@ fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
         let summary =
             Reduced::new(&scene(material, strengths, size, spot), Model::C, None).unwrap().run(1e-7).unwrap();
         let ours = efficiencies(&summary);
-        // the warning of aluminium that yields before the spheres says 5 %
-        assert_relative_eq!(
-            ours[0],
-            found[0],
-            max_relative = if material == aluminium { 0.05 } else { 0.04 }
-        );
+        assert_relative_eq!(ours[0], found[0], max_relative = 0.025);
         for k in 1..3 {
-            assert_relative_eq!(ours[k], found[k], max_relative = 0.04);
+            assert_relative_eq!(ours[k], found[k], max_relative = 0.03);
         }
-        assert_relative_eq!(*ours.last().unwrap(), found[3], max_relative = 0.015);
+        // titanium, of which plate and spheres yield nearly alike, with fresh spots: 1.6 % too low
+        let steady = if material == titanium { 0.017 } else { 0.015 };
+        assert_relative_eq!(*ours.last().unwrap(), found[3], max_relative = steady);
         assert!(summary.energy_residual.unwrap() < 1e-3, "{:?}", summary.energy_residual);
-        let told =
-            summary.warnings.iter().any(|warning| warning.contains("the plate yields before the bodies"));
-        let strength = strengths.map(|y| y.unwrap_or(f64::INFINITY));
-        let softer = strength[0] < strength[1];
-        assert_eq!(told, softer, "{:?}", summary.warnings);
     }
 }
 
@@ -270,4 +262,83 @@ fn the_elastic_limit_on_a_thick_plate_is_that_of_a_rigid_wall() {
     let mass = 7780.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-6;
     let wall = (2.0 * energy / mass).sqrt();
     assert_relative_eq!(found.elastic_limit.unwrap().outer.unwrap(), wall, max_relative = 0.01);
+}
+
+/// A steel sphere (Y of its own in MPa, no hardening) that strikes with `speed` m/s, of `radius` m, a block of the modulus `modulus` in Pa, the size
+/// `block` m and a strength of its own, until `end` s.
+fn on_a_block(strengths: [Option<f64>; 2], [radius, speed, modulus, block, end]: [f64; 5]) -> Summary {
+    let [sphere, block_strength] = strengths.map(|strength| {
+        strength.map_or(String::new(), |y| format!(", yield_strength = \"{y} MPa\", hardening = 0"))
+    });
+    let text = format!(
+        r#"
+        name = "block"
+        kind = "plate-impact"
+        materials.ball = {{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = 7800{sphere} }}
+        materials.wall = {{ youngs_modulus = {modulus:e}, poisson_ratio = 0.3, density = 7800{block_strength} }}
+        materials.steel = {{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = 7800 }}
+        plate = {{ radius = {block}, thickness = {block}, edge = "clamped", material = "wall" }}
+        outer = {{ kind = "sphere", radius = {radius}, material = "ball", speed = {speed:e} }}
+        inner = {{ kind = "sphere", radius = {radius}, material = "steel", gap = "0.5 mm" }}
+        run.end_time = {end:e}
+        series.impacts = 1
+        "#
+    );
+    Reduced::new(&Scene::parse("block", &text).unwrap(), Model::C, None).unwrap().run(1e-7).unwrap()
+}
+
+/// Up to 260 times the speed of first yield, sphere, block or both of 600 MPa: rebound over impact speed by the finite elements of
+/// `fem_reference` (14 elements per contact radius). The law was found from static finite elements, not from these.
+#[test]
+fn deep_dents_rebound_as_in_finite_elements() {
+    let soft = Some(600.0);
+    for (strengths, speed, end, found) in [
+        ([soft, None], 1.0, 6.9e-5, 0.761),
+        ([soft, None], 3.0, 5.5e-5, 0.625),
+        ([soft, None], 10.0, 4.35e-5, 0.455),
+        ([None, soft], 10.0, 4.35e-5, 0.491),
+        ([soft, soft], 10.0, 4.35e-5, 0.4525),
+    ] {
+        let summary = on_a_block(strengths, [0.005, speed, 210e9, 0.025, end]);
+        assert_relative_eq!(
+            summary.value("outer_velocity_final").unwrap() / speed,
+            found,
+            max_relative = 0.04
+        );
+        let wide = summary.warnings.iter().any(|warning| warning.contains("of its tip radius wide"));
+        // the plate's dent is a little narrower: 0.19
+        assert_eq!(wide, speed == 10.0 && strengths[0].is_some(), "{:?}", summary.warnings);
+    }
+}
+
+/// Spheres of 600 and 126 MPa on a rigid wall, as `reports/yielding.md` has them, at 105 and 269 times the speed of first yield.
+#[test]
+fn deep_dents_rebound_from_a_rigid_wall_as_in_finite_elements() {
+    for (strength, speed, end, found) in [
+        (600.0, 0.996, 1e-4, 0.579),
+        (600.0, 2.552, 8e-5, 0.479),
+        (126.0, 0.02013, 2.2e-4, 0.591),
+        (126.0, 0.05157, 2e-4, 0.506),
+    ] {
+        let summary = on_a_block([Some(strength), None], [0.01, speed, 1e15, 0.1, end]);
+        let rebound = summary.value("outer_velocity_final").unwrap() / speed;
+        assert_relative_eq!(rebound, found, max_relative = 0.02);
+    }
+}
+
+/// Just past first yield the loss begins at zero and grows; a contact gives no energy.
+#[test]
+fn nothing_is_gained_just_past_first_yield() {
+    // speed of first yield of 1 GPa on a rigid wall, m/s
+    let onset = 0.0348;
+    let mut before = 0.0;
+    for k in 0..8 {
+        let speed = onset * (1.02 + 0.05 * f64::from(k));
+        let summary = on_a_block([Some(1000.0), None], [0.01, speed, 1e15, 0.1, 2.6e-4]);
+        let work = summary.impacts[0].plastic_work.unwrap();
+        let share = work / (0.5 * 7800.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-6 * speed * speed);
+        assert!(share >= before && share - before < 5e-3, "{k}: {share} {before}");
+        before = share;
+    }
+    assert!(before > 1e-4, "{before}");
 }

@@ -21,8 +21,10 @@ const FULL_PLASTICITY: f64 = 3.23;
 const TENDS: f64 = 0.6;
 /// Overload and power with which the slope of a sphere beside the contact begins to count.
 const SLOPING: [f64; 2] = [13.0, 1.3];
+/// Slope beyond which nothing is known, and the pressure falls no further.
+const STEEPEST: f64 = 0.5;
 /// How fast the pressure becomes even with the overload.
-const EVENS: f64 = 0.84;
+const EVENS: f64 = 0.9;
 /// Dissipated over elastic energy, x = l - 1: c x^(1 + m)/(x + x0), as c, m, x0.
 const LOSS: [f64; 3] = [0.33, 0.85, 0.5];
 /// Squares of the overload between which the largest shear stress is looked for, and steps of the search.
@@ -230,7 +232,7 @@ impl ElasticPlastic {
 /// Mean pressure on a sphere over that on a half-space: lower by the `slope` at the rim, a/R, as in a slip-line field beside a sloping face.
 fn falls_away(overload: f64, slope: f64) -> f64 {
     let [scale, power] = SLOPING;
-    (slope * (-(overload / scale).powf(power)).exp_m1()).exp()
+    (slope.min(STEEPEST) * (-(overload / scale).powf(power)).exp_m1()).exp()
 }
 
 #[cfg(test)]
