@@ -1,6 +1,6 @@
 //! The free flight of a signal before and after the impact: offset, drift, velocities with their standard errors.
 
-use super::noise::{Estimate, groups, means};
+use super::noise::{Estimate, groups, looks_white, means};
 use crate::numerics::least_squares::fit;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -64,7 +64,8 @@ impl FreeFlight {
                 self.before.iter().map(row(0.0)).chain(self.after.iter().map(row(1.0))).collect();
             let found = fit(&rows)?;
             let [level, slope, step] = found.coefficients;
-            let error = self.error(bandwidth).unwrap_or(found.errors[2]);
+            let course = |late: bool, t: f64| level + slope * t + if late { step } else { 0.0 };
+            let error = self.error(course, found.errors[2], bandwidth);
             return Some(Flight { level, slope, noise: found.scatter, step: Some((step, error)) });
         }
         let line = |side: &[(f64, f64)]| {
@@ -75,17 +76,32 @@ impl FreeFlight {
         let [level, slope] = before.coefficients;
         let step = line(&self.after).map(|after| {
             let known = after.errors[1].hypot(before.errors[1]);
-            (after.coefficients[1] - slope, self.error(bandwidth).unwrap_or(known))
+            let [late_level, late_slope] = after.coefficients;
+            let course =
+                |late: bool, t: f64| if late { late_level + late_slope * t } else { level + slope * t };
+            (late_slope - slope, self.error(course, known, bandwidth))
         });
         Some(Flight { level, slope, noise: before.scatter, step })
     }
 
-    /// Standard error of the step; `None` if there are too few groups.
-    fn error(&self, bandwidth: f64) -> Option<f64> {
-        self.standard_error(if self.is_velocity { 2 } else { 3 }, bandwidth)
+    /// Standard error of the step; `independent` if neither samples nor groups of them are correlated about the fitted `course`,
+    /// before or after the impact at a time.
+    fn error(&self, course: impl Fn(bool, f64) -> f64, independent: f64, bandwidth: f64) -> f64 {
+        let side =
+            |samples: &[(f64, f64)], late| samples.iter().map(|(t, y)| (*t, y - course(late, *t))).collect();
+        let left = FreeFlight {
+            is_velocity: self.is_velocity,
+            before: side(&self.before, false),
+            after: side(&self.after, true),
+        };
+        let samples: Vec<f64> = left.before.iter().chain(&left.after).map(|(_, y)| *y).collect();
+        if looks_white(&samples) && looks_white(left.grouped(bandwidth).values.as_slice()) {
+            return independent;
+        }
+        self.standard_error(if self.is_velocity { 2 } else { 3 }, bandwidth).unwrap_or(independent)
     }
 
-    /// Standard error of the drift; likewise.
+    /// Standard error of the drift; `None` if there are too few groups.
     pub fn drift_error(&self, bandwidth: f64) -> Option<f64> {
         self.standard_error(1, bandwidth)
     }

@@ -31,6 +31,16 @@ pub fn means(values: &[f64], groups: &[Range<usize>]) -> Vec<f64> {
     groups.iter().map(|g| values[g.clone()].iter().sum::<f64>() / g.len() as f64).collect()
 }
 
+/// Fewest values that show whether they are independent.
+const LEAST_SHOWN: usize = 30;
+
+/// Whether neighbours among residuals differ as independent ones do (ratio of von Neumann, within two standard errors).
+pub fn looks_white(left: &[f64]) -> bool {
+    let squares: f64 = left.iter().map(|r| r * r).sum();
+    let differences: f64 = left.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+    left.len() >= LEAST_SHOWN && differences > (2.0 - 4.0 / (left.len() as f64).sqrt()) * squares
+}
+
 /// Stationary noise behind a low-pass filter of second order (Butterworth), found from the residuals of a fit.
 ///
 /// Its autocovariance is `variance exp(-a) (cos a + sin a)`, a = sqrt(2) pi corner |lag|.
