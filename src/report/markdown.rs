@@ -6,11 +6,12 @@ use super::standing::{self, Standing};
 use super::validated_map::{self, ValidatedMap};
 use super::{Report, SceneReport, presentation};
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison};
+use std::cmp::Reverse;
 
 /// Most characters of the document: comments on GitHub hold 65 536, and what posts it may add a link.
 const MOST: usize = 60_000;
 /// Most of them for the table of verdicts.
-const MOST_ROWS: usize = 35_000;
+const MOST_ROWS: usize = 25_000;
 
 /// Markdown of the whole report, as far as it fits into a comment on GitHub.
 pub fn markdown(report: &Report) -> String {
@@ -18,19 +19,20 @@ pub fn markdown(report: &Report) -> String {
 }
 
 /// Markdown of all scenes whose results stand in a folder; those that are kept have their tables on their pages. So have
-/// those for which there is no room, the scenes with the better verdicts first.
+/// those for which there is no room: the scenes with the worst verdicts come first.
 pub(super) fn of(report: &Report, scenes: &[Standing]) -> String {
-    let urgency = |scene: &Standing| std::cmp::Reverse(scene.overview.verdict);
+    let urgency = |scene: &Standing| Reverse(scene.overview.verdict);
     let rows = scenes.iter().map(|scene| {
         let rows = scene.overview.models.iter().map(|model| row(&scene.overview.scene, model));
-        (urgency(scene), [rows.collect(), String::new()])
+        (urgency(scene), rows.collect())
     });
     let mut text = format!(
         "# impactcheck: {}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy of the summary |\n|---|---|---|--:|--:|---|\n",
         standing::verdict(scenes)
     );
-    let (rows, left_out) = fitted(rows.collect(), MOST_ROWS);
-    text += &rows;
+    let rows = fitted(&rows.collect::<Vec<_>>(), MOST_ROWS);
+    text.extend(rows.iter().flatten().map(String::as_str));
+    let left_out = rows.iter().filter(|row| row.is_none()).count();
     if left_out > 0 {
         text += &format!(
             "\n{left_out} more scenes, with no worse verdicts, are in `index.html` and `comparison.json`.\n"
@@ -40,38 +42,56 @@ pub(super) fn of(report: &Report, scenes: &[Standing]) -> String {
     if ValidatedMap::of(report.validated(), None).is_some() {
         text += &format!("\n![Where the models were held against references]({})\n", validated_map::FILE);
     }
-    let kept = scenes.iter().filter(|scene| scene.is_kept());
-    let kept = kept.map(|scene| (urgency(scene), [(); 2].map(|()| brief(scene, &scene.kept()))));
-    let own = report.scenes.iter().filter_map(|own| {
-        let scene = scenes.iter().find(|scene| scene.overview.scene == own.comparison.scene)?;
-        Some((urgency(scene), [section(own), brief(scene, "")]))
-    });
-    let room = MOST.saturating_sub(text.chars().count());
-    text + &fitted(own.chain(kept).collect(), room).0
+    let room = MOST.saturating_sub(size(&text));
+    text + &sections(report, scenes, urgency, room)
 }
 
-/// The pieces in their order, each in its longer form if there is room, else in its shorter one or not at all; what is urgent
-/// has its room first. With the number of those left out.
-fn fitted<O: Ord>(pieces: Vec<(O, [String; 2])>, room: usize) -> (String, usize) {
-    let size = |text: &String| text.chars().count();
+/// Size of a text in characters.
+fn size(text: &str) -> usize {
+    text.chars().count()
+}
+
+/// A section per scene, with its tables as far as there is room; the scenes of this run first.
+fn sections<O: Ord>(
+    report: &Report,
+    scenes: &[Standing],
+    urgency: impl Fn(&Standing) -> O,
+    room: usize,
+) -> String {
+    let of_run = |own: &SceneReport| scenes.iter().find(|s| s.overview.scene == own.comparison.scene);
+    let own = report.scenes.iter().filter_map(|own| Some((urgency(of_run(own)?), brief(of_run(own)?, ""))));
+    let kept = scenes.iter().filter(|scene| scene.is_kept());
+    let kept = kept.map(|scene| (urgency(scene), brief(scene, &scene.kept())));
+    let briefs: Vec<(O, String)> = own.chain(kept).collect();
+    let mut chosen = fitted(&briefs, room / 4);
+    let mut left = room - chosen.iter().flatten().map(|text| size(text)).sum::<usize>();
+    for k in by_urgency(&briefs).filter(|k| *k < report.scenes.len()) {
+        let whole = section(&report.scenes[k]);
+        let room = left + chosen[k].as_deref().map_or(0, size);
+        let Some(rest) = room.checked_sub(size(&whole)) else { break };
+        left = rest;
+        chosen[k] = Some(whole);
+    }
+    chosen.into_iter().flatten().collect()
+}
+
+/// Places of the pieces, the most urgent first.
+fn by_urgency<O: Ord>(pieces: &[(O, String)]) -> impl Iterator<Item = usize> {
     let mut order: Vec<usize> = (0..pieces.len()).collect();
     order.sort_by_key(|k| &pieces[*k].0);
-    let mut left = room;
-    let mut chosen = vec![None; pieces.len()];
-    // the shorter forms of all come before the longer form of any
-    for form in [1, 0] {
-        for &k in &order {
-            let [longer, shorter] = &pieces[k].1;
-            let (text, before) = if form == 1 { (shorter, 0) } else { (longer, chosen[k].map_or(0, size)) };
-            if (form == 1 && text.is_empty()) || size(text) > left + before {
-                continue;
-            }
-            left = left + before - size(text);
-            chosen[k] = Some(text);
+    order.into_iter()
+}
+
+/// The pieces in their order, as far as there is room; the most urgent have theirs first.
+fn fitted<O: Ord>(pieces: &[(O, String)], room: usize) -> Vec<Option<String>> {
+    let (mut left, mut chosen) = (room, vec![None; pieces.len()]);
+    for k in by_urgency(pieces) {
+        if let Some(rest) = left.checked_sub(size(&pieces[k].1)) {
+            left = rest;
+            chosen[k] = Some(pieces[k].1.clone());
         }
     }
-    let left_out = chosen.iter().filter(|text| text.is_none()).count();
-    (chosen.into_iter().flatten().map(String::as_str).collect(), left_out)
+    chosen
 }
 
 /// Verdict of a scene whose tables are on its page, and the command that makes it.

@@ -288,7 +288,7 @@ fn the_document_of_many_scenes_fits_into_a_comment() {
         markdown(&Report { scenes: scenes.collect(), rules: GateRules::default() })
     };
     let tables = |text: &str| text.matches("| quantity | reduced |").count();
-    for count in [1, 2, 6, 47, 400] {
+    for count in [1, 6, 47, 400] {
         let text = many(count);
         assert!(text.chars().count() < 65_536 - 2_000, "{count}: {}", text.chars().count());
         let listed = (0..count).filter(|k| text.contains(&format!("| plate-{k:03} |"))).count();
@@ -300,8 +300,7 @@ fn the_document_of_many_scenes_fits_into_a_comment() {
             assert!(after.split("\n## ").next().is_some_and(|section| tables(section) == 2), "{count}");
         }
     }
-    let whole = many(1).chars().count();
-    assert_eq!(tables(&many(2)), 4, "a scene has {whole} characters");
+    assert_eq!(tables(&many(2)), 4, "what fits is there");
     let text = many(47);
     assert!(tables(&text) >= 2 && text.contains("Its tables are on [its page](plate-044.html)."));
 }
