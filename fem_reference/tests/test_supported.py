@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 import numpy as np
@@ -87,10 +88,10 @@ def test_the_launcher_is_that_of_the_environment(
         (folder / "mpirun").write_text("#!/bin/sh")
         (folder / "mpirun").chmod(0o755)
     monkeypatch.setenv("PATH", str(other))
-    monkeypatch.setattr(processes.sysconfig, "get_path", lambda _: str(tmp_path))
-    monkeypatch.setattr(processes.sys, "executable", str(own / "python"))
+    monkeypatch.setattr(sysconfig, "get_path", lambda _: str(tmp_path))
+    monkeypatch.setattr(sys, "executable", str(own / "python"))
     assert processes.launcher() == str(own / "mpirun")
-    monkeypatch.setattr(processes.sys, "executable", str(tmp_path / "python"))
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
     assert processes.launcher() == str(other / "mpirun")
     monkeypatch.setenv("PATH", str(tmp_path))
     assert processes.launcher() is None
