@@ -47,7 +47,7 @@ fn every_command_runs() {
         }
     }
     // the python3 of `make setup` or of the system has SciPy
-    let path = format!(concat!(env!("CARGO_MANIFEST_DIR"), "/target/python-tools/bin:/usr/bin:{}"), std::env::var("PATH").unwrap());
+    let path = format!("{ROOT}/target/python-tools/bin:/usr/bin:{}", std::env::var("PATH").unwrap());
     let mut commands = 0;
     for chapter in chapters() {
         let text = fs::read_to_string(Path::new(ROOT).join("guide/src").join(&chapter)).unwrap();
