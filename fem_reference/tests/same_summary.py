@@ -41,7 +41,5 @@ def main(one: Path, other: Path, kind: str, limit: float, bands: Path) -> int:
 
 
 if __name__ == "__main__":
-    first, second = Path(sys.argv[1]), Path(sys.argv[2])
-    sys.exit(
-        main(first, second, sys.argv[3], float(sys.argv[4]), Path([*sys.argv, sys.argv[1]][5]))
-    )
+    first, second, of, most, where = [*sys.argv[1:], sys.argv[1]][:5]
+    sys.exit(main(Path(first), Path(second), of, float(most), Path(where)))

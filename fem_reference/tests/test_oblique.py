@@ -131,7 +131,8 @@ def test_direction_and_place_are_checked() -> None:
 
 @pytest.mark.parametrize("rigid", ["both", "none"])
 def test_a_half_struck_at_the_centre_is_what_a_quarter_is(rigid: str) -> None:
-    scene = oblique(rigid, **SMALL)
+    # The meshes are not the same: force peaks of linear elements differ by up to 1.3 % for that.
+    scene = oblique(rigid, 2 if rigid == "both" else 1, **SMALL)
     half, quarter = (strike(scene, half) for half in (True, False))
     assert half.run.sideways is not None
     assert np.abs(half.run.sideways.velocities).max() < 1e-3 * half.scene.speed

@@ -19,7 +19,8 @@ fn gate(scene: &Path, arguments: &[&str], allowed: Option<&str>) -> Gated {
     command.arg("gate").arg(scene).args(arguments).arg("--json").arg("--out").arg(out.path());
     command.current_dir(ROOT).env_remove("IMPACTCHECK_STORE").env_remove("IMPACTCHECK_ALLOW_EXTERNAL");
     // the python3 of `make setup` or of the system has SciPy
-    command.env("PATH", format!(concat!(env!("CARGO_MANIFEST_DIR"), "/target/python-tools/bin:/usr/bin:{}"), std::env::var("PATH").unwrap()));
+    command
+        .env("PATH", format!("{ROOT}/target/python-tools/bin:/usr/bin:{}", std::env::var("PATH").unwrap()));
     command.envs(allowed.map(|value| ("IMPACTCHECK_ALLOW_EXTERNAL", value)));
     let output = command.output().unwrap();
     Gated {
