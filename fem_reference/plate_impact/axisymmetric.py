@@ -229,9 +229,7 @@ def _cost(scene: Scene, system: AxisymmetricSystem, estimate: ContactEstimate) -
     end = scene.end_time or FIELD_DURATIONS * estimate.duration
     steps = end / (0.9 * float(system.element_steps.min()))
     seconds = SECONDS_PER_DOF * system.inverse_mass.size * steps
-    return (
-        f"{system.mass.size} nodes, about {steps:.1g} steps, about {seconds:.1g} s on one core"
-    )
+    return f"{system.mass.size} nodes, about {steps:.1g} steps, about {seconds:.1g} s on one core"
 
 
 def _note(refinement: Refinement) -> str:
