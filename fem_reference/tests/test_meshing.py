@@ -222,9 +222,11 @@ def test_each_contact_has_its_own_radius() -> None:
 
 
 def test_a_zone_of_its_own_gives_what_the_zone_of_both_gives() -> None:
-    light = parse_scene(document(inner__radius=0.004, run__end_time=4e-5))
+    light = parse_scene(
+        document(inner__radius=0.004, plate__radius=0.015, run__end_time=3e-5, outer__radius=0.006)
+    )
     estimate = estimate_contact(light)
-    settings = mesh_settings(light, estimate.outer_radius, estimate.inner_radius, 2.0)
+    settings = mesh_settings(light, estimate.outer_radius, estimate.inner_radius, 1.0)
     own = int(np.searchsorted(settings.zone_radii(), CONTACT_ZONE * estimate.inner_radius))
     assert settings.sphere_elements == (None, None) and own < 0.8 * settings.contact_elements
     runs = [
