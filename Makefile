@@ -50,8 +50,7 @@ python: setup wheel
 	$(VENV)/bin/ruff check fem_reference examples python
 	$(VENV)/bin/ruff format --check fem_reference examples python
 	$(TOOL) -m mypy
-	$(PYTHON) -m pytest -q fem_reference
-	$(TOOL) -m pytest -q fem_reference/tests/test_flight.py
+	$(PYTHON) -m pytest -q -n auto --dist worksteal fem_reference
 	cargo build --release
 	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck $(WHEEL)/bin/python -m pytest -q python
 	$(WHEEL)/bin/python -m mypy.stubtest impactcheck._core
@@ -63,7 +62,7 @@ live: setup wheel
 	$(RUN) doctor
 	$(RUN) --store $(OUT)/live/store reference scaled-plate-r6.35 --resolution coarse
 	$(RUN) --store $(OUT)/live/store gate scaled-plate-r6.35 --resolution coarse --out $(OUT)/live/report
-	IMPACTCHECK_LIVE=1 cargo test --release --test command_line guide
+	IMPACTCHECK_GUIDE=live cargo test --release --test command_line guide
 
 # the gate on the stored references
 gate:
