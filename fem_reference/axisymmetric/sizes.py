@@ -66,7 +66,7 @@ class MeshSettings:
         curve, which is off by up to 3/8 (element / contact radius)^2; where the edge stands at the
         peak decides about the peak's error. There the elements are `EDGE_REFINEMENT` times as fine.
         """
-        even = self.contact_element * np.arange(self.contact_elements + 1)
+        even: Floats = self.contact_element * np.arange(self.contact_elements + 1.0)
         if self.edge is None:
             return even
         low, high = EDGE_MARGINS[0] * self.edge[0], EDGE_MARGINS[1] * self.edge[1]

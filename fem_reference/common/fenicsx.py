@@ -112,7 +112,7 @@ class Domain:
 
     def constant(self, value: float) -> Any:
         """A constant that does not trigger recompilation when it changes."""
-        return fem.Constant(self.mesh, PETSc.ScalarType(value))
+        return fem.Constant(self.mesh, np.float64(value))
 
     @compiles
     def matrix(self, form: Any) -> scipy.sparse.csr_matrix:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import numpy.typing as npt
 from mpi4py import MPI
 
 # isort: split
@@ -22,13 +23,13 @@ WHEELS = "`pip install dolfinx-solver-real` (Linux x86-64, Python 3.12 or later)
 """How to install a supported FEniCSx."""
 
 
-def fault(release: str, scalar: type) -> str | None:
+def fault(release: str, scalar: npt.DTypeLike) -> str | None:
     """Why a dolfinx of this release, with scalars of this type, is refused; None if it is not."""
     found = re.match(r"(\d+)\.(\d+)", release)
     if found is None or not OLDEST <= tuple(map(int, found.groups())) <= NEWEST:
         first, last = (".".join(map(str, bound)) for bound in (OLDEST, NEWEST))
         return f"dolfinx {release} is not supported, only {first} to {last}; {WHEELS}"
-    if np.issubdtype(scalar, np.complexfloating):
+    if np.issubdtype(np.dtype(scalar), np.complexfloating):
         return f"PETSc of dolfinx {release} has complex scalars, real ones are required; {WHEELS}"
     return None
 

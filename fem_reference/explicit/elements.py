@@ -90,4 +90,5 @@ class Tetrahedra:
 
 def _by_fours(rows: Floats | Ints) -> Floats | Ints:
     """(fours, columns, 4) of (4 fours, columns)."""
-    return np.asarray(rows.reshape(-1, LANES, rows.shape[1]).transpose(0, 2, 1))
+    fours: Floats | Ints = rows.reshape(-1, LANES, rows.shape[1]).transpose(0, 2, 1)
+    return fours

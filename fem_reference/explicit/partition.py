@@ -61,7 +61,7 @@ def _halve(
         sides = np.zeros((2, int(elements.max()) + 1), dtype=bool)
         sides[0, elements[among[lower]]] = True
         sides[1, elements[among[~lower]]] = True
-        return np.count_nonzero(sides.all(axis=0))
+        return int(np.count_nonzero(sides.all(axis=0)))
 
     lower = min(cuts, key=in_common)
     _halve(owner, among[lower], ranks[:half], fields, groups, elements)

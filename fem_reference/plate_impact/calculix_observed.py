@@ -113,7 +113,7 @@ def _record(scene: Scene, observed: Observed, number: int, chatter: float) -> Co
     ends = np.flatnonzero(pressed & ~np.append(pressed[1:], False))
     spans: list[tuple[float, float]] = []
     for start, end in zip(starts, ends, strict=True):
-        first = float(times[max(start - 1, 0)])
+        first = float(times[max(int(start) - 1, 0)])
         if spans and first - spans[-1][1] < chatter:
             first = spans.pop()[0]
         spans.append((first, float(times[end])))

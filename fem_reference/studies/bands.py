@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from itertools import count, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,7 @@ def solve(scene: Scene, folder: Path, progress: Progress) -> None:
         RunError: the method refuses the scene, or it takes too long.
     """
     values: dict[str, dict[str, float]] = {}
-    curves = {}
+    curves: dict[str, Any] = {}
     with TemporaryDirectory() as name:
         settings = Settings(Options().courant, Path(name), Options().checkpoint_interval, "")
         lead = compute(scene, FACTORS[0], settings, progress.report)

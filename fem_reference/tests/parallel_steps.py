@@ -41,10 +41,16 @@ def main(scene_path: Path, steps: int, threads: int, out: Path) -> None:
         force = [list(contact.force) for contact in loop.problem.contacts]
         np.savez(
             out,
-            **{"u": u, "v": v, "force": np.array(force), "reaction": np.array(state.reaction)},
-            **{"energy": energy, "critical": critical, "processes": comm.size},
-            **{"levels": np.array(loop.levels), "threads": np.array(loop.threads)},
-            **{"impulse": np.array([record.impulse for record in loop.problem.records()])},
+            u=u,
+            v=v,
+            force=np.array(force),
+            reaction=np.array(state.reaction),
+            energy=energy,
+            critical=critical,
+            processes=comm.size,
+            levels=np.array(loop.levels),
+            threads=np.array(loop.threads),
+            impulse=np.array([record.impulse for record in loop.problem.records()]),
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +24,8 @@ def test_a_seed_is_a_scene() -> None:
 def test_errors_of_the_order_fitted_are_their_bands(tmp_path: Path) -> None:
     """Also where the truth itself is off: its error is added."""
     times = np.linspace(0.0, 1e-4, 400)
-    curves, values = {}, {}
+    curves: dict[str, Any] = {}
+    values = {}
     for factor in [*FACTORS, TRUTH]:
         share = 1.0 + 0.01 * factor**-1.5
         key = f"{factor:.6f}"

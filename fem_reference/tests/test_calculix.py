@@ -20,6 +20,7 @@ from fem_reference.calculix.deck import MILLI, Deck, Part, Steps
 from fem_reference.calculix.printed import Printed, frequencies
 from fem_reference.calculix.program import VARIABLE
 from fem_reference.calculix.wedge import SHARE, quadratic, wedge
+from fem_reference.common.arrays import Floats
 from fem_reference.common.bodies import Plate
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.common.settings import Options, Settings
@@ -259,8 +260,8 @@ def test_a_value_that_is_no_number_is_divergence(tmp_path: Path) -> None:
 def test_the_end_of_a_contact_lies_between_its_samples() -> None:
     """Of a force like (t_end - t)^1.5, whatever the samples."""
     for step in (0.9e-6, 1.0e-6, 1.3e-6):
-        times = step * np.arange(60)
-        force = np.maximum(3.07e-5 - times, 0.0) ** 1.5
+        times: Floats = step * np.arange(60.0)
+        force: Floats = np.maximum(3.07e-5 - times, 0.0) ** 1.5
         force[:3] = 0.0
         assert contact_end(times, force) == pytest.approx(3.07e-5, rel=1e-9)
     assert contact_end(times, np.zeros(60)) is None

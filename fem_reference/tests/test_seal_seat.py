@@ -158,7 +158,7 @@ def test_nodes_of_the_ring_lie_on_the_sphere_and_nothing_penetrates(coarse: Seat
         # The tangent cone: the gap grows with the square of the distance from the ring.
         expected = np.hypot(radius, patch.distances) - radius
         assert np.allclose(gap, expected, atol=1e-9 * radius)
-        touching += np.count_nonzero(on_ring)
+        touching += int(np.count_nonzero(on_ring))
         # Normals are those of the sphere where it touches.
         normals = -away[on_ring] / radius
         assert np.allclose(patch.normals[on_ring], normals, atol=1e-9)

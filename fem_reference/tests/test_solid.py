@@ -297,7 +297,7 @@ def test_contact_leaves_no_gap_violated_and_no_pull() -> None:
         assert gap.min() > -1e-9
         # Where there is a force, the gap is closed (the normal is that of the predicted place).
         assert np.all(np.abs(gap[force > 0.0]) < 1e-9)
-        most = max(most, np.count_nonzero(force))
+        most = max(most, int(np.count_nonzero(force)))
     assert most > 3
 
 
