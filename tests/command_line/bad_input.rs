@@ -131,7 +131,8 @@ fn reference_that_is_not_there_ends_with_11_and_says_what_to_do() {
         ["gate", file.to_str().unwrap(), "--store", store.to_str().unwrap(), "--out", out.to_str().unwrap()];
     let ended = impactcheck(&arguments, &[]);
     assert_eq!(ended.status, 11, "{}", ended.error);
-    assert!(ended.error.contains("impactcheck reference"), "{}", ended.error);
+    let command = format!("impactcheck --store {} reference {}", store.display(), file.display());
+    assert!(ended.error.contains(&command), "{}", ended.error);
     assert!(!out.join("index.html").exists());
 }
 
