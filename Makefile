@@ -50,7 +50,7 @@ python: setup wheel
 	$(VENV)/bin/ruff check fem_reference examples python
 	$(VENV)/bin/ruff format --check fem_reference examples python
 	$(TOOL) -m mypy
-	$(PYTHON) -m pytest -q -n auto --dist worksteal fem_reference
+	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference
 	cargo build --release
 	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck $(WHEEL)/bin/python -m pytest -q python
 	$(WHEEL)/bin/python -m mypy.stubtest impactcheck._core

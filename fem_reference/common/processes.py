@@ -112,7 +112,8 @@ def _launch(processes: int) -> None:
     Raises:
         SolverError: there is no mpirun.
     """
-    said = crowded(processes, busy_cores(), len(affinity()))
+    cores = len(affinity())
+    said = crowded(processes, busy_cores() * cores / (os.cpu_count() or 1), cores)
     if said is not None:
         Progress().report("note", 1.0, said)
     again = [sys.executable, "-m", "fem_reference", *sys.argv[1:]]

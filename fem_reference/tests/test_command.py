@@ -300,6 +300,10 @@ def test_killed_run_leaves_no_result(tmp_path: Path, deadly: signal.Signals) -> 
         text=True,
         cwd=ROOT,
         env=environment(),
+        # a program started in the background inherits that some are ignored
+        preexec_fn=lambda: (
+            signal.signal(deadly, signal.SIG_DFL) if deadly != signal.SIGKILL else None
+        ),
     )
     assert process.stdout is not None
     try:

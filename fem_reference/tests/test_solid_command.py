@@ -16,7 +16,7 @@ import meshio
 import numpy as np
 import pytest
 
-from fem_reference.common.processes import INHERITED
+from fem_reference.common.processes import INHERITED, launcher
 from fem_reference.tests.conftest import document
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -185,13 +185,13 @@ def one_process(folder: Path) -> dict[str, Any]:
 def steps(folder: Path, processes: int, threads: int) -> dict[str, Any]:
     """The state after some steps in contact."""
     out = folder / f"steps-{processes}-{threads}.npz"
-    launcher = ["mpirun", "-n", str(processes)] if processes > 1 else []
+    several = [str(launcher()), "-n", str(processes)] if processes > 1 else []
     module = [sys.executable, "-m", "fem_reference.tests.parallel_steps", str(scene(folder))]
     clean = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
     settings = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     settings |= {"OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
     # Few steps: where processors are scarce, every exchange waits for the other process' turn.
-    start = [*launcher, *module, "160", str(threads), str(out)]
+    start = [*several, *module, "160", str(threads), str(out)]
     subprocess.run(start, cwd=ROOT, env={**clean, **settings}, check=True, capture_output=True)
     with np.load(out) as values:
         return dict(values)

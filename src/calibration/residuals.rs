@@ -46,11 +46,15 @@ impl Signals {
             let (low, high) = values
                 .iter()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v: &f64| (l.min(*v), h.max(*v)));
-            // a signal that is trusted has no offset of its velocity
+            // a trusted velocity has no offset: of a displacement then only the offset is unknown, of a velocity the drift
             let trusted = channel.quantity.starts_with("outer") && speed == Speed::Measured;
-            let unknown =
-                2 - usize::from(trusted) * if channel.quantity.ends_with("velocity") { 2 } else { 1 };
-            let scaled = DMatrix::from_fn(means.len(), unknown, |i, j| (means[i] * bandwidth).powi(j as i32));
+            let powers: &[i32] = match (trusted, channel.quantity.ends_with("velocity")) {
+                (false, _) => &[0, 1],
+                (true, true) => &[1],
+                (true, false) => &[0],
+            };
+            let unknown = |i: usize, j: usize| (means[i] * bandwidth).powi(powers[j]);
+            let scaled = DMatrix::from_fn(means.len(), powers.len(), unknown);
             let nuisance = orthonormal(&scaled);
             let span = (high - low).max(f64::MIN_POSITIVE);
             Signal { record: k, quantity: channel.quantity, time, values, groups, means, span, nuisance }

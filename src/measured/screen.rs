@@ -48,7 +48,8 @@ pub(super) fn screened(record: &Record, bandwidth: f64) -> (Record, Vec<Finding>
         channels: channels.collect(),
     };
     findings.extend(record.channels.iter().filter_map(|channel| clipped(&record.time, channel)));
-    findings.extend(record.time.windows(2).filter(|pair| pair[1] - pair[0] > gap(&record.time, bandwidth)).map(|pair| {
+    let longest = gap(&record.time, bandwidth);
+    findings.extend(record.time.windows(2).filter(|pair| pair[1] - pair[0] > longest).map(|pair| {
         let effect = format!(
             "no samples for {:.3e} s: what happened there is not seen, a change of the velocities within it is taken for the impact",
             pair[1] - pair[0]
@@ -125,8 +126,8 @@ fn clipped(time: &[f64], channel: &Channel) -> Option<Finding> {
         let at_limit: Vec<usize> = (0..values.len()).filter(|k| values[*k] == limit).collect();
         let others = values.iter().copied().filter(|v| *v != limit);
         let next = others.min_by(|a, b| (a - limit).abs().total_cmp(&(b - limit).abs()))?;
-        let beside = values.iter().filter(|v| **v == next).count();
-        if at_limit.len() < CLIPPED.max(OFTENER * beside) || !shows_noise(values, |k| values[k] == low || values[k] == high) {
+        let neighbours = values.iter().filter(|v| **v == next).count();
+        if at_limit.len() < CLIPPED.max(OFTENER * neighbours) || !shows_noise(values, |k| values[k] == low || values[k] == high) {
             return None;
         }
         let Range { start, end } = at_limit[0]..at_limit[at_limit.len() - 1];
@@ -144,5 +145,5 @@ fn gap(time: &[f64], bandwidth: f64) -> f64 {
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     // several usual steps, and long enough to hide something the instrument would show
-    (5.0 * steps[steps.len() / 2]).max(1.0 / bandwidth)
+    steps.get(steps.len() / 2).map_or(f64::INFINITY, |usual| (5.0 * usual).max(1.0 / bandwidth))
 }

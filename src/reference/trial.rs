@@ -1,6 +1,7 @@
 //! A small reference, solved in a folder of its own to see whether references can be computed.
 
 use super::{Resolution, Store, Wish, solve_with};
+use crate::interrupt::Scratch;
 use crate::scene::Scene;
 use crate::{Error, Result};
 use std::path::Path;
@@ -23,7 +24,9 @@ reference = { elements_per_contact_radius = 4 }
 /// # Errors
 /// As [`super::solve`].
 pub(super) fn solve_trial(python: &Path) -> Result<Duration> {
-    let folder = tempfile::tempdir().map_err(|e| Error::io("making", &std::env::temp_dir(), e))?;
+    let temporary = std::env::temp_dir();
+    let folder =
+        Scratch::new_in(&temporary, "impactcheck-").map_err(|e| Error::io("writing into", &temporary, e))?;
     let scene = Scene::parse("trial", SCENE)?;
     let start = Instant::now();
     let store = Store::open(Some(folder.path()));

@@ -59,7 +59,8 @@ fn sections<O: Ord>(
     room: usize,
 ) -> String {
     let of_run = |own: &SceneReport| scenes.iter().find(|s| s.overview.scene == own.comparison.scene);
-    let own = report.scenes.iter().filter_map(|own| Some((urgency(of_run(own)?), brief(of_run(own)?, ""))));
+    let of_run = |own| of_run(own).expect("the scenes of this run are among those of its folder");
+    let own = report.scenes.iter().map(|own| (urgency(of_run(own)), brief(of_run(own), "")));
     let kept = scenes.iter().filter(|scene| scene.is_kept());
     let kept = kept.map(|scene| (urgency(scene), brief(scene, &scene.kept())));
     let briefs: Vec<(O, String)> = own.chain(kept).collect();

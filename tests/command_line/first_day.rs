@@ -110,7 +110,7 @@ fn measured_files_may_be_listed_with_spaces_as_a_shell_does() {
 }
 
 #[test]
-fn numbers_beyond_all_measure_are_refused_at_once() {
+fn numbers_beyond_all_measure_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for (from, to, word) in [
         ("\"2 mm\"", "\"1e300 mm\"", "plate.thickness"),

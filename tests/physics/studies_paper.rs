@@ -114,6 +114,13 @@ fn repeated_impacts_shake_down_as_the_paper_says() {
 }
 
 #[test]
+fn the_papers_statements_survive_a_test_bed() {
+    let study = run("test-bed", Some(Model::B));
+    assert_eq!((study.rows.len(), study.claims.len()), (384, 6));
+    assert!(study.claims.iter().all(|c| c.verdict == Verdict::Pass), "{:?}", study.claims);
+}
+
+#[test]
 fn a_study_is_written_in_every_format() {
     let folder = tempfile::tempdir().unwrap();
     let study = run("fluid", Some(Model::A));

@@ -107,7 +107,7 @@ fn schema_and_reader_agree() {
         ("modes", "modes", true),
         ("\"33 mm\"", "0.033", true),
         ("\"33 mm\"", "\"33mm\"", true),
-        ("\"33 mm\"", "\"3.3e1 \u{b5}m\"", true),
+        ("\"33 mm\"", "\"3.3e4 \u{b5}m\"", true),
         ("\"33 mm\"", "\" +33 mm \"", true),
         ("\"33 mm\"", "\".033\"", true),
         ("\"33 mm\"", "\"33 N mm/N\"", true),
