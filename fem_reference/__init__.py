@@ -17,6 +17,9 @@ os.environ.setdefault("GOMP_SPINCOUNT", "1000")
 # Matrices are too small for threads of BLAS, whose waiting takes the processor from other programs.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# UCX, below MPICH, would take the signal of a closed terminal for itself.
+os.environ.setdefault("UCX_DEBUG_SIGNO", "0")
+
 # Open MPI starts a daemon beside a single process, and keeps a folder for it that a killed one
 # leaves behind; nobody else joins such a process.
 if not launched():

@@ -21,6 +21,7 @@ import numpy as np
 from ..common.arrays import Floats, Ints, Mask
 from ..common.bodies import Plate, Sphere, sphere_profile
 from ..common.errors import SolverError
+from ..common.mesher import start_gmsh
 from .grading import Segment, graded
 from .mesh import BodyMesh
 from .sizes import MeshSettings
@@ -28,10 +29,8 @@ from .sizes import MeshSettings
 
 @contextmanager
 def _gmsh_model() -> Iterator[None]:
-    # Not interruptible: gmsh would replace the signal handlers of the process.
-    gmsh.initialize([], readConfigFiles=False)
+    start_gmsh()
     try:
-        gmsh.option.setNumber("General.Terminal", 0)
         gmsh.model.add("body")
         yield
     except SolverError:

@@ -22,6 +22,7 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..common.errors import SolverError
+from ..common.mesher import start_gmsh
 from ..solid.collapse import collapse_short_edges
 from ..solid.mesh import TetMesh, check_elements, tetrahedra
 from ..solid.meshing import generate
@@ -173,9 +174,8 @@ def build(scene: SeatScene) -> None:
 
 def cad_volume(scene: SeatScene) -> float:
     """Volume of the exact half body, m^3."""
-    gmsh.initialize([], readConfigFiles=False)
+    start_gmsh()
     try:
-        gmsh.option.setNumber("General.Terminal", 0)
         gmsh.model.add("seat")
         build(scene)
         gmsh.model.occ.synchronize()

@@ -17,6 +17,7 @@ import numpy as np
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Plate, Sphere
 from ..common.errors import SolverError
+from ..common.mesher import start_gmsh
 from .mesh import MINIMUM_QUALITY, TetMesh, check_elements, qualities, tetrahedra
 
 DELAUNAY = 1
@@ -66,10 +67,8 @@ def generate(name: str, build: Callable[[], None], size: Sized) -> tuple[Floats,
     Raises:
         SolverError: gmsh failed.
     """
-    # Not interruptible: gmsh would replace the signal handlers of the process.
-    gmsh.initialize([], readConfigFiles=False)
+    start_gmsh()
     try:
-        gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)
         gmsh.model.add(name)
         build()
