@@ -303,7 +303,7 @@ mod tests {
             (78.0, 2.913, 0.381),
         ] {
             let state = at(&law, strain);
-            assert_relative_eq!(state.pressure / 600e6, pressure, max_relative = 0.025);
+            assert_relative_eq!(state.pressure / 600e6, pressure, max_relative = 0.021);
             let stored = state.energy() * state.pressure.powi(2) / MODULUS;
             assert_relative_eq!((stored / (stored + state.lost)).sqrt(), rebound, max_relative = 0.015);
         }
@@ -334,6 +334,7 @@ mod tests {
     /// Etsion, Kligerman & Kadin, Int. J. Solids Struct. 42 (2005) 3716, eq. (13): what comes back of the approach of w critical ones, over
     /// p a/E' of Jackson and Green's loading, at the same flattening.
     #[test]
+    #[allow(clippy::approx_constant, reason = "an overload, not 2 pi")]
     fn what_comes_back_is_that_of_published_finite_elements() {
         let law = steel(600e6);
         for (w, overload, recovers) in [
