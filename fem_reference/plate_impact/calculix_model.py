@@ -36,7 +36,9 @@ def require_supported(scene: Scene, options: Options) -> None:
         SceneError: naming the field, its value and what it must be.
     """
     asked = {
-        "fields are asked for; there are none": bool(options.stress_times or options.frame_times),
+        "fields are requested; this solver writes none": bool(
+            options.stress_times or options.frame_times
+        ),
         "fluid is given; it must be absent": scene.fluid is not None,
         "series is given; it must be absent": scene.series is not None,
         f"friction is {scene.friction:g}; it must be 0": scene.friction > 0.0,

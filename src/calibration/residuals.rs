@@ -101,7 +101,8 @@ impl Signals {
                 if j < nuisance.ncols() { nuisance[(i, j)] } else { of_fit[(i, j - nuisance.ncols())] }
             });
             let values = left.rows(start, count).into_owned();
-            let noise = Noise::of((means, &values), &basis, std::slice::from_ref(&(0..count)), self.bandwidth)?;
+            let noise =
+                Noise::of((means, &values), &basis, std::slice::from_ref(&(0..count)), self.bandwidth)?;
             blocks.push(noise.covariance(means));
             start += count;
         }

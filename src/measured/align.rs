@@ -210,7 +210,7 @@ impl Alignment<'_> {
             return refused(
                 "check columns, units, signs (z points from the inner to the outer side) and that the file belongs to this scene".into(),
                 format!(
-                    "nowhere in the record is an impact like that of the scene: the signals are off by {:.0} % of their span at best, at most {:.0} % is taken for a match",
+                    "nowhere in the record is an impact like that of the scene: the signals differ from it by {:.0} % of their span at best; the limit for a match is {:.0} %",
                     100.0 * found.misfit,
                     100.0 * WORST_MISFIT
                 ),

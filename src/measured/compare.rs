@@ -5,8 +5,9 @@ use super::RULE;
 use super::align::{AlignedRecord, Speed, align_all};
 use super::area::Area;
 use super::filter::{Filtered, SIGNALS};
+use super::noise::NORMAL_95;
 use super::record::Record;
-use crate::comparison::validation::{Assessment, COVERAGE};
+use crate::comparison::validation::Assessment;
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::{CURVES, PlateQuantities};
@@ -72,7 +73,7 @@ impl Measured {
         let count = series.count as f64;
         let impacts = self.records.iter().filter(|record| !record.is_copy);
         let bands = impacts.filter_map(|record| record.efficiency_uncertainty);
-        let noise = bands.map(|band| (band / COVERAGE).powi(2)).sum::<f64>() / count;
+        let noise = bands.map(|band| (band / NORMAL_95).powi(2)).sum::<f64>() / count;
         let scatter = series.standard_deviation.map_or(0.0, |deviation| deviation.powi(2));
         // the scatter has the noise in it already
         Some((scatter.max(noise) / count).sqrt()).filter(|u| *u > 0.0)

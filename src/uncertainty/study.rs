@@ -16,8 +16,7 @@ use std::path::{Path, PathBuf};
 const FIRST_ROWS: usize = 16 * REPLICATES;
 /// Rows up to which accuracy is looked for.
 const MOST_WANTED: usize = 1 << 16;
-/// Relative error that the time integration may have in all results; most have a hundredth of it, far below any scatter worth a
-/// study.
+/// Relative error that the time integration may have in all results, far below any scatter worth a study.
 const TOLERANCE: f64 = 4e-5;
 
 /// What `scene` says of its inputs.
