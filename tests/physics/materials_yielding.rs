@@ -120,7 +120,8 @@ fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
             [Some(500.0), Some(450.0)],
             [30.0, 2.0, 8.0, 0.3],
             "fresh",
-            [0.6121, 0.6341, 0.63658, 0.6371],
+            // five meshes, 95 % interval +-0.001 (one mesh of 6 elements: .6121 .6341 .6366 .6371)
+            [0.6115, 0.6337, 0.6362, 0.6366],
         ),
         (
             bronze,
@@ -137,9 +138,7 @@ fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
         for k in 1..3 {
             assert_relative_eq!(ours[k], found[k], max_relative = 0.03);
         }
-        // titanium, of which plate and spheres yield nearly alike, with fresh spots: 1.6 % too low
-        let steady = if material == titanium { 0.017 } else { 0.015 };
-        assert_relative_eq!(*ours.last().unwrap(), found[3], max_relative = steady);
+        assert_relative_eq!(*ours.last().unwrap(), found[3], max_relative = 0.015);
         assert!(summary.energy_residual.unwrap() < 1e-3, "{:?}", summary.energy_residual);
     }
 }
