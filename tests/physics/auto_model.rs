@@ -286,19 +286,19 @@ fn a_thin_plate_takes_no_mesh_and_is_the_meshed_one() {
     }
 }
 
-/// A small part of `impactcheck study auto`, which has 1000 scenes.
+/// A small part of `impactcheck study auto`, which `make evidence` draws.
 #[test]
 fn promises_are_kept_on_random_scenes() {
     let study = {
-        let extent = auto::Extent { random: 12, seed: 11, references: false, costed: 0 };
+        let extent = auto::Extent { random: 8, seed: 11, references: false, costed: 0 };
         auto::check(&extent, &Store::open(None), &mut |_| ()).unwrap()
     };
     let (tolerance, exact) = (column(&study, "tolerance"), column(&study, "true_error"));
-    assert_eq!(tolerance.len(), 12 * 3);
+    assert_eq!(tolerance.len(), 8 * 3);
     let promised = column(&study, "promised");
     let decided = exact.iter().filter(|error| error.is_finite()).count();
-    assert!(decided >= 8, "{promised:?}, {exact:?}");
-    let broken = (0..36).filter(|k| promised[*k] > 0.0 && exact[*k] > tolerance[*k]).count();
+    assert!(decided >= 6, "{promised:?}, {exact:?}");
+    let broken = (0..24).filter(|k| promised[*k] > 0.0 && exact[*k] > tolerance[*k]).count();
     assert!(broken as f64 <= (1.0 - COVERAGE) * decided as f64, "{broken} of {decided}: {exact:?}");
     let svg = auto::figure(&study);
     assert!(svg.matches("<circle").count() >= decided && !svg.contains("NaN"));
