@@ -159,7 +159,7 @@ def test_what_the_deck_does_not_describe_is_refused(changes: dict[str, Any], tol
 def test_fields_are_refused_and_a_dry_elastic_scene_is_not() -> None:
     scene = parse_scene(document())
     require_supported(scene, Options(solver="calculix"))
-    with pytest.raises(SceneError, match="fields are asked for"):
+    with pytest.raises(SceneError, match="fields are requested"):
         require_supported(scene, Options(stress_times=(1e-6,), solver="calculix"))
 
 

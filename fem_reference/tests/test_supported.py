@@ -66,7 +66,7 @@ def test_an_unexpected_error_is_a_sentence_with_its_place(tmp_path: Path) -> Non
     ended = call(tmp_path, "solve", "--scene", scene, "--out", tmp_path / "out")
     assert ended.returncode == 1
     message = json.loads(ended.stdout.splitlines()[-1])["message"]
-    assert message.startswith("unexpected TypeError (meshing.py, line ") and "moved" in message
+    assert message.startswith("unexpected TypeError (mesher.py, line ") and "moved" in message
 
 
 def test_a_module_that_cannot_be_loaded_is_named_with_its_reason(tmp_path: Path) -> None:
