@@ -80,7 +80,7 @@ pub struct Calibrated {
 /// The fields named `names` of the scene in `template`, from `records` taken with a `bandwidth` in Hz. Every record may be shifted in time besides.
 ///
 /// # Errors
-/// [`Error::Usage`] for fields that can't be calibrated, those of the model, of [`align`] and of [`fit()`].
+/// [`Error::Usage`] for fields that can't be calibrated, those of the model, of [`align_all`] and of [`fit()`].
 pub fn calibrate(
     template: &Template,
     names: &[String],
