@@ -189,7 +189,7 @@ def _half_disc(sphere: Sphere, settings: MeshSettings, name: str, along: float) 
         ring_arcs = [_arc(ring[i], ring_centre, ring[i + 1], even) for i in (0, 1)]
         _block(spokes[0], ring_arcs[0], -spokes[1], -right)
         _block(spokes[1], ring_arcs[1], -spokes[2], -lid)
-        # Shells up to the equator, elements about twice as long as wide where none are asked for.
+        # Shells up to the equator, elements about twice as long as wide where none are requested.
         ratio = (1.0 + 2.0 * math.pi / (4.0 * n)) ** (1.0 / along)
         shells = Segment(
             0.0, max(2, round(math.log(2.0 * radius / shell) / math.log(ratio))), ratio

@@ -83,8 +83,8 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
     program = launcher()
     if program is None:
         raise SolverError(
-            "mpirun is missing; --np needs it: `pip install mpich` beside PyPI's mpi4py, "
-            "openmpi-bin beside Debian's"
+            "mpirun is missing; --np needs it: `pip install mpich` with PyPI's mpi4py, "
+            "openmpi-bin with Debian's"
         )
     # Libraries have one thread, the loop is told its own; no refusal for root: who may start the
     # solver may start it so.

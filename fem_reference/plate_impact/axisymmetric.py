@@ -233,7 +233,7 @@ def _cost(scene: Scene, system: AxisymmetricSystem, estimate: ContactEstimate) -
 
 
 def _note(refinement: Refinement) -> str:
-    """Why a mesh has more elements than asked for."""
+    """Why a mesh has more elements than requested."""
     bodies = ("outer body", "plate", "inner body")
     finer = [
         f"{n:.2g} times in the {b}" for n, b in zip(refinement, bodies, strict=True) if n > 1.0

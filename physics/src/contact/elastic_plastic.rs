@@ -4,7 +4,7 @@
 //! at first yield that is the overload l. Three things follow from it.
 //!
 //! - The mean pressure p. It begins as Hertz's and tends to full plasticity. On a sphere it is lower than on a half-space, since the surface
-//!   falls away beside the contact: less material holds back the flow (Jackson & Green, J. Tribology 127, 2005, 343, their section on hardness).
+//!   falls away around the contact: less material holds back the flow (Jackson & Green, J. Tribology 127, 2005, 343, their section on hardness).
 //! - The distribution of the pressure. It begins as Hertz's and becomes even. Unloading is elastic, and the work that it returns is the
 //!   elastic energy of the half-space under that distribution: residual stresses do no work on an elastic displacement (Johnson, Contact
 //!   Mechanics, 1985, section 6.4). No constant enters.
@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 /// Mean pressure of full plasticity over the yield strength, and the power of the overload with which the pressure tends to it.
 const FULL_PLASTICITY: f64 = 3.23;
 const TENDS: f64 = 0.6;
-/// Overload and power with which the slope of a sphere beside the contact begins to count.
+/// Overload and power with which the slope of a sphere around the contact begins to count.
 const SLOPING: [f64; 2] = [13.0, 1.3];
 /// Slope beyond which nothing is known, and the pressure falls no further.
 const STEEPEST: f64 = 0.5;
@@ -57,7 +57,7 @@ pub struct ElasticPlastic {
     /// Yield strength in Pa without a stress along the surface, and Poisson's ratio.
     yield_strength: f64,
     poisson_ratio: f64,
-    /// Whether the surface falls away beside the contact.
+    /// Whether the surface falls away around the contact.
     is_sphere: bool,
     /// Flattening at first yield, pi C Y/(2 E'), C as Jackson and Green have it.
     onset: f64,
@@ -229,7 +229,7 @@ impl ElasticPlastic {
     }
 }
 
-/// Mean pressure on a sphere over that on a half-space: lower by the `slope` at the rim, a/R, as in a slip-line field beside a sloping face.
+/// Mean pressure on a sphere over that on a half-space: lower by the `slope` at the rim, a/R, as in a slip-line field under a sloping face.
 fn falls_away(overload: f64, slope: f64) -> f64 {
     let [scale, power] = SLOPING;
     (slope.min(STEEPEST) * (-(overload / scale).powf(power)).exp_m1()).exp()
