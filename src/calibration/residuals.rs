@@ -1,6 +1,7 @@
 //! Differences of a model from records, without the offset and drift that the instruments have.
 
 use crate::measured::noise::{Noise, groups, means, orthonormal};
+use crate::measured::screen::extremes;
 use crate::measured::{AlignedRecord, Channel, Filtered, Speed};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -43,9 +44,7 @@ impl Signals {
                 record.time.iter().zip(&channel.values).filter(|(t, _)| inside.contains(t)).unzip();
             let groups = groups(&time, width);
             let means = means(&time, &groups);
-            let (low, high) = values
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v: &f64| (l.min(*v), h.max(*v)));
+            let (low, high) = extremes(&values);
             // a trusted velocity has no offset: of a displacement then only the offset is unknown, of a velocity the drift
             let trusted = channel.quantity.starts_with("outer") && speed == Speed::Measured;
             let powers: &[i32] = match (trusted, channel.quantity.ends_with("velocity")) {

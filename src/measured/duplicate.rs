@@ -2,6 +2,7 @@
 
 use super::align::AlignedRecord;
 use super::finding::{Finding, FindingKind};
+use super::screen::extremes;
 use crate::curves::MonotoneCubic;
 
 /// Difference of two records, root mean square over the noise of one: that of two impacts is 1.4.
@@ -53,10 +54,7 @@ fn are_same(a: &AlignedRecord, b: &AlignedRecord) -> bool {
             let Some(other) = b.signals.iter().find(|other| other.quantity == signal.quantity) else {
                 return false;
             };
-            let (low, high) = signal
-                .values
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+            let (low, high) = extremes(&signal.values);
             let course = MonotoneCubic::new(&b.time, &other.values);
             let within = b.time[0]..b.time[b.time.len() - 1];
             let differences: Vec<f64> = a

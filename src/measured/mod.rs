@@ -14,7 +14,7 @@ mod flight;
 mod judge;
 pub mod noise;
 mod record;
-mod screen;
+pub(crate) mod screen;
 mod shift;
 mod structure;
 

@@ -98,7 +98,8 @@ fn span(values: &[f64]) -> f64 {
     high - low
 }
 
-fn extremes(values: &[f64]) -> (f64, f64) {
+/// Least and largest value.
+pub(crate) fn extremes(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
 }
 
