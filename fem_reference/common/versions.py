@@ -57,6 +57,10 @@ def _compiler() -> str | None:
         return None
 
 
+# Debian's packages of the libraries that a wheel takes from the system
+LIBRARIES = {"gmsh": "libglu1-mesa libxcursor1 libxft2 libxinerama1"}
+
+
 def versions() -> dict[str, str | None]:
     """Version per program or module; None where it is missing."""
     mpi = _mpi()  # first: the wheels of PyPI find the libmpi that mpi4py has loaded, and no other
@@ -80,7 +84,13 @@ def _refused() -> str | None:
         except SolverError as error:
             return str(error)
         except Exception as error:
-            return f"{module} cannot be imported: {error}"
+            missing = "cannot open shared object file" in str(error)
+            hint = (
+                f"; as root: apt-get install {LIBRARIES[module]}"
+                if missing and module in LIBRARIES
+                else ""
+            )
+            return f"{module} cannot be imported: {error}{hint}"
     return None
 
 
