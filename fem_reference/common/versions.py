@@ -21,6 +21,8 @@ MODULES = (
     "scipy",
     "meshio",
 )
+# Debian's packages of the libraries that a wheel takes from the system
+LIBRARIES = {"gmsh": "libglu1-mesa libxcursor1 libxft2 libxinerama1"}
 
 
 def _version(module: str) -> str | None:
@@ -55,10 +57,6 @@ def _compiler() -> str | None:
         return compiler_version()
     except (SolverError, OSError):
         return None
-
-
-# Debian's packages of the libraries that a wheel takes from the system
-LIBRARIES = {"gmsh": "libglu1-mesa libxcursor1 libxft2 libxinerama1"}
 
 
 def versions() -> dict[str, str | None]:
