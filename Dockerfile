@@ -16,7 +16,7 @@ FROM python:3.12-slim-bookworm
 # hadolint ignore=DL3008
 RUN apt-get update \
     && DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends \
-        calculix-ccx gcc libc6-dev libglu1-mesa libxcursor1 libxft2 libxinerama1 \
+        calculix-ccx gcc libc6-dev libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 \
     && rm -rf /var/lib/apt/lists/*
 COPY --from=build /source/target/release/impactcheck /usr/local/bin/
 COPY --from=build /source/pyproject.toml /tmp/

@@ -22,7 +22,7 @@ MODULES = (
     "meshio",
 )
 # Debian's packages of the libraries that a wheel takes from the system
-LIBRARIES = {"gmsh": "libglu1-mesa libxcursor1 libxft2 libxinerama1"}
+LIBRARIES = {"gmsh": "libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1"}
 
 
 def _version(module: str) -> str | None:

@@ -75,7 +75,7 @@ def test_a_module_that_cannot_be_loaded_is_named_with_its_reason(tmp_path: Path)
     found = json.loads(call(tmp_path, "versions").stdout)
     assert found["gmsh"] is None
     reason = "gmsh cannot be imported: libGLU.so.1: cannot open shared object file"
-    assert found["refused"].startswith(reason + "; as root: apt-get install libglu1-mesa")
+    assert found["refused"].startswith(reason + "; as root: apt-get install libgl1 libglu1-mesa")
 
 
 def test_the_launcher_is_that_of_the_environment(
