@@ -3,23 +3,26 @@
 use crate::store_fixture::SCENE;
 use crate::waiting::wait_until;
 use assert_cmd::cargo::cargo_bin;
+use rustix::process::{Pid, Signal, kill_process, test_kill_process};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Command, Stdio};
 
+/// A zombie, which a container may not bury, is none.
 fn is_running(pid: &str) -> bool {
-    let state = Command::new("ps").args(["-o", "stat=", "-p", pid]).output().expect("ps").stdout;
-    !state.is_empty() && state[0] != b'Z'
+    let number = Pid::from_raw(pid.parse().expect("number")).expect("pid");
+    let is_zombie = fs::read_to_string(format!("/proc/{pid}/stat")).is_ok_and(|stat| stat.contains(") Z "));
+    test_kill_process(number).is_ok() && !is_zombie
 }
 
 /// Interrupts a run of a solver that does `script`; its process number stands in `$here/pid`.
-fn interrupted(signal: &str, number: i32, script: &str) {
+fn interrupted(signal: Signal, number: i32, script: &str) {
     interrupted_in(":", &[signal], number, script);
 }
 
 /// The same in a shell that does `before` first.
-fn interrupted_in(before: &str, signals: &[&str], number: i32, script: &str) {
+fn interrupted_in(before: &str, signals: &[Signal], number: i32, script: &str) {
     let folder = tempfile::tempdir().expect("folder");
     let here = folder.path();
     let python = here.join("python");
@@ -45,10 +48,9 @@ fn interrupted_in(before: &str, signals: &[&str], number: i32, script: &str) {
     wait_until(|| here.join("pid").exists(), || "the solver does not start".to_owned());
     let pid = fs::read_to_string(here.join("pid")).expect("pid");
     assert!(is_running(pid.trim()));
-    let signal = signals.join(", ");
+    let signal = format!("{signals:?}");
     for sent in signals {
-        let kill = Command::new("kill").args([*sent, &program.id().to_string()]).status();
-        assert!(kill.expect("kill").success());
+        kill_process(Pid::from_child(&program), *sent).expect("runs");
     }
     let status = program.wait().expect("ends");
     assert_eq!(status.signal(), Some(number), "ends as the signal wants it to: {status}");
@@ -62,18 +64,18 @@ const LONG: &str = "echo $$ > \"$here/half\"; mv \"$here/half\" \"$here/pid\"; e
 
 #[test]
 fn ctrl_c_sigterm_and_a_closed_terminal_end_the_solver_and_leave_nothing() {
-    interrupted("-HUP", 1, LONG);
-    interrupted("-INT", 2, LONG);
-    interrupted("-TERM", 15, LONG);
+    interrupted(Signal::HUP, 1, LONG);
+    interrupted(Signal::INT, 2, LONG);
+    interrupted(Signal::TERM, 15, LONG);
 }
 
 #[test]
 fn a_solver_that_does_not_listen_is_ended_all_the_same() {
     let deaf = "trap '' TERM; echo $$ > \"$here/half\"; mv \"$here/half\" \"$here/pid\"; while :; do read x; done < /dev/zero";
-    interrupted("-INT", 2, deaf);
+    interrupted(Signal::INT, 2, deaf);
 }
 
 #[test]
 fn nohup_outlives_its_terminal() {
-    interrupted_in("trap '' HUP", &["-HUP", "-TERM"], 15, LONG);
+    interrupted_in("trap '' HUP", &[Signal::HUP, Signal::TERM], 15, LONG);
 }

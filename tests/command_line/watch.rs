@@ -3,6 +3,7 @@
 use crate::store_fixture::SCENE;
 use crate::waiting::wait_until;
 use assert_cmd::cargo::cargo_bin;
+use rustix::process::{Pid, Signal, kill_process};
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -49,8 +50,7 @@ impl<'a> Watched<'a> {
 
     /// Exit status after Ctrl-C.
     fn interrupted(mut self) -> Option<i32> {
-        let kill = Command::new("kill").args(["-INT", &self.program.id().to_string()]).status();
-        assert!(kill.expect("kill").success());
+        kill_process(Pid::from_child(&self.program), Signal::INT).expect("runs");
         self.program.wait().expect("ends").code()
     }
 }
