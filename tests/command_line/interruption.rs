@@ -54,7 +54,8 @@ fn interrupted_in(before: &str, signals: &[Signal], number: i32, script: &str) {
     }
     let status = program.wait().expect("ends");
     assert_eq!(status.signal(), Some(number), "ends as the signal wants it to: {status}");
-    assert!(!is_running(pid.trim()), "{signal}: the solver runs on");
+    // a signal takes its time on a busy machine
+    wait_until(|| !is_running(pid.trim()), || format!("{signal}: the solver runs on"));
     assert!(!here.join("store/mine").exists(), "{signal}: the scene's empty folder is left");
     let left: Vec<_> = fs::read_dir(here.join("temporary")).expect("folder").flatten().collect();
     assert!(left.is_empty(), "{signal}: {left:?}");
