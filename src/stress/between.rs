@@ -1,16 +1,18 @@
-//! What happens between the ends of a Runge-Kutta step: a touch that it would pass, a force peak.
+//! What happens between the ends of a Runge-Kutta step: a touch that it would pass, a force peak, touches and releases.
 //!
 //! The method knows its state and the rate of it at both ends of a step: of each approach the value and two derivatives,
 //! and so Hermite's polynomial of fifth degree, as exact as the step itself.
 
+use crate::dynamics::contact_ledger::ContactLedger;
 use crate::dynamics::explicit_runge_kutta::Step;
+use crate::dynamics::integration::NEGLIGIBLE;
 use crate::dynamics::system::{System, dot};
 
 /// Places of a step that are looked at.
 const PLACES: usize = 12;
 /// Impulse of a passed touch, over the lighter body's momentum at the impact speed, that changes nothing.
 const NOTHING: f64 = 1e-9;
-/// Halvings of the distance of the places, to find a peak between them.
+/// Halvings of the distance of the places, to find a peak or a release between them.
 const HALVINGS: usize = 24;
 /// Share of the peak so far from which on a step may have a higher one between its places.
 const NEARLY: f64 = 0.99;
@@ -18,16 +20,39 @@ const NEARLY: f64 = 0.99;
 /// Value and first two derivatives by the place, at the start and the end of a step.
 type Ends = [[f64; 3]; 2];
 
-/// Looks into every step, and keeps the largest forces.
+/// What happened at one contact.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Contact {
+    /// Largest force, N.
+    pub(super) force_peak: f64,
+    /// Number of contacts but for those with a negligible impulse.
+    pub(super) contacts: u32,
+    /// Time of the last release, s.
+    pub(super) end: f64,
+    closed: bool,
+    /// Impulse since the last touch, N s.
+    impulse: f64,
+}
+
+impl Contact {
+    /// What is compared of the account that the program keeps.
+    pub(super) fn of(account: &ContactLedger) -> Self {
+        let &ContactLedger { force_peak, contacts, end, closed, .. } = account;
+        Self { force_peak, contacts, end, closed, impulse: 0.0 }
+    }
+}
+
+/// Looks into every step, and keeps what happened at outer and inner contact.
 pub(super) struct Watch<'a> {
     system: &'a System,
-    /// Of outer and inner contact, N.
-    pub(super) force_peak: [f64; 2],
+    pub(super) contacts: [Contact; 2],
+    /// Time at the end of the steps that were accepted, s.
+    time: f64,
 }
 
 impl<'a> Watch<'a> {
     pub(super) fn new(system: &'a System) -> Self {
-        Self { system, force_peak: [0.0; 2] }
+        Self { system, contacts: [Contact::default(); 2], time: 0.0 }
     }
 
     /// Whether `step` passes no touch that matters; if so, its forces are taken into account.
@@ -58,7 +83,42 @@ impl<'a> Watch<'a> {
                 self.raise(i, &places, approach);
             }
         }
+        self.count(&places, approach, step.h);
+        self.time += step.h;
         true
+    }
+
+    /// Counts touches and releases in a step of `h` s.
+    fn count(&mut self, places: &[[f64; 2]; PLACES + 1], approach: impl Fn(f64) -> [f64; 2], h: f64) {
+        let system = self.system;
+        // bodies far apart touch nowhere
+        let contact = |place: [f64; 2]| match place {
+            [outer, inner] if outer <= 0.0 && inner <= 0.0 => (place, [0.0; 2]),
+            place => system.contact(place, place).unwrap_or(([f64::NAN; 2], [f64::NAN; 2])),
+        };
+        let mut before = contact(places[0]).1;
+        for (k, place) in places.iter().enumerate().skip(1) {
+            let (local, force) = contact(*place);
+            for i in 0..2 {
+                let account = &mut self.contacts[i];
+                if local[i] > 0.0 && !account.closed {
+                    account.contacts += 1;
+                    account.impulse = 0.0;
+                }
+                account.impulse += 0.5 * h / PLACES as f64 * (before[i] + force[i]);
+                if local[i] <= 0.0 && account.closed {
+                    if account.impulse <= NEGLIGIBLE * system.masses[0] * system.speed {
+                        account.contacts -= 1;
+                    } else {
+                        let open = |u: f64| contact(approach(u)).0[i] <= 0.0;
+                        account.end =
+                            self.time + h * first(open, [k - 1, k].map(|k| k as f64 / PLACES as f64));
+                    }
+                }
+                account.closed = local[i] > 0.0;
+            }
+            before = force;
+        }
     }
 
     /// Raises the peak of contact `i` to the largest force of a step, given its `approach` and that at the `places`.
@@ -73,7 +133,8 @@ impl<'a> Watch<'a> {
                 (highest, largest) = (k, force);
             }
         }
-        if largest > NEARLY * self.force_peak[i] {
+        let peak = &mut self.contacts[i].force_peak;
+        if largest > NEARLY * *peak {
             let (mut place, mut distance) = (highest as f64 / PLACES as f64, 0.5 / PLACES as f64);
             for _ in 0..HALVINGS {
                 for next in [place - distance, place + distance] {
@@ -85,8 +146,17 @@ impl<'a> Watch<'a> {
                 distance *= 0.5;
             }
         }
-        self.force_peak[i] = self.force_peak[i].max(largest);
+        *peak = peak.max(largest);
     }
+}
+
+/// Place within the two `ends` at which `holds` begins to be true.
+fn first(holds: impl Fn(f64) -> bool, [mut before, mut after]: [f64; 2]) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (before + after);
+        if holds(middle) { after = middle } else { before = middle }
+    }
+    after
 }
 
 /// Hermite's polynomial of fifth degree at the place `u`, 0..1.

@@ -21,6 +21,12 @@ const WET_SHARE: u8 = 3;
 /// Most radians the highest mode of a case in a fluid turns through. The film feels every turn, so that longer cases cost
 /// hundreds of thousands of steps.
 const WET_TURNS: f64 = 5e5;
+/// Kinds of impacts, as the names of their values begin.
+pub const DRY: &str = "";
+pub const WET: &str = "wet_";
+pub const MOVING: &str = "moving_";
+/// Turns a seed into that of the moving impact.
+const MOVING_SEED: u64 = 0x6d6f_7669_6e67;
 /// Length of a run in durations of a Hertz contact.
 const DURATIONS: f64 = 6.0;
 
@@ -42,39 +48,40 @@ impl UnitPlates {
     }
 }
 
-/// One impact.
-pub struct Case {
-    /// Seed it was drawn from.
-    pub seed: u64,
+/// An impact to be solved.
+pub struct Impact {
     /// In words.
     pub description: String,
-    /// The bodies.
-    pub system: System,
-    /// End of the run in s.
-    pub end_time: f64,
-    /// The same impact in a fluid, for some of the cases.
-    pub wet: Option<Wet>,
-}
-
-/// An impact in a fluid.
-pub struct Wet {
-    /// In words.
-    pub description: String,
-    /// The bodies, with the fluid's mass and damping.
+    /// The bodies; in a fluid with its mass and damping.
     pub system: System,
     /// Film and drag, if there are any.
     pub forces: Option<FluidForces>,
+    /// End of the run in s; `None` = when no further contact is possible.
+    pub end_time: Option<f64>,
 }
 
-impl Wet {
-    /// The impact `setup` on a plate reduced to `body` in a random fluid; each of its effects may be absent. `unit` is the
+/// What one seed gives.
+pub struct Case {
+    /// Seed it was drawn from.
+    pub seed: u64,
+    /// The inner body at rest, the outer one a sphere, the end given, no fluid.
+    pub dry: Impact,
+    /// The same in a fluid, for some of the cases.
+    pub wet: Option<Impact>,
+    /// The same with a compact outer body or an inner one that moves, some without a given end; for some of the cases.
+    pub moving: Option<Impact>,
+}
+
+impl Impact {
+    /// The impact `dry` of `setup` on a plate reduced to `body` in a random fluid; each of its effects may be absent. `unit` is the
     /// plate of unit radius.
-    fn draw(
+    fn wet(
         random: &mut Random,
         mut setup: PlateImpact,
         body: ModalBody,
         tips: [f64; 2],
         unit: &UnitPlate,
+        dry: &Self,
     ) -> Result<Self> {
         let elastic = body.omega.len();
         let viscosity = random.log(1e-5, 0.1);
@@ -103,13 +110,49 @@ impl Wet {
             shapes.iter_mut().flatten().for_each(|value| *value *= amplitude * per_mass);
             Ok::<_, crate::Error>(shapes)
         })?;
-        let description = format!("in {fluid:?}");
+        let description = format!("{}, in {fluid:?}", dry.description);
         setup.fluid = Some(fluid);
-        Ok(Self { description, system: System::new(&setup, &plate, tips), forces })
+        let system = System::new(&setup, &plate, tips);
+        Ok(Self { description, system, forces, end_time: dry.end_time })
+    }
+
+    /// The impact `dry` of `setup` on a plate reduced to `body` with a compact outer body or an inner one that moves.
+    fn moving(
+        random: &mut Random,
+        mut setup: PlateImpact,
+        body: &ModalBody,
+        tips: [f64; 2],
+        dry: &Self,
+    ) -> Self {
+        let Shape::Sphere { radius } = setup.outer.shape else {
+            unreachable!("the outer body is drawn as a sphere")
+        };
+        let mass = setup.outer.shape.mass(&setup.outer.material) * random.log(0.1, 100.0);
+        if random.0.bool() {
+            setup.outer.shape = Shape::Compact { mass, tip_radius: radius };
+        }
+        if random.0.bool() {
+            setup.inner.speed = setup.outer.speed * random.uniform(-0.9, 2.0);
+        }
+        let system = System::new(&setup, body, tips);
+        let end_time = DURATIONS * system.hertz_impact().duration() + setup.inner.gap / setup.outer.speed;
+        let end_time = random.0.bool().then_some(end_time);
+        let description = format!(
+            "{}, but outer {:.2e} kg, inner at {:.2e} m/s, end {end_time:?} s",
+            dry.description, system.masses[0], setup.inner.speed
+        );
+        Self { description, system, forces: None, end_time }
     }
 }
 
 impl Case {
+    /// The impacts, each with its kind.
+    pub fn impacts(&self) -> impl Iterator<Item = (&'static str, &Impact)> {
+        let others = [(WET, &self.wet), (MOVING, &self.moving)];
+        let others = others.into_iter().filter_map(|(kind, impact)| Some((kind, impact.as_ref()?)));
+        std::iter::once((DRY, &self.dry)).chain(others)
+    }
+
     /// Draws the case of `seed`.
     ///
     /// # Errors
@@ -191,13 +234,17 @@ impl Case {
             setup.inner.gap,
             system.residual.is_some(),
         );
-        // a stream of its own: what is drawn above stays the same
+        let dry = Impact { description, system, forces: None, end_time: Some(end_time) };
+        // streams of their own: what is drawn above stays the same
+        let mut random = Random(fastrand::Rng::with_seed(seed.rotate_left(32) ^ MOVING_SEED));
+        let moving =
+            (random.0.u8(0..4) == 0).then(|| Impact::moving(&mut random, setup.clone(), &body, tips, &dry));
         let mut random = Random(fastrand::Rng::with_seed(!seed));
         let wet = (modes <= WET_MODES && random.0.u8(0..4) < WET_SHARE)
-            .then(|| Wet::draw(&mut random, setup, body, tips, &unit))
+            .then(|| Impact::wet(&mut random, setup, body, tips, &unit, &dry))
             .transpose()?
             .filter(|wet| wet.system.highest_frequency() * end_time <= WET_TURNS);
-        Ok(Self { seed, description, system, end_time, wet })
+        Ok(Self { seed, dry, wet, moving })
     }
 }
 

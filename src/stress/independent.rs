@@ -1,7 +1,9 @@
 //! An independent solution of a random impact: a Runge-Kutta method of order 8 that knows neither modes nor contacts.
 
-use super::between::Watch;
-use crate::dynamics::assured::differences;
+use super::between::{Contact, Watch};
+use super::draw::Impact;
+use super::{DIFFERENCE_BOUND, END_BOUND};
+use crate::dynamics::assured;
 use crate::dynamics::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};
 use crate::dynamics::integration::Integration;
 use crate::dynamics::system::{INNER, System};
@@ -14,6 +16,9 @@ const FILM_ENTRIES: usize = 300;
 /// Relative tolerance of the solution, and that of a second one where the first contradicts.
 const TOLERANCES: [f64; 2] = [1e-11, 1e-13];
 
+/// Time over the last release until which nothing more happens where the end of a run was left to the program.
+const LONGER: f64 = 1.5;
+
 /// What came of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Comparison {
@@ -22,47 +27,97 @@ pub(super) enum Comparison {
     /// The independent solution is itself uncertain: at two tolerances it differs by more than a third of the bound. Or the result
     /// says itself that it is no more exact.
     Undecided,
-    /// Largest difference of a velocity, over the impact speed, and of a force peak, relative (see [`differences`]).
-    Differences([f64; 2]),
+    /// Differences from the independent solution.
+    Differences(Differences),
 }
 
-/// Velocities in m/s at the end and force peaks in N of outer and inner body.
-#[derive(Clone, Copy)]
-struct Answer {
+/// Largest differences of two solutions, relative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Differences {
+    /// Of a velocity, over the impact speed, and of a force peak (see [`assured::differences`]).
+    pub(super) velocity: f64,
+    pub(super) force: f64,
+    /// Of the efficiency, over the larger of it and 1.
+    pub(super) efficiency: f64,
+    /// Of the time of the last release.
+    pub(super) end: f64,
+    /// The other solution's numbers of contacts where they differ.
+    pub(super) contacts: Option<[u32; 2]>,
+}
+
+impl Differences {
+    fn within(&self, bound: f64) -> bool {
+        let end = self.end * DIFFERENCE_BOUND / END_BOUND;
+        // max() would drop a value that is not a number
+        [self.velocity, self.force, self.efficiency, end].iter().all(|difference| *difference <= bound)
+            && self.contacts.is_none()
+    }
+}
+
+/// Velocities in m/s at the end, and what happened at the contacts, of outer and inner body.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Answer {
     velocity: [f64; 2],
-    force_peak: [f64; 2],
+    contacts: [Contact; 2],
 }
 
-/// Compares the `result` of the program with the independent solution, which is to tell whether they differ by more than
-/// `bound`.
-pub(super) fn compare(
-    system: &System,
-    fluid: Option<&FluidForces>,
-    end_time: f64,
-    result: &Integration,
-    bound: f64,
-) -> Comparison {
-    let apart =
-        |a: Answer, b: Answer| differences(system, [a.velocity, b.velocity], [a.force_peak, b.force_peak]);
-    // max() would drop a value that is not a number
-    let within = |[velocity, force]: [f64; 2], bound: f64| velocity <= bound && force <= bound;
-    let ours = Answer { velocity: result.velocity, force_peak: result.contacts.map(|c| c.force_peak) };
+impl From<&Integration> for Answer {
+    fn from(result: &Integration) -> Self {
+        Self { velocity: result.velocity, contacts: [0, 1].map(|i| Contact::of(&result.contacts[i])) }
+    }
+}
+
+impl Answer {
+    /// How far this answer is from `other`.
+    pub(super) fn differences(self, other: Self, system: &System) -> Differences {
+        let both = [self, other];
+        let peaks = both.map(|answer| answer.contacts.map(|contact| contact.force_peak));
+        let [velocity, force] = assured::differences(system, both.map(|answer| answer.velocity), peaks);
+        let efficiency = both.map(|answer| {
+            let energy = 0.5 * system.masses[1] * answer.velocity[1].powi(2);
+            energy / system.initial_energy()
+        });
+        let end = |i: usize| {
+            let [one, two] = both.map(|answer| answer.contacts[i].end);
+            if one == two { 0.0 } else { (one - two).abs() / two }
+        };
+        let [ours, theirs] = both.map(|answer| answer.contacts.map(|contact| contact.contacts));
+        Differences {
+            velocity,
+            force,
+            efficiency: (efficiency[0] - efficiency[1]).abs() / efficiency[1].max(1.0),
+            end: end(0).max(end(1)),
+            contacts: (ours != theirs).then_some(theirs),
+        }
+    }
+}
+
+/// Compares the `result` of the program for `impact` with the independent solution.
+pub(super) fn compare(impact: &Impact, result: &Integration) -> Comparison {
+    let bound = DIFFERENCE_BOUND;
+    let system = &impact.system;
+    let end_time = impact.end_time.unwrap_or_else(|| {
+        let last = result.contacts.iter().fold(system.hertz_impact().duration(), |last, c| last.max(c.end));
+        LONGER * last
+    });
+    let solve = |tolerance, work| solve(system, impact.forces.as_ref(), end_time, tolerance, work);
+    let ours = Answer::from(result);
     let [quick, careful] = TOLERANCES;
-    let Some(quick) = solve(system, fluid, end_time, quick, WORK) else { return Comparison::TooDear };
-    let difference = apart(ours, quick);
+    let Some(quick) = solve(quick, WORK) else { return Comparison::TooDear };
+    let difference = ours.differences(quick, system);
     // much of a larger one is the quick solution's own
-    if within(difference, 0.1 * bound) {
+    if difference.within(0.1 * bound) {
         return Comparison::Differences(difference);
     }
-    let more = if fluid.is_some() { 4.0 } else { 20.0 };
-    match solve(system, fluid, end_time, careful, more * WORK) {
-        None if within(difference, bound) => Comparison::Differences(difference),
+    let more = if impact.forces.is_some() { 4.0 } else { 20.0 };
+    match solve(careful, more * WORK) {
+        None if difference.within(bound) => Comparison::Differences(difference),
         None => Comparison::Undecided,
         Some(careful) => {
-            let difference = apart(ours, careful);
-            let unsure = !within(apart(quick, careful), bound / 3.0)
-                || within(difference, result.error_estimate.unwrap_or(0.0));
-            if !within(difference, bound) && unsure {
+            let difference = ours.differences(careful, system);
+            let unsure = !quick.differences(careful, system).within(bound / 3.0)
+                || difference.within(result.error_estimate.unwrap_or(0.0));
+            if !difference.within(bound) && unsure {
                 Comparison::Undecided
             } else {
                 Comparison::Differences(difference)
@@ -118,6 +173,6 @@ fn solve(
         &tolerances,
     )?;
     // a film so stiff that an explicit method leaves the numbers has no solution here
-    let answer = Answer { velocity: equations.velocity(&state), force_peak: watch.force_peak };
+    let answer = Answer { velocity: equations.velocity(&state), contacts: watch.contacts };
     Some(answer).filter(|answer| answer.velocity.iter().all(|v| v.is_finite()))
 }

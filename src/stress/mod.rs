@@ -8,35 +8,39 @@ mod independent;
 #[cfg(test)]
 mod tests;
 
-pub use draw::{Case, UnitPlates, Wet};
+pub use draw::{Case, Impact, UnitPlates};
 
-use crate::dynamics::assured::assured;
+use crate::dynamics::assured::{all_within, assured};
 use crate::dynamics::integrate;
 use crate::dynamics::integration::{Integration, Options};
-use crate::dynamics::system::System;
-use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::result::SCHEMA_VERSION;
-use independent::Comparison;
+use crate::study::sweep;
+use draw::{DRY, MOVING, WET};
+use independent::{Answer, Comparison};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Tolerance of the integrator under test: the program's default.
 const TOLERANCE: f64 = 1e-7;
-/// Largest difference to the independent solution: of a final velocity, over the impact speed, and of a force peak, relative.
+/// Largest difference to the independent solution: of a final velocity, over the impact speed, of a force peak and an efficiency, relative.
 const DIFFERENCE_BOUND: f64 = 1e-5;
-/// Bounds of the invariants. Momentum relative to the initial one; energy gained relative to the initial one;
-/// velocities against the independent solution relative to the impact speed, force peaks to the independent ones.
-const BOUNDS: [(&str, f64); 8] = [
+/// The same of the time of the last release, at which a force vanishes slowly.
+const END_BOUND: f64 = 3e-4;
+/// Error that the results of a sweep's point may have: a sweep's default.
+const SWEEP_ERROR: f64 = sweep::DEFAULT_TOLERANCE;
+/// One point of a sweep in so many may be wrong.
+const WRONG_POINTS: u64 = 1000;
+/// Bounds of the invariants. Momentum relative to the initial one; energy gained relative to the initial one; differences to the
+/// independent solution.
+const BOUNDS: [(&str, f64); 6] = [
     ("momentum", 1e-10),
     ("energy_gained", 1e-6),
     ("velocity_difference", DIFFERENCE_BOUND),
     ("force_difference", DIFFERENCE_BOUND),
-    ("wet_momentum", 1e-10),
-    ("wet_energy_gained", 1e-6),
-    ("wet_velocity_difference", DIFFERENCE_BOUND),
-    ("wet_force_difference", DIFFERENCE_BOUND),
+    ("efficiency_difference", DIFFERENCE_BOUND),
+    ("end_difference", END_BOUND),
 ];
 
 /// The largest value of an invariant, and where it came from.
@@ -61,6 +65,25 @@ pub struct Failure {
     pub case: String,
 }
 
+/// What points of a sweep with its default tolerance came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SweepReport {
+    /// Number of points.
+    pub points: u64,
+    /// Points whose row says that it is not as exact as it should be.
+    pub unconverged: u64,
+    /// Seeds of points that are not, and whose row does not say so: velocities, force peaks and times of release beyond the tolerance,
+    /// or other numbers of contacts.
+    pub wrong: Vec<u64>,
+}
+
+impl SweepReport {
+    /// Whether no more points are wrong than one in 1000.
+    pub fn holds(&self) -> bool {
+        self.wrong.len() as u64 <= self.points.div_ceil(WRONG_POINTS)
+    }
+}
+
 /// What a stress run found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StressReport {
@@ -80,6 +103,12 @@ pub struct StressReport {
     pub wet: u64,
     /// Of these, compared with an independent solution.
     pub wet_compared: u64,
+    /// Cases that were solved with a compact outer body or an inner one that moves as well.
+    pub moving: u64,
+    /// Of these, compared with an independent solution.
+    pub moving_compared: u64,
+    /// The same impacts as points of a sweep.
+    pub sweep: SweepReport,
     /// Seeds of those that the program refuses in a sentence: whose plate in the fluid bends around the inner body, or rattles
     /// or trembles between bodies far heavier than itself more often than it follows.
     pub beyond_model: Vec<u64>,
@@ -88,20 +117,7 @@ pub struct StressReport {
     /// Cases that do not hold, in the order of their seeds.
     pub failures: Vec<Failure>,
     /// The worst of each invariant.
-    pub worst: BTreeMap<&'static str, Worst>,
-}
-
-/// Result of one case.
-struct Checked {
-    seed: u64,
-    values: Vec<(&'static str, f64)>,
-    compared: bool,
-    undecided: bool,
-    recontact: bool,
-    wet: bool,
-    wet_compared: bool,
-    beyond_model: bool,
-    failure: Option<Failure>,
+    pub worst: BTreeMap<String, Worst>,
 }
 
 /// Runs the cases with the seeds `seed`, `seed + 1`, ...; `progress` is called after each.
@@ -110,134 +126,157 @@ struct Checked {
 /// If the modes of a plate can't be computed; a case that fails is in the report.
 pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<StressReport> {
     let plates = UnitPlates::default();
-    let checked: Result<Vec<Checked>> = (0..cases)
+    let solved: Result<Vec<Vec<Solved>>> = (0..cases)
         .into_par_iter()
         .map(|i| {
-            let checked = check(&Case::draw(seed.wrapping_add(i), &plates)?);
+            let case = Case::draw(seed.wrapping_add(i), &plates)?;
+            let solved = case.impacts().map(|(kind, impact)| solve(case.seed, kind, impact)).collect();
             progress();
-            Ok(checked)
+            Ok(solved)
         })
         .collect();
-    let checked = checked?;
-    let mut worst: BTreeMap<&'static str, Worst> = BTreeMap::new();
-    for case in &checked {
-        for &(name, value) in &case.values {
-            let bound = BOUNDS.iter().find(|(n, _)| *n == name).map(|(_, bound)| *bound);
-            let entry = worst.entry(name).or_insert(Worst { value, bound, seed: case.seed });
-            if value > entry.value || entry.value.is_nan() {
-                *entry = Worst { value, bound, seed: case.seed };
-            }
-        }
-    }
+    let solved = solved?;
+    let all = || solved.iter().flatten();
+    let count = |kind: &str, holds: fn(&Solved) -> bool| {
+        all().filter(|solved| solved.kind == kind && holds(solved)).count() as u64
+    };
+    let seeds = |holds: fn(&Solved) -> bool| {
+        let mut seeds: Vec<u64> = all().filter(|solved| holds(solved)).map(|solved| solved.seed).collect();
+        seeds.dedup();
+        seeds
+    };
     Ok(StressReport {
         schema_version: SCHEMA_VERSION,
         cases,
         seed,
-        undecided: checked.iter().filter(|c| c.undecided).map(|c| c.seed).collect(),
-        compared: checked.iter().filter(|c| c.compared).count() as u64,
-        wet: checked.iter().filter(|c| c.wet).count() as u64,
-        wet_compared: checked.iter().filter(|c| c.wet_compared).count() as u64,
-        beyond_model: checked.iter().filter(|c| c.beyond_model).map(|c| c.seed).collect(),
-        recontacts: checked.iter().filter(|c| c.recontact).count() as u64,
-        failures: checked.into_iter().filter_map(|c| c.failure).collect(),
-        worst,
+        undecided: seeds(|s| s.undecided),
+        compared: count(DRY, |s| s.compared),
+        wet: count(WET, |_| true),
+        wet_compared: count(WET, |s| s.compared),
+        moving: count(MOVING, |_| true),
+        moving_compared: count(MOVING, |s| s.compared),
+        sweep: SweepReport {
+            points: all().filter(|s| s.point.is_some()).count() as u64,
+            unconverged: all().filter(|s| s.point == Some(Point::Unconverged)).count() as u64,
+            wrong: seeds(|s| s.point == Some(Point::Wrong)),
+        },
+        beyond_model: seeds(|s| s.beyond_model),
+        recontacts: count(DRY, |s| s.recontact),
+        worst: worst(all()),
+        failures: solved.into_iter().filter_map(|case| case.into_iter().find_map(|s| s.failure)).collect(),
     })
 }
 
-/// Names of the values of a run, in the order of `BOUNDS`, and that of its steps.
-const DRY: [&str; 5] = ["momentum", "energy_gained", "velocity_difference", "force_difference", "steps"];
-const WET: [&str; 5] =
-    ["wet_momentum", "wet_energy_gained", "wet_velocity_difference", "wet_force_difference", "wet_steps"];
-
-/// Runs one case and checks what has to hold.
-fn check(case: &Case) -> Checked {
-    let dry = solve(&case.system, None, case.end_time, &DRY);
-    let mut checked = Checked {
-        seed: case.seed,
-        compared: dry.compared,
-        undecided: dry.undecided,
-        recontact: dry.recontact,
-        wet: case.wet.is_some(),
-        wet_compared: false,
-        beyond_model: dry.beyond_model,
-        failure: dry.failure(case.seed, &case.description),
-        values: dry.values,
-    };
-    if let Some(wet) = &case.wet {
-        let solved = solve(&wet.system, wet.forces.as_ref(), case.end_time, &WET);
-        checked.wet_compared = solved.compared;
-        checked.beyond_model |= solved.beyond_model;
-        checked.undecided |= solved.undecided;
-        let description = format!("{}, {}", case.description, wet.description);
-        checked.failure = checked.failure.or(solved.failure(case.seed, &description));
-        checked.values.extend(solved.values);
+/// The worst of each value.
+fn worst<'a>(solved: impl Iterator<Item = &'a Solved>) -> BTreeMap<String, Worst> {
+    let mut worst = BTreeMap::new();
+    for solved in solved {
+        for &(name, value) in &solved.values {
+            let bound = BOUNDS.iter().find(|(n, _)| *n == name).map(|(_, bound)| *bound);
+            let this = Worst { value, bound, seed: solved.seed };
+            let entry = worst.entry(format!("{}{name}", solved.kind)).or_insert(this);
+            if value > entry.value || entry.value.is_nan() {
+                *entry = this;
+            }
+        }
     }
-    checked
+    worst
 }
 
 /// What one run gave.
 #[derive(Default)]
 struct Solved {
+    seed: u64,
+    /// Beginning of its values' names.
+    kind: &'static str,
     values: Vec<(&'static str, f64)>,
     compared: bool,
     undecided: bool,
     recontact: bool,
     beyond_model: bool,
-    reason: Option<String>,
+    /// As a point of a sweep; `None` where there is no result.
+    point: Option<Point>,
+    failure: Option<Failure>,
 }
 
-impl Solved {
-    fn failure(&self, seed: u64, case: &str) -> Option<Failure> {
-        self.reason.clone().map(|reason| Failure { seed, reason, case: case.to_owned() })
-    }
+/// A point of a sweep beside the result.
+#[derive(Clone, Copy, PartialEq)]
+enum Point {
+    Right,
+    Wrong,
+    /// Its row says that it is not as exact as it should be.
+    Unconverged,
 }
 
-/// Solves an impact until `end_time` s as the program does, and looks at what has to hold; `names` are those of its values.
-fn solve(system: &System, fluid: Option<&FluidForces>, end_time: f64, names: &[&'static str; 5]) -> Solved {
-    let options = Options { tolerance: TOLERANCE, end_time: Some(end_time), ..Options::default() };
-    match assured(&options, system, |options| integrate(system, fluid, options)) {
-        Ok(result) => judge(system, fluid, end_time, names, &result),
-        Err(Error::BeyondModel(_)) => Solved { beyond_model: true, ..Solved::default() },
-        Err(error) => Solved { reason: Some(error.to_string()), ..Solved::default() },
-    }
+/// Solves an impact as the program does, and looks at what has to hold.
+fn solve(seed: u64, kind: &'static str, impact: &Impact) -> Solved {
+    let Impact { system, forces, end_time, .. } = impact;
+    let options = Options { tolerance: TOLERANCE, end_time: *end_time, ..Options::default() };
+    let run =
+        |options: &Options| assured(options, system, |options| integrate(system, forces.as_ref(), options));
+    let mut solved = Solved { seed, kind, ..Solved::default() };
+    let broken = match run(&options) {
+        Ok(result) => {
+            let point = run(&all_within(SWEEP_ERROR, options));
+            solved.point = point.ok().map(|point| compare_point(impact, &point, &result));
+            judge(impact, &result, &mut solved)
+        }
+        Err(Error::BeyondModel(_)) => {
+            solved.beyond_model = true;
+            vec![]
+        }
+        Err(error) => vec![error.to_string()],
+    };
+    solved.failure = (!broken.is_empty()).then(|| Failure {
+        seed,
+        reason: broken.join("; "),
+        case: impact.description.clone(),
+    });
+    solved
 }
 
-fn judge(
-    system: &System,
-    fluid: Option<&FluidForces>,
-    end_time: f64,
-    names: &[&'static str; 5],
-    result: &Integration,
-) -> Solved {
-    let mut solved =
-        Solved { recontact: result.contacts.iter().any(|c| c.contacts > 1), ..Solved::default() };
+/// Adds the values of `result` to `solved`; gives what does not hold.
+fn judge(impact: &Impact, result: &Integration, solved: &mut Solved) -> Vec<String> {
+    solved.recontact = result.contacts.iter().any(|c| c.contacts > 1);
     let peaks = result.contacts.map(|c| c.force_peak);
     if result.velocity.iter().chain(&peaks).any(|value| !value.is_finite()) {
-        solved.reason = Some(format!("not finite: velocities {:?}, force peaks {peaks:?}", result.velocity));
-        return solved;
+        return vec![format!("not finite: velocities {:?}, force peaks {peaks:?}", result.velocity)];
     }
-    let [momentum, energy, velocity, force, steps] = *names;
-    solved.values.push((momentum, result.momentum_residual));
-    solved.values.push((energy, result.energy_gained.max(0.0)));
-    solved.values.push((steps, result.steps as f64));
-    match independent::compare(system, fluid, end_time, result, DIFFERENCE_BOUND) {
+    solved.values.push(("momentum", result.momentum_residual));
+    solved.values.push(("energy_gained", result.energy_gained.max(0.0)));
+    solved.values.push(("steps", result.steps as f64));
+    let mut broken = Vec::new();
+    match independent::compare(impact, result) {
         Comparison::TooDear => {}
         Comparison::Undecided => (solved.compared, solved.undecided) = (true, true),
-        Comparison::Differences(values) => {
+        Comparison::Differences(found) => {
             solved.compared = true;
-            solved.values.extend([velocity, force].into_iter().zip(values));
+            solved.values.extend([
+                ("velocity_difference", found.velocity),
+                ("force_difference", found.force),
+                ("efficiency_difference", found.efficiency),
+                ("end_difference", found.end),
+            ]);
+            if let Some(theirs) = found.contacts {
+                let ours = result.contacts.map(|c| c.contacts);
+                broken.push(format!("{ours:?} contacts, in the independent solution {theirs:?}"));
+            }
         }
     }
-    let broken: Vec<String> = BOUNDS
-        .iter()
-        .filter_map(|(name, bound)| {
-            let (_, value) = solved.values.iter().find(|(n, _)| n == name)?;
-            // a value that is not a number breaks every bound
-            (value.is_nan() || value > bound).then(|| format!("{name} {value:.2e} is above {bound:.0e}"))
-        })
-        .collect();
-    if !broken.is_empty() {
-        solved.reason = Some(broken.join("; "));
+    broken.extend(BOUNDS.iter().filter_map(|(name, bound)| {
+        let (_, value) = solved.values.iter().find(|(n, _)| n == name)?;
+        // a value that is not a number breaks every bound
+        (value.is_nan() || value > bound).then(|| format!("{name} {value:.2e} is above {bound:.0e}"))
+    }));
+    broken
+}
+
+/// Compares a sweep's `point` with the `result`.
+fn compare_point(impact: &Impact, point: &Integration, result: &Integration) -> Point {
+    if point.error_estimate.is_some_and(|error| error > SWEEP_ERROR) {
+        return Point::Unconverged;
     }
-    solved
+    let found = Answer::from(point).differences(Answer::from(result), &impact.system);
+    let right = [found.velocity, found.force, found.end].iter().all(|difference| *difference <= SWEEP_ERROR);
+    if right && found.contacts.is_none() { Point::Right } else { Point::Wrong }
 }

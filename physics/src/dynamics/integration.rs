@@ -81,7 +81,7 @@ impl Integration {
 }
 
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
-pub(crate) const NEGLIGIBLE: f64 = 1e-8;
+pub const NEGLIGIBLE: f64 = 1e-8;
 
 /// What a fluid did in a run; nothing in a dry one.
 #[derive(Debug, Clone, Copy, Default)]

@@ -6,7 +6,7 @@ mod centre;
 mod clearance;
 pub mod collocation;
 mod contact_forces;
-mod contact_ledger;
+pub mod contact_ledger;
 pub mod duhamel;
 pub mod explicit_runge_kutta;
 mod force_peak;
