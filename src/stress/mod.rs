@@ -89,12 +89,45 @@ pub struct StressReport {
     pub failures: Vec<Failure>,
     /// The worst of each invariant.
     pub worst: BTreeMap<&'static str, Worst>,
+    /// Result of each case, in the order of the seeds: with them two programs are compared bit for bit.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub results: Vec<CaseResult>,
+}
+
+/// Result of a case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CaseResult {
+    /// Seed of the case.
+    pub seed: u64,
+    /// Without the fluid; `None` if the run failed or was refused.
+    pub dry: Option<Motion>,
+    /// In the fluid, if the case has one.
+    pub wet: Option<Motion>,
+    /// The values of which [`StressReport::worst`] has the largest.
+    pub values: BTreeMap<&'static str, f64>,
+}
+
+/// Final velocities in m/s, force peaks in N and numbers of contacts of outer and inner body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Motion {
+    velocity: [f64; 2],
+    force_peak: [f64; 2],
+    contacts: [u32; 2],
+}
+
+impl Motion {
+    fn of(result: &Integration) -> Self {
+        Self {
+            velocity: result.velocity,
+            force_peak: result.contacts.map(|contact| contact.force_peak),
+            contacts: result.contacts.map(|contact| contact.contacts),
+        }
+    }
 }
 
 /// Result of one case.
 struct Checked {
-    seed: u64,
-    values: Vec<(&'static str, f64)>,
+    result: CaseResult,
     compared: bool,
     undecided: bool,
     recontact: bool,
@@ -121,11 +154,12 @@ pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<Stress
     let checked = checked?;
     let mut worst: BTreeMap<&'static str, Worst> = BTreeMap::new();
     for case in &checked {
-        for &(name, value) in &case.values {
+        let seed = case.result.seed;
+        for (&name, &value) in &case.result.values {
             let bound = BOUNDS.iter().find(|(n, _)| *n == name).map(|(_, bound)| *bound);
-            let entry = worst.entry(name).or_insert(Worst { value, bound, seed: case.seed });
+            let entry = worst.entry(name).or_insert(Worst { value, bound, seed });
             if value > entry.value || entry.value.is_nan() {
-                *entry = Worst { value, bound, seed: case.seed };
+                *entry = Worst { value, bound, seed };
             }
         }
     }
@@ -133,14 +167,15 @@ pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<Stress
         schema_version: SCHEMA_VERSION,
         cases,
         seed,
-        undecided: checked.iter().filter(|c| c.undecided).map(|c| c.seed).collect(),
+        undecided: checked.iter().filter(|c| c.undecided).map(|c| c.result.seed).collect(),
         compared: checked.iter().filter(|c| c.compared).count() as u64,
         wet: checked.iter().filter(|c| c.wet).count() as u64,
         wet_compared: checked.iter().filter(|c| c.wet_compared).count() as u64,
-        beyond_model: checked.iter().filter(|c| c.beyond_model).map(|c| c.seed).collect(),
+        beyond_model: checked.iter().filter(|c| c.beyond_model).map(|c| c.result.seed).collect(),
         recontacts: checked.iter().filter(|c| c.recontact).count() as u64,
-        failures: checked.into_iter().filter_map(|c| c.failure).collect(),
+        failures: checked.iter().filter_map(|c| c.failure.clone()).collect(),
         worst,
+        results: checked.into_iter().map(|c| c.result).collect(),
     })
 }
 
@@ -153,7 +188,6 @@ const WET: [&str; 5] =
 fn check(case: &Case) -> Checked {
     let dry = solve(&case.system, None, case.end_time, &DRY);
     let mut checked = Checked {
-        seed: case.seed,
         compared: dry.compared,
         undecided: dry.undecided,
         recontact: dry.recontact,
@@ -161,7 +195,12 @@ fn check(case: &Case) -> Checked {
         wet_compared: false,
         beyond_model: dry.beyond_model,
         failure: dry.failure(case.seed, &case.description),
-        values: dry.values,
+        result: CaseResult {
+            seed: case.seed,
+            dry: dry.motion,
+            wet: None,
+            values: dry.values.into_iter().collect(),
+        },
     };
     if let Some(wet) = &case.wet {
         let solved = solve(&wet.system, wet.forces.as_ref(), case.end_time, &WET);
@@ -170,7 +209,8 @@ fn check(case: &Case) -> Checked {
         checked.undecided |= solved.undecided;
         let description = format!("{}, {}", case.description, wet.description);
         checked.failure = checked.failure.or(solved.failure(case.seed, &description));
-        checked.values.extend(solved.values);
+        checked.result.wet = solved.motion;
+        checked.result.values.extend(solved.values);
     }
     checked
 }
@@ -178,6 +218,7 @@ fn check(case: &Case) -> Checked {
 /// What one run gave.
 #[derive(Default)]
 struct Solved {
+    motion: Option<Motion>,
     values: Vec<(&'static str, f64)>,
     compared: bool,
     undecided: bool,
@@ -209,8 +250,11 @@ fn judge(
     names: &[&'static str; 5],
     result: &Integration,
 ) -> Solved {
-    let mut solved =
-        Solved { recontact: result.contacts.iter().any(|c| c.contacts > 1), ..Solved::default() };
+    let mut solved = Solved {
+        motion: Some(Motion::of(result)),
+        recontact: result.contacts.iter().any(|c| c.contacts > 1),
+        ..Solved::default()
+    };
     let peaks = result.contacts.map(|c| c.force_peak);
     if result.velocity.iter().chain(&peaks).any(|value| !value.is_finite()) {
         solved.reason = Some(format!("not finite: velocities {:?}, force peaks {peaks:?}", result.velocity));
