@@ -89,8 +89,18 @@ pub struct StressReport {
     pub failures: Vec<Failure>,
     /// The worst of each invariant.
     pub worst: BTreeMap<&'static str, Worst>,
-    /// Result of each case, in the order of the seeds: with them two programs are compared bit for bit.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+}
+
+/// What the program makes of each case, to compare two programs bit for bit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StressResults {
+    /// Version of the document.
+    pub schema_version: u32,
+    /// Number of cases.
+    pub cases: u64,
+    /// Seed of the first; the others follow.
+    pub seed: u64,
+    /// In the order of the seeds.
     pub results: Vec<CaseResult>,
 }
 
@@ -99,35 +109,72 @@ pub struct StressReport {
 pub struct CaseResult {
     /// Seed of the case.
     pub seed: u64,
-    /// Without the fluid; `None` if the run failed or was refused.
-    pub dry: Option<Motion>,
+    /// Without a fluid.
+    pub dry: Motion,
     /// In the fluid, if the case has one.
     pub wet: Option<Motion>,
-    /// The values of which [`StressReport::worst`] has the largest.
-    pub values: BTreeMap<&'static str, f64>,
 }
 
-/// Final velocities in m/s, force peaks in N and numbers of contacts of outer and inner body.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Motion {
-    velocity: [f64; 2],
-    force_peak: [f64; 2],
-    contacts: [u32; 2],
+/// How an impact ends, of outer and inner body, or why it is not solved.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Motion {
+    /// It is solved.
+    Solved {
+        /// Final velocities in m/s.
+        velocity: [f64; 2],
+        /// Force peaks in N.
+        force_peak: [f64; 2],
+        /// Numbers of contacts.
+        contacts: [u32; 2],
+        /// Steps of the time integration.
+        steps: u64,
+        /// Relative to the initial momentum.
+        momentum_residual: f64,
+        /// Relative to the initial energy.
+        energy_gained: f64,
+    },
+    /// It failed or was refused, with the sentence that says why.
+    Unsolved(String),
+}
+
+/// Runs the cases as [`run`] does, without comparing them with an independent solution.
+///
+/// # Errors
+/// If the modes of a plate can't be computed.
+pub fn results(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<StressResults> {
+    let plates = UnitPlates::default();
+    let result = |i: u64| {
+        let case = Case::draw(seed.wrapping_add(i), &plates)?;
+        let motion = |system, fluid| Motion::of(integrated(system, fluid, case.end_time));
+        let wet = case.wet.as_ref().map(|wet| motion(&wet.system, wet.forces.as_ref()));
+        progress();
+        Ok(CaseResult { seed: case.seed, dry: motion(&case.system, None), wet })
+    };
+    let results: Result<_> = (0..cases).into_par_iter().map(result).collect();
+    Ok(StressResults { schema_version: SCHEMA_VERSION, cases, seed, results: results? })
 }
 
 impl Motion {
-    fn of(result: &Integration) -> Self {
-        Self {
-            velocity: result.velocity,
-            force_peak: result.contacts.map(|contact| contact.force_peak),
-            contacts: result.contacts.map(|contact| contact.contacts),
+    fn of(integrated: Result<Integration>) -> Self {
+        match integrated {
+            Ok(result) => Self::Solved {
+                velocity: result.velocity,
+                force_peak: result.contacts.map(|contact| contact.force_peak),
+                contacts: result.contacts.map(|contact| contact.contacts),
+                steps: result.steps,
+                momentum_residual: result.momentum_residual,
+                energy_gained: result.energy_gained,
+            },
+            Err(error) => Self::Unsolved(error.to_string()),
         }
     }
 }
 
 /// Result of one case.
 struct Checked {
-    result: CaseResult,
+    seed: u64,
+    values: Vec<(&'static str, f64)>,
     compared: bool,
     undecided: bool,
     recontact: bool,
@@ -154,12 +201,11 @@ pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<Stress
     let checked = checked?;
     let mut worst: BTreeMap<&'static str, Worst> = BTreeMap::new();
     for case in &checked {
-        let seed = case.result.seed;
-        for (&name, &value) in &case.result.values {
+        for &(name, value) in &case.values {
             let bound = BOUNDS.iter().find(|(n, _)| *n == name).map(|(_, bound)| *bound);
-            let entry = worst.entry(name).or_insert(Worst { value, bound, seed });
+            let entry = worst.entry(name).or_insert(Worst { value, bound, seed: case.seed });
             if value > entry.value || entry.value.is_nan() {
-                *entry = Worst { value, bound, seed };
+                *entry = Worst { value, bound, seed: case.seed };
             }
         }
     }
@@ -167,15 +213,14 @@ pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<Stress
         schema_version: SCHEMA_VERSION,
         cases,
         seed,
-        undecided: checked.iter().filter(|c| c.undecided).map(|c| c.result.seed).collect(),
+        undecided: checked.iter().filter(|c| c.undecided).map(|c| c.seed).collect(),
         compared: checked.iter().filter(|c| c.compared).count() as u64,
         wet: checked.iter().filter(|c| c.wet).count() as u64,
         wet_compared: checked.iter().filter(|c| c.wet_compared).count() as u64,
-        beyond_model: checked.iter().filter(|c| c.beyond_model).map(|c| c.result.seed).collect(),
+        beyond_model: checked.iter().filter(|c| c.beyond_model).map(|c| c.seed).collect(),
         recontacts: checked.iter().filter(|c| c.recontact).count() as u64,
-        failures: checked.iter().filter_map(|c| c.failure.clone()).collect(),
+        failures: checked.into_iter().filter_map(|c| c.failure).collect(),
         worst,
-        results: checked.into_iter().map(|c| c.result).collect(),
     })
 }
 
@@ -188,6 +233,7 @@ const WET: [&str; 5] =
 fn check(case: &Case) -> Checked {
     let dry = solve(&case.system, None, case.end_time, &DRY);
     let mut checked = Checked {
+        seed: case.seed,
         compared: dry.compared,
         undecided: dry.undecided,
         recontact: dry.recontact,
@@ -195,12 +241,7 @@ fn check(case: &Case) -> Checked {
         wet_compared: false,
         beyond_model: dry.beyond_model,
         failure: dry.failure(case.seed, &case.description),
-        result: CaseResult {
-            seed: case.seed,
-            dry: dry.motion,
-            wet: None,
-            values: dry.values.into_iter().collect(),
-        },
+        values: dry.values,
     };
     if let Some(wet) = &case.wet {
         let solved = solve(&wet.system, wet.forces.as_ref(), case.end_time, &WET);
@@ -209,8 +250,7 @@ fn check(case: &Case) -> Checked {
         checked.undecided |= solved.undecided;
         let description = format!("{}, {}", case.description, wet.description);
         checked.failure = checked.failure.or(solved.failure(case.seed, &description));
-        checked.result.wet = solved.motion;
-        checked.result.values.extend(solved.values);
+        checked.values.extend(solved.values);
     }
     checked
 }
@@ -218,7 +258,6 @@ fn check(case: &Case) -> Checked {
 /// What one run gave.
 #[derive(Default)]
 struct Solved {
-    motion: Option<Motion>,
     values: Vec<(&'static str, f64)>,
     compared: bool,
     undecided: bool,
@@ -233,10 +272,15 @@ impl Solved {
     }
 }
 
-/// Solves an impact until `end_time` s as the program does, and looks at what has to hold; `names` are those of its values.
-fn solve(system: &System, fluid: Option<&FluidForces>, end_time: f64, names: &[&'static str; 5]) -> Solved {
+/// Solves an impact until `end_time` s as the program does.
+fn integrated(system: &System, fluid: Option<&FluidForces>, end_time: f64) -> Result<Integration> {
     let options = Options { tolerance: TOLERANCE, end_time: Some(end_time), ..Options::default() };
-    match assured(&options, system, |options| integrate(system, fluid, options)) {
+    assured(&options, system, |options| integrate(system, fluid, options))
+}
+
+/// Solves an impact until `end_time` s and looks at what has to hold; `names` are those of its values.
+fn solve(system: &System, fluid: Option<&FluidForces>, end_time: f64, names: &[&'static str; 5]) -> Solved {
+    match integrated(system, fluid, end_time) {
         Ok(result) => judge(system, fluid, end_time, names, &result),
         Err(Error::BeyondModel(_)) => Solved { beyond_model: true, ..Solved::default() },
         Err(error) => Solved { reason: Some(error.to_string()), ..Solved::default() },
@@ -250,11 +294,8 @@ fn judge(
     names: &[&'static str; 5],
     result: &Integration,
 ) -> Solved {
-    let mut solved = Solved {
-        motion: Some(Motion::of(result)),
-        recontact: result.contacts.iter().any(|c| c.contacts > 1),
-        ..Solved::default()
-    };
+    let mut solved =
+        Solved { recontact: result.contacts.iter().any(|c| c.contacts > 1), ..Solved::default() };
     let peaks = result.contacts.map(|c| c.force_peak);
     if result.velocity.iter().chain(&peaks).any(|value| !value.is_finite()) {
         solved.reason = Some(format!("not finite: velocities {:?}, force peaks {peaks:?}", result.velocity));

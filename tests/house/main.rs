@@ -67,11 +67,7 @@ fn mutual(package: &str) -> Vec<String> {
         .filter(|((room, other), _)| *room < other.as_str())
         .filter_map(|((room, other), there)| {
             let back = back(room, other)?;
-            Some(format!(
-                "{package}: {room} <-> {other}\n    {}\n    {}",
-                there.join(" "),
-                back.join(" ")
-            ))
+            Some(format!("{package}: {room} <-> {other}\n    {}\n    {}", there.join(" "), back.join(" ")))
         })
         .collect()
 }

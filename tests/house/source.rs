@@ -113,7 +113,8 @@ impl Source {
 
     fn python_imports(&self, package: &str, deep: usize) -> Vec<String> {
         static FROM: LazyLock<Regex> = LazyLock::new(|| {
-            Regex::new(r"(?m)^\s*(?:from|import) (\.*)([\w.]*)(?: import \(?([\w, \n]*))?").expect("expression")
+            Regex::new(r"(?m)^\s*(?:from|import) (\.*)([\w.]*)(?: import \(?([\w, \n]*))?")
+                .expect("expression")
         });
         let mut found = Vec::new();
         for from in FROM.captures_iter(&self.code) {
