@@ -110,15 +110,15 @@ pub struct CaseResult {
     /// Seed of the case.
     pub seed: u64,
     /// Without a fluid.
-    pub dry: Motion,
+    pub dry: CaseMotion,
     /// In the fluid, if the case has one.
-    pub wet: Option<Motion>,
+    pub wet: Option<CaseMotion>,
 }
 
 /// How an impact ends, of outer and inner body, or why it is not solved.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Motion {
+pub enum CaseMotion {
     /// It is solved.
     Solved {
         /// Final velocities in m/s.
@@ -146,7 +146,7 @@ pub fn results(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<St
     let plates = UnitPlates::default();
     let result = |i: u64| {
         let case = Case::draw(seed.wrapping_add(i), &plates)?;
-        let motion = |system, fluid| Motion::of(integrated(system, fluid, case.end_time));
+        let motion = |system, fluid| CaseMotion::of(integrated(system, fluid, case.end_time));
         let wet = case.wet.as_ref().map(|wet| motion(&wet.system, wet.forces.as_ref()));
         progress();
         Ok(CaseResult { seed: case.seed, dry: motion(&case.system, None), wet })
@@ -155,7 +155,7 @@ pub fn results(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<St
     Ok(StressResults { schema_version: SCHEMA_VERSION, cases, seed, results: results? })
 }
 
-impl Motion {
+impl CaseMotion {
     fn of(integrated: Result<Integration>) -> Self {
         match integrated {
             Ok(result) => Self::Solved {
