@@ -47,8 +47,8 @@ wheel: setup
 	$(WHEEL)/bin/python -m pip install --quiet --force-reinstall --no-deps target/wheels/*.whl
 
 python: setup wheel
-	$(VENV)/bin/ruff check fem_reference examples python
-	$(VENV)/bin/ruff format --check fem_reference examples python
+	$(VENV)/bin/ruff check fem_reference examples python tests/freeze
+	$(VENV)/bin/ruff format --check fem_reference examples python tests/freeze
 	$(TOOL) -m mypy
 	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference
 	cargo build --release

@@ -14,6 +14,9 @@ pub struct Arguments {
     /// Seed of the first scene; the others follow
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
+    /// Print the result of every scene instead, to compare two programs bit for bit
+    #[arg(long, requires = "json")]
+    results: bool,
     #[command(flatten)]
     json: JsonArgument,
 }
@@ -24,7 +27,14 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     if let Ok(style) = ProgressStyle::with_template("{pos}/{len} scenes, {elapsed}, {eta} left {bar:40}") {
         bar.set_style(style);
     }
-    let report = stress::run(arguments.cases, arguments.seed, &|| bar.inc(1))?;
+    let progress = || bar.inc(1);
+    if arguments.results {
+        let results = stress::results(arguments.cases, arguments.seed, &progress)?;
+        bar.finish_and_clear();
+        arguments.json.print(&results, |_| String::new())?;
+        return Ok(ExitStatus::Pass);
+    }
+    let report = stress::run(arguments.cases, arguments.seed, &progress)?;
     bar.finish_and_clear();
     arguments.json.print(&report, table)?;
     Ok(if report.failures.is_empty() && report.sweep.holds() { ExitStatus::Pass } else { ExitStatus::Solver })

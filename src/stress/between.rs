@@ -35,6 +35,11 @@ pub(super) struct Contact {
 }
 
 impl Contact {
+    /// Number of contacts that ended: whether a last one began before the run ended can be a matter of rounding.
+    pub(super) fn ended(&self) -> u32 {
+        self.contacts - u32::from(self.closed)
+    }
+
     /// What is compared of the account that the program keeps.
     pub(super) fn of(account: &ContactLedger) -> Self {
         let &ContactLedger { force_peak, contacts, end, closed, .. } = account;

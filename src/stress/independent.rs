@@ -41,7 +41,7 @@ pub(super) struct Differences {
     pub(super) efficiency: f64,
     /// Of the time of the last release.
     pub(super) end: f64,
-    /// The other solution's numbers of contacts where they differ.
+    /// The other solution's numbers of contacts that ended where they differ.
     pub(super) contacts: Option<[u32; 2]>,
 }
 
@@ -81,7 +81,7 @@ impl Answer {
             let [one, two] = both.map(|answer| answer.contacts[i].end);
             if one == two { 0.0 } else { (one - two).abs() / two }
         };
-        let [ours, theirs] = both.map(|answer| answer.contacts.map(|contact| contact.contacts));
+        let [ours, theirs] = both.map(|answer| answer.contacts.map(|contact| contact.ended()));
         Differences {
             velocity,
             force,

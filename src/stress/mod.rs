@@ -5,10 +5,12 @@
 mod between;
 mod draw;
 mod independent;
+mod results;
 #[cfg(test)]
 mod tests;
 
 pub use draw::{Case, Impact, UnitPlates};
+pub use results::{CaseMotion, CaseResult, StressResults, results};
 
 use crate::dynamics::assured::{all_within, assured};
 use crate::dynamics::integrate;
@@ -208,16 +210,22 @@ enum Point {
     Unconverged,
 }
 
-/// Solves an impact as the program does, and looks at what has to hold.
+/// Options of a run with the program's default tolerance.
+fn options(impact: &Impact) -> Options {
+    Options { tolerance: TOLERANCE, end_time: impact.end_time, ..Options::default() }
+}
+
+/// Solves an impact as the program does.
+fn integrated(impact: &Impact, options: &Options) -> Result<Integration> {
+    assured(options, &impact.system, |options| integrate(&impact.system, impact.forces.as_ref(), options))
+}
+
+/// Solves an impact and looks at what has to hold.
 fn solve(seed: u64, kind: &'static str, impact: &Impact) -> Solved {
-    let Impact { system, forces, end_time, .. } = impact;
-    let options = Options { tolerance: TOLERANCE, end_time: *end_time, ..Options::default() };
-    let run =
-        |options: &Options| assured(options, system, |options| integrate(system, forces.as_ref(), options));
     let mut solved = Solved { seed, kind, ..Solved::default() };
-    let broken = match run(&options) {
+    let broken = match integrated(impact, &options(impact)) {
         Ok(result) => {
-            let point = run(&all_within(SWEEP_ERROR, options));
+            let point = integrated(impact, &all_within(SWEEP_ERROR, options(impact)));
             solved.point = point.ok().map(|point| compare_point(impact, &point, &result));
             judge(impact, &result, &mut solved)
         }

@@ -1,0 +1,95 @@
+//! The house: what the layout of the sources must satisfy, as counts that may only fall.
+//!
+//! A bound is the count of today. Above it a test fails and prints what was counted; below it the test asks for the lower bound.
+
+mod source;
+
+use source::{Language, Source, kinds, sources};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Packages whose rooms (files and folders at their top) are looked at: the folder, and what an import of it starts with.
+const PACKAGES: [&str; 3] = ["physics/src", "src", "fem_reference"];
+
+/// Fails unless `found` has exactly `bound` entries.
+fn ratchet(what: &str, found: &[String], bound: usize) {
+    let n = found.len();
+    assert!(n <= bound, "{n} {what}, {bound} are allowed:\n  {}", found.join("\n  "));
+    assert!(n == bound, "{n} {what}: lower the bound from {bound} to {n}");
+}
+
+/// A new kind is one folder a side and a line in a registry: nothing else names it.
+#[test]
+fn files_outside_the_kinds_folders_that_name_a_kind() {
+    let kinds = kinds();
+    assert!(kinds.len() > 1, "{kinds:?}");
+    let inside = |source: &Source| {
+        let mut folders = source.path.split('/').rev().skip(1);
+        folders.any(|folder| folder == "kinds" || kinds.iter().any(|kind| kind == folder))
+    };
+    // `plate_impact`, `plate-impact` and `PlateImpact` are one name
+    let plain = |text: &str| text.to_lowercase().replace(['_', '-'], "");
+    let names: Vec<String> = kinds.iter().map(|kind| plain(kind)).collect();
+    let found: Vec<String> = sources()
+        .filter(|source| !inside(source))
+        .filter(|source| {
+            let text = plain(&source.code);
+            names.iter().any(|name| text.contains(name))
+        })
+        .map(|source| source.path)
+        .collect();
+    ratchet("files outside the kinds' folders that name a kind", &found, 83);
+}
+
+/// Data flows one way: of two rooms at most one imports the other.
+#[test]
+fn rooms_that_import_each_other() {
+    let found: Vec<String> = PACKAGES.iter().flat_map(|package| mutual(package)).collect();
+    ratchet("pairs of rooms that import each other", &found, 10);
+}
+
+/// The pairs of `package`, with a file of either side.
+fn mutual(package: &str) -> Vec<String> {
+    let inside = format!("{package}/");
+    let sources: Vec<Source> = sources().filter(|source| source.path.starts_with(&inside)).collect();
+    let rooms: BTreeSet<&str> = sources.iter().filter_map(|source| source.room(package)).collect();
+    let mut imports: BTreeMap<(String, String), Vec<&str>> = BTreeMap::new();
+    for source in &sources {
+        let Some(room) = source.room(package) else { continue };
+        for other in source.imports(package) {
+            if other != room && rooms.contains(other.as_str()) {
+                imports.entry((room.to_owned(), other)).or_default().push(&source.path[inside.len()..]);
+            }
+        }
+    }
+    let pair = |((room, other), there): (&(String, String), &Vec<&str>)| {
+        let back = imports.get(&(other.clone(), room.clone())).filter(|_| room < other)?;
+        let files = [there, back].map(|files| files.join(" "));
+        Some(format!("{package}: {room} <-> {other}\n    {}\n    {}", files[0], files[1]))
+    };
+    imports.iter().filter_map(pair).collect()
+}
+
+/// A type's name says where to look: it is defined once.
+#[test]
+fn names_of_types_that_are_defined_more_than_once() {
+    let mut defined: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for source in sources().filter(|source| source.language == Language::Rust) {
+        for name in source.types() {
+            defined.entry(name).or_default().push(source.path.clone());
+        }
+    }
+    assert!(defined.len() > 400, "{} types", defined.len());
+    let found: Vec<String> = defined
+        .iter()
+        .filter(|(_, files)| files.len() > 1)
+        .map(|(name, files)| format!("{name}: {}", files.join(" ")))
+        .collect();
+    ratchet("names of types that are defined more than once", &found, 100);
+}
+
+/// A comment in a source file is no reason to compute anything again.
+#[test]
+fn sources_that_are_part_of_a_key() {
+    let found: Vec<String> = sources().flat_map(|source| source.includes_of_sources()).collect();
+    ratchet("sources that are included as text", &found, 23);
+}
