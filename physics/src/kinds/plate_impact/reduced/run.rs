@@ -2,6 +2,7 @@
 
 use super::{Point, Reduced};
 use crate::dynamics::assured;
+use crate::dynamics::contact_ledger::ContactLedger;
 use crate::dynamics::integration::{Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
 use crate::dynamics::ledger_check;
 use crate::dynamics::memory::{self, Memory, OnsetOfYield};
@@ -226,6 +227,7 @@ impl Reduced {
             });
         }
         warnings.extend(unresolved(system, result, tolerance));
+        warnings.extend(uncountable(result, tolerance));
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if self.scene.plate_impact()?.outer.angle != 0.0 {
             warnings.push(
@@ -297,4 +299,19 @@ mod tests {
         assert!(off.warnings.iter().any(|w| w.contains("ledger of energy")), "{:?}", off.warnings);
         assert!(matches!(summary(0.02), Err(Error::Solver(_))));
     }
+}
+
+/// Contacts that nearly join, part or touch once more, so that their number may be another.
+fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
+    let near = |contact: &ContactLedger| contact.least_turn <= assured::ENOUGH * tolerance;
+    let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
+    bodies
+        .filter(|(_, contact)| contact.contacts > 0 && near(contact))
+        .map(|(body, contact)| {
+            format!(
+                "the number of contacts of the {body} body, {}, is uncertain: the surfaces come within {:.0e} of the largest approach to touching or parting once more",
+                contact.contacts, contact.least_turn
+            )
+        })
+        .collect()
 }
