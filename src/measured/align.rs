@@ -236,7 +236,7 @@ impl Alignment<'_> {
     }
 
     fn fitted(&self, k: usize, free: &FreeFlight) -> Result<Flight> {
-        free.fitted(self.bandwidth).ok_or_else(|| {
+        free.fitted().ok_or_else(|| {
             Error::Scene(miette::miette!(
                 "{}: the free flight of {} can't be fitted",
                 self.record.file.display(),
@@ -297,7 +297,7 @@ impl Alignment<'_> {
                 }
             }
         }
-        let flight = self.fitted(k, &free)?;
+        let (flight, errors) = (self.fitted(k, &free)?, free.errors(self.bandwidth));
         let outer = quantity.starts_with("outer");
         let known = if outer { -self.setup.outer.speed } else { self.setup.inner.speed };
         let trusted = outer && self.speed == Speed::Measured;
@@ -306,6 +306,6 @@ impl Alignment<'_> {
         let (before, left) = if trusted { (measured, 0.0) } else { (known, measured - known) };
         let (offset, drift) = if free.is_velocity { (left, flight.slope) } else { (flight.level, left) };
         let correction = ChannelCorrection { quantity, offset, drift };
-        Ok(Seen { correction, flight, free, before, events, ends, hums, disturbance })
+        Ok(Seen { correction, flight, errors, free, before, events, ends, hums, disturbance })
     }
 }

@@ -1,12 +1,12 @@
 //! What the aligned signals of a record show, and whether that can be.
 
-use super::align::{Alignment, ChannelCorrection};
+use super::align::{Alignment, ChannelCorrection, Speed};
 use super::finding::{Finding, FindingKind};
-use super::flight::{Flight, FreeFlight};
+use super::flight::{Flight, FlightErrors, FreeFlight};
 use super::noise::NORMAL_95;
 use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
-use crate::scene::Shape;
+use crate::scene::{PlateImpact, Shape};
 
 /// Standard errors from which on a drift counts as found, and what it makes up over the record, over the step of the impact.
 const SIGNIFICANT_DRIFT: f64 = 5.0;
@@ -20,13 +20,15 @@ const OTHER_SCENE: f64 = 0.05;
 const DELAY: f64 = 0.3;
 const DELAY_EXPLAINS: f64 = 0.5;
 
-/// Half widths of the 95 % interval by which an excess of energy is more than chance.
+/// Half widths of the 95 % interval by which an excess of energy is hardly chance, and by which it is none.
+const EXCESS: f64 = 1.5;
 const IMPOSSIBLE: f64 = 2.0;
 
 /// What one signal shows.
 pub(super) struct Seen {
     pub correction: ChannelCorrection,
     pub flight: Flight,
+    pub errors: Option<FlightErrors>,
     /// Up to the first further impact.
     pub free: FreeFlight,
     /// Velocity before the impact, m/s.
@@ -60,7 +62,7 @@ impl Seen {
 
     /// Velocity after the impact with its standard error.
     fn after(&self) -> Option<(f64, f64)> {
-        self.flight.step.map(|(step, error)| (self.before + step, error))
+        self.flight.step.zip(self.errors).map(|(step, errors)| (self.before + step, errors.step))
     }
 }
 
@@ -75,15 +77,16 @@ impl Alignment<'_> {
             })
         };
         let outer_velocity_initial = of("outer").map_or(-self.setup.outer.speed, |seen| seen.before);
+        let trusted = of("outer").filter(|_| self.speed == Speed::Measured);
+        let initial_error = trusted.and_then(|seen| seen.errors).map_or(0.0, |errors| errors.before);
         let [inner, outer] = ["inner", "outer"].map(|body| of(body).and_then(Seen::after));
-        let masses = [
-            self.setup.outer.shape.mass(&self.setup.outer.material),
-            self.setup.inner.shape.mass(&self.setup.inner.material),
-        ];
+        let masses = self.masses();
         // kinetic energy over that of the outer body before the impact, and the half width of its 95 % interval
         let share = |mass: f64, (velocity, error): (f64, f64)| {
-            let scale = mass / (masses[0] * outer_velocity_initial.powi(2));
-            (scale * velocity.powi(2), NORMAL_95 * 2.0 * scale * (velocity * error).abs())
+            let ratio = velocity / outer_velocity_initial;
+            let error = error.hypot(ratio * initial_error) / outer_velocity_initial;
+            let scale = mass / masses[0];
+            (scale * ratio.powi(2), NORMAL_95 * 2.0 * scale * (ratio * error).abs())
         };
         let efficiency = inner.map(|after| share(masses[1], after));
         let mut findings: Vec<Finding> = seen.iter().flat_map(|seen| self.of_signal(shift, seen)).collect();
@@ -95,6 +98,12 @@ impl Alignment<'_> {
             efficiency,
             findings,
         })
+    }
+
+    /// Masses of the outer and the inner body, kg.
+    fn masses(&self) -> [f64; 2] {
+        let PlateImpact { outer, inner, .. } = self.setup;
+        [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)]
     }
 
     /// Begin and end of the record on its own clock, s.
@@ -173,10 +182,10 @@ impl Alignment<'_> {
     /// Whether the drift of a velocity is large and no chance.
     fn drifts(&self, seen: &Seen) -> bool {
         let [start, end] = self.whole();
-        let Some((step, _)) = seen.flight.step.filter(|_| seen.free.is_velocity) else { return false };
+        let found = seen.flight.step.zip(seen.errors).filter(|_| seen.free.is_velocity);
+        let Some((step, errors)) = found else { return false };
         let drift = seen.flight.slope.abs();
-        drift * (end - start) > LARGE_DRIFT * step.abs()
-            && seen.free.drift_error(self.bandwidth).is_some_and(|error| drift > SIGNIFICANT_DRIFT * error)
+        drift * (end - start) > LARGE_DRIFT * step.abs() && drift > SIGNIFICANT_DRIFT * errors.slope
     }
 
     /// Distance of a signal from the model over the contact beyond its noise, root mean square.
@@ -242,13 +251,10 @@ impl Alignment<'_> {
         let rigid = matches!(self.setup.outer.shape, Shape::Sphere { .. } | Shape::Compact { .. });
         let Some(inner) = inner.filter(|_| rigid) else { return Ok(None) };
         let outer = outer.unwrap_or((0.0, 0.0));
-        let masses = [
-            self.setup.outer.shape.mass(&self.setup.outer.material),
-            self.setup.inner.shape.mass(&self.setup.inner.material),
-        ];
+        let masses = self.masses();
         let brought = 1.0 + masses[1] / masses[0] * (self.setup.inner.speed / self.setup.outer.speed).powi(2);
         let (share, uncertainty) = (inner.0 + outer.0, inner.1.hypot(outer.1));
-        if share - uncertainty < brought && inner.0 <= brought {
+        if share - EXCESS * uncertainty < brought && inner.0 <= brought {
             return Ok(None);
         }
         let effect = format!(
