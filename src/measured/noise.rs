@@ -13,6 +13,8 @@ const CORNERS: (f64, f64, usize) = (0.05, 4.0, 12);
 const WHITE: [f64; 2] = [1e-4, 1e-2];
 /// Weight, over that of the most likely spectrum, below which a spectrum is left out.
 const NEGLIGIBLE: f64 = 1e-3;
+/// Relative accuracy of a half width.
+const RESOLUTION: f64 = 1e-4;
 /// Quantile of the normal distribution for intervals of 95 %.
 pub const NORMAL_95: f64 = 1.96;
 
@@ -97,9 +99,17 @@ pub struct Noise {
 struct Component {
     /// Its probability; the sum of all is 1.
     weight: f64,
-    /// Covariance of the values in the square of the signal's unit, for intervals of 1.96 standard errors: widened to those of
-    /// Student's distribution with as many degrees of freedom as the residuals have. Shape (times, times).
+    /// Covariance of the values in the square of the signal's unit. Shape (times, times).
     covariance: DMatrix<f64>,
+    /// Distribution of an error over its standard deviation, with as many degrees of freedom as the residuals have.
+    student: StudentsT,
+}
+
+impl Component {
+    /// Half width of the 95 % interval over 1.96 standard deviations.
+    fn widening(&self) -> f64 {
+        self.student.inverse_cdf(0.975) / NORMAL_95
+    }
 }
 
 /// Residuals of a fit.
@@ -126,16 +136,15 @@ impl Residuals {
         Some(-0.5 * (spread + freedom * squares.max(f64::MIN_POSITIVE).ln()))
     }
 
-    /// The `correlation` matrix times the variance that the sum of the squares leads to.
-    fn covariance(&self, correlation: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    /// Noise with this `correlation` and the variance that the sum of the squares leads to.
+    fn component(&self, weight: f64, correlation: DMatrix<f64>) -> Option<Component> {
         // P V P with P = 1 - Q Q'
         let across = &correlation * &self.space;
         let within = self.space.tr_mul(&across);
         let squares = correlation.trace() - within.trace();
         let norm = correlation.norm_squared() - 2.0 * across.norm_squared() + within.norm_squared();
-        let freedom = (squares.powi(2) / norm).max(1.0);
-        let student = StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(0.975) / NORMAL_95;
-        Some(correlation * (self.left.norm_squared() / squares * student.powi(2)))
+        let student = StudentsT::new(0.0, 1.0, (squares.powi(2) / norm).max(1.0)).ok()?;
+        Some(Component { weight, covariance: correlation * (self.left.norm_squared() / squares), student })
     }
 }
 
@@ -158,8 +167,7 @@ impl Noise {
         let most = possible.iter().fold(f64::NEG_INFINITY, |most, (likelihood, _)| most.max(*likelihood));
         let components = possible.into_iter().filter(|(likelihood, _)| likelihood - most > NEGLIGIBLE.ln());
         let component = |(likelihood, correlation): (f64, DMatrix<f64>)| {
-            let covariance = residuals.covariance(correlation)?;
-            Some(Component { weight: (likelihood - most).exp(), covariance })
+            residuals.component((likelihood - most).exp(), correlation)
         };
         let mut components = components.map(component).collect::<Option<Vec<_>>>()?;
         let total: f64 = components.iter().map(|component| component.weight).sum();
@@ -167,18 +175,31 @@ impl Noise {
         Some(Noise { components })
     }
 
-    /// Covariance of the values. Shape (times, times).
+    /// Covariance of the values, for intervals of 1.96 standard errors. Shape (times, times).
     pub fn covariance(&self, count: usize) -> DMatrix<f64> {
-        let of = |component: &Component| &component.covariance * component.weight;
+        let of =
+            |component: &Component| &component.covariance * (component.weight * component.widening().powi(2));
         self.components.iter().map(of).fold(DMatrix::zeros(count, count), |sum, part| sum + part)
     }
 
-    /// Standard error of the sum of the values times those of `row`, for intervals of 1.96 of it: the mean over the spectra.
+    /// Half width over 1.96 of the 95 % interval of the sum of the values times those of `row`.
     fn standard_error(&self, row: &DVector<f64>) -> f64 {
-        let of = |component: &Component| {
-            component.weight * row.dot(&(&component.covariance * row)).max(0.0).sqrt()
+        let deviation = |component: &Component| row.dot(&(&component.covariance * row)).max(0.0).sqrt();
+        let deviations: Vec<f64> = self.components.iter().map(deviation).collect();
+        let outside = |half_width: f64| -> f64 {
+            let of = |(component, deviation): (&Component, &f64)| {
+                2.0 * component.weight * component.student.sf(half_width / deviation)
+            };
+            self.components.iter().zip(&deviations).map(of).sum()
         };
-        self.components.iter().map(of).sum()
+        // no wider than that of its widest component
+        let half_widths = self.components.iter().zip(&deviations).map(|(c, d)| NORMAL_95 * c.widening() * d);
+        let (mut low, mut high) = (0.0, half_widths.fold(0.0, f64::max));
+        while high - low > RESOLUTION * high {
+            let middle = 0.5 * (low + high);
+            *(if outside(middle) > 0.05 { &mut low } else { &mut high }) = middle;
+        }
+        high / NORMAL_95
     }
 }
 
