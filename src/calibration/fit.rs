@@ -23,9 +23,10 @@ const UNTOLD: f64 = 0.5;
 const ROUNDING: f64 = 1e-6;
 /// Differences where the model has no result, over the largest at the start.
 const FAR: f64 = 1e3;
-/// Component from which on a parameter takes part in a direction; a smaller one does if that leaves it more uncertain than the other
-/// directions do.
+/// Component from which on a parameter takes part in a direction; a smaller one does if what it adds to the parameter's standard
+/// deviation is more than a share of what the other directions leave.
 const PART: f64 = 0.1;
+const ADDED: f64 = 0.3;
 
 /// The parameters that fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -189,7 +190,7 @@ fn told<F: Fn(&[f64]) -> Option<Vec<f64>>>(
     let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
     let takes_part = |k: usize, j: usize| {
         let part = directions[(k, j)].abs();
-        part > PART || UNTOLD * part > deviation(j).max(LEAST_PART)
+        part > PART || UNTOLD * part > LEAST_PART.max(ADDED * deviation(j))
     };
     let untold: Vec<Vec<usize>> =
         unknown.iter().map(|k| (0..unknowns).filter(|j| takes_part(*k, *j)).collect()).collect();
