@@ -275,6 +275,18 @@ mod tests {
         assert_eq!(found.untold, [[0, 3]], "{found:?}");
     }
 
+    /// It counts too where the deviation is as large: the sum of both would be.
+    #[test]
+    fn a_small_part_of_a_direction_counts_where_it_is_no_less_than_the_deviation() {
+        let louder = |(t, y)| (t, model(&TRUTH, t) + 12.0 * (y - model(&TRUTH, t)));
+        let data: Vec<(f64, f64)> = noisy(7).into_iter().map(louder).collect();
+        let product = |p: &[f64], t: f64| model(&[p[0] * (0.95 + 0.05 * p[3]), p[1], p[2]], t);
+        let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
+        let found =
+            fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
+        assert_eq!(found.untold, [[0, 3]], "{found:?}");
+    }
+
     /// A model's rounding looks like a small slope of an input that does nothing.
     #[test]
     fn rounding_is_no_slope() {

@@ -60,6 +60,14 @@ impl Seen {
         self.correction.offset + self.correction.drift * time + hums
     }
 
+    /// Standard error of offset and drift at `time`.
+    fn error(&self, time: f64) -> f64 {
+        let Some(errors) = self.errors else { return 0.0 };
+        // without free flight after the impact no drift is taken out
+        let drift = if errors.slope.is_finite() { errors.slope * time } else { 0.0 };
+        if self.free.is_velocity { errors.before.hypot(drift) } else { drift }
+    }
+
     /// Velocity after the impact with its standard error.
     fn after(&self) -> Option<(f64, f64)> {
         self.flight.step.zip(self.errors).map(|(step, errors)| (self.before + step, errors.step))
@@ -188,7 +196,7 @@ impl Alignment<'_> {
         drift * (end - start) > LARGE_DRIFT * step.abs() && drift > SIGNIFICANT_DRIFT * errors.slope
     }
 
-    /// Distance of a signal from the model over the contact beyond its noise, root mean square.
+    /// Distance of a signal from the model over the contact beyond its noise and the errors of offset and drift, root mean square.
     fn misfit(&self, shift: f64, seen: &Seen) -> f64 {
         let quantity = seen.correction.quantity;
         let channel = self.record.channels.iter().find(|channel| channel.quantity == quantity);
@@ -201,7 +209,7 @@ impl Alignment<'_> {
             .map(|t| t - shift)
             .zip(&channel.values)
             .filter(|(t, _)| (contact.start..contact.end).contains(t))
-            .map(|(t, y)| (y - seen.taken_out(t) - curve(t)).powi(2))
+            .map(|(t, y)| (y - seen.taken_out(t) - curve(t)).powi(2) - (NORMAL_95 * seen.error(t)).powi(2))
             .collect();
         let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
         (mean - seen.flight.noise.powi(2)).max(0.0).sqrt()

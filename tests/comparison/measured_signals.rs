@@ -137,6 +137,17 @@ fn speed_that_differs_from_the_scene_s_is_read_from_a_signal_without_offset() {
     assert!((trusting_the_scene.efficiency.unwrap() - expected).abs() > 0.05);
 }
 
+/// The speed before the impact is then measured too, with the noise of its signal.
+#[test]
+fn a_measured_speed_widens_the_interval_of_the_efficiency() {
+    let (scene, setup) = scene("scaled-plate-r10");
+    let truth = model(&scene, Model::C);
+    let record = record(&truth, &SIGNALS, Disturbance { offset: 0.0, drift: 0.0, ..DISTURBED });
+    let [of_scene, measured] = [Speed::Scene, Speed::Measured]
+        .map(|speed| aligned(&record, &truth, &setup, speed).efficiency_uncertainty.unwrap());
+    assert!((1.1..3.0).contains(&(measured / of_scene)), "{measured} and {of_scene}");
+}
+
 #[test]
 fn one_signal_is_enough_and_missing_free_flight_is_told() {
     let (scene, setup) = scene("scaled-plate-r10");
@@ -184,6 +195,11 @@ fn models_are_measured_by_the_same_metrics_and_a_series_by_mean_and_scatter() {
         .collect();
     let reduced = [model(&scene, Model::A), model(&scene, Model::C)];
     let found = compare(&scene, &records, &reference, &reduced, (BANDWIDTH, Speed::Scene)).unwrap();
+    // another program's result has no eigenfrequency
+    let mut imported = reference.clone();
+    *imported.summary.quantities.value_mut("first_frequency").unwrap() = None;
+    let with_imported = compare(&scene, &records, &imported, &[], (BANDWIDTH, Speed::Scene)).unwrap();
+    assert_eq!(with_imported.records, found.records);
     let series = found.efficiency.unwrap();
     assert_eq!(series, Series::of(series.values.clone()).unwrap());
     assert!(series.count == 3 && (series.mean - truth.summary.value("efficiency").unwrap()).abs() < 0.005);
