@@ -39,7 +39,7 @@ pub(super) struct Flight {
 pub(super) struct FlightErrors {
     /// Of the velocity before the impact, if the signal is trusted to have no offset.
     pub before: f64,
-    /// Of the drift of a velocity.
+    /// Of the drift of a velocity; infinite, as `step`, without free flight after the impact.
     pub slope: f64,
     /// Of the change of the velocity by the impact.
     pub step: f64,
