@@ -90,6 +90,7 @@ fn shift_within_a_tenth_of_a_microsecond_and_efficiency_within_half_a_point() {
         let expected = truth.summary.value("efficiency").unwrap();
         // the model the record was made from, and the finite elements, which differ from it by a little
         for (partner, seeds) in [(&truth, 1..=8), (&reference(&scene), 1..=3)] {
+            let mut bands = Vec::new();
             for seed in seeds {
                 let record = record(&truth, &SIGNALS, Disturbance { seed, ..DISTURBED });
                 let found = aligned(&record, partner, &setup, Speed::Scene);
@@ -97,8 +98,12 @@ fn shift_within_a_tenth_of_a_microsecond_and_efficiency_within_half_a_point() {
                 let case = format!("{name}, seed {seed}: {:e} s, {efficiency}", found.shift);
                 assert!((found.shift - 5e-6).abs() < 0.1e-6, "{case}");
                 assert!((efficiency - expected).abs() < 0.005, "{case}, expected {expected}");
-                assert!((efficiency - expected).abs() < 2.0 * band && band < 0.005, "{case} +- {band}");
+                assert!((efficiency - expected).abs() < 2.0 * band && band < 0.015, "{case} +- {band}");
+                bands.push(band);
             }
+            // a single record may leave open that its noise is correlated
+            let mean = bands.iter().sum::<f64>() / bands.len() as f64;
+            assert!(mean < 0.005, "{name}: {bands:?}");
         }
     }
 }
