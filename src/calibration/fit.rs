@@ -23,9 +23,10 @@ const UNTOLD: f64 = 0.5;
 const ROUNDING: f64 = 1e-6;
 /// Differences where the model has no result, over the largest at the start.
 const FAR: f64 = 1e3;
-/// Component from which on a parameter takes part in a direction; a smaller one does if that leaves it more uncertain than the other
-/// directions do.
+/// Component from which on a parameter takes part in a direction; a smaller one does if what it adds to the parameter's standard
+/// deviation is more than a share of what the other directions leave.
 const PART: f64 = 0.1;
+const ADDED: f64 = 0.3;
 
 /// The parameters that fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -189,7 +190,7 @@ fn told<F: Fn(&[f64]) -> Option<Vec<f64>>>(
     let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
     let takes_part = |k: usize, j: usize| {
         let part = directions[(k, j)].abs();
-        part > PART || UNTOLD * part > deviation(j).max(LEAST_PART)
+        part > PART || UNTOLD * part > LEAST_PART.max(ADDED * deviation(j))
     };
     let untold: Vec<Vec<usize>> =
         unknown.iter().map(|k| (0..unknowns).filter(|j| takes_part(*k, *j)).collect()).collect();
@@ -267,6 +268,18 @@ mod tests {
     #[test]
     fn a_small_part_of_a_direction_counts_where_it_is_more_than_the_deviation() {
         let data = noisy(7);
+        let product = |p: &[f64], t: f64| model(&[p[0] * (0.95 + 0.05 * p[3]), p[1], p[2]], t);
+        let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
+        let found =
+            fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
+        assert_eq!(found.untold, [[0, 3]], "{found:?}");
+    }
+
+    /// It counts too where the deviation is as large: the sum of both would be.
+    #[test]
+    fn a_small_part_of_a_direction_counts_where_it_is_no_less_than_the_deviation() {
+        let louder = |(t, y)| (t, model(&TRUTH, t) + 12.0 * (y - model(&TRUTH, t)));
+        let data: Vec<(f64, f64)> = noisy(7).into_iter().map(louder).collect();
         let product = |p: &[f64], t: f64| model(&[p[0] * (0.95 + 0.05 * p[3]), p[1], p[2]], t);
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
         let found =

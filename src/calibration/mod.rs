@@ -4,10 +4,9 @@ pub mod fit;
 mod residuals;
 
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::kinds::plate_impact::shared::SharedBodies;
-use crate::measured::{AlignedRecord, Filtered, Finding, FindingKind, Record, Speed, align_all};
+use crate::measured::{AlignedRecord, ContactEnds, Filtered, Finding, FindingKind, Record, Speed, align_all};
 use crate::result::{CUT, SCHEMA_VERSION};
 use crate::scene::{Field, Model, Template};
 use fit::{Fitted, fit};
@@ -99,12 +98,11 @@ pub fn calibrate(
         Reduced::in_series(scene, model, None, &bodies)?.run_with_history(TOLERANCE)
     };
     let start = run(&nominal)?;
-    let quantities =
-        PlateQuantities::of_table(&start.summary.quantities).ok_or_else(|| Error::Solver(CUT.into()))?;
+    let ends = ContactEnds::of(&start.summary).ok_or_else(|| Error::Solver(CUT.into()))?;
     let filtered = Filtered::new(&start.history, bandwidth)?;
     let setup = template.scene().plate_impact()?;
     let how = (bandwidth, speed);
-    let aligned = align_all(records, &filtered, &quantities, setup, how)?;
+    let aligned = align_all(records, &filtered, ends, setup, how)?;
     let used: Vec<CalibrationRecord> = aligned.iter().map(CalibrationRecord::of).collect();
     let aligned: Vec<AlignedRecord> = aligned.into_iter().filter(|record| !record.is_copy).collect();
     let end = start.history.time.last().copied().unwrap_or(0.0) + 2.0 / bandwidth;

@@ -100,11 +100,75 @@ impl Signals {
                 if j < nuisance.ncols() { nuisance[(i, j)] } else { of_fit[(i, j - nuisance.ncols())] }
             });
             let values = left.rows(start, count).into_owned();
-            let noise =
-                Noise::of((means, &values), &basis, std::slice::from_ref(&(0..count)), self.bandwidth)?;
-            blocks.push(noise.covariance(means));
+            blocks.push(Noise::of((means, &values), &basis, self.bandwidth)?.covariance(count));
             start += count;
         }
         Some(blocks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinds::plate_impact::CURVES;
+    use crate::measured::BANDWIDTH;
+    use crate::result::History;
+
+    /// Largest difference of an impact, from a signal of it to which `added` (of time in s) is added, over the span.
+    fn largest(quantity: &'static str, speed: Speed, added: impl Fn(f64) -> f64) -> f64 {
+        let time: Vec<f64> = (0..400).map(|k| -100e-6 + 1e-6 * f64::from(k)).collect();
+        let mut history = History::new(&CURVES);
+        for t in &time {
+            // the bodies exchange their velocities within 100 us
+            let after = (t / 100e-6).clamp(0.0, 1.0);
+            let [outer, inner] = [-0.55 * (1.0 - after), -0.55 * after];
+            history.push(*t, [outer * t, 0.0, inner * t, outer, 0.0, inner, 0.0, 0.0]);
+        }
+        let model = Filtered::new(&history, BANDWIDTH).unwrap();
+        let curve = model.curve(quantity).unwrap();
+        let values = time.iter().map(|t| curve(*t) + added(*t)).collect();
+        let record = AlignedRecord {
+            file: "synthetic.csv".into(),
+            samples: time.len(),
+            shift: 0.0,
+            channels: Vec::new(),
+            outer_velocity_initial: -0.55,
+            inner_velocity_final: None,
+            efficiency: None,
+            efficiency_uncertainty: None,
+            findings: Vec::new(),
+            is_copy: false,
+            noise: vec![0.0],
+            ends: vec![f64::INFINITY],
+            signals: vec![Channel { quantity, values }],
+            time,
+        };
+        let signals = Signals::of(&[record], 100e-6, (BANDWIDTH, speed));
+        let differences = signals.differences(&model, &[0.0]).unwrap();
+        differences.iter().fold(0.0, |most, d| most.max(d.abs()))
+    }
+
+    /// Offset and drift of an instrument are no differences, and of a trusted signal what its velocity may still contain.
+    #[test]
+    fn what_an_instrument_may_add_is_left_out() {
+        for (quantity, speed, offset_counts, drift_counts) in [
+            ("outer_velocity", Speed::Scene, false, false),
+            ("outer_displacement", Speed::Scene, false, false),
+            ("inner_velocity", Speed::Measured, false, false),
+            ("outer_velocity", Speed::Measured, true, false),
+            ("outer_displacement", Speed::Measured, false, true),
+        ] {
+            // a thousandth of the span and more
+            let size = if quantity.ends_with("velocity") { 1e-2 } else { 1e-6 };
+            let offset = largest(quantity, speed, |_| size);
+            let drift = largest(quantity, speed, |t| size * t / 50e-6);
+            for (what, largest, counts) in [("offset", offset, offset_counts), ("drift", drift, drift_counts)]
+            {
+                assert!(
+                    if counts { largest > 1e-3 } else { largest < 1e-9 },
+                    "{what} of {quantity}, {speed:?}: {largest}"
+                );
+            }
+        }
     }
 }

@@ -9,7 +9,7 @@ use super::record::{Channel, Record};
 use super::screen::screened;
 use super::structure::Disturbance;
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::PlateQuantities;
+use crate::result::Summary;
 use crate::scene::PlateImpact;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -101,17 +101,34 @@ pub(super) struct Contact {
     pub end: f64,
 }
 
+/// Ends of the contacts of the model that a record is laid over, s from the first touch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactEnds {
+    /// Of the outer body.
+    pub outer: f64,
+    /// Of the inner body.
+    pub inner: f64,
+}
+
+impl ContactEnds {
+    /// Those of a result; `None` if it was cut during a contact.
+    pub fn of(summary: &Summary) -> Option<Self> {
+        let [outer, inner] = ["outer_contact_end", "inner_contact_end"].map(|name| summary.value(name));
+        Some(ContactEnds { outer: outer?, inner: inner? })
+    }
+}
+
 /// A record that is laid over a model.
 pub(super) struct Alignment<'a> {
     pub record: Record,
     pub model: &'a Filtered,
-    pub quantities: &'a PlateQuantities,
+    pub ends: ContactEnds,
     pub setup: &'a PlateImpact,
     pub bandwidth: f64,
     pub speed: Speed,
 }
 
-/// Lays `record` over `model`, the filtered history of a partner with the results `quantities` in the impact `setup`.
+/// Lays `record` over `model`, the filtered history of a partner with the contacts' `ends` in the impact `setup`.
 ///
 /// # Errors
 /// [`Error::Scene`] if the record shows no free flight before the impact, no impact like that of the scene, or more energy after
@@ -119,12 +136,12 @@ pub(super) struct Alignment<'a> {
 pub fn align(
     record: &Record,
     model: &Filtered,
-    quantities: &PlateQuantities,
+    ends: ContactEnds,
     setup: &PlateImpact,
     (bandwidth, speed): (f64, Speed),
 ) -> Result<AlignedRecord> {
     let (record, findings) = screened(record, bandwidth);
-    Alignment { record, model, quantities, setup, bandwidth, speed }.run(findings)
+    Alignment { record, model, ends, setup, bandwidth, speed }.run(findings)
 }
 
 /// [`align`] of several records, with the findings that take them together.
@@ -134,11 +151,11 @@ pub fn align(
 pub fn align_all(
     records: &[Record],
     model: &Filtered,
-    quantities: &PlateQuantities,
+    ends: ContactEnds,
     setup: &PlateImpact,
     how: (f64, Speed),
 ) -> Result<Vec<AlignedRecord>> {
-    let aligned = records.iter().map(|record| align(record, model, quantities, setup, how));
+    let aligned = records.iter().map(|record| align(record, model, ends, setup, how));
     let mut aligned = aligned.collect::<Result<Vec<_>>>()?;
     duplicate::mark(&mut aligned);
     Ok(aligned)
@@ -221,11 +238,7 @@ impl Alignment<'_> {
 
     /// The contact of the body that the signal `quantity` belongs to, widened by what the instrument smears.
     pub fn contact(&self, quantity: &str) -> Contact {
-        let end = if quantity.starts_with("outer") {
-            self.quantities.outer_contact_end
-        } else {
-            self.quantities.inner_contact_end
-        };
+        let end = if quantity.starts_with("outer") { self.ends.outer } else { self.ends.inner };
         let smear = 1.0 / self.bandwidth;
         Contact { start: -smear, end: LONGER_CONTACT * end + smear }
     }
@@ -236,7 +249,7 @@ impl Alignment<'_> {
     }
 
     fn fitted(&self, k: usize, free: &FreeFlight) -> Result<Flight> {
-        free.fitted(self.bandwidth).ok_or_else(|| {
+        free.fitted().ok_or_else(|| {
             Error::Scene(miette::miette!(
                 "{}: the free flight of {} can't be fitted",
                 self.record.file.display(),
@@ -297,7 +310,7 @@ impl Alignment<'_> {
                 }
             }
         }
-        let flight = self.fitted(k, &free)?;
+        let (flight, errors) = (self.fitted(k, &free)?, free.errors(self.bandwidth));
         let outer = quantity.starts_with("outer");
         let known = if outer { -self.setup.outer.speed } else { self.setup.inner.speed };
         let trusted = outer && self.speed == Speed::Measured;
@@ -306,6 +319,6 @@ impl Alignment<'_> {
         let (before, left) = if trusted { (measured, 0.0) } else { (known, measured - known) };
         let (offset, drift) = if free.is_velocity { (left, flight.slope) } else { (flight.level, left) };
         let correction = ChannelCorrection { quantity, offset, drift };
-        Ok(Seen { correction, flight, free, before, events, ends, hums, disturbance })
+        Ok(Seen { correction, flight, errors, free, before, events, ends, hums, disturbance })
     }
 }

@@ -2,7 +2,7 @@
 //! of repeated impacts.
 
 use super::RULE;
-use super::align::{AlignedRecord, Speed, align_all};
+use super::align::{AlignedRecord, ContactEnds, Speed, align_all};
 use super::area::Area;
 use super::filter::{Filtered, SIGNALS};
 use super::noise::NORMAL_95;
@@ -10,7 +10,7 @@ use super::record::Record;
 use crate::comparison::validation::Assessment;
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::{CURVES, PlateQuantities};
+use crate::kinds::plate_impact::CURVES;
 use crate::result::{CUT, Outcome};
 use crate::scene::Scene;
 use crate::uncertainty::Scatter;
@@ -139,9 +139,9 @@ pub fn compare(
         Error::Reference(format!("the history of the reference of `{}` can't be used", scene.name))
     })?;
     let model = Filtered::new(&reference.history, bandwidth)?;
-    let quantities = PlateQuantities::of_table(&reference.summary.quantities)
+    let ends = ContactEnds::of(&reference.summary)
         .ok_or_else(|| Error::Reference(format!("the reference of `{}`: {CUT}", scene.name)))?;
-    let records = align_all(records, &model, &quantities, setup, (bandwidth, speed))?;
+    let records = align_all(records, &model, ends, setup, (bandwidth, speed))?;
     let first = records.first().ok_or_else(|| Error::Usage("no measured file is given".into()))?;
     let window = CommonAxis { end: window.end.min(first.time.last().copied().unwrap_or(0.0)), ..window };
     if window.end <= window.start {

@@ -1,12 +1,12 @@
 //! What the aligned signals of a record show, and whether that can be.
 
-use super::align::{Alignment, ChannelCorrection};
+use super::align::{Alignment, ChannelCorrection, Speed};
 use super::finding::{Finding, FindingKind};
-use super::flight::{Flight, FreeFlight};
+use super::flight::{Flight, FlightErrors, FreeFlight};
 use super::noise::NORMAL_95;
 use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
-use crate::scene::Shape;
+use crate::scene::{PlateImpact, Shape};
 
 /// Standard errors from which on a drift counts as found, and what it makes up over the record, over the step of the impact.
 const SIGNIFICANT_DRIFT: f64 = 5.0;
@@ -20,13 +20,15 @@ const OTHER_SCENE: f64 = 0.05;
 const DELAY: f64 = 0.3;
 const DELAY_EXPLAINS: f64 = 0.5;
 
-/// Half widths of the 95 % interval by which an excess of energy is more than chance.
+/// Half widths of the 95 % interval by which an excess of energy is hardly chance, and by which it is none.
+const EXCESS: f64 = 1.5;
 const IMPOSSIBLE: f64 = 2.0;
 
 /// What one signal shows.
 pub(super) struct Seen {
     pub correction: ChannelCorrection,
     pub flight: Flight,
+    pub errors: Option<FlightErrors>,
     /// Up to the first further impact.
     pub free: FreeFlight,
     /// Velocity before the impact, m/s.
@@ -58,9 +60,17 @@ impl Seen {
         self.correction.offset + self.correction.drift * time + hums
     }
 
+    /// Standard error of offset and drift at `time`.
+    fn error(&self, time: f64) -> f64 {
+        let Some(errors) = self.errors else { return 0.0 };
+        // without free flight after the impact no drift is taken out
+        let drift = if errors.slope.is_finite() { errors.slope * time } else { 0.0 };
+        if self.free.is_velocity { errors.before.hypot(drift) } else { drift }
+    }
+
     /// Velocity after the impact with its standard error.
     fn after(&self) -> Option<(f64, f64)> {
-        self.flight.step.map(|(step, error)| (self.before + step, error))
+        self.flight.step.zip(self.errors).map(|(step, errors)| (self.before + step, errors.step))
     }
 }
 
@@ -75,15 +85,16 @@ impl Alignment<'_> {
             })
         };
         let outer_velocity_initial = of("outer").map_or(-self.setup.outer.speed, |seen| seen.before);
+        let trusted = of("outer").filter(|_| self.speed == Speed::Measured);
+        let initial_error = trusted.and_then(|seen| seen.errors).map_or(0.0, |errors| errors.before);
         let [inner, outer] = ["inner", "outer"].map(|body| of(body).and_then(Seen::after));
-        let masses = [
-            self.setup.outer.shape.mass(&self.setup.outer.material),
-            self.setup.inner.shape.mass(&self.setup.inner.material),
-        ];
+        let masses = self.masses();
         // kinetic energy over that of the outer body before the impact, and the half width of its 95 % interval
         let share = |mass: f64, (velocity, error): (f64, f64)| {
-            let scale = mass / (masses[0] * outer_velocity_initial.powi(2));
-            (scale * velocity.powi(2), NORMAL_95 * 2.0 * scale * (velocity * error).abs())
+            let ratio = velocity / outer_velocity_initial;
+            let error = error.hypot(ratio * initial_error) / outer_velocity_initial;
+            let scale = mass / masses[0];
+            (scale * ratio.powi(2), NORMAL_95 * 2.0 * scale * (ratio * error).abs())
         };
         let efficiency = inner.map(|after| share(masses[1], after));
         let mut findings: Vec<Finding> = seen.iter().flat_map(|seen| self.of_signal(shift, seen)).collect();
@@ -95,6 +106,12 @@ impl Alignment<'_> {
             efficiency,
             findings,
         })
+    }
+
+    /// Masses of the outer and the inner body, kg.
+    fn masses(&self) -> [f64; 2] {
+        let PlateImpact { outer, inner, .. } = self.setup;
+        [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)]
     }
 
     /// Begin and end of the record on its own clock, s.
@@ -173,13 +190,13 @@ impl Alignment<'_> {
     /// Whether the drift of a velocity is large and no chance.
     fn drifts(&self, seen: &Seen) -> bool {
         let [start, end] = self.whole();
-        let Some((step, _)) = seen.flight.step.filter(|_| seen.free.is_velocity) else { return false };
+        let found = seen.flight.step.zip(seen.errors).filter(|_| seen.free.is_velocity);
+        let Some((step, errors)) = found else { return false };
         let drift = seen.flight.slope.abs();
-        drift * (end - start) > LARGE_DRIFT * step.abs()
-            && seen.free.drift_error(self.bandwidth).is_some_and(|error| drift > SIGNIFICANT_DRIFT * error)
+        drift * (end - start) > LARGE_DRIFT * step.abs() && drift > SIGNIFICANT_DRIFT * errors.slope
     }
 
-    /// Distance of a signal from the model over the contact beyond its noise, root mean square.
+    /// Distance of a signal from the model over the contact beyond its noise and the errors of offset and drift, root mean square.
     fn misfit(&self, shift: f64, seen: &Seen) -> f64 {
         let quantity = seen.correction.quantity;
         let channel = self.record.channels.iter().find(|channel| channel.quantity == quantity);
@@ -192,7 +209,7 @@ impl Alignment<'_> {
             .map(|t| t - shift)
             .zip(&channel.values)
             .filter(|(t, _)| (contact.start..contact.end).contains(t))
-            .map(|(t, y)| (y - seen.taken_out(t) - curve(t)).powi(2))
+            .map(|(t, y)| (y - seen.taken_out(t) - curve(t)).powi(2) - (NORMAL_95 * seen.error(t)).powi(2))
             .collect();
         let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
         (mean - seen.flight.noise.powi(2)).max(0.0).sqrt()
@@ -242,13 +259,10 @@ impl Alignment<'_> {
         let rigid = matches!(self.setup.outer.shape, Shape::Sphere { .. } | Shape::Compact { .. });
         let Some(inner) = inner.filter(|_| rigid) else { return Ok(None) };
         let outer = outer.unwrap_or((0.0, 0.0));
-        let masses = [
-            self.setup.outer.shape.mass(&self.setup.outer.material),
-            self.setup.inner.shape.mass(&self.setup.inner.material),
-        ];
+        let masses = self.masses();
         let brought = 1.0 + masses[1] / masses[0] * (self.setup.inner.speed / self.setup.outer.speed).powi(2);
         let (share, uncertainty) = (inner.0 + outer.0, inner.1.hypot(outer.1));
-        if share - uncertainty < brought && inner.0 <= brought {
+        if share - EXCESS * uncertainty < brought && inner.0 <= brought {
             return Ok(None);
         }
         let effect = format!(

@@ -18,7 +18,7 @@ pub(crate) mod screen;
 mod shift;
 mod structure;
 
-pub use align::{AlignedRecord, ChannelCorrection, Speed, align, align_all};
+pub use align::{AlignedRecord, ChannelCorrection, ContactEnds, Speed, align, align_all};
 pub use area::Area;
 pub use compare::{Measured, Partner, Series, compare};
 pub use filter::{Filtered, low_pass};

@@ -78,12 +78,8 @@ impl FreeFlight {
         let first = basis.ncols();
         let mut columns: Vec<DVector<f64>> = basis.column_iter().map(Into::into).collect();
         columns.extend(best.columns.column_iter().map(Into::<DVector<f64>>::into));
-        let found = Estimate::of(
-            (&grouped.time, &grouped.values),
-            &DMatrix::from_columns(&columns),
-            &grouped.segments,
-            bandwidth,
-        )?;
+        let found =
+            Estimate::of((&grouped.time, &grouped.values), &DMatrix::from_columns(&columns), bandwidth)?;
         let new: Vec<usize> = (first..columns.len()).collect();
         let significance =
             (new.iter().map(|k| found.significance(*k).powi(2)).sum::<f64>() / new.len() as f64).sqrt();

@@ -1,17 +1,16 @@
 //! Measured signals (section 3.4): synthetic records of known noise, shift, offset and drift, made from a model's history
 //! and laid over the finite-element reference.
 
-use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::measured::{
-    AlignedRecord, BANDWIDTH, Channel, Filtered, Record, Series, Speed, align, compare,
+    AlignedRecord, BANDWIDTH, Channel, ContactEnds, Filtered, Record, Series, Speed, align, compare,
 };
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::result::Outcome;
 use impactcheck::scene::{Model, PlateImpact, Scene, Setup, resolve};
 
-fn determined(outcome: &Outcome) -> PlateQuantities {
-    PlateQuantities::of_table(&outcome.summary.quantities).unwrap()
+fn determined(outcome: &Outcome) -> ContactEnds {
+    ContactEnds::of(&outcome.summary).unwrap()
 }
 
 fn scene(name: &str) -> (Scene, PlateImpact) {
@@ -80,7 +79,7 @@ fn record(truth: &Outcome, signals: &[&'static str], with: Disturbance) -> Recor
 
 fn aligned(record: &Record, partner: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
     let filtered = Filtered::new(&partner.history, BANDWIDTH).unwrap();
-    align(record, &filtered, &determined(partner), setup, (BANDWIDTH, speed)).unwrap()
+    align(record, &filtered, determined(partner), setup, (BANDWIDTH, speed)).unwrap()
 }
 
 #[test]
@@ -91,6 +90,7 @@ fn shift_within_a_tenth_of_a_microsecond_and_efficiency_within_half_a_point() {
         let expected = truth.summary.value("efficiency").unwrap();
         // the model the record was made from, and the finite elements, which differ from it by a little
         for (partner, seeds) in [(&truth, 1..=8), (&reference(&scene), 1..=3)] {
+            let mut bands = Vec::new();
             for seed in seeds {
                 let record = record(&truth, &SIGNALS, Disturbance { seed, ..DISTURBED });
                 let found = aligned(&record, partner, &setup, Speed::Scene);
@@ -98,8 +98,12 @@ fn shift_within_a_tenth_of_a_microsecond_and_efficiency_within_half_a_point() {
                 let case = format!("{name}, seed {seed}: {:e} s, {efficiency}", found.shift);
                 assert!((found.shift - 5e-6).abs() < 0.1e-6, "{case}");
                 assert!((efficiency - expected).abs() < 0.005, "{case}, expected {expected}");
-                assert!((efficiency - expected).abs() < 2.0 * band && band < 0.005, "{case} +- {band}");
+                assert!((efficiency - expected).abs() < 2.0 * band && band < 0.015, "{case} +- {band}");
+                bands.push(band);
             }
+            // a single record may leave open that its noise is correlated
+            let mean = bands.iter().sum::<f64>() / bands.len() as f64;
+            assert!(mean < 0.005, "{name}: {bands:?}");
         }
     }
 }
@@ -138,6 +142,17 @@ fn speed_that_differs_from_the_scene_s_is_read_from_a_signal_without_offset() {
     assert!((trusting_the_scene.efficiency.unwrap() - expected).abs() > 0.05);
 }
 
+/// The speed before the impact is then measured too, with the noise of its signal.
+#[test]
+fn a_measured_speed_widens_the_interval_of_the_efficiency() {
+    let (scene, setup) = scene("scaled-plate-r10");
+    let truth = model(&scene, Model::C);
+    let record = record(&truth, &SIGNALS, Disturbance { offset: 0.0, drift: 0.0, ..DISTURBED });
+    let [of_scene, measured] = [Speed::Scene, Speed::Measured]
+        .map(|speed| aligned(&record, &truth, &setup, speed).efficiency_uncertainty.unwrap());
+    assert!((1.1..3.0).contains(&(measured / of_scene)), "{measured} and {of_scene}");
+}
+
 #[test]
 fn one_signal_is_enough_and_missing_free_flight_is_told() {
     let (scene, setup) = scene("scaled-plate-r10");
@@ -164,7 +179,7 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
     };
     let late = part(&|t| t > 0.0);
     let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
-    let error = align(&late, &filtered, &determined(&truth), &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
+    let error = align(&late, &filtered, determined(&truth), &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
     assert_eq!(error.exit_status() as u8, 3);
     // 5 us of it, some fifty samples, are before the first touch, but the instrument smears the impact over all of them
     let said = error.to_string().replace('\u{2502}', " ").split_whitespace().collect::<Vec<_>>().join(" ");
@@ -185,6 +200,11 @@ fn models_are_measured_by_the_same_metrics_and_a_series_by_mean_and_scatter() {
         .collect();
     let reduced = [model(&scene, Model::A), model(&scene, Model::C)];
     let found = compare(&scene, &records, &reference, &reduced, (BANDWIDTH, Speed::Scene)).unwrap();
+    // another program's result has no eigenfrequency
+    let mut imported = reference.clone();
+    *imported.summary.quantities.value_mut("first_frequency").unwrap() = None;
+    let with_imported = compare(&scene, &records, &imported, &[], (BANDWIDTH, Speed::Scene)).unwrap();
+    assert_eq!(with_imported.records, found.records);
     let series = found.efficiency.unwrap();
     assert_eq!(series, Series::of(series.values.clone()).unwrap());
     assert!(series.count == 3 && (series.mean - truth.summary.value("efficiency").unwrap()).abs() < 0.005);

@@ -1,9 +1,8 @@
 //! Faults of measured records: each is found and named, and clean records are not accused.
 
-use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::measured::{
-    AlignedRecord, BANDWIDTH, Channel, Filtered, FindingKind, Record, Speed, align, align_all,
+    AlignedRecord, BANDWIDTH, Channel, ContactEnds, Filtered, FindingKind, Record, Speed, align, align_all,
 };
 use impactcheck::result::Outcome;
 use impactcheck::scene::{Model, PlateImpact, Scene, resolve};
@@ -12,7 +11,7 @@ use std::f64::consts::PI;
 struct Bench {
     truth: Outcome,
     model: Filtered,
-    quantities: PlateQuantities,
+    ends: ContactEnds,
     setup: PlateImpact,
 }
 
@@ -21,8 +20,8 @@ impl Bench {
         let scene = Scene::read(resolve(name).unwrap()).unwrap();
         let truth = Reduced::new(&scene, Model::B, None).unwrap().run_with_history(1e-7).unwrap();
         let model = Filtered::new(&truth.history, BANDWIDTH).unwrap();
-        let quantities = PlateQuantities::of_table(&truth.summary.quantities).unwrap();
-        Bench { model, quantities, setup: scene.plate_impact().unwrap().clone(), truth }
+        let ends = ContactEnds::of(&truth.summary).unwrap();
+        Bench { model, ends, setup: scene.plate_impact().unwrap().clone(), truth }
     }
 
     fn efficiency(&self) -> f64 {
@@ -45,7 +44,7 @@ impl Bench {
     }
 
     fn align(&self, record: &Record) -> impactcheck::Result<AlignedRecord> {
-        align(record, &self.model, &self.quantities, &self.setup, (BANDWIDTH, Speed::Scene))
+        align(record, &self.model, self.ends, &self.setup, (BANDWIDTH, Speed::Scene))
     }
 }
 
@@ -192,7 +191,7 @@ fn one_impact_counts_once() {
         [0, 1].map(|k| Record { channels: vec![first.channels[k].clone()], ..first.clone() });
     let found = |records: &[Record]| {
         let how = (BANDWIDTH, Speed::Scene);
-        let aligned = align_all(records, &bench.model, &bench.quantities, &bench.setup, how).unwrap();
+        let aligned = align_all(records, &bench.model, bench.ends, &bench.setup, how).unwrap();
         aligned.iter().map(kinds).collect::<Vec<_>>()
     };
     let duplicate = vec![FindingKind::Duplicate];
