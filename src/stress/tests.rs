@@ -198,7 +198,7 @@ fn dry_and_wet_cases_hold() {
     assert!(report.compared > 5 && report.wet > 0, "{} compared, {} wet", report.compared, report.wet);
     assert!(report.worst.contains_key("wet_momentum"));
     assert!(report.moving_compared > 0 && report.worst.contains_key("moving_end_difference"));
-    assert_eq!((report.sweep.points > 24, report.sweep.wrong), (true, vec![]));
+    assert!(report.sweep.points > 24 && report.sweep.wrong.is_empty(), "{:?}", report.sweep);
 }
 
 /// A plate so light that both forces are nearly one: its peak is off by what the step's polynomials are.
@@ -254,7 +254,7 @@ fn a_plate_that_comes_back_to_the_inner_body_is_refused() {
 #[test]
 fn points_of_a_sweep_are_right_or_say_that_they_are_not() {
     for seed in [30_000_000_172, 31_000_000_143, 32_000_003_614] {
-        assert_eq!(run(1, seed, &|| ()).unwrap().sweep.wrong, [], "{seed}");
+        assert_eq!(run(1, seed, &|| ()).unwrap().sweep.wrong.len(), 0, "{seed}");
     }
 }
 
