@@ -12,6 +12,8 @@ const CORNERS: (f64, f64, usize) = (0.05, 4.0, 20);
 const LOWERED: f64 = 3.5;
 /// Quantile of the normal distribution for intervals of 95 %.
 pub const NORMAL_95: f64 = 1.96;
+/// Fewest values that show whether they are independent.
+const LEAST_SHOWN: usize = 30;
 
 /// Groups of samples at increasing times, each `width` s long at most.
 pub fn groups(time: &[f64], width: f64) -> Vec<Range<usize>> {
@@ -30,9 +32,6 @@ pub fn groups(time: &[f64], width: f64) -> Vec<Range<usize>> {
 pub fn means(values: &[f64], groups: &[Range<usize>]) -> Vec<f64> {
     groups.iter().map(|g| values[g.clone()].iter().sum::<f64>() / g.len() as f64).collect()
 }
-
-/// Fewest values that show whether they are independent.
-const LEAST_SHOWN: usize = 30;
 
 /// Whether neighbours among residuals differ as independent ones do (ratio of von Neumann, within two standard errors).
 pub fn looks_white(left: &[f64]) -> bool {
