@@ -48,7 +48,7 @@ impl<'a> Modes<'a> {
         for (k, mode) in modes.iter().enumerate() {
             let [start, end] = [0, 1].map(|at| mode.forced[at][0]);
             let moved = match step_force {
-                StepForce::Conserving => start + end,
+                StepForce::Conserving | StepForce::Mean => start + end,
                 StepForce::Linear => end,
             };
             for i in 0..2 {

@@ -7,12 +7,16 @@
 
 /// Work of a step over the energy of the contacts below which its difference to what they take does not matter: where contacts turn it would
 /// be rounding.
-const ROUNDING: f64 = 1e-4;
+const ROUNDING: f64 = 1e-5;
 
 /// How the forces of a step follow from those at its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum StepForce {
+    /// Constant, so that the work is what the contacts take.
     Conserving,
+    /// Constant means of those at the ends.
+    Mean,
+    /// Changing evenly.
     Linear,
 }
 
@@ -20,7 +24,7 @@ impl StepForce {
     /// The forces at the start of a step that do not depend on those at its end, from the forces `start` in N.
     pub(super) fn known(self, start: [f64; 2]) -> [f64; 2] {
         match self {
-            Self::Conserving => [0.0; 2],
+            Self::Conserving | Self::Mean => [0.0; 2],
             Self::Linear => start,
         }
     }
@@ -28,10 +32,12 @@ impl StepForce {
     /// The forces in N that a step is to be solved for, from those at its `ends`; the bodies approach by `moved` m, and the contacts go from the
     /// first to the second `energy` in J.
     pub(super) fn acting(self, ends: [[f64; 2]; 2], moved: [f64; 2], energy: [f64; 2]) -> [f64; 2] {
-        if self == Self::Linear {
-            return ends[1];
-        }
         let mean = mean(ends);
+        match self {
+            Self::Linear => return ends[1],
+            Self::Mean => return mean,
+            Self::Conserving => {}
+        }
         let work = [mean[0] * moved[0], mean[1] * moved[1]];
         let rounding = ROUNDING * energy[0].max(energy[1]);
         let size = work[0] * work[0] + work[1] * work[1] + rounding * rounding;
@@ -44,7 +50,7 @@ impl StepForce {
     /// What the modes feel: the forces at start and end of a step, shape (2, contacts), from those at its `ends` and the `acting` ones.
     pub(super) fn felt(self, ends: [[f64; 2]; 2], acting: [f64; 2]) -> [[f64; 2]; 2] {
         match self {
-            Self::Conserving => [acting; 2],
+            Self::Conserving | Self::Mean => [acting; 2],
             Self::Linear => ends,
         }
     }
@@ -52,7 +58,7 @@ impl StepForce {
     /// Change of the acting forces by those at the end, about.
     pub(super) fn share_of_end(self) -> f64 {
         match self {
-            Self::Conserving => 0.5,
+            Self::Conserving | Self::Mean => 0.5,
             Self::Linear => 1.0,
         }
     }

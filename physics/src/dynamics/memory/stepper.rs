@@ -279,7 +279,7 @@ impl<'a> Stepper<'a> {
             self.contacts[i].book_even((self.time, h), forces, [self.past[i], past], work);
             self.past[i] = past;
             self.contact_losses[i] += match self.step_force {
-                StepForce::Conserving => taken[i] - self.taken[i],
+                StepForce::Conserving | StepForce::Mean => taken[i] - self.taken[i],
                 StepForce::Linear => mean[i] * (x[i] - self.x[i]),
             };
         }
@@ -340,7 +340,8 @@ impl<'a> Stepper<'a> {
             let dent = (self.x[i] - self.past[i]).abs();
             let beneath = (self.y[i] + self.offset[i] - self.x[i]).abs();
             let closing = elastic + (dent + beneath) / since - opening[i];
-            if closing > 0.0 { (-self.past[i] / closing).max(0.0) } else { f64::INFINITY }
+            // 0 for what is no number, before the first contact
+            if closing <= 0.0 { f64::INFINITY } else { (-self.past[i] / closing).max(0.0) }
         };
         time(0).min(time(1))
     }

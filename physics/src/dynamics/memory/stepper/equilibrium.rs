@@ -1,6 +1,7 @@
 //! The end of a step: what contacts, modes and residual flexibilities agree on.
 
 use super::Stepper;
+use crate::dynamics::memory::step_force::StepForce;
 
 /// Newton steps after which a contact counts as unsolvable, and the least part of one.
 const MAX_ITERATIONS: usize = 60;
@@ -37,11 +38,19 @@ impl Trial {
 
 impl Stepper<'_> {
     /// The end of the step in which the modes alone would approach by `free` m, by Newton's method with halved steps; `None` if there is
-    /// no equilibrium.
+    /// no equilibrium. Where the law of a contact has a kink within the step the forces may have to be their means.
     pub(super) fn solve(&self, free: [f64; 2]) -> Option<Trial> {
+        self.solve_by(self.step_force, free).or_else(|| match self.step_force {
+            StepForce::Conserving => self.solve_by(StepForce::Mean, free),
+            _ => None,
+        })
+    }
+
+    fn solve_by(&self, step_force: StepForce, free: [f64; 2]) -> Option<Trial> {
         let free = [free[0] + self.offset[0], free[1] + self.offset[1]];
         let scale = free[0].abs().max(free[1].abs()).max(f64::MIN_POSITIVE);
-        let mut best = self.trial(free, self.x, self.patch);
+        let trial = |x: [f64; 2], patch: [f64; 2]| self.trial(step_force, free, x, patch);
+        let mut best = trial(self.x, self.patch);
         let mut step = self.newton(&best);
         let mut fraction = 1.0;
         for _ in 0..MAX_ITERATIONS {
@@ -49,15 +58,15 @@ impl Stepper<'_> {
                 break;
             }
             let x = [best.x[0] - fraction * step[0], best.x[1] - fraction * step[1]];
-            let trial = self.trial(free, x, best.patch);
-            if trial.size() < best.size() {
-                (step, fraction) = (self.newton(&trial), 1.0);
-                best = trial;
+            let next = trial(x, best.patch);
+            if next.size() < best.size() {
+                (step, fraction) = (self.newton(&next), 1.0);
+                best = next;
             } else if fraction > LEAST_FRACTION {
                 fraction *= 0.5;
             } else if best.size() > ROUNDING * scale {
                 // where a contact turns from loading to unloading the slope is that of the other side: beyond it is the right one
-                best = self.trial(free, [best.x[0] - step[0], best.x[1] - step[1]], best.patch);
+                best = trial([best.x[0] - step[0], best.x[1] - step[1]], best.patch);
                 (step, fraction) = (self.newton(&best), 1.0);
             } else {
                 break;
@@ -67,7 +76,7 @@ impl Stepper<'_> {
     }
 
     /// What the contacts answer at the approaches `x`, from the patches of a nearby state on.
-    fn trial(&self, free: [f64; 2], x: [f64; 2], patch: [f64; 2]) -> Trial {
+    fn trial(&self, step_force: StepForce, free: [f64; 2], x: [f64; 2], patch: [f64; 2]) -> Trial {
         let answer = [0, 1].map(|i| self.bodies.contacts[i].answer(x[i]));
         let [force, slope, taken] = [0, 1, 2].map(|of| answer.map(|answer| answer[of]));
         let (elastic, patch, flexibility) = self.bodies.elastic(self.system, force, patch);
@@ -77,7 +86,7 @@ impl Stepper<'_> {
         let bodies = [0, 1].map(|i| x[i] + beneath(i, 0) + beneath(i, 1));
         let energy = taken[0] + taken[1] + self.bodies.energy_beyond(self.system, force, patch);
         let moved = [0, 1].map(|i| bodies[i] - self.offset[i] - self.y[i]);
-        let acting = self.step_force.acting([self.force, force], moved, [self.energy, energy]);
+        let acting = step_force.acting([self.force, force], moved, [self.energy, energy]);
         let coupling = self.modes[self.level].coupling;
         let error = [0, 1].map(|i| {
             let lost = coupling[i][0] * acting[0] + coupling[i][1] * acting[1];
