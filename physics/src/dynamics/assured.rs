@@ -34,7 +34,7 @@ const TIGHTER: f64 = 0.03;
 const TIGHTEST: f64 = 1e-12;
 /// Steps of a solution after which no further one follows, but for the second: it would take ten seconds, and the results state how far they
 /// have converged.
-const LONG: u64 = 200_000;
+const LONG: u64 = 100_000;
 /// Tolerances above this ask for a rough answer: it is not looked whether the impact amplifies errors.
 pub const ROUGH: f64 = 1e-4;
 /// Difference of velocities and force peaks that is in order, in tolerances.
@@ -77,6 +77,23 @@ pub fn assured(
     if let Some(Converged::Tolerance(tolerance)) = options.converged {
         return run(&Options { tolerance, ..*options });
     }
+    let best = repeated(&Options { heat: false, ..*options }, system, &run)?;
+    let Some(Converged::Tolerance(tolerance)) =
+        best.converged.filter(|_| options.heat && system.circuit.is_some())
+    else {
+        return Ok(best);
+    };
+    // the heat takes longer than all else, and changes nothing but the balance
+    let Integration { error_estimate, converged, .. } = best;
+    Ok(Integration { error_estimate, converged, ..run(&Options { tolerance, ..*options })? })
+}
+
+/// Solutions with smaller and smaller tolerances, the last one.
+fn repeated(
+    options: &Options,
+    system: &System,
+    run: impl Fn(&Options) -> Result<Integration>,
+) -> Result<Integration> {
     let at = |tolerance: f64| -> Result<Integration> {
         let result = run(&Options { tolerance, ..*options })?;
         Ok(Integration { converged: Some(Converged::Tolerance(tolerance)), ..result })

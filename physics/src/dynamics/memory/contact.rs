@@ -55,12 +55,12 @@ impl Contact {
         }
     }
 
-    /// Energy in J that it has dissipated by yielding; unknown of one that relaxes.
-    pub(super) fn dissipated(&self) -> Option<f64> {
+    /// Energy in J that it has dissipated by yielding or relaxing; it never falls.
+    pub(super) fn dissipated(&self) -> f64 {
         match self {
-            Contact::Elastic(_) => Some(0.0),
-            Contact::Dented(contact) => Some(contact.dissipated()),
-            Contact::Viscoelastic(_) => None,
+            Contact::Elastic(_) => 0.0,
+            Contact::Dented(contact) => contact.dissipated(),
+            Contact::Viscoelastic(contact) => contact.dissipated(),
         }
     }
 

@@ -21,7 +21,7 @@ const GRADED: f64 = 0.1;
 /// e-folds of the time since the last contact in which the samples of a flight are used up: longer than any run.
 const FOLDS: f64 = 32.0;
 /// Steps from which on a flight is worthwhile that only the bodies' speeds bound.
-const WORTHWHILE: f64 = 64.0;
+const WORTHWHILE: f64 = 512.0;
 /// Most doublings of a step in flight.
 const MAX_DOUBLINGS: usize = 40;
 
@@ -59,8 +59,9 @@ pub(super) struct Stepper<'a> {
     crept: [[f64; 2]; 2],
     /// Energy lost in each contact, J.
     contact_losses: [f64; 2],
-    /// What their laws had taken at the start, and have now with what is stored beyond half-spaces, J.
+    /// What their laws had taken and dissipated at the start, and have taken now with what is stored beyond half-spaces, J.
     taken_before: [f64; 2],
+    dissipated_before: [f64; 2],
     taken: [f64; 2],
     energy: f64,
     /// Energy lost beneath the contacts by creep of plate and tips, and by the modes, J; the power that the modes lose, W.
@@ -117,6 +118,7 @@ impl<'a> Stepper<'a> {
             crept: Default::default(),
             contact_losses: [0.0; 2],
             taken_before: taken,
+            dissipated_before: [0, 1].map(|i| bodies.contacts[i].dissipated()),
             taken,
             energy: taken[0] + taken[1],
             creep_losses: Default::default(),
@@ -177,7 +179,7 @@ impl<'a> Stepper<'a> {
         // the modes' motion is exact, and so is what they lose
         let [before, _] = self.modes[0].energy(now);
         let [energy, power] = self.modes[0].energy(next);
-        (self.modal_loss, self.power) = (self.modal_loss + before - energy, power);
+        (self.modal_loss, self.power) = (self.modal_loss + (before - energy).max(0.0), power);
         self.bodies.prepare(time);
         self.y = self.system.modal_approach(&self.modes[0].motion(next)[0]);
         for i in 0..2 {
@@ -390,10 +392,10 @@ impl<'a> Stepper<'a> {
                 / system.initial_momentum(),
             losses: Losses {
                 plate_damping: self.modal_loss + plate_loss,
-                // what yields knows what it has dissipated, which is never negative
+                // every law knows what it has dissipated, which is never negative
                 contacts: Some([0, 1].map(|i| {
-                    let dissipated = self.bodies.contacts[i].dissipated();
-                    dissipated.map_or(contact_losses[i], |all| all - self.taken_before[i])
+                    let [_, tip] = self.creep_losses[i];
+                    self.bodies.contacts[i].dissipated() - self.dissipated_before[i] + tip
                 })),
                 ..Losses::default()
             },
