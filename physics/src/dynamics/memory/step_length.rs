@@ -90,7 +90,8 @@ mod tests {
         let mut length = StepLength::new(CONTACT_TIME / 200.0, CONTACT_TIME);
         let (mut time, mut steps, mut impulse, mut peak) = (0.0, 0, 0.0, 0.0_f64);
         while time < end * (1.0 - 1e-9) {
-            let h = length.of(length.level_within(end - time));
+            let level = length.level_within(end - time);
+            let h = length.of(level);
             let forces = [force(time), force(time + h)];
             if length.keeps(time, forces.map(|force| [force, 0.0]), [peak, 0.0]) {
                 impulse += 0.5 * h * (forces[0] + forces[1]);
