@@ -139,11 +139,6 @@ impl ViscoelasticContact {
         self.sum(Creep::stored) + self.lost
     }
 
-    /// Energy in J that the springs have lost.
-    pub fn dissipated(&self) -> f64 {
-        self.lost
-    }
-
     /// Sum over all springs of what `of` gives per stiffness.
     fn sum(&self, of: impl Fn(&Creep, &Deformation) -> f64) -> f64 {
         let spring = |(k, state): (usize, &[Deformation; 2])| {

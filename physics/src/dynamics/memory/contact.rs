@@ -55,12 +55,13 @@ impl Contact {
         }
     }
 
-    /// Energy in J that it has dissipated by yielding or relaxing; it never falls.
+    /// Energy in J that it does not give back: dissipated by yielding, or taken by what relaxes and without a force keeps it until it has.
+    /// Never negative.
     pub(super) fn dissipated(&self) -> f64 {
         match self {
             Contact::Elastic(_) => 0.0,
             Contact::Dented(contact) => contact.dissipated(),
-            Contact::Viscoelastic(contact) => contact.dissipated(),
+            Contact::Viscoelastic(contact) => contact.taken(),
         }
     }
 

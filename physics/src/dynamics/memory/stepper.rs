@@ -21,7 +21,7 @@ const GRADED: f64 = 0.1;
 /// e-folds of the time since the last contact in which the samples of a flight are used up: longer than any run.
 const FOLDS: f64 = 32.0;
 /// Steps from which on a flight is worthwhile that only the bodies' speeds bound.
-const WORTHWHILE: f64 = 128.0;
+const WORTHWHILE: f64 = 512.0;
 /// Most doublings of a step in flight.
 const MAX_DOUBLINGS: usize = 40;
 
