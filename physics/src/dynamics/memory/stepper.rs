@@ -20,8 +20,8 @@ use crate::result::{History, Losses};
 const GRADED: f64 = 0.1;
 /// e-folds of the time since the last contact in which the samples of a flight are used up: longer than any run.
 const FOLDS: f64 = 32.0;
-/// Steps from which on a flight is worthwhile that only the bodies' speeds bound.
-const WORTHWHILE: f64 = 512.0;
+/// Steps after which a run looks for flights that only the bodies' speeds bound.
+const PATIENCE: u64 = 4096;
 /// Most doublings of a step in flight.
 const MAX_DOUBLINGS: usize = 40;
 
@@ -161,7 +161,7 @@ impl<'a> Stepper<'a> {
             if rate >= 0.0 { if gap >= 0.0 { f64::INFINITY } else { 0.0 } } else { -gap / rate }
         };
         let [outer, inner] = self.clearances().map(closing);
-        let open = Some(self.certainly_open()).filter(|time| *time >= WORTHWHILE * self.h).unwrap_or(0.0);
+        let open = if self.steps > PATIENCE { self.certainly_open() } else { 0.0 };
         let recovering = self.loaded.map_or(f64::INFINITY, |loaded| GRADED * (self.time - loaded));
         let since = self.time - self.loaded.unwrap_or(0.0);
         let kept = self.sample_interval.max(since / self.samples_per_fold);
