@@ -310,3 +310,30 @@ fn a_relaxing_contact_ends_between_two_steps() {
         assert!((end - ends[0].0).abs() < 0.25 * step, "{ends:?}");
     }
 }
+
+/// A plate that loses all but a ten thousandth of its modulus recovers over 0.2 s, its contacts are over after 3 ms: what follows are few
+/// steps, and nothing happens in them.
+#[test]
+fn a_plate_that_relaxes_nearly_all_of_its_modulus_is_solved_to_its_end() {
+    let summary = |end: &str| {
+        let text = format!(
+            r#"
+            name = "relaxes"
+            kind = "plate-impact"
+            materials.polymer = {{ youngs_modulus = 2.6e9, poisson_ratio = 0.38, density = 1320, relaxation = [{{ ratio = 0.5999, time = 1e-6 }}, {{ ratio = 0.4, time = 2e-5 }}] }}
+            materials.steel = {{ youngs_modulus = 210e9, poisson_ratio = 0.3, density = 7780 }}
+            plate = {{ radius = "5.5 mm", thickness = "0.5 mm", edge = "free", material = "polymer" }}
+            outer = {{ kind = "sphere", radius = "1.5 mm", material = "steel", speed = "0.5 m/s" }}
+            inner = {{ kind = "sphere", radius = "1.2 mm", material = "steel" }}
+            {end}
+            "#
+        );
+        Reduced::new(&Scene::parse("relaxes", &text).unwrap(), Model::A, None).unwrap().run(1e-7).unwrap()
+    };
+    let [cut, whole] = ["run.end_time = \"3 ms\"", ""].map(summary);
+    for name in ["efficiency", "outer_velocity_final", "outer_contact_end", "inner_contact_end"] {
+        assert_relative_eq!(whole.value(name).unwrap(), cut.value(name).unwrap(), max_relative = 1e-4);
+    }
+    assert!(whole.steps.unwrap() < 200_000, "{:?}", whole.steps);
+    assert!(whole.energy_residual.unwrap() < 1e-4, "{:?}", whole.energy_residual);
+}

@@ -85,25 +85,19 @@ impl Circuit {
         Ok(circuit)
     }
 
-    /// 1/C_B in 1/F.
-    fn buffer_elastance(&self) -> f64 {
-        self.supply.buffer_capacitance.map_or(0.0, f64::recip)
-    }
-
     /// Voltage at which everything comes to rest, V.
     pub fn final_voltage(&self) -> f64 {
-        self.stack.voltage / (1.0 + self.stack.capacitance * self.buffer_elastance())
+        self.stack.voltage / (1.0 + self.stack.capacitance * self.supply.elastance())
+    }
+
+    /// Energy in J that a source at the stack's voltage gives the free stack.
+    pub fn supplied_energy(&self) -> f64 {
+        self.stack.capacitance * self.stack.voltage.powi(2)
     }
 
     /// Extension in m at which the free stack comes to rest.
     pub fn final_extension(&self) -> f64 {
         self.stack.stroke * self.final_voltage() / self.stack.voltage
-    }
-
-    /// Time constant in s with which the free stack charges, R C of stack and buffer in series.
-    pub fn charging_time(&self) -> f64 {
-        self.supply.resistance * self.stack.capacitance
-            / (1.0 + self.stack.capacitance * self.buffer_elastance())
     }
 
     /// A and its derivative.
@@ -120,7 +114,7 @@ impl Circuit {
     /// f and its derivative.
     fn characteristic(&self, s: Complex<f64>) -> [Complex<f64>; 2] {
         let square = self.stack.force_per_voltage().powi(2);
-        let impedance = s * self.supply.resistance + self.buffer_elastance();
+        let impedance = s * self.supply.resistance + self.supply.elastance();
         let [a, slope] = self.admittance(s);
         let capacitance = a * square + self.stack.held_capacitance();
         [capacitance * impedance + 1.0, capacitance * self.supply.resistance + slope * square * impedance]
@@ -143,7 +137,7 @@ impl Circuit {
             rates[(n + i, 2 * n)] = coupling * row.tip / unit;
             rates[(2 * n, i)] = discharge / held * coupling * row.tip / row.omega / unit;
         }
-        rates[(2 * n, 2 * n)] = -discharge * (self.buffer_elastance() + 1.0 / held) / unit;
+        rates[(2 * n, 2 * n)] = -discharge * (self.supply.elastance() + 1.0 / held) / unit;
         let schur = Schur::try_new(rates, f64::EPSILON, ITERATIONS).ok_or_else(|| {
             Error::Solver("reduced model: the eigenmodes of the stack and its drive are not found".into())
         })?;
@@ -169,7 +163,7 @@ impl Circuit {
     fn mode(&self, s: Complex<f64>) -> Mode {
         let [a, _] = self.admittance(s);
         let [_, slope] = self.characteristic(s);
-        let impedance = s * self.supply.resistance + self.buffer_elastance();
+        let impedance = s * self.supply.resistance + self.supply.elastance();
         let residue = -a * (impedance * self.stack.held_capacitance() + 1.0) / slope;
         let start = a * self.stack.force_per_voltage() * self.stack.voltage / (s * slope);
         let real = s.im == 0.0;
@@ -200,15 +194,35 @@ impl Circuit {
 
     /// Power in W of the resistor in the state (`q`, `v`) of the modes.
     pub fn heating(&self, q: &[f64], v: &[f64]) -> f64 {
-        let (alpha, held) = (self.stack.force_per_voltage(), self.stack.held_capacitance());
         let of = |((mode, q), v): ((&Mode, &f64), &f64)| {
             let weight = if mode.pole.im == 0.0 { 1.0 } else { 2.0 };
-            let charge =
-                (Complex::from(held) / (mode.admittance * alpha) + alpha) * Self::complex(mode, *q, *v);
+            let charge = self.charge(mode) * Self::complex(mode, *q, *v);
             weight * (mode.pole * charge).re
         };
         let current: f64 = self.modes.iter().zip(q).zip(v).map(of).sum();
         self.supply.resistance * current * current
+    }
+
+    /// Bound in J on the heat of what dies away without a vibration from the state (`q`, `v`) of the modes on, beyond what follows the force
+    /// that has there the value and the derivatives by time `force`, in N, N/s, ...
+    pub fn transient_heat(&self, q: &[f64], v: &[f64], force: &[f64]) -> f64 {
+        let resistance = self.supply.resistance;
+        let now = (self.heating(q, v) / resistance).sqrt();
+        let of = |(mode, q): (&Mode, &f64)| {
+            let rate = mode.pole.re;
+            // z' = s z + r F, so that z follows -r (F/s + F'/s^2 + ...)
+            let follows = force.iter().rev().fold(0.0, |sum, f| (sum + f) / rate);
+            let left = mode.tip * (q - mode.feed.slip * follows);
+            let current = rate * self.charge(mode).re * left;
+            resistance * current.abs() * (3.0 * current.abs() + 2.0 * now) / rate.abs()
+        };
+        self.modes.iter().zip(q).filter(|(mode, _)| mode.is_decay()).map(of).sum()
+    }
+
+    /// Charge in C per extension in m that a mode adds.
+    fn charge(&self, mode: &Mode) -> Complex<f64> {
+        let alpha = self.stack.force_per_voltage();
+        Complex::from(self.stack.held_capacitance()) / (mode.admittance * alpha) + alpha
     }
 
     /// The energies in the state (`q`, `v`) of the modes.
@@ -239,7 +253,7 @@ impl Circuit {
         let extension: f64 = rod.iter().zip(&self.rod).map(|([q, _], shape)| shape.tip * q).sum();
         let moved = held * volts + alpha * extension;
         let charge = capacitance * at_rest + moved;
-        let elastance = self.buffer_elastance();
+        let elastance = self.supply.elastance();
         Account {
             taken: voltage * charge - 0.5 * elastance * charge * charge,
             held: energy(at_rest, at_rest + volts),

@@ -23,6 +23,13 @@ pub struct Supply {
     pub buffer_capacitance: Option<f64>,
 }
 
+impl Supply {
+    /// 1/C of the buffer in 1/F.
+    pub fn elastance(&self) -> f64 {
+        self.buffer_capacitance.map_or(0.0, f64::recip)
+    }
+}
+
 /// Piezo stack, at rest and without charge until it is switched on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Stack {
@@ -74,6 +81,11 @@ impl Stack {
     /// Capacitance in F of the stack held at its length.
     pub fn held_capacitance(&self) -> f64 {
         self.capacitance - self.force_per_voltage().powi(2) / self.stiffness()
+    }
+
+    /// Time in s in which the free stack charges per resistance of its supply, the capacitance of stack and buffer in series, F.
+    pub fn charging_time_per_resistance(&self) -> f64 {
+        self.capacitance / (1.0 + self.capacitance * self.drive.map_or(0.0, |supply| supply.elastance()))
     }
 
     /// Mass in kg.

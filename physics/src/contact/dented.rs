@@ -340,14 +340,27 @@ impl DentedContact {
 
     /// Force in N at the approach `x` in m from virgin surfaces, and its slope in N/m.
     pub fn force(&self, x: f64) -> [f64; 2] {
+        let [force, slope, _] = self.answer(x);
+        [force, slope]
+    }
+
+    /// Force in N at the approach `x` in m from virgin surfaces, its slope in N/m, and the work in J that the contact would have taken by
+    /// then.
+    pub fn answer(&self, x: f64) -> [f64; 3] {
         if x <= self.depth() {
-            return [0.0; 2];
+            return [0.0, 0.0, self.dissipated];
         }
         let w = self.overload(x);
         let beyond = (1.0 + 1e-6) * w;
         let [at, next] = [w, beyond].map(|w| self.pressed(w));
         let approach = self.approach(beyond, &next) - self.approach(w, &at);
-        [at.force, (next.force - at.force) / approach]
+        let lost = if w > self.limit.w { self.deepens(&at).iter().sum() } else { 0.0 };
+        [at.force, (next.force - at.force) / approach, self.dissipated + lost + at.stored]
+    }
+
+    /// What both dents dissipate further on the way to the contact `at`, J; never negative.
+    fn deepens(&self, at: &Pressed) -> [f64; 2] {
+        [0, 1].map(|i| at.lost[i] - self.surfaces[i].map_or(0.0, |s| s.dent.lost))
     }
 
     /// Ends a step at the approach `x` in m.
@@ -364,7 +377,7 @@ impl DentedContact {
             return;
         }
         let deeper = x - at.recovers - self.depth();
-        let lost = [0, 1].map(|i| at.lost[i] - self.surfaces[i].map_or(0.0, |s| s.dent.lost));
+        let lost = self.deepens(&at);
         let all = lost[0] + lost[1];
         self.dissipated += all;
         self.widest = self.widest.max(at.radius);

@@ -185,14 +185,10 @@ impl ElasticPlastic {
         let rise = self.hardness - 1.0;
         let flat =
             self.onset_pressure() * (self.hardness - rise * (1.0 + beyond / (TENDS * rise)).powf(-TENDS));
-        let pressure = flat * if self.is_sphere { falls_away(overload, slope) } else { 1.0 };
-        let state = Flattened {
-            approach: w,
-            pressure,
-            flattening,
-            evenness: -(-EVENS * beyond).exp_m1(),
-            ..Flattened::NONE
-        };
+        let evenness = -(-EVENS * beyond).exp_m1();
+        // what flows is held back less; at first yield nothing does
+        let pressure = flat * if self.is_sphere { falls_away(overload, evenness * slope) } else { 1.0 };
+        let state = Flattened { approach: w, pressure, flattening, evenness, ..Flattened::NONE };
         let [size, power, start] = LOSS;
         let loss = size * beyond.powf(1.0 + power) / (beyond + start);
         Flattened {
@@ -266,6 +262,17 @@ mod tests {
             assert_relative_eq!(onset, 1.0 - stress / 600e6, max_relative = 1e-12);
         }
         assert!(law.pulled(9e8).onset_pressure() > 0.0);
+    }
+
+    /// Neither a half-space nor a sphere jumps where it begins to yield: a force that does makes energy.
+    #[test]
+    fn the_pressure_is_continuous_at_first_yield() {
+        for is_sphere in [false, true] {
+            let law = ElasticPlastic::new(MODULUS, 1e9, 0.3, is_sphere);
+            let beyond = law.flattened(1.0 + 1e-6);
+            assert_relative_eq!(beyond.pressure, law.flattened(1.0).pressure, max_relative = 2e-6);
+            assert!(beyond.lasting < 1e-6 * beyond.flattening, "{beyond:?}");
+        }
     }
 
     /// Up to half as far again as the curves were found.

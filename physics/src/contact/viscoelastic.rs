@@ -23,6 +23,8 @@ pub struct ViscoelasticContact {
     width: f64,
     halves: [Half; 2],
     springs: Vec<[Deformation; 2]>,
+    /// Deformation in m that each spring would have at the end of the step without a force. Shape (springs).
+    free: Vec<f64>,
     /// Length of a step in s, the power that the springs lose in W, and what they have lost in J.
     step: f64,
     power: f64,
@@ -40,13 +42,15 @@ impl ViscoelasticContact {
     }
 
     fn virgin_springs(tip_radius: f64, width: f64, halves: [Half; 2]) -> Self {
-        Self { tip_radius, width, halves, springs: Vec::new(), step: 0.0, power: 0.0, lost: 0.0 }
+        let (springs, free) = (Vec::new(), Vec::new());
+        Self { tip_radius, width, halves, springs, free, step: 0.0, power: 0.0, lost: 0.0 }
     }
 
     /// Prepares steps of `h` s.
     pub fn prepare(&mut self, h: f64) {
         self.step = h;
         self.halves.iter_mut().for_each(|half| half.creep.prepare(h));
+        self.set_free();
     }
 
     /// The same never touched.
@@ -69,42 +73,43 @@ impl ViscoelasticContact {
         x - distance * distance / self.tip_radius
     }
 
-    /// Deformation in m that a spring in the state `state` has at the end of the step without a force.
-    fn free(&self, state: &[Deformation; 2]) -> f64 {
-        self.halves.iter().zip(state).map(|(half, state)| half.creep.deformation(state, 0.0)).sum()
+    /// Looks where the springs are at the end of the next step without a force.
+    fn set_free(&mut self) {
+        let Self { halves, springs, free, .. } = self;
+        let of = |(half, state): (&Half, &Deformation)| half.creep.deformation(state, 0.0);
+        free.clear();
+        free.extend(springs.iter().map(|states| halves.iter().zip(states).map(of).sum::<f64>()));
     }
 
-    /// Force of a spring in N pressed by `w` m at the end of the step, and its stiffness in N/m; none if it would pull.
-    fn spring(&self, state: &[Deformation; 2], w: f64) -> [f64; 2] {
-        let free = self.free(state);
-        if w <= free {
-            return [0.0; 2];
-        }
-        let yields: f64 = self.halves.iter().map(|half| half.creep.growth() / half.stiffness).sum();
-        [(w - free) / yields, 1.0 / yields]
+    /// Deformation in m of a spring at the end of the step per force, m/N.
+    fn compliance(&self) -> f64 {
+        self.halves.iter().map(|half| half.creep.growth() / half.stiffness).sum()
+    }
+
+    /// Force of spring `k` in N with the `compliance` in m/N, pressed by `w` m at the end of the step, and its stiffness in N/m; none if
+    /// it would pull.
+    fn spring(&self, k: usize, compliance: f64, w: f64) -> [f64; 2] {
+        let free = self.free.get(k).copied().unwrap_or_default();
+        if w <= free { [0.0; 2] } else { [(w - free) / compliance, 1.0 / compliance] }
     }
 
     /// Approach in m up to which no spring pushes at the end of the step.
     pub fn touch(&self) -> f64 {
-        let of = |(k, state)| self.free(state) - self.pressed(k, 0.0);
-        self.springs
-            .iter()
-            .enumerate()
-            .map(of)
-            .fold(f64::INFINITY, f64::min)
-            .min(-self.pressed(self.springs.len(), 0.0))
+        let of = |(k, free): (usize, &f64)| free - self.pressed(k, 0.0);
+        let first = self.free.iter().enumerate().map(of).fold(f64::INFINITY, f64::min);
+        first.min(-self.pressed(self.springs.len(), 0.0))
     }
 
     /// Force in N at the end of a step at the approach `x` in m, and its slope in N/m.
     pub fn force(&self, x: f64) -> [f64; 2] {
-        let virgin = [Deformation::default(), Deformation::default()];
+        let compliance = self.compliance();
         let mut sum = [0.0; 2];
         for k in 0.. {
             let w = self.pressed(k, x);
             if w <= 0.0 && k >= self.springs.len() {
                 break;
             }
-            let [force, slope] = self.spring(self.springs.get(k).unwrap_or(&virgin), w);
+            let [force, slope] = self.spring(k, compliance, w);
             sum[0] += sides(k) * force;
             sum[1] += sides(k) * slope;
         }
@@ -116,8 +121,9 @@ impl ViscoelasticContact {
         while self.pressed(self.springs.len(), x) > 0.0 {
             self.springs.push(Default::default());
         }
+        let compliance = self.compliance();
         for k in 0..self.springs.len() {
-            let [force, _] = self.spring(&self.springs[k], self.pressed(k, x));
+            let [force, _] = self.spring(k, compliance, self.pressed(k, x));
             for (half, state) in self.halves.iter().zip(&mut self.springs[k]) {
                 half.creep.advance(state, force / half.stiffness);
             }
@@ -125,6 +131,7 @@ impl ViscoelasticContact {
         let power = self.sum(Creep::power);
         self.lost += 0.5 * self.step * (self.power + power);
         self.power = power;
+        self.set_free();
     }
 
     /// Energy in J that the springs store and have lost.

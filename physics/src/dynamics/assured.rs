@@ -7,7 +7,7 @@
 //! the two.
 
 use super::contact_ledger::ContactLedger;
-use super::integration::{Integration, Options};
+use super::integration::{Converged, Integration, Options};
 use super::step_bounds::{Bounds, least_force, least_impulse};
 use super::system::System;
 use crate::error::Result;
@@ -32,6 +32,9 @@ const FULL_SHARE: f64 = 0.2;
 const TIGHTER: f64 = 0.03;
 /// Tightest tolerance that is tried.
 const TIGHTEST: f64 = 1e-12;
+/// Steps of a solution after which no further one follows, but for the second: it would take ten seconds, and the results state how far they
+/// have converged.
+const LONG: u64 = 100_000;
 /// Tolerances above this ask for a rough answer: it is not looked whether the impact amplifies errors.
 pub const ROUGH: f64 = 1e-4;
 /// Difference of velocities and force peaks that is in order, in tolerances.
@@ -76,7 +79,31 @@ pub fn assured(
     system: &System,
     run: impl Fn(&Options) -> Result<Integration>,
 ) -> Result<Integration> {
-    let mut best = run(options)?;
+    if let Some(Converged::Tolerance(tolerance)) = options.converged {
+        return run(&Options { tolerance, ..*options });
+    }
+    let best = repeated(&Options { heat: false, ..*options }, system, &run)?;
+    let Some(Converged::Tolerance(tolerance)) =
+        best.converged.filter(|_| options.heat && system.circuit.is_some())
+    else {
+        return Ok(best);
+    };
+    // the heat takes longer than all else, and changes nothing but the balance
+    let Integration { error_estimate, converged, .. } = best;
+    Ok(Integration { error_estimate, converged, ..run(&Options { tolerance, ..*options })? })
+}
+
+/// Solutions with smaller and smaller tolerances, the last one.
+fn repeated(
+    options: &Options,
+    system: &System,
+    run: impl Fn(&Options) -> Result<Integration>,
+) -> Result<Integration> {
+    let at = |tolerance: f64| -> Result<Integration> {
+        let result = run(&Options { tolerance, ..*options })?;
+        Ok(Integration { converged: Some(Converged::Tolerance(tolerance)), ..result })
+    };
+    let mut best = at(options.tolerance)?;
     let right = match options.results {
         Some(error) => is_clear(&best, error),
         None => options.tolerance > ROUGH || is_simple(system, &best, options.tolerance),
@@ -84,11 +111,11 @@ pub fn assured(
     if right {
         return Ok(best);
     }
-    let mut options = *options;
+    let mut tolerance = options.tolerance;
     let enough = options.results.unwrap_or(ENOUGH * options.tolerance);
-    while options.tolerance * TIGHTER >= TIGHTEST {
-        options.tolerance *= TIGHTER;
-        let Ok(next) = run(&options) else {
+    while tolerance * TIGHTER >= TIGHTEST {
+        tolerance *= TIGHTER;
+        let Ok(next) = at(tolerance) else {
             let unknown = options.results.map(|_| f64::INFINITY);
             best.error_estimate = best.error_estimate.or(unknown);
             break;
@@ -99,7 +126,7 @@ pub fn assured(
         }
         best = Integration { error_estimate: Some(change), ..next };
         let open = options.results.is_some() && is_countable(&best) && may_be_missed(&best, change);
-        if change <= enough && !open {
+        if (change <= enough && !open) || best.steps > LONG {
             break;
         }
     }

@@ -58,13 +58,19 @@ impl ContactLedger {
         Self { negligible, least_turn: f64::INFINITY, ..Self::default() }
     }
 
-    /// Books a step from `time` s of `h` s in which force in N and local approach in m change evenly between their `values` at start and
-    /// end.
-    pub fn book_even(&mut self, time: f64, h: f64, force: [f64; 2], local_approach: [f64; 2], work: f64) {
+    /// Books a step from `time` s of `h` s with the mean force `mean` and the force `last` at its end in N, in which the local approach in
+    /// m changes evenly between its values at start and end.
+    pub fn book_even(
+        &mut self,
+        (time, h): (f64, f64),
+        [mean, last]: [f64; 2],
+        local_approach: [f64; 2],
+        work: f64,
+    ) {
         let before = self.impulse;
-        self.impulse += 0.5 * h * (force[0] + force[1]);
+        self.impulse += h * mean;
         self.work += work;
-        self.force_peak = self.force_peak.max(force[1]);
+        self.force_peak = self.force_peak.max(last);
         let [start, end] = local_approach;
         self.pass(end > 0.0, before, || time + h * start / (start - end));
     }

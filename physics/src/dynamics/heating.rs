@@ -5,6 +5,9 @@ use super::duhamel::Oscillator;
 use super::stages::{STAGES, Stages};
 use super::system::{System, dot};
 
+/// Heat of a decay that is not looked at, over the energy that the buffer gives the free stack.
+const NEGLIGIBLE: f64 = 1e-14;
+
 /// Radians of the quickest vibration of the circuit between two of Gauss's points at most, on an average; of a decay in the first panel,
 /// after which panels double.
 const PANEL: f64 = 0.5;
@@ -23,9 +26,14 @@ pub(super) fn heat(
         let quickest = modes().filter(of).map(|mode| mode.omega).fold(0.0, f64::max);
         PANEL * STAGES as f64 / quickest
     };
+    let own = |values: &[f64]| system.feeds.iter().map(|(k, _)| values[*k]).collect::<Vec<f64>>();
+    let transient = circuit.transient_heat(&own(q), &own(v), &collocation.derivatives(force, h));
     let even = h / (h / longest(|mode| mode.alpha < mode.omega)).ceil().max(1.0);
     // what only decays has died away the later the slower
-    let first = longest(|mode| mode.alpha >= mode.omega);
+    let first = match transient > NEGLIGIBLE * circuit.supplied_energy() {
+        true => longest(|mode| mode.alpha >= mode.omega),
+        false => even,
+    };
     let (mut sum, mut from) = (0.0, 0.0);
     while from < h * (1.0 - 1e-12) {
         let panel = even.min(first.max(from)).min(h - from);

@@ -27,6 +27,25 @@ pub struct Options {
     pub results: Option<f64>,
     /// Whether the heat in the drive of a stack is summed up, for its ledger of energy.
     pub heat: bool,
+    /// With which steps an earlier run of the same impact converged: they are taken at once. `None` = the impact is solved again until its
+    /// results have converged.
+    pub converged: Option<Converged>,
+}
+
+/// The steps with which the results of an impact have converged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Converged {
+    /// Those of this tolerance.
+    Tolerance(f64),
+    /// Even ones.
+    Even {
+        /// Halvings of the first length.
+        halvings: usize,
+        /// Stress along the plate's faces under outer and inner contact, Pa.
+        stress: [f64; 2],
+        /// Force peaks of the run before, N.
+        peaks: [f64; 2],
+    },
 }
 
 impl Default for Options {
@@ -39,6 +58,7 @@ impl Default for Options {
             peak_error: 0.0,
             results: None,
             heat: false,
+            converged: None,
         }
     }
 }
@@ -63,6 +83,8 @@ pub struct Integration {
     /// Estimated error of the velocities from the time integration, over the impact speed, if it was looked for
     /// ([`crate::dynamics::assured`]).
     pub error_estimate: Option<f64>,
+    /// With which steps it was found; `None` of a single run.
+    pub converged: Option<Converged>,
     /// Tolerance that the integration keeps whatever smaller one is asked for; 0 where it keeps any.
     pub kept_tolerance: f64,
     /// What a stack took and gave, if the outer body is one.
@@ -176,6 +198,7 @@ impl Closing<'_> {
             },
             steps: self.steps,
             error_estimate: None,
+            converged: None,
             kept_tolerance: 0.0,
             supplied,
             pressed,

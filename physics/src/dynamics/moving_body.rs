@@ -15,22 +15,6 @@ use std::cell::Cell;
 /// Time in radians of the slowest mode after which a stack that has not touched never will.
 const PATIENCE: f64 = 60.0;
 
-/// Time in which a stack charges, in radians of its slowest vibration, from which on it presses and does not strike.
-const SLOWEST_CHARGE: f64 = 1e5;
-
-/// Refuses a stack whose `circuit` charges it so slowly that nothing vibrates.
-fn require_strike(stack: &Stack, circuit: &Circuit) -> Result<()> {
-    let (charging, slowest) = (circuit.charging_time(), stack.modes(1)[0].omega);
-    if charging * slowest <= SLOWEST_CHARGE {
-        return Ok(());
-    }
-    let speed = (circuit.final_extension() - stack.gap) / charging;
-    Err(Error::Solver(format!(
-        "the stack charges through `outer.drive.resistance` in {charging:.1e} s, {:.1e} radians of its slowest vibration ({SLOWEST_CHARGE:.0e} at most): its tip comes to the plate at {speed:.1e} m/s and presses, which is no impact; take a smaller resistance",
-        charging * slowest
-    )))
-}
-
 /// Outer or inner body: mass-normalised coordinates that move its contact point, and their state at t = 0.
 #[derive(Debug, Clone)]
 pub struct MovingBody {
@@ -108,9 +92,6 @@ impl MovingBody {
     /// [`Error::Solver`] if it does not reach the plate, and as [`Circuit::new`].
     pub fn stack(stack: &Stack) -> Result<Self> {
         let supply = stack.drive.map(|supply| Circuit::new(stack, supply)).transpose()?;
-        if let Some(circuit) = &supply {
-            require_strike(stack, circuit)?;
-        }
         let mut body = match supply {
             Some(circuit) => {
                 let each = |value: fn(&circuit::Mode) -> f64| circuit.modes.iter().map(value).collect();

@@ -12,19 +12,20 @@ const REDUCED_PEAK_SLACK: f64 = 0.002;
 pub(crate) const VELOCITY_SLACK: f64 = 1e-3;
 /// Relative difference between the efficiency and the one that the final velocity gives.
 pub(crate) const EFFICIENCY_SLACK: f64 = 2e-3;
+/// Share of the initial energy by which the final one of a result from outside may exceed it: what the velocities' own errors make of it.
+pub(crate) const ENERGY_SLACK: f64 = 5e-3;
 /// Share of the peak below which a force counts as none.
 pub(crate) const FORCE_FLOOR: f64 = 1e-9;
 /// Share of the total impulse, and of the peak displacement, that a balance may miss beyond
 /// what sampling explains.
 pub(crate) const SLACK: f64 = 2e-3;
+/// Endings of the names of results that are never negative.
+const NOT_NEGATIVE: [&str; 5] = ["efficiency", "_peak", "_end", "_speed", "first_frequency"];
 
 /// Largest magnitude in `values`.
 pub(crate) fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |p, v| p.max(v.abs()))
 }
-
-/// Endings of the names of results that are never negative.
-const NOT_NEGATIVE: [&str; 5] = ["efficiency", "_peak", "_end", "_speed", "first_frequency"];
 
 /// Results of a summary that can't be negative are not.
 pub(crate) fn not_negative(summary: &Summary) -> Vec<Statement> {

@@ -19,13 +19,22 @@ impl Contact {
         }
     }
 
-    /// Force in N at the approach `x` in m at the end of the step, and its slope in N/m.
-    pub(super) fn force(&self, x: f64) -> [f64; 2] {
+    /// Force in N at the approach `x` in m at the end of the step, its slope in N/m, and the work in J that the contact would have taken
+    /// by then; not known of one that relaxes.
+    pub(super) fn answer(&self, x: f64) -> [f64; 3] {
         match self {
-            Contact::Elastic(hertz) => [hertz.force(x), hertz.tangent(x)],
-            Contact::Dented(contact) => contact.force(x),
-            Contact::Viscoelastic(contact) => contact.force(x),
+            Contact::Elastic(hertz) => [hertz.force(x), hertz.tangent(x), hertz.energy(x)],
+            Contact::Dented(contact) => contact.answer(x),
+            Contact::Viscoelastic(contact) => {
+                let [force, slope] = contact.force(x);
+                [force, slope, f64::NAN]
+            }
         }
+    }
+
+    /// Whether its force depends on time.
+    pub(super) fn relaxes(&self) -> bool {
+        matches!(self, Contact::Viscoelastic(_))
     }
 
     /// Ends the step at the approach `x` in m.
@@ -46,11 +55,13 @@ impl Contact {
         }
     }
 
-    /// Energy in J that it has dissipated by yielding, if it can.
-    pub(super) fn dissipated(&self) -> Option<f64> {
+    /// Energy in J that it does not give back: dissipated by yielding, or taken by what relaxes and without a force keeps it until it has.
+    /// Never negative.
+    pub(super) fn dissipated(&self) -> f64 {
         match self {
-            Contact::Dented(contact) => Some(contact.dissipated()),
-            _ => None,
+            Contact::Elastic(_) => 0.0,
+            Contact::Dented(contact) => contact.dissipated(),
+            Contact::Viscoelastic(contact) => contact.taken(),
         }
     }
 

@@ -1,21 +1,25 @@
 //! Impacts of materials with memory: viscoelastic bodies, and contacts that yield.
 //!
-//! Modes with internal variables move exactly under forces that change evenly over a step; the contacts are laws of the approach at its
-//! end, whose memory moves from step to step. All steps are of one length, of second order, but for flights, in which nothing touches; runs
+//! Modes with internal variables move exactly under the forces of a step; the contacts are laws of the approach at its
+//! end, whose memory moves from step to step. The steps are of second order, and of one length unless nothing touches or the forces change
+//! slowly; runs
 //! with half the length follow until the result stands. Elastic impacts know nothing of this: they take [`super::integrator`].
 
 mod bending;
 mod contact;
 mod modes;
+mod step_force;
+mod step_length;
 mod stepper;
 
 pub use self::bending::{Bending, Loads};
 pub(crate) use self::modes::Mode;
 
 use self::contact::Contact;
+use self::step_force::StepForce;
 use self::stepper::Stepper;
 use super::assured::differences;
-use super::integration::{Integration, Options};
+use super::integration::{Converged, Integration, Options};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::contact::{DentedContact, Hertz, ViscoelasticContact};
@@ -110,6 +114,18 @@ impl Bodies {
             [both[i] - tip, tip]
         });
         (parts, patch, residual.state(&system.laws, patch).beyond_half_spaces())
+    }
+
+    /// Elastic energy in J of what yields at once beyond half-spaces under the forces `force` in N with the patches `patch` in m.
+    fn energy_beyond(&self, system: &System, force: [f64; 2], patch: [f64; 2]) -> f64 {
+        let Some(residual) = &system.residual else { return 0.0 };
+        let half_space = |i: usize| 0.4 * force[i] * system.laws[i].approach(force[i]);
+        residual.energy(&system.laws, patch) - half_space(0) - half_space(1)
+    }
+
+    /// How the forces of a step follow from those at its ends: a plate that relaxes has no contact that does not.
+    fn step_force(&self) -> StepForce {
+        if self.contacts.iter().any(Contact::relaxes) { StepForce::Linear } else { StepForce::Conserving }
     }
 }
 
@@ -305,13 +321,12 @@ struct Ran {
 /// [`Error::Solver`] if a contact has no equilibrium or the run does not end.
 pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<(Integration, Memory)> {
     let base = system.hertz_impact().duration() / FIRST_STEPS;
-    let run = |halvings: usize, stress: [f64; 2], before: Option<&Ran>| -> Result<Ran> {
+    let run = |halvings: usize, stress: [f64; 2], peaks: Option<[f64; 2]>| -> Result<Ran> {
         let h = base * 0.5_f64.powi(halvings as i32);
         let mut bodies = memory.bodies.clone();
         for (i, contact) in bodies.contacts.iter_mut().enumerate() {
             *contact = contact.clone().on_a_pulled_plate(stress[i]);
-            let peak = before.map(|ran| ran.integration.contacts[i].force_peak);
-            let radius = peak.map(|peak| system.laws[i].contact_radius(peak)).filter(|r| *r > 0.0);
+            let radius = peaks.map(|peaks| system.laws[i].contact_radius(peaks[i])).filter(|r| *r > 0.0);
             // as many springs as the peak of the run before asks for, and more with every halving
             if let (Contact::Viscoelastic(contact), Some(radius)) = (contact, radius) {
                 *contact = contact.with_springs_every(radius / SPRINGS * FINER.powi(halvings as i32));
@@ -319,10 +334,20 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
         }
         Stepper::new(system, bodies, &memory.plate, h, options).go(options.end_time)
     };
+    let after = |ran: &Ran| Memory {
+        bodies: Bodies { contacts: ran.contacts.clone(), ..memory.bodies.clone() },
+        ..memory.clone()
+    };
+    if let Some(Converged::Even { halvings, stress, peaks }) = options.converged {
+        let ran = run(halvings, stress, Some(peaks))?;
+        let memory = after(&ran);
+        return Ok((ran.integration, memory));
+    }
+    let peaks_of = |ran: &Ran| ran.integration.contacts.map(|contact| contact.force_peak);
     let change = |before: &Ran, ran: &Ran| -> f64 {
         let results = [before, ran].map(|ran| &ran.integration);
-        let peaks = results.map(|result| result.contacts.map(|c| c.force_peak));
-        let [velocity, force] = differences(system, results.map(|result| result.velocity), peaks);
+        let velocities = results.map(|result| result.velocity);
+        let [velocity, force] = differences(system, velocities, [before, ran].map(peaks_of));
         velocity.max(force)
     };
     let mut before = run(0, [0.0; 2], None)?;
@@ -334,7 +359,7 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
         // where it changes them by more than a little, half of the way
         let share = if round < STRAIGHT { 1.0 } else { 0.5 };
         stress = [0, 1].map(|i| stress[i] + share * (found[i] - stress[i]));
-        let ran = run(0, stress, Some(&before))?;
+        let ran = run(0, stress, Some(peaks_of(&before)))?;
         unsettled = change(&before, &ran);
         before = ran;
         if unsettled <= SETTLED {
@@ -343,13 +368,14 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
         }
     }
     for halvings in 1..=MAX_HALVINGS {
-        let ran = run(halvings, stress, Some(&before))?;
+        let peaks = peaks_of(&before);
+        let ran = run(halvings, stress, Some(peaks))?;
         let change = change(&before, &ran);
         if change <= CHANGE || halvings == MAX_HALVINGS {
-            let bodies = Bodies { contacts: ran.contacts, ..memory.bodies.clone() };
-            let error = (change / 3.0).max(unsettled);
-            let result = Integration { error_estimate: Some(error), ..ran.integration };
-            return Ok((result, Memory { bodies, ..memory.clone() }));
+            let memory = after(&ran);
+            let error_estimate = Some((change / 3.0).max(unsettled));
+            let converged = Some(Converged::Even { halvings, stress, peaks });
+            return Ok((Integration { error_estimate, converged, ..ran.integration }, memory));
         }
         before = ran;
     }

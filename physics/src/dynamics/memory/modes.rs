@@ -4,6 +4,7 @@
 //! q'' + 2 alpha q' + omega^2 (q - sum g_i xi_i) = f, xi_i' = (q - xi_i)/tau_i: a linear system of its own, whose flow over a step is a
 //! matrix exponential.
 
+use super::step_force::StepForce;
 use crate::dynamics::duhamel::Oscillator;
 use crate::dynamics::system::System;
 use crate::material::Relaxation;
@@ -29,13 +30,13 @@ pub(super) struct Modes<'a> {
     modes: Vec<Mode>,
     /// Flows of the modes without a force over 2, 4, 8, ... steps, those that have been asked for.
     longer: Vec<Vec<Vec<f64>>>,
-    /// Approaches lost at the end of a step per force there, m/N.
+    /// Approaches lost at the end of a step per force that acts in it, m/N.
     pub(super) coupling: [[f64; 2]; 2],
 }
 
 impl<'a> Modes<'a> {
-    /// The modes of `system`, whose plate relaxes by `terms`, for steps of `h` s.
-    pub(super) fn new(system: &'a System, terms: &'a [Relaxation], h: f64) -> Self {
+    /// The modes of `system`, whose plate relaxes by `terms`, for steps of `h` s under forces of the kind `step_force`.
+    pub(super) fn new(system: &'a System, terms: &'a [Relaxation], h: f64, step_force: StepForce) -> Self {
         let (mut modes, mut first) = (Vec::new(), 0);
         let plate = system.elastic();
         for (k, &oscillator) in system.oscillators.iter().enumerate() {
@@ -45,9 +46,14 @@ impl<'a> Modes<'a> {
         }
         let mut coupling = [[0.0; 2]; 2];
         for (k, mode) in modes.iter().enumerate() {
+            let [start, end] = [0, 1].map(|at| mode.forced[at][0]);
+            let moved = match step_force {
+                StepForce::Conserving | StepForce::Mean => start + end,
+                StepForce::Linear => end,
+            };
             for i in 0..2 {
                 for j in 0..2 {
-                    coupling[i][j] += system.approach[i][k] * system.approach[j][k] * mode.forced[1][0];
+                    coupling[i][j] += system.approach[i][k] * system.approach[j][k] * moved;
                 }
             }
         }
@@ -113,6 +119,15 @@ impl<'a> Modes<'a> {
             (sum[0], sum[1]) = (sum[0] + energy, sum[1] + power);
         }
         sum
+    }
+
+    /// Largest rate that every mode can have by itself with the energy of its `state`, m/s kg^(1/2); none of a rigid motion.
+    pub(super) fn most_speeds(&self, state: &[f64]) -> Vec<f64> {
+        let speed = |mode: &Mode| match mode.oscillator.omega > 0.0 {
+            true => (2.0 * mode.energy(&state[mode.own()], self.terms)[0]).sqrt(),
+            false => 0.0,
+        };
+        self.modes.iter().map(speed).collect()
     }
 
     /// Largest displacement that every mode can still reach by itself, m kg^(1/2); none of a rigid motion.

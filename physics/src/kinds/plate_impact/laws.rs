@@ -7,13 +7,11 @@
 use crate::analytical::circular_plate::rigidity;
 use crate::analytical::hertz::HertzImpact;
 use crate::contact::Hertz;
-use crate::kinds::consistency::{RunningIntegral, VELOCITY_SLACK, not_negative, peak};
+use crate::kinds::consistency::{ENERGY_SLACK, RunningIntegral, VELOCITY_SLACK, not_negative, peak};
 use crate::result::{History, Statement, Summary};
 use crate::scene::{Edge, Material, PlateImpact};
 use std::f64::consts::PI;
 
-/// Share of the initial energy by which the final one may exceed it: what the velocities' own errors make of it.
-const ENERGY_SLACK: f64 = 5e-3;
 /// Share of the outer body's speed by which a velocity may be on the wrong side of its bound.
 const DIRECTION_SLACK: f64 = 0.01;
 /// The same in a fluid, whose film pulls as well.

@@ -3,14 +3,11 @@
 
 use super::{SeatCurves, SeatQuantities};
 use crate::kinds::consistency::{
-    EFFICIENCY_SLACK, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance, momentum_balance,
-    not_negative, peak,
+    EFFICIENCY_SLACK, ENERGY_SLACK, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance,
+    momentum_balance, not_negative, peak,
 };
 use crate::result::{Outcome, Source, Statement, Summary};
 use crate::scene::SealSeat;
-
-/// Share of the initial energy by which a result from outside may exceed it.
-const ENERGY_SLACK: f64 = 5e-3;
 
 /// Statements about a result: of its curves if all are there and can be sampled.
 pub(super) fn checks(setup: &SealSeat, outcome: &Outcome) -> Vec<Statement> {

@@ -9,6 +9,9 @@ use crate::scene::{Material, PLATE_IMPACT, Part, Shape};
 const SLENDERNESS: [f64; 2] = [1e-6, 10.0];
 /// Sizes of what is struck and measured with these methods, in m.
 const LENGTH: [f64; 2] = [1e-6, 1.0];
+/// Longest time in which a stack charges, in radians of its slowest vibration: charged more slowly it presses on the plate and does not
+/// strike it.
+const SLOWEST_CHARGE: f64 = 1e5;
 
 impl Part for PlateImpact {
     fn kind(&self) -> &'static str {
@@ -26,6 +29,7 @@ impl Part for PlateImpact {
         let dry = self.fluid.is_none() && plate.damping_ratio == 0.0 && self.series.is_none();
         let spheres =
             [&self.outer.shape, &self.inner.shape].iter().all(|shape| matches!(shape, Shape::Sphere { .. }));
+        let (resistance, striking) = strongest_drive(&self.outer.shape);
         let ratio = plate.thickness / plate.radius;
         let [least, most] = SLENDERNESS;
         broken(vec![
@@ -79,6 +83,14 @@ impl Part for PlateImpact {
                 help: "leave out `fluid`, `plate.damping_ratio` and `series`, or take another outer body",
             },
             Rule {
+                fields: vec!["outer.drive.resistance"],
+                holds: resistance <= striking,
+                message: format!(
+                    "`outer.drive.resistance` is {resistance} Ohm, but it has to be at most {striking:.1e} Ohm: the stack charges so slowly that its tip presses on the plate and does not strike it"
+                ),
+                help: "take a smaller resistance, or leave out `outer.drive` for an ideal source",
+            },
+            Rule {
                 fields: vec!["plate.material"],
                 holds: pair(&self.outer.material) && pair(&self.inner.material),
                 message: format!(
@@ -118,4 +130,11 @@ impl Part for PlateImpact {
         }
         found
     }
+}
+
+/// Resistance of the drive in Ohm of a body of the `shape`, and the largest with which it strikes; 0 and infinite without a drive.
+fn strongest_drive(shape: &Shape) -> (f64, f64) {
+    let Shape::Stack(stack) = shape else { return (0.0, f64::INFINITY) };
+    let Some(drive) = stack.drive else { return (0.0, f64::INFINITY) };
+    (drive.resistance, SLOWEST_CHARGE / stack.modes(1)[0].omega / stack.charging_time_per_resistance())
 }

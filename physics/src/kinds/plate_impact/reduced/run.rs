@@ -3,7 +3,7 @@
 use super::{Point, Reduced};
 use crate::dynamics::assured;
 use crate::dynamics::contact_ledger::ContactLedger;
-use crate::dynamics::integration::{Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
+use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
 use crate::dynamics::ledger_check;
 use crate::dynamics::memory::{self, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
@@ -20,6 +20,10 @@ use std::time::Instant;
 
 /// Samples within steps and flights of a history that only the limits need: the deflection is sampled.
 const JUDGED_SAMPLES: usize = 1 << 12;
+/// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
+const PEAK_ERROR: f64 = 0.1;
+/// Share of a bender's moment at the strike from which on there is a warning.
+const MOMENT_LEFT: f64 = 0.01;
 
 /// Change of the inner body's velocity over the impact speed, in tolerances, below which its results are the integration's error.
 fn unresolved(system: &System, result: &Integration, tolerance: f64) -> Option<String> {
@@ -31,11 +35,6 @@ fn unresolved(system: &System, result: &Integration, tolerance: f64) -> Option<S
         )
     })
 }
-
-/// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
-const PEAK_ERROR: f64 = 0.1;
-/// Share of a bender's moment at the strike that is told.
-const MOMENT_LEFT: f64 = 0.01;
 
 impl Reduced {
     fn impacts(&self) -> Impacts<'_> {
@@ -49,7 +48,7 @@ impl Reduced {
     /// # Errors
     /// As [`crate::dynamics::integrate`] and [`ledger_check`].
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
-        let (mut summary, _) = self.unjudged(tolerance)?;
+        let (mut summary, ..) = self.unjudged(tolerance)?;
         Kind.judge(&self.scene, &mut summary, None);
         self.add_flight(&mut summary)?;
         Ok(summary)
@@ -61,8 +60,8 @@ impl Reduced {
         crate::flight::add_flight(&self.scene, summary, given)
     }
 
-    /// The summary, and what the materials remembered when the last impact began.
-    fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>)> {
+    /// The summary, what the materials remembered when the last impact began, and with which steps it converged.
+    fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>, Option<Converged>)> {
         let start = Instant::now();
         let options = Options { heat: true, ..self.options(tolerance) };
         let Done { last, impacts, memory, warnings } = self.impacts().all(&options)?;
@@ -70,7 +69,7 @@ impl Reduced {
         summary.warnings.extend(warnings);
         let elastic_efficiency = self.impacts().elastic_efficiency(&options);
         let elastic_limit = self.elastic_limit(&options)?;
-        Ok((Summary { impacts, elastic_efficiency, elastic_limit, ..summary }, memory))
+        Ok((Summary { impacts, elastic_efficiency, elastic_limit, ..summary }, memory, last.converged))
     }
 
     /// `None` without yield strengths, and where bodies relax or bend before they strike.
@@ -150,10 +149,10 @@ impl Reduced {
 
     /// A run until `end` s with at most `samples_between` samples within steps and flights.
     fn sampled(&self, tolerance: f64, end: f64, samples_between: usize) -> Result<Outcome> {
-        let (mut summary, memory) = self.unjudged(tolerance)?;
+        let (mut summary, memory, converged) = self.unjudged(tolerance)?;
         let system = &self.system;
         let sample_interval = Some(system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
-        let options = Options { sample_interval, samples_between, ..self.options(tolerance) };
+        let options = Options { sample_interval, samples_between, converged, ..self.options(tolerance) };
         let record = |options: &Options| -> Result<_> {
             let (result, _) = self.impacts().one(options, memory.as_ref())?;
             result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))
