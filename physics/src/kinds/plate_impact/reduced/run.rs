@@ -278,6 +278,21 @@ impl Reduced {
     }
 }
 
+/// Contacts that nearly join, part or touch once more, so that their number may be another.
+fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
+    let near = |contact: &ContactLedger| contact.least_turn <= assured::ENOUGH * tolerance;
+    let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
+    bodies
+        .filter(|(_, contact)| contact.contacts > 0 && near(contact))
+        .map(|(body, contact)| {
+            format!(
+                "the number of contacts of the {body} body, {}, is uncertain: the surfaces come within {:.0e} of the largest approach to touching or parting once more",
+                contact.contacts, contact.least_turn
+            )
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -298,19 +313,4 @@ mod tests {
         assert!(off.warnings.iter().any(|w| w.contains("ledger of energy")), "{:?}", off.warnings);
         assert!(matches!(summary(0.02), Err(Error::Solver(_))));
     }
-}
-
-/// Contacts that nearly join, part or touch once more, so that their number may be another.
-fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
-    let near = |contact: &ContactLedger| contact.least_turn <= assured::ENOUGH * tolerance;
-    let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
-    bodies
-        .filter(|(_, contact)| contact.contacts > 0 && near(contact))
-        .map(|(body, contact)| {
-            format!(
-                "the number of contacts of the {body} body, {}, is uncertain: the surfaces come within {:.0e} of the largest approach to touching or parting once more",
-                contact.contacts, contact.least_turn
-            )
-        })
-        .collect()
 }
