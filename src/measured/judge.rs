@@ -6,7 +6,7 @@ use super::flight::{Flight, FlightErrors, FreeFlight};
 use super::noise::NORMAL_95;
 use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
-use crate::scene::{PlateImpact, Shape};
+use crate::scene::Shape;
 
 /// Standard errors from which on a drift counts as found, and what it makes up over the record, over the step of the impact.
 const SIGNIFICANT_DRIFT: f64 = 5.0;
@@ -110,7 +110,7 @@ impl Alignment<'_> {
 
     /// Masses of the outer and the inner body, kg.
     fn masses(&self) -> [f64; 2] {
-        let PlateImpact { outer, inner, .. } = self.setup;
+        let (outer, inner) = (&self.setup.outer, &self.setup.inner);
         [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)]
     }
 
