@@ -3,9 +3,9 @@
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use impactcheck::body::kirchhoff::UnitPlate;
 use impactcheck::contact::{Hertz, PatchFlexibility, PatchTable, RADII, Residual};
-use impactcheck::dynamics::duhamel::Oscillator;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::kinds::plate_impact::shared::SharedBodies;
+use impactcheck::numerics::duhamel::Oscillator;
 use impactcheck::scene::{Edge, Model, Scene};
 use std::hint::black_box;
 use std::time::Duration;

@@ -12,7 +12,7 @@ use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
 use crate::sampling::latin_hypercube;
 use crate::scene::{self, DEFAULT_MODES, Field, Model, Scene, Template};
-use crate::study::sweep::DEFAULT_TOLERANCE;
+use crate::sweep::DEFAULT_TOLERANCE;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::time::Instant;

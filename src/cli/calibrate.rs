@@ -3,8 +3,8 @@
 use super::{Context, JsonArgument, compare_inputs};
 use crate::calibration::{Calibration, calibrate};
 use crate::error::{Error, ExitStatus, Result};
+use crate::format::{percent, prefixed, with_unit};
 use crate::measured::{Record, Speed};
-use crate::report::format::{percent, prefixed, with_unit};
 use crate::scene::{self, Model, Template};
 use clap::Args;
 use std::path::PathBuf;

@@ -4,9 +4,9 @@ use super::JsonArgument;
 use crate::comparison::{ComparisonDocument, Moves, moved};
 use crate::error::{ExitStatus, Result};
 use crate::file::write_file;
+use crate::format::{percent, prefixed, with_unit};
 use crate::reference::TargetError;
 use crate::report;
-use crate::report::format::{percent, prefixed, with_unit};
 use clap::Args;
 use std::path::PathBuf;
 

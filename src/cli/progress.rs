@@ -2,7 +2,7 @@
 
 use super::Context;
 use crate::reference::Progress;
-use crate::study::sweep;
+use crate::sweep;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc;

@@ -4,10 +4,11 @@ use super::asked_model::{self, Asked};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
+use crate::format::{prefixed, with_unit};
 use crate::kinds::plate_impact::shared::SharedBodies;
-use crate::report::format::{prefixed, with_unit};
-use crate::report::{self, TableFormat};
+use crate::report;
 use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
+use crate::table_format::TableFormat;
 use clap::Args;
 use std::path::PathBuf;
 

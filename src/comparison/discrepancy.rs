@@ -1,8 +1,8 @@
 //! The difference of one quantity between reduced model and reference, against its bound.
 
-use super::validation::Assessment;
 use super::verdict::{GateRules, Verdict};
 use crate::scene::Tolerance;
+use crate::uncertainty::validation::Assessment;
 use serde::Serialize;
 
 /// One row of the comparison. Values are in `unit`, `None` if a run did not determine them; these and what is not finite are

@@ -18,7 +18,6 @@ mod moved;
 mod reference_check;
 mod series;
 mod undecided;
-pub mod validation;
 mod verdict;
 
 pub use changed_tolerance::ChangedTolerance;
@@ -38,11 +37,11 @@ use crate::measured::Measured;
 use crate::result::{Curve, FlightSummary, Outcome, Quantity, SCHEMA_VERSION, Source, Summary};
 use crate::scene::{Model, Scene, Tolerances};
 use crate::uncertainty::Scatter;
+use crate::uncertainty::validation::{self, Assessment, numerical};
 use budget::QuantityBudget;
 use discrepancy::Scales;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use validation::{Assessment, numerical};
 
 /// The document of `compare` and `gate`.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,7 +1,7 @@
 //! One run of a program that nobody can vouch for: bounded in time and output, ended with all that it has started.
 
 use crate::interrupt::Running;
-use crate::reference::tail;
+use crate::process_output::tail;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};

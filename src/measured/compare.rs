@@ -7,13 +7,13 @@ use super::area::Area;
 use super::filter::{Filtered, SIGNALS};
 use super::noise::NORMAL_95;
 use super::record::Record;
-use crate::comparison::validation::Assessment;
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::CURVES;
 use crate::result::{CUT, Outcome};
 use crate::scene::Scene;
 use crate::uncertainty::Scatter;
+use crate::uncertainty::validation::Assessment;
 use serde::Serialize;
 
 /// Measured records of one scene beside its models; part of the comparison document.

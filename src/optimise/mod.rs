@@ -12,10 +12,10 @@ pub use objective::Objective;
 pub use robust::{Robust, RobustOptimum};
 
 use crate::error::{Error, Result};
+use crate::format::words;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::kinds::seal_seat::SeatMesh;
 use crate::kinds::{Series as Impacts, SeriesModel};
-use crate::report::format::words;
 use crate::report::{ChartPanel, Series, chart};
 use crate::result::{CUT, Outcome, SCHEMA_VERSION, Summary};
 use crate::scene::{Field, Model, Scene, Template};

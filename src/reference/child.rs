@@ -1,9 +1,9 @@
 //! A running `fem_reference`: its progress, what it says when it fails, and its end.
 
 use crate::interrupt::Running;
+use crate::process_output::{SHOWN, next_line, tail};
 use serde::Deserialize;
-use std::collections::VecDeque;
-use std::io::{BufRead, BufReader, Read};
+use std::io::BufReader;
 use std::process::{ChildStdout, Command, ExitStatus, Stdio};
 use std::thread::JoinHandle;
 
@@ -47,13 +47,6 @@ pub(super) struct Ending {
     pub(super) log: String,
 }
 
-/// Longest line that is looked at, in bytes.
-const MAX_LINE: u64 = 1 << 16;
-/// Lines of standard error that are kept.
-const LOG_LINES: usize = 12;
-/// Characters of a line that are shown.
-const SHOWN: usize = 200;
-
 /// Runs `command` to its end, handing on its progress.
 ///
 /// # Errors
@@ -86,26 +79,4 @@ fn listen(
         }
     }
     Ok((error, stray))
-}
-
-/// The next line, trimmed, bytes that are no text replaced; `None` at the end.
-fn next_line(reader: &mut impl BufRead) -> std::io::Result<Option<String>> {
-    let mut bytes = Vec::new();
-    let count = reader.take(MAX_LINE).read_until(b'\n', &mut bytes)?;
-    Ok((count > 0).then(|| String::from_utf8_lossy(&bytes).trim().to_owned()))
-}
-
-/// The last lines of a stream, read to its end so that the writer never waits.
-pub(crate) fn tail(stream: impl Read) -> String {
-    let mut reader = BufReader::new(stream);
-    let mut lines = VecDeque::new();
-    while let Ok(Some(line)) = next_line(&mut reader) {
-        if !line.is_empty() {
-            lines.push_back(line.chars().take(SHOWN).collect::<String>());
-        }
-        if lines.len() > LOG_LINES {
-            lines.pop_front();
-        }
-    }
-    Vec::from(lines).join("\n")
 }

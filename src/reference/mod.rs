@@ -22,7 +22,6 @@ mod trial;
 mod turn;
 
 pub use child::Progress;
-pub(crate) use child::tail;
 pub use curve_bands::CurveBands;
 pub use dents::Dents;
 pub use doctor::{Check, doctor};

@@ -1,9 +1,9 @@
 //! Accepted changes of tolerances and references, with their reasons.
 
 use super::Attachments;
-use super::format::words;
 use super::html::scrolled;
 use crate::comparison::ChangedTolerance;
+use crate::format::words;
 use maud::{Markup, html};
 
 /// Section of a scene's page; nothing if nothing was accepted.

@@ -1,7 +1,7 @@
 //! The impact moving: a still in the page, the animation beside it.
 
 use super::SceneReport;
-use super::format::{prefixed, with_unit};
+use crate::format::{prefixed, with_unit};
 use crate::scene::Scene;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;

@@ -1,8 +1,8 @@
 //! Bar chart of the discrepancy budget: a row per cause, a panel per quantity, one scale for all.
 
-use super::format::{percent, words};
 use super::polyline::Point;
 use crate::comparison::budget::QuantityBudget;
+use crate::format::{percent, words};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 

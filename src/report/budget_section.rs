@@ -1,10 +1,11 @@
 //! The discrepancy budget of a scene as a section of its page and of the Markdown report.
 
 use super::budget_figure::{budget_figure, cause_name};
-use super::format::{Prefixed, minus, prefixed, prose, with_unit, words};
 use super::html::{detailed, scrolled};
+use super::prose::prose;
 use crate::comparison::SceneComparison;
 use crate::comparison::budget::{Part, QuantityBudget};
+use crate::format::{Prefixed, minus, prefixed, with_unit, words};
 use maud::{Markup, html};
 
 const EXPLANATION: &str = "What each simplification of model B adds to its difference from the reference. They are \

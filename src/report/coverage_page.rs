@@ -1,10 +1,10 @@
 //! The page of coverage: features of scenes in rows, models and what they are held against in columns.
 
-use super::format::{percent_above, words};
 use super::html::{page, scrolled};
 use super::standing::Standing;
 use super::trust::size_class;
 use crate::coverage::{CLOSED_FORM, Coverage, FeatureCoverage, Partner};
+use crate::format::{percent_above, words};
 use maud::{Markup, html};
 
 /// Its name without ending, which no scene of a report may have.

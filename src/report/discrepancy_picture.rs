@@ -2,10 +2,10 @@
 //! reference's band and the tolerances. Abscissas are per cents of the row's width, so that type keeps its size on any screen.
 
 use super::colours::{Look, look};
-use super::format::{minus, model_name, percent, words};
 use super::html::named;
 use super::symmetric_log::SymmetricLog;
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
+use crate::format::{minus, model_name, percent, words};
 use maud::{Markup, html};
 
 /// Height of a model's lane in a row, and what a row has above and below the lanes, px.

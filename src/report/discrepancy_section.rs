@@ -1,9 +1,10 @@
 //! Discrepancies, curve metrics and checks of one reduced model as tables of the page.
 
-use super::format::{percent, prefixed, prose, significant, with_unit, words};
 use super::html::{badge, named, number, scrolled};
+use super::prose::prose;
 use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison, Verdict};
 use crate::curves::CurveMetrics;
+use crate::format::{percent, prefixed, significant, with_unit, words};
 use crate::result::ContactPatch;
 use crate::result::ContactPressure;
 use maud::{Markup, html};

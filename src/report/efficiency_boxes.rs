@@ -2,8 +2,8 @@
 
 use super::figure_geometry::{stroke, x2};
 use super::figure_lines::Line;
-use super::format::significant;
 use super::label_placement::Rect;
+use crate::format::significant;
 use maud::{Markup, html};
 
 const WIDTH: f64 = 122.0;

@@ -1,7 +1,7 @@
 //! Nested JSON as a table of the page.
 
-use super::format::{short, with_minus};
 use super::html::scrolled;
+use crate::format::{short, with_minus};
 use maud::{Markup, html};
 use serde_json::Value;
 

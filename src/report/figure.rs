@@ -9,10 +9,10 @@ use super::figure_geometry::{FONT_SIZE, Geometry, PanelOf, stroke, text_width, x
 use super::figure_lines::{Line, lines, measured_lines};
 use super::figure_panel::panel;
 use super::figure_residuals::residuals;
-use super::format::significant;
 use super::presentation;
 use super::ticks::{tick_label, ticks};
 use crate::curves::CommonAxis;
+use crate::format::significant;
 use maud::{Markup, PreEscaped, html};
 
 /// Height of a row of the legend in px.

@@ -2,8 +2,8 @@
 
 use super::SceneReport;
 use super::colours::look;
-use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};
+use crate::format::model_name;
 use crate::measured::Measured;
 use crate::result::{Outcome, Summary};
 

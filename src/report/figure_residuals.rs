@@ -2,10 +2,10 @@
 
 use super::figure_geometry::{FONT_SIZE, Geometry, PanelOf, x2};
 use super::figure_lines::Line;
-use super::format::minus;
 use super::polyline::{Point, path_within};
 use super::symmetric_log::SymmetricLog;
 use crate::curves::CommonAxis;
+use crate::format::minus;
 use maud::{Markup, html};
 
 /// Share of the largest residual about which the axis is linear; the page's script has the same.

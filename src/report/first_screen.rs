@@ -1,7 +1,7 @@
 //! The first screen of a scene's page: the scene, how far each model can be trusted in it, and the results in short.
 
-use super::format::prose;
 use super::html::{model_badge, named_as, scrolled};
+use super::prose::prose;
 use super::summary_column::Column;
 use super::trust::{LARGE, SMALL, accuracy, size_class, validated, validity};
 use super::{SceneReport, presentation};

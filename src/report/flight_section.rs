@@ -1,14 +1,15 @@
 //! Where the sphere flies after the impact: the chamber in section with its path, the launch's band and the seats, the energy
 //! landscape below it, the map of landings and the thresholds of vibration.
 
+use super::SceneReport;
 use super::figure_geometry::x2;
-use super::format::{model_name, prefixed, with_unit};
 use super::html::scrolled;
 use super::landing_map::map_picture;
 use super::scene_drawing::Scale;
 use super::vibration_chart::vibration_chart;
-use super::{SceneReport, format};
 use crate::flight::{Flight, Landscape, Launch, Setup, Vector, flight_of, fly};
+use crate::format;
+use crate::format::{model_name, prefixed, with_unit};
 use crate::result::{FlightSummary, Summary};
 use crate::scene::Scene;
 use maud::{Markup, PreEscaped, html};

@@ -1,12 +1,12 @@
 //! Messages for GitHub Actions: annotations at the tolerance that is exceeded, and the summary of the job.
 
-use super::format::{model_name, percent, significant, words};
 use super::{Report, SceneReport};
 use crate::ci::tolerance_edit::line_of;
 use crate::comparison::{
     AMONG, ChangedTolerance, Check, Discrepancy, GateRules, ModelComparison, SceneComparison, Undecided,
     Verdict,
 };
+use crate::format::{model_name, percent, significant, words};
 use std::path::Path;
 
 /// GitHub shows this many errors of a step, and as many warnings.

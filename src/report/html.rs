@@ -1,8 +1,8 @@
 //! The frame of every page, and what pages share. Pages are self-contained: style, script and figures are
 //! inside, nothing is loaded. Every number carries its SI value in `data-si`.
 
-use super::format::{Prefixed, with_unit, words};
 use crate::comparison::{ModelComparison, Verdict};
+use crate::format::{Prefixed, with_unit, words};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("assets/style.css");

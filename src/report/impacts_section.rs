@@ -1,8 +1,8 @@
 //! A series of impacts in the report: the course of the efficiency (Fig. 13), and what each impact comes to.
 
-use super::format::{prefixed, significant, with_unit};
 use super::html::{detailed, scrolled};
 use super::{ChartPanel, SceneReport, Series, chart};
+use crate::format::{prefixed, significant, with_unit};
 use crate::result::{Impact, Summary};
 use maud::{Markup, PreEscaped, html};
 

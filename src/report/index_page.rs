@@ -3,7 +3,6 @@
 use super::Report;
 use super::colours::look;
 use super::coverage_page;
-use super::format::{percent, prefixed, significant, words};
 use super::html::{EFFICIENCY, badge, named, number, page, scrolled, worded};
 use super::overview::{ModelOverview, Overview, RowOverview};
 use super::run_times::marked;
@@ -12,6 +11,7 @@ use super::thumbnail;
 use super::trust::size_class;
 use super::validated_map::ValidatedMap;
 use crate::comparison::{AMONG, Verdict};
+use crate::format::{percent, prefixed, significant, words};
 use maud::{Markup, PreEscaped, html};
 
 /// Sorting and searching; without it the table is what it is.

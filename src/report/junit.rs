@@ -2,9 +2,9 @@
 //! stops at the gate is a failure; what is not gated, or undecided and to be told, is skipped.
 
 use super::Report;
-use super::format::{percent, short};
 use crate::comparison::{Check, Discrepancy, GateRules, NO_RESULT, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, Result};
+use crate::format::{percent, short};
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
 /// JUnit XML. It holds no times, so that equal results give equal files.

@@ -1,9 +1,9 @@
 //! How near models and reference come to the bounds of the theories behind them.
 
 use super::discrepancy_section::pressures;
-use super::format::{prefixed, significant, with_unit, words};
 use super::html::scrolled;
 use crate::comparison::SceneComparison;
+use crate::format::{prefixed, significant, with_unit, words};
 use crate::result::{Limit, Summary};
 use maud::{Markup, html};
 

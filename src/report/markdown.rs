@@ -1,11 +1,11 @@
 //! The report as Markdown: verdicts, discrepancies and curve metrics as tables.
 
-use super::format::{model_name, percent, prefixed, significant, with_unit, words};
 use super::overview::{ModelOverview, Overview};
 use super::standing::{self, Standing};
 use super::validated_map::{self, ValidatedMap};
 use super::{Report, SceneReport, presentation};
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison};
+use crate::format::{model_name, percent, prefixed, significant, with_unit, words};
 use std::cmp::Reverse;
 
 /// Most characters of the document: comments on GitHub hold 65 536, and what posts it may add a link.

@@ -1,9 +1,10 @@
 //! The measured records in the report: alignment, efficiencies, curve metrics.
 
 use super::figure::phone_measured_figure;
-use super::format::{prefixed, prose, significant, with_unit, words};
 use super::html::{drawn, scrolled};
+use super::prose::prose;
 use super::{ChartPanel, SceneReport, Series, Theme, chart, measured_figure};
+use crate::format::{prefixed, significant, with_unit, words};
 use crate::kinds::plate_impact::CURVES;
 use crate::measured::{AlignedRecord, Measured, Partner};
 use maud::{Markup, html};

@@ -2,9 +2,9 @@
 
 use super::SceneReport;
 use super::field_raster::{Raster, View};
-use super::format::{prefixed, with_unit};
 use super::section_frame::{Bounds, Frame, Scale};
 use crate::error::Result;
+use crate::format::{prefixed, with_unit};
 use crate::reference::FieldMesh;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;

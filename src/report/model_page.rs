@@ -3,10 +3,10 @@
 use super::curves_chart::curves_chart;
 use super::facts::facts;
 use super::flight_section::flight_html;
-use super::format::{model_name, prefixed, with_unit};
 use super::html::{named, page, scrolled};
 use super::impacts_section::course;
 use super::{ChartPanel, chart};
+use crate::format::{model_name, prefixed, with_unit};
 use crate::result::{History, Outcome, Summary};
 use crate::scene::Scene;
 use maud::{Markup, PreEscaped, html};

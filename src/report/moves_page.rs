@@ -2,12 +2,12 @@
 
 use super::colours::look;
 use super::discrepancy_picture::{at, bar, mark, scale};
-use super::format::{percent, prefixed, with_unit, words};
 use super::html::{page, scrolled};
 use super::index_page;
 use super::symmetric_log::SymmetricLog;
 use super::trust::size_class;
 use crate::comparison::{Moved, MovedVerdict, Moves};
+use crate::format::{percent, prefixed, with_unit, words};
 use maud::{Markup, PreEscaped, html};
 
 /// Moves that are shown; the document has them all.

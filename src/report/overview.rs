@@ -1,9 +1,9 @@
 //! What tables of several scenes show of each: data of its own, so that it can outlive the run that made it.
 
 use super::SceneReport;
-use super::format::model_name;
 use super::thumbnail::thumbnail;
 use crate::comparison::{Discrepancy, ModelComparison, Verdict};
+use crate::format::model_name;
 use crate::result::Outcome;
 use serde::{Deserialize, Serialize};
 

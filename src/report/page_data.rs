@@ -4,8 +4,8 @@ use super::SceneReport;
 use super::colours::look;
 use super::figure_geometry::PanelOf;
 use super::figure_lines::reference_name;
-use super::format::model_name;
 use crate::curves::{CommonAxis, SampledCurve, sample};
+use crate::format::model_name;
 use crate::reference::CurveBands;
 use serde_json::{Value, json};
 

@@ -1,8 +1,8 @@
 //! A plate impact in section, to scale, and in numbers.
 
 use super::figure_geometry::x2;
-use super::format::{measure, short};
 use super::scene_drawing::{Scale, materials};
+use crate::format::{measure, short};
 use crate::scene::{Edge, Material, PlateImpact, Shape};
 use maud::{Markup, html};
 

@@ -1,9 +1,9 @@
 //! Axes of charts: a range, linear or logarithmic, its marks, and the frame that two of them make.
 
 use super::figure_geometry::x2;
-use super::format::{short, with_minus};
 use super::polyline::Point;
 use super::ticks::{tick_label, ticks};
+use crate::format::{short, with_minus};
 use maud::{Markup, html};
 
 /// A range of values on an axis.

@@ -1,8 +1,8 @@
 //! The reference beside another program's solution: of a scene's page, of the Markdown report and for the terminal.
 
-use super::format::{percent, prefixed, significant, with_unit, words};
 use super::html::{named, number, scrolled};
 use crate::comparison::{BandVerdict, ReferenceCheck, ReferenceRow};
+use crate::format::{percent, prefixed, significant, with_unit, words};
 use maud::{Markup, html};
 
 /// The section of a scene's page; nothing if there is no other solution.

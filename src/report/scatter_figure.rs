@@ -2,9 +2,9 @@
 
 use super::chart::{FONT_SIZE, LEFT, sheet};
 use super::figure_geometry::x2;
-use super::format::{percent, prefixed, words};
 use super::plot_axis::{Axis, Plot};
 use super::polyline::path;
+use crate::format::{percent, prefixed, words};
 use crate::uncertainty::{QuantityScatter, Scatter, Share};
 use maud::{Markup, html};
 

@@ -1,8 +1,8 @@
 //! What drawings of scenes to scale share: places, the bar that gives the scale, materials in numbers.
 
 use super::figure_geometry::x2;
-use super::format::{measure, short};
 use super::ticks::round_below;
+use crate::format::{measure, short};
 use crate::scene::Material;
 use maud::{Markup, html};
 

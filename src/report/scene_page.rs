@@ -3,11 +3,11 @@
 use super::discrepancy_section::{checks, contradictions, model_section};
 use super::facts::facts;
 use super::figure::phone_figure;
-use super::format::{model_name, prefixed, with_unit};
 use super::html::{badge, model_badge, page};
 use super::section::{Section, contents, sections};
 use super::validated_map::ValidatedMap;
 use super::{SceneReport, Theme, discrepancy_picture, figure, first_screen, interactive, presentation};
+use crate::format::{model_name, prefixed, with_unit};
 use crate::validated::Place;
 use maud::{Markup, html};
 

@@ -2,7 +2,6 @@
 
 use super::attachments::instant_of_peak;
 use super::figure_geometry::PanelOf;
-use super::format::{model_name, prefixed, significant, with_unit};
 use super::html::{named, scrolled};
 use super::presentation::{Drawing, Presentation};
 use super::run_times::marked;
@@ -10,6 +9,7 @@ use super::seal_seat_picture::{self, Arrow, arrow_legend, seat_picture};
 use super::section::Section;
 use super::summary_column::{Column, degrees};
 use super::{Attachments, SceneReport, Theme, figure};
+use crate::format::{model_name, prefixed, significant, with_unit};
 use crate::kinds::seal_seat::SeatQuantities;
 use crate::project::project_root;
 use crate::reference::Stored;

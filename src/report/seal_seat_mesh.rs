@@ -3,8 +3,8 @@
 use super::SceneReport;
 use super::field_raster::cividis;
 use super::figure_geometry::x2;
-use super::format::{prefixed, with_unit};
 use super::section_frame::{Bounds, Frame, Place, Scale};
+use crate::format::{prefixed, with_unit};
 use crate::reference::MeshSection;
 use maud::{Markup, html};
 

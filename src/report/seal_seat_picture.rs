@@ -2,9 +2,9 @@
 
 use super::Theme;
 use super::figure_geometry::x2;
-use super::format::{measure, short};
 use super::scene_drawing::{Scale, materials};
 use super::summary_column::degrees;
+use crate::format::{measure, short};
 use crate::scene::{SealSeat, SphereBody};
 use maud::{Markup, PreEscaped, html};
 

@@ -1,6 +1,6 @@
 //! The few quantities that tell a result in short, and how far a model is from the reference in them.
 
-use super::format::{minus, percent, prefixed, with_unit};
+use crate::format::{minus, percent, prefixed, with_unit};
 use crate::result::Summary;
 
 /// A column of the table of a scene's results in short.

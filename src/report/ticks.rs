@@ -1,6 +1,6 @@
 //! Round numbers for the marks of an axis.
 
-use super::format::minus;
+use crate::format::minus;
 
 /// Fewer marks than these don't show a scale.
 const LEAST: usize = 3;

@@ -2,10 +2,10 @@
 
 use super::Attachments;
 use super::figure_geometry::x2;
-use super::format::{prefixed, significant, with_unit, words};
 use super::html::{badge, scrolled};
 use super::polyline::path;
 use crate::ci::trend::Trend;
+use crate::format::{prefixed, significant, with_unit, words};
 use maud::{Markup, html};
 
 /// Size of a sparkline in px, and the most commits it shows.

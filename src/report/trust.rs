@@ -1,8 +1,8 @@
 //! How far a model can be trusted in its scene, in a sentence: what it hits, how well, and whether its theory holds there.
 
-use super::format::{percent_above, significant, words};
 use super::summary_column::Column;
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
+use crate::format::{percent_above, significant, words};
 use crate::result::Summary;
 use crate::scene::{PlateImpact, Scene};
 use crate::validated::{MEASURES, Place, Validation, Vicinity};

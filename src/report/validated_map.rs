@@ -3,10 +3,10 @@
 
 use super::discrepancy_picture::mark;
 use super::figure_geometry::{FONT_SIZE, x2};
-use super::format::{percent, percent_above, significant, words};
 use super::html::scrolled;
 use super::plot_axis::{Axis, Plot};
 use super::trust::size_class;
+use crate::format::{percent, percent_above, significant, words};
 use crate::validated::{MEASURES, NEAR, Place, Row, Validation};
 use maud::{Markup, PreEscaped, html};
 

@@ -1,10 +1,11 @@
 //! What the differences show when inputs are uncertain: a section of the page, of the Markdown report and lines for the terminal.
 
-use super::format::{prefixed, prose, with_unit, words};
 use super::html::{named, number, scrolled};
-use crate::comparison::validation::{Assessment, Shown, line};
+use super::prose::prose;
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
+use crate::format::{prefixed, with_unit, words};
 use crate::uncertainty::WANTED;
+use crate::uncertainty::validation::{Assessment, Shown, line};
 use maud::{Markup, html};
 
 const EXPLANATION: &str = "The scene says how uncertain its inputs are. E = S - D is the difference of a model from the reference, u_val the standard \

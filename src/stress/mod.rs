@@ -17,7 +17,7 @@ use crate::dynamics::integrate;
 use crate::dynamics::integration::{Integration, Options};
 use crate::error::{Error, Result};
 use crate::result::SCHEMA_VERSION;
-use crate::study::sweep;
+use crate::sweep;
 use draw::{DRY, MOVING, WET};
 use independent::{Answer, Comparison};
 use rayon::prelude::*;

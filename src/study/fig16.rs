@@ -1,6 +1,6 @@
 //! Fig. 16 of the paper: efficiency over the radius of plates of several thicknesses, and the best radius.
 
-use super::parameter::{Runner, contact_over_half_period, impact, linear, titanium};
+use super::parameter::{Runner, impact, linear, titanium};
 use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
 use crate::error::Result;
 use crate::kinds::plate_impact::PlateQuantities;
@@ -81,7 +81,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
                 result.efficiency,
                 result.inner_contact_end,
                 result.first_frequency,
-                contact_over_half_period(result),
+                result.contact_over_half_period(),
             ];
             numbers.map(Cell::Number).into()
         })
@@ -96,7 +96,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             format!("{at}, best radius: contact of the inner sphere over half the first period"),
             "1",
             Some(1.0),
-            Some(contact_over_half_period(&at_best)),
+            Some(at_best.contact_over_half_period()),
             APPROXIMATELY,
         ),
         thinner_is_better(&curves),

@@ -1,6 +1,6 @@
 //! Fig. 17 of the paper: efficiency over the tip radius of compact bodies with the mass of the spheres.
 
-use super::parameter::{Runner, contact_over_half_period, impact, logarithmic, monotone, titanium};
+use super::parameter::{Runner, impact, logarithmic, monotone, titanium};
 use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
 use crate::error::Result;
 use crate::scene::{Edge, Model, PlateImpact, Shape};
@@ -59,7 +59,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
                 result.outer_force_peak,
                 result.inner_force_peak,
                 result.inner_contact_end,
-                contact_over_half_period(result),
+                result.contact_over_half_period(),
             ];
             numbers.map(Cell::Number).into()
         })

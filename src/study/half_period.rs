@@ -1,7 +1,7 @@
 //! Section 4.1 of the paper: the efficiency is best when the contact lasts about half the first period of the plate.
 
 use super::fig16::{APPROXIMATELY, RADII, best_radius, plate_impact};
-use super::parameter::{Runner, contact_over_half_period, linear};
+use super::parameter::{Runner, linear};
 use super::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
 use crate::error::Result;
 use crate::scene::Model;
@@ -38,7 +38,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             let numbers = [
                 thickness,
                 *radius,
-                contact_over_half_period(&result),
+                result.contact_over_half_period(),
                 result.efficiency,
                 result.efficiency / best.efficiency,
             ];
@@ -52,7 +52,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             ),
             "1",
             Some(1.0),
-            Some(contact_over_half_period(&best)),
+            Some(best.contact_over_half_period()),
             APPROXIMATELY,
         ));
     }

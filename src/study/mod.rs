@@ -20,7 +20,6 @@ pub mod seal_seat;
 pub mod seal_seat_cost;
 pub mod seal_seat_direction;
 pub mod shakedown;
-pub mod sweep;
 pub mod table2;
 pub mod test_bed;
 pub mod valve;

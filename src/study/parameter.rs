@@ -99,12 +99,6 @@ impl Runner {
     }
 }
 
-/// Length of the inner contact, through which the energy passes, over half the first period of the plate
-/// (section 4.1). The outer sphere may touch again later; that does not reach the inner one any more.
-pub fn contact_over_half_period(result: &PlateQuantities) -> f64 {
-    result.inner_contact_end * 2.0 * result.first_frequency
-}
-
 /// `count` values from `low` to `high`, both included, in equal steps.
 pub fn linear(low: f64, high: f64, count: usize) -> Vec<f64> {
     (0..count).map(|k| low + (high - low) * k as f64 / (count - 1) as f64).collect()

@@ -3,7 +3,7 @@
 use super::{Cell, Claim, Study, Verdict};
 use crate::error::{Error, Result};
 use crate::file::write_file;
-use crate::report::format::significant;
+use crate::format::significant;
 use crate::report::png;
 use std::path::{Path, PathBuf};
 

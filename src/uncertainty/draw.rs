@@ -3,7 +3,7 @@
 
 use super::design::Design;
 use crate::scene::Uncertainty;
-use crate::study::sweep::Draw;
+use crate::sweep::Draw;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// What impact number 0 has.

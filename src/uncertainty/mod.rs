@@ -9,6 +9,7 @@ pub mod estimate;
 mod request;
 mod scatter;
 mod study;
+pub mod validation;
 
 pub use draw::Inputs;
 pub use request::{Request, Samples, WANTED};

@@ -7,9 +7,9 @@ use super::request::{Request, Samples};
 use super::scatter::{Impacts, Scatter};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::PlateQuantities;
-use crate::report::TableFormat;
 use crate::scene::{Field, Scene, Template, Uncertainty};
-use crate::study::sweep::{Outcome, Plan, Progress, Record, Shard, Table, in_memory, run};
+use crate::sweep::{Outcome, Plan, Progress, Record, Shard, Table, in_memory, run};
+use crate::table_format::TableFormat;
 use std::path::{Path, PathBuf};
 
 /// Rows of the first look: 16 of each sequence.

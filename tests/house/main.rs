@@ -44,7 +44,7 @@ fn files_outside_the_kinds_folders_that_name_a_kind() {
 #[test]
 fn rooms_that_import_each_other() {
     let found: Vec<String> = PACKAGES.iter().flat_map(|package| mutual(package)).collect();
-    ratchet("pairs of rooms that import each other", &found, 10);
+    ratchet("pairs of rooms that import each other", &found, 4);
 }
 
 /// The pairs of `package`, with a file of either side.

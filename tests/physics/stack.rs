@@ -6,11 +6,11 @@ use approx::assert_relative_eq;
 use impactcheck::actuator::{Stack, Supply};
 use impactcheck::body::kirchhoff;
 use impactcheck::dynamics::MovingBody;
-use impactcheck::dynamics::duhamel::Oscillator;
 use impactcheck::dynamics::integration::{Integration, Options};
 use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
+use impactcheck::numerics::duhamel::Oscillator;
 use impactcheck::scene::{Model, PlateImpact, Scene, Shape};
 use impactcheck::study::actuators::STACK;
 

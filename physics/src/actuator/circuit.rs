@@ -8,8 +8,8 @@
 //! ever excites.
 
 use super::stack::{MODES, RodMode, Stack, Supply};
-use crate::dynamics::duhamel::Oscillator;
 use crate::error::{Error, Result};
+use crate::numerics::duhamel::{Feed, Oscillator};
 use nalgebra::{Complex, DMatrix, Schur};
 
 /// Iterations for the poles, and for their last digits.
@@ -19,15 +19,6 @@ const POLISHING: usize = 6;
 const REAL: f64 = 1e-9;
 /// Second pole of a real one over it.
 const QUICKER: f64 = 2.0;
-
-/// What a force on the tip does to an oscillator besides what its own participation says.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Feed {
-    /// Further participation by which the force acts on the rate, kg^(-1/2).
-    pub push: f64,
-    /// Participation by which it acts on the coordinate itself, s kg^(-1/2).
-    pub slip: f64,
-}
 
 /// A mode of stack and circuit.
 #[derive(Debug, Clone, Copy)]

@@ -4,10 +4,9 @@
 //! time. Nothing depends on the order of the oscillators; the last block is filled up with rigid coordinates no
 //! contact acts on, which stay at rest.
 
-use super::duhamel::{MOMENTS, Oscillator};
-use super::stages::{STAGES, Stages, powers};
 use super::system::{System, dot};
-use crate::actuator::circuit::Feed;
+use crate::numerics::duhamel::{Feed, MOMENTS, Oscillator};
+use crate::numerics::stages::{STAGES, Stages, powers};
 use bytemuck::cast;
 use wide::{f64x4, u64x4};
 

@@ -1,7 +1,7 @@
 //! One time step: the contact forces are polynomials through Gauss points, the oscillators answer exactly.
 //!
 //! Within a step of length h both forces are interpolated through their values at the STAGES Gauss-Legendre
-//! points c_j h. The oscillators' answer to such a force is exact (see [`crate::dynamics::duhamel`]), whatever omega h is:
+//! points c_j h. The oscillators' answer to such a force is exact (see [`crate::numerics::duhamel`]), whatever omega h is:
 //! high modes neither limit the step nor resonate with it. What is left is a system for the forces at the
 //! Gauss points whose size does not depend on the number of modes. With smooth forces the velocities
 //! after the step are of order 2 STAGES (Gauss quadrature), the forces inside of order STAGES.
@@ -10,10 +10,9 @@
 //! answer with a motion that comes back undamped. Radau's points, of which the last is the end, stop it
 //! (L-stability: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5), at order 2 STAGES - 1.
 
-use super::duhamel::Oscillator;
-use super::stages::{STAGES, Stages};
-use crate::actuator::circuit::Feed;
+use crate::numerics::duhamel::{Feed, Oscillator};
 use crate::numerics::quadrature::{gauss_legendre, gauss_radau};
+use crate::numerics::stages::{STAGES, Stages};
 use wide::f64x4;
 
 /// Points of a step at which a contact is known: its start, the Gauss points, its end.

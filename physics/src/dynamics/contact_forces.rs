@@ -9,9 +9,9 @@ use super::bank::Bank;
 use super::collocation::{Collocation, POINTS, Points};
 use super::contact_ledger::work;
 use super::point_laws::{HertzPoints, PointLaw, ResidualPoints, Visit};
-use super::stages::{STAGES, Stages};
 use super::step_table::StepTable;
 use super::system::{System, dot};
+use crate::numerics::stages::{STAGES, Stages};
 use wide::f64x4;
 
 /// Sweeps after which a step counts as too long.

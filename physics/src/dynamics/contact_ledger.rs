@@ -1,8 +1,8 @@
 //! What is booked about one contact: impulse, peak force, touches and releases.
 
 use super::collocation::{Collocation, crossing};
-use super::stages::{STAGES, Stages};
 use super::system::dot;
+use crate::numerics::stages::{STAGES, Stages};
 
 /// Course of one contact over one step, known at `P` points of it: start, Gauss (Radau) points and end.
 pub struct StepCourse<const P: usize> {

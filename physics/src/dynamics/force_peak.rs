@@ -86,7 +86,7 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
     /// Distance in N between the force at the end (the start) and the polynomial through the nodes.
     fn defect(&self, contact: usize) -> f64 {
         let force = &self.force[contact];
-        let nodes = &force[1..=super::stages::STAGES];
+        let nodes = &force[1..=crate::numerics::stages::STAGES];
         let [start, end] = self.collocation.ends.map(|weights| dot(&weights, nodes));
         (force[0] - start).abs().max((force[P - 1] - end).abs())
     }

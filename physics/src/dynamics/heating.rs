@@ -1,9 +1,9 @@
 //! Heat in the resistor of a stack's drive: the square of a current with all frequencies of the rod, summed up over each step.
 
 use super::collocation::Collocation;
-use super::duhamel::Oscillator;
-use super::stages::{STAGES, Stages};
 use super::system::{System, dot};
+use crate::numerics::duhamel::Oscillator;
+use crate::numerics::stages::{STAGES, Stages};
 
 /// Heat of a decay that is not looked at, over the energy that the buffer gives the free stack.
 const NEGLIGIBLE: f64 = 1e-14;

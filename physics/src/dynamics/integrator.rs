@@ -13,10 +13,10 @@ use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::stages::{STAGES, Stages};
 use super::step_bounds::{Bounds, EnergyAccount, base_step, force_scale, momentum_scale};
 use super::system::{System, dot};
 use crate::error::{Error, Result};
+use crate::numerics::stages::{STAGES, Stages};
 use std::sync::LazyLock;
 use wide::f64x4;
 

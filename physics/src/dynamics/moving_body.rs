@@ -1,12 +1,12 @@
 //! A body beside the plate as oscillators, in the state in which the impact begins.
 
-use super::duhamel::Oscillator;
 use super::system::dot;
 use crate::actuator::beam::Release;
 use crate::actuator::cantilever;
-use crate::actuator::circuit::{self, Circuit, Feed};
+use crate::actuator::circuit::{self, Circuit};
 use crate::actuator::stack::{MODES, RodMode, Stack};
 use crate::error::{Error, Result};
+use crate::numerics::duhamel::{Feed, Oscillator};
 use crate::numerics::root::first_fall;
 use crate::result::Drive;
 use crate::scene::{Material, Outer, PlateImpact, Shape};

@@ -2,9 +2,9 @@
 //!
 //! The point's own forces act back on its approaches at once; a visit is one Newton step for both together.
 
-use super::stages::{STAGES, Stages};
 use super::step_table::StepTable;
 use crate::contact::{Hertz, Residual, State};
+use crate::numerics::stages::{STAGES, Stages};
 use wide::f64x4;
 
 /// What is known of a Gauss point from the visit before.

@@ -2,9 +2,9 @@
 
 use super::collocation::{Collocation, POINTS};
 use super::integration::Options;
-use super::stages::Stages;
 use super::system::{System, dot};
 use crate::error::Result;
+use crate::numerics::stages::Stages;
 use crate::result::{Curve, History};
 
 /// The curves of outer body (mass average), plate (around its centre, mean of both faces) and inner body

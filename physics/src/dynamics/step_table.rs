@@ -2,9 +2,9 @@
 
 use super::bank::{Bank, Block};
 use super::collocation::Collocation;
-use super::duhamel::MOMENTS;
-use super::stages::{STAGES, Stages, powers};
 use super::system::dot;
+use crate::numerics::duhamel::MOMENTS;
+use crate::numerics::stages::{STAGES, Stages, powers};
 use wide::f64x4;
 
 /// Everything about a step of one length that does not depend on the state.

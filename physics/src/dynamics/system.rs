@@ -7,13 +7,13 @@
 //! Contact 0 joins outer body and plate, contact 1 plate and inner body.
 
 use super::centre::LocalCentre;
-use super::duhamel::Oscillator;
 use super::moving_body::MovingBody;
 use crate::actuator::Stack;
-use crate::actuator::circuit::{Account, Circuit, Feed};
+use crate::actuator::circuit::{Account, Circuit};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::contact::{Hertz, PatchFlexibility, Residual};
+use crate::numerics::duhamel::{Feed, Oscillator};
 use crate::result::Drive;
 use crate::scene::{PlateImpact, Shape};
 use std::ops::Range;

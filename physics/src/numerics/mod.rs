@@ -1,9 +1,11 @@
-//! Linear algebra, quadrature and roots that know nothing of mechanics.
+//! Linear algebra, quadrature, roots and oscillators that know nothing of bodies.
 
 pub(crate) mod chebyshev;
 pub(crate) mod cholesky;
+pub mod duhamel;
 pub(crate) mod eigenmodes;
 pub mod least_squares;
 pub mod quadrature;
 pub(crate) mod root;
+pub(crate) mod stages;
 pub(crate) mod vectors;

@@ -3,11 +3,11 @@
 use super::forces::Forces;
 use crate::curves::peak;
 use crate::error::Result;
+use crate::format::{minus, model_name};
 use crate::movement::Movement;
 use crate::reference::FieldMesh;
 use crate::report::colours::{hex, of_model};
 use crate::report::field_raster::{Raster, View};
-use crate::report::format::{minus, model_name};
 use crate::report::ticks::round_below;
 use crate::result::Outcome;
 use crate::scene::{PlateImpact, Scene};

@@ -5,9 +5,9 @@
 //! matrix exponential.
 
 use super::step_force::StepForce;
-use crate::dynamics::duhamel::Oscillator;
 use crate::dynamics::system::System;
 use crate::material::Relaxation;
+use crate::numerics::duhamel::Oscillator;
 use nalgebra::DMatrix;
 use std::ops::Range;
 

@@ -7,8 +7,8 @@
 
 use super::solve::{Defect, Factors, Trial, Wet};
 use super::table::Table;
-use crate::dynamics::stages::STAGES;
 use crate::dynamics::system::INNER;
+use crate::numerics::stages::STAGES;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 

@@ -2,8 +2,8 @@
 
 use super::solve::Trial;
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS};
-use crate::dynamics::stages::{STAGES, Stages};
 use crate::dynamics::system::dot;
+use crate::numerics::stages::{STAGES, Stages};
 
 /// Length of a step over that of the step before up to which its forces are extrapolated.
 const FARTHEST: f64 = 2.5;

@@ -15,11 +15,11 @@ use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
 use crate::dynamics::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::stages::{STAGES, Stages};
 use crate::dynamics::step_bounds::{Bounds, EnergyAccount, base_step, momentum_scale};
 use crate::dynamics::system::{System, dot};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::error::{Error, Result};
+use crate::numerics::stages::{STAGES, Stages};
 use std::collections::BTreeMap;
 
 /// Steps after which a run counts as endless.

@@ -7,9 +7,9 @@
 //! Newton's step with the whole matrix.
 
 use super::table::{Motion, Table};
-use crate::dynamics::stages::{STAGES, Stages};
 use crate::dynamics::system::{INNER, System};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
+use crate::numerics::stages::{STAGES, Stages};
 use faer::linalg::solvers::PartialPivLu;
 
 /// Iterations for the forces of a step; more means that the step is too long.

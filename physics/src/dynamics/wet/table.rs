@@ -1,8 +1,8 @@
 //! Answers of all oscillators at all points of a step of one length.
 
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS, Response};
-use crate::dynamics::stages::{STAGES, Stages};
 use crate::dynamics::system::System;
+use crate::numerics::stages::{STAGES, Stages};
 
 /// Everything about a step of one length that does not depend on the state.
 #[derive(Debug, Clone)]

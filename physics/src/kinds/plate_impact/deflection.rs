@@ -4,9 +4,9 @@ use super::joined::{continuum_shapes, kirchhoff_system};
 use super::predictor::Predictor;
 use super::reduced::Reduced;
 use crate::body::kirchhoff::{self, UnitPlates};
-use crate::dynamics::duhamel::Oscillator;
 use crate::dynamics::system::PLATE;
 use crate::error::{Error, Result};
+use crate::numerics::duhamel::Oscillator;
 use crate::result::History;
 use crate::scene::{DEFAULT_MODES, Model, Scene};
 

@@ -32,6 +32,14 @@ quantities! {
     }
 }
 
+impl PlateQuantities {
+    /// Length of the inner contact, through which the energy passes, over half the first period of the plate
+    /// (section 4.1). The outer sphere may touch again later; that does not reach the inner one any more.
+    pub fn contact_over_half_period(&self) -> f64 {
+        self.inner_contact_end * 2.0 * self.first_frequency
+    }
+}
+
 /// Motion of one body along z. Shapes (samples).
 #[derive(Debug, Clone, Copy)]
 pub struct Motion<'a> {

@@ -1,9 +1,9 @@
 //! Exact motion of the seat's modes between two kicks.
 
 use super::system::{State, System};
-use crate::dynamics::duhamel::Oscillator;
 use crate::dynamics::memory::Mode;
 use crate::material::Relaxation;
+use crate::numerics::duhamel::Oscillator;
 
 /// The flow of all modes over one step.
 pub(super) enum Drift<'a> {

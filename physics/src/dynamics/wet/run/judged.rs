@@ -1,10 +1,10 @@
 //! What a solved wet step is wrong by.
 
 use super::{Stepper, joined};
-use crate::dynamics::stages::STAGES;
 use crate::dynamics::step_bounds::{force_scale, peak_share};
 use crate::dynamics::system::dot;
 use crate::dynamics::wet::touch_between;
+use crate::numerics::stages::STAGES;
 use std::cell::LazyCell;
 
 /// Share of a step's admissible defect at which its iteration may end, if rounding errors permit.

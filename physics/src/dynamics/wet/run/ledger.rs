@@ -3,10 +3,10 @@
 use super::{Stepper, joined};
 use crate::dynamics::contact_ledger::work;
 use crate::dynamics::integration::FluidAccount;
-use crate::dynamics::stages::Stages;
 use crate::dynamics::system::INNER;
 use crate::dynamics::wet::FluidLoad;
 use crate::dynamics::wet::solve::END;
+use crate::numerics::stages::Stages;
 
 /// Rounding errors of coordinates that a step's work may be off by.
 const ROUNDINGS: f64 = 64.0;

@@ -7,7 +7,6 @@
 //! started by the power series, it is stable when omega t is small, a rigid motion included.
 
 use super::stages::STAGES;
-use crate::actuator::circuit::Feed;
 
 /// Number of moments of one time: s', s, S_0 ... S_(STAGES-1).
 pub const MOMENTS: usize = STAGES + 2;
@@ -39,6 +38,15 @@ pub struct Oscillator {
     pub omega: f64,
     /// Decay rate alpha = zeta omega in 1/s.
     pub alpha: f64,
+}
+
+/// What a force on a tip does to an oscillator besides what its own participation says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Feed {
+    /// Further participation by which the force acts on the rate, kg^(-1/2).
+    pub push: f64,
+    /// Participation by which it acts on the coordinate itself, s kg^(-1/2).
+    pub slip: f64,
 }
 
 impl Oscillator {

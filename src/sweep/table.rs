@@ -5,8 +5,7 @@ use super::record::Record;
 use super::run::{Shard, read_all};
 use crate::error::{Error, Result};
 use crate::file::write_file;
-use crate::report::TableFormat;
-use crate::study::SCHEMA_VERSION;
+use crate::table_format::TableFormat;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::file::metadata::KeyValue;
@@ -18,6 +17,8 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// Version of the document.
+const SCHEMA_VERSION: u32 = 1;
 /// Rows of a row group of a Parquet file.
 const ROW_GROUP: usize = 100_000;
 

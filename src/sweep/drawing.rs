@@ -5,11 +5,10 @@ use super::record::Record;
 use super::references::Known;
 use super::table::Table;
 use crate::error::{Error, Result};
+use crate::format::{prefixed, words};
 use crate::kinds::plate_impact::PlateQuantities;
-use crate::report::format::{prefixed, words};
 use crate::report::{ChartPanel, ColourMap, Series, chart, colour_maps};
 use crate::scene::{Model, suggestion};
-use crate::study::parameter::contact_over_half_period;
 
 /// The paper's rule for the optimum (section 4.1), which results can be held against.
 const RULE: &str = "paper: best where contact ≈ half the first period";
@@ -179,7 +178,7 @@ fn map(table: &Table, quantity: Drawn, model: Model, known: &[Known]) -> ColourM
 
 fn over_half_period(table: &Table, record: &Record) -> f64 {
     let quantities = PlateQuantities::of(|name| table.plan().value(record, name));
-    quantities.map_or(f64::NAN, |quantities| contact_over_half_period(&quantities))
+    quantities.map_or(f64::NAN, |quantities| quantities.contact_over_half_period())
 }
 
 /// Where a curve is 1, linearly between its points.

@@ -8,7 +8,7 @@ pub type Stages = [f64; STAGES];
 
 /// t^p / p! for p < STAGES.
 #[inline(always)]
-pub(super) fn powers(t: f64) -> [f64; STAGES] {
+pub(crate) fn powers(t: f64) -> [f64; STAGES] {
     let mut powers = [1.0; STAGES];
     for p in 1..STAGES {
         powers[p] = powers[p - 1] * t / p as f64;

@@ -1,7 +1,5 @@
 //! Numbers and names as people read them: SI prefixes, significant digits, plain words.
 
-use maud::{Markup, html};
-
 /// Unit with a prefix: a value in the unit times `factor` is the number to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prefixed {
@@ -59,14 +57,14 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
 }
 
 /// Six significant digits without zeros behind them, for plain text.
-pub(super) fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse().unwrap_or(value);
     let plain = format!("{rounded}");
     if plain.len() <= 12 { plain } else { format!("{rounded:e}") }
 }
 
 /// A true minus sign.
-pub(super) fn minus(text: &str) -> String {
+pub(crate) fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
@@ -84,7 +82,7 @@ pub(crate) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
 }
 
 /// A given value in its unit, with as many digits as it was given with.
-pub(super) fn measure(value: f64, unit: &str) -> String {
+pub(crate) fn measure(value: f64, unit: &str) -> String {
     if value == 0.0 {
         return "0".into();
     }
@@ -112,7 +110,7 @@ pub(crate) fn percent(relative: Option<f64>) -> String {
 }
 
 /// A relative size in per cent with two significant digits, rounded up: what is within it is within it.
-pub(super) fn percent_above(relative: f64) -> String {
+pub(crate) fn percent_above(relative: f64) -> String {
     let value = 100.0 * relative.abs();
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0 %".into() } else { "–".into() };
@@ -123,16 +121,8 @@ pub(super) fn percent_above(relative: f64) -> String {
     format!("{above:.*} %", decimals.max(0.0) as usize)
 }
 
-/// A sentence made for a terminal as a page shows it: what stands in backticks as code, minus signs as such.
-pub(super) fn prose(sentence: &str) -> Markup {
-    let parts = sentence.split('`').enumerate();
-    html! {
-        @for (k, part) in parts { @if k % 2 == 1 { code { (part) } } @else { (with_minus(part)) } }
-    }
-}
-
 /// Text in which a hyphen before a number, or in its exponent, is a true minus sign.
-pub(super) fn with_minus(text: &str) -> String {
+pub(crate) fn with_minus(text: &str) -> String {
     let characters: Vec<char> = text.chars().collect();
     let at = |k: Option<usize>| k.and_then(|k| characters.get(k)).copied().unwrap_or(' ');
     let is_minus = |k: usize| {
@@ -171,21 +161,12 @@ pub(crate) fn model_name(model: &str, modes: Option<usize>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{percent, percent_above, prefixed, prose, short, significant, with_minus, with_unit, words};
+    use super::{percent, percent_above, prefixed, short, significant, with_unit, words};
 
     #[test]
     fn sizes_are_rounded_up() {
         let sizes = [0.000_185_8, 0.0017, 0.0996, 0.406_4, 1.096_8, 0.0].map(percent_above);
         assert_eq!(sizes, ["0.019 %", "0.17 %", "10 %", "41 %", "110 %", "0 %"]);
-    }
-
-    #[test]
-    fn sentences_for_terminals_become_prose() {
-        assert_eq!(
-            with_minus("-0.4 (-1e-3 rad, scene-r10, --np 2, 2026-01-02)"),
-            "−0.4 (−1e−3 rad, scene-r10, --np 2, 2026-01-02)"
-        );
-        assert_eq!(prose("set `x --y -1` to -1").into_string(), "set <code>x --y -1</code> to −1");
     }
 
     #[test]

@@ -7,7 +7,7 @@
 //! A reference solves the same scene with the same nominal inputs, so that their scatter is no part of its difference from the
 //! model. There u_val says what a measurement could show: one of bodies that are known no better.
 
-use crate::report::format::{prefixed, with_unit, words};
+use crate::format::{prefixed, with_unit, words};
 use crate::result::Summary;
 use crate::uncertainty::QuantityScatter;
 use serde::Serialize;
