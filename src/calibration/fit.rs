@@ -18,7 +18,7 @@ const CONFIRMED: f64 = 0.3;
 /// Change of a parameter, in its scale, below which it takes no part in a direction whatever its standard deviation is.
 const LEAST_PART: f64 = 1e-3;
 /// Standard deviation along a direction, in scales of the parameters, from which on the data don't tell it.
-const UNTOLD: f64 = 0.5;
+const UNIDENTIFIABLE: f64 = 0.5;
 /// Smallest singular value over the largest that is more than rounding.
 const ROUNDING: f64 = 1e-6;
 /// Differences where the model has no result, over the largest at the start.
@@ -42,8 +42,8 @@ pub struct Fitted {
     /// Singular values of the slopes of the data over the parameters in their scales, over that scatter; the largest first. A direction's
     /// standard deviation is the inverse of its value.
     pub singular_values: Vec<f64>,
-    /// Parameters that can't be told apart, or not at all, by their numbers: one entry per direction that the data don't tell.
-    pub untold: Vec<Vec<usize>>,
+    /// Parameters that the data cannot identify, alone or together, by their numbers: one entry per unidentifiable direction.
+    pub unidentifiable: Vec<Vec<usize>>,
 }
 
 /// Differences of a model from data as a function of its parameters in their scales.
@@ -104,7 +104,7 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> LeastSquaresProblem<f64, Dyn, Dyn> for P
 }
 
 /// Minimises the sum of the squares of `residuals` from `start` on (Levenberg and Marquardt, as in MINPACK); `scales` are the sizes of
-/// the parameters: a direction in which they are uncertain by half of these is not told by the data. `covariance` gives that of the data from
+/// the parameters: a direction in which they are uncertain by half of these is unidentifiable. `covariance` gives that of the data from
 /// what the fit leaves and its slopes, block by block along the data (see [`independent`]).
 ///
 /// # Errors
@@ -176,13 +176,13 @@ fn told<F: Fn(&[f64]) -> Option<Vec<f64>>>(
     let directions = parts.v_t.unwrap_or_else(|| DMatrix::zeros(unknowns, unknowns));
     let of_data = along(&parts.u.unwrap_or_else(|| DMatrix::zeros(at.len(), unknowns)), blocks);
     let deviation = |k: usize| of_data[(k, k)].max(0.0).sqrt() / singular[k];
-    let is_told = |k: &usize| {
+    let is_identifiable = |k: &usize| {
         let slope = singular[*k];
         slope > ROUNDING * largest
-            && deviation(*k) < UNTOLD
+            && deviation(*k) < UNIDENTIFIABLE
             && (slope > SMALL_SLOPE * largest || problem.is_confirmed(&directions.row(*k).transpose(), slope))
     };
-    let (known, unknown): (Vec<usize>, Vec<usize>) = order.iter().copied().partition(is_told);
+    let (known, unknown): (Vec<usize>, Vec<usize>) = order.iter().copied().partition(is_identifiable);
     let scaled =
         DMatrix::from_fn(unknowns, known.len(), |i, k| directions[(known[k], i)] / singular[known[k]]);
     let inner = DMatrix::from_fn(known.len(), known.len(), |i, j| of_data[(known[i], known[j])]);
@@ -190,20 +190,22 @@ fn told<F: Fn(&[f64]) -> Option<Vec<f64>>>(
     let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
     let takes_part = |k: usize, j: usize| {
         let part = directions[(k, j)].abs();
-        part > PART || UNTOLD * part > LEAST_PART.max(ADDED * deviation(j))
+        part > PART || UNIDENTIFIABLE * part > LEAST_PART.max(ADDED * deviation(j))
     };
-    let untold: Vec<Vec<usize>> =
+    let unidentifiable: Vec<Vec<usize>> =
         unknown.iter().map(|k| (0..unknowns).filter(|j| takes_part(*k, *j)).collect()).collect();
-    let is_told = |j: &usize| !untold.iter().any(|direction| direction.contains(j));
+    let is_identifiable = |j: &usize| !unidentifiable.iter().any(|direction| direction.contains(j));
     let correlation =
         |i: usize, j: usize| covariance[(i, j)] / (deviation(i) * deviation(j)).max(f64::MIN_POSITIVE);
     Fitted {
         values: at.iter().zip(scales).map(|(x, scale)| x * scale).collect(),
-        standard_deviations: (0..unknowns).map(|j| is_told(&j).then(|| deviation(j) * scales[j])).collect(),
+        standard_deviations: (0..unknowns)
+            .map(|j| is_identifiable(&j).then(|| deviation(j) * scales[j]))
+            .collect(),
         correlations: (0..unknowns).map(|i| (0..unknowns).map(|j| correlation(i, j)).collect()).collect(),
         scatter,
         singular_values: order.iter().map(|k| singular[*k] / scatter.max(f64::MIN_POSITIVE)).collect(),
-        untold,
+        unidentifiable,
     }
 }
 
@@ -232,7 +234,7 @@ mod tests {
             let data = noisy(seed);
             let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) - y).collect());
             let found = fit(&[1.8, 29.8, 0.5], &[2.0, 30.0, 0.5], residuals, independent).expect("a minimum");
-            assert!(found.untold.is_empty(), "{found:?}");
+            assert!(found.unidentifiable.is_empty(), "{found:?}");
             assert!((found.scatter / 0.05 - 1.0).abs() < 0.25, "{found:?}");
             for (k, inside) in inside.iter_mut().enumerate() {
                 let deviation = found.standard_deviations[k].expect("told");
@@ -250,7 +252,7 @@ mod tests {
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
         let found =
             fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
-        assert_eq!(found.untold, [[0, 3]], "{found:?}");
+        assert_eq!(found.unidentifiable, [[0, 3]], "{found:?}");
         assert_eq!(
             found.standard_deviations.iter().map(Option::is_some).collect::<Vec<_>>(),
             [false, true, true, false]
@@ -260,31 +262,22 @@ mod tests {
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) - y).collect());
         let found =
             fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
-        assert_eq!(found.untold, [[3]], "{found:?}");
+        assert_eq!(found.unidentifiable, [[3]], "{found:?}");
     }
 
-    /// A small part of an unidentifiable direction makes an input as uncertain as it is: the second input acts through the
-    /// first times (1 + 0.05 times it).
-    #[test]
-    fn a_small_part_of_a_direction_counts_where_it_is_more_than_the_deviation() {
-        let data = noisy(7);
-        let product = |p: &[f64], t: f64| model(&[p[0] * (0.95 + 0.05 * p[3]), p[1], p[2]], t);
-        let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
-        let found =
-            fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
-        assert_eq!(found.untold, [[0, 3]], "{found:?}");
-    }
-
-    /// It counts too where the deviation is as large: the sum of both would be.
+    /// A small part of an unidentifiable direction counts where it is more than the deviation, and where louder data make both as large:
+    /// the second input acts through the first times (1 + 0.05 times it).
     #[test]
     fn a_small_part_of_a_direction_counts_where_it_is_no_less_than_the_deviation() {
-        let louder = |(t, y)| (t, model(&TRUTH, t) + 12.0 * (y - model(&TRUTH, t)));
-        let data: Vec<(f64, f64)> = noisy(7).into_iter().map(louder).collect();
-        let product = |p: &[f64], t: f64| model(&[p[0] * (0.95 + 0.05 * p[3]), p[1], p[2]], t);
-        let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
-        let found =
-            fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
-        assert_eq!(found.untold, [[0, 3]], "{found:?}");
+        for loud in [1.0, 12.0] {
+            let louder = |(t, y)| (t, model(&TRUTH, t) + loud * (y - model(&TRUTH, t)));
+            let data: Vec<(f64, f64)> = noisy(7).into_iter().map(louder).collect();
+            let product = |p: &[f64], t: f64| model(&[p[0] * (0.95 + 0.05 * p[3]), p[1], p[2]], t);
+            let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
+            let found = fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent)
+                .expect("a minimum");
+            assert_eq!(found.unidentifiable, [[0, 3]], "{loud}: {found:?}");
+        }
     }
 
     /// A model's rounding looks like a small slope of an input that does nothing.
@@ -296,7 +289,7 @@ mod tests {
             |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) + rounding(p[3], *t) - y).collect());
         let found =
             fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
-        assert_eq!(found.untold, [[3]], "{found:?}");
+        assert_eq!(found.unidentifiable, [[3]], "{found:?}");
     }
 
     #[test]

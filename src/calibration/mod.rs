@@ -40,7 +40,7 @@ pub struct Calibration {
     pub misfit: [f64; 2],
     /// The records.
     pub records: Vec<CalibrationRecord>,
-    /// What the records don't tell, in sentences.
+    /// What the records cannot identify, in sentences.
     pub untold: Vec<String>,
 }
 
@@ -171,7 +171,7 @@ fn document(
         samples,
         misfit,
         records: Vec::new(),
-        untold: found.untold.iter().map(sentence).collect(),
+        untold: found.unidentifiable.iter().map(sentence).collect(),
     }
 }
 

@@ -63,7 +63,7 @@ fn table(report: &StressReport) -> String {
     }
     let sweep = &report.sweep;
     lines.push(format!(
-        "  as points of a sweep: {} of {} say that they are not as exact as asked for; {} are not and do not say so (bound 1 in 1000)",
+        "  as points of a sweep: {} of {} have not converged and say so; {} are wrong and do not say so (bound 1 in 1000)",
         sweep.unconverged,
         sweep.points,
         sweep.wrong.len()

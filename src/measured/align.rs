@@ -128,7 +128,7 @@ pub(super) struct Alignment<'a> {
     pub speed: Speed,
 }
 
-/// Lays `record` over `model`, the filtered history of a partner with the contacts' `ends` in the impact `setup`.
+/// Lays `record` over `model`, the filtered history of a model or reference with the contacts' `ends` in the impact `setup`.
 ///
 /// # Errors
 /// [`Error::Scene`] if the record shows no free flight before the impact, no impact like that of the scene, or more energy after
