@@ -16,6 +16,9 @@ WHEEL  := target/wheel-python
 BEFORE :=
 RUN    := cargo run --release --quiet --
 OUT    := target/check
+# the one check that needs what only root installs; without it the last line says so, and CI fails
+BROWSER  = $(or $(CHROMIUM),$(shell command -v chromium || command -v chromium-browser || command -v google-chrome))
+UNCHECKED = $(if $(BROWSER)$(CI),,browser::)
 SCENES := $(basename $(notdir $(wildcard scenes/*.toml)))
 # meshes of a solid at `fine` take an hour
 PLATES := $(filter-out seal-seat-%,$(SCENES))
@@ -27,7 +30,7 @@ SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-li
 .PHONY: test setup rust wheel python live gate report solutions evidence
 
 test: setup rust python live gate
-	@echo "all checks passed"
+	@echo "all checks passed$(if $(UNCHECKED), but one: pages in a browser need Chromium (as root: apt-get install chromium))"
 
 setup:
 	@.ci/setup
@@ -35,7 +38,8 @@ setup:
 rust:
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets -- -D warnings
-	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --workspace --no-fail-fast; else cargo test --release --workspace; fi
+	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --workspace --no-fail-fast $(if $(UNCHECKED),-E 'not test(/^$(UNCHECKED)/)'); \
+	else cargo test --release --workspace $(if $(UNCHECKED),-- --skip $(UNCHECKED)); fi
 	cargo test --release --workspace --doc
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --quiet
 

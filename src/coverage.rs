@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::kinds;
 use crate::kinds::plate_impact::closed_forms::{ClosedForm, Form, closed_forms};
 use crate::result::SCHEMA_VERSION;
-use crate::scene::{Edge, Fluid, Material, Model, PlateImpact, Scene, SealSeat, Setup, Shape, SphereBody};
+use crate::scene::{Edge, Fluid, Material, Model, PlateImpact, Scene, SealSeat, Shape, SphereBody};
 use crate::validated::Validation;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -79,22 +79,22 @@ pub static FEATURES: [Feature; 28] = [
     feature("added mass", |s| fluid(s, |f| f.added_mass_frequency_ratio < 1.0)),
     feature("drag", |s| fluid(s, |f| f.drag_coefficient > 0.0)),
     feature("run cut by its end time", |s| s.run.end_time.is_some()),
-    feature("seal seat", |s| matches!(s.setup, Setup::SealSeat(_))),
+    feature("seal seat", |s| s.seal_seat().is_ok()),
     feature("seal seat, friction", |s| seat(s, |seat| seat.friction > 0.0)),
     feature("seal seat, elastic sphere", |s| seat(s, |seat| seat.sphere.body == SphereBody::Elastic)),
     feature("seal seat, relaxing", |s| seat(s, |seat| !seat.seat.material.relaxation.is_empty())),
 ];
 
 fn plate(scene: &Scene, has: fn(&PlateImpact) -> bool) -> bool {
-    matches!(&scene.setup, Setup::PlateImpact(setup) if has(setup))
+    scene.plate_impact().is_ok_and(has)
 }
 
 fn seat(scene: &Scene, has: fn(&SealSeat) -> bool) -> bool {
-    matches!(&scene.setup, Setup::SealSeat(setup) if has(setup))
+    scene.seal_seat().is_ok_and(has)
 }
 
 fn fluid(scene: &Scene, has: fn(&Fluid) -> bool) -> bool {
-    matches!(&scene.setup, Setup::PlateImpact(setup) if setup.fluid.as_ref().is_some_and(has))
+    scene.plate_impact().is_ok_and(|setup| setup.fluid.as_ref().is_some_and(has))
 }
 
 fn unlike(setup: &PlateImpact) -> bool {
@@ -150,7 +150,7 @@ impl From<&Validation> for Finding {
 /// # Errors
 /// As [`closed_forms`].
 pub fn exact(scene: &Scene) -> Result<Vec<Case<'_>>> {
-    let Setup::PlateImpact(setup) = &scene.setup else { return Ok(Vec::new()) };
+    let Ok(setup) = scene.plate_impact() else { return Ok(Vec::new()) };
     let of = |found: &ClosedForm, &model: &Model| {
         let largest = Some((found.relative, Some(0.0), found.quantity.to_owned()));
         let finding = Finding { partner: CLOSED_FORM.into(), form: Some(found.form), largest };

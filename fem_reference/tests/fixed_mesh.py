@@ -70,7 +70,9 @@ def main(task: str, scene_path: Path, mesh_path: Path, *folder: str) -> None:
     seat = document["kind"] == "seal-seat"
     scene = parse_seat_scene(document) if seat else parse_scene(document)
     if task == "make":
-        mesh_path.write_bytes(pickle.dumps(make(scene), protocol=4))
+        # NumPy 2 names its module otherwise than NumPy 1, which reads the file too
+        made = pickle.dumps(make(scene), protocol=0)
+        mesh_path.write_bytes(made.replace(b"cnumpy._core.", b"cnumpy.core."))
         return
     values, nodes = run(scene, *pickle.loads(mesh_path.read_bytes()))
     out = Path(folder[0])

@@ -17,7 +17,7 @@ def found(summary: dict[str, Any], name: str) -> tuple[float, float]:
     at_end = summary.get("at_end", {}).get(name)
     if at_end is not None:
         return at_end["value"], at_end["band"]
-    return summary[name], summary["uncertainty"].get(name, 0.0)
+    return summary[name], summary.get("uncertainty", {}).get(name, 0.0)
 
 
 def main(one: Path, other: Path, kind: str, limit: float, bands: Path) -> int:

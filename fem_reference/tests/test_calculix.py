@@ -55,6 +55,12 @@ def test_a_ring_of_quadratic_elements_has_its_volume_and_weights_its_nodes() -> 
     assert volumes @ plane.points[:, 1] / volumes.sum() == pytest.approx(1.5, rel=1e-13)
 
 
+needs_calculix = pytest.mark.skipif(
+    shutil.which(os.environ.get(VARIABLE) or "ccx") is None, reason="CalculiX is not installed"
+)
+
+
+@needs_calculix
 def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
     """CalculiX's own mass of the wedges against closed forms."""
     scene = small()
@@ -71,11 +77,6 @@ def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
     assert found["OUTER"] == pytest.approx(scene.outer.mass, rel=2e-4)
     assert found["INNER"] == pytest.approx(scene.inner.mass, rel=2e-4)
     assert made.masses == pytest.approx([found[n] for n in ("OUTER", "PLATE", "INNER")], rel=1e-4)
-
-
-needs_calculix = pytest.mark.skipif(
-    shutil.which(os.environ.get(VARIABLE) or "ccx") is None, reason="CalculiX is not installed"
-)
 
 
 @needs_calculix

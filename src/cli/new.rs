@@ -4,7 +4,7 @@ use super::Context;
 use super::schema::FILE;
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::scene::{self, Scene};
+use crate::scene::Scene;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -54,7 +54,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let text = format!("#:schema ./{FILE}\n{}", arguments.kind.starter().replacen("NAME", name, 1));
     // a name that can't be one is refused as it would be in a file
     Scene::parse(&file.display().to_string(), &text)?;
-    write_file(&file.with_file_name(FILE), scene::schema().to_string().as_bytes())?;
+    write_file(&file.with_file_name(FILE), crate::kinds::schema().to_string().as_bytes())?;
     write_file(&file, text.as_bytes())?;
     context.note(format_args!(
         "{0}: change what you like, then `impactcheck reduced {0}` and, with FEniCSx, `impactcheck compare {0} --compute --out my-report`",

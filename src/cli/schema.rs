@@ -7,6 +7,6 @@ pub(super) const FILE: &str = "impactcheck.schema.json";
 
 /// Prints the schema.
 pub fn run() -> Result<ExitStatus> {
-    super::print_json(&crate::scene::schema())?;
+    super::print_json(&crate::kinds::schema())?;
     Ok(ExitStatus::Pass)
 }

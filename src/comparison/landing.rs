@@ -3,7 +3,7 @@
 //! A reference knows no flight. Its launch flies in the same chamber with the same restitution; what differs is the launch alone.
 
 use super::discrepancy::{Discrepancy, Scales};
-use crate::flight::{flight_summary, launch};
+use crate::kinds::flight::{flight_summary, launch};
 use crate::result::{FlightSummary, Outcome, Summary};
 use crate::scene::{LANDING_SHARE, Scene, Tolerances};
 

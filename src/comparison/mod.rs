@@ -356,13 +356,11 @@ fn quantities(
     reduced: &Summary,
     tolerances: &Tolerances,
 ) -> Vec<Discrepancy> {
-    let row = |&Quantity { name, unit, .. }: &Quantity| {
+    let row = |&Quantity { name, unit, curve, .. }: &Quantity| {
         let value = reference.summary.value(name);
         let size = value.map_or(f64::NAN, f64::abs);
-        // `outer_force_peak` belongs to the curve `outer_force`, and so on; a quantity that
-        // belongs to none is its own peak.
-        let curve = kind.curves().iter().find(|curve| name.starts_with(curve.name));
-        let peak = curve.and_then(|curve| reference.history.curve(curve.name)).map_or(size, peak);
+        // a quantity that belongs to no curve is its own peak
+        let peak = curve.and_then(|curve| reference.history.curve(curve)).map_or(size, peak);
         // another program's result need not state it
         let is_open = value.is_none() && reference.summary.source == Source::External;
         let tolerance = tolerances.get(name);

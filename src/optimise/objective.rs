@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::kinds;
-use crate::scene::{Scene, Setup, suggestion};
+use crate::scene::{Scene, suggestion};
 
 /// A number of a result that is to be large.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ impl Objective {
     /// # Errors
     /// [`Error::Usage`] if the scene has no such quantity, or `within` belongs to none.
     pub fn of(name: Option<&str>, within: Option<f64>, scene: &Scene) -> Result<Self> {
-        let is_seat = matches!(scene.setup, Setup::SealSeat(_));
+        let is_seat = scene.seal_seat().is_ok();
         let name = name.unwrap_or(if is_seat { INTENDED_SPEED } else { "efficiency" });
         if is_seat && name == INTENDED_SPEED {
             return Ok(Self::IntendedSpeed(within.unwrap_or(std::f64::consts::PI)));

@@ -1,8 +1,9 @@
 //! What a reference solution was made from, and how that differs from what is asked for.
 
 use super::Resolution;
+use crate::kinds::unit_of;
 use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
-use crate::scene::{Geometry, Scene, Setup, unit_of};
+use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -10,10 +11,9 @@ use std::collections::BTreeSet;
 /// Counts changes of `fem_reference` that change the results of a kind of scene and geometry; raising it makes their stored solutions
 /// stale.
 pub fn revision(scene: &Scene) -> u32 {
-    match (&scene.setup, scene.reference.geometry) {
-        (Setup::PlateImpact(_), Geometry::Axisymmetric) => 4,
-        (Setup::PlateImpact(_), Geometry::Solid) => 5,
-        (Setup::SealSeat(_), _) => 4,
+    match scene.reference.geometry {
+        Geometry::Solid if scene.plate_impact().is_ok() => 5,
+        _ => 4,
     }
 }
 
@@ -45,7 +45,7 @@ pub(super) fn solver_document(scene: &Scene, resolution: Resolution) -> Result<V
         fields.remove(foreign);
     }
     fields.insert("scene_hash".into(), scene.hash().into());
-    if let Setup::SealSeat(setup) = &scene.setup {
+    if let Ok(setup) = scene.seal_seat() {
         fields.insert("geometry_hash".into(), setup.geometry_hash().into());
     }
     fields.insert("settings_hash".into(), settings_hash(scene, resolution).into());

@@ -36,7 +36,7 @@ pub use section::MeshSection;
 pub use solve::{Wish, solve, solve_with};
 pub use store::{Lookup, Store};
 
-use crate::scene::{Geometry, Scene, Setup, Shape};
+use crate::scene::{Geometry, Scene, Shape};
 
 /// Size of the elements over that of the next finer fixed resolution.
 pub const COARSER: f64 = 1.5;
@@ -181,7 +181,7 @@ impl std::str::FromStr for Resolution {
 
 /// Whether the deck for CalculiX describes `scene`: a dry impact of elastic spheres on a plate without damping or friction.
 pub fn calculix_takes(scene: &Scene) -> bool {
-    let Setup::PlateImpact(setup) = &scene.setup else { return false };
+    let Ok(setup) = scene.plate_impact() else { return false };
     let spheres = [&setup.outer.shape, &setup.inner.shape].iter().all(|s| matches!(s, Shape::Sphere { .. }));
     let dry = setup.fluid.is_none() && setup.plate.damping_ratio == 0.0 && setup.friction == 0.0;
     let elastic = !setup.relaxes() && !setup.yields() && setup.series.is_none();

@@ -88,15 +88,20 @@ pub fn seat_mesh_with(
     let fineness = json!([resolution, settings.elements_per_ring_radius, settings.element_order]).to_string();
     let name = sha256_hex(format!("{}{fineness}", scene.seal_seat()?.geometry_hash()).as_bytes());
     let folder = cache.folder().map_or_else(|| std::env::temp_dir().join("impactcheck"), Path::to_path_buf);
-    let path = folder.join("meshes").join(format!("{name}.vtu"));
+    let folder = folder.join("meshes");
+    let path = folder.join(format!("{name}.vtu"));
     if intact(&path).is_none() {
-        std::fs::create_dir_all(folder.join("meshes")).map_err(|e| Error::io("writing", &path, e))?;
-        // a damaged one of the cache is this program's own
-        for file in [path.clone(), path.with_extension("json")] {
-            let _ = std::fs::remove_file(file);
-        }
+        let writing = |e| Error::io("writing", &path, e);
+        std::fs::create_dir_all(&folder).map_err(writing)?;
+        // other processes may make the same mesh at the same time
+        let own = Scratch::new_in(&folder, ".making-").map_err(writing)?;
+        let made = own.path().join("mesh.vtu");
         progress(&Progress { phase: "mesh".into(), done: 0.0, message: "gmsh".into(), series: None });
-        make_seat_mesh(&python::python()?, scene, resolution, 1.0, &path)?;
+        make_seat_mesh(&python::python()?, scene, resolution, 1.0, &made)?;
+        for extension in ["json", "vtu"] {
+            std::fs::rename(made.with_extension(extension), path.with_extension(extension))
+                .map_err(writing)?;
+        }
     }
     Ok(path)
 }

@@ -5,7 +5,7 @@ use super::section::Section;
 use super::summary_column::Column;
 use super::{Attachments, SceneReport, plate_impact, seal_seat};
 use crate::reference::Stored;
-use crate::scene::{Scene, Setup};
+use crate::scene::Scene;
 use maud::Markup;
 
 /// A drawing of a scene, a file of its own.
@@ -50,8 +50,5 @@ pub(super) trait Presentation: Sync {
 
 /// How results of `scene` are shown.
 pub(super) fn of(scene: &Scene) -> &'static dyn Presentation {
-    match scene.setup {
-        Setup::PlateImpact(_) => &plate_impact::Plate,
-        Setup::SealSeat(_) => &seal_seat::Seat,
-    }
+    if scene.seal_seat().is_ok() { &seal_seat::Seat } else { &plate_impact::Plate }
 }

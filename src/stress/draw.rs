@@ -112,7 +112,7 @@ impl Impact {
         })?;
         let description = format!("{}, in {fluid:?}", dry.description);
         setup.fluid = Some(fluid);
-        let system = System::new(&setup, &plate, tips);
+        let system = setup.rigid_system(&plate, tips);
         Ok(Self { description, system, forces, end_time: dry.end_time })
     }
 
@@ -134,7 +134,7 @@ impl Impact {
         if random.0.bool() {
             setup.inner.speed = setup.outer.speed * random.uniform(-0.9, 2.0);
         }
-        let system = System::new(&setup, body, tips);
+        let system = setup.rigid_system(body, tips);
         let end_time = DURATIONS * system.hertz_impact().duration() + setup.inner.gap / setup.outer.speed;
         let end_time = random.0.bool().then_some(end_time);
         let description = format!(
@@ -205,7 +205,7 @@ impl Case {
         let tier = TIERS.iter().position(|tier| *tier >= modes).unwrap_or(TIERS.len() - 1);
         let unit = plates.get(edge, poisson, tier)?;
         let mut body = lowest(unit.scale(&setup.plate), modes);
-        let dry = System::new(&setup, &body, [0.0; 2]);
+        let dry = setup.rigid_system(&body, [0.0; 2]);
         let hit = dry.hertz_impact();
         let (approach, force) = (hit.approach_peak(), hit.force_peak());
         if random.0.bool() {
@@ -222,7 +222,7 @@ impl Case {
             ]));
             tips = [flexibility * random.uniform(0.0, 1.0), flexibility * random.uniform(0.0, 1.0)];
         }
-        let system = System::new(&setup, &body, tips);
+        let system = setup.rigid_system(&body, tips);
         let end_time = DURATIONS * hit.duration() + setup.inner.gap / speed;
         let description = format!(
             "{edge:?} plate R {:.3e} m, t/R {:.3e}, E {:.1e} Pa, damping {:.2e}, {modes} modes; outer {:.2e} kg at {speed:.2e} m/s; inner {mass_ratio:.2e} of it, gap {:.1e} m; residual {}",

@@ -8,6 +8,7 @@ use crate::actuator::cantilever::{moment_energy, moment_for_deflection};
 use crate::actuator::inductance::Inductance;
 use crate::actuator::magnet::Magnet;
 use crate::actuator::{Bender, Stack, Supply};
+use crate::dynamics::MovingBody;
 use crate::error::Result;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::result::Summary;
@@ -82,8 +83,8 @@ struct Outcome {
 fn stack(name: &'static str, resistance: f64, gap: f64) -> Case {
     let drive = (resistance > 0.0).then_some(Supply { resistance, buffer_capacitance: None });
     let stack = Stack { gap, drive, ..STACK };
-    let reaches = crate::dynamics::MovingBody::stack(&stack).is_ok();
-    let setup = reaches.then(|| setup(Shape::Stack(stack), stack.step_speed()));
+    let setup = Some(setup(Shape::Stack(stack), stack.step_speed()))
+        .filter(|setup| MovingBody::outer(&setup.outer).is_ok());
     Case { actuator: name, gap, setup, energies: [None; 2] }
 }
 

@@ -6,9 +6,7 @@
 
 use super::{Cell, Claim, Note, SCHEMA_VERSION, Study, of_project};
 use crate::error::{Error, Result};
-use crate::flight::{
-    Chamber, Field, Flight, Landscape, Launch, Seat, Setup, Spring, Vector, Wave, fly, thresholds,
-};
+use crate::flight::{Field, Flight, Landscape, Launch, Seat, Setup, Spring, Vector, Wave, fly, thresholds};
 use crate::project::project_root;
 use crate::scene::SealSeat;
 use rayon::prelude::*;
@@ -216,7 +214,7 @@ fn of_shocks(shocks: &[ComparedShock]) -> Vec<Claim> {
 
 /// The improved design's chamber under a spring that presses down.
 fn valve(seat: &SealSeat, flight: &StoredFlight) -> Result<Setup> {
-    let chamber = Chamber::of_seal_seat(seat, HEIGHT).map_err(|error| Error::Internal(error.0))?;
+    let chamber = seat.chamber(HEIGHT).map_err(|error| Error::Internal(error.0))?;
     let spring = Spring {
         force: flight.force,
         stiffness: 1e3 * flight.stiffness,

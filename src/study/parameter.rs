@@ -11,7 +11,7 @@ use crate::kinds::plate_impact::reduced::Reduced;
 use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings,
-    RunSettings, Scene, Setup, Shape,
+    RunSettings, Scene, Shape,
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -49,7 +49,7 @@ pub fn scene(name: &str, setup: PlateImpact) -> Scene {
     Scene {
         name: name.into(),
         description: format!("An impact of the study {name}"),
-        setup: Setup::PlateImpact(Box::new(setup)),
+        setup: setup.into(),
         run: RunSettings { end_time: None },
         reduced: ReducedSettings { model: None, modes: None },
         reference: ReferenceSettings {

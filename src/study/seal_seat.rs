@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel, SeatQuantities};
 use crate::reference::{self, Resolution, Store};
 use crate::result::{CUT, Summary};
-use crate::scene::{Model, Notch, Scene, SealSeat, Setup};
+use crate::scene::{Model, Notch, Scene, SealSeat};
 
 /// How far the improved design's direction may lie from the intended one, rad.
 const INTENDED_WITHIN: f64 = 1.5 * DEGREE;
@@ -250,11 +250,15 @@ fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     let notch = improved.seal_seat()?.seat.notch;
     for ((design, _), base) in DESIGNS.into_iter().zip([initial, improved]) {
+        let bodies = base.seal_seat()?;
         let mut add = |parameter: &'static str, varied: &'static str, change: &dyn Fn(&mut SealSeat)| {
-            let mut scene = base.clone();
-            if let Setup::SealSeat(setup) = &mut scene.setup {
-                change(setup);
+            let mut seat = bodies.clone();
+            change(&mut seat);
+            // without a notch its floor is no membrane: a thicker membrane than that is one of the notched design only
+            if let Some(notch) = &mut seat.seat.notch {
+                notch.floor = notch.floor.max(seat.seat.membrane_thickness);
             }
+            let scene = Scene { setup: seat.into(), ..base.clone() };
             cases.push(Case { design, varied, parameter, scene });
         };
         let [aperture, tilt, impact, slot, membrane] = PARAMETERS;
@@ -279,14 +283,6 @@ fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<Case>> {
             add(slot, "no notch", &|s| s.seat.notch = None);
             add(slot, "notch half as wide", &|s| widen(s, 0.5));
             add(slot, "notch half as wide again", &|s| widen(s, 1.5));
-        }
-    }
-    // Without a notch its floor is no membrane: a thicker membrane than that is one of the notched design only.
-    for case in &mut cases {
-        if let Setup::SealSeat(setup) = &mut case.scene.setup
-            && let Some(notch) = &mut setup.seat.notch
-        {
-            notch.floor = notch.floor.max(setup.seat.membrane_thickness);
         }
     }
     Ok(cases)

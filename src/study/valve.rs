@@ -11,7 +11,7 @@ use crate::flight::Seat;
 use crate::kinds::Series;
 use crate::reference::mesh_to_follow;
 use crate::result::FlightSummary;
-use crate::scene::{Distribution, Field, Model, Setup, Spread, Template, UncertainInput, Uncertainty};
+use crate::scene::{Distribution, Field, Model, Spread, Template, UncertainInput, Uncertainty};
 use crate::uncertainty::Inputs;
 use crate::uncertainty::design::Point;
 use rayon::prelude::*;
@@ -178,15 +178,13 @@ impl Valve {
         if let (Some(Transmission::Plunger), Some(spring)) = (self.transmission, spring) {
             spring.friction = 0.0;
         }
-        let setup = scene.setup.clone();
-        let summary = self.series.model(scene, self.model, None)?.run(TOLERANCE)?;
-        let (actuator_energy, sphere_mass) = match (&setup, &summary.bender) {
-            (Setup::PlateImpact(plate), Some(bender)) => {
+        let summary = self.series.model(scene.clone(), self.model, None)?.run(TOLERANCE)?;
+        let (actuator_energy, sphere_mass) = match (scene.plate_impact(), scene.seal_seat(), &summary.bender)
+        {
+            (Ok(plate), _, Some(bender)) => {
                 (bender.drive.kinetic_energy, plate.inner.shape.mass(&plate.inner.material))
             }
-            (Setup::SealSeat(seat), _) => {
-                (0.5 * seat.actuator.mass * seat.actuator.speed.powi(2), seat.sphere.mass)
-            }
+            (_, Ok(seat), _) => (0.5 * seat.actuator.mass * seat.actuator.speed.powi(2), seat.sphere.mass),
             _ => return Err(Error::Internal("a demonstrator's plate is not struck by a bender".into())),
         };
         let flight = summary.flight.ok_or_else(|| Error::Internal("a shift has no flight".into()))?;

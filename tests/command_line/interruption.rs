@@ -34,8 +34,9 @@ fn interrupted_in(before: &str, signals: &[Signal], number: i32, script: &str) {
     fs::set_permissions(&python, fs::Permissions::from_mode(0o755)).expect("executable");
     fs::write(here.join("mine.toml"), SCENE.replacen("scaled-plate-r10", "mine", 1)).expect("scene");
     fs::create_dir(here.join("temporary")).expect("folder");
-    let mut program = Command::new("sh")
-        .arg("-c")
+    // a test run under nohup, which ignores SIGHUP, hands that on to its children
+    let mut program = Command::new("env")
+        .args(["--default-signal=HUP", "sh", "-c"])
         .arg(format!("{before}; exec \"$0\" reference mine.toml --store store"))
         .arg(cargo_bin("impactcheck"))
         .current_dir(here)

@@ -12,7 +12,7 @@ mod elsewhere;
 mod external;
 mod first_day;
 mod guide;
-#[cfg(unix)]
+#[cfg(target_os = "linux")]
 mod interruption;
 mod measured;
 mod optimise;

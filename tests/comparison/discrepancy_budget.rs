@@ -12,7 +12,7 @@ use impactcheck::kinds::plate_impact::variants::mean_of_faces;
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::report::{Report, SceneReport, json, markdown, scene_page};
 use impactcheck::result::{Outcome, Source, Summary};
-use impactcheck::scene::{Edge, Model, Plate, PlateImpact, Scene, Setup, Shape, resolve};
+use impactcheck::scene::{Edge, Model, Plate, PlateImpact, Scene, Shape, resolve};
 use resvg::usvg::roxmltree::Document;
 use std::f64::consts::PI;
 
@@ -25,8 +25,9 @@ fn shipped(name: &str) -> Scene {
 /// Table 1's scene with 10 mm spheres, changed by `change`.
 fn scene(change: impl Fn(&mut PlateImpact)) -> Scene {
     let mut scene = shipped(TABLE_1[0]);
-    let Setup::PlateImpact(setup) = &mut scene.setup else { panic!("a plate impact") };
-    change(setup);
+    let mut setup = scene.plate_impact().unwrap().clone();
+    change(&mut setup);
+    scene.setup = setup.into();
     scene
 }
 

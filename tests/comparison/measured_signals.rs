@@ -7,7 +7,7 @@ use impactcheck::measured::{
 };
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::result::Outcome;
-use impactcheck::scene::{Model, PlateImpact, Scene, Setup, resolve};
+use impactcheck::scene::{Model, PlateImpact, Scene, resolve};
 
 fn determined(outcome: &Outcome) -> ContactEnds {
     ContactEnds::of(&outcome.summary).unwrap()
@@ -129,7 +129,7 @@ fn speed_that_differs_from_the_scene_s_is_read_from_a_signal_without_offset() {
     let (scene, setup) = scene("scaled-plate-r10");
     let mut faster = setup.clone();
     faster.outer.speed = 0.62;
-    let truth = model(&Scene { setup: Setup::PlateImpact(Box::new(faster)), ..scene.clone() }, Model::C);
+    let truth = model(&Scene { setup: faster.into(), ..scene.clone() }, Model::C);
     let disturbance = Disturbance { offset: 0.0, drift: 0.0, ..DISTURBED };
     let record = record(&truth, &SIGNALS, disturbance);
     let found = aligned(&record, &reference(&scene), &setup, Speed::Measured);

@@ -42,7 +42,8 @@ fn rocker(bender: Bender) -> PlateImpact {
 
 fn system(setup: &PlateImpact, modes: usize) -> System {
     let plate = kirchhoff::modes(&setup.plate, modes).unwrap();
-    System::of(setup, &MovingBody::both(setup).unwrap(), &plate, [0.0; 2])
+    let bodies = MovingBody::both(&setup.outer, &setup.inner).unwrap();
+    System::of(&bodies, &plate, &setup.plate.material, [0.0; 2])
 }
 
 fn run(setup: &PlateImpact) -> (System, Integration) {

@@ -5,7 +5,6 @@ use assert_cmd::Command;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, sphere_residual};
 use impactcheck::dynamics::integration::Options;
 use impactcheck::dynamics::integrator::integrate;
-use impactcheck::dynamics::system::System;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Model, Scene, Shape, resolve};
 use std::path::Path;
@@ -88,7 +87,7 @@ fn rounding_the_patch_radii_to_three_digits_changes_the_impact_by_less_than_1e_4
                 tip(&setup.outer.shape, &setup.outer.material, patch[0]),
                 tip(&setup.inner.shape, &setup.inner.material, patch[1]),
             ];
-            let system = System::new(setup, &plate, tips);
+            let system = setup.rigid_system(&plate, tips);
             let result = integrate(&system, &Options { tolerance: 1e-7, ..Options::default() }).unwrap();
             let speed = result.velocity[1].abs();
             [speed * speed, result.contacts[0].force_peak, result.contacts[1].force_peak]

@@ -6,7 +6,6 @@ use impactcheck::analytical::hertz::HertzImpact;
 use impactcheck::body::{ModalBody, kirchhoff};
 use impactcheck::dynamics::integration::Options;
 use impactcheck::dynamics::integrator::integrate;
-use impactcheck::dynamics::system::System;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Model, Scene, resolve};
 use std::f64::consts::PI;
@@ -15,7 +14,7 @@ use std::f64::consts::PI;
 fn sphere_rebounds_from_a_rigid_half_space() {
     let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     for (radius, speed) in [(0.01, 0.55), (0.001, 1e-4), (0.05, 50.0)] {
-        let system = System::new(&common::scaled_plate(radius, speed), &held, [0.0; 2]);
+        let system = common::scaled_plate(radius, speed).rigid_system(&held, [0.0; 2]);
         let result = integrate(&system, &Options { tolerance: 1e-9, ..Options::default() }).unwrap();
         let closed = HertzImpact { mass: system.masses[0], speed, stiffness: system.laws[0].stiffness };
         let contact = result.contacts[0];
@@ -60,7 +59,7 @@ fn a_plate_struck_from_both_sides_is_a_rigid_wall() {
     let mut setup = common::scaled_plate(radius, speed);
     let plate = kirchhoff::modes(&setup.plate, 16).unwrap();
     setup.inner.speed = speed;
-    let system = System::new(&setup, &plate, [0.0; 2]);
+    let system = setup.rigid_system(&plate, [0.0; 2]);
     let result = integrate(&system, &Options { tolerance: 1e-9, ..Options::default() }).unwrap();
     let closed = HertzImpact { mass: system.masses[0], speed, stiffness: system.laws[0].stiffness };
     for (contact, (velocity, rebound)) in
@@ -72,6 +71,6 @@ fn a_plate_struck_from_both_sides_is_a_rigid_wall() {
     }
     assert!(result.energy_residual < 1e-9 && result.momentum_residual < 1e-9, "{result:?}");
     setup.inner.speed = -10.0 * speed;
-    let receding = integrate(&System::new(&setup, &plate, [0.0; 2]), &Options::default()).unwrap();
+    let receding = integrate(&setup.rigid_system(&plate, [0.0; 2]), &Options::default()).unwrap();
     assert_eq!((receding.contacts[1].contacts, receding.velocity[1]), (0, -10.0 * speed));
 }

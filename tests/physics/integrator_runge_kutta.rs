@@ -11,7 +11,7 @@ use impactcheck::dynamics::system::System;
 use impactcheck::scene::{Edge, PlateImpact, Shape};
 
 fn system(setup: &PlateImpact, modes: usize) -> System {
-    System::new(setup, &kirchhoff::modes(&setup.plate, modes).unwrap(), [0.0; 2])
+    setup.rigid_system(&kirchhoff::modes(&setup.plate, modes).unwrap(), [0.0; 2])
 }
 
 fn run(system: &System, tolerance: f64) -> Integration {

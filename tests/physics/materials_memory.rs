@@ -5,7 +5,7 @@ use approx::assert_relative_eq;
 use impactcheck::body::{ModalBody, kirchhoff};
 use impactcheck::dynamics::integration::{Integration, Options};
 use impactcheck::dynamics::integrator;
-use impactcheck::dynamics::memory::{Memory, integrate};
+use impactcheck::dynamics::memory::integrate;
 use impactcheck::dynamics::system::System;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 
@@ -24,7 +24,7 @@ fn yielding(strength: f64) -> impl Fn(&mut Material) {
 }
 
 fn run(setup: &PlateImpact, system: &System) -> Integration {
-    let memory = Memory::new(setup, system).unwrap().expect("a material with memory");
+    let memory = setup.memory(system).unwrap().expect("a material with memory");
     integrate(system, &memory, &Options::default()).unwrap().0
 }
 
@@ -33,7 +33,7 @@ fn run(setup: &PlateImpact, system: &System) -> Integration {
 #[test]
 fn an_impact_that_nothing_remembers_is_the_elastic_one() {
     let setup = with(common::scaled_plate(0.01, 0.55), yielding(1e12));
-    let bending = System::new(&setup, &kirchhoff::modes(&setup.plate, 16).unwrap(), [0.0; 2]);
+    let bending = setup.rigid_system(&kirchhoff::modes(&setup.plate, 16).unwrap(), [0.0; 2]);
     let scene = Scene::read(resolve("scaled-plate-r10").unwrap()).unwrap();
     let continuum = Reduced::new(&scene, Model::C, None).unwrap();
     for system in [&bending, continuum.system()] {
@@ -71,7 +71,7 @@ fn the_history_of_an_impact_that_nothing_remembers_is_the_elastic_one() {
         end_time: Some(4e-4),
         ..Options::default()
     };
-    let memory = Memory::new(&setup, system).unwrap().unwrap();
+    let memory = setup.memory(system).unwrap().unwrap();
     let ours = integrate(system, &memory, &every(duration / 10.0)).unwrap().0.history.unwrap();
     let exact = integrator::integrate(system, &every(duration / 500.0)).unwrap().history.unwrap();
     // the contacts' part of the plate's velocity is a difference quotient, half a step late where they touch
@@ -103,10 +103,10 @@ fn a_viscoelastic_sphere_rebounds_as_hunter_says() {
     let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     let mut setup = common::scaled_plate(0.01, 0.55);
     setup.plate.material.youngs_modulus = 1e17;
-    let duration = System::new(&setup, &held, [0.0; 2]).hertz_impact().duration();
+    let duration = setup.rigid_system(&held, [0.0; 2]).hertz_impact().duration();
     for ratio in [0.01, 0.02] {
         setup.outer.material.relaxation = vec![Relaxation { ratio: 1.0, time: duration / ratio }];
-        let system = System::new(&setup, &held, [0.0; 2]);
+        let system = setup.rigid_system(&held, [0.0; 2]);
         let result = run(&setup, &system);
         let lost = 1.0 - result.velocity[0] / setup.outer.speed;
         // the next order in T/tau is left out
@@ -124,12 +124,12 @@ fn a_yielding_sphere_rebounds_as_in_finite_elements() {
         let mut setup = common::scaled_plate(radius, 1.0);
         setup.plate.material.youngs_modulus = 1e17;
         yielding(600e6)(&mut setup.outer.material);
-        let system = System::new(&setup, &held, [0.0; 2]);
-        let critical = Memory::new(&setup, &system).unwrap().unwrap().critical_forces([0.0; 2])[0];
+        let system = setup.rigid_system(&held, [0.0; 2]);
+        let critical = setup.memory(&system).unwrap().unwrap().critical_forces([0.0; 2])[0];
         // Hertz: 2/5 F_c x_c is the energy at the onset
         let energy = 0.4 * critical * system.laws[0].approach(critical);
         setup.outer.speed = ratio * (2.0 * energy / system.masses[0]).sqrt();
-        let system = System::new(&setup, &held, [0.0; 2]);
+        let system = setup.rigid_system(&held, [0.0; 2]);
         run(&setup, &system).velocity[0] / setup.outer.speed
     };
     for (ratio, found) in
@@ -179,8 +179,8 @@ fn a_polymer_plate_loses_two_points() {
 fn a_yield_strength_far_below_the_pressure_is_told() {
     let memory = |strength: f64| {
         let setup = with(common::scaled_plate(0.01, 0.55), yielding(strength));
-        let system = System::new(&setup, &kirchhoff::modes(&setup.plate, 4).unwrap(), [0.0; 2]);
-        Memory::new(&setup, &system)
+        let system = setup.rigid_system(&kirchhoff::modes(&setup.plate, 4).unwrap(), [0.0; 2]);
+        setup.memory(&system)
     };
     let told = |strength: f64| memory(strength).unwrap().unwrap().warnings.join("; ");
     assert!(
@@ -275,9 +275,9 @@ fn a_flight_is_a_few_steps() {
         let mut setup = common::scaled_plate(0.01, 0.55);
         setup.inner.gap = gap;
         setup.outer.material.relaxation = vec![Relaxation { ratio: 0.1, time: 1e3 }];
-        let system = System::new(&setup, &kirchhoff::modes(&setup.plate, 16).unwrap(), [0.0; 2]);
+        let system = setup.rigid_system(&kirchhoff::modes(&setup.plate, 16).unwrap(), [0.0; 2]);
         let exact = integrator::integrate(&system, &ending(end_time)).unwrap();
-        let memory = Memory::new(&setup, &system).unwrap().unwrap();
+        let memory = setup.memory(&system).unwrap().unwrap();
         let ours = integrate(&system, &memory, &ending(end_time)).unwrap().0;
         for i in 0..2 {
             assert_relative_eq!(ours.velocity[i], exact.velocity[i], epsilon = 1e-4 * system.speed);

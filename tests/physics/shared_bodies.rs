@@ -5,7 +5,7 @@ use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::kinds::plate_impact::errors::largest_error;
 use impactcheck::kinds::plate_impact::reduced::{Point, Reduced};
 use impactcheck::kinds::plate_impact::shared::SharedBodies;
-use impactcheck::scene::{Model, Scene, Setup, Shape, resolve};
+use impactcheck::scene::{Model, Scene, Shape, resolve};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use std::cell::RefCell;
@@ -23,7 +23,7 @@ fn impacts_between_scaled_bodies_are_those_between_meshed_ones() {
     let impact = |(speed, outer, inner, modulus, density, size): (f64, f64, f64, f64, f64, f64)| {
         let ten = |exponent: f64| 10_f64.powf(exponent);
         let mut scene = base.clone();
-        let Setup::PlateImpact(setup) = &mut scene.setup else { panic!("a plate") };
+        let mut setup = scene.plate_impact().unwrap().clone();
         setup.outer.speed *= ten(speed);
         for material in [&mut setup.plate.material, &mut setup.outer.material, &mut setup.inner.material] {
             material.youngs_modulus *= ten(modulus);
@@ -33,6 +33,7 @@ fn impacts_between_scaled_bodies_are_those_between_meshed_ones() {
         setup.plate.thickness = 2.0 / 33.0 * setup.plate.radius;
         setup.outer.shape = Shape::Sphere { radius: 0.01 * ten(outer + size) };
         setup.inner.shape = Shape::Sphere { radius: 0.01 * ten(inner + size) };
+        scene.setup = setup.into();
         let point = |model: Reduced| -> Point { model.point(1e-6).unwrap() };
         let ours = point(Reduced::in_series(scene.clone(), Model::C, Some(16), &bodies).unwrap()).quantities;
         let meshed = point(Reduced::new_in(&scene, Model::C, Some(16), &Cache::off()).unwrap()).quantities;
@@ -76,12 +77,13 @@ fn impacts_between_bodies_between_shapes_are_those_between_meshed_ones() {
     let bodies = SharedBodies::for_varied(varied, base.plate_impact().unwrap(), 1000);
     for (thickness, ratio, speed) in [(1.85e-3, 0.28, 0.3), (2.1e-3, 0.3, 0.6), (2.37e-3, 0.325, 1.0)] {
         let mut scene = base.clone();
-        let Setup::PlateImpact(setup) = &mut scene.setup else { panic!("a plate") };
+        let mut setup = scene.plate_impact().unwrap().clone();
         setup.plate.thickness = thickness;
         setup.outer.speed = speed;
         for material in [&mut setup.plate.material, &mut setup.outer.material, &mut setup.inner.material] {
             material.poisson_ratio = ratio;
         }
+        scene.setup = setup.into();
         let point = |model: Reduced| -> Point { model.point(1e-6).unwrap() };
         let ours = point(Reduced::in_series(scene.clone(), Model::C, Some(16), &bodies).unwrap()).quantities;
         let meshed = point(Reduced::new_in(&scene, Model::C, Some(16), &Cache::off()).unwrap()).quantities;

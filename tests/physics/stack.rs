@@ -34,12 +34,13 @@ fn setup(stack: Stack) -> PlateImpact {
 }
 
 fn system(setup: &PlateImpact, bodies: &[MovingBody; 2]) -> System {
-    System::of(setup, bodies, &kirchhoff::modes(&setup.plate, MODES).unwrap(), [0.0; 2])
+    let plate = kirchhoff::modes(&setup.plate, MODES).unwrap();
+    System::of(bodies, &plate, &setup.plate.material, [0.0; 2])
 }
 
 fn run(stack: Stack) -> (System, Integration) {
     let setup = setup(stack);
-    let system = system(&setup, &MovingBody::both(&setup).unwrap());
+    let system = system(&setup, &MovingBody::both(&setup.outer, &setup.inner).unwrap());
     let result = integrate(&system, &Options { heat: true, tolerance: 1e-9, ..Options::default() }).unwrap();
     (system, result)
 }
@@ -48,7 +49,7 @@ fn run(stack: Stack) -> (System, Integration) {
 fn by_steps(stack: &Stack, end: f64, h: f64) -> (f64, [f64; 2]) {
     let (supply, setup) = (stack.drive.expect("a drive"), setup(*stack));
     let (rod, plate) = (stack.modes(20), kirchhoff::modes(&setup.plate, MODES).unwrap());
-    let laws = system(&setup, &MovingBody::both(&setup).unwrap()).laws;
+    let laws = system(&setup, &MovingBody::both(&setup.outer, &setup.inner).unwrap()).laws;
     let mass = setup.inner.shape.mass(&setup.inner.material);
     let (n, p, alpha) = (rod.len(), plate.omega.len(), stack.force_per_voltage());
     // rod, plate, sphere, then their rates, then the charge
@@ -144,7 +145,7 @@ fn a_mass_on_a_spring_gives_too_much() {
     for gap in [0.0, 2e-6, 5e-6, 10e-6] {
         let stack = stack(gap, None);
         let setup = setup(stack);
-        let [rod, inner] = MovingBody::both(&setup).unwrap();
+        let [rod, inner] = MovingBody::both(&setup.outer, &setup.inner).unwrap();
         let omega = stack.modes(1)[0].omega;
         let tip = omega / stack.stiffness().sqrt();
         let still = -stack.stroke / tip;
@@ -185,6 +186,6 @@ fn a_stack_that_presses_on_leaves_its_own_end_open() {
 #[test]
 fn a_stack_that_does_not_come_to_the_plate_is_told() {
     let far = stack(34e-6, Some(Supply { resistance: 50.0, buffer_capacitance: None }));
-    let said = MovingBody::stack(&far).unwrap_err().to_string();
+    let said = MovingBody::outer(&setup(far).outer).unwrap_err().to_string();
     assert!(said.contains("`outer.gap` is 0.000034 m") && said.contains("never touches"), "{said}");
 }

@@ -3,7 +3,7 @@
 use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::kinds::plate_impact::shared::SharedBodies;
-use impactcheck::scene::{Model, Outer, Scene, Setup, Shape, resolve};
+use impactcheck::scene::{Model, Outer, Scene, Shape, resolve};
 
 /// Table 1's impact with other dimensions in m.
 fn scene(thickness: f64, outer: f64, inner: f64) -> Scene {
@@ -13,7 +13,7 @@ fn scene(thickness: f64, outer: f64, inner: f64) -> Scene {
     setup.plate.thickness = thickness;
     setup.outer = Outer::centred(Shape::Sphere { radius: outer }, material, speed);
     setup.inner.shape = Shape::Sphere { radius: inner };
-    scene.setup = Setup::PlateImpact(Box::new(setup));
+    scene.setup = setup.into();
     scene
 }
 

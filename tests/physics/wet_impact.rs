@@ -52,11 +52,11 @@ impl Wet {
         let fluid = setup.fluid.as_ref().expect("fluid");
         assert_eq!(fluid.added_mass_frequency_ratio, 1.0, "the shapes below are those of the dry plate");
         let plate = immersed(kirchhoff::modes(&setup.plate, modes).unwrap(), fluid);
-        let bodies = MovingBody::both(setup).unwrap();
+        let bodies = MovingBody::both(&setup.outer, &setup.inner).unwrap();
         let shapes = |radii: &[f64]| kirchhoff::shapes(&setup.plate, modes, radii);
         let forces = FluidForces::with_cells(fluid, &setup.plate, &setup.inner, cells, shapes);
         Self {
-            system: System::of(setup, &bodies, &plate, [0.0; 2]),
+            system: System::of(&bodies, &plate, &setup.plate.material, [0.0; 2]),
             fluid: forces.unwrap().expect("film or drag"),
         }
     }
@@ -255,7 +255,7 @@ fn added_mass_is_a_heavier_plate() {
     heavy.plate.material.density *= 9.0;
     heavy.fluid = None;
     let run = |setup: &PlateImpact, plate| {
-        integrator::integrate(&System::new(setup, &plate, [0.0; 2]), &Options::default()).unwrap().velocity
+        integrator::integrate(&setup.rigid_system(&plate, [0.0; 2]), &Options::default()).unwrap().velocity
     };
     let expected = run(&heavy, kirchhoff::modes(&heavy.plate, 16).unwrap());
     let found = run(&setup, wet);

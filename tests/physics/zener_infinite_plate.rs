@@ -7,7 +7,6 @@ use impactcheck::analytical::{circular_plate::rigidity, zener};
 use impactcheck::body::kirchhoff;
 use impactcheck::dynamics::integration::Options;
 use impactcheck::dynamics::integrator::integrate;
-use impactcheck::dynamics::system::System;
 
 /// Restitution and force peak of the reduced model and of Zener's equation, and Zener's lambda.
 fn both(thickness: f64, radius: f64, modes: usize) -> ([f64; 2], [f64; 2], f64) {
@@ -17,7 +16,7 @@ fn both(thickness: f64, radius: f64, modes: usize) -> ([f64; 2], [f64; 2], f64) 
     // the inner body is far away: one contact only
     setup.inner.gap = 1.0;
     let plate = kirchhoff::modes(&setup.plate, modes).unwrap();
-    let system = System::new(&setup, &plate, [0.0; 2]);
+    let system = setup.rigid_system(&plate, [0.0; 2]);
     let contact_time = 200e-6;
     let run = Options { end_time: Some(contact_time), ..Options::default() };
     let result = integrate(&system, &run).unwrap();

@@ -3,7 +3,7 @@
 use crate::report_data::{Data, between};
 use impactcheck::comparison::Discrepancy;
 use impactcheck::report::{scene_page, terminal};
-use impactcheck::scene::{Edge, Setup};
+use impactcheck::scene::Edge;
 use resvg::usvg::roxmltree::{Document, Node};
 
 /// The part of a page that is well-formed XML by itself.
@@ -74,10 +74,11 @@ fn every_mark_stands_where_its_discrepancy_is() {
 #[test]
 fn the_scene_is_drawn_to_scale_with_its_numbers() {
     let mut data = Data::new();
-    let Setup::PlateImpact(setup) = &mut data.scene.setup else { panic!("a plate") };
+    let mut setup = data.scene.plate_impact().unwrap().clone();
     setup.inner.gap = 4e-3;
     setup.plate.edge = Edge::SimplySupported;
     let (plate, outer, inner) = (setup.plate.clone(), setup.outer.clone(), setup.inner.clone());
+    data.scene.setup = setup.into();
     let report = data.report();
     let page = scene_page(&report.scenes[0]);
     let figure = part(&page, "<figure class=\"scene\">", "</figure>");

@@ -2,7 +2,7 @@
 
 use super::reduced::{fixture, model, sixteen};
 use impactcheck::comparison::{GateRules, Verdict, compare_scene};
-use impactcheck::flight::{flight_summary, launch};
+use impactcheck::kinds::flight::{flight_summary, launch};
 use impactcheck::report::{self, Cost, Report, SceneReport};
 use impactcheck::result::{Outcome, Source};
 use impactcheck::scene::Scene;

@@ -315,3 +315,59 @@ fn the_mesh_of_another_design_is_refused_and_one_that_does_not_tell_is_warned_of
     std::fs::write(&own, noted).expect("written");
     assert!(!told(&SeatMesh::open(&own).expect("mesh")).contains("geometry"));
 }
+
+/// A stand-in for the mesher, which waits for the second process before it writes a copy of the fixture's mesh.
+#[cfg(unix)]
+#[test]
+fn two_processes_that_make_the_same_mesh_at_the_same_time_do_not_disturb_each_other() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().expect("folder");
+    let here = folder.path();
+    let content = std::fs::read(super::reduced::mesh().path()).expect("mesh");
+    std::fs::write(here.join("mesh.vtu"), &content).expect("mesh");
+    // of another geometry, since those shipped have their meshes with them
+    let text = std::fs::read_to_string(fixture("seal-seat.toml")).expect("scene");
+    let text = text.replace("\"1.6 mm\"      # from the seated", "\"1.5999 mm\"      # from the seated");
+    std::fs::write(here.join("mine.toml"), text).expect("scene");
+    let hash = Scene::read(here.join("mine.toml")).expect("scene").seal_seat().expect("seat").geometry_hash();
+    let info = serde_json::json!({
+        "geometry_hash": hash, "sha256": impactcheck::scene::hash::sha256_hex(&content), "nodes": 2174, "dofs": 6522,
+        "elements": 1066, "element_order": 2, "min_quality": 0.3, "mean_quality": 0.8,
+    });
+    std::fs::write(here.join("mesh.json"), info.to_string()).expect("description");
+    let script = format!(
+        "#!/bin/sh\nhere='{}'\n[ $3 = versions ] && {{ echo '{{\"python\": \"3\"}}'; exit; }}\n\
+         while [ $# -gt 1 ]; do [ \"$1\" = --out ] && out=$2; shift; done\necho \"$out\" > \"$here/out.$$\"\n\
+         tries=0; while [ $(ls \"$here\" | grep -c '^out') -lt 2 ] && [ $tries -lt 1200 ]; do sleep 0.05; tries=$((tries+1)); done\n\
+         cp \"$here/mesh.vtu\" \"$out\"; cp \"$here/mesh.json\" \"${{out%.vtu}}.json\"\n",
+        here.display()
+    );
+    let python = here.join("python");
+    std::fs::write(&python, script).expect("script");
+    std::fs::set_permissions(&python, std::fs::Permissions::from_mode(0o755)).expect("executable");
+    let run = || {
+        std::process::Command::new(assert_cmd::cargo::cargo_bin("impactcheck"))
+            .args(["--quiet", "reduced", "mine.toml", "--modes", "2", "--tolerance", "1e-2"])
+            .current_dir(here)
+            .env("IMPACTCHECK_PYTHON", &python)
+            .env("IMPACTCHECK_CACHE", here.join("cache"))
+            .output()
+            .expect("runs")
+    };
+    let outputs = std::thread::scope(|scope| {
+        let both = [(); 2].map(|()| scope.spawn(run));
+        both.map(|one| one.join().expect("runs"))
+    });
+    for output in &outputs {
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    assert_eq!(outputs[0].stdout, outputs[1].stdout);
+    let names = std::fs::read_dir(here).expect("folder").map(|entry| entry.expect("entry").path());
+    let places: std::collections::BTreeSet<String> = names
+        .filter(|path| path.file_stem().is_some_and(|stem| stem == "out"))
+        .map(|path| std::fs::read_to_string(path).expect("place"))
+        .collect();
+    assert_eq!(places.len(), 2, "each has a place of its own: {places:?}");
+    let left: Vec<_> = std::fs::read_dir(here.join("cache/meshes")).expect("folder").flatten().collect();
+    assert_eq!(left.len(), 2, "{left:?}");
+}

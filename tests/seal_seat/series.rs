@@ -4,7 +4,7 @@ use super::reduced::{fixture, impactcheck, mesh, scene};
 use super::scaling::scaled;
 use impactcheck::kinds::seal_seat::{SeatQuantities, SeatSeries};
 use impactcheck::numerics::least_squares::fit;
-use impactcheck::scene::{Model, Scene, SealSeat, Setup};
+use impactcheck::scene::{Model, Scene, SealSeat};
 
 fn series() -> SeatSeries {
     SeatSeries::new(&scene(), &mesh()).expect("a mesh of the scene")
@@ -12,8 +12,9 @@ fn series() -> SeatSeries {
 
 fn changed(change: impl Fn(&mut SealSeat)) -> Scene {
     let mut scene = scene();
-    let Setup::SealSeat(setup) = &mut scene.setup else { panic!("a seal seat") };
-    change(setup);
+    let mut setup = scene.seal_seat().unwrap().clone();
+    change(&mut setup);
+    scene.setup = setup.into();
     scene
 }
 

@@ -7,7 +7,7 @@ use impactcheck::kinds::plate_impact::{CURVES, PlateQuantities};
 use impactcheck::result::{History, Outcome, SCHEMA_VERSION, Source, Summary};
 use impactcheck::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings,
-    RunSettings, Scene, Setup, Shape, Tolerance,
+    RunSettings, Scene, Shape, Tolerance,
 };
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -76,7 +76,7 @@ pub fn scene() -> Scene {
         vibration: None,
         name: "synthetic".into(),
         description: "Half-sine forces on two spheres".into(),
-        setup: Setup::PlateImpact(Box::new(PlateImpact {
+        setup: PlateImpact {
             friction: 0.0,
             plate: Plate {
                 radius: 0.033,
@@ -89,7 +89,8 @@ pub fn scene() -> Scene {
             inner: Inner { shape: sphere, material: steel, gap: 0.0, speed: 0.0 },
             fluid: None,
             series: None,
-        })),
+        }
+        .into(),
         run: RunSettings { end_time: None },
         reduced: ReducedSettings { model: Some(Model::B), modes: Some(16) },
         reference: ReferenceSettings {

@@ -92,24 +92,6 @@ fn value<T: DeserializeOwned>(entry: &str, inputs: &str) -> Option<T> {
     serde_json::from_str(content.strip_prefix(inputs)?.strip_prefix('\n')?).ok()
 }
 
-/// Number that changes with every change of `sources`, so that no entry outlives the method that made it: a number that
-/// somebody has to raise is forgotten, and then tests pass on yesterday's values. For the compiler to make.
-pub const fn revision(sources: &[&[u8]]) -> u64 {
-    // FNV-1a, 64 bit (Fowler, Noll, Vo)
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut file = 0;
-    while file < sources.len() {
-        let bytes = sources[file];
-        let mut i = 0;
-        while i < bytes.len() {
-            hash = (hash ^ bytes[i] as u64).wrapping_mul(0x0000_0100_0000_01b3);
-            i += 1;
-        }
-        file += 1;
-    }
-    hash
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,7 +14,7 @@
 //! A contact's force is along the axis: on the slope of the sphere it has a part along the surface, and so has the
 //! displacement in its direction. In a half-space that lifts the centre by (1 - 2 nu)(1 + nu)/(2 pi E r).
 
-use crate::scene::{Material, PlateImpact, Shape};
+use crate::scene::{Inner, Material, Outer, Shape};
 use std::f64::consts::PI;
 
 /// Terms of the series in radii of the sphere per radius of the patch: what follows is a half-space's.
@@ -66,13 +66,12 @@ pub fn sphere_residual(radius: f64, material: &Material, patch_radius: f64) -> f
     series - slope - logarithm * (patch_radius / patch).ln() + curved * share * unit
 }
 
-/// Residual flexibility in m/N of the outer and the inner body of `setup` under patches of the radii `patch` in m: spheres are free,
-/// compact bodies and the tips of benders and stacks rigid but for their Hertz contact.
-pub fn tip_residuals(setup: &PlateImpact, patch: [f64; 2]) -> [f64; 2] {
+/// Residual flexibility in m/N of outer and inner body under patches of the radii `patch` in m: spheres are free, compact bodies and the
+/// tips of benders and stacks rigid but for their Hertz contact.
+pub fn tip_residuals(outer: &Outer, inner: &Inner, patch: [f64; 2]) -> [f64; 2] {
     let tip = |shape: &Shape, material: &Material, patch: f64| match *shape {
         Shape::Sphere { radius } => sphere_residual(radius, material, patch),
         Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => 0.0,
     };
-    let (outer, inner) = (&setup.outer, &setup.inner);
     [tip(&outer.shape, &outer.material, patch[0]), tip(&inner.shape, &inner.material, patch[1])]
 }

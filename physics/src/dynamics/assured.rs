@@ -105,7 +105,7 @@ fn repeated(
     };
     let mut best = at(options.tolerance)?;
     let right = match options.results {
-        Some(error) => is_clear(&best, error),
+        Some(error) => is_clear(system, &best, error),
         None => options.tolerance > ROUGH || is_simple(system, &best, options.tolerance),
     };
     if right {
@@ -148,28 +148,31 @@ fn may_be_missed(result: &Integration, change: f64) -> bool {
     result.contacts.iter().any(|contact| contact.least_turn <= NEARLY_MISSED_IN_BOTH * change)
 }
 
+fn is_strongly_damped(system: &System) -> bool {
+    system.oscillators.iter().any(|o| o.omega > 0.0 && o.alpha >= STRONG_DAMPING * o.omega)
+}
+
 fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
     let [outer, inner] = &result.contacts;
-    let strongly_damped =
-        system.oscillators.iter().any(|o| o.omega > 0.0 && o.alpha >= STRONG_DAMPING * o.omega);
     let bound = Bounds::new(tolerance).force_defect;
     let sum = if system.is_damped() { SMALL_DEFECTS } else { SMALL_UNDAMPED_DEFECTS };
     let small = |c: &ContactLedger| {
         let within = |defect: f64, share: f64| defect <= share * bound * c.force_peak;
         within(c.force_defect, SMALL_DEFECT) && within(c.force_defect_sum, sum)
     };
-    !strongly_damped
+    !is_strongly_damped(system)
         && outer.contacts + inner.contacts <= FEW_TOUCHES
         && result.steps <= FEW_STEPS
         && result.contacts.iter().all(small)
         && (inner.contacts == 0 || inner.impulse >= FULL_SHARE * outer.impulse)
 }
 
-/// Whether all results of the first solution are right to `error`: it has few contacts, the inner one is not negligible, and no contact is
-/// nearly missed.
-fn is_clear(result: &Integration, error: f64) -> bool {
+/// Whether all results of the first solution are right to `error`: it has few contacts, the inner one is not negligible, no contact is
+/// nearly missed, and no strong damping lets a force die away so slowly that the time of release is uncertain.
+fn is_clear(system: &System, result: &Integration, error: f64) -> bool {
     let [outer, inner] = &result.contacts;
-    outer.contacts + inner.contacts <= CLEAR_CONTACTS
+    !is_strongly_damped(system)
+        && outer.contacts + inner.contacts <= CLEAR_CONTACTS
         && result.steps <= CLEAR_STEPS
         && (inner.contacts == 0 || inner.impulse >= CLEAR_SHARE * outer.impulse)
         && result.contacts.iter().all(|contact| contact.least_turn > NEARLY_MISSED * error)

@@ -101,7 +101,7 @@ mod tests {
             let mut setup = Scene::parse("r10.toml", text).unwrap().plate_impact().unwrap().clone();
             setup.plate.thickness = thickness;
             setup.inner.shape = crate::scene::Shape::Sphere { radius: inner };
-            let system = System::new(&setup, &modes(&setup.plate, 16).unwrap(), [0.0; 2]);
+            let system = setup.rigid_system(&modes(&setup.plate, 16).unwrap(), [0.0; 2]);
             let exact = integrate(&system, &Options::default()).unwrap().contacts;
             for (ours, exact) in run(&system).expect("an end").iter().zip(&exact) {
                 assert_relative_eq!(ours.force_peak, exact.force_peak, max_relative = 9e-2);

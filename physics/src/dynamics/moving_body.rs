@@ -1,4 +1,4 @@
-//! A body beside the plate as oscillators, in the state in which the impact begins.
+//! A striking or struck body as oscillators, in the state in which the impact begins.
 
 use super::system::dot;
 use crate::actuator::beam::Release;
@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::numerics::duhamel::{Feed, Oscillator};
 use crate::numerics::root::first_fall;
 use crate::result::Drive;
-use crate::scene::{Material, Outer, PlateImpact, Shape};
+use crate::scene::{Inner, Material, Outer, Shape};
 use std::cell::Cell;
 
 /// Time in radians of the slowest mode after which a stack that has not touched never will.
@@ -26,39 +26,47 @@ pub struct MovingBody {
     pub displacement: Vec<f64>,
     /// Their rates at t = 0. Shape (n).
     pub velocity: Vec<f64>,
+    /// Radius of curvature at the contact point, m.
+    pub tip_radius: f64,
+    /// Material at the contact point.
+    pub material: Material,
+    /// Speed towards the plate in m/s at t = 0; of a stack that of its tip after a step of the voltage.
+    pub speed: f64,
     /// Mass in kg that has the body's kinetic energy at the speed of its contact point.
     pub mass: f64,
     /// How it was driven, if it is a bender.
     pub drive: Option<Drive>,
-    /// Gap in m to the plate with all coordinates at zero; negative where they are displaced at the touch.
+    /// Distance in m to the plate with all coordinates at zero; negative where they are displaced at the touch.
     pub clearance: f64,
+    /// The stack that it is, which may press on the plate for ever.
+    pub stack: Option<Stack>,
     /// What supplies it while it strikes, if it is a stack behind a resistor: what the force does to each coordinate. Shape (n).
     pub supply: Option<(Circuit, Vec<Feed>)>,
 }
 
 impl MovingBody {
-    /// The outer and the inner body of a scene.
+    /// The outer and the inner body of an impact.
     ///
     /// # Errors
     /// As [`MovingBody::outer`].
-    pub fn both(setup: &PlateImpact) -> Result<[Self; 2]> {
-        Ok([Self::outer(&setup.outer)?, Self::rigid_inner(setup)])
+    pub fn both(outer: &Outer, inner: &Inner) -> Result<[Self; 2]> {
+        Ok([Self::outer(outer)?, Self::inner(inner)])
     }
 
     /// Both as rigid bodies; a bender is none.
-    pub(super) fn both_rigid(setup: &PlateImpact) -> [Self; 2] {
-        debug_assert!(!setup.outer.shape.is_held(), "a bender or a stack is no rigid body");
-        [Self::rigid_outer(&setup.outer), Self::rigid_inner(setup)]
+    pub fn both_rigid(outer: &Outer, inner: &Inner) -> [Self; 2] {
+        debug_assert!(!outer.shape.is_held(), "a bender or a stack is no rigid body");
+        [Self::rigid_outer(outer), Self::inner(inner)]
     }
 
-    /// The outer body of a scene: rigid, a bender with the modes of its beam, or a stack with those of its rod.
+    /// The outer body: rigid, a bender with the modes of its beam, or a stack with those of its rod.
     ///
     /// # Errors
     /// As [`Release::new`] and [`Self::stack`].
     pub fn outer(outer: &Outer) -> Result<Self> {
         let bender = match &outer.shape {
             Shape::Bender(bender) => bender,
-            Shape::Stack(stack) => return Self::stack(stack),
+            Shape::Stack(stack) => return Self::stack(stack, &outer.material),
             Shape::Sphere { .. } | Shape::Compact { .. } => return Ok(Self::rigid_outer(outer)),
         };
         let release = Release::new(bender)?;
@@ -82,16 +90,35 @@ impl MovingBody {
                 strike_delay: release.time,
             }),
             clearance: if bender.strike_at == 0.0 { 0.0 } else { -strikes_at },
+            stack: None,
             supply: None,
+            tip_radius: bender.tip_radius,
+            material: outer.material.clone(),
+            speed: outer.speed,
         })
     }
 
-    /// A stack that is switched on, in the state in which its tip touches; its coordinates are those about its rest.
+    /// A stack with a tip of `material` that is switched on, in the state in which its tip touches; its coordinates are those about its
+    /// rest.
     ///
     /// # Errors
     /// [`Error::Solver`] if it does not reach the plate, and as [`Circuit::new`].
-    pub fn stack(stack: &Stack) -> Result<Self> {
+    fn stack(stack: &Stack, material: &Material) -> Result<Self> {
         let supply = stack.drive.map(|supply| Circuit::new(stack, supply)).transpose()?;
+        let rest = Self {
+            oscillators: Vec::new(),
+            tip: Vec::new(),
+            displacement: Vec::new(),
+            velocity: Vec::new(),
+            tip_radius: stack.tip_radius,
+            material: material.clone(),
+            speed: stack.step_speed(),
+            mass: stack.mass(),
+            drive: None,
+            clearance: 0.0,
+            stack: Some(*stack),
+            supply: None,
+        };
         let mut body = match supply {
             Some(circuit) => {
                 let each = |value: fn(&circuit::Mode) -> f64| circuit.modes.iter().map(value).collect();
@@ -100,10 +127,9 @@ impl MovingBody {
                     tip: each(|mode| -mode.tip),
                     displacement: each(|mode| mode.start[0]),
                     velocity: each(|mode| mode.start[1]),
-                    mass: stack.mass(),
-                    drive: None,
                     clearance: stack.gap - circuit.final_extension(),
                     supply: Some((circuit.clone(), circuit.modes.iter().map(|mode| mode.feed).collect())),
+                    ..rest
                 }
             }
             None => {
@@ -114,10 +140,8 @@ impl MovingBody {
                     tip: modes.iter().map(|mode| -mode.tip).collect(),
                     displacement: modes.iter().map(still).collect(),
                     velocity: vec![0.0; modes.len()],
-                    mass: stack.mass(),
-                    drive: None,
                     clearance: stack.gap - stack.stroke,
-                    supply: None,
+                    ..rest
                 }
             }
         };
@@ -167,24 +191,29 @@ impl MovingBody {
     }
 
     fn rigid_outer(outer: &Outer) -> Self {
-        Self::rigid(&outer.shape, &outer.material, -outer.speed)
+        let stack = if let Shape::Stack(stack) = outer.shape { Some(stack) } else { None };
+        Self { stack, ..Self::rigid(&outer.shape, &outer.material, [outer.speed, -outer.speed], 0.0) }
     }
 
-    fn rigid_inner(setup: &PlateImpact) -> Self {
-        Self::rigid(&setup.inner.shape, &setup.inner.material, setup.inner.speed)
+    fn inner(inner: &Inner) -> Self {
+        Self::rigid(&inner.shape, &inner.material, [inner.speed; 2], inner.gap)
     }
 
-    /// A rigid body that begins with `velocity` m/s along z.
-    fn rigid(shape: &Shape, material: &Material, velocity: f64) -> Self {
+    /// A rigid body that begins with the `velocity` in m/s towards the plate and along z, `clearance` m from it.
+    fn rigid(shape: &Shape, material: &Material, velocity: [f64; 2], clearance: f64) -> Self {
         let mass = shape.mass(material);
         Self {
             oscillators: vec![Oscillator { omega: 0.0, alpha: 0.0 }],
             tip: vec![1.0 / mass.sqrt()],
             displacement: vec![0.0],
-            velocity: vec![velocity * mass.sqrt()],
+            velocity: vec![velocity[1] * mass.sqrt()],
+            tip_radius: shape.tip_radius(),
+            material: material.clone(),
+            speed: velocity[0],
             mass,
             drive: None,
-            clearance: 0.0,
+            clearance,
+            stack: None,
             supply: None,
         }
     }

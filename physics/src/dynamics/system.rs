@@ -1,4 +1,4 @@
-//! The bodies of a plate impact as one set of oscillators coupled by two contacts.
+//! The bodies of an impact as one set of oscillators coupled by two contacts.
 //!
 //! Every body is a set of mass-normalised coordinates q_k: the rigid spheres (omega = 0), the modes
 //! of the plate, those of a bender. The approach of contact i is delta_i = sum_k b_ik q_k - gap_i, less what the
@@ -13,9 +13,9 @@ use crate::actuator::circuit::{Account, Circuit};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::contact::{Hertz, PatchFlexibility, Residual};
+use crate::material::Material;
 use crate::numerics::duhamel::{Feed, Oscillator};
 use crate::result::Drive;
-use crate::scene::{PlateImpact, Shape};
 use std::ops::Range;
 
 /// Index of the outer body's first coordinate among the oscillators: the rigid motion, or a bender's first mode. Further
@@ -62,7 +62,7 @@ impl Coordinate {
     }
 }
 
-/// Oscillators and contacts of a plate impact.
+/// Oscillators and contacts of an impact.
 #[derive(Debug, Clone)]
 pub struct System {
     /// The oscillators: outer body, inner body, plate, further modes of both bodies. Shape (n).
@@ -97,6 +97,8 @@ pub struct System {
     pub feeds: Vec<(usize, Feed)>,
     /// Speed of the outer body towards the plate in m/s; of a stack that of its tip after a step of the voltage.
     pub speed: f64,
+    /// Speed of the inner body towards the plate in m/s at t = 0.
+    pub inner_speed: f64,
     /// First eigenfrequency of the plate that is not a rigid motion, Hz.
     pub first_frequency: f64,
     /// Number of elastic modes of the plate.
@@ -113,38 +115,29 @@ impl System {
         system
     }
 
-    /// Joins the plate, reduced to `plate`, with rigid outer and inner bodies; `tip_residual` is the residual
-    /// flexibility in m/N of the outer and the inner body at their contact points (zero for models A and B).
-    ///
-    /// A bender is no rigid body: [`System::of`].
-    pub fn new(setup: &PlateImpact, plate: &ModalBody, tip_residual: [f64; 2]) -> Self {
-        Self::of(setup, &MovingBody::both_rigid(setup), plate, tip_residual)
-    }
-
-    /// As [`System::new`], with any outer and inner body.
+    /// Joins outer and inner body with the plate of `material`, reduced to `plate`; `tip_residual` is the residual flexibility in m/N
+    /// of the outer and the inner body at their contact points (zero for models A and B).
     pub fn of(
-        setup: &PlateImpact,
         bodies: &[MovingBody; 2],
         plate: &ModalBody,
+        material: &Material,
         tip_residual: [f64; 2],
     ) -> Self {
-        let (outer, inner) = (&setup.outer, &setup.inner);
-        let masses = [bodies[0].mass, bodies[1].mass];
+        let [outer, inner] = bodies;
+        let masses = [outer.mass, inner.mass];
         let mut coordinates: Vec<Coordinate> = [0, 1].map(|i| Coordinate::of_body(bodies, i, 0)).into();
         coordinates.extend((0..plate.omega.len()).map(|k| Coordinate::of_plate(plate, k)));
         let own = |k: usize| if k == 0 { OUTER } else { PLATE + plate.omega.len() + k - 1 };
-        let (circuit, feeds) = bodies[0].supply.clone().unzip();
+        let (circuit, feeds) = outer.supply.clone().unzip();
         let feeds = feeds.into_iter().flatten().enumerate().map(|(k, feed)| (own(k), feed)).collect();
         for (i, body) in bodies.iter().enumerate() {
             coordinates.extend((1..body.oscillators.len()).map(|k| Coordinate::of_body(bodies, i, k)));
         }
         let each = |value: fn(&Coordinate) -> f64| coordinates.iter().map(value).collect::<Vec<f64>>();
-        let law = |shape: &Shape, material| Hertz::new(shape.tip_radius(), material, &setup.plate.material);
-        let laws = [law(&outer.shape, &outer.material), law(&inner.shape, &inner.material)];
+        let laws = [outer, inner].map(|body| Hertz::new(body.tip_radius, &body.material, material));
         let mut flexibility = plate.residual.unwrap_or(PatchFlexibility::constant([[0.0; 2]; 2]));
         let hit = HertzImpact { mass: masses[0], speed: outer.speed, stiffness: laws[0].stiffness };
-        let modulus = setup.plate.material.plane_strain_modulus();
-        let local_centre = LocalCentre::new(flexibility, &laws, modulus, &hit);
+        let local_centre = LocalCentre::new(flexibility, &laws, material.plane_strain_modulus(), &hit);
         for (own, tip) in flexibility.own.iter_mut().zip(tip_residual) {
             own[0] += tip;
         }
@@ -157,17 +150,18 @@ impl System {
             bodies: [each(|c| c.bodies[0]), each(|c| c.bodies[1])],
             start: [each(|c| c.start[0]), each(|c| c.start[1])],
             centre: each(|c| c.centre),
-            gap: [bodies[0].clearance, inner.gap],
+            gap: [outer.clearance, inner.clearance],
             laws,
             local_centre,
             residual: (!residual.is_zero()).then_some(residual),
             tip_residual,
             masses,
-            drive: bodies[0].drive,
-            stack: if let Shape::Stack(stack) = outer.shape { Some(stack) } else { None },
+            drive: outer.drive,
+            stack: outer.stack,
             circuit,
             feeds,
             speed: outer.speed,
+            inner_speed: inner.speed,
             first_frequency: elastic.clone().fold(f64::INFINITY, f64::min) / (2.0 * std::f64::consts::PI),
             modes: elastic.count(),
             oscillators: coordinates.iter().map(|c| c.oscillator).collect(),

@@ -4,7 +4,6 @@
 //! centre moves on an arc of the sphere's radius.
 
 use super::Vector;
-use crate::scene::SealSeat;
 
 /// Walls of a chamber for a sphere of one radius.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,21 +73,6 @@ impl Chamber {
             )));
         }
         Ok(chamber)
-    }
-
-    /// The chamber above a seal seat: its two cones with bores, the island and the membrane around it, side walls at the
-    /// membrane's rim and a ceiling at `height` m.
-    ///
-    /// # Errors
-    /// As [`Chamber::new`].
-    pub fn of_seal_seat(setup: &SealSeat, height: f64) -> Result<Self, TooNarrow> {
-        let left = left_half(setup);
-        let mirrored = |p: &Vector| Vector::new(-p.x, p.y);
-        // an edge on the axis is one corner
-        let right = left.iter().rev().filter(|p| p.x != 0.0).map(mirrored);
-        let floor: Vec<Vector> = left.iter().copied().chain(right).collect();
-        let [x, z] = setup.ring().sphere_centre;
-        Chamber::new(&floor, height, setup.sphere.radius, [Vector::new(x, z), Vector::new(-x, z)])
     }
 
     /// The chamber over a rocker (Fig. 4): a flat floor at z = 0, and walls between which a sphere of `radius` m has a
@@ -216,45 +200,4 @@ impl Chamber {
             Feature::Edge(corner) => wall == corner || wall == self.before(corner),
         }
     }
-}
-
-/// The corners of a seal seat's surface at x <= 0, from the rim inwards.
-fn left_half(setup: &SealSeat) -> Vec<Vector> {
-    let (seat, ring) = (&setup.seat, setup.ring());
-    let centre = Vector::new(ring.sphere_centre[0], ring.sphere_centre[1]);
-    let up = Vector::new(ring.axis[0], ring.axis[1]);
-    let inwards = Vector::new(up.y, -up.x);
-    let half = 0.5 * seat.aperture_angle;
-    // the cone's tip, and its mouth into the bore
-    let tip = centre - setup.sphere.radius / half.sin() * up;
-    let mouth = tip + seat.bore_radius / half.tan() * up;
-    let flanks = [-1.0, 1.0].map(|side| half.cos() * up + side * half.sin() * inwards);
-    let side = -0.5 * seat.island_length;
-    let mut corners = vec![
-        Vector::new(-seat.membrane_radius, seat.membrane_thickness),
-        Vector::new(side, seat.membrane_thickness),
-        Vector::new(side, seat.island_height),
-    ];
-    let outer = mouth - seat.bore_radius * inwards;
-    corners.push(outer + (seat.island_height - outer.y) / flanks[0].y * flanks[0]);
-    let floor = centre - seat.bore_depth * up;
-    let [left, right] = [-seat.bore_radius, seat.bore_radius].map(|side| side * inwards);
-    corners.extend([outer, floor + left, floor + right, mouth + right]);
-    // up the inner flank to the top, the notch or the other cone
-    let inner = mouth + right;
-    let notch = seat.notch.filter(|notch| {
-        let reach = (-0.5 * notch.width - inner.x) / flanks[1].x;
-        reach > 0.0 && inner.y + reach * flanks[1].y > notch.floor
-    });
-    let end = notch.map_or(0.0, |notch| -0.5 * notch.width);
-    let reach = (end - inner.x) / flanks[1].x;
-    let top = (seat.island_height - inner.y) / flanks[1].y;
-    if flanks[1].y > 0.0 && top < reach {
-        corners.push(inner + top * flanks[1]);
-        corners.push(Vector::new(end, seat.island_height));
-    } else {
-        corners.push(Vector::new(end, inner.y + reach * flanks[1].y));
-    }
-    corners.extend(notch.map(|notch| Vector::new(end, notch.floor)));
-    corners
 }

@@ -1,17 +1,22 @@
 //! The kinds of scene, each with its reduced models.
 
 mod consistency;
+pub mod flight;
 pub mod plate_impact;
+mod reading;
 pub mod seal_seat;
 mod series;
 
+use crate::flight::Launch;
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table};
-use crate::scene::{Model, Scene, Setup};
+use crate::scene::{Language, Model, Scene};
 
+pub use reading::{schema, unit_of};
 pub use series::{Series, SeriesModel};
 
 /// What everything that compares, shows or keeps results has to know of a kind of scene.
-pub trait Kind: Sync {
+#[expect(private_bounds, reason = "what a kind adds to the scene language is the affair of this crate")]
+pub trait Kind: Language {
     /// Its name in scene files.
     fn name(&self) -> &'static str;
 
@@ -38,6 +43,9 @@ pub trait Kind: Sync {
         Table::new(self.quantities())
     }
 
+    /// How an impact with the results `summary` launches the sphere that flies; `None` if the run was cut during a contact.
+    fn launch(&self, summary: &Summary) -> Option<Launch>;
+
     /// What must hold of a result of `scene`; of its curves, if they can be sampled.
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement>;
 }
@@ -52,8 +60,6 @@ pub fn named(name: &str) -> Option<&'static dyn Kind> {
 
 /// The kind of `scene`.
 pub fn of(scene: &Scene) -> &'static dyn Kind {
-    match scene.setup {
-        Setup::PlateImpact(_) => &plate_impact::Kind,
-        Setup::SealSeat(_) => &seal_seat::Kind,
-    }
+    let name = scene.setup.kind();
+    named(name).unwrap_or_else(|| unreachable!("a scene of the kind `{name}`"))
 }

@@ -13,6 +13,8 @@ pub struct Quantity {
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
+    /// The curve of a history that it belongs to, as a peak or last value.
+    pub curve: Option<&'static str>,
     /// Whether it counts something: a whole number, for which a difference in per cent says little.
     pub is_count: bool,
     /// Value in the unit; `None` if the result does not determine it.
@@ -89,6 +91,14 @@ impl Serialize for Table {
     }
 }
 
+/// The curve among at most one.
+pub(crate) const fn curve(names: &[&'static str]) -> Option<&'static str> {
+    match names {
+        [name] => Some(name),
+        _ => None,
+    }
+}
+
 /// What a field of a typed result can be.
 pub(crate) trait Number: Copy {
     /// Whether it counts something.
@@ -119,10 +129,10 @@ impl Number for u32 {
     }
 }
 
-/// Declares the typed results of a kind of scene, every field with its unit: the view that the kind itself works with, and
+/// Declares the typed results of a kind of scene, every field with its unit and the curve it belongs to: the view that the kind itself works with, and
 /// the [`Table`] it becomes.
 macro_rules! quantities {
-    ($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $number:ty, $unit:literal;)+ }) => {
+    ($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $number:ty, $unit:literal $(, of $curve:ident)?;)+ }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct $name {
@@ -134,6 +144,7 @@ macro_rules! quantities {
             pub const ALL: &'static [$crate::result::Quantity] = &[$($crate::result::Quantity {
                 name: stringify!($field),
                 unit: $unit,
+                curve: $crate::result::table::curve(&[$(stringify!($curve))?]),
                 is_count: <$number as $crate::result::table::Number>::IS_COUNT,
                 value: None,
             }),+];
@@ -180,7 +191,7 @@ mod tests {
         /// Three quantities.
         Three {
             /// In m.
-            length: f64, "m";
+            length: f64, "m", of way;
             /// Of something.
             number: u32, "1";
             /// Of a body by itself.

@@ -2,9 +2,8 @@
 
 use super::advice::{alternatives, chosen, example, half_of_it, needed};
 use super::fault::{Collector, did_you_mean};
-use super::grammar::{Bound, Field, Kind};
+use super::grammar::{Bound, DEFAULT_GEOMETRY, Field, Kind};
 use super::place::Place;
-use super::plate_impact::DEFAULT_GEOMETRY;
 use super::quantity::{self, Dimension, QuantityError};
 use super::values::{Checked, Values};
 use toml::Spanned;

@@ -4,25 +4,25 @@ use std::borrow::Cow;
 
 /// Two features of a scene that can't both be as they are.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Collision {
+pub(crate) struct Collision {
     /// The fields to change, as in the scene file; the first one is pointed at.
-    pub(super) fields: Vec<Cow<'static, str>>,
+    pub(crate) fields: Vec<Cow<'static, str>>,
     /// What collides, with values, bound and unit.
-    pub(super) message: String,
+    pub(crate) message: String,
     /// What to do.
-    pub(super) help: &'static str,
+    pub(crate) help: &'static str,
 }
 
 /// A condition on two features; what is said if it does not hold.
-pub(super) struct Rule {
-    pub(super) fields: Vec<&'static str>,
-    pub(super) holds: bool,
-    pub(super) message: String,
-    pub(super) help: &'static str,
+pub(crate) struct Rule {
+    pub(crate) fields: Vec<&'static str>,
+    pub(crate) holds: bool,
+    pub(crate) message: String,
+    pub(crate) help: &'static str,
 }
 
 /// The collisions where a rule does not hold.
-pub(super) fn broken(rules: Vec<Rule>) -> Vec<Collision> {
+pub(crate) fn broken(rules: Vec<Rule>) -> Vec<Collision> {
     let collision = |r: Rule| {
         let fields = r.fields.into_iter().map(Cow::from).collect();
         Collision { fields, message: r.message, help: r.help }

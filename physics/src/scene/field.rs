@@ -3,7 +3,6 @@
 use super::grammar;
 use super::grammar::Kind;
 use super::quantity::{self, Dimension, QuantityError};
-use super::specification::SCENE;
 use super::values::{Checked, Values};
 use crate::{Error, Result};
 
@@ -132,10 +131,10 @@ fn has(values: &Values, path: &str) -> bool {
         .is_some_and(|values| values.contains_key(key))
 }
 
-/// Every numeric field that a scene with these checked `values` has or may have and a reduced model knows.
-pub(super) fn fields_of(values: &Values) -> Vec<Field> {
+/// Every numeric field among `keys` that a scene with these checked `values` has or may have and a reduced model knows.
+pub(super) fn fields_of(keys: &'static [grammar::Field], values: &Values) -> Vec<Field> {
     let mut fields = Vec::new();
-    collect(&SCENE, Some(values), &mut Vec::new(), &mut fields);
+    collect(keys, Some(values), &mut Vec::new(), &mut fields);
     fields.retain(|field: &Field| without_effect(values, &field.path).is_none());
     fields
 }

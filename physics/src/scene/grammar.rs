@@ -4,34 +4,34 @@ use super::quantity::Dimension;
 
 /// Valid range of a number, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Bound {
+pub(crate) struct Bound {
     /// Lower end and whether it is valid itself.
-    pub(super) low: Option<(f64, bool)>,
+    pub(crate) low: Option<(f64, bool)>,
     /// Upper end and whether it is valid itself.
-    pub(super) high: Option<(f64, bool)>,
+    pub(crate) high: Option<(f64, bool)>,
 }
 
 impl Bound {
-    pub(super) const POSITIVE: Bound = Bound { low: Some((0.0, false)), high: None };
-    pub(super) const NOT_NEGATIVE: Bound = Bound { low: Some((0.0, true)), high: None };
-    pub(super) const ANY: Bound = Bound { low: None, high: None };
+    pub(crate) const POSITIVE: Bound = Bound { low: Some((0.0, false)), high: None };
+    pub(crate) const NOT_NEGATIVE: Bound = Bound { low: Some((0.0, true)), high: None };
+    pub(crate) const ANY: Bound = Bound { low: None, high: None };
 
     /// Whether `value` is valid.
-    pub(super) fn holds(&self, value: f64) -> bool {
+    pub(crate) fn holds(&self, value: f64) -> bool {
         let above = self.low.is_none_or(|(b, valid)| value > b || (valid && value == b));
         let below = self.high.is_none_or(|(b, valid)| value < b || (valid && value == b));
         value.is_finite() && above && below
     }
 
     /// The same range of an angle in degrees; rounding is left out.
-    pub(super) fn in_degrees(&self) -> Self {
+    pub(crate) fn in_degrees(&self) -> Self {
         let of =
             |end: Option<(f64, bool)>| end.map(|(b, valid)| ((b.to_degrees() * 1e9).round() / 1e9, valid));
         Self { low: of(self.low), high: of(self.high) }
     }
 
     /// "greater than 0 m", "at least 0 and less than 1".
-    pub(super) fn describe(&self, unit: &str) -> String {
+    pub(crate) fn describe(&self, unit: &str) -> String {
         let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
         let word = |at: Option<(f64, bool)>, valid: &str, open: &str| {
             at.map(|(b, v)| format!("{} {b}{unit}", if v { valid } else { open }))
@@ -44,17 +44,17 @@ impl Bound {
 
 /// One value of a key that has a fixed set of them.
 #[derive(Debug)]
-pub(super) struct Choice {
-    pub(super) name: &'static str,
+pub(crate) struct Choice {
+    pub(crate) name: &'static str,
 }
 
-pub(super) const fn choice(name: &'static str) -> Choice {
+pub(crate) const fn choice(name: &'static str) -> Choice {
     Choice { name }
 }
 
 /// What stands behind a key.
 #[derive(Debug)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     /// Any text.
     Text,
     /// A text that can name a folder.
@@ -87,59 +87,59 @@ pub(super) enum Kind {
 
 /// One key.
 #[derive(Debug)]
-pub(super) struct Field {
-    pub(super) key: &'static str,
-    pub(super) kind: Kind,
-    pub(super) required: bool,
+pub(crate) struct Field {
+    pub(crate) key: &'static str,
+    pub(crate) kind: Kind,
+    pub(crate) required: bool,
     /// The key belongs to these `kind`s (or `geometry`s) of its table only; empty = to all.
-    pub(super) only: &'static [&'static str],
+    pub(crate) only: &'static [&'static str],
     /// The key is part of one of several ways to say a thing.
-    pub(super) alternative: Option<Alternative>,
-    pub(super) doc: &'static str,
+    pub(crate) alternative: Option<Alternative>,
+    pub(crate) doc: &'static str,
 }
 
 /// Several sets of keys say the same thing: one set has to be there and complete, no other may be. If the keys are
 /// optional, all sets may be absent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Alternative {
+pub(crate) struct Alternative {
     /// The `kind` of the table for which this holds; `None` = for any.
-    pub(super) kind: Option<&'static str>,
+    pub(crate) kind: Option<&'static str>,
     /// What the sets say.
-    pub(super) group: &'static str,
+    pub(crate) group: &'static str,
     /// The set the key belongs to.
-    pub(super) set: &'static str,
+    pub(crate) set: &'static str,
 }
 
 impl Field {
     /// The alternative the key is part of in a table of this `kind`.
-    pub(super) fn alternative(&self, kind: Option<&str>) -> Option<Alternative> {
+    pub(crate) fn alternative(&self, kind: Option<&str>) -> Option<Alternative> {
         self.alternative.filter(|a| a.kind.is_none() || a.kind == kind)
     }
 
     /// Whether the key has to be there by itself in a table of this `kind`.
-    pub(super) fn is_needed(&self, kind: Option<&str>) -> bool {
+    pub(crate) fn is_needed(&self, kind: Option<&str>) -> bool {
         self.required && self.alternative(kind).is_none() && self.belongs_to(kind)
     }
 
     /// Whether the key is one of a table of this `kind`.
-    pub(super) fn belongs_to(&self, kind: Option<&str>) -> bool {
+    pub(crate) fn belongs_to(&self, kind: Option<&str>) -> bool {
         self.only.is_empty() || kind.is_some_and(|k| self.only.contains(&k))
     }
 }
 
-pub(super) const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Field {
+pub(crate) const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Field {
     Field { key, kind, required: true, only: &[], alternative: None, doc }
 }
 
-pub(super) const fn optional(key: &'static str, kind: Kind, doc: &'static str) -> Field {
+pub(crate) const fn optional(key: &'static str, kind: Kind, doc: &'static str) -> Field {
     Field { key, kind, required: false, only: &[], alternative: None, doc }
 }
 
-pub(super) const fn only(kinds: &'static [&'static str], field: Field) -> Field {
+pub(crate) const fn only(kinds: &'static [&'static str], field: Field) -> Field {
     Field { only: kinds, ..field }
 }
 
-pub(super) const fn one_way(
+pub(crate) const fn one_way(
     kind: Option<&'static str>,
     group: &'static str,
     set: &'static str,
@@ -148,22 +148,25 @@ pub(super) const fn one_way(
     Field { alternative: Some(Alternative { kind, group, set }), ..field }
 }
 
-pub(super) const fn positive(dimension: Dimension) -> Kind {
+pub(crate) const fn positive(dimension: Dimension) -> Kind {
     Kind::Quantity(dimension, Bound::POSITIVE)
 }
 
-pub(super) const fn pure(bound: Bound) -> Kind {
+pub(crate) const fn pure(bound: Bound) -> Kind {
     Kind::Quantity(Dimension::NONE, bound)
 }
 
+/// Geometry of a reference that names none.
+pub(crate) const DEFAULT_GEOMETRY: &str = "axisymmetric";
+
 /// The names of the reduced models.
-pub(super) const MODELS: [Choice; 3] = [choice("A"), choice("B"), choice("C")];
+pub(crate) const MODELS: [Choice; 3] = [choice("A"), choice("B"), choice("C")];
 
 /// Stands apart from the table of keys because its shape is checked by its own reader.
-pub(super) static TOLERANCES: Field =
+pub(crate) static TOLERANCES: Field =
     optional("tolerances", Kind::Tolerances, "Tolerances of the gate, by model and quantity");
 
-pub(super) const TIP_RADIUS: Field =
+pub(crate) const TIP_RADIUS: Field =
     required("tip_radius", positive(Dimension::LENGTH), "Radius of the spherical tip");
-pub(super) const BODY_MATERIAL: Field =
+pub(crate) const BODY_MATERIAL: Field =
     required("material", Kind::Material, "Material of the body, a name under [materials]");

@@ -13,7 +13,7 @@ const EXPONENT: Bound = Bound { low: Some((1.0, true)), high: None };
 /// Most terms of a relaxation.
 const MAX_TERMS: usize = 16;
 
-pub(super) static MATERIAL: [Field; 9] = [
+pub(crate) static MATERIAL: [Field; 9] = [
     required(
         "youngs_modulus",
         positive(Dimension::PRESSURE),
@@ -64,7 +64,7 @@ static RELAXATION: [Field; 2] = [
 ];
 
 /// What the materials of a scene (its checked values) say that contradicts or needs another key.
-pub(super) fn collisions(root: &Node) -> Result<Vec<Collision>> {
+pub(crate) fn collisions(root: &Node) -> Result<Vec<Collision>> {
     let materials = root.table("materials")?;
     let mut found = Vec::new();
     for name in materials.0.keys() {
@@ -149,7 +149,7 @@ fn relaxation(keys: &Node) -> Result<Option<Vec<Relaxation>>> {
 }
 
 /// The material `name` of `materials`, without [`collisions`].
-pub(super) fn material(materials: &Node, name: &str) -> Result<Material> {
+pub(crate) fn material(materials: &Node, name: &str) -> Result<Material> {
     let keys = materials.table(name)?;
     let relaxation = relaxation(&keys)?
         .ok_or_else(|| Error::Internal(format!("the loss factor of `materials.{name}` was not checked")))?;

@@ -7,42 +7,46 @@
 mod advice;
 mod alternatives;
 mod check;
-mod collision;
+pub(crate) mod collision;
 mod external;
 mod fault;
 mod field;
-mod flight;
-mod grammar;
+pub(crate) mod flight;
+pub(crate) mod grammar;
 pub mod hash;
-mod material;
+mod language;
+pub(crate) mod material;
+pub(crate) mod parts;
 mod place;
-mod plate_impact;
-mod plausibility;
-mod quantity;
-mod read;
+pub(crate) mod plausibility;
+pub(crate) mod quantity;
+pub(crate) mod read;
 mod schema;
-mod seal_seat;
-mod specification;
+mod setup;
 mod template;
-mod tolerances;
+pub(crate) mod tolerances;
 mod uncertainty;
-mod values;
+pub(crate) mod values;
 
 pub use external::External;
 pub use fault::suggestion;
 pub use fault::{Fault, Faults, faults};
 pub use field::{Field, Rejected};
-pub use flight::{Flight, FlightSpring, Vibration};
-pub use plate_impact::{
-    Bender, DEFAULT_MODES, Edge, Fluid, Inner, MAX_MODES, Outer, Plate, PlateImpact, Series, Shape,
-    ShearThinning, Spot, Stack, Supply,
+pub use flight::{Flight, FlightSpring, Flyer, Vibration};
+pub(crate) use language::{Dialect, Grammar, Language};
+pub use parts::{
+    Bender, Edge, Fluid, Inner, Outer, Plate, Series, Shape, ShearThinning, Spot, Stack, Supply,
 };
 pub use plausibility::doubts;
+// TEMP
+pub use crate::kinds::plate_impact::{MAX_MODES, PlateImpact};
+pub use crate::kinds::seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
+pub use crate::kinds::{schema, unit_of};
+
 pub use quantity::in_unit as quantity_in;
 pub use read::MAX_FILE_BYTES;
-pub use schema::schema;
-pub use seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
-pub use specification::unit_of;
+pub(crate) use setup::Bodies;
+pub use setup::Setup;
 pub use template::Template;
 pub use tolerances::LANDING_SHARE;
 pub use uncertainty::{Correlation, Distribution, Spread, UncertainInput, Uncertainty};
@@ -53,40 +57,8 @@ use crate::Error;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Names of the kinds in scene files.
-pub(crate) const PLATE_IMPACT: &str = "plate-impact";
-pub(crate) const SEAL_SEAT: &str = "seal-seat";
-
-/// What strikes what.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Setup {
-    /// Outer body, circular plate, inner body on one axis.
-    PlateImpact(Box<PlateImpact>),
-    /// Sphere in a flexibly mounted seal seat, struck from below.
-    SealSeat(Box<SealSeat>),
-}
-
-impl Setup {
-    fn part(&self) -> &dyn Part {
-        match self {
-            Setup::PlateImpact(setup) => setup.as_ref(),
-            Setup::SealSeat(setup) => setup.as_ref(),
-        }
-    }
-}
-
-/// What is looked at in the bodies of any kind once they are read.
-trait Part {
-    /// Its kind's name in scene files.
-    fn kind(&self) -> &'static str;
-
-    /// Geometry that can't be.
-    fn collisions(&self) -> Vec<collision::Collision>;
-
-    /// Numbers that are admissible and yet hardly meant.
-    fn doubts(&self) -> Vec<String>;
-}
+/// Modes of a reduced model when neither the scene nor the caller names a number (the paper's 16).
+pub const DEFAULT_MODES: usize = 16;
 
 /// Length of the run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -228,36 +200,19 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The plate impact, for what knows nothing else.
+    /// The bodies as those of the kind `needed`, for what knows nothing else.
     ///
     /// # Errors
     /// [`Error::Scene`] if the scene is of another kind.
-    pub fn plate_impact(&self) -> crate::Result<&PlateImpact> {
-        match &self.setup {
-            Setup::PlateImpact(setup) => Ok(setup),
-            _ => Err(self.not_of(PLATE_IMPACT)),
-        }
-    }
-
-    /// The seal seat, for what knows nothing else.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] if the scene is of another kind.
-    pub fn seal_seat(&self) -> crate::Result<&SealSeat> {
-        match &self.setup {
-            Setup::SealSeat(setup) => Ok(setup),
-            _ => Err(self.not_of(SEAL_SEAT)),
-        }
-    }
-
-    /// That this scene is not of the kind `needed`.
-    fn not_of(&self, needed: &str) -> Error {
-        let help = format!("name a scene of kind = \"{needed}\"");
-        Error::Scene(miette::miette!(
-            help = help,
-            "scene `{}` is of kind `{}`, but this runs scenes of kind `{needed}` only",
-            self.name,
-            self.setup.part().kind()
-        ))
+    pub(crate) fn of_kind<T: Bodies>(&self, needed: &str) -> crate::Result<&T> {
+        self.setup.get().ok_or_else(|| {
+            let help = format!("name a scene of kind = \"{needed}\"");
+            Error::Scene(miette::miette!(
+                help = help,
+                "scene `{}` is of kind `{}`, but this runs scenes of kind `{needed}` only",
+                self.name,
+                self.setup.kind()
+            ))
+        })
     }
 }

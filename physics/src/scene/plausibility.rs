@@ -9,7 +9,7 @@ const MODULUS: [f64; 2] = [1e5, 1.3e12];
 
 /// One sentence per doubtful number, none if there is none.
 pub fn doubts(scene: &Scene) -> Vec<String> {
-    let mut found = scene.setup.part().doubts();
+    let mut found = scene.setup.bodies().doubts();
     for (model, tolerances) in &scene.tolerances {
         for (quantity, Tolerance { relative, .. }) in tolerances {
             if let Some(relative) = relative.filter(|r| *r > 1.0) {
@@ -25,7 +25,7 @@ pub fn doubts(scene: &Scene) -> Vec<String> {
 }
 
 /// Doubts about a material.
-pub(super) fn material(material: &Material) -> Vec<String> {
+pub(crate) fn material(material: &Material) -> Vec<String> {
     let name = |key: &str| format!("materials.{}.{key}", material.name);
     [
         outside(&name("density"), material.density, DENSITY, "kg/m^3"),
@@ -37,7 +37,7 @@ pub(super) fn material(material: &Material) -> Vec<String> {
 }
 
 /// A doubt about a `value` in `unit` that lies outside its usual range.
-pub(super) fn outside(name: &str, value: f64, [low, high]: [f64; 2], unit: &str) -> Option<String> {
+pub(crate) fn outside(name: &str, value: f64, [low, high]: [f64; 2], unit: &str) -> Option<String> {
     (!(low..=high).contains(&value)).then(|| {
         format!(
             "{name} = {value:e} {unit} lies outside {low:e} to {high:e} {unit}; a number without unit is in {unit}"

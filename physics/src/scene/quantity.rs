@@ -164,7 +164,7 @@ const PREFIXES: [(&str, i32); 12] = [
 ];
 
 /// The units of `dimension` that have a symbol of their own, and whether prefixes may stand before them.
-pub(super) fn symbols(dimension: Dimension) -> impl Iterator<Item = (&'static str, bool)> {
+pub(crate) fn symbols(dimension: Dimension) -> impl Iterator<Item = (&'static str, bool)> {
     UNITS
         .iter()
         .filter(move |(_, of, ..)| *of == dimension.0)
@@ -172,7 +172,7 @@ pub(super) fn symbols(dimension: Dimension) -> impl Iterator<Item = (&'static st
 }
 
 /// The prefixes.
-pub(super) fn prefixes() -> [&'static str; PREFIXES.len()] {
+pub(crate) fn prefixes() -> [&'static str; PREFIXES.len()] {
     PREFIXES.map(|(prefix, _)| prefix)
 }
 

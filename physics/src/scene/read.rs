@@ -6,12 +6,8 @@ use super::external::external;
 use super::fault::Collector;
 use super::flight::{flight, vibration, with_record};
 use super::place::Place;
-use super::plate_impact::{plate_impact, reference};
-use super::seal_seat::{seal_seat, seat_reference};
-use super::specification::SCENE;
 use super::values::{Checked, Node, Values, unknown};
 use super::*;
-use crate::kinds;
 use crate::{Error, Result};
 use std::io::Read;
 use std::path::Path;
@@ -20,34 +16,79 @@ use toml::de::DeTable;
 /// Largest scene file in bytes; a real one has about a thousand.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;
 
-impl Scene {
-    /// Reads and checks the scene file at `path`.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] if there is no such file, [`Error::Scene`] if it is not a valid scene,
-    /// [`Error::Io`] if the system refuses to read it.
-    pub fn read(path: impl AsRef<Path>) -> Result<Scene> {
-        let path = path.as_ref();
-        Scene::parse(&path.display().to_string(), &read_text(path)?)
-    }
-
-    /// Reads and checks a scene file from a stream; `source_name` is what messages call it.
-    ///
-    /// # Errors
-    /// As [`Scene::read`].
-    pub fn read_from(source_name: &str, stream: &mut dyn Read) -> Result<Scene> {
-        Scene::parse(source_name, &stream_text(source_name, stream)?)
-    }
-
+impl Grammar {
     /// Checks `text`, the content of a scene file; `source_name` is what messages call the file.
     ///
     /// # Errors
     /// [`Error::Scene`] with every fault, its place and what would be valid.
-    pub fn parse(source_name: &str, text: &str) -> Result<Scene> {
-        let (values, beside) = checked(source_name, text)?;
-        let scene = assemble(&values, beside)?;
+    pub(crate) fn parse(&self, source_name: &str, text: &str) -> Result<Scene> {
+        let (values, beside) = self.checked(source_name, text)?;
+        let scene = self.assemble(&values, beside)?;
         refuse_collisions(&scene, source_name, text)?;
         Ok(scene)
+    }
+
+    /// The checked values of a scene file, and what stands beside them.
+    ///
+    /// # Errors
+    /// As [`Self::parse`].
+    pub(super) fn checked(&self, source_name: &str, text: &str) -> Result<(Values, Beside)> {
+        let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
+        let root = tree.get_ref();
+        if root.is_empty() {
+            return Err(refused(
+                &format!("{source_name}, line 1: the scene file has no content"),
+                "copy a file of the folder scenes/ and change it",
+            ));
+        }
+        let mut checker = Checker::new(source_name, text, root);
+        let place = Place { path: "", span: 0..0 };
+        let mut values = checker.table(&place, root, self.keys);
+        let kind = values.get("kind").and_then(|kind| match kind {
+            Checked::Text(name) => self.dialect(name),
+            _ => None,
+        });
+        let tolerances = checker.tolerances(root, kind.unwrap_or(&self.dialects[0]));
+        let uncertainty = checker.uncertainty(root, self.keys, &values);
+        if checker.problems.is_empty() {
+            note(material::collisions(&Node(&values))?, root, &mut checker.problems);
+            if let Err(message) = with_record(&mut values, source_name) {
+                let (place, help) =
+                    (span_of(root, "vibration.file"), "name a table beside the scene file".to_owned());
+                checker.problems.add(place.unwrap_or(0..0), message, "no record", help);
+            }
+        }
+        match checker.problems.is_empty() {
+            true => Ok((values, Beside { tolerances, uncertainty })),
+            false => Err(Error::Scene(checker.problems.into_report())),
+        }
+    }
+
+    /// The scene that checked values describe.
+    pub(super) fn assemble(&self, values: &Values, beside: Beside) -> Result<Scene> {
+        let root = &Node(values);
+        let materials = root.table("materials")?;
+        let name = root.text("kind")?;
+        let dialect = self.dialect(name).ok_or_else(|| unknown("kind", name))?;
+        let (setup, reference) = dialect.language.read(root, &materials)?;
+        let end_time = root.optional_table("run")?.filter(|r| r.0.contains_key("end_time"));
+        Ok(Scene {
+            name: root.text("name")?.to_owned(),
+            description: if root.0.contains_key("description") {
+                root.text("description")?.to_owned()
+            } else {
+                String::new()
+            },
+            setup,
+            run: RunSettings { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
+            reduced: reduced(root.optional_table("reduced")?)?,
+            reference,
+            tolerances: beside.tolerances,
+            uncertainty: beside.uncertainty,
+            flight: flight(root)?,
+            vibration: vibration(root)?,
+            external: root.tables("external")?.iter().map(external).collect::<Result<_>>()?,
+        })
     }
 }
 
@@ -55,7 +96,7 @@ impl Scene {
 ///
 /// # Errors
 /// As [`Scene::read`].
-pub(super) fn read_text(path: &Path) -> Result<String> {
+pub(crate) fn read_text(path: &Path) -> Result<String> {
     let name = path.display().to_string();
     let system = |source: std::io::Error| match source.kind() {
         std::io::ErrorKind::NotFound => Error::Usage(format!("there is no scene file {name}")),
@@ -75,7 +116,7 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
 }
 
 /// The text of a stream called `name`: a pipe or a device has no size to check beforehand.
-fn stream_text(name: &str, stream: &mut dyn Read) -> Result<String> {
+pub(crate) fn stream_text(name: &str, stream: &mut dyn Read) -> Result<String> {
     let mut bytes = Vec::new();
     let read = stream.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
     read.map_err(|e| Error::io("reading", name, e))?;
@@ -99,48 +140,12 @@ pub(super) struct Beside {
     pub(super) uncertainty: Option<Uncertainty>,
 }
 
-/// The checked values of a scene file, and what stands beside them.
-///
-/// # Errors
-/// As [`Scene::parse`].
-pub(super) fn checked(source_name: &str, text: &str) -> Result<(Values, Beside)> {
-    let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
-    let root = tree.get_ref();
-    if root.is_empty() {
-        return Err(refused(
-            &format!("{source_name}, line 1: the scene file has no content"),
-            "copy a file of the folder scenes/ and change it",
-        ));
-    }
-    let mut checker = Checker::new(source_name, text, root);
-    let place = Place { path: "", span: 0..0 };
-    let mut values = checker.table(&place, root, &SCENE);
-    let kind = values.get("kind").and_then(|kind| match kind {
-        Checked::Text(name) => kinds::named(name),
-        _ => None,
-    });
-    let tolerances = checker.tolerances(root, kind.unwrap_or(kinds::KINDS[0]));
-    let uncertainty = checker.uncertainty(root, &values);
-    if checker.problems.is_empty() {
-        note(material::collisions(&Node(&values))?, root, &mut checker.problems);
-        if let Err(message) = with_record(&mut values, source_name) {
-            let (place, help) =
-                (span_of(root, "vibration.file"), "name a table beside the scene file".to_owned());
-            checker.problems.add(place.unwrap_or(0..0), message, "no record", help);
-        }
-    }
-    match checker.problems.is_empty() {
-        true => Ok((values, Beside { tolerances, uncertainty })),
-        false => Err(Error::Scene(checker.problems.into_report())),
-    }
-}
-
 /// Refuses a scene whose features collide, with the place of the first field at fault.
 ///
 /// # Errors
 /// [`Error::Scene`] with every collision.
 pub(super) fn refuse_collisions(scene: &Scene, source_name: &str, text: &str) -> Result<()> {
-    let mut collisions = scene.setup.part().collisions();
+    let mut collisions = scene.setup.bodies().collisions();
     // a chamber made of bodies that can't be means nothing
     if collisions.is_empty() {
         collisions = super::flight::collisions(scene);
@@ -172,7 +177,7 @@ fn span_of(table: &DeTable, path: &str) -> Option<std::ops::Range<usize>> {
     }
 }
 
-pub(super) fn refused(message: &str, help: &str) -> Error {
+pub(crate) fn refused(message: &str, help: &str) -> Error {
     Error::Scene(miette::miette!(help = help.to_owned(), "{message}"))
 }
 
@@ -199,40 +204,6 @@ fn syntax(name: &str, text: &str, error: &toml::de::Error) -> Error {
     let message = format!("not valid TOML: {}", error.message());
     problems.add(error.span().unwrap_or(0..0), message, "here", help.to_owned());
     Error::Scene(problems.into_report())
-}
-
-/// The scene that checked values describe.
-pub(super) fn assemble(values: &Values, beside: Beside) -> Result<Scene> {
-    let root = &Node(values);
-    let materials = root.table("materials")?;
-    let settings = root.optional_table("reference")?;
-    let (setup, reference) = match root.text("kind")? {
-        PLATE_IMPACT => {
-            let setup = plate_impact(root, &materials)?;
-            let reference = reference(settings, setup.outer.is_centred())?;
-            (Setup::PlateImpact(Box::new(setup)), reference)
-        }
-        SEAL_SEAT => (Setup::SealSeat(Box::new(seal_seat(root, &materials)?)), seat_reference(settings)?),
-        other => return Err(unknown("kind", other)),
-    };
-    let end_time = root.optional_table("run")?.filter(|r| r.0.contains_key("end_time"));
-    Ok(Scene {
-        name: root.text("name")?.to_owned(),
-        description: if root.0.contains_key("description") {
-            root.text("description")?.to_owned()
-        } else {
-            String::new()
-        },
-        setup,
-        run: RunSettings { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
-        reduced: reduced(root.optional_table("reduced")?)?,
-        reference,
-        tolerances: beside.tolerances,
-        uncertainty: beside.uncertainty,
-        flight: flight(root)?,
-        vibration: vibration(root)?,
-        external: root.tables("external")?.iter().map(external).collect::<Result<_>>()?,
-    })
 }
 
 fn reduced(settings: Option<Node>) -> Result<ReducedSettings> {

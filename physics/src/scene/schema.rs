@@ -4,38 +4,40 @@ use super::alternatives::groups;
 use super::check::MAX_NAME;
 use super::grammar::{Alternative, Bound, Field, Kind, MODELS, TOLERANCES};
 use super::quantity::{Dimension, prefixes, symbols};
-use super::specification::SCENE;
-use super::tolerances::{TERMS, gated_names, models};
+use super::tolerances::{TERMS, models};
 use super::uncertainty::{CORRELATIONS, DISTRIBUTIONS};
-use crate::kinds::{self, KINDS};
+use super::{Dialect, Grammar};
 use serde_json::{Map, Value, json};
 
-/// The JSON schema (draft 2020-12) of scene files.
-///
-/// It refuses what can be told without arithmetic: unknown and missing keys, wrong types,
-/// bare numbers out of range. Products of units and names of materials are checked by [`super::Scene::parse`].
-pub fn schema() -> Value {
-    let mut schema = table(&SCENE);
-    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
-    schema["title"] = json!("impactcheck scene");
-    // What can have a tolerance depends on the scene's kind.
-    schema["properties"][TOLERANCES.key] = described(json!({}), TOLERANCES.doc);
-    for kind in KINDS {
-        let own: Map<String, Value> = models(kind).iter().map(|m| (m.name.to_owned(), json!(true))).collect();
-        let own = json!({ "properties": own, "additionalProperties": false });
-        let then = json!({
-            "properties": { TOLERANCES.key: tolerances(kind) },
-            // names of the user's programs come with them
-            "anyOf": [{ "required": ["external"] }, { "properties": { TOLERANCES.key: own } }],
-        });
-        if let Some(rules) = schema["allOf"].as_array_mut() {
-            rules.push(json!({
-                "if": { "properties": { "kind": { "const": kind.name() } }, "required": ["kind"] },
-                "then": then,
-            }));
+impl Grammar {
+    /// The JSON schema (draft 2020-12) of scene files.
+    ///
+    /// It refuses what can be told without arithmetic: unknown and missing keys, wrong types,
+    /// bare numbers out of range. Products of units and names of materials are checked by [`super::Scene::parse`].
+    pub(crate) fn schema(&self) -> Value {
+        let mut schema = table(self.keys);
+        schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+        schema["title"] = json!("impactcheck scene");
+        // What can have a tolerance depends on the scene's kind.
+        schema["properties"][TOLERANCES.key] = described(json!({}), TOLERANCES.doc);
+        for kind in &self.dialects {
+            let own: Map<String, Value> =
+                models(kind).iter().map(|m| (m.name.to_owned(), json!(true))).collect();
+            let own = json!({ "properties": own, "additionalProperties": false });
+            let then = json!({
+                "properties": { TOLERANCES.key: tolerances(kind) },
+                // names of the user's programs come with them
+                "anyOf": [{ "required": ["external"] }, { "properties": { TOLERANCES.key: own } }],
+            });
+            if let Some(rules) = schema["allOf"].as_array_mut() {
+                rules.push(json!({
+                    "if": { "properties": { "kind": { "const": kind.name } }, "required": ["kind"] },
+                    "then": then,
+                }));
+            }
         }
+        schema
     }
-    schema
 }
 
 fn described(mut schema: Value, doc: &str) -> Value {
@@ -196,7 +198,7 @@ fn uncertainty() -> Value {
     })
 }
 
-fn tolerances(kind: &dyn kinds::Kind) -> Value {
+fn tolerances(kind: &Dialect) -> Value {
     let text_or_number = |low: Option<f64>| {
         let mut number = json!({ "type": "number" });
         if let Some(low) = low {
@@ -218,7 +220,8 @@ fn tolerances(kind: &dyn kinds::Kind) -> Value {
         { "type": "string" },
         { "type": "object", "properties": terms, "additionalProperties": false, "anyOf": bounds },
     ] });
-    let quantities: Map<String, Value> = gated_names(kind).map(|n| (n, tolerance.clone())).collect();
+    let quantities: Map<String, Value> =
+        kind.gated.iter().map(|g| (g.name.clone(), tolerance.clone())).collect();
     let model = json!({ "type": "object", "properties": quantities, "additionalProperties": false });
     // whatever models the kind has, programs of the user's have names of their own
     let models: Vec<&str> = models(kind).iter().map(|m| m.name).collect();

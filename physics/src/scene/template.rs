@@ -6,12 +6,11 @@
 use super::collision::Collision;
 use super::field::{fields_of, index, number_in, without_effect};
 use super::material;
-use super::read::{Beside, assemble, checked, read_text, refuse_collisions};
+use super::read::{Beside, refuse_collisions};
 use super::values::Node;
 use super::values::{Checked, Values};
-use super::{Distribution, Field, Rejected, Scene, suggestion};
+use super::{Distribution, Field, Grammar, Rejected, Scene, suggestion};
 use crate::{Error, Result};
-use std::path::Path;
 
 /// A checked scene file, open to variation.
 ///
@@ -26,6 +25,7 @@ use std::path::Path;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Template {
+    grammar: &'static Grammar,
     values: Values,
     beside: Beside,
     scene: Scene,
@@ -33,25 +33,16 @@ pub struct Template {
 }
 
 impl Template {
-    /// Reads and checks the scene file at `path`.
-    ///
-    /// # Errors
-    /// As [`Scene::read`].
-    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        Self::parse(&path.display().to_string(), &read_text(path)?)
-    }
-
-    /// Checks `text`, the content of a scene file; `source_name` is what messages call the file.
+    /// Checks `text`, the content of a scene file, in the language `grammar`; `source_name` is what messages call the file.
     ///
     /// # Errors
     /// As [`Scene::parse`].
-    pub fn parse(source_name: &str, text: &str) -> Result<Self> {
-        let (values, beside) = checked(source_name, text)?;
-        let scene = assemble(&values, beside.clone())?;
+    pub(crate) fn new(grammar: &'static Grammar, source_name: &str, text: &str) -> Result<Self> {
+        let (values, beside) = grammar.checked(source_name, text)?;
+        let scene = grammar.assemble(&values, beside.clone())?;
         refuse_collisions(&scene, source_name, text)?;
         let beside = Beside { uncertainty: None, ..beside };
-        Ok(Template { values, beside, scene, text: text.to_owned() })
+        Ok(Template { grammar, values, beside, scene, text: text.to_owned() })
     }
 
     /// The scene as it stands in the file.
@@ -88,7 +79,7 @@ impl Template {
 
     /// Every numeric field that the scene has or may have and a reduced model knows.
     pub fn fields(&self) -> Vec<Field> {
-        fields_of(&self.values)
+        fields_of(self.grammar.keys, &self.values)
     }
 
     /// What the scene file has in `field`, in SI; `None` if it says nothing there.
@@ -114,8 +105,8 @@ impl Template {
             None => Ok(()),
         };
         refused(material::collisions(&Node(&values)).map_err(fault)?)?;
-        let scene = assemble(&values, self.beside.clone()).map_err(fault)?;
-        refused(scene.setup.part().collisions())?;
+        let scene = self.grammar.assemble(&values, self.beside.clone()).map_err(fault)?;
+        refused(scene.setup.bodies().collisions())?;
         Ok(scene)
     }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// A value that has passed its checks; quantities are in SI.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Checked {
+pub(crate) enum Checked {
     Number(f64),
     Numbers(Vec<f64>),
     Count(u64),
@@ -17,30 +17,30 @@ pub(super) enum Checked {
 }
 
 /// The checked values of one table by key.
-pub(super) type Values = BTreeMap<String, Checked>;
+pub(crate) type Values = BTreeMap<String, Checked>;
 
 /// Typed access to checked values. The specification has seen to presence and type, so
 /// what is not found is a defect of the program.
-pub(super) struct Node<'a>(pub(super) &'a Values);
+pub(crate) struct Node<'a>(pub(crate) &'a Values);
 
 impl<'a> Node<'a> {
-    pub(super) fn get(&self, key: &str) -> Result<&'a Checked> {
+    pub(crate) fn get(&self, key: &str) -> Result<&'a Checked> {
         self.0.get(key).ok_or_else(|| Error::Internal(format!("the scene's `{key}` was not checked")))
     }
 
-    pub(super) fn table(&self, key: &str) -> Result<Node<'a>> {
+    pub(crate) fn table(&self, key: &str) -> Result<Node<'a>> {
         match self.get(key)? {
             Checked::Table(values) => Ok(Node(values)),
             other => Err(mismatch(key, other)),
         }
     }
 
-    pub(super) fn optional_table(&self, key: &str) -> Result<Option<Node<'a>>> {
+    pub(crate) fn optional_table(&self, key: &str) -> Result<Option<Node<'a>>> {
         self.0.contains_key(key).then(|| self.table(key)).transpose()
     }
 
     /// The tables of a list, none if it is not there.
-    pub(super) fn tables(&self, key: &str) -> Result<Vec<Node<'a>>> {
+    pub(crate) fn tables(&self, key: &str) -> Result<Vec<Node<'a>>> {
         match self.0.get(key) {
             None => Ok(Vec::new()),
             Some(Checked::Tables(tables)) => Ok(tables.iter().map(Node).collect()),
@@ -48,43 +48,43 @@ impl<'a> Node<'a> {
         }
     }
 
-    pub(super) fn number(&self, key: &str) -> Result<f64> {
+    pub(crate) fn number(&self, key: &str) -> Result<f64> {
         match self.get(key)? {
             Checked::Number(number) => Ok(*number),
             other => Err(mismatch(key, other)),
         }
     }
 
-    pub(super) fn numbers(&self, key: &str) -> Result<Vec<f64>> {
+    pub(crate) fn numbers(&self, key: &str) -> Result<Vec<f64>> {
         match self.get(key)? {
             Checked::Numbers(numbers) => Ok(numbers.clone()),
             other => Err(mismatch(key, other)),
         }
     }
 
-    pub(super) fn texts(&self, key: &str) -> Result<Vec<String>> {
+    pub(crate) fn texts(&self, key: &str) -> Result<Vec<String>> {
         match self.get(key)? {
             Checked::Texts(texts) => Ok(texts.clone()),
             other => Err(mismatch(key, other)),
         }
     }
 
-    pub(super) fn count(&self, key: &str) -> Result<u64> {
+    pub(crate) fn count(&self, key: &str) -> Result<u64> {
         match self.get(key)? {
             Checked::Count(count) => Ok(*count),
             other => Err(mismatch(key, other)),
         }
     }
 
-    pub(super) fn optional_number(&self, key: &str) -> Result<Option<f64>> {
+    pub(crate) fn optional_number(&self, key: &str) -> Result<Option<f64>> {
         self.0.contains_key(key).then(|| self.number(key)).transpose()
     }
 
-    pub(super) fn number_or(&self, key: &str, default: f64) -> Result<f64> {
+    pub(crate) fn number_or(&self, key: &str, default: f64) -> Result<f64> {
         Ok(self.optional_number(key)?.unwrap_or(default))
     }
 
-    pub(super) fn text(&self, key: &str) -> Result<&'a str> {
+    pub(crate) fn text(&self, key: &str) -> Result<&'a str> {
         match self.get(key)? {
             Checked::Text(text) => Ok(text),
             other => Err(mismatch(key, other)),
@@ -96,12 +96,12 @@ fn mismatch(key: &str, found: &Checked) -> Error {
     Error::Internal(format!("the scene's `{key}` was checked as {found:?}"))
 }
 
-pub(super) fn unknown(key: &str, word: &str) -> Error {
+pub(crate) fn unknown(key: &str, word: &str) -> Error {
     Error::Internal(format!("the scene's `{key}` = `{word}` has no type"))
 }
 
 /// The order of the elements, if it is given.
-pub(super) fn element_order(settings: &Node) -> Option<u64> {
+pub(crate) fn element_order(settings: &Node) -> Option<u64> {
     match settings.0.get("element_order") {
         Some(Checked::Count(order)) => Some(*order),
         _ => None,

@@ -12,7 +12,7 @@ use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::reference::Stored;
 use crate::report::Cost;
 use crate::result::Outcome;
-use crate::scene::{Model, Scene, Setup};
+use crate::scene::{Model, Scene};
 
 /// Results of the models, and what they have cost if they share a mesh with the reference.
 pub(super) type Compared = (Vec<Outcome>, Vec<Cost>);
@@ -64,10 +64,7 @@ pub(super) trait Models: Sync {
 
 /// The models of `scene`.
 pub(super) fn of(scene: &Scene) -> &'static dyn Models {
-    match scene.setup {
-        Setup::PlateImpact(_) => &plate_impact::Plates,
-        Setup::SealSeat(_) => &seal_seat::Seats,
-    }
+    if scene.seal_seat().is_ok() { &seal_seat::Seats } else { &plate_impact::Plates }
 }
 
 /// Whether one of the models `asked` for is one of `scene`; `auto` chooses among several.

@@ -20,17 +20,6 @@ use elasticity::{FIXED, Matrices};
 use factor::Factor;
 use serde::{Deserialize, Serialize};
 
-/// Sources of the method, for the cache's sake.
-pub const SOURCES: [&[u8]; 7] = [
-    include_bytes!("elasticity.rs"),
-    include_bytes!("factor.rs"),
-    include_bytes!("mesh.rs"),
-    include_bytes!("mod.rs"),
-    include_bytes!("morph.rs"),
-    include_bytes!("surface.rs"),
-    include_bytes!("../continuum/lanczos.rs"),
-];
-
 /// Factorised elastic body on supports.
 pub struct Solid {
     /// Numbers of (u_x, u_y, u_z) of each node, or [`FIXED`]. Shape (nodes, 3).

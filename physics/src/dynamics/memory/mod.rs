@@ -25,7 +25,7 @@ use crate::analytical::hertz::HertzImpact;
 use crate::contact::{DentedContact, Hertz, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::material::{Creep, Material, Relaxation, vibration_frequency};
-use crate::scene::{PlateImpact, Spot};
+use crate::scene::Spot;
 
 /// Steps of the first run per duration of the outer body's impact on a rigid wall.
 const FIRST_STEPS: f64 = 200.0;
@@ -130,22 +130,24 @@ impl Bodies {
 }
 
 impl Memory {
-    /// What the materials of `setup` remember in a model that is `system`, virgin; `None` if all of them are elastic.
+    /// What the `materials` of outer body, plate and inner body remember in a model that is `system` of a plate with this `bending`,
+    /// virgin; `None` if all of them are elastic.
     ///
     /// # Errors
     /// [`Error::Solver`] for a yield strength far below the contact pressure, [`Error::Internal`] for what no scene may have.
-    pub fn new(setup: &PlateImpact, system: &System) -> Result<Option<Self>> {
-        let all = setup.materials();
-        let [outer, plate, inner] = all;
+    pub fn new(materials: [&Material; 3], bending: Bending, system: &System) -> Result<Option<Self>> {
+        let [outer, plate, inner] = materials;
         let bodies = [outer, inner];
-        if all.iter().all(|m| m.is_elastic()) {
+        if materials.iter().all(|m| m.is_elastic()) {
             return Ok(None);
         }
-        let hits = [0, 1].map(|i| hit(setup, system, i));
+        let hits = [0, 1].map(|i| hit(system, i));
         let contact = |i: usize| contact([bodies[i], plate], system.laws[i], &hits[i]);
         let contacts = [contact(0)?, contact(1)?];
-        let mut warnings: Vec<String> =
-            all.into_iter().filter_map(|material| hardening_left_out(material, system, &hits)).collect();
+        let mut warnings: Vec<String> = materials
+            .into_iter()
+            .filter_map(|material| hardening_left_out(material, system, &hits))
+            .collect();
         warnings.sort();
         warnings.dedup();
         warnings.extend(overloaded(&contacts, &hits)?);
@@ -158,7 +160,7 @@ impl Memory {
                 tip_residual: system.tip_residual,
             },
             plate: plate.relaxation.clone(),
-            bending: Bending::new(&setup.plate),
+            bending,
         }))
     }
 
@@ -227,15 +229,15 @@ pub struct OnsetOfYield {
 }
 
 impl OnsetOfYield {
-    /// Of `setup` in a model that is `system`; `None` if no yield strength is known.
-    pub fn new(setup: &PlateImpact, system: &System) -> Option<Self> {
-        let plate = &setup.plate.material;
-        let bodies = [&setup.outer.material, &setup.inner.material];
+    /// Of the `materials` of outer body, plate and inner body, as [`Memory::new`]; `None` if no yield strength is known.
+    pub fn new(materials: [&Material; 3], bending: Bending, system: &System) -> Option<Self> {
+        let [outer, plate, inner] = materials;
+        let bodies = [outer, inner];
         let contacts = [0, 1].map(|i| {
             let pair = [bodies[i], plate];
             DentedContact::new(system.laws[i], pair, pair.map(|m| m.yield_strength))
         });
-        contacts.iter().any(Option::is_some).then(|| Self { contacts, bending: Bending::new(&setup.plate) })
+        contacts.iter().any(Option::is_some).then_some(Self { contacts, bending })
     }
 
     /// Force in N at which contact `i` of `system` begins to yield in an impact with the course of `loads`; `None` if nothing there can.
@@ -246,8 +248,8 @@ impl OnsetOfYield {
 }
 
 /// Contact `i` as an impact on a rigid plate, both bodies closing: the scale of its load.
-fn hit(setup: &PlateImpact, system: &System, i: usize) -> HertzImpact {
-    let speed = setup.outer.speed + setup.inner.speed.max(0.0);
+fn hit(system: &System, i: usize) -> HertzImpact {
+    let speed = system.speed + system.inner_speed.max(0.0);
     HertzImpact { mass: system.masses[i], speed, stiffness: system.laws[i].stiffness }
 }
 

@@ -31,7 +31,7 @@ fn yard(field: Field, restitution: f64, friction: f64) -> Setup {
 fn valve(force: f64, restitution: f64, friction: f64) -> Setup {
     let scene = improved();
     let seat = scene.seal_seat().expect("a seat");
-    let chamber = Chamber::of_seal_seat(seat, 0.02).expect("room");
+    let chamber = seat.chamber(0.02).expect("room");
     let spring = Spring {
         force,
         stiffness: 0.0,
@@ -274,9 +274,11 @@ fn similar_flights_are_similar() {
     ] {
         *length *= 2.0;
     }
-    seat.seat.notch =
-        seat.seat.notch.map(|n| crate::scene::Notch { width: 2.0 * n.width, floor: 2.0 * n.floor });
-    let chamber = Chamber::of_seal_seat(&seat, 0.04).expect("room");
+    seat.seat.notch = seat
+        .seat
+        .notch
+        .map(|n| crate::kinds::seal_seat::Notch { width: 2.0 * n.width, floor: 2.0 * n.floor });
+    let chamber = seat.chamber(0.04).expect("room");
     let mut large = Setup { mass: 8.0 * small.mass, radius: 3e-3, chamber, ..valve(8.0 * 37e-3, 0.6, 0.25) };
     if let Some(spring) = &mut large.field.spring {
         spring.seat *= 2.0;
@@ -321,7 +323,7 @@ fn a_sphere_that_nothing_holds_is_told() {
     let flat = yard(down(G), 0.5, 0.1);
     let said = Landscape::new(&flat).expect_err("a level floor");
     assert!(said.contains("do not hold") || said.contains("nothing"), "{said}");
-    let narrow = Chamber::of_seal_seat(improved().seal_seat().expect("a seat"), 4.9e-3).expect_err("too low");
+    let narrow = improved().seal_seat().expect("a seat").chamber(4.9e-3).expect_err("too low");
     assert!(narrow.0.contains("ceiling"), "{narrow:?}");
 }
 

@@ -1,6 +1,7 @@
 //! What a result of a plate impact must obey by itself: it starts as the scene says, its summary is found again in its
 //! history, and its balances close.
 
+use super::PlateImpact;
 use super::laws::laws;
 use super::shown::shown;
 use crate::kinds::consistency::{
@@ -8,7 +9,7 @@ use crate::kinds::consistency::{
     momentum_balance, peak,
 };
 use crate::result::{History, Outcome, Source, Statement, Summary};
-use crate::scene::{PlateImpact, Shape};
+use crate::scene::Shape;
 
 /// Share of the largest force of all contacts that may be missed in the peak of another.
 const UNSEEN_FORCE: f64 = 1e-4;

@@ -9,6 +9,7 @@
 //! enough is held against twice as many: without that about 1 in 100 promises of 0.3, 1 and 3 % was broken, by up to ten times the
 //! estimate. Their shapes are off by what the closed form may be ([`misshapen`]), so that impacts which take small errors far tell it.
 
+use super::PlateImpact;
 use super::errors::{COVERED, largest_error};
 use super::joined::{Joined, join};
 use super::predictor::Predictor;
@@ -22,7 +23,7 @@ use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::result::{Candidate, Choice};
-use crate::scene::{Edge, Model, Plate, PlateImpact, Shape};
+use crate::scene::{Edge, Model, Plate, Shape};
 
 /// Thickness over radius up to which the closed form is taken.
 pub(super) const THICKEST: f64 = 0.25;
@@ -137,7 +138,7 @@ pub(super) fn choose(
         return Ok(None);
     }
     let layer = elastic_layer(plate, &modes, patch);
-    let tips = free_sphere::tip_residuals(setup, patch);
+    let tips = free_sphere::tip_residuals(&setup.outer, &setup.inner, patch);
     let with = |count: usize| layer.modal_body(count, predictor.slow());
     let system = join(setup, with(count), tips)?;
     let twice = join(setup, misshapen(with(2 * count), plate), tips)?;

@@ -1,19 +1,19 @@
 //! Parts of the models beside closed forms, for the bodies of a scene: what of it is held against an exact solution.
 
+use super::PlateImpact;
 use crate::actuator::beam::{Beam, MODES};
 use crate::actuator::cantilever;
 use crate::analytical::circular_plate;
 use crate::body::{ModalBody, kirchhoff};
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
-use crate::dynamics::memory::{self, Memory};
-use crate::dynamics::system::System;
+use crate::dynamics::memory;
 use crate::dynamics::wet::FluidForces;
 use crate::error::Result;
 use crate::fluid::film::CELLS;
 use crate::fluid::{Film, FilmForces, Profile, Viscosity};
 use crate::material::Relaxation;
-use crate::scene::{Bender, Fluid, Model, PlateImpact, Shape};
+use crate::scene::{Bender, Fluid, Model, Shape};
 use std::f64::consts::{PI, TAU};
 
 /// Modes whose frequencies are held against closed forms.
@@ -109,7 +109,7 @@ fn held() -> ModalBody {
 
 /// The outer body on a plate that does not move.
 fn contact(setup: &PlateImpact) -> Result<f64> {
-    let system = System::new(setup, &held(), [0.0; 2]);
+    let system = setup.rigid_system(&held(), [0.0; 2]);
     let hit = system.hertz_impact();
     let run = integrate(&system, &Options { end_time: Some(2.0 * hit.duration()), ..Options::default() })?;
     Ok((run.contacts[0].force_peak / hit.force_peak() - 1.0).abs())
@@ -119,15 +119,15 @@ fn contact(setup: &PlateImpact) -> Result<f64> {
 /// The Hertz contact problem, J. Mech. Phys. Solids 8, 1960, 219), to first order in T/tau.
 fn lost_speed(setup: &PlateImpact) -> Result<f64> {
     let mut maxwell = PlateImpact { fluid: None, ..setup.clone() };
-    let elastic = System::new(&maxwell, &held(), [0.0; 2]);
+    let elastic = maxwell.rigid_system(&held(), [0.0; 2]);
     let duration = elastic.hertz_impact().duration();
     for material in [&mut maxwell.outer.material, &mut maxwell.plate.material] {
         material.relaxation = vec![Relaxation { ratio: 1.0, time: duration / SHORT }];
         material.hardening = None;
     }
-    let system = System::new(&maxwell, &held(), [0.0; 2]);
+    let system = maxwell.rigid_system(&held(), [0.0; 2]);
     let options = Options { end_time: Some(2.0 * duration), ..Options::default() };
-    let run = match Memory::new(&maxwell, &system)? {
+    let run = match maxwell.memory(&system)? {
         Some(memory) => memory::integrate(&system, &memory, &options)?.0,
         None => integrate(&system, &options)?,
     };

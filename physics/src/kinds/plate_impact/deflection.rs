@@ -8,7 +8,8 @@ use crate::dynamics::system::PLATE;
 use crate::error::{Error, Result};
 use crate::numerics::duhamel::Oscillator;
 use crate::result::History;
-use crate::scene::{DEFAULT_MODES, Model, Scene};
+use crate::scene::DEFAULT_MODES;
+use crate::scene::{Model, Scene};
 
 /// Deflection in m, signed along z, at `radii` (m, the first 0) and `times` (s, rising) of the plate of `scene` in `model` with
 /// `modes` modes, whose run has given `history`; of model C that of the inner face, without what yields under the contacts.

@@ -1,5 +1,6 @@
 //! The models of a scene before they run: the plate reduced to modes, and the bodies joined by their contacts.
 
+use super::PlateImpact;
 use super::continua::Continua;
 use super::predictor::Predictor;
 use super::validity;
@@ -8,11 +9,13 @@ use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
 use crate::body::off_centre;
 use crate::dynamics::MovingBody;
+use crate::dynamics::memory::{Bending, Memory};
 use crate::dynamics::system::{PLATE, System};
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::scene::{DEFAULT_MODES, Edge, Material, Model, PlateImpact, Shape};
+use crate::scene::DEFAULT_MODES;
+use crate::scene::{Edge, Material, Model, Shape};
 
 /// Relative error of the forces at which model C, left to choose, stops adding modes.
 const TRUNCATION: f64 = 5e-4;
@@ -58,7 +61,27 @@ pub(super) fn join(setup: &PlateImpact, plate: ModalBody, tips: [f64; 2]) -> Res
         Some(fluid) => immersed(plate, fluid),
         None => plate,
     };
-    Ok(System::of(setup, &MovingBody::both(setup)?, &plate, tips))
+    Ok(System::of(&MovingBody::both(&setup.outer, &setup.inner)?, &plate, &setup.plate.material, tips))
+}
+
+impl PlateImpact {
+    /// Rigid outer and inner bodies joined by their contacts with the plate, reduced to `plate`; `tip_residual` as [`System::of`].
+    pub fn rigid_system(&self, plate: &ModalBody, tip_residual: [f64; 2]) -> System {
+        System::of(
+            &MovingBody::both_rigid(&self.outer, &self.inner),
+            plate,
+            &self.plate.material,
+            tip_residual,
+        )
+    }
+
+    /// What its materials remember in a model that is `system`; `None` if all of them are elastic.
+    ///
+    /// # Errors
+    /// As [`Memory::new`].
+    pub fn memory(&self, system: &System) -> Result<Option<Memory>> {
+        Memory::new(self.materials(), Bending::new(&self.plate), system)
+    }
 }
 
 pub(super) fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<System> {

@@ -4,12 +4,13 @@
 //! A result from outside may state a few numbers only, each possible by itself: a wrong sign, unit or column then contradicts
 //! nothing but these laws. Bounds are exact up to a factor that covers what they leave out, such as the shear of a thick plate.
 
+use super::PlateImpact;
 use crate::analytical::circular_plate::rigidity;
 use crate::analytical::hertz::HertzImpact;
 use crate::contact::Hertz;
 use crate::kinds::consistency::{ENERGY_SLACK, RunningIntegral, VELOCITY_SLACK, not_negative, peak};
 use crate::result::{History, Statement, Summary};
-use crate::scene::{Edge, Material, PlateImpact};
+use crate::scene::{Edge, Material};
 use std::f64::consts::PI;
 
 /// Share of the outer body's speed by which a velocity may be on the wrong side of its bound.

@@ -1,11 +1,12 @@
 //! How near a plate impact comes to the bounds of the theories behind its models and its reference.
 
 use super::PlateCurves;
+use super::PlateImpact;
 use crate::contact::Hertz;
 use crate::dynamics::memory::{Bending, Loads};
 use crate::result::limit::{self, ELASTIC_BENDING, QUASI_STATIC, SMALL_DEFLECTION, SMALL_ROTATION};
 use crate::result::{ContactPressure, History, Limit, Summary};
-use crate::scene::{Edge, Material, PlateImpact, Shape};
+use crate::scene::{Edge, Material, Shape};
 
 /// Adds contact pressures and limits to the `summary` of any model or reference; without `history` deflection and bending
 /// are not known.

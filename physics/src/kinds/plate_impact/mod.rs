@@ -13,6 +13,7 @@ mod limits;
 mod predictor;
 pub mod reduced;
 mod results;
+mod scene;
 mod series;
 pub mod shared;
 mod shown;
@@ -21,17 +22,23 @@ mod truncation;
 mod validity;
 pub mod variants;
 
+use crate::flight::Launch;
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table};
-use crate::scene::{Model, PLATE_IMPACT, Scene, Setup};
+use crate::scene::{Model, Scene};
+use std::f64::consts::FRAC_PI_2;
 
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
+pub use scene::{MAX_MODES, PlateImpact};
+
+/// Its name in scene files.
+const NAME: &str = "plate-impact";
 
 /// The registry's entry.
 pub struct Kind;
 
 impl super::Kind for Kind {
     fn name(&self) -> &'static str {
-        PLATE_IMPACT
+        NAME
     }
 
     fn models(&self) -> &'static [Model] {
@@ -51,7 +58,7 @@ impl super::Kind for Kind {
     }
 
     fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>) {
-        if let Setup::PlateImpact(setup) = &scene.setup {
+        if let Ok(setup) = scene.plate_impact() {
             limits::judge(setup, summary, history);
         }
     }
@@ -60,6 +67,12 @@ impl super::Kind for Kind {
         scene
             .plate_impact()
             .map_or_else(|_| Table::new(self.quantities()), |setup| shown::shown(setup, history))
+    }
+
+    fn launch(&self, summary: &Summary) -> Option<Launch> {
+        // over the rocker the sphere leaves along the floor
+        let speed = summary.value("inner_velocity_final")?.abs();
+        Some(Launch { speed, angle: FRAC_PI_2, spin: 0.0 })
     }
 
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {

@@ -8,13 +8,15 @@ use super::continua::Continua;
 use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate};
 use super::results::PlateQuantities;
 use super::shared::SharedBodies;
+use super::{MAX_MODES, PlateImpact};
 use crate::body::cache::Cache;
 use crate::dynamics::memory::Memory;
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::result::Choice;
-use crate::scene::{DEFAULT_MODES, Edge, MAX_MODES, Model, Outer, PlateImpact, Scene, Setup};
+use crate::scene::DEFAULT_MODES;
+use crate::scene::{Edge, Model, Outer, Scene};
 
 /// The same of an impact beside the centre, where modes with nodal diameters are as many.
 const OFF_CENTRE_MODES: usize = 64;
@@ -110,7 +112,7 @@ impl Reduced {
     pub fn auto_in(scene: &Scene, tolerance: f64, cache: &Cache) -> Result<Self> {
         let setup = &*scene.plate_impact()?.along_normal();
         require_covered(setup, None)?;
-        let normal = Scene { setup: Setup::PlateImpact(Box::new(setup.clone())), ..scene.clone() };
+        let normal = Scene { setup: setup.clone().into(), ..scene.clone() };
         if let Some((built, choice)) = closed_form::choose(setup, tolerance, scene.run.end_time)? {
             return Self::of(built, Model::C, scene.clone(), Some(choice));
         }
@@ -137,7 +139,7 @@ impl Reduced {
 
     fn of(built: Joined, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
         let Joined { mut system, omega_next, fluid, mut warnings } = built;
-        let memory = Memory::new(scene.plate_impact()?, &system)?;
+        let memory = scene.plate_impact()?.memory(&system)?;
         let choice = choice.map(|choice| match memory {
             Some(_) => Choice {
                 met: false,

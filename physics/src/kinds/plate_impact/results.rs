@@ -12,13 +12,13 @@ quantities! {
         /// Eq. (1): kinetic energy of the inner body after the last contact over that of the outer before the first.
         efficiency: f64, "1";
         /// Velocity of the outer body after the last contact, m/s, signed along z.
-        outer_velocity_final: f64, "m/s";
+        outer_velocity_final: f64, "m/s", of outer_velocity;
         /// Velocity of the inner body after the last contact, m/s, signed along z.
-        inner_velocity_final: f64, "m/s";
+        inner_velocity_final: f64, "m/s", of inner_velocity;
         /// Largest force between outer body and plate, N.
-        outer_force_peak: f64, "N";
+        outer_force_peak: f64, "N", of outer_force;
         /// Largest force between plate and inner body, N.
-        inner_force_peak: f64, "N";
+        inner_force_peak: f64, "N", of inner_force;
         /// Time of the last release of the outer body, s.
         outer_contact_end: f64, "s";
         /// Time of the last release of the inner body, s.

@@ -1,5 +1,6 @@
 //! What the impacts of a series share, so that only the first of them pays for its bodies.
 
+use super::PlateImpact;
 use super::continua::Continua;
 use super::joined::{join, kirchhoff_system};
 use super::predictor::Predictor;
@@ -7,7 +8,8 @@ use crate::body::cache::Cache;
 use crate::body::continuum::{UnitBodies, Varied};
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::Result;
-use crate::scene::{DEFAULT_MODES, Plate, PlateImpact};
+use crate::scene::DEFAULT_MODES;
+use crate::scene::Plate;
 
 /// Eigenproblems that are not solved again, and, where shapes recur, bodies that are not meshed again.
 #[derive(Debug)]

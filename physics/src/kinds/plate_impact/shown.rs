@@ -1,9 +1,9 @@
 //! What the curves of another program or of a measurement show of an impact's results, where nobody states them.
 
+use super::PlateImpact;
 use super::PlateQuantities;
 use crate::kinds::consistency::{FORCE_FLOOR, VELOCITY_SLACK, peak};
 use crate::result::{History, Table};
-use crate::scene::PlateImpact;
 
 /// Share of the samples, the last ones, over which the velocity of a body that flies freely does not change.
 const FLIGHT: f64 = 0.05;

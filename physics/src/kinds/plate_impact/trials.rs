@@ -4,6 +4,7 @@
 //! flexibility that Kirchhoff's plate on half-spaces has not; the spheres are Lur'e's ([`crate::body::free_sphere`]). Each
 //! costs as much as a run of models A and B.
 
+use super::PlateImpact;
 use super::closed_form;
 use super::errors::largest_error;
 use super::joined::{Cut, Joined, fluid_forces};
@@ -20,7 +21,7 @@ use crate::dynamics::integration::Options;
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::scene::{DEFAULT_MODES, PlateImpact};
+use crate::scene::DEFAULT_MODES;
 use std::f64::consts::PI;
 
 /// Numbers of modes of the layer that are tried.
@@ -84,7 +85,7 @@ impl<'a> Trials<'a> {
     /// # Errors
     /// As [`super::reduced::Reduced::new`].
     pub(super) fn new(setup: &'a PlateImpact, resolution: f64, options: Options) -> Result<Self> {
-        let bodies = MovingBody::both(setup)?;
+        let bodies = MovingBody::both(&setup.outer, &setup.inner)?;
         let few = Waves::new(&setup.plate, DEFAULT_MODES);
         let predictor = Predictor::of(&system(setup, &bodies, few.kirchhoff(DEFAULT_MODES), HALF_SPACES))?;
         let enough = |n: &usize| slowed(setup, &predictor, few.frequency(*n + 1)) <= resolution;
@@ -98,7 +99,7 @@ impl<'a> Trials<'a> {
             layer,
             predictor,
             options,
-            tips: free_sphere::tip_residuals(setup, predictor.patch_radius),
+            tips: free_sphere::tip_residuals(&setup.outer, &setup.inner, predictor.patch_radius),
         })
     }
 
@@ -217,5 +218,5 @@ fn system(setup: &PlateImpact, bodies: &[MovingBody; 2], plate: ModalBody, tips:
         Some(fluid) => immersed(plate, fluid),
         None => plate,
     };
-    System::of(setup, bodies, &plate, tips)
+    System::of(bodies, &plate, &setup.plate.material, tips)
 }

@@ -7,12 +7,13 @@
 use super::joined::off_centre_system;
 use super::results::quantities;
 use super::trials::{HALF_SPACES, Lack, RUNGS, Trials};
+use super::{MAX_MODES, PlateImpact};
 use crate::body::off_centre;
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
 use crate::error::Result;
-use crate::scene::{MAX_MODES, Model, PlateImpact};
+use crate::scene::Model;
 
 /// Relative errors of which the user is warned.
 const LARGEST: f64 = 0.01;

@@ -11,9 +11,10 @@
 //!
 //! In a fluid (titanium plate between steel spheres, 1 to 50 mPa s) the film of the models takes up to a quarter too much energy.
 
+use super::PlateImpact;
 use super::predictor::Predictor;
 use crate::dynamics::system::System;
-use crate::scene::{Model, PlateImpact};
+use crate::scene::Model;
 
 /// Patch radius over the plate's thickness, and the error of the force peaks found up to it.
 const MEASURED: [(f64, f64); 2] = [(0.46, 0.0022), (1.05, 0.01)];

@@ -19,6 +19,7 @@
 //! than the plate does, the mean's residual turns strongly negative and the contacts may have no equilibrium.
 //! [`Variants::run`] then fails; there is no plate theory with half-space contact to speak of.
 
+use super::PlateImpact;
 use super::joined::tip_residuals;
 use super::predictor::Predictor;
 use super::results::PlateQuantities;
@@ -30,7 +31,7 @@ use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
-use crate::scene::{PlateImpact, Scene};
+use crate::scene::Scene;
 
 /// How the bodies of a scene are simplified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,7 +78,7 @@ impl<'a> Variants<'a> {
     /// The contact patches are those of model C with `patch_modes` modes, times the factor of `continuum`.
     ///
     /// # Errors
-    /// As [`crate::kinds::plate_impact::reduced::Reduced::new`].
+    /// As [`super::reduced::Reduced::new`].
     pub fn new(
         scene: &'a Scene,
         modes: [usize; 2],
@@ -93,7 +94,7 @@ impl<'a> Variants<'a> {
         }
         let kirchhoff = kirchhoff::modes(&setup.plate, modes[0].max(patch_modes))?;
         let few = lowest(&kirchhoff, patch_modes);
-        let mut predictor = Predictor::of(&System::new(setup, &few, [0.0; 2]))?;
+        let mut predictor = Predictor::of(&setup.rigid_system(&few, [0.0; 2]))?;
         let patch = predictor.patch_radius.map(|a| a * continuum.patch_factor);
         predictor.patch_radius = patch;
         Ok(Self {
@@ -126,7 +127,7 @@ impl<'a> Variants<'a> {
             Simplification::RigidTips => (continuum(), rigid),
             Simplification::None => (continuum(), self.tips),
         };
-        System::new(self.setup, &plate, tips)
+        self.setup.rigid_system(&plate, tips)
     }
 
     /// Runs the scene under `simplification`; `tolerance` bounds the efficiency's relative error from the time

@@ -1,8 +1,8 @@
 //! Contact candidates: the nodes of the seat's mesh that the sphere and the actuator's tips may touch.
 
+use super::SealSeat;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::solid::TetMesh;
-use crate::scene::SealSeat;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

@@ -1,13 +1,13 @@
 //! What a result of a seal-seat scene must obey by itself: it starts as the scene says, its summary is found again in
 //! its history, impulse changes momentum, and velocity changes displacement.
 
+use super::SealSeat;
 use super::{SeatCurves, SeatQuantities};
 use crate::kinds::consistency::{
     EFFICIENCY_SLACK, ENERGY_SLACK, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance,
     momentum_balance, not_negative, peak,
 };
 use crate::result::{Outcome, Source, Statement, Summary};
-use crate::scene::SealSeat;
 
 /// Statements about a result: of its curves if all are there and can be sampled.
 pub(super) fn checks(setup: &SealSeat, outcome: &Outcome) -> Vec<Statement> {

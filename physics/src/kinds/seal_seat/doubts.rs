@@ -3,7 +3,7 @@
 use super::body::SeatMesh;
 use super::integration::Integration;
 use super::system::System;
-use crate::scene::{SealSeat, SphereBody};
+use super::{SealSeat, SphereBody};
 
 /// Share that a rigid sphere may lack of the contact's flexibility.
 const RIGID: f64 = 0.05;

@@ -1,11 +1,11 @@
 //! How near a launch comes to the bounds of the theories behind its model and its reference: under the actuator's tips and
 //! in the membrane. The ring, where the sphere lies in the cone, is no Hertz contact.
 
+use super::SealSeat;
 use super::SeatCurves;
 use crate::contact::Hertz;
 use crate::result::limit::{self, QUASI_STATIC, SMALL_DEFLECTION};
 use crate::result::{History, Summary};
-use crate::scene::SealSeat;
 
 /// Adds limits to the `summary` of model or reference; without `history` the deflection is not known.
 pub(super) fn judge(scene: &SealSeat, summary: &mut Summary, history: Option<&History>) {

@@ -19,6 +19,7 @@ mod model;
 pub mod nodes;
 mod restitution;
 mod results;
+mod scene;
 mod series;
 mod shape;
 mod survey;
@@ -27,22 +28,27 @@ pub mod traces;
 mod truncation;
 mod watch;
 
+use crate::flight::Launch;
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
-use crate::scene::{Model, SEAL_SEAT, Scene, Setup};
+use crate::scene::{Model, Scene};
 
 pub use body::{SeatBody, SeatMesh, Watch, supports};
 pub use candidates::{Candidate, Partner, Zones, candidates};
 pub use model::{DEFAULT_TOLERANCE, SeatModel, quantities};
 pub use results::{CURVES, SeatCurves, SeatQuantities};
+pub use scene::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
 pub use series::SeatSeries;
 pub use survey::Survey;
+
+/// Its name in scene files.
+const NAME: &str = "seal-seat";
 
 /// The registry's entry.
 pub struct Kind;
 
 impl super::Kind for Kind {
     fn name(&self) -> &'static str {
-        SEAL_SEAT
+        NAME
     }
 
     fn models(&self) -> &'static [Model] {
@@ -58,9 +64,15 @@ impl super::Kind for Kind {
     }
 
     fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>) {
-        if let Setup::SealSeat(setup) = &scene.setup {
+        if let Ok(setup) = scene.seal_seat() {
             limits::judge(setup, summary, history);
         }
+    }
+
+    fn launch(&self, summary: &Summary) -> Option<Launch> {
+        let [x, z] = ["sphere_velocity_x", "sphere_velocity_z"].map(|name| summary.value(name));
+        let (x, z) = (x?, z?);
+        Some(Launch { speed: x.hypot(z), angle: x.atan2(z), spin: 0.0 })
     }
 
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {

@@ -1,6 +1,7 @@
 //! A reduced seal seat of a scene, ready to run.
 
 use super::Kind;
+use super::SealSeat;
 use super::body::{SeatBody, SeatMesh, Watch};
 use super::candidates::{Zones, on_half_space};
 use super::doubts;
@@ -12,11 +13,12 @@ use super::truncation;
 use crate::body::cache::Cache;
 use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
-use crate::flight;
 use crate::kinds::Kind as _;
+use crate::kinds::flight;
 use crate::material::vibration_frequency;
 use crate::result::{CUT, History, Losses, Outcome, Point, Summary};
-use crate::scene::{DEFAULT_MODES, Model, Scene, SealSeat};
+use crate::scene::DEFAULT_MODES;
+use crate::scene::{Model, Scene};
 use std::sync::Arc;
 use std::time::Instant;
 

@@ -9,19 +9,19 @@ quantities! {
         /// Kinetic energy of the sphere after the last contact over that of the actuator before the first.
         efficiency: f64, "1";
         /// Velocity of the sphere along x after the last contact, m/s.
-        sphere_velocity_x: f64, "m/s";
+        sphere_velocity_x: f64, "m/s", of sphere_velocity_x;
         /// Velocity of the sphere along z after the last contact, m/s.
-        sphere_velocity_z: f64, "m/s";
+        sphere_velocity_z: f64, "m/s", of sphere_velocity_z;
         /// Magnitude of the sphere's velocity, m/s.
         sphere_speed: f64, "m/s";
         /// Direction of the sphere's velocity against z, positive towards +x: atan2(vx, vz), rad.
         sphere_angle: f64, "rad";
         /// Largest magnitude of the resultant force between seat and sphere, N.
-        sphere_force_peak: f64, "N";
+        sphere_force_peak: f64, "N", of sphere_force;
         /// Largest force between actuator and seat, all tips together, N.
-        actuator_force_peak: f64, "N";
+        actuator_force_peak: f64, "N", of actuator_force;
         /// Velocity of the actuator after its last contact, m/s.
-        actuator_velocity_final: f64, "m/s";
+        actuator_velocity_final: f64, "m/s", of actuator_velocity;
         /// Time of the last release of the sphere, s.
         sphere_contact_end: f64, "s";
         /// Time of the last release of the actuator, s.

@@ -1,5 +1,6 @@
 //! What the launches of a series share: one mesh that follows the seat's dimensions, and the bodies made of it.
 
+use super::SealSeat;
 use super::body::{SeatBody, SeatMesh};
 use super::candidates::Zones;
 use super::model::SeatModel;
@@ -8,7 +9,7 @@ use crate::body::cache::Cache;
 use crate::body::kept::Kept;
 use crate::body::solid::TetMesh;
 use crate::error::Result;
-use crate::scene::{Material, Model, Scene, SealSeat};
+use crate::scene::{Material, Model, Scene};
 use std::sync::Arc;
 
 /// Bodies of the seats near a first one, on its mesh. A launch at another speed, or with other masses, finds its body made.

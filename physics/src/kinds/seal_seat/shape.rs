@@ -3,10 +3,10 @@
 //! A seat that differs in dimensions alone has the same faces and edges: its mesh is that of the first with every corner on the
 //! surfaces as they are now. So results are smooth in the dimensions, where a new mesh would scatter.
 
+use super::SealSeat;
 use super::candidates::in_plane;
 use crate::body::solid::{Surface, TetMesh};
 use crate::error::{Error, Result};
-use crate::scene::SealSeat;
 use nalgebra::Vector3;
 
 /// How far the corners of a face may lie from its surface, over the membrane's radius.

@@ -2,6 +2,7 @@
 //!
 //! Half the bodies (y >= 0) with half the rigid masses; whoever reports doubles forces, impulses and energies.
 
+use super::SealSeat;
 use super::candidates::{Candidate, Partner, on_half_space};
 use super::contact::Contact;
 use super::nodes::{Ball, Nodes};
@@ -10,7 +11,6 @@ use super::traces::Traces;
 use crate::body::solid::InterfaceBody;
 use crate::error::{Error, Result};
 use crate::material::Relaxation;
-use crate::scene::SealSeat;
 use nalgebra::Vector3;
 
 /// Oscillators and rigid bodies, joined by unilateral contact.

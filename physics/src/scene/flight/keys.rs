@@ -1,7 +1,10 @@
-//! The keys of flight and vibration, part of the table in `specification.rs`.
+//! The keys of flight and vibration.
 
 use crate::scene::grammar::{Bound, Field, Kind, choice, one_way, only, optional, positive, pure, required};
 use crate::scene::quantity::Dimension;
+
+/// What a table `[flight]` is for.
+pub(crate) const FLIGHT: &str = "The flight of the sphere after the impact, to its seat; absent = not asked for. Changes nothing of the impact";
 
 const TURN: Bound =
     Bound { low: Some((-std::f64::consts::PI, true)), high: Some((std::f64::consts::PI, true)) };
@@ -87,7 +90,7 @@ const RESTITUTION_SCATTER: Field =
     optional("restitution_scatter", pure(SHARE), "Half width of the band of the restitution; absent = 0.02");
 
 /// Of a seal seat, whose shape is the chamber's floor.
-pub(in crate::scene) static SEAT_FLIGHT: [Field; 12] = [
+pub(crate) static SEAT_FLIGHT: [Field; 12] = [
     HEIGHT,
     GRAVITY,
     GRAVITY_ANGLE,
@@ -107,7 +110,7 @@ pub(in crate::scene) static SEAT_FLIGHT: [Field; 12] = [
 ];
 
 /// Behind a plate: over a rocker.
-pub(in crate::scene) static PLATE_FLIGHT: [Field; 13] = [
+pub(crate) static PLATE_FLIGHT: [Field; 13] = [
     required("travel", positive(Dimension::LENGTH), "Way of the sphere from one position to the other"),
     HEIGHT,
     GRAVITY,

@@ -7,13 +7,14 @@ mod keys;
 mod read;
 mod record;
 
-pub(super) use keys::{PLATE_FLIGHT, SEAT_FLIGHT, VIBRATION};
+pub(super) use keys::VIBRATION;
+pub(crate) use keys::{FLIGHT, PLATE_FLIGHT, SEAT_FLIGHT};
 pub(super) use read::{flight, vibration};
 pub(super) use record::with_record;
 
+use super::Scene;
 use super::collision::{Collision, Rule, broken};
 use super::tolerances::LANDING_SHARE;
-use super::{Scene, Setup, Shape};
 use crate::flight::{self as physics, Chamber, Drag, Field, Scatter, Vector, Wave};
 
 /// A spring as a scene gives it.
@@ -54,6 +55,17 @@ pub struct Flight {
     pub scatter: Scatter,
 }
 
+/// The sphere that flies, and where.
+#[derive(Debug, Clone)]
+pub struct Flyer {
+    /// Mass in kg.
+    pub mass: f64,
+    /// Radius in m.
+    pub radius: f64,
+    /// Its chamber.
+    pub chamber: Chamber,
+}
+
 /// How the valve is shaken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vibration {
@@ -69,20 +81,7 @@ impl Flight {
     /// # Errors
     /// A sentence if the sphere has no room in the chamber, or is none.
     pub fn setup(&self, scene: &Scene, restitution: f64) -> Result<physics::Setup, String> {
-        let (mass, radius, chamber) = match &scene.setup {
-            Setup::SealSeat(seat) => {
-                (seat.sphere.mass, seat.sphere.radius, Chamber::of_seal_seat(seat, self.chamber_height))
-            }
-            Setup::PlateImpact(plate) => {
-                let Shape::Sphere { radius } = plate.inner.shape else {
-                    return Err("the body that flies has to be a sphere: `inner.kind` is not".into());
-                };
-                let travel = self.travel.unwrap_or_default();
-                let mass = plate.inner.shape.mass(&plate.inner.material);
-                (mass, radius, Chamber::over_rocker(travel, self.chamber_height, radius))
-            }
-        };
-        let chamber = chamber.map_err(|error| error.0)?;
+        let Flyer { mass, radius, chamber } = scene.setup.bodies().flyer(self)?;
         let seat = chamber.seats()[0];
         let spring = self.spring.map(|spring| physics::Spring {
             force: spring.force,

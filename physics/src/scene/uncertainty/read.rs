@@ -66,11 +66,16 @@ fn entries<'t>(table: &'t DeTable<'t>, prefix: &str, fields: &[Field], found: &m
 }
 
 impl Checker<'_> {
-    /// Reads the table `[uncertainty]` of a file with these checked `values`, noting every fault; `None` without that table.
-    pub(in crate::scene) fn uncertainty(&mut self, root: &DeTable, values: &Values) -> Option<Uncertainty> {
+    /// Reads the table `[uncertainty]` of a file with these checked `values` of its `keys`, noting every fault; `None` without that table.
+    pub(in crate::scene) fn uncertainty(
+        &mut self,
+        root: &DeTable,
+        keys: &'static [grammar::Field],
+        values: &Values,
+    ) -> Option<Uncertainty> {
         let (key, value) = root.get_key_value("uncertainty")?;
         let table = value.get_ref().as_table()?;
-        let fields = fields_of(values);
+        let fields = fields_of(keys, values);
         let mut found = Vec::new();
         entries(table, "", &fields, &mut found);
         let (pairs, entries): (Vec<_>, Vec<_>) =

@@ -5,7 +5,7 @@ use crate::dynamics::assured;
 use crate::dynamics::contact_ledger::ContactLedger;
 use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
 use crate::dynamics::ledger_check;
-use crate::dynamics::memory::{self, Memory, OnsetOfYield};
+use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::kinds::Kind as _;
@@ -57,7 +57,7 @@ impl Reduced {
     /// What the scene asks of the flight after the impact.
     fn add_flight(&self, summary: &mut Summary) -> Result<()> {
         let given = || Err(Error::Internal("a flight behind a plate names its restitution".into()));
-        crate::flight::add_flight(&self.scene, summary, given)
+        crate::kinds::flight::add_flight(&self.scene, summary, given)
     }
 
     /// The summary, what the materials remembered when the last impact began, and with which steps it converged.
@@ -75,7 +75,7 @@ impl Reduced {
     /// `None` without yield strengths, and where bodies relax or bend before they strike.
     fn elastic_limit(&self, options: &Options) -> Result<Option<ElasticLimit>> {
         let setup = self.scene.plate_impact()?;
-        let materials = [&setup.outer.material, &setup.plate.material, &setup.inner.material];
+        let materials = setup.materials();
         let covered = !setup.outer.shape.is_held()
             && setup.outer.is_centred()
             && materials.iter().all(|m| m.relaxation.is_empty());
@@ -83,7 +83,9 @@ impl Reduced {
             let [outer, inner] = self.impacts().elastic_speeds(&onset, options);
             ElasticLimit { outer, inner }
         };
-        Ok(OnsetOfYield::new(setup, &self.system).filter(|_| covered).map(limit))
+        Ok(OnsetOfYield::new(materials, Bending::new(&setup.plate), &self.system)
+            .filter(|_| covered)
+            .map(limit))
     }
 
     /// Runs the impact for its results alone, as a series of many needs them.

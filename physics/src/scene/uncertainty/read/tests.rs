@@ -1,5 +1,6 @@
 use crate::Error;
-use crate::scene::{Distribution, Scene, Spread, Template, Uncertainty, faults, schema};
+use crate::kinds::schema;
+use crate::scene::{Distribution, Scene, Spread, Template, Uncertainty, faults};
 
 const BASE: &str = include_str!("../../../../../scenes/scaled-plate-r10.toml");
 

@@ -1,5 +1,6 @@
-//! The keys of a seal-seat scene, part of the table in `specification.rs`.
+//! The keys of a seal seat.
 
+use crate::scene::flight::{FLIGHT, SEAT_FLIGHT};
 use crate::scene::grammar::{
     BODY_MATERIAL, Bound, Field, Kind, TIP_RADIUS, choice, one_way, optional, positive, pure, required,
 };
@@ -15,7 +16,24 @@ const fn notch(key: &'static str, doc: &'static str) -> Field {
     one_way(None, "the notch", "notch", optional(key, positive(Dimension::LENGTH), doc))
 }
 
-pub(in crate::scene) static SEAT: [Field; 14] = [
+/// The keys that only a seal seat has.
+pub(super) fn keys() -> Vec<Field> {
+    vec![
+        required("seat", Kind::Table(&SEAT), "Membrane and island with the two seats, one piece"),
+        required("sphere", Kind::Table(&SPHERE), "The sphere, at rest in the seat at x < 0"),
+        required(
+            "actuator",
+            Kind::Table(&ACTUATOR),
+            "Strikes the underside from below; rigid, guided along z",
+        ),
+        required("intended", Kind::Table(&INTENDED), "Where the sphere is meant to fly"),
+        optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model"),
+        optional("reference", Kind::Table(&REFERENCE), "Settings of the finite-element reference"),
+        optional("flight", Kind::Table(&SEAT_FLIGHT), FLIGHT),
+    ]
+}
+
+static SEAT: [Field; 14] = [
     required("material", Kind::Material, "Material of the whole piece, a name under [materials]"),
     required("membrane_radius", positive(Dimension::LENGTH), "Radius of the membrane, whose rim is clamped"),
     required("membrane_thickness", positive(Dimension::LENGTH), "Thickness of the membrane, from z = 0 up"),
@@ -44,7 +62,7 @@ pub(in crate::scene) static SEAT: [Field; 14] = [
     notch("notch_floor", "z of the slot's floor"),
 ];
 
-pub(in crate::scene) static SEATED_SPHERE: [Field; 4] = [
+static SPHERE: [Field; 4] = [
     required("radius", positive(Dimension::LENGTH), "Radius of the sphere"),
     BODY_MATERIAL,
     optional("mass", positive(Dimension::MASS), "Mass of the sphere; absent = that of a full one"),
@@ -58,7 +76,7 @@ pub(in crate::scene) static SEATED_SPHERE: [Field; 4] = [
 /// Largest number of tips of the actuator.
 const MOST_TIPS: usize = 8;
 
-pub(in crate::scene) static ACTUATOR: [Field; 4] = [
+static ACTUATOR: [Field; 4] = [
     required("mass", positive(Dimension::MASS), "Mass of the actuator"),
     required("speed", positive(Dimension::SPEED), "Speed towards the seat"),
     TIP_RADIUS,
@@ -69,13 +87,13 @@ pub(in crate::scene) static ACTUATOR: [Field; 4] = [
     ),
 ];
 
-pub(in crate::scene) static INTENDED: [Field; 1] = [required(
+static INTENDED: [Field; 1] = [required(
     "angle",
     Kind::Quantity(Dimension::ANGLE, HALF_TURN),
     "Direction of the sphere's flight against z, positive towards +x",
 )];
 
-pub(in crate::scene) static SEAT_REDUCED: [Field; 2] = [
+static REDUCED: [Field; 2] = [
     optional("model", Kind::Choice(&[choice("C")]), "The model to run: only C knows this kind"),
     optional("modes", Kind::Count(1, 1024), "Number of modes of the seat"),
 ];
@@ -83,7 +101,7 @@ pub(in crate::scene) static SEAT_REDUCED: [Field; 2] = [
 /// Smallest and largest number of elements across the ring's radius.
 const RING_ELEMENTS: Bound = Bound { low: Some((1.0, true)), high: Some((64.0, true)) };
 
-pub(in crate::scene) static SEAT_REFERENCE: [Field; 2] = [
+static REFERENCE: [Field; 2] = [
     optional(
         "element_order",
         Kind::Count(1, 2),
@@ -97,4 +115,4 @@ pub(in crate::scene) static SEAT_REFERENCE: [Field; 2] = [
 ];
 
 /// Default of `reference.elements_per_ring_radius`.
-pub(in crate::scene) const DEFAULT_RING_ELEMENTS: f64 = 10.0;
+pub(super) const DEFAULT_RING_ELEMENTS: f64 = 10.0;

@@ -1,9 +1,10 @@
 //! Seal seats that can't be, and numbers that are hardly meant.
 
+use super::super::NAME;
 use super::SealSeat;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::material;
-use crate::scene::{Part, SEAL_SEAT};
+use crate::scene::{Bodies, Flight, Flyer};
 use std::f64::consts::FRAC_PI_2;
 
 /// Least thickness of a wall between two features, over the island's height: what a mesh can follow.
@@ -11,9 +12,9 @@ const LEAST_WALL: f64 = 0.02;
 /// Least distance of two tips over their radius: closer ones make one contact.
 const LEAST_TIP_DISTANCE: f64 = 0.1;
 
-impl Part for SealSeat {
+impl Bodies for SealSeat {
     fn kind(&self) -> &'static str {
-        SEAL_SEAT
+        NAME
     }
 
     fn collisions(&self) -> Vec<Collision> {
@@ -43,6 +44,11 @@ impl Part for SealSeat {
             },
         ]));
         found
+    }
+
+    fn flyer(&self, flight: &Flight) -> Result<Flyer, String> {
+        let chamber = self.chamber(flight.chamber_height).map_err(|error| error.0)?;
+        Ok(Flyer { mass: self.sphere.mass, radius: self.sphere.radius, chamber })
     }
 
     fn doubts(&self) -> Vec<String> {

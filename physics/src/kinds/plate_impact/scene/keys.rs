@@ -1,5 +1,6 @@
-//! The keys of a plate impact, part of the table in `specification.rs`.
+//! The keys of a plate impact.
 
+use crate::scene::flight::{FLIGHT, PLATE_FLIGHT};
 use crate::scene::grammar::{
     BODY_MATERIAL, Bound, Field, Kind, MODELS, TIP_RADIUS, choice, one_way, only, optional, positive, pure,
     required,
@@ -10,7 +11,30 @@ use crate::scene::quantity::Dimension;
 const ELEMENTS: Bound = Bound { low: Some((2.0, true)), high: Some((64.0, true)) };
 const FRACTION: Bound = Bound { low: Some((0.0, false)), high: Some((1.0, true)) };
 
-pub(in crate::scene) static PLATE: [Field; 5] = [
+/// The keys that only a plate impact has.
+pub(super) fn keys() -> Vec<Field> {
+    vec![
+        required("plate", Kind::Table(&PLATE), "Circular plate of constant thickness"),
+        required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above"),
+        required("inner", Kind::Table(&INNER), "The body below the plate"),
+        optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry"),
+        optional(
+            "series",
+            Kind::Table(&SERIES),
+            "The impact repeated, each time with the dents of those before",
+        ),
+        optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model"),
+        optional("reference", Kind::Table(&REFERENCE), "Settings of the finite-element reference"),
+        optional(
+            "uncertainty",
+            Kind::Uncertainty,
+            "How uncertain the scene's numbers are, by the names of their fields; changes no result",
+        ),
+        optional("flight", Kind::Table(&PLATE_FLIGHT), FLIGHT),
+    ]
+}
+
+static PLATE: [Field; 5] = [
     required("radius", positive(Dimension::LENGTH), "Radius R of the plate"),
     required("thickness", positive(Dimension::LENGTH), "Thickness t of the plate"),
     required(
@@ -106,7 +130,7 @@ const TOWARDS: Bound = Bound {
     high: Some((std::f64::consts::FRAC_PI_2, false)),
 };
 
-pub(in crate::scene) static OUTER: [Field; 37] = [
+static OUTER: [Field; 37] = [
     required(
         "kind",
         Kind::Choice(&[
@@ -263,7 +287,7 @@ pub(in crate::scene) static OUTER: [Field; 37] = [
     ),
 ];
 
-pub(in crate::scene) static INNER: [Field; 7] = [
+static INNER: [Field; 7] = [
     required("kind", Kind::Choice(&[choice("sphere"), choice("compact")]), SHAPE_KIND),
     SPHERE_RADIUS,
     COMPACT_MASS,
@@ -286,7 +310,7 @@ const fn thinning(key: &'static str, kind: Kind, doc: &'static str) -> Field {
     one_way(None, "shear thinning", "shear thinning", optional(key, kind, doc))
 }
 
-pub(in crate::scene) static FLUID: [Field; 10] = [
+static FLUID: [Field; 10] = [
     required("viscosity", positive(Dimension::VISCOSITY), "Dynamic viscosity"),
     required("density", positive(Dimension::DENSITY), "Density of the fluid"),
     required("minimum_gap", positive(Dimension::LENGTH), "Minimal gap of eq. (4)"),
@@ -314,7 +338,7 @@ pub(in crate::scene) static FLUID: [Field; 10] = [
 /// Most impacts of a series.
 const MAX_IMPACTS: u64 = 200;
 
-pub(in crate::scene) static SERIES: [Field; 2] = [
+static SERIES: [Field; 2] = [
     required("impacts", Kind::Count(1, MAX_IMPACTS), "Number of impacts at most"),
     optional(
         "sphere_spot",
@@ -326,15 +350,13 @@ pub(in crate::scene) static SERIES: [Field; 2] = [
 /// Most modes of a plate that a model is built with: with so many the bodies of model C take a quarter of a minute, with twice as many ten
 /// times as long.
 pub const MAX_MODES: usize = 256;
-/// Modes of model B when neither the scene nor the caller names a number (the paper's 16).
-pub const DEFAULT_MODES: usize = 16;
 
-pub(in crate::scene) static REDUCED: [Field; 2] = [
+static REDUCED: [Field; 2] = [
     optional("model", Kind::Choice(&MODELS), "The model to run when the command line names none"),
     optional("modes", Kind::Count(1, MAX_MODES as u64), "Number of modes of the plate"),
 ];
 
-pub(in crate::scene) static REFERENCE: [Field; 4] = [
+static REFERENCE: [Field; 4] = [
     optional(
         "geometry",
         Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
@@ -363,9 +385,7 @@ pub(in crate::scene) static REFERENCE: [Field; 4] = [
     ),
 ];
 
-/// Default of `reference.geometry`.
-pub(in crate::scene) const DEFAULT_GEOMETRY: &str = "axisymmetric";
 /// Default of `reference.elements_per_contact_radius` with axisymmetric geometry (bilinear elements).
-pub(in crate::scene) const DEFAULT_ELEMENTS: f64 = 12.0;
+pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;
 /// The same with solid geometry (quadratic elements).
-pub(in crate::scene) const DEFAULT_SOLID_ELEMENTS: f64 = 3.0;
+pub(super) const DEFAULT_SOLID_ELEMENTS: f64 = 3.0;

@@ -1,9 +1,11 @@
 //! Plate impacts that can't be, and numbers that are hardly meant.
 
+use super::super::NAME;
 use super::PlateImpact;
+use crate::flight::Chamber;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
-use crate::scene::{Material, PLATE_IMPACT, Part, Shape};
+use crate::scene::{Bodies, Flight, Flyer, Material, Shape};
 
 /// Least and largest thickness of a plate over its radius. Of a longer rod next to nothing reaches the far face before all is over.
 const SLENDERNESS: [f64; 2] = [1e-6, 10.0];
@@ -13,9 +15,9 @@ const LENGTH: [f64; 2] = [1e-6, 1.0];
 /// strike it.
 const SLOWEST_CHARGE: f64 = 1e5;
 
-impl Part for PlateImpact {
+impl Bodies for PlateImpact {
     fn kind(&self) -> &'static str {
-        PLATE_IMPACT
+        NAME
     }
 
     /// A plate that is no plate: its waves and its contacts live on scales that no run brings together.
@@ -100,6 +102,16 @@ impl Part for PlateImpact {
                 help: "leave out `hardening` of the one or the relaxation of the other",
             },
         ])
+    }
+
+    /// Over the rocker the inner body flies between two walls.
+    fn flyer(&self, flight: &Flight) -> Result<Flyer, String> {
+        let Shape::Sphere { radius } = self.inner.shape else {
+            return Err("the body that flies has to be a sphere: `inner.kind` is not".into());
+        };
+        let chamber = Chamber::over_rocker(flight.travel.unwrap_or_default(), flight.chamber_height, radius);
+        let mass = self.inner.shape.mass(&self.inner.material);
+        Ok(Flyer { mass, radius, chamber: chamber.map_err(|error| error.0)? })
     }
 
     fn doubts(&self) -> Vec<String> {

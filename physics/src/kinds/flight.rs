@@ -1,25 +1,14 @@
 //! The flight that a scene asks for, from the results of its impact.
 
-use super::{Ending, Landscape, Launch, Setup, Thresholds, judge, thresholds};
+use super::of;
 use crate::error::{Error, Result};
+use crate::flight::{Ending, Landscape, Launch, Setup, Thresholds, judge, thresholds};
 use crate::result::{FlightSummary, Summary, VibrationSummary};
-use crate::scene::{Flight, Scene, Setup as Bodies};
-use std::f64::consts::FRAC_PI_2;
+use crate::scene::{Flight, Scene};
 
 /// How the sphere is launched by the impact that `summary` tells of; `None` if the run was cut during a contact.
 pub fn launch(scene: &Scene, summary: &Summary) -> Option<Launch> {
-    match scene.setup {
-        // over the rocker the sphere leaves along the floor
-        Bodies::PlateImpact(_) => {
-            let speed = summary.value("inner_velocity_final")?.abs();
-            Some(Launch { speed, angle: FRAC_PI_2, spin: 0.0 })
-        }
-        Bodies::SealSeat(_) => {
-            let [x, z] = ["sphere_velocity_x", "sphere_velocity_z"].map(|name| summary.value(name));
-            let (x, z) = (x?, z?);
-            Some(Launch { speed: x.hypot(z), angle: x.atan2(z), spin: 0.0 })
-        }
-    }
+    of(scene).launch(summary)
 }
 
 /// The flight that `scene` asks for.

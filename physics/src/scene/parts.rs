@@ -1,17 +1,8 @@
-//! A body that strikes a circular plate with a second body behind it, in a fluid or dry.
-
-mod keys;
-mod read;
-mod soundness;
-
-pub(super) use keys::{DEFAULT_GEOMETRY, FLUID, INNER, OUTER, PLATE, REDUCED, REFERENCE, SERIES};
-pub use keys::{DEFAULT_MODES, MAX_MODES};
-pub(super) use read::{plate_impact, reference};
+//! What a scene is made of: plates, bodies that strike or are struck, fluids.
 
 use super::Material;
 pub use crate::actuator::{Bender, Stack, Supply};
 use serde::Serialize;
-use std::borrow::Cow;
 
 /// Support of the plate's rim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
@@ -148,7 +139,7 @@ pub struct Inner {
 
 /// What is zero is written as before it could be anything else, so that the hash of the scene stays.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it with a reference")]
-pub(super) fn is_zero(value: &f64) -> bool {
+pub(crate) fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
@@ -185,51 +176,6 @@ pub struct ShearThinning {
     pub relaxation_time: f64,
     /// n, 0 < n <= 1.
     pub power_index: f64,
-}
-
-/// Outer body, circular plate, inner body on its axis.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PlateImpact {
-    /// The plate.
-    pub plate: Plate,
-    /// The striking body.
-    pub outer: Outer,
-    /// The struck body.
-    pub inner: Inner,
-    /// Coulomb's coefficient of friction between plate and bodies.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub friction: f64,
-    /// The fluid, if any.
-    pub fluid: Option<Fluid>,
-    /// How often the impact is repeated, if it is.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub series: Option<Series>,
-}
-
-impl PlateImpact {
-    /// The same impact with the outer body's velocity along the plate's normal alone.
-    pub fn along_normal(&self) -> Cow<'_, Self> {
-        if self.outer.angle == 0.0 {
-            return Cow::Borrowed(self);
-        }
-        let outer = Outer { speed: self.outer.normal_speed(), angle: 0.0, ..self.outer.clone() };
-        Cow::Owned(Self { outer, ..self.clone() })
-    }
-
-    /// Materials of outer body, plate and inner body.
-    pub fn materials(&self) -> [&Material; 3] {
-        [&self.outer.material, &self.plate.material, &self.inner.material]
-    }
-
-    /// Whether a body's material is viscoelastic.
-    pub fn relaxes(&self) -> bool {
-        self.materials().iter().any(|material| !material.relaxation.is_empty())
-    }
-
-    /// Whether a body's material may yield.
-    pub fn yields(&self) -> bool {
-        self.materials().iter().any(|material| material.hardening.is_some())
-    }
 }
 
 /// The same impact several times, each with the dents of those before.

@@ -5,16 +5,19 @@
 //! seats at x = -+ half their distance; the sphere rests in the one at x < 0. Each seat is a cone about an axis that
 //! leans inwards by the tilt, widening upwards, and a bore below it. The cone touches the sphere along the ring.
 
+mod chamber;
 mod keys;
 mod read;
 mod soundness;
 
-pub(super) use keys::{ACTUATOR, INTENDED, SEAT, SEAT_REDUCED, SEAT_REFERENCE, SEATED_SPHERE};
-pub(super) use read::{seal_seat, seat_reference};
-
-use super::Material;
-use super::hash::{canonical, drop_inelastic, sha256_hex};
-use super::plate_impact::is_zero;
+use super::NAME;
+use crate::error::Result;
+use crate::material::Material;
+use crate::scene::grammar::Field;
+use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
+use crate::scene::parts::is_zero;
+use crate::scene::values::Node;
+use crate::scene::{Language, ReferenceSettings, Scene, Setup};
 use serde::Serialize;
 use serde_json::json;
 
@@ -164,5 +167,32 @@ impl SealSeat {
             seat.remove("material");
         }
         sha256_hex(canonical(&geometry).as_bytes())
+    }
+}
+
+impl From<SealSeat> for Setup {
+    fn from(setup: SealSeat) -> Self {
+        Self::new(setup)
+    }
+}
+
+impl Scene {
+    /// The seal seat, for what knows nothing else.
+    ///
+    /// # Errors
+    /// [`crate::Error::Scene`] if the scene is of another kind.
+    pub fn seal_seat(&self) -> Result<&SealSeat> {
+        self.of_kind(NAME)
+    }
+}
+
+impl Language for super::Kind {
+    fn keys(&self) -> Vec<Field> {
+        keys::keys()
+    }
+
+    fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {
+        let reference = read::reference(root.optional_table("reference")?)?;
+        Ok((read::seal_seat(root, materials)?.into(), reference))
     }
 }

@@ -9,7 +9,7 @@ use crate::scene::values::{Node, element_order};
 use crate::scene::{Geometry, ReferenceSettings, Shape};
 
 /// Seat, sphere, actuator and the intended direction.
-pub(in crate::scene) fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
+pub(super) fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
     let (seat, sphere, actuator) = (root.table("seat")?, root.table("sphere")?, root.table("actuator")?);
     let notch = seat.0.contains_key("notch_width").then(|| -> Result<Notch> {
         Ok(Notch { width: seat.number("notch_width")?, floor: seat.number("notch_floor")? })
@@ -53,7 +53,7 @@ pub(in crate::scene) fn seal_seat(root: &Node, materials: &Node) -> Result<SealS
 }
 
 /// Settings of the reference of a seal seat.
-pub(in crate::scene) fn seat_reference(settings: Option<Node>) -> Result<ReferenceSettings> {
+pub(super) fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
     let empty = Values::new();
     let settings = settings.unwrap_or(Node(&empty));
     Ok(ReferenceSettings {

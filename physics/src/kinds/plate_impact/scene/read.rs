@@ -1,19 +1,22 @@
 //! From the checked values of a plate impact to its types.
 
+use super::PlateImpact;
 use super::keys::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS};
-use super::*;
 use crate::Result;
 use crate::actuator::inductance::Inductance;
 use crate::actuator::magnet::Magnet;
-use crate::actuator::{beam, cantilever};
+use crate::actuator::{Bender, Stack, Supply, beam, cantilever};
+use crate::material::Material;
 use crate::scene::material::material;
 use crate::scene::read::refused;
 use crate::scene::values::{Checked, Values};
 use crate::scene::values::{Node, element_order, unknown};
-use crate::scene::{Geometry, ReferenceSettings, Rigid};
+use crate::scene::{
+    Edge, Fluid, Geometry, Inner, Outer, Plate, ReferenceSettings, Rigid, Series, Shape, ShearThinning, Spot,
+};
 
 /// The bodies of a plate impact.
-pub(in crate::scene) fn plate_impact(root: &Node, materials: &Node) -> Result<PlateImpact> {
+pub(super) fn plate_impact(root: &Node, materials: &Node) -> Result<PlateImpact> {
     let (plate, outer, inner) = (root.table("plate")?, root.table("outer")?, root.table("inner")?);
     let plate = Plate {
         radius: plate.number("radius")?,
@@ -327,7 +330,7 @@ fn fluid(fluid: &Node, plate: &Plate) -> Result<Fluid> {
 }
 
 /// Settings of the reference of a plate impact that has an axis of symmetry, or has none.
-pub(in crate::scene) fn reference(settings: Option<Node>, centred: bool) -> Result<ReferenceSettings> {
+pub(super) fn reference(settings: Option<Node>, centred: bool) -> Result<ReferenceSettings> {
     let empty = Values::new();
     let settings = settings.unwrap_or(Node(&empty));
     let geometry = match settings.0.get("geometry") {
