@@ -14,13 +14,13 @@ import numpy as np
 from ..common.errors import SolverError
 from ..common.hertz import effective_modulus, hertz_contact_radius
 from ..common.memory import SOLID, memory_needed, peak_memory, require_memory
-from ..common.series import Report
 from ..common.settings import Settings
 from ..explicit.checkpoint import checkpoint_of
 from ..explicit.frames import Recorder
 from ..explicit.loop import Loop
 from ..explicit.spectrum import body_translation, first_frequency
 from ..explicit.supervision import stable_run
+from ..impact.series import Report
 from ..solid.elasticity import write_fields
 from ..solid.machine import machine
 from ..solid.mesh import edge_lengths, mesh_report
