@@ -26,6 +26,8 @@ from .scene import ImpactScene
 from .series import MeshResult, MeshSolver, S, estimates, relative_error, solve_series
 
 SCHEMA_VERSION = 1
+DIGITS = 10
+"""Of the numbers of a history."""
 OF_A_BODY = "first_frequency"
 """The quantity that is a body's own, whatever an impact on it comes to."""
 
@@ -38,13 +40,13 @@ class Details:
     """Names of `ImpactRun.contacts`."""
     duration: float
     """Contact duration estimated beforehand, s."""
-    mesh: dict[str, Any]
+    mesh: dict[str, Any] = field(default_factory=dict)
     """For the summary."""
-    solver: dict[str, Any]
+    solver: dict[str, Any] = field(default_factory=dict)
     """For the summary: levels, processes, memory."""
-    settings: dict[str, Any]
+    settings: dict[str, Any] = field(default_factory=dict)
     """For the provenance."""
-    stress_times: list[float]
+    stress_times: list[float] = field(default_factory=list)
     """Instants of the fields written, s."""
     summary: dict[str, Any] = field(default_factory=dict)
     """Further entries."""
@@ -65,7 +67,7 @@ class ImpactSolver(MeshSolver[S]):
     scene: ImpactScene
     curves: Curves
     """Of the history."""
-    digits: int
+    digits: int = DIGITS
     """Of the history's numbers."""
     details: Callable[[Path, S, list[MeshResult], Floats], Details]
     """Writes mesh, fields and whatever else only this kind has into a folder. Gets the solution of

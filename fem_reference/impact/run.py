@@ -52,7 +52,7 @@ class ImpactRun:
     """Whether the run ended during a contact, which leaves open what the impact comes to."""
     time_step: float
     """s"""
-    critical_time_step: float | None
+    critical_time_step: float | None = None
     """s; None: implicit steps have none."""
     steps: int
     loop_seconds: float
@@ -63,13 +63,13 @@ class ImpactRun:
     """J"""
     energy_residual: float
     """Energy that the balance misses over the initial energy."""
-    contact_loss: float
+    contact_loss: float = 0.0
     """Energy the contact constraint took out over the initial energy."""
     momentum_residual: float
     """Largest momentum that a balance misses over the initial momentum."""
-    support_impulse: float
+    support_impulse: float = 0.0
     """Along z, N s."""
-    losses: Losses | None
+    losses: Losses | None = None
     """None if nothing loses."""
 
     def account(self, levels: int) -> Account:

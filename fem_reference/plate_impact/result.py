@@ -15,7 +15,7 @@ from ..common.errors import SceneError
 from ..common.output import write_history
 from ..common.settings import Options, Settings
 from ..impact.history import Force, Level, Sampling, columns, curve_uncertainty, history
-from ..impact.result import Details, ImpactSolver
+from ..impact.result import DIGITS, Details, ImpactSolver
 from ..impact.series import MeshResult, Report, Solved, Target, estimates
 from .estimate import MINOR_FORCE, ContactEstimate
 from .motion import SPHERES, Yielded
@@ -46,8 +46,6 @@ CURVES = (
     Force("inner_force", (7,)),
 )
 """Of the rows of `Motion.sample`."""
-DIGITS = 10
-"""Of the history."""
 DENTED_SURFACES = ("outer_body", "plate_outer_face", "plate_inner_face", "inner_body")
 MINOR = 0.05
 """Of the impact: what passes on less needs not be known to more digits than the impact itself."""
@@ -215,7 +213,6 @@ def solver(scene: Scene, comm: Any, options: Options) -> ImpactSolver[Any]:
         compute=compute,
         quantities=partial(quantities, scene),
         curves=CURVES,
-        digits=DIGITS,
         details=partial(_details, scene),
         dimension=3 if scene.geometry == "solid" else 2,
         leads=leads,

@@ -11,7 +11,6 @@ from ..impact.history import Sampling
 from ..impact.result import Details, ImpactSolver
 from ..impact.series import MeshResult, Target
 from ..solid.elasticity import write_fields
-from ..solid.machine import machine
 from ..solid.mesh import mesh_report
 from .mesh_file import record_geometry
 from .run import contact_duration
@@ -57,7 +56,7 @@ def _details(
             "volume": seat.mesh.volume(),
             "elements_per_ring_radius": scene.elements_per_ring_radius * meshes[0].factor,
         },
-        solver=machine(solution.loop, solution.memory_stated, solution.memory_used),
+        solver=solution.machine(),
         settings={"element_order": scene.element_order},
         stress_times=stress_times,
         summary={"intended_angle": scene.intended_angle},

@@ -8,16 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from ..common.memory import SOLID, memory_needed, peak_memory, require_memory
 from ..common.settings import Settings
-from ..explicit.checkpoint import checkpoint_of
-from ..explicit.frames import Recorder
 from ..explicit.loop import Loop
 from ..explicit.spectrum import first_frequency
-from ..explicit.supervision import stable_run
 from ..impact.history import Force, Level
 from ..impact.series import Report
-from ..solid.system import make_loop
+from ..solid.stepping import Stepped, stepped
 from .meshing import seat_mesh, sphere_mesh
 from .model import SEAT, SeatModel, seat_model
 from .run import SeatRun, integrate
@@ -57,23 +53,11 @@ CURVES = (
 """Of the samples `run.COLUMNS`."""
 
 
-@dataclass(frozen=True)
-class Solution:
+@dataclass(frozen=True, kw_only=True)
+class Solution(Stepped[SeatRun]):
     """A run on one mesh."""
 
-    run: SeatRun
     seat: SeatModel
-    loop: Loop
-    recorder: Recorder
-    memory_stated: float
-    """Before the run, bytes."""
-    memory_used: float
-    """At most so far, bytes."""
-
-    @property
-    def dofs(self) -> int:
-        """Degrees of freedom, fixed ones included."""
-        return 3 * int(self.loop.system.mass.size)
 
 
 def method(scene: SeatScene) -> list[Any]:
@@ -97,31 +81,12 @@ def compute(
         sphere = sphere_mesh(scene, factor) if scene.sphere_elastic else None
         made = seat_model(scene, seat_mesh(scene, factor), sphere)
     seat: SeatModel = comm.bcast(made)
-    nodes = int(seat.model.first[-1])
-    report(
-        "assembly",
-        0.0,
-        require_memory(nodes, SOLID[scene.element_order], comm, refinement=settings.refinement),
-    )
 
-    def attempt(most_levels: int) -> tuple[Loop, SeatRun, Recorder]:
-        loop = make_loop(seat.model, comm, settings.threads)
-        recorder = Recorder(settings, f"-{most_levels}")
-        run = integrate(
-            loop,
-            seat,
-            scene,
-            courant=settings.courant,
-            most_levels=most_levels,
-            fields=recorder,
-            checkpoint=checkpoint_of(settings, [*method(scene), most_levels], seat.model.meshes),
-            on_progress=lambda done, message: report("stepping", done, message),
-        )
-        return loop, run, recorder
+    def step(loop: Loop, **options: Any) -> SeatRun:
+        return integrate(loop, seat, scene, **options)
 
-    loop, run, recorder = stable_run(attempt, lambda made: made[1].account(len(made[0].levels)))
-    needed = memory_needed(nodes, SOLID[scene.element_order], comm.size)
-    return Solution(run, seat, loop, recorder, needed, peak_memory(comm))
+    done = stepped(seat.model, method(scene), settings, comm, report, step)
+    return Solution(**vars(done), seat=seat)
 
 
 def seat_frequency(loop: Loop, seat: SeatModel) -> float:
