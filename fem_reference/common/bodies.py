@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
 from .arrays import Floats
 from .beam import Beam, Strike
-from .decode import HERE, place
+from .decode import At
 from .errors import SceneError
 
 FIXED_POINT = 100
@@ -57,9 +57,9 @@ class Material:
     """Pa"""
     hardening: float | None = None
     """Pa; None: elastic whatever the stress."""
-    rate: float = place("rate.D", 0.0)
+    rate: Annotated[float, At("rate.D")] = 0.0
     """See `Yielding`."""
-    exponent: float = place("rate.q", 1.0)
+    exponent: Annotated[float, At("rate.q")] = 1.0
     """See `Yielding`."""
     relaxation: tuple[Relaxation, ...] = ()
     """Empty: none."""
@@ -176,7 +176,7 @@ class Bender:
     """Beam with a tip mass that is bent and released; its tip is that of a compact body."""
 
     RADIUS_KEY: ClassVar[str] = "tip_radius"
-    beam: Beam = place(HERE)
+    beam: Annotated[Beam, At()]
     tip_radius: float
     """m"""
     material: Material

@@ -9,17 +9,14 @@ from __future__ import annotations
 import json
 import sys
 from collections import defaultdict
-from dataclasses import MISSING, field, fields, is_dataclass
-from functools import cache
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from pathlib import Path
 from types import NoneType, UnionType
-from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 from .errors import SceneError
 
 T = TypeVar("T")
-PLACE = "place"
-HERE = "."
 SCALARS = {
     float: "a finite number in SI units",
     int: "a whole number",
@@ -28,13 +25,15 @@ SCALARS = {
 }
 
 
-def place(path: str, default: Any = MISSING) -> Any:
-    """A field of a dataclass that is not under its own name in the object: keys joined by dots.
+@dataclass(frozen=True)
+class At:
+    """Where a field is that is not under its own name: ``Annotated[float, At("outer.speed")]``.
 
-    ``HERE``: in the object itself. A ``default`` also replaces a field whose object is absent or
-    null.
+    Keys joined by dots; none: its own fields are in this object. A default also replaces a field
+    whose object is absent or null.
     """
-    return field(default=default, metadata={PLACE: path})
+
+    path: str = ""
 
 
 def decode(kind: type[T], document: Any) -> T:
@@ -81,22 +80,21 @@ class _Decoder:
 
     def object(self, kind: type[Any], node: Any, path: str) -> Any:
         """A dataclass from the object at ``path``."""
-        values, hints = {}, _hints(kind)
-        for each in fields(kind):
-            hint = hints[each.name]
+        values = {}
+        for each, (hint, where) in _places(kind).items():
             required = each.default is MISSING and NoneType not in get_args(hint)
-            found = self.find(node, path, each.metadata.get(PLACE, each.name), required)
+            found = self.find(node, path, where, required)
             if found is not None:
                 values[each.name] = self.value(hint, *found)
             elif each.default is MISSING:
                 values[each.name] = None
         return kind(**values)
 
-    def find(self, node: Any, path: str, where: str, required: bool) -> tuple[Any, str] | None:
+    def find(
+        self, node: Any, path: str, where: list[str], required: bool
+    ) -> tuple[Any, str] | None:
         """A field's value and path; None: it is not there and need not be."""
-        if where == HERE:
-            return node, path
-        for depth, key in enumerate(where.split(".")):
+        for depth, key in enumerate(where):
             self.known[path].append(key)
             absent = depth > 0 if node is None else isinstance(node, dict) and key not in node
             if absent and not required:
@@ -146,9 +144,16 @@ class _Decoder:
                 self.refuse_unknown(each, _join(path, key))
 
 
-@cache
-def _hints(kind: type[Any]) -> dict[str, Any]:
-    return get_type_hints(kind)
+def _places(kind: type[Any]) -> dict[Field[Any], tuple[Any, list[str]]]:
+    """Types of a dataclass's fields, and the keys under which they are."""
+    found, hints = {}, get_type_hints(kind, include_extras=True)
+    for each in fields(kind):
+        hint, where = hints[each.name], [each.name]
+        if get_origin(hint) is Annotated:
+            hint, at = get_args(hint)
+            where = [key for key in at.path.split(".") if key]
+        found[each] = (hint, where)
+    return found
 
 
 def _scalar(hint: Any, node: Any, path: str) -> Any:

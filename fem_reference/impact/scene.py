@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
-from ..common.decode import HERE, place
+from ..common.decode import At
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,7 +18,7 @@ class ImpactScene:
     """Of the physics."""
     settings_hash: str
     """Of the reference's settings."""
-    end_time: float | None = place("run.end_time", None)
+    end_time: Annotated[float | None, At("run.end_time")] = None
     """s; None: until no further contact is possible."""
-    raw: dict[str, Any] = place(HERE)
+    raw: Annotated[dict[str, Any], At()]
     """The document as given, for the provenance."""

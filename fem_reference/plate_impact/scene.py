@@ -6,15 +6,16 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from ..common.bodies import Bender, Body, Compact, Material, Plate, Sphere, Stack
-from ..common.decode import decode, place, read_document
+from ..common.decode import At, decode, read_document
 from ..common.fluid import Fluid
 from ..impact.scene import ImpactScene
 from .limits import require_solvable
 
-RIGID: dict[str, tuple[str, ...]] = {
+Rigid = Literal["none", "outer", "inner", "both"]
+RIGID: dict[Rigid, tuple[str, ...]] = {
     "none": (),
     "outer": ("outer",),
     "inner": ("inner",),
@@ -37,30 +38,30 @@ class Scene(ImpactScene):
     """A body (outer) strikes a plate that a second one (inner) touches from below."""
 
     kind: Literal["plate-impact"]
-    dry_plate: Plate = place("plate")
+    dry_plate: Annotated[Plate, At("plate")]
     fluid: Fluid | None
     """Behind the plate."""
     outer: Body
     inner: Sphere | Compact
-    speed: float = place("outer.speed")
+    speed: Annotated[float, At("outer.speed")]
     """Speed of the outer body, m/s, positive."""
-    offset: float = place("outer.offset", 0.0)
+    offset: Annotated[float, At("outer.offset")] = 0.0
     """Distance of the point of impact from the axis, along x, m."""
-    angle: float = place("outer.angle", 0.0)
+    angle: Annotated[float, At("outer.angle")] = 0.0
     """Of the outer body's velocity against the plate's normal, rad; positive: towards +x."""
-    gap: float = place("inner.gap")
+    gap: Annotated[float, At("inner.gap")]
     """Initial distance of the inner body from the plate, m."""
-    inner_speed: float = place("inner.speed", 0.0)
+    inner_speed: Annotated[float, At("inner.speed")] = 0.0
     """Speed of the inner body towards the plate at the start, m/s; negative: away from it."""
     friction: float = 0.0
     """Coulomb's coefficient of both contacts."""
     series: Series | None
     """None: a single impact."""
-    elements_per_contact_radius: float = place("reference.elements_per_contact_radius")
-    geometry: Literal["axisymmetric", "solid"] = place("reference.geometry")
-    element_order: Literal[1, 2] = place("reference.element_order", 2)
+    elements_per_contact_radius: Annotated[float, At("reference.elements_per_contact_radius")]
+    geometry: Annotated[Literal["axisymmetric", "solid"], At("reference.geometry")]
+    element_order: Annotated[Literal[1, 2], At("reference.element_order")] = 2
     """1 linear, 2 quadratic; of solid geometry only."""
-    rigid_bodies: Literal["none", "outer", "inner", "both"] = place("reference.rigid", "none")
+    rigid_bodies: Annotated[Rigid, At("reference.rigid")] = "none"
     """Of solid geometry only; see `rigid`."""
 
     @cached_property

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from ..common.arrays import Floats
 from ..common.bodies import Material
-from ..common.decode import decode, place
+from ..common.decode import At, decode
 from ..impact.scene import ImpactScene
 from ..solid.sphere_pairs import Ball
 
@@ -132,20 +132,20 @@ class SeatScene(ImpactScene):
     geometry_hash: str | None = None
     """Identity of what the mesh depends on; None if the document has none."""
     seat: Seat
-    sphere_radius: float = place("sphere.radius")
+    sphere_radius: Annotated[float, At("sphere.radius")]
     """m"""
-    sphere_material: Material = place("sphere.material")
-    sphere_mass: float = place("sphere.mass")
+    sphere_material: Annotated[Material, At("sphere.material")]
+    sphere_mass: Annotated[float, At("sphere.mass")]
     """kg"""
-    sphere_body: Literal["rigid", "elastic"] = place("sphere.body")
+    sphere_body: Annotated[Literal["rigid", "elastic"], At("sphere.body")]
     actuator: Actuator
     friction: float = 0.0
     """Coulomb's coefficient, of all contacts."""
     intended_angle: float
     """rad"""
-    elements_per_ring_radius: float = place("reference.elements_per_ring_radius")
-    geometry: Literal["solid"] = place("reference.geometry", "solid")
-    element_order: Literal[1, 2] = place("reference.element_order", 2)
+    elements_per_ring_radius: Annotated[float, At("reference.elements_per_ring_radius")]
+    geometry: Annotated[Literal["solid"], At("reference.geometry")] = "solid"
+    element_order: Annotated[Literal[1, 2], At("reference.element_order")] = 2
 
     @property
     def sphere_elastic(self) -> bool:

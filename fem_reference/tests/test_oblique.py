@@ -111,10 +111,11 @@ def test_what_an_oblique_impact_cannot_have() -> None:
     assert made.normal_speed == pytest.approx(0.55 * math.cos(0.5))
     assert made.tangential_velocity == pytest.approx(-0.55 * math.sin(0.5))
     compact = {"kind": "compact", "mass": 1e-3, "tip_radius": 1e-2, "material": STEEL, "gap": 0.0}
-    for change, said in (
+    changes: tuple[tuple[dict[str, Any], str], ...] = (
         ({"outer__angle": 0.1, "friction": 0.1, "inner": compact}, r"friction is 0.1"),
         ({"outer__offset": 1e-3, "series": {"impacts": 2, "sphere_spot": "same"}}, "series"),
-    ):
+    )
+    for change, said in changes:
         with pytest.raises(SceneError, match=said):
             parse_scene(oblique(**change))
     with pytest.raises(SceneError, match=r"outer.angle is 0.1 rad.*reference.geometry 'solid'"):
