@@ -18,7 +18,7 @@ from ..common.arrays import Floats
 from ..common.errors import SceneError, SolverError
 from ..common.output import exclusive, result_folder, write_json
 from ..common.processes import threads_per_process
-from ..common.progress import MeshOfSeries, Progress
+from ..common.progress import MeshOfSeries, Progress, Report
 from ..common.settings import Options, Settings, require_instants, require_share
 from ..common.uncertainty import Estimate, least_squares
 from .run import ImpactRun
@@ -26,9 +26,6 @@ from .run import ImpactRun
 MESHES = 5
 MOST_REFINED = {2: 8.0, 3: 4.0}
 """Refining towards a target ends beyond this factor on the number of elements, by dimension."""
-
-Report = Callable[[str, float, str], None]
-"""Gets phase, share done, message."""
 
 
 class Solved(Protocol):

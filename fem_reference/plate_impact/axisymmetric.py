@@ -16,10 +16,10 @@ from ..common.arrays import Floats
 from ..common.errors import SolverError
 from ..common.fenicsx import alone
 from ..common.memory import AXISYMMETRIC, require_memory
+from ..common.progress import Report
 from ..common.settings import Settings
 from ..explicit.frames import Recorder
 from ..explicit.supervision import stable_run
-from ..impact.series import Report
 from .axisymmetric_motion import AxisymmetricMotion, integrate_axisymmetric
 from .dents import Memory
 from .estimate import (

@@ -25,9 +25,9 @@ from ..calculix import program
 from ..calculix.deck import FREE_MODES, MILLI, Deck, Steps
 from ..calculix.printed import Printed, frequencies
 from ..common.errors import SolverError
+from ..common.progress import Report
 from ..common.settings import Settings
 from ..impact.ending import Approach
-from ..impact.series import Report
 from .axisymmetric_motion import WINDOW
 from .calculix_model import PENALTY, SLAVES, Model, model
 from .calculix_observed import DAMPING, Observed, run_of

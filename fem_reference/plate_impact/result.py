@@ -13,10 +13,11 @@ from ..common.arrays import Floats
 from ..common.bodies import Bender, Stack
 from ..common.errors import SceneError
 from ..common.output import write_history
+from ..common.progress import Report
 from ..common.settings import Options, Settings
 from ..impact.history import Force, Level, Sampling, columns, curve_uncertainty, history
 from ..impact.result import DIGITS, Details, ImpactSolver
-from ..impact.series import MeshResult, Report, Solved, Target, estimates
+from ..impact.series import MeshResult, Solved, Target, estimates
 from .estimate import MINOR_FORCE, ContactEstimate
 from .motion import SPHERES, Yielded
 from .run import Run

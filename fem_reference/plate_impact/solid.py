@@ -13,10 +13,10 @@ import numpy as np
 
 from ..common.errors import SolverError
 from ..common.hertz import effective_modulus, hertz_contact_radius
+from ..common.progress import Report
 from ..common.settings import Settings
 from ..explicit.loop import Loop
 from ..explicit.spectrum import body_translation, first_frequency
-from ..impact.series import Report
 from ..solid.elasticity import write_fields
 from ..solid.mesh import edge_lengths, mesh_report
 from ..solid.stepping import Stepped, stepped

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from ..common.progress import Report
 from ..common.settings import Settings
 from ..explicit.loop import Loop
 from ..explicit.spectrum import first_frequency
 from ..impact.history import Force, Level
-from ..impact.series import Report
 from ..solid.stepping import Stepped, stepped
 from .meshing import seat_mesh, sphere_mesh
 from .model import SEAT, SeatModel, seat_model

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 from ..common.memory import SOLID, memory_needed, peak_memory, require_memory
+from ..common.progress import Report
 from ..common.settings import Settings
 from ..explicit.checkpoint import checkpoint_of
 from ..explicit.frames import Recorder
@@ -24,8 +25,6 @@ class Accounted(Protocol):
 
 
 R = TypeVar("R", bound=Accounted)
-Report = Callable[[str, float, str], None]
-"""Gets phase, share done, message."""
 
 
 @dataclass(frozen=True, kw_only=True)

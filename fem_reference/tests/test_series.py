@@ -15,7 +15,7 @@ import pytest
 
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.common.output import result_folder
-from fem_reference.common.progress import MeshOfSeries, Progress
+from fem_reference.common.progress import MeshOfSeries, Progress, Report
 from fem_reference.common.settings import Options, Settings
 from fem_reference.impact import series
 from fem_reference.impact.series import MeshResult, MeshSolver, Target, solve_series
@@ -50,7 +50,7 @@ class Convergent:
         self.factors: list[float] = []
         self.meshes: list[MeshResult] = []
 
-    def compute(self, factor: float, settings: Settings, report: series.Report, lead: Any) -> Any:
+    def compute(self, factor: float, settings: Settings, report: Report, lead: Any) -> Any:
         """A value whose error falls with the order."""
         assert settings.courant == 0.5
         self.factors.append(factor)
