@@ -62,7 +62,7 @@ def compute(
         place += 0.5 * step * (before + speed)
         impulse += step * force
     table = np.array(rows)
-    times = step * np.arange(len(rows))
+    times = step * np.arange(len(rows), dtype=np.float64)
     last = float(times[np.flatnonzero(np.diff(table[:, 2]))[-1] + 1])
     peak = peak_force(table[:, 2], 1, step)
     contact = ContactRecord(1, last, ((0.0, last),), peak, impulse, 0.0)
