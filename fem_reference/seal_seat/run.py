@@ -173,17 +173,15 @@ def _contact(
     )
 
 
-def _losses(loop: Loop, seat: SeatModel, scene: SeatScene, relaxed: float) -> Losses | None:
-    """Of actuator, seat and sphere; at the tips and on the flanks."""
+def _losses(
+    loop: Loop, scene: SeatScene, rubbed: tuple[float, float], relaxed: float
+) -> Losses | None:
+    """Of the whole bodies, from the gain by friction and the loss to relaxation of the half, J."""
     if scene.friction == 0.0 and loop.ledger is None:
         return None
-    contacts = loop.problem.contacts
-    tips, flanks = (
-        (0.0 - sum(contacts[k].rubbed for k in which)) / FRACTION
-        for which in (seat.tips, (LEFT, RIGHT))
-    )
+    tips, flanks = rubbed
     bodies = None if loop.ledger is None else (0.0, relaxed / FRACTION, 0.0)
-    return Losses(contacts=(tips, flanks), bodies=bodies)
+    return Losses(contacts=((0.0 - tips) / FRACTION, (0.0 - flanks) / FRACTION), bodies=bodies)
 
 
 def momentum_misses(loop: Loop, seat: SeatModel, scene: SeatScene) -> list[float]:
@@ -214,8 +212,9 @@ def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows:
     energies: Energies = energies_of(loop)
     relaxed = sum(energies.lost)
     work = sum(record.work for record in problem.records())
-    places = (seat.tips, (LEFT, RIGHT))
-    rubbed = [sum(problem.contacts[k].rubbed for k in which) for which in places]
+    tips, flanks = (
+        sum(problem.contacts[k].rubbed for k in which) for which in (seat.tips, (LEFT, RIGHT))
+    )
     _, speed = sphere_motion(loop, seat)
     initial = FRACTION * scene.initial_energy
     momentum = FRACTION * scene.actuator.mass * scene.actuator.speed
@@ -237,10 +236,10 @@ def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows:
         actuator_velocity=problem.rigids[seat.actuator].v[2],
         flank_impulses=(left, right),
         initial_energy=scene.initial_energy,
-        energy_residual=abs(energies.total + relaxed - initial - work - sum(rubbed)) / initial,
+        energy_residual=abs(energies.total + relaxed - initial - work - (tips + flanks)) / initial,
         contact_loss=-work / initial,
         momentum_residual=max(abs(m) for m in momentum_misses(loop, seat, scene)) / momentum,
         support_impulse=problem.state.reaction[2] / FRACTION,
-        losses=_losses(loop, seat, scene, relaxed),
+        losses=_losses(loop, scene, (tips, flanks), relaxed),
         unconverged=problem.state.unconverged,
     )
