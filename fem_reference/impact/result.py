@@ -225,8 +225,8 @@ class _Result:
                 for name, estimate in self._estimates().items()
             }
         if run.losses is not None:
-            losses = asdict(run.losses)
-            found["losses"] = {name: loss for name, loss in losses.items() if loss is not None}
+            losses = asdict(run.losses).items()
+            found["losses"] = {name: loss for name, loss in losses if loss not in (None, ())}
         missed = missed_instants(self.options.stress_times, float(run.times[-1]))
         warnings = [*missed, *self.details.warnings]
         return {**found, **({"warnings": warnings} if warnings else {})}

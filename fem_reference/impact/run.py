@@ -16,8 +16,9 @@ class Losses:
     plate_damping: float = 0.0
     squeeze_film: float = 0.0
     drag: float = 0.0
-    contacts: tuple[float, float] = (0.0, 0.0)
-    """To friction and to yielding, at the contacts of striking and struck body."""
+    contacts: tuple[float, ...] = (0.0, 0.0)
+    """To friction and to yielding, at the contacts of striking and struck body; empty: nothing rubs
+    or yields."""
     bodies: tuple[float, ...] | None = None
     """To relaxation, of striking body, the one between and struck body; None: none relaxes."""
 
@@ -29,12 +30,11 @@ class Losses:
 
     def of_whole(self, share: float) -> Losses:
         """That of the whole bodies, if this is that of a ``share``."""
-        first, second = self.contacts
         return Losses(
             self.plate_damping / share,
             self.squeeze_film / share,
             self.drag / share,
-            (first / share, second / share),
+            tuple(lost / share for lost in self.contacts),
             self.bodies and tuple(lost / share for lost in self.bodies),
         )
 

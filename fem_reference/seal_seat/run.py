@@ -179,9 +179,9 @@ def _losses(
     """Of the whole bodies, from the gain by friction and the loss to relaxation of the half, J."""
     if scene.friction == 0.0 and loop.ledger is None:
         return None
-    tips, flanks = rubbed
+    contacts = tuple(-gained / FRACTION for gained in rubbed) if scene.friction > 0.0 else ()
     bodies = None if loop.ledger is None else (0.0, relaxed / FRACTION, 0.0)
-    return Losses(contacts=((0.0 - tips) / FRACTION, (0.0 - flanks) / FRACTION), bodies=bodies)
+    return Losses(contacts=contacts, bodies=bodies)
 
 
 def momentum_misses(loop: Loop, seat: SeatModel, scene: SeatScene) -> list[float]:

@@ -57,7 +57,7 @@ def close(run: SeatRun, other: SeatRun, rel: float) -> None:
 def relaxed(run: SeatRun) -> float:
     """Energy that the seat lost, J; what else could lose nothing did not."""
     assert run.losses is not None and run.losses.bodies is not None
-    assert run.losses == Losses(bodies=(0.0, run.losses.bodies[1], 0.0))
+    assert run.losses == Losses(contacts=(), bodies=(0.0, run.losses.bodies[1], 0.0))
     return run.losses.bodies[1]
 
 
