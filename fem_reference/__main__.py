@@ -10,38 +10,18 @@ import sys
 import traceback
 from pathlib import Path
 
+from .common.arguments import count, instants
 from .common.cache import use_writable_cache
+from .common.decode import read_document
 from .common.errors import RunError, SceneError, SolverError
 from .common.parent import EndedBySignalError, end_by_signal, end_with_parent
 from .common.progress import Progress
-from .common.reader import read_document
 from .common.settings import SOLVERS
-from .kinds import commands_of
+from .flight import FLIGHTS
+from .kinds import commands_of, studies
 
 RESOLUTION_NAMES = ("coarse", "paper", "fine")
-
-
-def _times(text: str) -> tuple[float, ...]:
-    try:
-        return tuple(float(part) for part in text.split(",") if part.strip())
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not a list of seconds like 1e-5,2e-5"
-        ) from None
-
-
-def _whole(text: str, least: int, most: int) -> int:
-    if not text.isdecimal() or not least <= int(text) <= most:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} to {most}")
-    return int(text)
-
-
-def _count(text: str) -> int:
-    return _whole(text, 0, 100_000)
-
-
-def _dofs(text: str) -> int:
-    return _whole(text, 1, 10_000_000)
+STUDIES = {**studies(), "flights": FLIGHTS}
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -55,9 +35,12 @@ def _parser() -> argparse.ArgumentParser:
     )
     solve.add_argument("--resolution", choices=RESOLUTION_NAMES, default="paper")
     solve.add_argument(
-        "--solver", choices=SOLVERS, default=SOLVERS[0], help="calculix: ccx, plate impacts only"
+        "--solver",
+        choices=SOLVERS,
+        default=SOLVERS[0],
+        help="calculix: ccx, where the kind of scene has it",
     )
-    solve.add_argument("--stress-at", type=_times, default=(), metavar="T1,T2", help="seconds")
+    solve.add_argument("--stress-at", type=instants, default=(), metavar="T1,T2", help="seconds")
     solve.add_argument(
         "--courant", type=float, default=0.9, help="time step over the critical one (0.9)"
     )
@@ -68,12 +51,12 @@ def _parser() -> argparse.ArgumentParser:
         help="refine until the relative 95 %% band of efficiency and force peaks is at most this",
     )
     solve.add_argument(
-        "--fields", type=_count, default=0, metavar="N", help="fields at N or more instants"
+        "--fields", type=count, default=0, metavar="N", help="fields at N or more instants"
     )
-    solve.add_argument("--np", type=_count, default=1, metavar="N", help="processes (solid only)")
+    solve.add_argument("--np", type=count, default=1, metavar="N", help="processes (solid only)")
     solve.add_argument(
         "--threads",
-        type=_count,
+        type=count,
         default=0,
         metavar="N",
         help="cores the time loop uses, all processes together (0: those there are)",
@@ -84,42 +67,24 @@ def _parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--checkpoint-interval", type=float, default=60.0, metavar="S", help="seconds (60)"
     )
-    modes = commands.add_parser("modes", help="eigenfrequencies of a plate or a seal seat")
+    modes = commands.add_parser("modes", help="eigenfrequencies of a scene's body")
     modes.add_argument("--scene", type=Path, required=True)
     modes.add_argument("--count", type=int, default=8)
-    modes.add_argument("--mesh", type=Path, metavar="FILE", help=".vtu, of a seal seat only")
     modes.add_argument(
-        "--wet", action="store_true", help="also in the scene's fluid, by potential flow (plates)"
+        "--mesh", type=Path, metavar="FILE", help=".vtu, where the kind of scene reads one"
     )
-    bands = commands.add_parser("bands", help="bands of middling meshes against a finer one")
-    bands.add_argument("--scene", type=Path, nargs="+", default=[], help="or provenance.json")
-    bands.add_argument("--random", type=_count, default=0, metavar="N", help="or N random scenes")
-    bands.add_argument(
-        "--out", type=Path, required=True, help="folder of what is solved, and of bands.md"
+    modes.add_argument(
+        "--wet", action="store_true", help="also in the scene's fluid, by potential flow"
     )
-    cost = commands.add_parser("cost", help="cost against error over meshes, limits of the machine")
-    cost.add_argument("--scene", type=Path, required=True, help="or provenance.json")
-    cost.add_argument("--out", type=Path, required=True, help="JSON; a figure .svg beside it")
-    speed = commands.add_parser("speed", help="of the 3D loop on threads and processes")
-    speed.add_argument("--scene", type=Path, required=True, help="of solid geometry")
-    speed.add_argument("--out", type=Path, required=True, help="JSON; a table .md beside it")
-    speed.add_argument(
-        "--dofs", type=_dofs, nargs="+", default=(), metavar="N", help="by default three sizes"
-    )
-    yielding = commands.add_parser("yielding", help="a yielding sphere on a rigid wall")
-    yielding.add_argument("--out", type=Path, required=True, help="Markdown")
-    flights = commands.add_parser("flights", help="flights and shocks of the sphere by MuJoCo")
-    flights.add_argument("--out", type=Path, required=True, help="JSON")
-    flights.add_argument("--number", type=_count, default=500, metavar="N", help="flights (500)")
-    rebound = commands.add_parser("rebound", help="balls that rebound from glass, as measured")
-    rebound.add_argument("--out", type=Path, required=True, help="Markdown")
-    mesh = commands.add_parser("mesh", help="mesh of a seal seat as .vtu, a .json beside it")
-    mesh.add_argument("--scene", type=Path, required=True, help="scene.json of kind seal-seat")
+    mesh = commands.add_parser("mesh", help="mesh of a scene's body as .vtu, and .json about it")
+    mesh.add_argument("--scene", type=Path, required=True, help="scene.json")
     mesh.add_argument("--out", type=Path, required=True, help="FILE.vtu")
     mesh.add_argument("--resolution", choices=RESOLUTION_NAMES, default="paper")
     mesh.add_argument(
         "--size-factor", type=float, default=1.0, metavar="X", help="X times as large elements"
     )
+    for name, study in STUDIES.items():
+        study.arguments(commands.add_parser(name, help=study.help))
     commands.add_parser("versions", help="versions of everything a result depends on")
     return parser
 
@@ -133,40 +98,8 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     use_writable_cache()
     try:
-        if arguments.command == "bands":
-            from .studies.bands import report
-
-            report(arguments.scene, arguments.random, arguments.out, Progress())
-            return
-        if arguments.command == "cost":
-            from .studies.cost import report_cost
-
-            report_cost(arguments.scene, arguments.out)
-            return
-        if arguments.command == "speed":
-            from .studies.speed import SIZES, report_speed
-
-            report_speed(arguments.scene, tuple(arguments.dofs) or SIZES, arguments.out)
-            return
-        if arguments.command == "rebound":
-            from .studies.rebound import report_rebound
-
-            report_rebound(arguments.out, Progress())
-            return
-        if arguments.command == "flights":
-            try:
-                from .flight.cases import report_flights
-            except ImportError as error:
-                message = (
-                    f"{error}; install it by `make setup` and run target/python-tools/bin/python"
-                )
-                raise SolverError(f"a Python module is missing: {message}") from error
-            report_flights(arguments.out, arguments.number, Progress())
-            return
-        if arguments.command == "yielding":
-            from .studies.yielding import report_yielding
-
-            report_yielding(arguments.out, Progress())
+        if arguments.command in STUDIES:
+            STUDIES[arguments.command].run(arguments)
             return
         document = read_document(arguments.scene)
         commands = commands_of(document)

@@ -5,15 +5,22 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from importlib import import_module
+from types import ModuleType
 from typing import Any, cast
 
-from .common.reader import Reader
+from .common.arguments import Study
+from .common.decode import member, one_of
 
 KINDS = {"plate-impact": "plate_impact", "seal-seat": "seal_seat"}
-"""Folder of each kind; its module `command` has the dictionary ``COMMANDS``."""
+"""Folder of each kind. Its module `command` has a dictionary ``COMMANDS`` by name, and may have
+one of ``STUDIES``; it imports late what these need."""
 
 Command = Callable[[Any, argparse.Namespace], None]
 """Gets a decoded ``scene.json`` and the command line."""
+
+
+def _module(kind: str) -> ModuleType:
+    return import_module(f".{KINDS[kind]}.command", __package__)
 
 
 def commands_of(document: Any) -> dict[str, Command]:
@@ -22,6 +29,13 @@ def commands_of(document: Any) -> dict[str, Command]:
     Raises:
         SceneError: the kind is missing or unknown.
     """
-    kind = Reader(document, "").choice("kind", tuple(KINDS))
-    module = import_module(f".{KINDS[kind]}.command", __package__)
-    return cast("dict[str, Command]", module.COMMANDS)
+    kind = one_of(member(document, "", "kind"), "kind", tuple(KINDS))
+    return cast("dict[str, Command]", _module(kind).COMMANDS)
+
+
+def studies() -> dict[str, Study]:
+    """Studies of all kinds, by name."""
+    found: dict[str, Study] = {}
+    for kind in KINDS:
+        found |= getattr(_module(kind), "STUDIES", {})
+    return found

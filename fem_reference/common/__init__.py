@@ -1,1 +1,1 @@
-"""What all kinds of scenes and all geometries use: reader, series, documents, bands."""
+"""What all kinds of scenes and all geometries use: decoding, bodies, fields, bands."""

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
 from .arrays import Floats
 from .beam import Beam, Strike
+from .decode import At
 from .errors import SceneError
-from .reader import Reader
 
 FIXED_POINT = 100
 """Iterations for the frequency of a mode that relaxes."""
-EDGES = ("clamped", "simply-supported", "free")
+Edge = Literal["clamped", "simply-supported", "free"]
 
 
 @dataclass(frozen=True)
@@ -53,10 +53,29 @@ class Material:
     poisson_ratio: float
     density: float
     """kg/m^3"""
-    yielding: Yielding | None = None
-    """None: elastic whatever the stress"""
+    yield_strength: float | None = None
+    """Pa"""
+    hardening: float | None = None
+    """Pa; None: elastic whatever the stress."""
+    rate: Annotated[float, At("rate.D")] = 0.0
+    """See `Yielding`."""
+    exponent: Annotated[float, At("rate.q")] = 1.0
+    """See `Yielding`."""
     relaxation: tuple[Relaxation, ...] = ()
     """Empty: none."""
+
+    @property
+    def yielding(self) -> Yielding | None:
+        """None: elastic whatever the stress.
+
+        Raises:
+            SceneError: there is hardening, but no yield strength.
+        """
+        if self.hardening is None:
+            return None
+        if self.yield_strength is None:
+            raise SceneError(f"material {self.name!r} has hardening, but yield_strength is missing")
+        return Yielding(self.yield_strength, self.hardening, self.rate, self.exponent)
 
     @property
     def lasting(self) -> float:
@@ -98,8 +117,7 @@ class Plate:
 
     radius: float
     thickness: float
-    edge: str
-    """One of `EDGES`."""
+    edge: Edge
     material: Material
     damping_ratio: float = 0.0
     """Of critical damping (Lehr), the same for every mode."""
@@ -158,7 +176,7 @@ class Bender:
     """Beam with a tip mass that is bent and released; its tip is that of a compact body."""
 
     RADIUS_KEY: ClassVar[str] = "tip_radius"
-    beam: Beam
+    beam: Annotated[Beam, At()]
     tip_radius: float
     """m"""
     material: Material
@@ -192,7 +210,7 @@ class Supply:
 
     resistance: float
     """Ohm"""
-    buffer_capacitance: float | None
+    buffer_capacitance: float | None = None
     """F; None: so large that its voltage stays."""
 
     @property
@@ -282,50 +300,3 @@ def sphere_profile(radius: float, r: Floats) -> Floats:
     Written without the difference of two nearly equal numbers.
     """
     return np.asarray(r**2 / (radius + np.sqrt(radius**2 - r**2)))
-
-
-def _yielding(reader: Reader) -> Yielding | None:
-    if "hardening" not in reader.node:
-        # the yield strength alone changes no result
-        return None
-    rate, exponent = 0.0, 1.0
-    if reader.node.get("rate") is not None:
-        law = reader.child("rate")
-        law.allow("D", "q")
-        rate = law.number("D", "1/s")
-        exponent = law.number("q", "(no unit)", above=1.0, inclusive=True)
-    return Yielding(
-        strength=reader.number("yield_strength", "Pa"),
-        hardening=reader.number("hardening", "Pa", inclusive=True),
-        rate=rate,
-        exponent=exponent,
-    )
-
-
-def read_material(reader: Reader, may_yield: bool = False) -> Material:
-    """The material an object describes."""
-    if "hardening" in reader.node and not may_yield:
-        raise SceneError(f"{reader.path}: a material that yields ('hardening') is not supported")
-    elastic = ("name", "youngs_modulus", "poisson_ratio", "density")
-    reader.allow(*elastic, "yield_strength", "hardening", "rate", "relaxation")
-    return Material(
-        name=reader.text("name"),
-        youngs_modulus=reader.number("youngs_modulus", "Pa"),
-        poisson_ratio=reader.number("poisson_ratio", "(no unit)", above=-1.0, below=0.5),
-        density=reader.number("density", "kg/m^3"),
-        yielding=_yielding(reader),
-        relaxation=_relaxation(reader) if "relaxation" in reader.node else (),
-    )
-
-
-def _relaxation(reader: Reader) -> tuple[Relaxation, ...]:
-    terms = tuple(
-        Relaxation(term.number("ratio", "(no unit)", below=1.0), term.number("time", "s"))
-        for term in reader.children("relaxation")
-    )
-    relaxing = sum(term.ratio for term in terms)
-    if relaxing >= 1.0:
-        raise SceneError(
-            f"{reader.path}.relaxation: the ratios add up to {relaxing:g}; it must be below 1"
-        )
-    return terms

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from .bodies import Plate
-from .reader import Reader
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,7 @@ class Fluid:
     plate_damping_ratio: float
     """Of critical damping, of the wet plate."""
     drag_coefficient: float
-    shear_thinning: ShearThinning | None
+    shear_thinning: ShearThinning | None = None
 
     def wet(self, plate: Plate) -> Plate:
         """The plate that moves as ``plate`` does in the fluid.
@@ -47,41 +46,3 @@ class Fluid:
         density = plate.material.density / self.added_mass_frequency_ratio**2
         heavy = replace(plate.material, density=density)
         return replace(plate, material=heavy, damping_ratio=self.plate_damping_ratio)
-
-
-def read_fluid(reader: Reader) -> Fluid:
-    """The fluid an object describes."""
-    reader.allow(
-        "viscosity",
-        "density",
-        "minimum_gap",
-        "squeeze_film",
-        "added_mass_frequency_ratio",
-        "plate_damping_ratio",
-        "drag_coefficient",
-        "shear_thinning",
-    )
-    ratio = "(no unit)"
-    thinning = reader.node.get("shear_thinning") is not None
-    return Fluid(
-        viscosity=reader.number("viscosity", "Pa s"),
-        density=reader.number("density", "kg/m^3"),
-        minimum_gap=reader.number("minimum_gap", "m"),
-        squeeze_film=reader.flag("squeeze_film"),
-        added_mass_frequency_ratio=reader.number(
-            "added_mass_frequency_ratio", ratio, below=1.0 + 1e-15
-        ),
-        # From 1 on modes creep instead of oscillating, and the end of the run has no proof.
-        plate_damping_ratio=reader.number("plate_damping_ratio", ratio, below=1.0, inclusive=True),
-        drag_coefficient=reader.number("drag_coefficient", ratio, inclusive=True),
-        shear_thinning=_read_thinning(reader.child("shear_thinning")) if thinning else None,
-    )
-
-
-def _read_thinning(reader: Reader) -> ShearThinning:
-    reader.allow("infinite_shear_viscosity", "relaxation_time", "power_index")
-    return ShearThinning(
-        infinite_shear_viscosity=reader.number("infinite_shear_viscosity", "Pa s"),
-        relaxation_time=reader.number("relaxation_time", "s"),
-        power_index=reader.number("power_index", "(no unit)", below=1.0 + 1e-15),
-    )

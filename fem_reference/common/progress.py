@@ -5,8 +5,11 @@ from __future__ import annotations
 import json
 import sys
 import time
+from collections.abc import Callable
 from typing import TextIO
 
+Report = Callable[[str, float, str], None]
+"""Gets phase, share done, message."""
 INTERVAL = 0.2
 """Least time between two lines of the same phase, s."""
 

@@ -28,8 +28,8 @@ Method, chapter 8). This is the middle."""
 SCATTER_ORDER = 2.0
 """Between nodes of distance h the edge of contact leaves the force uncertain by (h/a)^2."""
 STANDARD_ERRORS = 2.5
-"""In a band, beside the error fitted. Calibrated on random impacts and tried on others
-(`studies/bands.py`)."""
+"""In a band, besides the error fitted. Calibrated on random impacts and tried on others (the study
+`bands`)."""
 
 
 @dataclass(frozen=True)

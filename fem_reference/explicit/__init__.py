@@ -1,1 +1,1 @@
-"""Explicit time integration: kernel, loop, levels, contact, supervision, checkpoints, ending."""
+"""Explicit time integration: kernel, loop, levels, contact, supervision, checkpoints."""

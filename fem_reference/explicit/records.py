@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..common.arrays import Floats
 from . import structures
 
@@ -21,21 +23,23 @@ class ContactRecord:
     force_peak: float
     """N, averaged over the peak window."""
     impulse: float
-    """N s"""
-    work: float
-    """Change of the discrete energy by the contact constraint, J: loss if negative."""
+    """Normal, N s."""
     outermost_radius: float
     """Largest radius of a pair that carried force, m."""
 
 
-def peak_force(cumulative_impulse: Floats, window: int, sample_interval: float) -> float:
-    """Largest mean force (N) over any ``window`` consecutive sampling intervals."""
-    if cumulative_impulse.size <= window:
-        return float(cumulative_impulse[-1] / (sample_interval * max(1, window)))
-    means = (cumulative_impulse[window:] - cumulative_impulse[:-window]) / (
-        window * sample_interval
-    )
-    return float(means.max())
+def peak_force(impulse: Floats, window: int, sample_interval: float) -> float:
+    """Largest mean force (N) over any ``window`` consecutive sampling intervals.
+
+    ``impulse`` is cumulative, (m,), or of several components (m, d), of which the magnitude counts.
+    """
+    if impulse.shape[0] <= window:
+        return _largest(impulse[-1:] / (sample_interval * max(1, window)))
+    return _largest((impulse[window:] - impulse[:-window]) / (window * sample_interval))
+
+
+def _largest(forces: Floats) -> float:
+    return float((forces if forces.ndim == 1 else np.linalg.norm(forces, axis=1)).max())
 
 
 def intervals(record: structures.Record, time_step: float) -> tuple[tuple[float, float], ...]:

@@ -16,7 +16,7 @@ from ..common.arrays import Floats
 from ..common.errors import SolverError
 from ..common.fenicsx import alone
 from ..common.memory import AXISYMMETRIC, require_memory
-from ..common.series import Report
+from ..common.progress import Report
 from ..common.settings import Settings
 from ..explicit.frames import Recorder
 from ..explicit.supervision import stable_run
@@ -37,9 +37,9 @@ from .meshing import (
     mesh_impact,
     mesh_settings,
 )
+from .repeated import Kept, strike
 from .run import Run
 from .scene import Scene
-from .series import Kept, strike
 from .suitability import Resolution, Suitability, per_wavelength, resolution_of, within_zones
 
 REVISION = 2

@@ -26,10 +26,12 @@ from ..explicit.drag import Drag
 from ..explicit.energies import Energies
 from ..explicit.loop import SerialLoop
 from ..explicit.stiffness import worthwhile
+from ..impact.ending import Ending
+from ..impact.run import Losses
 from .dents import Dents, Memory
-from .ending import Ending, Followed, Patch
+from .ending import Followed, Patch, plate_ending
 from .estimate import WAVE_FREQUENCY
-from .motion import SIDES, Further, Losses, State, Yielded
+from .motion import SIDES, Further, State, Yielded
 from .run import Run, integrate
 from .scene import Scene
 
@@ -298,7 +300,7 @@ def _ending(motion: AxisymmetricMotion, scene: Scene) -> Ending:
     patches = (patch(0, OUTER), patch(1, INNER))
     relaxation = materials[PLATE].relaxation
     followed = Followed(frequencies, scene.plate.damping_ratio, relaxation, coordinates)
-    return Ending(motion, patches, WINDOW, followed)
+    return plate_ending(motion, patches, WINDOW, followed)
 
 
 def integrate_axisymmetric(

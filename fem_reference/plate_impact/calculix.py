@@ -25,9 +25,9 @@ from ..calculix import program
 from ..calculix.deck import FREE_MODES, MILLI, Deck, Steps
 from ..calculix.printed import Printed, frequencies
 from ..common.errors import SolverError
-from ..common.series import Report
+from ..common.progress import Report
 from ..common.settings import Settings
-from ..explicit.ending import no_further_contact
+from ..impact.ending import Approach
 from .axisymmetric_motion import WINDOW
 from .calculix_model import PENALTY, SLAVES, Model, model
 from .calculix_observed import DAMPING, Observed, run_of
@@ -95,11 +95,11 @@ class _Course:
         energy -= 0.5 * np.array(self.made.masses) * moves * speed[:3] ** 2
         gaps = (0.0, self.scene.gap)
         return all(
-            no_further_contact(
+            Approach(
                 gaps[k] + side * (place[body] - moves[1] * place[1]),
                 side * (speed[body] - moves[1] * speed[1]),
-                zip(energy[[1, body]], self._flexibilities[k], strict=True),
-            )
+                tuple(zip(energy[[1, body]], self._flexibilities[k], strict=True)),
+            ).is_over()
             for k, (side, body) in enumerate(zip(SIDES, (0, 2), strict=True))
         )
 

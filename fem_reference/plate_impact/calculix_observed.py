@@ -129,7 +129,6 @@ def _record(scene: Scene, observed: Observed, number: int, chatter: float) -> Co
         intervals=tuple(spans),
         force_peak=peak,
         impulse=float(impulses(observed.forces, times[1] - times[0])[-1, number]),
-        work=0.0,
         outermost_radius=hertz_contact_radius(peak, modulus, body.tip_radius),
     )
 

@@ -3,52 +3,44 @@
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import replace
 from typing import Any
 
-from ..common.errors import SceneError, SolverError
-from ..common.processes import in_processes
+from ..common.errors import SolverError
 from ..common.settings import Options
-from .scene import parse_scene
+from ..impact.command import print_modes, require_count, require_one_process, solve_scene
+from .studies import STUDIES
 
 
 def _modes(document: Any, arguments: argparse.Namespace) -> None:
     from ..axisymmetric.added_mass import wet_frequencies
     from ..axisymmetric.meshing import modal_plate_mesh
     from ..axisymmetric.modal import plate_modes
+    from .scene import parse_scene
 
     scene = parse_scene(document)
-    if arguments.count < 1:
-        raise SolverError(f"--count is {arguments.count}; it must be at least 1")
+    require_count(arguments.count)
     plate = scene.dry_plate
     mesh = modal_plate_mesh(plate)
     found = plate_modes(plate, mesh, arguments.count)
     modes = [{"frequency": mode.frequency, "longitudinal": mode.longitudinal} for mode in found]
-    answer: dict[str, Any] = {"schema_version": 1, "scene": scene.name, "modes": modes}
-    if arguments.wet:
-        if scene.fluid is None:
-            raise SolverError(
-                "--wet asks for a plate in a fluid, but the scene has none: add [fluid]"
-            )
-        wet = wet_frequencies(plate, mesh, arguments.count, scene.fluid.density)
-        answer["wet"] = {
-            "frequencies": wet.tolist(),
-            "added_mass_frequency_ratio": wet[0] / found[0].frequency,
-        }
-    print(json.dumps(answer, indent=2))
+    if not arguments.wet:
+        print_modes(scene.name, modes)
+        return
+    if scene.fluid is None:
+        raise SolverError("--wet asks for a plate in a fluid, but the scene has none: add [fluid]")
+    wet = wet_frequencies(plate, mesh, arguments.count, scene.fluid.density)
+    ratio = wet[0] / found[0].frequency
+    answer = {"frequencies": wet.tolist(), "added_mass_frequency_ratio": ratio}
+    print_modes(scene.name, modes, wet=answer)
 
 
 def _solve(document: Any, arguments: argparse.Namespace) -> None:
-    scene = parse_scene(document)
-    options = Options.of(arguments)
+    from .scene import parse_scene
+
+    scene, options = parse_scene(document), Options.of(arguments)
     if scene.geometry == "solid":
-        relaxing = scene.relaxing
-        if arguments.np > 1 and relaxing:
-            raise SceneError(
-                f"{relaxing[0]}.material.relaxation is given; solid geometry relaxes in one "
-                f"process, --np is {arguments.np}; it must be 1"
-            )
+        require_one_process(scene.relaxing, arguments.np)
     else:
         if arguments.np > 1:
             raise SolverError(
@@ -58,12 +50,14 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
 
         options = replace(options, frame_times=field_times(scene, options.frames), frames=0)
 
-    def work(comm: Any) -> None:
-        from .result import solve
+    def made(comm: Any) -> Any:
+        from .result import solver
 
-        solve(scene, arguments.out, arguments.resolution, comm, options)
+        return solver(scene, comm, options)
 
-    in_processes(arguments, work)
+    solve_scene(arguments, options, made)
 
 
 COMMANDS = {"solve": _solve, "modes": _modes}
+
+__all__ = ["COMMANDS", "STUDIES"]

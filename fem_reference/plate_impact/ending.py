@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -11,8 +11,8 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Relaxation
-from ..explicit.ending import NONE, no_further_contact
 from ..explicit.energies import Energies
+from ..impact.ending import NONE, Approach, Ending
 from .motion import SIDES, Motion
 
 ENERGY_MARGIN = 1e-3
@@ -96,41 +96,32 @@ class Followed:
 NOTHING = Free(0.0, np.zeros(0, dtype=np.int64), NONE, NONE, NONE)
 
 
-class Ending:
-    """Whether any further contact is possible.
+def plate_ending(
+    motion: Motion,
+    patches: tuple[Patch, Patch],
+    window: float = 1.0,
+    followed: Followed | None = None,
+) -> Ending:
+    """When the run may end.
 
     Args:
         motion: of the bodies.
         patches: of outer and inner contact.
         window: the run lasts at least this many times as long as its last contact.
-        modes: of the plate, if they are followed.
+        followed: modes of the plate, if they are followed.
     """
 
-    def __init__(
-        self,
-        motion: Motion,
-        patches: tuple[Patch, Patch],
-        window: float = 1.0,
-        modes: Followed | None = None,
-    ) -> None:
-        self.motion, self.patches, self.window, self.modes = motion, patches, window, modes
-
-    def __call__(self, energies: Energies, now: float) -> bool:
-        """Whether the state allows no further contact at an instant (s) of the run."""
-        motion = self.motion
-        last = max(record.last + 1 for record in motion.records) * motion.loop.dt
-        if now < last * self.window or motion.loop.touching:
-            return False
+    def approaches(energies: Energies) -> Iterator[Approach]:
         energy = motion.plate_energy(energies)
-        modes = self.modes.motion() if self.modes is not None else NOTHING
-        energy = max(energy - modes.energy, 0.0) + (ENERGY_MARGIN * energy if self.modes else 0.0)
-        return all(
-            no_further_contact(
+        modes = followed.motion() if followed is not None else NOTHING
+        energy = max(energy - modes.energy, 0.0) + (ENERGY_MARGIN * energy if followed else 0.0)
+        for state, patch, side in zip(motion.states(energies), patches, SIDES, strict=True):
+            yield Approach(
                 state.clearance - float(np.abs(patch.shares) @ modes.creep),
                 state.opening_speed,
                 ((energy, patch.plate), (state.sphere_energy, patch.sphere)),
                 np.asarray(side * patch.shares[modes.mode] * modes.amplitudes),
                 modes.exponents,
             )
-            for state, patch, side in zip(motion.states(energies), self.patches, SIDES, strict=True)
-        )
+
+    return Ending(motion.loop, approaches, window)

@@ -11,6 +11,7 @@ from ..common.hertz import effective_modulus, hertz_approach, hertz_stiffness
 from ..explicit import structures
 from ..explicit.energies import Energies
 from ..explicit.loop import Loop
+from ..impact.run import Losses
 from .scene import Scene
 
 OUTER, PLATE, INNER = "outer", "plate", "inner"
@@ -44,36 +45,6 @@ class State:
     """Rate of the clearance, m/s."""
     sphere_energy: float
     """Elastic energy of the sphere, rigid motion apart, J."""
-
-
-@dataclass(frozen=True)
-class Losses:
-    """Energy lost so far in the part modelled, J."""
-
-    plate_damping: float = 0.0
-    squeeze_film: float = 0.0
-    drag: float = 0.0
-    contacts: tuple[float, float] = (0.0, 0.0)
-    """To friction and to yielding, at outer and inner body."""
-    bodies: tuple[float, ...] | None = None
-    """To relaxation, of outer body, plate and inner body; None: none of them relaxes."""
-
-    @property
-    def total(self) -> float:
-        """All of it, J."""
-        others = (*self.contacts, *(self.bodies or ()))
-        return self.plate_damping + self.squeeze_film + self.drag + sum(others)
-
-    def of_whole(self, share: float) -> Losses:
-        """That of the whole bodies, if this is that of a ``share``."""
-        outer, inner = self.contacts
-        return Losses(
-            self.plate_damping / share,
-            self.squeeze_film / share,
-            self.drag / share,
-            (outer / share, inner / share),
-            self.bodies and tuple(lost / share for lost in self.bodies),
-        )
 
 
 @dataclass(frozen=True)

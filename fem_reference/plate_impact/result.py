@@ -1,33 +1,24 @@
-"""The result of a plate impact: quantities, bands and documents, written as one folder."""
+"""The result of a plate impact: quantities, curves, and what only it states."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
-from ..common import document
 from ..common.arrays import Floats
 from ..common.bodies import Bender, Stack
 from ..common.errors import SceneError
-from ..common.output import write_history, write_json
-from ..common.progress import Progress
-from ..common.series import (
-    MeshResult,
-    MeshSolver,
-    Report,
-    Solved,
-    Target,
-    estimates,
-    solve_series,
-)
-from ..common.settings import RESOLUTIONS, Options, Settings, missed_instants
-from ..common.versions import versions
+from ..common.output import write_history
+from ..common.progress import Report
+from ..common.settings import Options, Settings
+from ..impact.history import Force, Level, Sampling, columns, curve_uncertainty, history
+from ..impact.result import DIGITS, Details, ImpactSolver
+from ..impact.series import MeshResult, Solved, Target, estimates
 from .estimate import MINOR_FORCE, ContactEstimate
-from .history import HISTORY_COLUMNS, curve_bands, history
 from .motion import SPHERES, Yielded
 from .run import Run
 from .scene import Scene
@@ -45,6 +36,17 @@ QUANTITIES = (
     "inner_contact_end",
     "first_frequency",
 )
+CURVES = (
+    Level("outer_displacement", 0),
+    Level("outer_velocity", 1),
+    Force("outer_force", (2,)),
+    Level("plate_displacement", 3),
+    Level("plate_velocity", 4),
+    Level("inner_displacement", 5),
+    Level("inner_velocity", 6),
+    Force("inner_force", (7,)),
+)
+"""Of the rows of `Motion.sample`."""
 DENTED_SURFACES = ("outer_body", "plate_outer_face", "plate_inner_face", "inner_body")
 MINOR = 0.05
 """Of the impact: what passes on less needs not be known to more digits than the impact itself."""
@@ -144,14 +146,6 @@ def _of_yielding(run: Run) -> dict[str, float]:
     return {"plastic_work": sum(yielded.work), "locked_in_energy": sum(yielded.locked_in)}
 
 
-def _without_impacts(meshes: list[MeshResult]) -> list[MeshResult]:
-    """The same with the quantities of the last impact alone."""
-    return [
-        replace(mesh, values={n: v for n, v in mesh.values.items() if "/" not in n})
-        for mesh in meshes
-    ]
-
-
 def _impacts(runs: list[Run], meshes: list[MeshResult]) -> list[dict[str, Any]]:
     """Rows of the summary's ``impacts``; what one that is cut leaves open is null."""
     found, rows = estimates(meshes), []
@@ -173,37 +167,24 @@ def _impacts(runs: list[Run], meshes: list[MeshResult]) -> list[dict[str, Any]]:
     return rows
 
 
-def curve_uncertainty(bands: Floats) -> dict[str, float]:
-    """Root mean square and largest half width of the bands (samples, 8) of the history's curves."""
-    found = {}
-    for name, band in zip(HISTORY_COLUMNS[1:], bands.T, strict=True):
-        found[f"{name}_rms"] = float(np.sqrt(np.mean(band**2)))
-        found[f"{name}_max"] = float(band.max())
-    return found
-
-
-def solver(scene: Scene, resolution: str, comm: Any, options: Options) -> MeshSolver[Any]:
+def solver(scene: Scene, comm: Any, options: Options) -> ImpactSolver[Any]:
     """How the scene is solved, by its geometry.
 
     Raises:
-        SceneError: fields are asked for of what yields.
+        SceneError: fields are asked for of what yields, or CalculiX does not cover the scene.
     """
     if scene.yields and (options.stress_times or options.frame_times):
         raise SceneError(
             "fields are asked for, but a material yields: the stress they show is the elastic one"
         )
     compute: Callable[[float, Settings, Report, Any], Any]
-    leads: Callable[[Any], list[Any]] | None
+    leads: Callable[[Any], list[Any]] | None = None
     if options.solver == "calculix":
         from . import calculix
         from .calculix_model import require_supported
 
         require_supported(scene, options)
-
-        def compute(factor: float, settings: Settings, report: Report, lead: Any) -> Any:
-            return calculix.compute(scene, factor, settings, report, lead)
-
-        method, dimension = calculix.method(scene), 2
+        compute, method = partial(calculix.compute, scene), calculix.method(scene)
 
         def leads(solution: Any) -> list[Any]:
             return [*solution.radii]
@@ -214,57 +195,35 @@ def solver(scene: Scene, resolution: str, comm: Any, options: Options) -> MeshSo
         def compute(factor: float, settings: Settings, report: Report, lead: Any) -> Any:
             return solid.compute(scene, factor, settings, comm, report)
 
-        method, dimension, leads = solid.method(scene), 3, None
+        method = solid.method(scene)
     else:
         from . import axisymmetric
 
-        def compute(factor: float, settings: Settings, report: Report, lead: Any) -> Any:
-            return axisymmetric.compute(scene, factor, settings, report, lead)
-
-        method, dimension = axisymmetric.method(scene), 2
+        compute, method = partial(axisymmetric.compute, scene), axisymmetric.method(scene)
 
         def leads(solution: Any) -> list[Any]:
             impacts = [len(solution.runs), solution.reach] if scene.yields else []
             return [*solution.radii, *solution.refinement, *impacts]
 
-    def write(folder: Path, solution: Any, meshes: list[MeshResult]) -> None:
-        _write(folder, scene, solution, resolution, meshes, options)
-
-    return MeshSolver(
+    return ImpactSolver(
+        scene=scene,
         method=method,
         end_time=scene.end_time,
         ratio=RATIO,
         targeted=targeted(scene),
         compute=compute,
-        quantities=lambda solution: quantities(scene, solution),
-        write=write,
-        dimension=dimension,
+        quantities=partial(quantities, scene),
+        curves=CURVES,
+        details=partial(_details, scene),
+        dimension=3 if scene.geometry == "solid" else 2,
         leads=leads,
         resumes=scene.geometry == "solid" or scene.series is not None,
     )
 
 
-def solve(
-    scene: Scene,
-    target: Path,
-    resolution: str,
-    comm: Any,
-    options: Options,
-    progress: Progress | None = None,
-) -> None:
-    """Solve a scene and write the result folder ``target``; see the package's README.
-
-    Raises:
-        RunError: see `compute` of the geometry and `solve_series`.
-    """
-    on_a_mesh = solver(scene, resolution, comm, options)
-    solve_series(on_a_mesh, target, RESOLUTIONS[resolution], comm, options, progress)
-
-
-def _bender(bender: Bender, summary: dict[str, Any]) -> dict[str, Any]:
+def _bender(bender: Bender, efficiency: float | None) -> dict[str, Any]:
     """How a bender was driven, and its strain energy's efficiency."""
     strike, beam = bender.strike, bender.beam
-    efficiency = summary["efficiency"]
     return {
         "strain_energy_efficiency": None
         if efficiency is None
@@ -311,73 +270,47 @@ def _minor_contacts(run: Run, meshes: list[MeshResult]) -> list[str]:
     ]
 
 
-def _write(
-    folder: Path,
-    scene: Scene,
-    solution: Solution,
-    resolution: str,
-    meshes: list[MeshResult],
-    options: Options,
-) -> None:
-    run, duration = solution.run, solution.estimate.duration
-    found = versions()
-    whole, meshes = meshes, _without_impacts(meshes)
-    table, interval = history(run)
-    bands = curve_bands(meshes, [mesh.factor for mesh in meshes])
-    write_history(folder / "history.csv", HISTORY_COLUMNS, table, bands, digits=10)
-    summary = document.summary(
-        scene,
-        resolution,
-        run,
-        meshes,
-        targeted(scene),
-        {"versions": found, **solution.machine()},
-        OF_NO_STACK if isinstance(scene.outer, Stack) else (),
-        (
-            *missed_instants(options.stress_times, float(run.times[-1])),
-            *_minor_contacts(run, meshes),
-        ),
-        outer_contacts=None if run.in_contact_at_end else run.contacts[0].count,
-        inner_contacts=None if run.in_contact_at_end else run.contacts[1].count,
+def _details(
+    scene: Scene, folder: Path, solution: Solution, meshes: list[MeshResult], bands: Floats
+) -> Details:
+    """See `ImpactSolver.details`."""
+    return Details(
+        contacts=SPHERES,
+        duration=solution.estimate.duration,
         mesh=solution.mesh_report(),
-        samples=table.shape[0],
-        sample_interval=interval,
+        solver=solution.machine(),
+        settings=solution.settings(),
         stress_times=solution.write_fields(folder, scene),
+        summary=_special(scene, folder, solution, meshes),
+        uncertainty=curve_uncertainty(CURVES, bands),
+        undetermined=OF_NO_STACK if isinstance(scene.outer, Stack) else (),
+        warnings=tuple(_minor_contacts(solution.run, meshes)),
     )
-    summary["uncertainty"].update(curve_uncertainty(bands))
-    if run.losses is not None:
-        losses = asdict(run.losses)
-        summary["losses"] = {name: loss for name, loss in losses.items() if loss is not None}
+
+
+def _special(
+    scene: Scene, folder: Path, solution: Solution, meshes: list[MeshResult]
+) -> dict[str, Any]:
+    """What a summary has besides, by the scene; writes dents and the histories of a series."""
+    run, bodies = solution.run, zip(SPHERES, solution.run.contacts, strict=True)
+    found: dict[str, Any] = {
+        f"{name}_contacts": None if run.in_contact_at_end else contact.count
+        for name, contact in bodies
+    }
     if run.yielded is not None:
-        summary.update(_of_yielding(run))
+        found |= _of_yielding(run)
         write_dents(folder / "dents.csv", solution.runs)
     if scene.series is not None:
-        summary["impacts"] = _impacts(solution.runs, whole)
+        found["impacts"] = _impacts(solution.runs, meshes)
         for number, impact in enumerate(solution.runs, 1):
-            table, _ = history(impact)
-            nothing = np.zeros((table.shape[0], 0))
-            write_history(folder / f"impact-{number}.csv", HISTORY_COLUMNS, table, nothing, 10)
+            table = history(CURVES, impact, Sampling.on(impact.times))
+            path, nothing = folder / f"impact-{number}.csv", np.zeros((table.shape[0], 0))
+            write_history(path, columns(CURVES), table, nothing, DIGITS)
     if solution.program is not None:
-        summary |= {"source": "external", "model": solution.program}
+        found |= {"source": "external", "model": solution.program}
     if isinstance(scene.outer, Bender):
-        summary["bender"] = _bender(scene.outer, summary)
+        efficiency = None if run.in_contact_at_end else meshes[0].values["efficiency"]
+        found["bender"] = _bender(scene.outer, efficiency)
     if isinstance(scene.outer, Stack):
-        summary["stack"] = _stack(scene, solution)
-    write_json(folder / "summary.json", summary)
-    provenance = document.provenance(
-        scene,
-        resolution,
-        run,
-        duration,
-        found,
-        {
-            **solution.settings(),
-            "uncertainty_companion_ratio": 1.0 / RATIO,
-            "target_error": options.target_error,
-        },
-        contacts={
-            name: [list(interval) for interval in record.intervals]
-            for name, record in zip(("outer", "inner"), run.contacts, strict=True)
-        },
-    )
-    write_json(folder / "provenance.json", provenance)
+        found["stack"] = _stack(scene, solution)
+    return found

@@ -14,8 +14,9 @@ from ..common.settings import PEAK_WINDOW_FRACTION
 from ..explicit.energies import Energies, energies_of
 from ..explicit.levels import MOST_LEVELS
 from ..explicit.records import ContactRecord, intervals, peak_force
-from ..explicit.supervision import Account, Course, Ended, Plan, supervise
-from .motion import Losses, Motion, Sideways, Yielded
+from ..explicit.supervision import Course, Ended, Plan, supervise
+from ..impact.run import ImpactRun, Losses
+from .motion import Motion, Sideways, Yielded
 from .scene import Scene
 
 PEAK_WINDOW_SAMPLES = 4
@@ -24,37 +25,14 @@ LONGEST_RUN = 400.0
 """A run without end time is given up after this many Hertz contact durations."""
 
 
-@dataclass(frozen=True)
-class Run:
-    """Result of the time loop, of the whole bodies."""
+@dataclass(frozen=True, kw_only=True)
+class Run(ImpactRun):
+    """A run, its rows (m, 8) as `Motion.sample`, its contacts those of outer and inner body."""
 
-    times: Floats
-    """(m,) raw sampling instants, s."""
-    rows: Floats
-    """(m, 8) as `Motion.sample`."""
-    contacts: tuple[ContactRecord, ContactRecord]
-    in_contact_at_end: bool
-    time_step: float
-    critical_time_step: float | None
-    """None: implicit steps have none."""
-    steps: int
-    loop_seconds: float
-    processor_seconds: float
-    """As `loop_seconds`, without the time other programs had the processor."""
     outer_velocity: float
     inner_velocity: float
     energies: Energies
     """At the end, of the part modelled."""
-    initial_energy: float
-    energy_residual: float
-    """Energy that the ledger misses over the initial energy."""
-    contact_loss: float
-    """Energy the contact constraint took out over the initial energy."""
-    momentum_residual: float
-    """Momentum that the ledger misses over the initial momentum."""
-    support_impulse: float
-    losses: Losses | None
-    """Of the whole bodies; None if nothing loses."""
     yielded: Yielded | None
     """None: nothing that could yield."""
     sideways: Sideways | None = None
@@ -63,11 +41,6 @@ class Run:
     """Energy that a stack took, and that it gave to the plate, J; None: no stack."""
     dents: Floats | None = None
     """As `Dents.profiles`; None of bodies that cannot have any."""
-
-    def account(self, levels: int) -> Account:
-        """For `stable_run`, of a run with so many levels."""
-        relaxed = sum(self.losses.bodies or ()) if self.losses else 0.0
-        return Account(levels, self.energy_residual, relaxed / self.initial_energy)
 
 
 def integrate(
@@ -183,6 +156,5 @@ def _record(
         intervals=spans,
         force_peak=peak_force(impulse, window, interval),
         impulse=motion.impulses()[number],
-        work=record.work / motion.share,
         outermost_radius=float(radii[record.outermost]) if record.outermost >= 0 else 0.0,
     )

@@ -13,18 +13,13 @@ import numpy as np
 
 from ..common.errors import SolverError
 from ..common.hertz import effective_modulus, hertz_contact_radius
-from ..common.memory import SOLID, memory_needed, peak_memory, require_memory
-from ..common.series import Report
+from ..common.progress import Report
 from ..common.settings import Settings
-from ..explicit.checkpoint import checkpoint_of
-from ..explicit.frames import Recorder
 from ..explicit.loop import Loop
 from ..explicit.spectrum import body_translation, first_frequency
-from ..explicit.supervision import stable_run
 from ..solid.elasticity import write_fields
-from ..solid.machine import machine
 from ..solid.mesh import edge_lengths, mesh_report
-from ..solid.system import make_loop
+from ..solid.stepping import Stepped, stepped
 from .estimate import (
     ACCEPTED_SHARE,
     MINOR_FORCE,
@@ -48,14 +43,12 @@ RADIUS_STEP = 1.04
 """Ratio of neighbouring contact radii for which a mesh is made again."""
 
 
-@dataclass(frozen=True)
-class Solution:
+@dataclass(frozen=True, kw_only=True)
+class Solution(Stepped[Run]):
     """A verified run."""
 
     program: ClassVar[str | None] = None
-    run: Run
     plate: PlateModel
-    loop: Loop
     estimate: ContactEstimate
     meshes_tried: int
     elements_per_radius: tuple[float, float]
@@ -63,21 +56,11 @@ class Solution:
     wavelength: float
     """Shortest that matters, m."""
     elements_per_wavelength: float
-    recorder: Recorder
-    memory_stated: float
-    """Before the run, bytes."""
-    memory_used: float
-    """At most so far, bytes."""
 
     @property
     def runs(self) -> list[Run]:
         """The one run."""
         return [self.run]
-
-    @property
-    def dofs(self) -> int:
-        """Degrees of freedom, fixed ones included."""
-        return 3 * int(self.loop.system.mass.size)
 
     def first_frequency(self) -> float:
         """Lowest elastic eigenfrequency of the plate, Hz."""
@@ -88,10 +71,6 @@ class Solution:
         x = loop.system.points[loop.system.owned][:, 0]
         bent = body_translation(loop, body, 2) * np.repeat(1.0 + (x / x.max()) ** 2, 3)
         return first_frequency(loop, body, start=bent)
-
-    def machine(self) -> dict[str, Any]:
-        """For the summary's ``solver``."""
-        return machine(self.loop, self.memory_stated, self.memory_used)
 
     def mesh_report(self) -> dict[str, Any]:
         """For the summary's ``mesh``."""
@@ -162,37 +141,6 @@ def rounded(radius: float) -> float:
     return math.exp(step * round(math.log(radius) / step))
 
 
-def _stepped(
-    scene: Scene,
-    plate: PlateModel,
-    duration: float,
-    settings: Settings,
-    suffix: str,
-    comm: Any,
-    report: Report,
-) -> tuple[Loop, Run, Recorder]:
-    def attempt(most_levels: int) -> tuple[Loop, Run, Recorder]:
-        loop = make_loop(plate.model, comm, settings.threads)
-        recorder = Recorder(settings, f"{suffix}-{most_levels}")
-        run = integrate_solid(
-            loop,
-            plate,
-            scene,
-            duration,
-            SolidMotion if scene.centred else HalfMotion,
-            courant=settings.courant,
-            most_levels=most_levels,
-            fields=recorder,
-            checkpoint=checkpoint_of(
-                settings, [*method(scene), most_levels], plate.model.meshes, suffix
-            ),
-            on_progress=lambda done, message: report("stepping", done, message),
-        )
-        return loop, run, recorder
-
-    return stable_run(attempt, lambda made: made[1].account(len(made[0].levels)))
-
-
 def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: Report) -> Solution:
     """Solve a scene with ``factor`` times the elements asked for, in every direction.
 
@@ -205,7 +153,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
     """
     estimate = estimate_contact(scene)
     wavelengths = shortest_wavelengths(scene, estimate.duration)
-    model = plate_model if scene.centred else half_model
+    model, motion = (plate_model, SolidMotion) if scene.centred else (half_model, HalfMotion)
     asked = scene.elements_per_contact_radius * factor
     radii = (estimate.outer_radius, estimate.inner_radius)
     for attempt in range(1, MOST_MESHES + 1):
@@ -214,32 +162,27 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         # gmsh runs in one process; the others wait.
         made = model(scene, expected, wavelengths, factor) if comm.rank == 0 else None
         plate: PlateModel = comm.bcast(made)
-        nodes = int(plate.model.first[-1])
-        report(
-            "assembly",
-            0.0,
-            require_memory(nodes, SOLID[scene.element_order], comm, refinement=settings.refinement),
+
+        def step(loop: Loop, plate: PlateModel = plate, **options: Any) -> Run:
+            return integrate_solid(loop, plate, scene, estimate.duration, motion, **options)
+
+        done = stepped(
+            plate.model, method(scene), settings, comm, report, step, suffix=f"-{attempt}"
         )
-        loop, run, recorder = _stepped(
-            scene, plate, estimate.duration, settings, f"-{attempt}", comm, report
-        )
+        run = done.run
         found = _elements_per_radius(scene, plate, run)
         reach = max(contact.outermost_radius for contact in run.contacts)
         inside = reach < 0.95 * plate.zone
         if min(found) >= ACCEPTED_SHARE * asked and inside:
             per_wave, wavelength = _per_wavelength(plate, wavelengths)
             return Solution(
-                run,
-                plate,
-                loop,
-                estimate,
-                attempt,
-                found,
-                wavelength,
-                per_wave,
-                recorder,
-                memory_needed(nodes, SOLID[scene.element_order], comm.size),
-                peak_memory(comm),
+                **vars(done),
+                plate=plate,
+                estimate=estimate,
+                meshes_tried=attempt,
+                elements_per_radius=found,
+                wavelength=wavelength,
+                elements_per_wavelength=per_wave,
             )
         grow = 1.0 if inside else 1.3
         radii = (

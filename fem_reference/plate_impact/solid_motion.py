@@ -11,8 +11,10 @@ from ..explicit import structures
 from ..explicit.energies import Energies
 from ..explicit.loop import Loop
 from ..explicit.spectrum import critical_time_step, patch_flexibility
-from .ending import Ending, Patch
-from .motion import INNER, OUTER, PLATE, SIDES, SPHERES, Further, Losses, State
+from ..impact.ending import Ending
+from ..impact.run import Losses
+from .ending import Patch, plate_ending
+from .motion import INNER, OUTER, PLATE, SIDES, SPHERES, Further, State
 from .run import Run, integrate
 from .scene import Scene
 from .solid_model import PlateModel
@@ -175,7 +177,7 @@ def ending(motion: SolidMotion) -> Ending:
         return patch_flexibility(loop, number, nodes, weights / weights.sum()) / lasting
 
     of_plate = max(flexibility(PLATE, name) for name in SPHERES)
-    return Ending(
+    return plate_ending(
         motion,
         (Patch(of_plate, flexibility(OUTER, OUTER)), Patch(of_plate, flexibility(INNER, INNER))),
     )

@@ -6,12 +6,14 @@ import argparse
 import json
 from typing import Any
 
-from ..common.errors import SceneError, SolverError
-from .scene import parse_seat_scene
+from ..common.errors import SceneError
+from ..common.settings import SOLVERS, Options
+from ..impact.command import print_modes, require_count, require_one_process, solve_scene
 
 
 def _mesh(document: Any, arguments: argparse.Namespace) -> None:
     from .mesh_file import write_seat_mesh
+    from .scene import parse_seat_scene
 
     scene = parse_seat_scene(document)
     write_seat_mesh(arguments.out, scene, arguments.resolution, arguments.size_factor)
@@ -22,37 +24,31 @@ def _modes(document: Any, arguments: argparse.Namespace) -> None:
     from .mesh_file import check_geometry
     from .meshing import seat_mesh
     from .modal import read_mesh, seat_modes
+    from .scene import parse_seat_scene
 
     scene = parse_seat_scene(document)
-    if arguments.count < 1:
-        raise SolverError(f"--count is {arguments.count}; it must be at least 1")
+    require_count(arguments.count)
     if arguments.mesh:
         check_geometry(arguments.mesh, scene)
     mesh = read_mesh(arguments.mesh) if arguments.mesh else seat_mesh(scene)
-    found = [{"frequency": float(f)} for f in seat_modes(scene, mesh, arguments.count)]
-    print(json.dumps({"schema_version": 1, "scene": scene.name, "modes": found}, indent=2))
+    found = seat_modes(scene, mesh, arguments.count)
+    print_modes(scene.name, [{"frequency": float(frequency)} for frequency in found])
 
 
 def _solve(document: Any, arguments: argparse.Namespace) -> None:
-    from ..common.processes import in_processes
+    from .scene import parse_seat_scene
 
-    scene = parse_seat_scene(document)
-    if arguments.np > 1 and scene.seat.material.relaxation:
-        raise SceneError(
-            "seat.material.relaxation is given; solid geometry relaxes in one process, "
-            f"--np is {arguments.np}; it must be 1"
-        )
+    scene, options = parse_seat_scene(document), Options.of(arguments)
+    if options.solver != SOLVERS[0]:
+        raise SceneError(f"--solver is {options.solver}; of a seal seat it must be {SOLVERS[0]}")
+    require_one_process(["seat"] if scene.seat.material.relaxation else [], arguments.np)
 
-    def work(comm: Any) -> None:
-        from ..common.settings import SOLVERS, Options
-        from .result import solve
+    def made(comm: Any) -> Any:
+        from .result import solver
 
-        options = Options.of(arguments)
-        if options.solver != SOLVERS[0]:
-            raise SceneError("kind is 'seal-seat': --solver calculix has plate impacts only")
-        solve(scene, arguments.out, arguments.resolution, comm, options)
+        return solver(scene, comm)
 
-    in_processes(arguments, work)
+    solve_scene(arguments, options, made)
 
 
 COMMANDS = {"solve": _solve, "modes": _modes, "mesh": _mesh}

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
 from ..common.arrays import Floats
-from ..explicit.ending import no_further_contact
 from ..explicit.energies import Energies
 from ..explicit.loop import Loop
 from ..explicit.spectrum import conjugate_gradients, free_components
+from ..impact.ending import Approach, Ending
 from ..solid.model import nodal_areas
 from .model import ELASTIC_SPHERE, LEFT, RIGHT, SEAT, Patch, SeatModel
 from .motion import sphere_motion
@@ -58,53 +59,53 @@ def relieved_flexibility(loop: Loop, centre: Floats, load: Floats) -> float:
     return loop.dot(relieved, x_static)
 
 
-class Ending:
-    """Whether sphere and actuator can be proven never to touch the seat again."""
+def _sphere_flexibility(loop: Loop, seat: SeatModel, scene: SeatScene) -> float:
+    """Of an elastic sphere over the surface that can touch, m/N; 0 of a rigid one."""
+    if seat.sphere_facets is None:
+        return 0.0
+    mesh = seat.model.elastic[ELASTIC_SPHERE].mesh
+    areas = nodal_areas(mesh, seat.sphere_facets)
+    nodes = np.flatnonzero(areas > 0.0)
+    weights = areas[nodes] / areas[nodes].sum()
+    load = np.zeros((loop.system.mass.size, 3))
+    first = int(loop.system.first[ELASTIC_SPHERE])
+    load[first + nodes] = weights[:, None] * np.array(scene.ring().axis)
+    return relieved_flexibility(loop, mesh.points.mean(axis=0), load)
 
-    def __init__(self, loop: Loop, seat: SeatModel, scene: SeatScene) -> None:
-        self.loop, self.seat = loop, seat
-        ring = scene.ring()
-        self.axis = np.array(ring.axis)[[0, 2]]
-        self.across = np.array([self.axis[1], -self.axis[0]])
-        self.sin, self.cos = math.sin(ring.half_angle), math.cos(ring.half_angle)
-        # The stiffness that lasts bounds what an energy can displace.
-        lasting = scene.seat.material.lasting
-        self.ring_flexibility, self.tip_flexibility = (
-            max(flexibility(loop, seat.patches[k]) for k in which) / lasting
-            for which in ((LEFT, RIGHT), seat.tips)
-        )
 
-        self.sphere_flexibility = 0.0
-        if seat.sphere_facets is not None:
-            mesh = seat.model.elastic[ELASTIC_SPHERE].mesh
-            areas = nodal_areas(mesh, seat.sphere_facets)
-            nodes = np.flatnonzero(areas > 0.0)
-            weights = areas[nodes] / areas[nodes].sum()
-            load = np.zeros((loop.system.mass.size, 3))
-            first = int(loop.system.first[ELASTIC_SPHERE])
-            load[first + nodes] = weights[:, None] * np.array(ring.axis)
-            self.sphere_flexibility = relieved_flexibility(loop, mesh.points.mean(axis=0), load)
+def seat_ending(loop: Loop, seat: SeatModel, scene: SeatScene) -> Ending:
+    """When sphere and actuator can be proven never to touch the seat again."""
+    ring = scene.ring()
+    axis = np.array(ring.axis)[[0, 2]]
+    across = np.array([axis[1], -axis[0]])
+    sin, cos = math.sin(ring.half_angle), math.cos(ring.half_angle)
+    # The stiffness that lasts bounds what an energy can displace.
+    lasting = scene.seat.material.lasting
+    at_ring, at_tip = (
+        max(flexibility(loop, seat.patches[k]) for k in which) / lasting
+        for which in ((LEFT, RIGHT), seat.tips)
+    )
+    of_sphere = _sphere_flexibility(loop, seat, scene)
 
-    def _clear_of_cone(self, motion: Floats) -> float:
+    def clear_of_cone(motion: Floats) -> float:
         """Least clearance (or its rate) over the cone after a motion (x, z) of the sphere.
 
         The cone's tangent plane at each flank opens by the motion's component along its normal.
         """
-        return float((motion @ self.axis) * self.sin - abs(float(motion @ self.across)) * self.cos)
+        return float((motion @ axis) * sin - abs(float(motion @ across)) * cos)
 
-    def __call__(self, energies: Energies, now: float) -> bool:
-        """The proof at the present instant."""
-        problem = self.loop.problem
-        if self.loop.touching:
-            return False
-        actuator = problem.rigids[self.seat.actuator]
-        place, speed = sphere_motion(self.loop, self.seat)
-        energy = energies.elastic[SEAT]
-        of_sphere = 0.0
-        if self.seat.sphere_facets is not None:
-            of_sphere = energies.elastic[ELASTIC_SPHERE] - energies.rigid_motion[ELASTIC_SPHERE]
-        return no_further_contact(
-            self._clear_of_cone(place[[0, 2]]),
-            self._clear_of_cone(speed[[0, 2]]),
-            ((energy, self.ring_flexibility), (of_sphere, self.sphere_flexibility)),
-        ) and no_further_contact(-actuator.u[2], -actuator.v[2], ((energy, self.tip_flexibility),))
+    def approaches(energies: Energies) -> Iterator[Approach]:
+        actuator = loop.problem.rigids[seat.actuator]
+        place, speed = sphere_motion(loop, seat)
+        of_seat = energies.elastic[SEAT]
+        vibration = 0.0
+        if seat.sphere_facets is not None:
+            vibration = energies.elastic[ELASTIC_SPHERE] - energies.rigid_motion[ELASTIC_SPHERE]
+        yield Approach(
+            clear_of_cone(place[[0, 2]]),
+            clear_of_cone(speed[[0, 2]]),
+            ((of_seat, at_ring), (vibration, of_sphere)),
+        )
+        yield Approach(-actuator.u[2], -actuator.v[2], ((of_seat, at_tip),))
+
+    return Ending(loop, approaches)

@@ -13,10 +13,11 @@ from ..common.hertz import hertz_stiffness
 from ..explicit.energies import Energies, energies_of
 from ..explicit.levels import MOST_LEVELS
 from ..explicit.loop import Loop
-from ..explicit.records import intervals
+from ..explicit.records import ContactRecord, intervals, peak_force
 from ..explicit.spectrum import critical_time_step
-from ..explicit.supervision import Account, Course, Plan, supervise
-from .ending import Ending
+from ..explicit.supervision import Course, Plan, supervise
+from ..impact.run import ImpactRun, Losses
+from .ending import seat_ending
 from .model import FRACTION, LEFT, RIGHT, SEAT, SeatModel
 from .motion import pair_again, sphere_motion
 from .scene import SeatScene
@@ -34,45 +35,17 @@ COLUMNS = (
 """Of the raw samples: m, m/s and N s on the whole bodies; the actuator's impulse on the seat."""
 
 
-@dataclass(frozen=True)
-class SeatRun:
-    """Result of the time loop, of the whole bodies rather than the half."""
+@dataclass(frozen=True, kw_only=True)
+class SeatRun(ImpactRun):
+    """A run, its rows (m, 9) `COLUMNS`, its contacts those of sphere (both flanks) and actuator."""
 
-    times: Floats
-    rows: Floats
-    """(m, 9) `COLUMNS`."""
-    time_step: float
-    critical_time_step: float
-    steps: int
-    loop_seconds: float
     sphere_velocity: tuple[float, float]
     """Along x and z at the end, m/s."""
     actuator_velocity: float
-    sphere_force_peak: float
-    """N, of the resultant averaged over the peak window."""
-    actuator_force_peak: float
-    sphere_contacts: tuple[tuple[float, float], ...]
-    """First and last instant of each contact of the sphere, either flank, s."""
-    actuator_contacts: tuple[tuple[float, float], ...]
     flank_impulses: tuple[float, float]
     """Normal impulse on the left and on the right flank, N s."""
-    in_contact_at_end: bool
-    energy_residual: float
-    contact_loss: float
-    rubbed: tuple[float, float]
-    """Lost to friction at the tips and on the flanks, J."""
-    relaxed: float | None
-    """Lost in the seat to relaxation, J; None: it is elastic."""
-    momentum_residual: float
-    support_impulse: float
-    """Along z, N s."""
     unconverged: int
     """Steps whose contact solver did not converge."""
-
-
-def account(run: SeatRun, scene: SeatScene, levels: int) -> Account:
-    """For `stable_run`, of a run with so many levels."""
-    return Account(levels, run.energy_residual, (run.relaxed or 0.0) / scene.initial_energy)
 
 
 def contact_duration(scene: SeatScene) -> float:
@@ -112,7 +85,7 @@ def integrate(loop: Loop, seat: SeatModel, scene: SeatScene, **options: Any) -> 
         loop,
         plan,
         sample,
-        lambda: Ending(loop, seat, scene),
+        lambda: seat_ending(loop, seat, scene),
         lambda: critical_time_step(loop),
         **options,
     )
@@ -152,13 +125,17 @@ def _sample(loop: Loop, seat: SeatModel, scene: SeatScene, stride: int) -> Float
     )
 
 
+def _outermost(loop: Loop, seat: SeatModel, number: int) -> float:
+    """Largest distance at which a contact carried force, from the ring or from under the tip, m."""
+    node = loop.problem.contacts[number].record.outermost
+    return float(seat.patches[number].distances[node]) if node >= 0 else 0.0
+
+
 def _require_inside(loop: Loop, seat: SeatModel) -> None:
-    for contact, patch, definition in zip(
-        loop.problem.contacts, seat.patches, seat.model.contacts, strict=False
+    for number, (patch, definition) in enumerate(
+        zip(seat.patches, seat.model.contacts, strict=True)
     ):
-        if contact.record.outermost < 0:
-            continue
-        distance = float(patch.distances[contact.record.outermost])
+        distance = _outermost(loop, seat, number)
         if distance > 0.95 * patch.reach:
             raise SolverError(
                 f"contact of the {definition.name} reached {distance:.3g} m, the end of the nodes "
@@ -180,11 +157,31 @@ def _intervals(loop: Loop, numbers: tuple[int, ...]) -> tuple[tuple[float, float
     return tuple(merged)
 
 
-def peak(impulse: Floats, interval: float) -> float:
-    """Largest magnitude of the mean force (N) over the peak window, from impulses (m, d)."""
-    window = min(PEAK_WINDOW_SAMPLES, impulse.shape[0] - 1)
-    means = (impulse[window:] - impulse[:-window]) / (window * interval)
-    return float(np.linalg.norm(means, axis=1).max())
+def _contact(
+    loop: Loop, seat: SeatModel, numbers: tuple[int, ...], impulse: Floats, interval: float
+) -> ContactRecord:
+    """Of a body that touches at several places, with the impulse on it at the samples (N s)."""
+    spans = _intervals(loop, numbers)
+    records = [loop.problem.contacts[number].record for number in numbers]
+    return ContactRecord(
+        count=len(spans),
+        end=spans[-1][1] if spans else None,
+        intervals=spans,
+        force_peak=peak_force(impulse, PEAK_WINDOW_SAMPLES, interval),
+        impulse=sum(record.impulse for record in records) / FRACTION,
+        outermost_radius=max(_outermost(loop, seat, number) for number in numbers),
+    )
+
+
+def _losses(
+    loop: Loop, scene: SeatScene, rubbed: tuple[float, float], relaxed: float
+) -> Losses | None:
+    """Of the whole bodies, from the gain by friction and the loss to relaxation of the half, J."""
+    if scene.friction == 0.0 and loop.ledger is None:
+        return None
+    contacts = tuple(-gained / FRACTION for gained in rubbed) if scene.friction > 0.0 else ()
+    bodies = None if loop.ledger is None else (0.0, relaxed / FRACTION, 0.0)
+    return Losses(contacts=contacts, bodies=bodies)
 
 
 def momentum_misses(loop: Loop, seat: SeatModel, scene: SeatScene) -> list[float]:
@@ -215,33 +212,34 @@ def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows:
     energies: Energies = energies_of(loop)
     relaxed = sum(energies.lost)
     work = sum(record.work for record in problem.records())
-    places = (seat.tips, (LEFT, RIGHT))
-    rubbed = [sum(problem.contacts[k].rubbed for k in which) for which in places]
+    tips, flanks = (
+        sum(problem.contacts[k].rubbed for k in which) for which in (seat.tips, (LEFT, RIGHT))
+    )
     _, speed = sphere_motion(loop, seat)
-    actuator = problem.rigids[seat.actuator]
     initial = FRACTION * scene.initial_energy
     momentum = FRACTION * scene.actuator.mass * scene.actuator.speed
-    flanks = tuple(problem.contacts[k].record.impulse / FRACTION for k in (LEFT, RIGHT))
+    left, right = (problem.contacts[k].record.impulse / FRACTION for k in (LEFT, RIGHT))
     return SeatRun(
         times=course.times,
         rows=rows,
+        contacts=(
+            _contact(loop, seat, (LEFT, RIGHT), rows[:, 4:6], course.interval),
+            _contact(loop, seat, tuple(seat.tips), rows[:, 8], course.interval),
+        ),
+        in_contact_at_end=loop.touching,
         time_step=loop.dt,
         critical_time_step=course.critical_time_step,
         steps=problem.state.step,
         loop_seconds=course.loop_seconds,
+        processor_seconds=course.processor_seconds,
         sphere_velocity=(float(speed[0]), float(speed[2])),
-        actuator_velocity=actuator.v[2],
-        sphere_force_peak=peak(rows[:, 4:6], course.interval),
-        actuator_force_peak=peak(rows[:, 8:], course.interval),
-        sphere_contacts=_intervals(loop, (LEFT, RIGHT)),
-        actuator_contacts=_intervals(loop, tuple(seat.tips)),
-        flank_impulses=(flanks[0], flanks[1]),
-        in_contact_at_end=loop.touching,
-        energy_residual=abs(energies.total + relaxed - initial - work - sum(rubbed)) / initial,
+        actuator_velocity=problem.rigids[seat.actuator].v[2],
+        flank_impulses=(left, right),
+        initial_energy=scene.initial_energy,
+        energy_residual=abs(energies.total + relaxed - initial - work - (tips + flanks)) / initial,
         contact_loss=-work / initial,
-        rubbed=(-rubbed[0] / FRACTION, -rubbed[1] / FRACTION),
-        relaxed=None if loop.ledger is None else relaxed / FRACTION,
         momentum_residual=max(abs(m) for m in momentum_misses(loop, seat, scene)) / momentum,
         support_impulse=problem.state.reaction[2] / FRACTION,
+        losses=_losses(loop, scene, (tips, flanks), relaxed),
         unconverged=problem.state.unconverged,
     )

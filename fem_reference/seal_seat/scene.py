@@ -1,4 +1,4 @@
-"""The seal-seat scene: what is read from ``scene.json``, checked once, and where its parts lie.
+"""The seal-seat scene, decoded from ``scene.json``, and where its parts lie.
 
 Axes: z = 0 is the flat underside, z points up; seats and tips lie in the plane of symmetry y = 0,
 the seats at x = -+ half their distance; the sphere rests in the one at x < 0.
@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
 from ..common.arrays import Floats
-from ..common.bodies import Material, read_material
-from ..common.errors import SceneError
-from ..common.reader import Reader
+from ..common.bodies import Material
+from ..common.decode import At, decode
+from ..impact.scene import ImpactScene
 from ..solid.sphere_pairs import Ball
-
-KIND = "seal-seat"
 
 SEAT_LENGTHS = (
     "membrane_radius",
@@ -126,33 +124,33 @@ class Actuator:
     """x of each tip, m."""
 
 
-@dataclass(frozen=True)
-class SeatScene:
+@dataclass(frozen=True, kw_only=True)
+class SeatScene(ImpactScene):
     """A sphere in a seal seat that an actuator strikes from below."""
 
-    name: str
-    scene_hash: str
-    settings_hash: str
-    geometry_hash: str | None
+    kind: Literal["seal-seat"]
+    geometry_hash: str | None = None
     """Identity of what the mesh depends on; None if the document has none."""
     seat: Seat
-    sphere_radius: float
+    sphere_radius: Annotated[float, At("sphere.radius")]
     """m"""
-    sphere_material: Material
-    sphere_mass: float
+    sphere_material: Annotated[Material, At("sphere.material")]
+    sphere_mass: Annotated[float, At("sphere.mass")]
     """kg"""
-    sphere_elastic: bool
+    sphere_body: Annotated[Literal["rigid", "elastic"], At("sphere.body")]
     actuator: Actuator
-    friction: float
+    friction: float = 0.0
     """Coulomb's coefficient, of all contacts."""
     intended_angle: float
     """rad"""
-    end_time: float | None
-    """s; None: until no further contact is possible."""
-    elements_per_ring_radius: float
-    element_order: int
-    raw: dict[str, Any]
-    """The document as given, for the provenance."""
+    elements_per_ring_radius: Annotated[float, At("reference.elements_per_ring_radius")]
+    geometry: Annotated[Literal["solid"], At("reference.geometry")] = "solid"
+    element_order: Annotated[Literal[1, 2], At("reference.element_order")] = 2
+
+    @property
+    def sphere_elastic(self) -> bool:
+        """Whether the sphere deforms."""
+        return self.sphere_body == "elastic"
 
     def ring(self, side: float = -1.0) -> Ring:
         """The ring of the seat at x < 0 (side -1, where the sphere rests) or x > 0 (side +1)."""
@@ -193,104 +191,12 @@ class SeatScene:
         return 0.5 * self.actuator.mass * self.actuator.speed**2
 
 
-def _seat(reader: Reader) -> Seat:
-    reader.allow("material", "tilt", "aperture_angle", "notch", *SEAT_LENGTHS)
-    notch = None
-    if reader.node.get("notch") is not None:
-        child = reader.child("notch")
-        child.allow("width", "floor")
-        notch = Notch(child.number("width", "m"), child.number("floor", "m"))
-    return Seat(
-        material=read_material(reader.child("material")),
-        tilt=reader.number("tilt", "rad", below=0.5 * math.pi, inclusive=True),
-        aperture_angle=reader.number("aperture_angle", "rad", below=math.pi),
-        notch=notch,
-        **{name: reader.number(name, "m") for name in SEAT_LENGTHS},
-    )
-
-
-def _actuator(reader: Reader) -> Actuator:
-    reader.allow("mass", "speed", "tip_radius", "tip_positions")
-    positions = reader.get("tip_positions")
-    sound = isinstance(positions, list) and positions and all(_finite(x) for x in positions)
-    if not sound:
-        raise SceneError(
-            f"actuator.tip_positions is {positions!r}; it must be a list of numbers in m"
-        )
-    return Actuator(
-        mass=reader.number("mass", "kg"),
-        speed=reader.number("speed", "m/s"),
-        tip_radius=reader.number("tip_radius", "m"),
-        tip_positions=tuple(float(x) for x in positions),
-    )
-
-
-def _finite(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
 def parse_seat_scene(document: Any) -> SeatScene:
-    """Check a decoded ``scene.json``.
+    """The scene in a decoded ``scene.json``.
 
-    Collisions of features are the program's affair: it refuses them before it calls this solver;
-    what slips through fails in gmsh.
+    Collisions of features are the program's to check; what slips through fails in gmsh.
 
     Raises:
-        SceneError: naming the field, its value and what would be valid.
+        SceneError: a field is missing, unknown or of another type.
     """
-    root = Reader(document, "")
-    root.choice("kind", (KIND,))
-    root.allow(
-        "name",
-        "description",
-        "kind",
-        "scene_hash",
-        "settings_hash",
-        "geometry_hash",
-        "seat",
-        "sphere",
-        "actuator",
-        "friction",
-        "intended_angle",
-        "run",
-        "reference",
-    )
-    reference = root.child("reference")
-    reference.allow("geometry", "elements_per_ring_radius", "element_order")
-    order = 2.0
-    if reference.node.get("element_order") is not None:
-        order = reference.number("element_order", "(no unit)")
-        if order not in (1.0, 2.0):
-            raise SceneError(f"reference.element_order is {order:g}; it must be 1 or 2")
-    end_time = None
-    if root.node.get("run") is not None:
-        run = root.child("run")
-        run.allow("end_time")
-        if run.node.get("end_time") is not None:
-            end_time = run.number("end_time", "s")
-    seat, sphere = _seat(root.child("seat")), root.child("sphere")
-    sphere.allow("radius", "material", "mass", "body")
-    if "relaxation" in sphere.child("material").node:
-        raise SceneError(
-            "sphere.material.relaxation is given; of a seal seat the seat alone relaxes"
-        )
-    return SeatScene(
-        name=root.text("name"),
-        scene_hash=root.text("scene_hash"),
-        settings_hash=root.text("settings_hash"),
-        geometry_hash=root.text("geometry_hash") if "geometry_hash" in root.node else None,
-        seat=seat,
-        sphere_radius=sphere.number("radius", "m"),
-        sphere_material=read_material(sphere.child("material")),
-        sphere_mass=sphere.number("mass", "kg"),
-        sphere_elastic=sphere.choice("body", ("rigid", "elastic")) == "elastic",
-        actuator=_actuator(root.child("actuator")),
-        friction=root.number_or("friction", 0.0, "(no unit)", inclusive=True),
-        intended_angle=root.number("intended_angle", "rad", above=-math.pi, inclusive=True),
-        end_time=end_time,
-        elements_per_ring_radius=reference.number(
-            "elements_per_ring_radius", "(no unit)", above=0.5, below=100.0, inclusive=True
-        ),
-        element_order=int(order),
-        raw=document,
-    )
+    return decode(SeatScene, document)

@@ -14,8 +14,8 @@ from types import SimpleNamespace
 from typing import Any
 
 from fem_reference.axisymmetric.modal import first_frequency as plate_frequency
+from fem_reference.common.decode import read_document
 from fem_reference.common.fenicsx import alone
-from fem_reference.common.reader import read_document
 from fem_reference.common.settings import RESOLUTIONS
 from fem_reference.explicit.spectrum import first_frequency
 from fem_reference.plate_impact.axisymmetric_motion import integrate_axisymmetric

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from fem_reference.plate_impact.result import QUANTITIES
-from fem_reference.studies.bands import FACTORS, TRUTH, table, trials
-from fem_reference.studies.random_scenes import draw
+from fem_reference.plate_impact.studies.bands import FACTORS, TRUTH, table, trials
+from fem_reference.plate_impact.studies.random_scenes import draw
 
 
 def test_a_seed_is_a_scene() -> None:

@@ -131,7 +131,7 @@ def test_what_a_bender_needs_is_asked_for() -> None:
         ({"run__end_time": None}, "run.end_time"),
         ({"reference__geometry": "solid"}, "reference.geometry"),
         ({"outer": bender(discharge_time=1e-3)}, "outer.discharge_time"),
-        ({"outer": bender(tip_mass=0.0)}, "outer.tip_mass"),
+        ({"outer": bender(tip_mass=None)}, "outer.tip_mass"),
         ({"inner": bender()}, "inner.kind"),
     ):
         with pytest.raises(SceneError, match=field):

@@ -21,7 +21,7 @@ from fem_reference.calculix.printed import Printed, frequencies
 from fem_reference.calculix.program import VARIABLE
 from fem_reference.calculix.wedge import SHARE, quadratic, wedge
 from fem_reference.common.arrays import Floats
-from fem_reference.common.bodies import Plate
+from fem_reference.common.bodies import Edge, Plate
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.common.settings import Options, Settings
 from fem_reference.plate_impact import calculix
@@ -82,7 +82,7 @@ def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
 @needs_calculix
 @pytest.mark.parametrize(("edge", "eigenvalue"), [("clamped", 10.2158), ("free", 9.0031)])
 def test_a_thin_plate_vibrates_as_kirchhoff_says(
-    tmp_path: Path, edge: str, eigenvalue: float
+    tmp_path: Path, edge: Edge, eigenvalue: float
 ) -> None:
     """Lowest axisymmetric mode, omega R^2 sqrt(rho h / D) of a Kirchhoff plate with nu = 0.3."""
     steel = parse_scene(document()).plate.material

@@ -18,7 +18,7 @@ import pytest
 
 from fem_reference.common.errors import SolverError
 from fem_reference.common.output import PARTIAL_PREFIX, require_replaceable, result_folder
-from fem_reference.plate_impact.history import HISTORY_COLUMNS
+from fem_reference.plate_impact.result import CURVES
 
 from .conftest import document
 
@@ -169,7 +169,7 @@ def test_summary_has_the_fixed_fields(solved: tuple[Path, str, str]) -> None:
     assert fixed <= set(summary)
     assert summary["source"] == "reference"
     assert summary["model"] is None
-    curves = {f"{name}_{kind}" for name in HISTORY_COLUMNS[1:] for kind in ("rms", "max")}
+    curves = {f"{curve.name}_{kind}" for curve in CURVES for kind in ("rms", "max")}
     assert set(summary["uncertainty"]) == quantities | curves
     assert all(value >= 0.0 for value in summary["uncertainty"].values())
     assert summary["solver"]["time_step"] == pytest.approx(

@@ -34,7 +34,7 @@ def test_scene_with_compact_bodies_is_read() -> None:
     scene = parse_scene(document(outer=compact(speed=1.0), inner=compact(gap=0.0)))
     assert scene.outer.mass == MASS
     assert scene.inner.tip_radius == 0.01
-    for broken, field in (({"mass": 0.0}, "outer.mass"), ({"radius": 0.01}, "outer.radius")):
+    for broken, field in (({"mass": "1 g"}, "outer.mass"), ({"radius": 0.01}, "outer.radius")):
         with pytest.raises(SceneError, match=field):
             parse_scene(document(outer={**compact(speed=1.0), **broken}))
 

@@ -23,8 +23,8 @@ from fem_reference.plate_impact.meshing import (
     mesh_settings,
 )
 from fem_reference.plate_impact.scene import Scene, parse_scene
+from fem_reference.plate_impact.studies.random_scenes import draw
 from fem_reference.plate_impact.suitability import per_wavelength
-from fem_reference.studies.random_scenes import draw
 
 from .conftest import document, integrate
 

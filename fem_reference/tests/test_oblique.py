@@ -104,22 +104,18 @@ def strike(whole: dict[str, Any], half: bool = True, **options: Any) -> Struck:
     return Struck(scene, plate, loop, run)
 
 
-def test_direction_and_place_are_checked() -> None:
+def test_what_an_oblique_impact_cannot_have() -> None:
     assert parse_scene(oblique()).centred
     made = parse_scene(oblique(outer__offset=2e-3, outer__angle=-0.5, friction=0.3))
     assert not made.centred
     assert made.normal_speed == pytest.approx(0.55 * math.cos(0.5))
     assert made.tangential_velocity == pytest.approx(-0.55 * math.sin(0.5))
-    relaxing = {**STEEL, "relaxation": [{"ratio": 0.1, "time": 1e-5}]}
     compact = {"kind": "compact", "mass": 1e-3, "tip_radius": 1e-2, "material": STEEL, "gap": 0.0}
-    for change, said in (
-        ({"outer__offset": -1e-3}, r"outer.offset is -0.001 m"),
-        ({"outer__offset": 0.033}, r"outer.offset is 0.033 m.*below 0.033 m"),
-        ({"outer__angle": 1.6}, r"outer.angle is 1.6 rad"),
-        ({"outer__angle": 0.1, "plate__material": relaxing}, "plate.material.relaxation is given"),
+    changes: tuple[tuple[dict[str, Any], str], ...] = (
         ({"outer__angle": 0.1, "friction": 0.1, "inner": compact}, r"friction is 0.1"),
         ({"outer__offset": 1e-3, "series": {"impacts": 2, "sphere_spot": "same"}}, "series"),
-    ):
+    )
+    for change, said in changes:
         with pytest.raises(SceneError, match=said):
             parse_scene(oblique(**change))
     with pytest.raises(SceneError, match=r"outer.angle is 0.1 rad.*reference.geometry 'solid'"):

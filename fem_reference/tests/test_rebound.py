@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from fem_reference.studies.rebound import (
+from fem_reference.plate_impact.studies.rebound import (
     ANGLES,
     FRICTION,
     MEASURED,

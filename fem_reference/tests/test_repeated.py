@@ -15,9 +15,9 @@ from fem_reference.common.settings import Settings
 from fem_reference.plate_impact import axisymmetric
 from fem_reference.plate_impact.axisymmetric import Solution, compute
 from fem_reference.plate_impact.dents import Dents
+from fem_reference.plate_impact.repeated import has_shaken_down
 from fem_reference.plate_impact.result import of_run, quantities, write_dents
 from fem_reference.plate_impact.scene import Scene, parse_scene
-from fem_reference.plate_impact.series import has_shaken_down
 
 from .conftest import STEEL, document
 

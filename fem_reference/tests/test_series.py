@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fem_reference.common import series
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.common.output import result_folder
-from fem_reference.common.progress import MeshOfSeries, Progress
-from fem_reference.common.series import MeshResult, MeshSolver, Target, solve_series
+from fem_reference.common.progress import MeshOfSeries, Progress, Report
 from fem_reference.common.settings import Options, Settings
+from fem_reference.impact import series
+from fem_reference.impact.series import MeshResult, MeshSolver, Target, solve_series
 
 EXACT = 3.0
 VALUE = (Target("value"),)
@@ -50,7 +50,7 @@ class Convergent:
         self.factors: list[float] = []
         self.meshes: list[MeshResult] = []
 
-    def compute(self, factor: float, settings: Settings, report: series.Report, lead: Any) -> Any:
+    def compute(self, factor: float, settings: Settings, report: Report, lead: Any) -> Any:
         """A value whose error falls with the order."""
         assert settings.courant == 0.5
         self.factors.append(factor)
@@ -83,7 +83,6 @@ class Convergent:
             targeted=VALUE,
             compute=self.compute,
             quantities=lambda solution: {"value": float(solution.run.rows[0, 0])},
-            write=self.write,
             dimension=2 if self.leads else 3,
             leads=(lambda solution: [solution.factor > LARGE]) if self.leads else None,
         )
@@ -100,7 +99,7 @@ def solve(tmp_path: Path) -> Callable[..., Convergent]:
     ) -> Convergent:
         method = Convergent(order, leads, revision, cut)
         asked = Options(courant=0.5, checkpoint=tmp_path / "kept", **options)
-        solve_series(method.solver(), tmp_path / "out", 1.0, Alone(), asked)
+        solve_series(method.solver(), method.write, tmp_path / "out", 1.0, Alone(), asked)
         return method
 
     return solve
@@ -226,7 +225,9 @@ def test_meshes_are_reported_as_one_series(tmp_path: Path) -> None:
     stream = io.StringIO()
     method = Convergent(2.0)
     options = Options(courant=0.5)
-    solve_series(method.solver(), tmp_path / "out", 1.0, Alone(), options, Progress(stream))
+    solve_series(
+        method.solver(), method.write, tmp_path / "out", 1.0, Alone(), options, Progress(stream)
+    )
     lines = [json.loads(line) for line in stream.getvalue().splitlines()]
     ends = [line for line in lines if line["phase"] == "stepping" and line["done"] == 1.0]
     assert [line["message"] for line in ends] == [f"mesh {k} of 5: half" for k in range(1, 6)]

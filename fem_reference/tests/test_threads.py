@@ -24,11 +24,11 @@ from fem_reference.explicit.spectrum import critical_time_step
 from fem_reference.explicit.stiffness import DOFS_PER_THREAD, worthwhile
 from fem_reference.plate_impact.axisymmetric_motion import AxisymmetricMotion
 from fem_reference.plate_impact.scene import parse_scene
+from fem_reference.plate_impact.studies import speed
 from fem_reference.seal_seat.meshing import seat_mesh
 from fem_reference.seal_seat.model import seat_model
 from fem_reference.seal_seat.scene import parse_seat_scene
 from fem_reference.solid.system import SolidSystem
-from fem_reference.studies import speed
 from fem_reference.tests.conftest import STEEL, document, make_system
 from fem_reference.tests.program import ROOT
 from fem_reference.tests.seal_seat_scenes import seat_document

@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from ..axisymmetric.system import AxisymmetricSystem, critical_time_step
-from ..common.progress import Progress
-from ..plate_impact.axisymmetric_motion import AxisymmetricMotion, integrate_axisymmetric
-from ..plate_impact.estimate import estimate_contact
-from ..plate_impact.meshing import build_system, mesh_impact, mesh_settings
-from ..plate_impact.scene import Scene, parse_scene
+from ...axisymmetric.system import AxisymmetricSystem, critical_time_step
+from ...common.progress import Progress
+from ..axisymmetric_motion import AxisymmetricMotion, integrate_axisymmetric
+from ..estimate import estimate_contact
+from ..meshing import build_system, mesh_impact, mesh_settings
+from ..scene import Scene, parse_scene
 
 STEEL = {"name": "steel", "youngs_modulus": 210e9, "poisson_ratio": 0.3, "density": 7780.0}
 WALL = {"name": "wall", "youngs_modulus": 2.1e15, "poisson_ratio": 0.3, "density": 7.78e7}

@@ -16,16 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from ..common.errors import RunError, SolverError
-from ..common.output import write_json
-from ..common.progress import Progress
-from ..common.series import MESHES, MeshResult, estimates
-from ..common.settings import Options, Settings
-from ..common.uncertainty import ORDER
-from ..plate_impact.axisymmetric import compute
-from ..plate_impact.history import curve_bands, history, resampled
-from ..plate_impact.result import QUANTITIES, RATIO, curve_uncertainty, quantities
-from ..plate_impact.scene import Scene, read_scene
+from ...common.errors import RunError, SolverError
+from ...common.output import write_json
+from ...common.progress import Progress
+from ...common.settings import Options, Settings
+from ...common.uncertainty import ORDER
+from ...impact.history import Sampling, curve_bands, curve_uncertainty, history
+from ...impact.series import MESHES, MeshResult, estimates
+from ..axisymmetric import compute
+from ..result import CURVES, QUANTITIES, RATIO, quantities
+from ..scene import Scene, read_scene
 from .random_scenes import draw
 
 FACTORS = [RATIO**k for k in range(2, MESHES + 4)]
@@ -88,13 +88,16 @@ def trials(folder: Path, name: str) -> list[Trial]:
         tried, coarser = meshes[k], meshes[k : k + MESHES]
         # The truth is off itself.
         seen = 1.0 - (tried.factor / truth.factor) ** ORDER
-        table, _ = history(tried)
-        exact = resampled(truth, table[:, 0])
+        sampling = Sampling.on(tried.times)
+        table, exact, *others = (
+            history(CURVES, run, sampling if run is tried else sampling.of_others())
+            for run in (tried, truth, *coarser[1:])
+        )
         peaks = np.abs(exact).max(axis=0)
-        band = curve_bands(coarser, [mesh.factor for mesh in coarser])
-        errors = curve_uncertainty(np.abs(table - exact)[:, 1:] / seen)
-        sizes = curve_uncertainty(np.tile(peaks[1:], (2, 1)))
-        bands = curve_uncertainty(band)
+        band = curve_bands([table, *others], [mesh.factor for mesh in coarser])
+        errors = curve_uncertainty(CURVES, np.abs(table - exact)[:, 1:] / seen)
+        sizes = curve_uncertainty(CURVES, np.tile(peaks[1:], (2, 1)))
+        bands = curve_uncertainty(CURVES, band)
         for quantity, estimate in estimates(coarser).items():
             errors[quantity] = abs(tried.values[quantity] - truth.values[quantity]) / seen
             sizes[quantity] = abs(truth.values[quantity])

@@ -12,11 +12,14 @@ others. Damped ones shrink on their way.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..common.arrays import Floats
+from ..explicit.energies import Energies
+from ..explicit.loop import Loop
 
 MOST_INSTANTS = 20000
 NONE = np.zeros(0)
@@ -53,22 +56,45 @@ def least_clearance(
     return float((clearance + opening_speed * t - plate).min() - sag)
 
 
-def no_further_contact(
-    clearance: float,
-    opening_speed: float,
-    vibrating: Iterable[tuple[float, float]],
-    amplitudes: Floats = NONE,
-    exponents: Floats = NONE,
-) -> bool:
-    """Whether two bodies can be proven never to touch again.
+@dataclass(frozen=True)
+class Approach:
+    """Two bodies that no longer touch, as they move on."""
+
+    clearance: float
+    """Distance of the undeformed bodies in their rigid motion, m."""
+    opening_speed: float
+    """Rate of the clearance, m/s."""
+    vibrating: tuple[tuple[float, float], ...]
+    """Elastic energy (J) and flexibility of the patch (m/N), known modes apart, of each body."""
+    amplitudes: Floats = field(default_factory=lambda: NONE)
+    """Of the known modes, see `least_clearance`."""
+    exponents: Floats = field(default_factory=lambda: NONE)
+    """Of the known modes, see `least_clearance`."""
+
+    def is_over(self) -> bool:
+        """Whether the bodies can be proven never to touch again."""
+        reach = sum(math.sqrt(2.0 * max(energy, 0.0) * c) for energy, c in self.vibrating)
+        clearance = self.clearance - reach
+        return least_clearance(clearance, self.opening_speed, self.amplitudes, self.exponents) > 0.0
+
+
+class Ending:
+    """Whether any further contact is possible.
 
     Args:
-        clearance: distance of the undeformed bodies in their rigid motion, m.
-        opening_speed: rate of the clearance, m/s.
-        vibrating: elastic energy (J) and flexibility of the patch (m/N), known modes apart, of each
-            body.
-        amplitudes: see `least_clearance`; of the known modes.
-        exponents: see `least_clearance`.
+        loop: bodies and contacts.
+        approaches: of all bodies that could touch, from the energies at present.
+        window: the run lasts at least this many times as long as its last contact.
     """
-    reach = sum(math.sqrt(2.0 * max(e, 0.0) * flexibility) for e, flexibility in vibrating)
-    return least_clearance(clearance - reach, opening_speed, amplitudes, exponents) > 0.0
+
+    def __init__(
+        self, loop: Loop, approaches: Callable[[Energies], Iterable[Approach]], window: float = 0.0
+    ) -> None:
+        self.loop, self.approaches, self.window = loop, approaches, window
+
+    def __call__(self, energies: Energies, now: float) -> bool:
+        """Whether the state at an instant (s) allows no further contact."""
+        last = max(record.last + 1 for record in self.loop.problem.records()) * self.loop.dt
+        if now < last * self.window or self.loop.touching:
+            return False
+        return all(approach.is_over() for approach in self.approaches(energies))

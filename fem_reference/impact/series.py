@@ -14,55 +14,25 @@ from typing import Any, Generic, Protocol, TypeVar, cast
 
 import numpy as np
 
-from .arrays import Floats
-from .errors import SceneError, SolverError
-from .output import exclusive, result_folder, write_json
-from .processes import threads_per_process
-from .progress import MeshOfSeries, Progress
-from .settings import Options, Settings, require_instants, require_share
-from .uncertainty import Estimate, least_squares
+from ..common.arrays import Floats
+from ..common.errors import SceneError, SolverError
+from ..common.output import exclusive, result_folder, write_json
+from ..common.processes import threads_per_process
+from ..common.progress import MeshOfSeries, Progress, Report
+from ..common.settings import Options, Settings, require_instants, require_share
+from ..common.uncertainty import Estimate, least_squares
+from .run import ImpactRun
 
 MESHES = 5
 MOST_REFINED = {2: 8.0, 3: 4.0}
 """Refining towards a target ends beyond this factor on the number of elements, by dimension."""
-
-Report = Callable[[str, float, str], None]
-"""Gets phase, share done, message."""
-
-
-class SampledRun(Protocol):
-    """What a series needs of a run."""
-
-    @property
-    def times(self) -> Floats:
-        """(m,) raw sampling instants, s."""
-
-    @property
-    def rows(self) -> Floats:
-        """(m, columns) raw samples."""
-
-    @property
-    def steps(self) -> int:
-        """Time steps."""
-
-    @property
-    def loop_seconds(self) -> float:
-        """Wall time of the loop, s."""
-
-    @property
-    def energy_residual(self) -> float:
-        """Of the energy ledger, relative."""
-
-    @property
-    def in_contact_at_end(self) -> bool:
-        """Whether the run ended during a contact, which leaves open what the impact comes to."""
 
 
 class Solved(Protocol):
     """What a series needs of a solution."""
 
     @property
-    def run(self) -> SampledRun:
+    def run(self) -> ImpactRun:
         """The run."""
 
     @property
@@ -89,7 +59,11 @@ class Target:
         return max(abs(values[self.name]), self.small * abs(impact))
 
 
-@dataclass(frozen=True)
+Write = Callable[[Path, S, list["MeshResult"]], None]
+"""Writes the result into a folder; meshes finest first."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class MeshSolver(Generic[S]):
     """A scene, and how a kind of scene is solved on one mesh."""
 
@@ -103,8 +77,6 @@ class MeshSolver(Generic[S]):
     """Solves with a factor on the number of elements in every direction; where the finest mesh
     leads, coarser ones get its solution."""
     quantities: Callable[[S], dict[str, float]]
-    write: Callable[[Path, S, list[MeshResult]], None]
-    """Writes the result; meshes finest first. Called in the first process only."""
     dimension: int = 3
     """A run costs the elements in a direction to this power, and once more for the steps."""
     leads: Callable[[S], list[Any]] | None = None
@@ -144,6 +116,7 @@ def relative_error(meshes: list[MeshResult], targeted: tuple[Target, ...]) -> fl
 
 def solve_series(
     solver: MeshSolver[S],
+    write: Write[S],
     target: Path,
     factor: float,
     comm: Any,
@@ -153,7 +126,8 @@ def solve_series(
     """Solve on `MESHES` meshes and write the result folder ``target``.
 
     The finest has ``factor`` times the elements asked for in every direction, or as many more as
-    `Options.target_error` needs. A series that was killed goes on from its files.
+    `Options.target_error` needs. A series that was killed goes on from its files. ``write`` is
+    called in the first process only.
 
     Raises:
         SceneError: an option is out of bounds, or a band is asked for of what the run leaves open.
@@ -175,7 +149,7 @@ def solve_series(
         solution, meshes = Series(solver, factor, comm, options, folder, progress).solve()
         if comm.rank == 0:
             progress.report("writing", 0.0, "writing the results", series=1.0)
-            solver.write(partial, solution, meshes)
+            write(partial, solution, meshes)
             progress.report("writing", 1.0, "done", series=1.0)
             shutil.rmtree(folder, ignore_errors=True)
         comm.barrier()

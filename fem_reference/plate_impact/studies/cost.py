@@ -14,19 +14,19 @@ from typing import Any
 
 import numpy as np
 
-from ..axisymmetric.system import AxisymmetricSystem
-from ..common.fenicsx import alone
-from ..common.output import write_json
-from ..common.progress import Progress
-from ..common.settings import Settings
-from ..explicit import kernel
-from ..explicit.loop import SerialLoop
-from ..plate_impact.axisymmetric import compute
-from ..plate_impact.axisymmetric_motion import integrate_axisymmetric
-from ..plate_impact.estimate import estimate_contact
-from ..plate_impact.meshing import build_system, mesh_impact, mesh_settings
-from ..plate_impact.result import RATIO, TARGETED, of_run, quantities
-from ..plate_impact.scene import Scene, read_scene
+from ...axisymmetric.system import AxisymmetricSystem
+from ...common.fenicsx import alone
+from ...common.output import write_json
+from ...common.progress import Progress
+from ...common.settings import Settings
+from ...explicit import kernel
+from ...explicit.loop import SerialLoop
+from ..axisymmetric import compute
+from ..axisymmetric_motion import integrate_axisymmetric
+from ..estimate import estimate_contact
+from ..meshing import build_system, mesh_impact, mesh_settings
+from ..result import RATIO, TARGETED, of_run, quantities
+from ..scene import Scene, read_scene
 
 EXACT = 3.0
 """Elements, in every direction, of the mesh that counts as exact over those of `paper`."""

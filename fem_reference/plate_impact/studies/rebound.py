@@ -22,15 +22,15 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from ..common.arrays import Floats
-from ..common.fenicsx import alone
-from ..common.progress import Progress
-from ..plate_impact.estimate import estimate_contact, shortest_wavelengths
-from ..plate_impact.half_model import half_model
-from ..plate_impact.half_motion import HalfMotion
-from ..plate_impact.scene import Scene, parse_scene
-from ..plate_impact.solid_motion import integrate_solid
-from ..solid.system import make_loop
+from ...common.arrays import Floats
+from ...common.fenicsx import alone
+from ...common.progress import Progress
+from ...solid.system import make_loop
+from ..estimate import estimate_contact, shortest_wavelengths
+from ..half_model import half_model
+from ..half_motion import HalfMotion
+from ..scene import Scene, parse_scene
+from ..solid_motion import integrate_solid
 
 BALL = {"name": "alumina", "youngs_modulus": 380e9, "poisson_ratio": 0.23, "density": 4000.0}
 GLASS = {"name": "glass", "youngs_modulus": 70e9, "poisson_ratio": 0.25, "density": 2500.0}

@@ -21,9 +21,10 @@ from ..common.settings import Settings
 from ..explicit.checkpoint import write_arrays
 from ..explicit.energies import Energies
 from ..explicit.records import ContactRecord
+from ..impact.run import Losses
 from .axisymmetric_motion import AxisymmetricMotion
 from .dents import Memory
-from .motion import Losses, Yielded
+from .motion import Yielded
 from .run import Run
 from .scene import Series
 
@@ -139,5 +140,5 @@ def strike(
         done = len(runs) >= most or (count is None and has_shaken_down(run))
         if done or motion.dents is None or series is None or not accepted(run, motion):
             return Struck(runs, motion)
-        memory = motion.dents.memory(series.fresh)
+        memory = motion.dents.memory(series.sphere_spot == "fresh")
         kept.save(runs, memory)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
-from ..common.bodies import EDGES
-from ..common.hertz import effective_modulus, hertz_stiffness, hertz_time_scale
-from ..plate_impact.scene import Scene, parse_scene
+from ...common.bodies import Edge
+from ...common.hertz import effective_modulus, hertz_stiffness, hertz_time_scale
+from ..scene import Scene, parse_scene
 
 
 def draw(seed: int) -> Scene:
@@ -27,7 +27,7 @@ def draw(seed: int) -> Scene:
             "density": log(800.0, 2e4),
         }
 
-    radius = log(3e-3, 0.1)
+    radius, edges = log(3e-3, 0.1), get_args(Edge)
     outer_radius = radius * log(0.1, 1.0)
     document: dict[str, Any] = {
         "name": f"random-{seed}",
@@ -37,7 +37,7 @@ def draw(seed: int) -> Scene:
         "plate": {
             "radius": radius,
             "thickness": radius * log(0.02, 1.0),
-            "edge": EDGES[int(random.integers(len(EDGES)))],
+            "edge": edges[int(random.integers(len(edges)))],
             "material": material("plate"),
         },
         "outer": {

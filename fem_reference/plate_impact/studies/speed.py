@@ -15,20 +15,20 @@ from typing import Any
 
 import numpy as np
 
-from ..common.fenicsx import world
-from ..common.output import write_json
-from ..common.processes import launched_by
-from ..common.progress import Progress
-from ..explicit import kernel
-from ..explicit.levels import MOST_LEVELS
-from ..explicit.loop import SerialLoop
-from ..explicit.parallel import ParallelLoop
-from ..explicit.spectrum import critical_time_step
-from ..plate_impact.estimate import estimate_contact, shortest_wavelengths
-from ..plate_impact.scene import Scene, read_scene
-from ..plate_impact.solid_model import plate_model
-from ..solid.model import Model
-from ..solid.system import SolidSystem
+from ...common.fenicsx import world
+from ...common.output import write_json
+from ...common.processes import launched_by
+from ...common.progress import Progress
+from ...explicit import kernel
+from ...explicit.levels import MOST_LEVELS
+from ...explicit.loop import SerialLoop
+from ...explicit.parallel import ParallelLoop
+from ...explicit.spectrum import critical_time_step
+from ...solid.model import Model
+from ...solid.system import SolidSystem
+from ..estimate import estimate_contact, shortest_wavelengths
+from ..scene import Scene, read_scene
+from ..solid_model import plate_model
 
 SIZES = (20_000, 100_000, 400_000)
 """Degrees of freedom, about."""

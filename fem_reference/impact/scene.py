@@ -1,0 +1,24 @@
+"""What the scene of every kind of impact says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from ..common.decode import At
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImpactScene:
+    """A scene as the program hands it over; SI units. A kind adds its bodies and a `kind`."""
+
+    name: str
+    description: str = ""
+    scene_hash: str
+    """Of the physics."""
+    settings_hash: str
+    """Of the reference's settings."""
+    end_time: Annotated[float | None, At("run.end_time")] = None
+    """s; None: until no further contact is possible."""
+    raw: Annotated[dict[str, Any], At()]
+    """The document as given, for the provenance."""
