@@ -1,20 +1,16 @@
 //! What a reference solution was made from, and how that differs from what is asked for.
 
 use super::Resolution;
+use crate::kinds;
 use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
-use crate::scene::{Geometry, Scene, Setup, unit_of};
+use crate::scene::{Scene, unit_of};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Counts changes of `fem_reference` that change the results of a kind of scene and geometry; raising it makes their stored solutions
-/// stale.
+/// Revision of the method that the reference of `scene` is made with.
 pub fn revision(scene: &Scene) -> u32 {
-    match (&scene.setup, scene.reference.geometry) {
-        (Setup::PlateImpact(_), Geometry::Axisymmetric) => 4,
-        (Setup::PlateImpact(_), Geometry::Solid) => 5,
-        (Setup::SealSeat(_), _) => 4,
-    }
+    kinds::of(scene).revision(scene.reference.geometry)
 }
 
 /// The same of the results by CalculiX.
@@ -45,8 +41,8 @@ pub(super) fn solver_document(scene: &Scene, resolution: Resolution) -> Result<V
         fields.remove(foreign);
     }
     fields.insert("scene_hash".into(), scene.hash().into());
-    if let Setup::SealSeat(setup) = &scene.setup {
-        fields.insert("geometry_hash".into(), setup.geometry_hash().into());
+    if let Some(hash) = kinds::of(scene).geometry_hash(scene) {
+        fields.insert("geometry_hash".into(), hash.into());
     }
     fields.insert("settings_hash".into(), settings_hash(scene, resolution).into());
     Ok(document)

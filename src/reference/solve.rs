@@ -4,7 +4,8 @@ use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::store::Installed;
 use super::{Lookup, Resolution, Store, identity, python};
-use crate::scene::{Geometry, Scene, Setup};
+use crate::kinds;
+use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use std::ffi::OsStr;
 use std::path::Path;
@@ -99,7 +100,7 @@ pub fn solve_with(
         command.args(["--threads", &wish.threads.to_string()]);
     }
     let solid = scene.reference.geometry == Geometry::Solid;
-    if solid || matches!(&scene.setup, Setup::PlateImpact(setup) if setup.series.is_some()) {
+    if kinds::of(scene).is_resumable(scene) {
         command.arg("--checkpoint").arg(store.checkpoint_folder(scene, resolution)?);
     }
     if solid {
