@@ -211,11 +211,12 @@ mod tests {
     #[test]
     fn a_refusal_names_the_kinds_that_serve() {
         let scene = Scene::parse("starter.toml", KINDS[1].starter().text).expect("valid");
-        let said = serving(&scene, Use::Records).err().expect("a seat has no records").to_string();
-        assert!(
-            said.contains("of kind `seal-seat`") && said.contains("of kind `plate-impact` only"),
-            "{said}"
-        );
+        let Err(Error::Scene(refused)) = serving(&scene, Use::Records) else {
+            panic!("a seat has no records")
+        };
+        let expected =
+            "scene `NAME` is of kind `seal-seat`, but this runs scenes of kind `plate-impact` only";
+        assert_eq!(refused.to_string(), expected);
         assert!(serving(&scene, Use::MeshFile).is_ok());
     }
 }
