@@ -53,6 +53,30 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// The study called `name`.
+    const fn new(
+        name: &'static str,
+        run: fn(&Settings, &mut Note) -> Result<Study>,
+        about: &'static str,
+    ) -> Self {
+        Entry { name, about, takes_model: false, run, panels: &[], drawing: None }
+    }
+
+    /// With a figure of panels.
+    const fn panels(self, panels: &'static [Panel]) -> Self {
+        Entry { panels, ..self }
+    }
+
+    /// With a choice of the reduced model.
+    const fn with_models(self) -> Self {
+        Entry { takes_model: true, ..self }
+    }
+
+    /// With a figure of its own.
+    const fn drawn(self, drawing: fn(&Study) -> String) -> Self {
+        Entry { drawing: Some(drawing), ..self }
+    }
+
     /// The figure of the study as SVG, if it has one.
     ///
     /// # Errors
@@ -179,6 +203,29 @@ pub struct Study {
     pub claims: Vec<Claim>,
 }
 
+impl Study {
+    /// The study called `study`; its columns are those of `header`, as of a table's, with a unit in brackets where there is one.
+    fn new(
+        study: &'static str,
+        description: impl Into<String>,
+        header: &'static str,
+        rows: Vec<Vec<Cell>>,
+        claims: Vec<Claim>,
+    ) -> Self {
+        let (schema_version, description) = (SCHEMA_VERSION, description.into());
+        let (columns, units) = columns(header).unzip();
+        Study { schema_version, study, description, columns, units, rows, claims }
+    }
+}
+
+/// Name and unit of the columns of `header`, such as `case, gap [m]`; "1" without a unit.
+fn columns(header: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    header.split(", ").map(|column| match column.split_once(" [") {
+        Some((name, unit)) => (name, unit.trim_end_matches(']')),
+        None => (column, "1"),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -191,6 +238,12 @@ mod tests {
         assert_eq!(verdict(None, Some(-2e-3), 1e-3), Verdict::Fail);
         assert_eq!(verdict(None, Some(f64::NAN), 1e-3), Verdict::Fail);
         assert_eq!(verdict(None, None, 1e-3), Verdict::Unchecked);
+    }
+
+    #[test]
+    fn columns_are_those_of_the_header_with_their_units() {
+        let study = Study::new("x", "", "case, gap [m], peak_speed [m/s]", Vec::new(), Vec::new());
+        assert_eq!((study.columns, study.units), (vec!["case", "gap", "peak_speed"], vec!["1", "m", "m/s"]));
     }
 
     #[test]

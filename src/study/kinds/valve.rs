@@ -12,7 +12,7 @@ use crate::project::project_root;
 use crate::reference::mesh_to_follow;
 use crate::result::FlightSummary;
 use crate::scene::{Distribution, Field, Model, Spread, Template, UncertainInput, Uncertainty};
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Study};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Study};
 use crate::uncertainty::Inputs;
 use crate::uncertainty::design::Point;
 use rayon::prelude::*;
@@ -299,33 +299,21 @@ pub fn run(note: &mut Note) -> Result<Study> {
         };
         claims.extend(claims_of(demonstrator, &shifts, (least, energies), &Workshop::of(&valve)?));
     }
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "valve",
-        description: format!(
+    Ok(Study::new(
+        "valve",
+        format!(
             "Both demonstrators of section 5, from the voltage on the bender to the seat that the sphere comes to rest in: the \
              example scenes rocker-flight and valve-flight, whose actuators have their speeds at {NOMINAL} V. Spring, travel, friction and \
              chamber are the examples', the paper gives none. Scatter: {DRAWN} valves with plausible tolerances of speed, masses, materials \
              and thickness. The margin is to the nearest launch \
              that ends in another seat, in standard deviations of its speed, beside the {LONG_TERM} that 8 stops in 2 million shifts are worth."
         ),
-        columns: vec![
-            "demonstrator",
-            "voltage",
-            "actuator_speed",
-            "electrical_energy",
-            "actuator_energy",
-            "sphere_energy",
-            "launch_speed",
-            "launch_angle",
-            "least_speed",
-            "seat",
-            "share",
-        ],
-        units: vec!["1", "V", "m/s", "J", "J", "J", "m/s", "rad", "m/s", "1", "1"],
+        "demonstrator, voltage [V], actuator_speed [m/s], electrical_energy [J], \
+         actuator_energy [J], sphere_energy [J], launch_speed [m/s], launch_angle [rad], \
+         least_speed [m/s], seat, share",
         rows,
         claims,
-    })
+    ))
 }
 
 /// What section 5 says of a demonstrator, and what it leaves open.

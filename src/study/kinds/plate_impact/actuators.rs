@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::result::Summary;
 use crate::scene::{Model, PlateImpact, Shape};
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Settings, Study};
 use rayon::prelude::*;
 
 /// Stack of the class of TOKIN's AE0505D16DF (data sheet), in contact with its plate at a source that holds the voltage.
@@ -192,27 +192,18 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
         Some(1.0 - least / most.1),
         0.5,
     ));
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "actuators",
-        description: format!(
+    Ok(Study::new(
+        "actuators",
+        format!(
             "Section 2.2 of the paper: energy of the inner sphere behind the membrane of section 4.3, struck by a piezo stack (several time constants of its drive), the \
              piezo bender and a small lift magnet, over where the plate stands, model {model}. A stack's strokes of micrometres forgive no tolerance \
              (2.2.1), the bender those of a wide range (2.2.2). Stack and magnet are of a usual class, the paper gives no data of either."
         ),
-        columns: vec![
-            "actuator",
-            "gap",
-            "inner_energy",
-            "inner_energy_over_gap_0",
-            "electrical_energy",
-            "mechanical_energy",
-            "share",
-        ],
-        units: vec!["1", "m", "J", "1", "J", "J", "1"],
-        rows: cases.iter().zip(&outcomes).map(row).collect(),
+        "actuator, gap [m], inner_energy [J], inner_energy_over_gap_0, electrical_energy [J], \
+         mechanical_energy [J], share",
+        cases.iter().zip(&outcomes).map(row).collect(),
         claims,
-    })
+    ))
 }
 
 /// Where a curve first falls below half of its start, linear between its points; `None` if it does not.

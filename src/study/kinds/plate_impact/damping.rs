@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::result::Summary;
 use crate::scene::{Model, Scene};
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Study};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Study};
 use crate::validated;
 
 /// Loss factors; 0 is the elastic plate.
@@ -131,18 +131,15 @@ pub fn run(note: &mut Note) -> Result<Study> {
         Course::by(Model::C, "C", &scenes)?,
         Course::recorded(&scenes)?,
     ];
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "damping",
-        description: "Section 4.2.4 of the paper: efficiency of a polymer plate (radius 5.5 mm, thickness 0.5 mm) between steel spheres of radius \
+    Ok(Study::new(
+        "damping",
+        "Section 4.2.4 of the paper: efficiency of a polymer plate (radius 5.5 mm, thickness 0.5 mm) between steel spheres of radius \
                       1.5 mm over its loss factor, the same at all frequencies; the modulus is the storage modulus at 10 kHz. Losses are over the \
-                      energy of the outer sphere. Finite elements are those recorded of the validation scenes."
-            .into(),
-        columns: vec!["by", "loss_factor", "efficiency", "band", "lost_in_plate", "lost_in_outer_contact", "lost_in_inner_contact"],
-        units: vec!["1"; 7],
-        rows: courses.iter().flat_map(Course::cells).collect(),
-        claims: claims(&courses),
-    })
+                      energy of the outer sphere. Finite elements are those recorded of the validation scenes.",
+        "by, loss_factor, efficiency, band, lost_in_plate, lost_in_outer_contact, lost_in_inner_contact",
+        courses.iter().flat_map(Course::cells).collect(),
+        claims(&courses),
+    ))
 }
 
 fn claims(courses: &[Course; 4]) -> Vec<Claim> {

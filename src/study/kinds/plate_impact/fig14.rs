@@ -3,7 +3,7 @@
 use super::parameter::{Runner, impact, logarithmic, monotone, steel};
 use crate::error::Result;
 use crate::scene::{Edge, Model, PlateImpact};
-use crate::study::{Axis, Cell, Note, Panel, SCHEMA_VERSION, Settings, Study};
+use crate::study::{Axis, Cell, Note, Panel, Settings, Study};
 
 /// Radius and thickness of the plate, radius of the spheres, m (section 4.2.1).
 const PLATE: (f64, f64, f64) = (3e-3, 0.3e-3, 2.5e-3);
@@ -69,25 +69,17 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             }
         })
         .collect();
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "fig14",
-        description: format!(
+    Ok(Study::new(
+        "fig14",
+        format!(
             "Fig. 14 of the paper: efficiency over Young's modulus of one body at a time, the others steel; clamped plate \
              of radius 3 mm and thickness 0.3 mm, spheres of radius 2.5 mm, model {model}. The paper states the \
              trends; its sentence that a plate with a higher and spheres with a lower modulus are better \
              contradicts them and its own reasons, and is taken for a slip."
         ),
-        columns: vec![
-            "body",
-            "youngs_modulus",
-            "efficiency",
-            "outer_contact_end",
-            "inner_contact_end",
-            "first_frequency",
-        ],
-        units: vec!["1", "Pa", "1", "s", "s", "Hz"],
+        "body, youngs_modulus [Pa], efficiency, outer_contact_end [s], inner_contact_end [s], \
+         first_frequency [Hz]",
         rows,
         claims,
-    })
+    ))
 }

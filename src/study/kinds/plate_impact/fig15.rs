@@ -3,7 +3,7 @@
 use super::parameter::{Runner, impact, linear, monotone, titanium};
 use crate::error::Result;
 use crate::scene::{Edge, Model};
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Settings, Study};
 
 /// Radius of the plate in m; the paper's text names none for this figure, its typical plates have 3 mm.
 const RADIUS: f64 = 3e-3;
@@ -61,17 +61,15 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             0.5,
         ),
     ];
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "fig15",
-        description: format!(
+    Ok(Study::new(
+        "fig15",
+        format!(
             "Fig. 15 of the paper: efficiency over the thickness of a titanium plate of radius 3 mm, clamped and free, \
              steel spheres of radius 1.5 mm at 0.5 m/s, model {model}. The paper states the trends: falling when \
              clamped; a free plate also transmits when it is thick, more like a point mass."
         ),
-        columns: vec!["edge", "thickness", "efficiency", "inner_contact_end", "first_frequency"],
-        units: vec!["1", "m", "1", "s", "Hz"],
+        "edge, thickness [m], efficiency, inner_contact_end [s], first_frequency [Hz]",
         rows,
         claims,
-    })
+    ))
 }

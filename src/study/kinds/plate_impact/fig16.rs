@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::kinds::plate_impact::PlateQuantities;
 use crate::optimise::search::{Search, maximise};
 use crate::scene::{Edge, Model, PlateImpact};
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Settings, Study};
 use std::ops::RangeInclusive;
 
 /// Radius of the spheres, m (section 4.2.2).
@@ -109,26 +109,18 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
         ),
         drop_below(&runner, radius, thickness, at_best.efficiency)?,
     ];
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "fig16",
-        description: format!(
+    Ok(Study::new(
+        "fig16",
+        format!(
             "Fig. 16 of the paper: efficiency over the radius of a clamped titanium plate for thicknesses of 0.1 to 0.5 mm, \
              steel spheres of radius 1.5 mm at 0.5 m/s, model {model}. The paper names 5.5 mm as the best radius for \
              0.3 mm, where the contact lasts about half the first period of the plate; thin plates hardly depend on the radius."
         ),
-        columns: vec![
-            "thickness",
-            "plate_radius",
-            "efficiency",
-            "inner_contact_end",
-            "first_frequency",
-            "contact_over_half_period",
-        ],
-        units: vec!["m", "m", "1", "s", "Hz", "1"],
+        "thickness [m], plate_radius [m], efficiency, inner_contact_end [s], first_frequency [Hz], \
+         contact_over_half_period",
         rows,
         claims,
-    })
+    ))
 }
 
 /// Each thickness against the next, at its best radius.

@@ -3,7 +3,7 @@
 use super::parameter::{Runner, impact, logarithmic, monotone, titanium};
 use crate::error::Result;
 use crate::scene::{Edge, Model, PlateImpact, Shape};
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Settings, Study};
 
 /// The paper's optimum of Fig. 16: radius and thickness of the plate, m; radius of the spheres whose mass the bodies
 /// keep, m.
@@ -82,25 +82,17 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
         ),
         monotone("contact of the inner body becomes shorter".into(), &column(|r| r.inner_contact_end), false),
     ];
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "fig17",
-        description: format!(
+    Ok(Study::new(
+        "fig17",
+        format!(
             "Fig. 17 of the paper: efficiency over the tip radius of both bodies, whose mass stays that of steel spheres of \
              radius 1.5 mm; clamped titanium plate of radius 5.5 mm and thickness 0.3 mm, 0.5 m/s, model {model}. The paper \
              states that the efficiency rises, because a higher force shortens the contact. So it does up to 2 mm; beyond, model B \
              wavers by a quarter of a point about a plateau, and model C still rises."
         ),
-        columns: vec![
-            "tip_radius",
-            "efficiency",
-            "outer_force_peak",
-            "inner_force_peak",
-            "inner_contact_end",
-            "contact_over_half_period",
-        ],
-        units: vec!["m", "1", "N", "N", "s", "1"],
+        "tip_radius [m], efficiency, outer_force_peak [N], inner_force_peak [N], \
+         inner_contact_end [s], contact_over_half_period",
         rows,
         claims,
-    })
+    ))
 }

@@ -3,7 +3,7 @@
 use super::parameter::{Runner, impact, titanium};
 use crate::error::Result;
 use crate::scene::{Edge, Fluid, Model};
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Settings, Study};
 
 /// Radius of the steel spheres in m (section 4.2.2).
 const SPHERE: f64 = 1.5e-3;
@@ -109,21 +109,19 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             rows.push(row);
         }
     }
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "fluid",
-        description: format!(
+    Ok(Study::new(
+        "fluid",
+        format!(
             "Section 4.2.5 of the paper: efficiency in water, each effect alone and all together; titanium plates of two \
              radii between steel spheres of radius 1.5 mm, model {model}. Wet over dry frequency 1/3 and damping \
              0.03 instead of 0.001 as measured in section 3.5.3, viscosity 1 mPa s, minimal gap 0.25 um, c_W 0.4. Losses are \
              in efficiency, not relative to it. That fluids always reduce the efficiency does not hold for plates so stiff \
              that the contact outlasts half the first period: there a lower frequency brings the plate closer to its best."
         ),
-        columns: vec!["effect", "thickness", "efficiency_r3", "change_r3", "efficiency_r5.5", "change_r5.5"],
-        units: vec!["1", "m", "1", "1", "1", "1"],
+        "effect, thickness [m], efficiency_r3, change_r3, efficiency_r5.5, change_r5.5",
         rows,
-        claims: claims(&stiff, &best),
-    })
+        claims(&stiff, &best),
+    ))
 }
 
 /// The statements of sections 3.5.1 and 4.2.5.

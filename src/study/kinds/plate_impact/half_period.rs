@@ -4,7 +4,7 @@ use super::fig16::{APPROXIMATELY, RADII, best_radius, plate_impact};
 use super::parameter::{Runner, linear};
 use crate::error::Result;
 use crate::scene::Model;
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Settings, Study};
 
 /// Thicknesses in m for which the radius of the plate has a clear optimum.
 const THICKNESSES: [f64; 5] = [0.2e-3, 0.25e-3, 0.3e-3, 0.4e-3, 0.5e-3];
@@ -56,24 +56,16 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             APPROXIMATELY,
         ));
     }
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "half-period",
-        description: format!(
+    Ok(Study::new(
+        "half-period",
+        format!(
             "Section 4.1 of the paper: the efficiency is optimal if the contact lasts approximately half the first period of the \
              plate. Plates and spheres of Fig. 16, model {model}; the contact is that of the inner sphere, through which the energy \
              passes, and \"approximately\" is taken as within 30 %. Ours are all on the short side: the contact has to be over \
              a little before the plate swings back."
         ),
-        columns: vec![
-            "thickness",
-            "plate_radius",
-            "contact_over_half_period",
-            "efficiency",
-            "efficiency_over_best",
-        ],
-        units: vec!["m", "m", "1", "1", "1"],
+        "thickness [m], plate_radius [m], contact_over_half_period, efficiency, efficiency_over_best",
         rows,
         claims,
-    })
+    ))
 }

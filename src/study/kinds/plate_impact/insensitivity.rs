@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::kinds::plate_impact::PlateQuantities;
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
 use crate::scene::{self, Scene};
-use crate::study::{Cell, Claim, Note, SCHEMA_VERSION, Study};
+use crate::study::{Cell, Claim, Note, Study};
 
 /// Scenes of Table 1 of the paper.
 const SCENES: [&str; 2] = ["scaled-plate-r10", "scaled-plate-r6.35"];
@@ -75,31 +75,17 @@ pub fn run(note: &mut Note) -> Result<Study> {
             }
         }
     }
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "insensitivity",
-        description: "Model C on both scenes of Table 1 with other numbers of modes, other patch radii and other meshes \
+    Ok(Study::new(
+        "insensitivity",
+        "Model C on both scenes of Table 1 with other numbers of modes, other patch radii and other meshes \
                       of its bodies; changes against 16 modes on the default mesh. The columns efficiency_change is \
-                      absolute, the other changes are relative (the larger of both contacts)."
-            .into(),
-        columns: vec![
-            "scene",
-            "varied",
-            "patch_factor",
-            "modes",
-            "efficiency",
-            "outer_force_peak",
-            "inner_force_peak",
-            "outer_contact_end",
-            "inner_contact_end",
-            "efficiency_change",
-            "force_change",
-            "contact_end_change",
-        ],
-        units: vec!["1", "1", "1", "1", "1", "N", "N", "s", "s", "1", "1", "1"],
+                      absolute, the other changes are relative (the larger of both contacts).",
+        "scene, varied, patch_factor, modes, efficiency, outer_force_peak [N], inner_force_peak [N], \
+         outer_contact_end [s], inner_contact_end [s], efficiency_change, force_change, \
+         contact_end_change",
         rows,
         claims,
-    })
+    ))
 }
 
 /// Changes of the efficiency (absolute) and of the force peaks and contact ends (relative, the larger of both).

@@ -7,7 +7,7 @@ use crate::material::RateHardening;
 use crate::reference::{Resolution, Store};
 use crate::result::{Impact, Summary};
 use crate::scene::{Edge, Model, Series, Spot};
-use crate::study::{Axis, Cell, Claim, Note, Only, Panel, SCHEMA_VERSION, Settings, Study, of_project};
+use crate::study::{Axis, Cell, Claim, Note, Only, Panel, Settings, Study, of_project};
 use rayon::prelude::*;
 
 /// Table 1's plates: text, radius of the spheres in m, speed in m/s, and the scene whose stored reference is shown.
@@ -104,19 +104,17 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             }));
         }
     }
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "shakedown",
-        description: format!(
+    Ok(Study::new(
+        "shakedown",
+        format!(
             "Section 3.4.2 and Fig. 13 of the paper: efficiency of repeated impacts, model {model}, all bodies of steel with a \
              hardening of E/100. The paper does not tell its yield strength, so several are shown; it names a low start, a \
              rise to a steady state, and that this is often above the efficiency without yielding."
         ),
-        columns: vec!["spheres", "case", "impact", "efficiency", "efficiency_band"],
-        units: vec!["1", "1", "1", "1", "1"],
+        "spheres, case, impact, efficiency, efficiency_band",
         rows,
         claims,
-    })
+    ))
 }
 
 /// The courses of all cases, and the elastic value as one.

@@ -9,7 +9,7 @@ use crate::body::continuum::{self, PlateMode};
 use crate::error::{Error, Result};
 use crate::reference;
 use crate::scene::{Edge, Plate, PlateImpact, Scene};
-use crate::study::{Cell, Claim, Note, SCHEMA_VERSION, Study};
+use crate::study::{Cell, Claim, Note, Study};
 use std::path::Path;
 
 /// Radius of the plate, m.
@@ -100,30 +100,18 @@ pub fn run(note: &mut Note) -> Result<Study> {
         claims.extend(paper_claims(thickness, &paper, &ours));
         claims.push(agreement(thickness, &ours, theirs.as_ref()));
     }
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "table2",
-        description: "Table 2 of the paper: first and first longitudinal axisymmetric eigenfrequency of a fixed \
+    Ok(Study::new(
+        "table2",
+        "Table 2 of the paper: first and first longitudinal axisymmetric eigenfrequency of a fixed \
                       titanium plate of radius 3 mm, by the continuum plate of model C (reduced) and by FEniCSx \
                       with SLEPc (fenicsx). A frequency of the paper is met within 0.5 kHz (it is printed in whole \
-                      kHz) plus 0.1 %."
-            .into(),
-        columns: vec![
-            "thickness",
-            "first_paper",
-            "first_reduced",
-            "first_fenicsx",
-            "longitudinal_paper",
-            "longitudinal_reduced",
-            "longitudinal_fenicsx",
-            "number_paper",
-            "number_reduced",
-            "number_fenicsx",
-        ],
-        units: vec!["m", "Hz", "Hz", "Hz", "Hz", "Hz", "Hz", "1", "1", "1"],
+                      kHz) plus 0.1 %.",
+        "thickness [m], first_paper [Hz], first_reduced [Hz], first_fenicsx [Hz], \
+         longitudinal_paper [Hz], longitudinal_reduced [Hz], longitudinal_fenicsx [Hz], \
+         number_paper, number_reduced, number_fenicsx",
         rows,
         claims,
-    })
+    ))
 }
 
 fn row(thickness: f64, paper: &Frequencies, ours: &Frequencies, theirs: Option<&Frequencies>) -> Vec<Cell> {

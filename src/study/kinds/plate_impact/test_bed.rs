@@ -6,7 +6,7 @@ use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::project::project_root;
 use crate::result::Impact;
 use crate::scene::{Field, Model, Template};
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Settings, Study};
 use crate::uncertainty::design::Point;
 use crate::uncertainty::{Inputs, uncertainty_of};
 use rayon::prelude::*;
@@ -78,19 +78,17 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             ]);
         }
     }
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "test-bed",
-        description: format!(
+    Ok(Study::new(
+        "test-bed",
+        format!(
             "Section 3.4.2 of the paper under scatter: {DRAWN} test beds whose plate, spheres, steel and speed are off by plausible \
              tolerances, and whose steel yields anywhere from 350 to 1000 MPa, since the paper names none of it; model {model}. Each \
              statement is held against each test bed."
         ),
-        columns: vec!["spheres", "case", "yield_strength", "efficiency"],
-        units: vec!["1", "1", "Pa", "1"],
+        "spheres, case, yield_strength [Pa], efficiency",
         rows,
         claims,
-    })
+    ))
 }
 
 /// What [`DRAWN`] test beds like the validation scene `name` would find.

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
 use crate::reference::{self, Resolution, Store, Stored, Wish};
 use crate::scene::Model;
-use crate::study::{Cell, Claim, Note, SCHEMA_VERSION, Study, of_project};
+use crate::study::{Cell, Claim, Note, Study, of_project};
 
 /// Ratio of the run times that is wanted at least.
 const RATIO: f64 = 300.0;
@@ -57,24 +57,13 @@ pub fn run(note: &mut Note) -> Result<Study> {
         let wanted = format!("{text} design: the reduced run is at least {RATIO} times as fast (1 = yes)");
         claims.push(Claim::new(wanted, "1", Some(1.0), Some(f64::from(u8::from(ratio >= RATIO))), 0.0));
     }
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "seal-seat-cost",
-        description: "Run times of the reduced seal seat (16 modes or as the scene says, no cache, its error estimate included) \
-             and of the explicit finite elements' time loop on the same mesh, measured one after the other."
-            .into(),
-        columns: vec![
-            "design",
-            "dofs",
-            "reference_seconds",
-            "setup_seconds",
-            "reduced_seconds",
-            "ratio",
-            "angle_difference",
-            "speed_difference",
-        ],
-        units: vec!["1", "1", "s", "s", "s", "1", "rad", "1"],
+    Ok(Study::new(
+        "seal-seat-cost",
+        "Run times of the reduced seal seat (16 modes or as the scene says, no cache, its error estimate included) \
+             and of the explicit finite elements' time loop on the same mesh, measured one after the other.",
+        "design, dofs, reference_seconds [s], setup_seconds [s], reduced_seconds [s], ratio, \
+         angle_difference [rad], speed_difference",
         rows,
         claims,
-    })
+    ))
 }

@@ -11,7 +11,7 @@ use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel, SeatQuanti
 use crate::numerics::least_squares::fit;
 use crate::reference::{self, COARSER, Resolution, Store, make_seat_mesh};
 use crate::scene::{Model, Scene};
-use crate::study::{Axis, Cell, Claim, Note, Panel, SCHEMA_VERSION, Settings, Study, of_project};
+use crate::study::{Axis, Cell, Claim, Note, Panel, Settings, Study, of_project};
 use std::path::Path;
 
 /// Meshes of each design, their elements over those of the paper's resolution: geometric from `SIZES[0]` to `SIZES[1]`.
@@ -79,19 +79,17 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             stored.band.hypot(band),
         ));
     }
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "seal-seat-direction",
-        description: format!(
+    Ok(Study::new(
+        "seal-seat-direction",
+        format!(
             "Direction of the sphere out of the flexible seal seat: model C on {MESHES} meshes, extrapolated to elements of no \
              size, plus what the finite elements differ by on the mesh of the stored reference: {}. Bands of 95 %.",
             told.join("; ")
         ),
-        columns: vec!["design", "element_size", "dofs", "sphere_angle", "sphere_speed", "efficiency"],
-        units: vec!["1", "1", "1", "rad", "m/s", "1"],
+        "design, element_size, dofs, sphere_angle [rad], sphere_speed [m/s], efficiency",
         rows,
         claims,
-    })
+    ))
 }
 
 /// Direction of the stored reference minus that of the reduced model on its mesh, rad, and the reference's own.

@@ -10,7 +10,7 @@ use crate::flight::{
 };
 use crate::project::project_root;
 use crate::scene::SealSeat;
-use crate::study::{Cell, Claim, Note, SCHEMA_VERSION, Study, of_project};
+use crate::study::{Cell, Claim, Note, Study, of_project};
 use rayon::prelude::*;
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
@@ -117,19 +117,16 @@ pub fn run(note: &mut Note) -> Result<Study> {
     claims.extend(of_shocks(&shocks));
     note("rocker");
     claims.extend(rocker()?);
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "flight",
-        description: "Flights of the sphere in the seal seat's chamber, random in seat, spring, walls and launch, by the reduced \
+    Ok(Study::new(
+        "flight",
+        "Flights of the sphere in the seal seat's chamber, random in seat, spring, walls and launch, by the reduced \
              flight and by MuJoCo (a damped spring in place of an impact, steps of 0.5 us). Unanimous are flights of which all \
              26 neighbours (speed ± 1 %, angle ± 0.5°, restitution ± 0.02) reach the same seat; of the others no verdict is \
-             sure. The rocker's statements are those of sections 5.1.1 and 5.1.2, with a spring of our own: the paper gives none."
-            .into(),
-        columns: vec!["seed", "ours", "MuJoCo", "unanimous", "touch_distance", "touch_time_difference"],
-        units: vec!["1", "1", "1", "1", "m", "s"],
-        rows: compared.iter().map(row).collect(),
+             sure. The rocker's statements are those of sections 5.1.1 and 5.1.2, with a spring of our own: the paper gives none.",
+        "seed, ours, MuJoCo, unanimous, touch_distance [m], touch_time_difference [s]",
+        compared.iter().map(row).collect(),
         claims,
-    })
+    ))
 }
 
 fn stored() -> Result<Stored> {

@@ -9,7 +9,7 @@ use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel, SeatQuanti
 use crate::reference::{self, Resolution, Store};
 use crate::result::{CUT, Summary};
 use crate::scene::{Model, Notch, Scene, SealSeat, Setup};
-use crate::study::{Axis, Cell, Claim, Note, Only, Panel, SCHEMA_VERSION, Study, of_project};
+use crate::study::{Axis, Cell, Claim, Note, Only, Panel, Study, of_project};
 
 /// How far the improved design's direction may lie from the intended one, rad.
 const INTENDED_WITHIN: f64 = 1.5 * DEGREE;
@@ -28,24 +28,10 @@ struct Case {
 }
 
 /// Columns of the table with their units.
-const COLUMNS: [(&str, &str); 16] = [
-    ("design", "1"),
-    ("varied", "1"),
-    ("aperture_angle", "rad"),
-    ("tilt", "rad"),
-    ("outermost_tip", "m"),
-    ("notch_width", "m"),
-    ("membrane_thickness", "m"),
-    ("sphere_angle", "rad"),
-    ("deviation", "rad"),
-    ("sphere_speed", "m/s"),
-    ("efficiency", "1"),
-    ("sphere_force_peak", "N"),
-    ("actuator_force_peak", "N"),
-    ("parameter", "1"),
-    ("reference_angle", "rad"),
-    ("reference_speed", "m/s"),
-];
+const COLUMNS: &str = "design, varied, aperture_angle [rad], tilt [rad], outermost_tip [m], notch_width [m], \
+     membrane_thickness [m], sphere_angle [rad], deviation [rad], sphere_speed [m/s], efficiency, \
+     sphere_force_peak [N], actuator_force_peak [N], parameter, reference_angle [rad], \
+     reference_speed [m/s]";
 
 /// In the place of a parameter: the design itself, a point of every curve.
 const NOTHING: &str = "none";
@@ -144,20 +130,18 @@ pub fn run(note: &mut Note) -> Result<Study> {
         let case = cases.iter().position(|c| c.design == design && c.varied == varied);
         results[case?].as_ref().map(|q| q.sphere_angle)
     };
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "seal-seat",
-        description: "Section 4.4 of the paper: direction and speed of the sphere out of the flexible seal seat, model C on coarse \
+    Ok(Study::new(
+        "seal-seat",
+        "Section 4.4 of the paper: direction and speed of the sphere out of the flexible seal seat, model C on coarse \
              meshes, each design with one quantity changed. The paper publishes no dimensions; it finds that the \
              initial design, hit at its centre, throws the sphere to the wrong side, and that notch and hits on both \
              sides together bring the intended direction. "
             .to_owned()
             + &notch_and_impact(&angle, &corners),
-        columns: COLUMNS.iter().map(|(name, _)| *name).collect(),
-        units: COLUMNS.iter().map(|(_, unit)| *unit).collect(),
+        COLUMNS,
         rows,
-        claims: claims(intended, &angle),
-    })
+        claims(intended, &angle),
+    ))
 }
 
 /// A corner of the table of notch and impact, and the scene whose reference is asked for its verdict.
@@ -372,21 +356,14 @@ mod tests {
             right_flank_impulse: 1e-4,
             first_frequency: 4e3,
         };
-        Study {
-            schema_version: SCHEMA_VERSION,
-            study: "seal-seat",
-            description: String::new(),
-            columns: COLUMNS.iter().map(|(name, _)| *name).collect(),
-            units: COLUMNS.iter().map(|(_, unit)| *unit).collect(),
-            rows: cases.iter().map(|case| row(case, Some(&found), None).expect("row")).collect(),
-            claims: Vec::new(),
-        }
+        let rows = cases.iter().map(|case| row(case, Some(&found), None).expect("row")).collect();
+        Study::new("seal-seat", "", COLUMNS, rows, Vec::new())
     }
 
     #[test]
     fn every_case_is_a_scene_of_its_own_that_could_be_written() {
         let study = unsolved();
-        assert!(study.rows.iter().all(|row| row.len() == COLUMNS.len()));
+        assert!(study.rows.iter().all(|row| row.len() == study.columns.len()));
         for (k, row) in study.rows.iter().enumerate() {
             assert!(study.rows[..k].iter().all(|other| other[..2] != row[..2]), "{:?}", &row[..2]);
         }

@@ -18,7 +18,7 @@ use crate::reference::{Resolution, Store};
 use crate::result::Summary;
 use crate::sampling::latin_hypercube;
 use crate::scene::{self, Model, Scene};
-use crate::study::{Cell, Claim, Note, SCHEMA_VERSION, Settings, Study};
+use crate::study::{Cell, Claim, Note, Settings, Study, columns};
 use cost::Cost;
 use draw::{DIMENSIONS, draw};
 use rayon::prelude::*;
@@ -42,27 +42,9 @@ const DEARER: f64 = 2.0;
 const DEAR: f64 = 0.05;
 
 /// Names of the columns of the table, with their units.
-const COLUMNS: [(&str, &str); 19] = [
-    ("scene", "1"),
-    ("exact", "1"),
-    ("thickness_over_radius", "1"),
-    ("patch_over_thickness", "1"),
-    ("efficiency", "1"),
-    ("tolerance", "1"),
-    ("model", "1"),
-    ("modes", "1"),
-    ("promised", "1"),
-    ("estimated_error", "1"),
-    ("true_error", "1"),
-    ("cheapest_model", "1"),
-    ("cheapest_modes", "1"),
-    ("seconds", "s"),
-    ("seconds_cached", "s"),
-    ("seconds_run", "s"),
-    ("cost_ratio", "1"),
-    ("cost_ratio_cached", "1"),
-    ("cost_ratio_run", "1"),
-];
+const COLUMNS: &str = "scene, exact, thickness_over_radius, patch_over_thickness, efficiency, tolerance, model, modes, \
+     promised, estimated_error, true_error, cheapest_model, cheapest_modes, seconds [s], \
+     seconds_cached [s], seconds_run [s], cost_ratio, cost_ratio_cached, cost_ratio_run";
 
 /// What is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,10 +101,9 @@ pub fn check(extent: &Extent, store: &Store, note: &mut Note) -> Result<Study> {
     }
     let claims = claims(&rows, known);
     let names: Vec<&str> = cases[..known].iter().map(|case| case.scene.name.as_str()).collect();
-    Ok(Study {
-        schema_version: SCHEMA_VERSION,
-        study: "auto",
-        description: format!(
+    Ok(Study::new(
+        "auto",
+        format!(
             "The model that auto chooses for a tolerance, its estimated and its true error (the largest of efficiency, final \
              velocity of the outer body and both force peaks), and its cost against the cheapest setting that meets the tolerance. \
              {known} scenes against their stored finite-element reference ({}; those with 95 % bands above 1 % are left \
@@ -133,11 +114,10 @@ pub fn check(extent: &Extent, store: &Store, note: &mut Note) -> Result<Study> {
             if names.is_empty() { "none".to_owned() } else { names.join(", ") },
             cases.len() - known,
         ),
-        columns: COLUMNS.map(|(name, _)| name).to_vec(),
-        units: COLUMNS.map(|(_, unit)| unit).to_vec(),
+        COLUMNS,
         rows,
         claims,
-    })
+    ))
 }
 
 /// A scene to be judged.
@@ -293,7 +273,7 @@ fn name(model: Model) -> &'static str {
 
 /// The number in the column called `column`; NaN if there is none.
 fn number(row: &[Cell], column: &str) -> f64 {
-    let place = COLUMNS.iter().position(|(name, _)| *name == column);
+    let place = columns(COLUMNS).position(|(name, _)| name == column);
     match place.map(|k| row[k]) {
         Some(Cell::Number(value)) => value,
         Some(Cell::Count(value)) => value as f64,
