@@ -106,14 +106,11 @@ pub const PANELS: [Panel; 2] =
     [panel("launch_speed", "Speed of the sphere in m/s"), panel("share", "Share of launches that shift")];
 
 const fn panel(column: &'static str, label: &'static str) -> Panel {
-    Panel {
-        x: Axis { column: "voltage", label: "Voltage in V", factor: 1.0 },
-        y: Axis { column, label, factor: 1.0 },
-        series: Some(Axis { column: "demonstrator", label: "", factor: 1.0 }),
-        only: None,
-        band: None,
-        paper: None,
-    }
+    Panel::of(Axis::new("voltage", "Voltage in V", 1.0), Axis::new(column, label, 1.0)).by(Axis::new(
+        "demonstrator",
+        "",
+        1.0,
+    ))
 }
 
 /// An impact and the flight that follows.

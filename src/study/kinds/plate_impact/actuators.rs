@@ -52,14 +52,8 @@ pub const PANELS: [Panel; 2] = [
 ];
 
 const fn panel(column: &'static str, label: &'static str, factor: f64) -> Panel {
-    Panel {
-        x: Axis { column: "gap", label: "Plate beyond its nominal place in um", factor: 1e6 },
-        y: Axis { column, label, factor },
-        series: Some(Axis { column: "actuator", label: "", factor: 1.0 }),
-        only: None,
-        band: None,
-        paper: None,
-    }
+    Panel::of(Axis::new("gap", "Plate beyond its nominal place in um", 1e6), Axis::new(column, label, factor))
+        .by(Axis::new("actuator", "", 1.0))
 }
 
 /// An actuator with the plate at a place.

@@ -26,14 +26,8 @@ pub const PANELS: [Panel; 2] =
     [panel("efficiency", "Efficiency"), panel("lost_in_plate", "Lost in the plate's modes")];
 
 const fn panel(column: &'static str, label: &'static str) -> Panel {
-    Panel {
-        x: Axis { column: "loss_factor", label: "Loss factor of the plate", factor: 1.0 },
-        y: Axis { column, label, factor: 1.0 },
-        series: Some(Axis { column: "by", label: "", factor: 1.0 }),
-        only: None,
-        band: None,
-        paper: None,
-    }
+    Panel::of(Axis::new("loss_factor", "Loss factor of the plate", 1.0), Axis::new(column, label, 1.0))
+        .by(Axis::new("by", "", 1.0))
 }
 
 /// The impact with a plate of `loss_factor`.

@@ -12,14 +12,11 @@ const MODULI: (f64, f64, usize) = (20e9, 400e9, 25);
 const BODIES: [&str; 3] = ["plate", "outer", "inner"];
 
 /// How it is drawn.
-pub const PANELS: [Panel; 1] = [Panel {
-    x: Axis { column: "youngs_modulus", label: "Young's modulus in GPa", factor: 1e-9 },
-    y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
-    series: Some(Axis { column: "body", label: "", factor: 1.0 }),
-    only: None,
-    band: None,
-    paper: None,
-}];
+pub const PANELS: [Panel; 1] = [Panel::of(
+    Axis::new("youngs_modulus", "Young's modulus in GPa", 1e-9),
+    Axis::new("efficiency", "Efficiency in %", 100.0),
+)
+.by(Axis::new("body", "", 1.0))];
 
 fn with_modulus(body: &str, modulus: f64) -> PlateImpact {
     let (radius, thickness, sphere) = PLATE;

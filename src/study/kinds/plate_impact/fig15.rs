@@ -13,14 +13,11 @@ const THICKNESSES: (f64, f64, usize) = (0.05e-3, 1e-3, 39);
 const EDGES: [(&str, Edge); 2] = [("clamped", Edge::Clamped), ("free", Edge::Free)];
 
 /// How it is drawn.
-pub const PANELS: [Panel; 1] = [Panel {
-    x: Axis { column: "thickness", label: "Thickness of the plate in mm", factor: 1e3 },
-    y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
-    series: Some(Axis { column: "edge", label: "", factor: 1.0 }),
-    only: None,
-    band: None,
-    paper: None,
-}];
+pub const PANELS: [Panel; 1] = [Panel::of(
+    Axis::new("thickness", "Thickness of the plate in mm", 1e3),
+    Axis::new("efficiency", "Efficiency in %", 100.0),
+)
+.by(Axis::new("edge", "", 1.0))];
 
 /// The study.
 ///

@@ -24,20 +24,21 @@ pub const APPROXIMATELY: f64 = 0.3;
 /// How it is drawn.
 pub const PANELS: [Panel; 2] = [
     Panel {
-        x: Axis { column: "plate_radius", label: "Radius of the plate in mm", factor: 1e3 },
-        y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
-        series: Some(Axis { column: "thickness", label: "mm", factor: 1e3 }),
-        only: None,
-        band: None,
         paper: Some((PAPER.1 * 1e3, "paper: best radius for 0.3 mm")),
+        ..Panel::of(
+            Axis::new("plate_radius", "Radius of the plate in mm", 1e3),
+            Axis::new("efficiency", "Efficiency in %", 100.0),
+        )
+        .by(Axis::new("thickness", "mm", 1e3))
     },
     Panel {
-        x: Axis { column: "plate_radius", label: "Radius of the plate in mm", factor: 1e3 },
-        y: Axis { column: "contact_over_half_period", label: "Contact over half period", factor: 1.0 },
-        series: Some(Axis { column: "thickness", label: "mm", factor: 1e3 }),
-        only: None,
         band: Some((1.0, APPROXIMATELY)),
         paper: Some((PAPER.1 * 1e3, "paper: best radius for 0.3 mm")),
+        ..Panel::of(
+            Axis::new("plate_radius", "Radius of the plate in mm", 1e3),
+            Axis::new("contact_over_half_period", "Contact over half period", 1.0),
+        )
+        .by(Axis::new("thickness", "mm", 1e3))
     },
 ];
 

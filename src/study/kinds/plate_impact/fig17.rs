@@ -13,14 +13,10 @@ const TIPS: (f64, f64, usize) = (0.3e-3, 10e-3, 31);
 const SATURATION: f64 = 2e-3;
 
 /// How it is drawn.
-pub const PANELS: [Panel; 1] = [Panel {
-    x: Axis { column: "tip_radius", label: "Tip radius in mm", factor: 1e3 },
-    y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
-    series: None,
-    only: None,
-    band: None,
-    paper: None,
-}];
+pub const PANELS: [Panel; 1] = [Panel::of(
+    Axis::new("tip_radius", "Tip radius in mm", 1e3),
+    Axis::new("efficiency", "Efficiency in %", 100.0),
+)];
 
 fn with_tips(tip_radius: f64) -> PlateImpact {
     let (radius, thickness, sphere) = PLATE;

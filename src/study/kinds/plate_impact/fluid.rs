@@ -46,14 +46,8 @@ pub const PANELS: [Panel; 2] = [
 ];
 
 const fn panel(column: &'static str, label: &'static str) -> Panel {
-    Panel {
-        x: Axis { column: "thickness", label: "Plate thickness in mm", factor: 1e3 },
-        y: Axis { column, label, factor: 1.0 },
-        series: Some(Axis { column: "effect", label: "", factor: 1.0 }),
-        only: None,
-        band: None,
-        paper: None,
-    }
+    Panel::of(Axis::new("thickness", "Plate thickness in mm", 1e3), Axis::new(column, label, 1.0))
+        .by(Axis::new("effect", "", 1.0))
 }
 
 /// Water without any effect on plates of the dry damping.

@@ -13,12 +13,12 @@ const POINTS: usize = 65;
 
 /// How it is drawn.
 pub const PANELS: [Panel; 1] = [Panel {
-    x: Axis { column: "contact_over_half_period", label: "Contact over half the first period", factor: 1.0 },
-    y: Axis { column: "efficiency_over_best", label: "Efficiency over its best", factor: 1.0 },
-    series: Some(Axis { column: "thickness", label: "mm", factor: 1e3 }),
-    only: None,
-    band: None,
     paper: Some((1.0, "paper: best at about half the first period")),
+    ..Panel::of(
+        Axis::new("contact_over_half_period", "Contact over half the first period", 1.0),
+        Axis::new("efficiency_over_best", "Efficiency over its best", 1.0),
+    )
+    .by(Axis::new("thickness", "mm", 1e3))
 }];
 
 /// The study.

@@ -42,18 +42,11 @@ pub const PANELS: [Panel; 2] = [
 ];
 
 const fn panel(column: &'static str, label: &'static str) -> Panel {
-    Panel {
-        x: Axis {
-            column: "discharge_time",
-            label: "Time constant of the bender's discharge in ms",
-            factor: 1e3,
-        },
-        y: Axis { column, label, factor: 1.0 },
-        series: Some(Axis { column: "case", label: "", factor: 1.0 }),
-        only: None,
-        band: None,
-        paper: None,
-    }
+    Panel::of(
+        Axis::new("discharge_time", "Time constant of the bender's discharge in ms", 1e3),
+        Axis::new(column, label, 1.0),
+    )
+    .by(Axis::new("case", "", 1.0))
 }
 
 fn sapphire() -> Material {

@@ -44,12 +44,12 @@ pub const PANELS: [Panel; 2] = [panel(&[PLATES[0].0]), panel(&[PLATES[1].0])];
 
 const fn panel(spheres: &'static [&'static str]) -> Panel {
     Panel {
-        x: Axis { column: "impact", label: "Number of the impact", factor: 1.0 },
-        y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
-        series: Some(Axis { column: "case", label: "", factor: 1.0 }),
         only: Some(Only { column: "spheres", texts: spheres }),
-        band: None,
-        paper: None,
+        ..Panel::of(
+            Axis::new("impact", "Number of the impact", 1.0),
+            Axis::new("efficiency", "Efficiency in %", 100.0),
+        )
+        .by(Axis::new("case", "", 1.0))
     }
 }
 

@@ -36,14 +36,11 @@ const TOLERANCE: f64 = 1e-4;
 const MOST: f64 = 0.95;
 
 /// How it is drawn: the first and the last impact beside the efficiency without yielding.
-pub const PANELS: [Panel; 1] = [Panel {
-    x: Axis { column: "yield_strength", label: "Yield strength in MPa", factor: 1e-6 },
-    y: Axis { column: "efficiency", label: "Efficiency in %", factor: 100.0 },
-    series: Some(Axis { column: "case", label: "", factor: 1.0 }),
-    only: None,
-    band: None,
-    paper: None,
-}];
+pub const PANELS: [Panel; 1] = [Panel::of(
+    Axis::new("yield_strength", "Yield strength in MPa", 1e-6),
+    Axis::new("efficiency", "Efficiency in %", 100.0),
+)
+.by(Axis::new("case", "", 1.0))];
 
 /// What one test bed would find.
 struct Found {

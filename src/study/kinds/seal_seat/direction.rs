@@ -24,18 +24,11 @@ const DESIGNS: [(&str, &str, f64); 2] =
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// Direction over the size of the elements.
-pub const PANELS: [Panel; 1] = [Panel {
-    x: Axis {
-        column: "element_size",
-        label: "element size over that of the paper's resolution",
-        factor: 1.0,
-    },
-    y: Axis { column: "sphere_angle", label: "direction, °", factor: 1.0 / DEGREE },
-    series: Some(Axis { column: "design", label: "", factor: 1.0 }),
-    only: None,
-    band: None,
-    paper: None,
-}];
+pub const PANELS: [Panel; 1] = [Panel::of(
+    Axis::new("element_size", "element size over that of the paper's resolution", 1.0),
+    Axis::new("sphere_angle", "direction, °", 1.0 / DEGREE),
+)
+.by(Axis::new("design", "", 1.0))];
 
 /// A direction with its band, rad.
 struct Direction {

@@ -40,14 +40,14 @@ const PARAMETERS: [&str; 5] = ["aperture angle", "tilt", "impact", "notch", "mem
 /// Deviation from the intended direction and efficiency over each parameter; shaded: what counts as the intended direction.
 pub const PANELS: [Panel; 10] = {
     const APERTURE: (Axis, &[&str]) =
-        (axis("aperture_angle", "aperture angle γ, °", IN_DEGREES), &[NOTHING, PARAMETERS[0]]);
-    const TILT: (Axis, &[&str]) = (axis("tilt", "tilt α, °", IN_DEGREES), &[NOTHING, PARAMETERS[1]]);
+        (Axis::new("aperture_angle", "aperture angle γ, °", IN_DEGREES), &[NOTHING, PARAMETERS[0]]);
+    const TILT: (Axis, &[&str]) = (Axis::new("tilt", "tilt α, °", IN_DEGREES), &[NOTHING, PARAMETERS[1]]);
     const IMPACT: (Axis, &[&str]) =
-        (axis("outermost_tip", "place of impact, mm from the centre", 1e3), &[NOTHING, PARAMETERS[2]]);
+        (Axis::new("outermost_tip", "place of impact, mm from the centre", 1e3), &[NOTHING, PARAMETERS[2]]);
     const NOTCH: (Axis, &[&str]) =
-        (axis("notch_width", "width of the notch, mm (0 = none)", 1e3), &[NOTHING, PARAMETERS[3]]);
+        (Axis::new("notch_width", "width of the notch, mm (0 = none)", 1e3), &[NOTHING, PARAMETERS[3]]);
     const MEMBRANE: (Axis, &[&str]) =
-        (axis("membrane_thickness", "thickness of the membrane, mm", 1e3), &[NOTHING, PARAMETERS[4]]);
+        (Axis::new("membrane_thickness", "thickness of the membrane, mm", 1e3), &[NOTHING, PARAMETERS[4]]);
     [
         direction(APERTURE),
         efficiency(APERTURE),
@@ -64,28 +64,18 @@ pub const PANELS: [Panel; 10] = {
 
 const IN_DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
-const fn axis(column: &'static str, label: &'static str, factor: f64) -> Axis {
-    Axis { column, label, factor }
-}
-
 const fn direction((x, texts): (Axis, &'static [&'static str])) -> Panel {
-    let y = axis("deviation", "direction − intended, °", IN_DEGREES);
-    Panel {
-        x,
-        y,
-        series: Some(DESIGN),
-        only: only(texts),
-        band: Some((0.0, IN_DEGREES * INTENDED_WITHIN)),
-        paper: None,
-    }
+    let y = Axis::new("deviation", "direction − intended, °", IN_DEGREES);
+    let band = Some((0.0, IN_DEGREES * INTENDED_WITHIN));
+    Panel { only: only(texts), band, ..Panel::of(x, y).by(DESIGN) }
 }
 
 const fn efficiency((x, texts): (Axis, &'static [&'static str])) -> Panel {
-    let y = axis("efficiency", "efficiency, %", 100.0);
-    Panel { x, y, series: Some(DESIGN), only: only(texts), band: None, paper: None }
+    let y = Axis::new("efficiency", "efficiency, %", 100.0);
+    Panel { only: only(texts), ..Panel::of(x, y).by(DESIGN) }
 }
 
-const DESIGN: Axis = axis("design", "", 1.0);
+const DESIGN: Axis = Axis::new("design", "", 1.0);
 
 const fn only(texts: &'static [&'static str]) -> Option<Only> {
     Some(Only { column: "parameter", texts })
