@@ -5,102 +5,21 @@
 //! that take them, stored references and the discrepancies between both.
 
 use crate::error::Result;
-use crate::kinds;
-use crate::kinds::plate_impact::closed_forms::{ClosedForm, Form, closed_forms};
+use crate::kinds::{self, ClosedForm, Feature, Form, KINDS};
 use crate::result::SCHEMA_VERSION;
-use crate::scene::{Edge, Fluid, Material, Model, PlateImpact, Scene, SealSeat, Shape, SphereBody};
+use crate::scene::{Model, Scene};
 use crate::validated::Validation;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Name of a partner that is a formula.
 pub const CLOSED_FORM: &str = "closed form";
-/// Thickness over radius from which a plate counts as thick.
-const THICK: f64 = 0.3;
-/// Thickness over radius up to which a plate counts as thin.
-const THIN: f64 = 0.02;
 
-/// Something a scene can have.
-#[derive(Debug, Clone, Copy)]
-pub struct Feature {
-    /// For people.
-    pub name: &'static str,
-    has: fn(&Scene) -> bool,
-    /// The closed form that is about it, if there is one.
-    form: Option<Form>,
-}
-
-impl Feature {
-    /// Whether `scene` has it.
-    pub fn is_in(&self, scene: &Scene) -> bool {
-        (self.has)(scene)
-    }
-
-    /// Whether `case` says something about it.
-    fn is_shown_by(&self, case: &Case) -> bool {
-        let form = case.finding.as_ref().and_then(|finding| finding.form);
-        self.is_in(case.scene) && (form.is_none() || form == self.form)
-    }
-
-    const fn by(self, form: Form) -> Self {
-        Self { form: Some(form), ..self }
-    }
-}
-
-const fn feature(name: &'static str, has: fn(&Scene) -> bool) -> Feature {
-    Feature { name, has, form: None }
-}
-
-/// The features, of plates first.
-pub static FEATURES: [Feature; 28] = [
-    feature("clamped edge", |s| plate(s, |p| p.plate.edge == Edge::Clamped)).by(Form::CircularPlate),
-    feature("simply supported edge", |s| plate(s, |p| p.plate.edge == Edge::SimplySupported))
-        .by(Form::CircularPlate),
-    feature("free edge", |s| plate(s, |p| p.plate.edge == Edge::Free)).by(Form::CircularPlate),
-    feature("thick plate (t ≥ 0.3 R)", |s| plate(s, |p| p.plate.thickness >= THICK * p.plate.radius)),
-    feature("thin plate (t ≤ 0.02 R)", |s| plate(s, |p| p.plate.thickness <= THIN * p.plate.radius)),
-    feature("damped plate", |s| plate(s, |p| p.plate.damping_ratio > 0.0)),
-    feature("gap", |s| plate(s, |p| p.inner.gap > 0.0)),
-    feature("inner body with a speed", |s| plate(s, |p| p.inner.speed != 0.0)),
-    feature("unlike materials", |s| plate(s, unlike)).by(Form::Hertz),
-    feature("compact outer body", |s| plate(s, |p| matches!(p.outer.shape, Shape::Compact { .. })))
-        .by(Form::Hertz),
-    feature("compact inner body", |s| plate(s, |p| matches!(p.inner.shape, Shape::Compact { .. }))),
-    feature("relaxing material", |s| plate(s, PlateImpact::relaxes)).by(Form::Hunter),
-    feature("yielding material", |s| plate(s, |p| p.yields())),
-    feature("impacts in series", |s| plate(s, |p| p.series.is_some())),
-    feature("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))).by(Form::Cantilever),
-    feature("stack", |s| plate(s, |p| matches!(p.outer.shape, Shape::Stack(_)))),
-    feature("friction", |s| plate(s, |p| p.friction > 0.0)),
-    feature("off-centre impact", |s| plate(s, |p| p.outer.offset > 0.0)),
-    feature("oblique impact", |s| plate(s, |p| p.outer.angle != 0.0)),
-    feature("squeeze film", |s| fluid(s, |f| f.squeeze_film)).by(Form::Film),
-    feature("shear thinning", |s| fluid(s, |f| f.shear_thinning.is_some())),
-    feature("added mass", |s| fluid(s, |f| f.added_mass_frequency_ratio < 1.0)),
-    feature("drag", |s| fluid(s, |f| f.drag_coefficient > 0.0)),
-    feature("run cut by its end time", |s| s.run.end_time.is_some()),
-    feature("seal seat", |s| s.seal_seat().is_ok()),
-    feature("seal seat, friction", |s| seat(s, |seat| seat.friction > 0.0)),
-    feature("seal seat, elastic sphere", |s| seat(s, |seat| seat.sphere.body == SphereBody::Elastic)),
-    feature("seal seat, relaxing", |s| seat(s, |seat| !seat.seat.material.relaxation.is_empty())),
-];
-
-fn plate(scene: &Scene, has: fn(&PlateImpact) -> bool) -> bool {
-    scene.plate_impact().is_ok_and(has)
-}
-
-fn seat(scene: &Scene, has: fn(&SealSeat) -> bool) -> bool {
-    scene.seal_seat().is_ok_and(has)
-}
-
-fn fluid(scene: &Scene, has: fn(&Fluid) -> bool) -> bool {
-    scene.plate_impact().is_ok_and(|setup| setup.fluid.as_ref().is_some_and(has))
-}
-
-fn unlike(setup: &PlateImpact) -> bool {
-    let elastic = |m: &Material| (m.youngs_modulus, m.poisson_ratio, m.density);
-    let plate = elastic(&setup.plate.material);
-    elastic(&setup.outer.material) != plate || elastic(&setup.inner.material) != plate
+/// The features of the first kind, those of any scene, those of other kinds.
+pub fn features() -> impl Iterator<Item = &'static Feature> {
+    static OF_ANY: [Feature; 1] = [Feature::new("run cut by its end time", |s| s.run.end_time.is_some())];
+    let mut kinds = KINDS.into_iter().map(|kind| kind.features());
+    kinds.next().into_iter().flatten().chain(&OF_ANY).chain(kinds.flatten())
 }
 
 /// A scene that a model takes, and what it was held against.
@@ -148,15 +67,14 @@ impl From<&Validation> for Finding {
 /// The parts of the models beside the closed forms that there are for `scene`.
 ///
 /// # Errors
-/// As [`closed_forms`].
+/// Those of the models.
 pub fn exact(scene: &Scene) -> Result<Vec<Case<'_>>> {
-    let Ok(setup) = scene.plate_impact() else { return Ok(Vec::new()) };
     let of = |found: &ClosedForm, &model: &Model| {
         let largest = Some((found.relative, Some(0.0), found.quantity.to_owned()));
         let finding = Finding { partner: CLOSED_FORM.into(), form: Some(found.form), largest };
         Case { scene, model, finding: Some(finding) }
     };
-    let found = closed_forms(setup)?;
+    let found = kinds::of(scene).closed_forms(scene)?;
     Ok(found.iter().flat_map(|found| found.models.iter().map(move |model| of(found, model))).collect())
 }
 
@@ -182,7 +100,7 @@ pub fn recorded(scenes: &[Scene], known: &[Validation]) -> Result<Coverage> {
 pub struct Coverage {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
-    /// In the order of [`FEATURES`].
+    /// In the order of [`features`].
     pub features: Vec<FeatureCoverage>,
 }
 
@@ -213,11 +131,17 @@ pub struct Partner {
     pub quantity: Option<String>,
 }
 
+/// Whether `case` says something about `feature`.
+fn is_shown_by(feature: &Feature, case: &Case) -> bool {
+    let form = case.finding.as_ref().and_then(|finding| finding.form);
+    feature.is_in(case.scene) && (form.is_none() || form == feature.form)
+}
+
 /// What `cases` show.
 pub fn coverage(cases: &[Case]) -> Coverage {
-    let features = FEATURES.iter().map(|feature| {
+    let features = features().map(|feature| {
         let mut partners: BTreeMap<(Model, Option<&str>), Partner> = BTreeMap::new();
-        for case in cases.iter().filter(|case| feature.is_shown_by(case)) {
+        for case in cases.iter().filter(|case| is_shown_by(feature, case)) {
             let partner = case.finding.as_ref().map(|finding| &*finding.partner);
             let new = || Partner::of(case.model, partner);
             partners.entry((case.model, partner)).or_insert_with(new).add(case);
@@ -263,7 +187,7 @@ mod tests {
     const PLATE: &str = include_str!("../tests/fixtures/plate-impact.toml");
 
     fn names(scene: &Scene) -> Vec<&'static str> {
-        FEATURES.iter().filter(|feature| feature.is_in(scene)).map(|feature| feature.name).collect()
+        features().filter(|feature| feature.is_in(scene)).map(|feature| feature.name).collect()
     }
 
     fn scene(text: &str) -> Scene {
@@ -311,7 +235,7 @@ mod tests {
         let plain = scene(PLATE);
         let cases = [Model::B, Model::C].map(|model| Case { scene: &plain, model, finding: None });
         let found = coverage(&cases);
-        assert_eq!(found.features.len(), FEATURES.len());
+        assert_eq!(found.features.len(), features().count());
         for feature in found.features {
             let alone: Vec<_> =
                 feature.partners.iter().map(|p| (&*p.model, p.partner.as_deref(), p.scenes.len())).collect();

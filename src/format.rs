@@ -1,5 +1,10 @@
 //! Numbers and names as people read them: SI prefixes, significant digits, plain words.
 
+/// `value` with so many significant `digits`.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
 /// Unit with a prefix: a value in the unit times `factor` is the number to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prefixed {

@@ -35,6 +35,7 @@ pub mod curves;
 pub mod external;
 mod format;
 pub mod interrupt;
+pub mod kinds;
 pub mod measured;
 pub mod movement;
 pub mod optimise;
@@ -53,6 +54,5 @@ pub mod validated;
 
 pub use impactcheck_physics::{Error, ExitStatus, Result};
 pub use impactcheck_physics::{
-    actuator, analytical, body, contact, dynamics, error, file, flight, fluid, kinds, material, numerics,
-    result,
+    actuator, analytical, body, contact, dynamics, error, file, flight, fluid, material, numerics, result,
 };

@@ -2,7 +2,7 @@
 
 use crate::curves::{CommonAxis, at};
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::deflection::deflection;
+use crate::kinds::{self, Use};
 use crate::reference::{FieldMesh, Stored};
 use crate::result::{Outcome, Source};
 use crate::scene::{Geometry, Scene};
@@ -44,7 +44,7 @@ impl Movement {
     /// [`Error::Usage`] if it can't be told for this scene, [`Error::Reference`] for fields that can't be read, and those of
     /// the model.
     pub fn of(scene: &Scene, stored: &Stored, reduced: &[Outcome]) -> Result<Self> {
-        let setup = scene.plate_impact()?;
+        let kind = kinds::serving(scene, Use::Animation)?;
         let own = reduced.iter().enumerate().filter(|(_, outcome)| outcome.summary.source == Source::Reduced);
         let ranked = own.max_by(|a, b| a.1.summary.model.cmp(&b.1.summary.model));
         let named = |outcome: &Outcome| outcome.summary.model.as_deref().and_then(|name| name.parse().ok());
@@ -58,9 +58,8 @@ impl Movement {
         if fields.is_empty() {
             times = evenly(&stored.outcome);
         }
-        let radii: Vec<f64> =
-            (0..RADII).map(|k| setup.plate.radius * k as f64 / (RADII - 1) as f64).collect();
-        let deflection = deflection(scene, (name, outcome.summary.modes), &outcome.history, &radii, &times)?;
+        let model_of = (name, outcome.summary.modes);
+        let (radii, deflection) = kind.deflection(scene, model_of, &outcome.history, RADII, &times)?;
         let body = |name| at(name, &outcome.history, times.iter().copied());
         let bodies = [body("outer_displacement"), body("inner_displacement")];
         Ok(Movement { times, fields, model, radii, deflection, bodies })

@@ -12,7 +12,7 @@ mod scene;
 use detached::detached;
 use impactcheck::cli::in_process::{self, Asked, AskedModel, Comparing};
 use impactcheck::interrupt;
-use impactcheck::kinds::plate_impact::shared::SharedBodies;
+use impactcheck::kinds::SharedBodies;
 use impactcheck::result::Outcome;
 use impactcheck::{Error, Result, cli, project, reference};
 use pyo3::prelude::*;

@@ -4,12 +4,10 @@
 //! is run over its own tolerances; at each error the quickest run that is at least that good counts.
 
 mod figure;
-mod integrators;
-mod models;
-mod series;
+mod kinds;
 
 pub use figure::figure;
-pub use series::Series;
+pub use kinds::Series;
 
 use crate::error::Result;
 use crate::reference::Store;
@@ -130,18 +128,7 @@ pub fn run(settings: &Settings, store: &Store, note: &dyn Fn(&str)) -> Result<Be
         series: Vec::new(),
         notes: Vec::new(),
     };
-    for &modes in &settings.modes {
-        note(&format!("integrators with {modes} modes"));
-        integrators::run(modes, settings, &mut bench)?;
-    }
-    if settings.models {
-        note("models and meshes");
-        models::run(store, &mut bench)?;
-    }
-    if settings.series > 0 {
-        note("impacts in series");
-        series::run(settings, &mut bench)?;
-    }
+    kinds::run(settings, store, note, &mut bench)?;
     bench.ratios.splice(0..0, integrator_ratios(&bench.work_precision));
     Ok(bench)
 }

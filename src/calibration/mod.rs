@@ -4,8 +4,7 @@ pub mod fit;
 mod residuals;
 
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::reduced::Reduced;
-use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::kinds::{self, Series};
 use crate::measured::{AlignedRecord, ContactEnds, Filtered, Finding, FindingKind, Record, Speed, align_all};
 use crate::result::{CUT, SCHEMA_VERSION};
 use crate::scene::{Field, Model, Template};
@@ -91,18 +90,18 @@ pub fn calibrate(
     let nominal = fields.iter().map(|field| nominal(template, field)).collect::<Result<Vec<f64>>>()?;
     let ranges =
         fields.iter().zip(&nominal).map(|(field, x)| (field.path(), [x * (1.0 - REACH), x * (1.0 + REACH)]));
-    let bodies = SharedBodies::for_varied(ranges, template.scene().plate_impact()?, IMPACTS);
+    let approach = kinds::of(template.scene()).approach(template.scene())?;
+    let series = Series::new(ranges, template.scene(), None, IMPACTS)?;
     let run = |values: &[f64]| {
         let numbers: Vec<(&Field, f64)> = fields.iter().zip(values.iter().copied()).collect();
         let scene = template.with(&numbers).map_err(|e| Error::Usage(e.to_string()))?;
-        Reduced::in_series(scene, model, None, &bodies)?.run_with_history(TOLERANCE)
+        series.model(scene, model, None)?.run_with_history(TOLERANCE)
     };
     let start = run(&nominal)?;
     let ends = ContactEnds::of(&start.summary).ok_or_else(|| Error::Solver(CUT.into()))?;
     let filtered = Filtered::new(&start.history, bandwidth)?;
-    let setup = template.scene().plate_impact()?;
     let how = (bandwidth, speed);
-    let aligned = align_all(records, &filtered, ends, setup, how)?;
+    let aligned = align_all(records, &filtered, ends, &approach, how)?;
     let used: Vec<CalibrationRecord> = aligned.iter().map(CalibrationRecord::of).collect();
     let aligned: Vec<AlignedRecord> = aligned.into_iter().filter(|record| !record.is_copy).collect();
     let end = start.history.time.last().copied().unwrap_or(0.0) + 2.0 / bandwidth;
@@ -178,6 +177,7 @@ fn document(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinds::plate_impact::reduced::Reduced;
     use crate::measured::{BANDWIDTH, Channel, low_pass};
     use std::path::PathBuf;
 

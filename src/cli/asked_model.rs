@@ -1,14 +1,11 @@
 //! Models as the command line names them: A, B, C, `auto`, or `external`; and what is asked of one.
 
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::choice;
-use crate::kinds::plate_impact::reduced::Reduced;
 use crate::result::Choice;
-use crate::scene::{Model, Scene};
+use crate::scene::Model;
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
-use std::time::Instant;
 
 /// A reduced model, the program's choice, or the programs that the scene names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,38 +87,6 @@ pub(super) fn told(choice: &Choice) -> String {
     }
     lines.push(format!("  {}", choice.reason));
     lines.join("\n")
-}
-
-/// The `models` of `scene`, each once, in the order asked for, with the time in s that each took to set up. A model that is
-/// named and also chosen by auto is compared as auto chose it.
-pub(super) fn set_up(
-    scene: &Scene,
-    models: &[AskedModel],
-    tolerance: Option<f64>,
-) -> Result<Vec<(Reduced, f64)>> {
-    let timed = |set_up: &dyn Fn() -> Result<Reduced>| {
-        let start = Instant::now();
-        set_up().map(|body| (body, start.elapsed().as_secs_f64()))
-    };
-    let mut chosen = None;
-    if models.contains(&AskedModel::Auto) {
-        let tolerance = tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
-        chosen = Some(timed(&|| Reduced::auto(scene, tolerance))?);
-    }
-    let auto = chosen.as_ref().map(|(body, _)| body.model());
-    let mut done = Vec::new();
-    let mut bodies = Vec::new();
-    for asked in models {
-        match *asked {
-            AskedModel::Auto => bodies.extend(chosen.take()),
-            AskedModel::Named(model) if auto != Some(model) && !done.contains(&model) => {
-                done.push(model);
-                bodies.push(timed(&|| Reduced::new(scene, model, None))?);
-            }
-            AskedModel::Named(_) | AskedModel::External => {}
-        }
-    }
-    Ok(bodies)
 }
 
 /// The model that is asked for; what is left out is the scene's or the program's choice.

@@ -4,6 +4,7 @@ use super::{Context, JsonArgument, compare_inputs};
 use crate::calibration::{Calibration, calibrate};
 use crate::error::{Error, ExitStatus, Result};
 use crate::format::{percent, prefixed, with_unit};
+use crate::kinds::{self, Use};
 use crate::measured::{Record, Speed};
 use crate::scene::{self, Model, Template};
 use clap::Args;
@@ -35,7 +36,7 @@ pub struct Arguments {
 /// Fits, and prints what the records tell.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let template = Template::read(scene::resolve(&arguments.scene)?)?;
-    template.scene().plate_impact()?;
+    kinds::serving(template.scene(), Use::Records)?;
     let mut names = arguments.over.clone();
     names.sort();
     if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {

@@ -4,6 +4,7 @@ use crate::ci::acceptance::Acceptance;
 use crate::ci::tolerance_watch;
 use crate::comparison::ChangedTolerance;
 use crate::error::{Error, Result};
+use crate::kinds::{self, Use};
 use crate::measured::Record;
 use crate::project::project_root;
 use crate::report::{FIGURE_WIDTHS, FigureFile};
@@ -53,7 +54,7 @@ pub(super) fn figures(
     let Some(file) = file else { return Ok(Vec::new()) };
     let format = FigureFile::of(file)?;
     if let (FigureFile::Animation, Some((_, scene))) =
-        (format, scenes.iter().find(|(_, scene)| scene.plate_impact().is_err()))
+        (format, scenes.iter().find(|(_, scene)| !kinds::of(scene).serves(Use::Animation)))
     {
         return Err(Error::Usage(format!(
             "--figure {}: scene `{}` is no plate impact, the only kind that is animated",
@@ -97,10 +98,10 @@ pub(super) fn figure_width(text: &str) -> std::result::Result<f64, String> {
 
 /// The measured files; they belong to one scene.
 pub(super) fn records(files: &[PathBuf], scenes: &[(PathBuf, Scene)]) -> Result<Vec<Record>> {
-    let plates = scenes.iter().filter(|(_, scene)| scene.plate_impact().is_ok()).count();
-    if !files.is_empty() && (plates != 1 || scenes.len() != 1) {
+    let measurable = scenes.iter().filter(|(_, scene)| kinds::of(scene).serves(Use::Records)).count();
+    if !files.is_empty() && (measurable != 1 || scenes.len() != 1) {
         return Err(Error::Usage(format!(
-            "--measured needs exactly one plate impact, to which the files belong; there are {} scenes, {plates} of that kind",
+            "--measured needs exactly one plate impact, to which the files belong; there are {} scenes, {measurable} of that kind",
             scenes.len()
         )));
     }

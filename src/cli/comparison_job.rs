@@ -68,7 +68,7 @@ impl<'a> Job<'a> {
                 scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
             scenes = kept;
             for (_, scene) in left_out {
-                context.note(format_args!("{}", kinds::lacks(&scene)));
+                context.note(format_args!("{}", crate::kinds::models_only(&scene)));
             }
         }
         Self::of(arguments, scenes)
@@ -91,7 +91,11 @@ impl<'a> Job<'a> {
             scenes.iter().find(|(_, scene)| !kinds::has_one_of(scene, &arguments.models))
         {
             let names: Vec<String> = arguments.models.iter().map(AskedModel::to_string).collect();
-            return Err(Error::Usage(format!("--models {}: {}", names.join(","), kinds::lacks(scene))));
+            return Err(Error::Usage(format!(
+                "--models {}: {}",
+                names.join(","),
+                crate::kinds::models_only(scene)
+            )));
         }
         if arguments.models.contains(&AskedModel::External) {
             arguments.permission.ask(&scenes)?;

@@ -11,7 +11,7 @@ use super::optimise::{self, Solved};
 use super::{Context, compare_inputs, kinds, stored_references};
 use crate::comparison::Comparison;
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::kinds::SharedBodies;
 use crate::measured::Speed;
 use crate::optimise::Watch;
 use crate::reference::Resolution;

@@ -3,6 +3,7 @@
 use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
+use crate::kinds::{self, Use};
 use crate::reference::{self, Resolution};
 use clap::Args;
 use std::path::PathBuf;
@@ -31,7 +32,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         return Err(Error::Usage(format!("--size-factor {factor} has to lie between 0.1 and 10")));
     }
     let (_, scene) = super::read_scene(&arguments.scene)?;
-    scene.seal_seat()?;
+    kinds::serving(&scene, Use::MeshFile)?;
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.vtu", scene.name)));
     let python = reference::python()?;
     let bar = Bar::new(context, &scene.name);

@@ -4,39 +4,29 @@ use super::Context;
 use super::schema::FILE;
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
+use crate::kinds::{KINDS, Starter};
 use crate::scene::Scene;
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
-
-/// Kind of scene.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Kind {
-    /// A body strikes a plate, the plate passes the blow to a body behind it
-    PlateImpact,
-    /// A sphere is launched out of a flexibly mounted conical seat
-    SealSeat,
-}
-
-impl Kind {
-    /// A scene of this kind, whose name is `NAME`.
-    fn starter(self) -> &'static str {
-        match self {
-            Kind::PlateImpact => include_str!("starters/plate-impact.toml"),
-            Kind::SealSeat => include_str!("starters/seal-seat.toml"),
-        }
-    }
-}
 
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Name of the scene, or its file; the file is NAME.toml
     name: PathBuf,
     /// What strikes what
-    #[arg(long, value_enum, default_value = "plate-impact")]
-    kind: Kind,
+    #[arg(long, default_value = KINDS[0].name(), value_parser = starters())]
+    kind: Starter,
     /// The file to write instead [default: NAME.toml]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+}
+
+/// Takes the name of a kind.
+fn starters() -> impl TypedValueParser<Value = Starter> {
+    let names = KINDS.map(|kind| PossibleValue::new(kind.name()).help(kind.starter().about));
+    let named = |name: String| KINDS.into_iter().find(|kind| kind.name() == name);
+    PossibleValuesParser::new(names).map(move |name| named(name).expect("a possible value").starter())
 }
 
 /// Writes a valid scene file and, beside it, the schema that its first line names; a scene that exists stays as it is.
@@ -51,7 +41,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             file.display()
         )));
     }
-    let text = format!("#:schema ./{FILE}\n{}", arguments.kind.starter().replacen("NAME", name, 1));
+    let text = format!("#:schema ./{FILE}\n{}", arguments.kind.text.replacen("NAME", name, 1));
     // a name that can't be one is refused as it would be in a file
     Scene::parse(&file.display().to_string(), &text)?;
     write_file(&file.with_file_name(FILE), crate::kinds::schema().to_string().as_bytes())?;

@@ -5,7 +5,7 @@ use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::format::{prefixed, with_unit};
-use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::kinds::SharedBodies;
 use crate::report;
 use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
 use crate::table_format::TableFormat;

@@ -4,7 +4,8 @@ use super::Context;
 use super::reference::require_sound;
 use super::stored_references::look_up;
 use crate::error::Result;
-use crate::reference::{Resolution, Stored, calculix_takes};
+use crate::kinds;
+use crate::reference::{Resolution, Stored};
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
 
@@ -39,7 +40,7 @@ pub(super) fn beside(
     resolution: Resolution,
     asked: Asked,
 ) -> Result<Option<Stored>> {
-    let Some(resolution) = resolution.by_calculix().filter(|_| calculix_takes(scene)) else {
+    let Some(resolution) = resolution.by_calculix().filter(|_| kinds::of(scene).calculix_takes(scene)) else {
         return Ok(None);
     };
     let Asked::Required { compute } = asked else {

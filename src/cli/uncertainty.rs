@@ -6,7 +6,7 @@ use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::format::{percent, prefixed, with_unit};
-use crate::kinds::plate_impact::PlateQuantities;
+use crate::kinds::{KINDS, Use};
 use crate::report::{self, FigureFormat};
 use crate::scene::{self, Model, Template, suggestion};
 use crate::table_format::TableFormat;
@@ -67,8 +67,13 @@ fn samples(text: &str) -> std::result::Result<Asked, String> {
 
 /// A result that scatters.
 fn quantity(name: &str) -> std::result::Result<String, String> {
-    let names =
-        || PlateQuantities::ALL.iter().filter(|quantity| !quantity.is_count).map(|quantity| quantity.name);
+    let names = || {
+        let sampled = KINDS.into_iter().filter(|kind| kind.serves(Use::Samples));
+        sampled
+            .flat_map(|kind| kind.quantities())
+            .filter(|quantity| !quantity.is_count)
+            .map(|quantity| quantity.name)
+    };
     if names().any(|known| known == name) {
         return Ok(name.to_owned());
     }

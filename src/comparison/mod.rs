@@ -7,12 +7,12 @@
 //! It is fail, too, if one of the two results contradicts itself ([`Check`]): a history that does not
 //! belong to its summary proves nothing, whatever the summary says.
 
-pub mod budget;
 mod changed_tolerance;
 mod common_mesh;
 mod discrepancy;
 mod impacts;
 mod integrity;
+mod kinds;
 mod landing;
 mod moved;
 mod reference_check;
@@ -25,6 +25,7 @@ pub use common_mesh::difference_band;
 pub use discrepancy::{BandVerdict, Discrepancy};
 pub use impacts::value_in;
 pub use integrity::{Check, NO_RESULT, check as integrity};
+pub use kinds::budget;
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
 pub use reference_check::{ReferenceCheck, ReferenceRow};
 pub use series::{ORDER, STANDARD_ERRORS};
@@ -32,7 +33,6 @@ pub use verdict::{GateRules, Undecided, Verdict};
 
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, align, peak};
 use crate::error::Result;
-use crate::kinds;
 use crate::measured::Measured;
 use crate::result::{Curve, FlightSummary, Outcome, Quantity, SCHEMA_VERSION, Source, Summary};
 use crate::scene::{Model, Scene, Tolerances};
@@ -324,7 +324,7 @@ fn compare_model(
     let tolerances = scene.tolerances.get(&name).unwrap_or(&none);
     let aligned = window.map_or_else(Vec::new, |w| align(w, &reference.history, &reduced.history));
 
-    let kind = kinds::of(scene);
+    let kind = crate::kinds::of(scene);
     let (m, c) = (&reference.summary, &reduced.summary);
     let mut discrepancies = quantities(kind, reference, c, tolerances);
     discrepancies.extend(impacts::rows(m, c, tolerances));
@@ -351,7 +351,7 @@ fn compare_model(
 
 /// The rows of the summary's quantities.
 fn quantities(
-    kind: &dyn kinds::Kind,
+    kind: &dyn crate::kinds::Kind,
     reference: &Outcome,
     reduced: &Summary,
     tolerances: &Tolerances,

@@ -9,8 +9,8 @@ use super::record::{Channel, Record};
 use super::screen::screened;
 use super::structure::Disturbance;
 use crate::error::{Error, Result};
+use crate::kinds::Approach;
 use crate::result::Summary;
-use crate::scene::PlateImpact;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -123,12 +123,12 @@ pub(super) struct Alignment<'a> {
     pub record: Record,
     pub model: &'a Filtered,
     pub ends: ContactEnds,
-    pub setup: &'a PlateImpact,
+    pub approach: &'a Approach,
     pub bandwidth: f64,
     pub speed: Speed,
 }
 
-/// Lays `record` over `model`, the filtered history of a model or reference with the contacts' `ends` in the impact `setup`.
+/// Lays `record` over `model`, the filtered history of a model or reference with the contacts' `ends` after the `approach`.
 ///
 /// # Errors
 /// [`Error::Scene`] if the record shows no free flight before the impact, no impact like that of the scene, or more energy after
@@ -137,11 +137,11 @@ pub fn align(
     record: &Record,
     model: &Filtered,
     ends: ContactEnds,
-    setup: &PlateImpact,
+    approach: &Approach,
     (bandwidth, speed): (f64, Speed),
 ) -> Result<AlignedRecord> {
     let (record, findings) = screened(record, bandwidth);
-    Alignment { record, model, ends, setup, bandwidth, speed }.run(findings)
+    Alignment { record, model, ends, approach, bandwidth, speed }.run(findings)
 }
 
 /// [`align`] of several records, with the findings that take them together.
@@ -152,10 +152,10 @@ pub fn align_all(
     records: &[Record],
     model: &Filtered,
     ends: ContactEnds,
-    setup: &PlateImpact,
+    approach: &Approach,
     how: (f64, Speed),
 ) -> Result<Vec<AlignedRecord>> {
-    let aligned = records.iter().map(|record| align(record, model, ends, setup, how));
+    let aligned = records.iter().map(|record| align(record, model, ends, approach, how));
     let mut aligned = aligned.collect::<Result<Vec<_>>>()?;
     duplicate::mark(&mut aligned);
     Ok(aligned)
@@ -312,7 +312,7 @@ impl Alignment<'_> {
         }
         let (flight, errors) = (self.fitted(k, &free)?, free.errors(self.bandwidth));
         let outer = quantity.starts_with("outer");
-        let known = if outer { -self.setup.outer.speed } else { self.setup.inner.speed };
+        let known = if outer { -self.approach.outer_speed } else { self.approach.inner_velocity };
         let trusted = outer && self.speed == Speed::Measured;
         // the part of the fit that the motion leaves
         let measured = if free.is_velocity { flight.level } else { flight.slope };

@@ -9,8 +9,8 @@ use super::noise::NORMAL_95;
 use super::record::Record;
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::CURVES;
-use crate::result::{CUT, Outcome};
+use crate::kinds;
+use crate::result::{CUT, Curve, Outcome};
 use crate::scene::Scene;
 use crate::uncertainty::Scatter;
 use crate::uncertainty::validation::Assessment;
@@ -134,14 +134,15 @@ pub fn compare(
     reduced: &[Outcome],
     (bandwidth, speed): (f64, Speed),
 ) -> Result<Measured> {
-    let setup = scene.plate_impact()?;
+    let kind = kinds::of(scene);
+    let approach = kind.approach(scene)?;
     let window = CommonAxis::of_reference(reference).ok_or_else(|| {
         Error::Reference(format!("the history of the reference of `{}` can't be used", scene.name))
     })?;
     let model = Filtered::new(&reference.history, bandwidth)?;
     let ends = ContactEnds::of(&reference.summary)
         .ok_or_else(|| Error::Reference(format!("the reference of `{}`: {CUT}", scene.name)))?;
-    let records = align_all(records, &model, ends, setup, (bandwidth, speed))?;
+    let records = align_all(records, &model, ends, &approach, (bandwidth, speed))?;
     let first = records.first().ok_or_else(|| Error::Usage("no measured file is given".into()))?;
     let window = CommonAxis { end: window.end.min(first.time.last().copied().unwrap_or(0.0)), ..window };
     if window.end <= window.start {
@@ -180,7 +181,7 @@ pub fn compare(
                 efficiency_difference: efficiency.as_ref().and_then(|series| Some(own? - series.mean)),
                 validation: None,
                 area: None,
-                curves: metrics(&curves, &filtered, window),
+                curves: metrics(kind.curves(), (&curves, &filtered), window),
                 filtered,
             })
         })
@@ -198,9 +199,13 @@ fn sampled(record: &AlignedRecord, window: CommonAxis) -> Vec<SampledCurve> {
     record.signals.iter().map(of).collect()
 }
 
-fn metrics(measured: &[SampledCurve], filtered: &[SampledCurve], axis: CommonAxis) -> Vec<CurveMetrics> {
+fn metrics(
+    known: &[Curve],
+    (measured, filtered): (&[SampledCurve], &[SampledCurve]),
+    axis: CommonAxis,
+) -> Vec<CurveMetrics> {
     let pair = |curve: &SampledCurve| {
-        let known = CURVES.iter().find(|known| known.name == curve.quantity)?;
+        let known = known.iter().find(|known| known.name == curve.quantity)?;
         let partner = filtered.iter().find(|other| other.quantity == curve.quantity)?;
         let aligned = AlignedCurve {
             quantity: known.name,

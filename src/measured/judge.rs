@@ -6,7 +6,7 @@ use super::flight::{Flight, FlightErrors, FreeFlight};
 use super::noise::NORMAL_95;
 use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
-use crate::scene::Shape;
+use crate::kinds::Approach;
 
 /// Standard errors from which on a drift counts as found, and what it makes up over the record, over the step of the impact.
 const SIGNIFICANT_DRIFT: f64 = 5.0;
@@ -84,11 +84,11 @@ impl Alignment<'_> {
                 seen.iter().find(|seen| seen.correction.quantity == name)
             })
         };
-        let outer_velocity_initial = of("outer").map_or(-self.setup.outer.speed, |seen| seen.before);
+        let outer_velocity_initial = of("outer").map_or(-self.approach.outer_speed, |seen| seen.before);
         let trusted = of("outer").filter(|_| self.speed == Speed::Measured);
         let initial_error = trusted.and_then(|seen| seen.errors).map_or(0.0, |errors| errors.before);
         let [inner, outer] = ["inner", "outer"].map(|body| of(body).and_then(Seen::after));
-        let masses = self.masses();
+        let masses = self.approach.masses;
         // kinetic energy over that of the outer body before the impact, and the half width of its 95 % interval
         let share = |mass: f64, (velocity, error): (f64, f64)| {
             let ratio = velocity / outer_velocity_initial;
@@ -106,12 +106,6 @@ impl Alignment<'_> {
             efficiency,
             findings,
         })
-    }
-
-    /// Masses of the outer and the inner body, kg.
-    fn masses(&self) -> [f64; 2] {
-        let (outer, inner) = (&self.setup.outer, &self.setup.inner);
-        [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)]
     }
 
     /// Begin and end of the record on its own clock, s.
@@ -256,11 +250,10 @@ impl Alignment<'_> {
         outer: Option<(f64, f64)>,
     ) -> Result<Option<Finding>> {
         // an elastic outer body has energy besides that of its motion, a driven one gets more
-        let rigid = matches!(self.setup.outer.shape, Shape::Sphere { .. } | Shape::Compact { .. });
-        let Some(inner) = inner.filter(|_| rigid) else { return Ok(None) };
+        let Some(inner) = inner.filter(|_| self.approach.outer_is_rigid) else { return Ok(None) };
         let outer = outer.unwrap_or((0.0, 0.0));
-        let masses = self.masses();
-        let brought = 1.0 + masses[1] / masses[0] * (self.setup.inner.speed / self.setup.outer.speed).powi(2);
+        let Approach { outer_speed, inner_velocity, masses, .. } = self.approach;
+        let brought = 1.0 + masses[1] / masses[0] * (inner_velocity / outer_speed).powi(2);
         let (share, uncertainty) = (inner.0 + outer.0, inner.1.hypot(outer.1));
         if share - EXCESS * uncertainty < brought && inner.0 <= brought {
             return Ok(None);

@@ -3,7 +3,7 @@
 use super::filter::SIGNALS;
 use crate::curves::table::{self, Columns};
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::CURVES;
+use crate::kinds::KINDS;
 use crate::result::Curve;
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ const FEWEST: usize = 32;
 /// One measured signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// Its name in [`CURVES`]: `outer_velocity`, `inner_displacement`, ...
+    /// Its name among the curves: `outer_velocity`, `inner_displacement`, ...
     pub quantity: &'static str,
     /// Values in SI. Shape of the record's time.
     pub values: Vec<f64>,
@@ -53,8 +53,8 @@ impl Record {
     }
 
     fn parse(path: &Path, bytes: &[u8]) -> std::result::Result<Self, String> {
-        let known: Vec<Curve> =
-            CURVES.iter().filter(|curve| SIGNALS.contains(&curve.name)).cloned().collect();
+        let curves = KINDS.into_iter().flat_map(|kind| kind.curves());
+        let known: Vec<Curve> = curves.filter(|curve| SIGNALS.contains(&curve.name)).cloned().collect();
         let mut reader = table::csv_reader(bytes, b',');
         let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
         let columns = table::by_heading(&header, &known)?;

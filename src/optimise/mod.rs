@@ -12,10 +12,8 @@ pub use objective::Objective;
 pub use robust::{Robust, RobustOptimum};
 
 use crate::error::{Error, Result};
-use crate::format::words;
-use crate::kinds::plate_impact::reduced::Reduced;
-use crate::kinds::seal_seat::SeatMesh;
-use crate::kinds::{Series as Impacts, SeriesModel};
+use crate::format::{rounded, words};
+use crate::kinds::{self, FollowedMesh, Series as Impacts, SeriesModel};
 use crate::report::{ChartPanel, Series, chart};
 use crate::result::{CUT, Outcome, SCHEMA_VERSION, Summary};
 use crate::scene::{Field, Model, Scene, Template};
@@ -29,8 +27,8 @@ pub type Watch<'a> = dyn Fn(Option<f64>) -> bool + Sync + 'a;
 
 /// Relative error of the efficiency that the time integration may have: far below what tells two points apart.
 const TOLERANCE: f64 = 1e-7;
-/// The same of a seal seat's velocity.
-const SEAT_TOLERANCE: f64 = 1e-4;
+/// The same where an impact takes tenths of a second.
+const EXPENSIVE_TOLERANCE: f64 = 1e-4;
 /// Impacts that a search may be expected to take.
 const IMPACTS: usize = 100;
 /// Significant digits of the optimum: more are lost in how flat it is, and fewer make a scene one can name.
@@ -170,7 +168,7 @@ impl Problem {
         variables: Vec<Variable>,
         objective: Objective,
         (model, modes): (Model, Option<usize>),
-        mesh: Option<&SeatMesh>,
+        mesh: Option<&FollowedMesh>,
         robust: Option<Robust>,
     ) -> Result<Self> {
         let mut names: Vec<&str> = variables.iter().flat_map(|v| &v.fields).map(Field::path).collect();
@@ -191,8 +189,8 @@ impl Problem {
         // the first that names a field is believed
         let ranges = scattered.into_iter().chain(varied);
         let scene = template.scene();
-        if mesh.is_some() && model != Model::C {
-            return Err(Error::Usage(format!("--model {model}: a seal seat has model C only")));
+        if !kinds::of(scene).models().contains(&model) {
+            return Err(Error::Usage(format!("--model {model}: {}", kinds::models_only(scene))));
         }
         let series = Impacts::new(ranges, scene, mesh, impacts)?;
         Ok(Problem { template, variables, objective, model, modes, series, robust })
@@ -235,7 +233,7 @@ impl Problem {
 
     /// Relative error that the time integration may have.
     fn tolerance(&self) -> f64 {
-        if self.series.is_dear() { SEAT_TOLERANCE } else { TOLERANCE }
+        if self.series.is_dear() { EXPENSIVE_TOLERANCE } else { TOLERANCE }
     }
 
     fn model(&self, values: &[f64]) -> Result<SeriesModel> {
@@ -254,14 +252,16 @@ impl Problem {
     /// # Errors
     /// Those of the model.
     fn efficiency_of(&self, model: Model, values: &[f64]) -> Result<f64> {
-        let reduced = Reduced::new(&self.scene(values)?, model, None)?;
-        Ok(reduced.point(TOLERANCE)?.quantities.efficiency)
+        let scene = self.scene(values)?;
+        let alone = Impacts::new([], &scene, None, 1)?;
+        let summary = alone.model(scene, model, None)?.run(TOLERANCE)?;
+        summary.value("efficiency").ok_or_else(|| Error::Solver(CUT.into()))
     }
 
     /// The impact with `values` for the variables, with its history.
     ///
     /// # Errors
-    /// As [`Reduced::run_with_history`].
+    /// As [`SeriesModel::run_with_history`].
     pub fn outcome(&self, values: &[f64]) -> Result<Outcome> {
         self.model(values)?.run_with_history(self.tolerance())
     }
@@ -294,8 +294,12 @@ impl Problem {
             values: place(&tried.at),
             objective: tried.value,
         };
-        let values: Vec<f64> =
-            self.variables.iter().zip(&exact).map(|(v, x)| rounded(*x).clamp(v.low, v.high)).collect();
+        let values: Vec<f64> = self
+            .variables
+            .iter()
+            .zip(&exact)
+            .map(|(v, x)| rounded(*x, DIGITS).clamp(v.low, v.high))
+            .collect();
         let summary = self.model(&values)?.run(self.tolerance())?;
         let cut = || Error::Solver(CUT.into());
         let efficiency = summary.value("efficiency").ok_or_else(cut)?;
@@ -420,9 +424,4 @@ impl Optimum {
         }
         writer.into_inner().map_err(|e| Error::Internal(format!("writing CSV: {e}")))
     }
-}
-
-/// `value` with [`DIGITS`] significant digits.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }

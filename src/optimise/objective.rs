@@ -1,7 +1,7 @@
 //! What is made as large as can be.
 
 use crate::error::{Error, Result};
-use crate::kinds;
+use crate::kinds::{self, INTENDED_SPEED};
 use crate::scene::{Scene, suggestion};
 
 /// A number of a result that is to be large.
@@ -9,27 +9,21 @@ use crate::scene::{Scene, suggestion};
 pub enum Objective {
     /// The quantity of this name and unit.
     Quantity(&'static str, &'static str),
-    /// Of a seal seat: the sphere's velocity along the intended direction, m/s, if it flies within so much (rad) of it; beyond that
-    /// less by ten times itself per rad.
+    /// The speed along the direction that a scene intends, m/s, with a direction within so much (rad) of it; beyond that less.
     IntendedSpeed(f64),
 }
 
-/// What a direction beyond the bound costs, per rad: more than any design gains by it.
-const ASTRAY: f64 = 10.0;
-
-/// Name of [`Objective::IntendedSpeed`].
-const INTENDED_SPEED: &str = "intended_speed";
-
 impl Objective {
-    /// The one called `name` for `scene`; without name the efficiency of a plate's impact, and of a seal seat the speed in the
-    /// intended direction, `within` so many rad of it if given.
+    /// The one called `name` for `scene`; without name that of its kind, a speed in an intended direction `within` so many rad of it
+    /// if given.
     ///
     /// # Errors
     /// [`Error::Usage`] if the scene has no such quantity, or `within` belongs to none.
     pub fn of(name: Option<&str>, within: Option<f64>, scene: &Scene) -> Result<Self> {
-        let is_seat = scene.seal_seat().is_ok();
-        let name = name.unwrap_or(if is_seat { INTENDED_SPEED } else { "efficiency" });
-        if is_seat && name == INTENDED_SPEED {
+        let kind = kinds::of(scene);
+        let name = name.unwrap_or(kind.objective());
+        let intends = kind.objective() == INTENDED_SPEED;
+        if intends && name == INTENDED_SPEED {
             return Ok(Self::IntendedSpeed(within.unwrap_or(std::f64::consts::PI)));
         }
         if within.is_some() {
@@ -37,13 +31,13 @@ impl Objective {
                 "--within belongs to the {INTENDED_SPEED} of a seal seat, not to {name}"
             )));
         }
-        let quantities = kinds::of(scene).quantities();
+        let quantities = kind.quantities();
         if let Some(quantity) = quantities.iter().find(|quantity| quantity.name == name && !quantity.is_count)
         {
             return Ok(Self::Quantity(quantity.name, quantity.unit));
         }
         let names: Vec<&str> =
-            is_seat.then_some(INTENDED_SPEED).into_iter().chain(quantities.iter().map(|q| q.name)).collect();
+            intends.then_some(INTENDED_SPEED).into_iter().chain(quantities.iter().map(|q| q.name)).collect();
         let hint = suggestion(name, names.iter().copied()).map(|near| format!("; did you mean `{near}`?"));
         Err(Error::Usage(format!(
             "--objective {name}: scene `{}` has no such number{} (there: {})",
@@ -73,13 +67,7 @@ impl Objective {
     pub fn value(self, scene: &Scene, value: impl Fn(&str) -> Option<f64>) -> Option<f64> {
         match self {
             Self::Quantity(name, _) => value(name),
-            Self::IntendedSpeed(within) => {
-                let intended = scene.seal_seat().ok()?.intended_angle;
-                let [x, z] = [value("sphere_velocity_x")?, value("sphere_velocity_z")?];
-                let along = x * intended.sin() + z * intended.cos();
-                let astray = ((x.atan2(z) - intended).abs() - within).max(0.0);
-                Some(along - ASTRAY * astray * along.abs())
-            }
+            Self::IntendedSpeed(within) => kinds::of(scene).intended_speed(scene, within, &value),
         }
     }
 }

@@ -1,24 +1,25 @@
 //! What a reference solution was made from, and how that differs from what is asked for.
 
 use super::Resolution;
+use crate::kinds;
 use crate::kinds::unit_of;
+use crate::scene::Scene;
 use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
-use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Counts changes of `fem_reference` that change the results of a kind of scene and geometry; raising it makes their stored solutions
-/// stale.
+/// Revision of the method that the reference of `scene` is made with.
 pub fn revision(scene: &Scene) -> u32 {
-    match scene.reference.geometry {
-        Geometry::Solid if scene.plate_impact().is_ok() => 5,
-        _ => 4,
-    }
+    kinds::of(scene).revision(scene.reference.geometry)
 }
 
 /// The same of the results by CalculiX.
 const CALCULIX_REVISION: u32 = 1;
+
+/// Keys of a scene that no exact solution depends on, and the hashes beside them.
+const NOT_HASHED: [&str; 6] =
+    ["name", "description", "reference", "scene_hash", "geometry_hash", "settings_hash"];
 
 /// SHA-256 (hexadecimal) of how the reference of `scene` is computed: its settings, the
 /// resolution and the revision of the method.
@@ -45,8 +46,8 @@ pub(super) fn solver_document(scene: &Scene, resolution: Resolution) -> Result<V
         fields.remove(foreign);
     }
     fields.insert("scene_hash".into(), scene.hash().into());
-    if let Ok(setup) = scene.seal_seat() {
-        fields.insert("geometry_hash".into(), setup.geometry_hash().into());
+    if let Some(hash) = kinds::of(scene).geometry_hash(scene) {
+        fields.insert("geometry_hash".into(), hash.into());
     }
     fields.insert("settings_hash".into(), settings_hash(scene, resolution).into());
     Ok(document)
@@ -58,26 +59,11 @@ pub(super) fn staleness(provenance: &Value, scene: &Scene, resolution: Resolutio
     let stored = &provenance["scene"];
     let mut reasons = Vec::new();
     if provenance["scene_hash"] != present["scene_hash"] {
-        let physical = [
-            "kind",
-            "plate",
-            "outer",
-            "inner",
-            "friction",
-            "fluid",
-            "seat",
-            "sphere",
-            "actuator",
-            "series",
-            "intended_angle",
-            "run",
-        ];
         let mut changes = Vec::new();
-        // what is no part of the hash made no difference
-        let [mut old, mut new] = [stored.clone(), present.clone()];
-        [&mut old, &mut new].into_iter().for_each(drop_inelastic);
-        for key in physical {
-            differences(key, &old[key], &new[key], &mut changes);
+        let [old, new] = [stored, &present].map(hashed);
+        let keys: BTreeSet<&String> = old.keys().chain(new.keys()).collect();
+        for key in keys {
+            differences(key, member(&old, key), member(&new, key), &mut changes);
         }
         reasons.push(sentence("the scene has changed", &changes, "scene_hash", provenance, &present));
     }
@@ -91,6 +77,15 @@ pub(super) fn staleness(provenance: &Value, scene: &Scene, resolution: Resolutio
         reasons.push(sentence("the settings have changed", &changes, "settings_hash", provenance, &present));
     }
     Ok((!reasons.is_empty()).then(|| reasons.join("; ")))
+}
+
+/// What of `document`, the scene of a solver, is part of the scene's hash.
+fn hashed(document: &Value) -> Map<String, Value> {
+    let mut document = document.clone();
+    drop_inelastic(&mut document);
+    let mut fields = document.as_object().cloned().unwrap_or_default();
+    fields.retain(|key, _| !NOT_HASHED.contains(&key.as_str()));
+    fields
 }
 
 fn sentence(what: &str, changes: &[String], hash: &str, old: &Value, new: &Value) -> String {
@@ -130,5 +125,26 @@ fn show(value: &Value) -> String {
         Value::Null => "none".to_owned(),
         Value::String(text) => text.clone(),
         other => canonical(other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Also of a kind that this program does not know.
+    #[test]
+    fn every_part_of_the_hash_that_changed_is_named() {
+        let text = include_str!("../../tests/fixtures/plate-impact.toml");
+        let scene = Scene::parse("plate-impact.toml", text).expect("valid");
+        let mut document = solver_document(&scene, Resolution::Paper).expect("a document");
+        let [settings, hash] = ["settings_hash", "scene_hash"].map(|key| document[key].clone());
+        document["body"] = json!({ "mass": 2 });
+        document["name"] = json!("another");
+        let mut provenance = json!({ "scene": document, "scene_hash": hash, "settings_hash": settings });
+        assert_eq!(staleness(&provenance, &scene, Resolution::Paper).expect("compared"), None);
+        provenance["scene_hash"] = json!("other");
+        let said = staleness(&provenance, &scene, Resolution::Paper).expect("compared").expect("stale");
+        assert!(said.contains("body: {\"mass\":2} -> none") && !said.contains("another"), "{said}");
     }
 }

@@ -12,9 +12,8 @@ mod fields;
 mod history_file;
 mod identity;
 mod import;
-mod modes;
+mod kinds;
 mod python;
-mod seat_mesh;
 mod section;
 mod solve;
 mod store;
@@ -29,14 +28,11 @@ pub use entry::Stored;
 pub use fields::FieldMesh;
 pub use identity::{revision, settings_hash};
 pub use import::import;
-pub use modes::plate_modes;
+pub use kinds::*;
 pub use python::{prefer_python, python};
-pub use seat_mesh::{SeatMeshInfo, make_seat_mesh, mesh_to_follow, seat_mesh, seat_mesh_with, seat_meshes};
 pub use section::MeshSection;
 pub use solve::{Wish, solve, solve_with};
 pub use store::{Lookup, Store};
-
-use crate::scene::{Geometry, Scene, Shape};
 
 /// Size of the elements over that of the next finer fixed resolution.
 pub const COARSER: f64 = 1.5;
@@ -177,15 +173,6 @@ impl std::str::FromStr for Resolution {
         };
         found.map(Ok).or_else(within).unwrap_or_else(|| Err(unknown()))
     }
-}
-
-/// Whether the deck for CalculiX describes `scene`: a dry impact of elastic spheres on a plate without damping or friction.
-pub fn calculix_takes(scene: &Scene) -> bool {
-    let Ok(setup) = scene.plate_impact() else { return false };
-    let spheres = [&setup.outer.shape, &setup.inner.shape].iter().all(|s| matches!(s, Shape::Sphere { .. }));
-    let dry = setup.fluid.is_none() && setup.plate.damping_ratio == 0.0 && setup.friction == 0.0;
-    let elastic = !setup.relaxes() && !setup.yields() && setup.series.is_none();
-    spheres && dry && elastic && scene.reference.geometry == Geometry::Axisymmetric
 }
 
 /// A relative error asked for.

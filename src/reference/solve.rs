@@ -4,6 +4,7 @@ use super::child::{self, Ending, Progress};
 use super::entry::{self, Stored};
 use super::store::Installed;
 use super::{Lookup, Resolution, Store, identity, python};
+use crate::kinds;
 use crate::scene::{Geometry, Scene};
 use crate::{Error, Result};
 use std::ffi::OsStr;
@@ -99,7 +100,7 @@ pub fn solve_with(
         command.args(["--threads", &wish.threads.to_string()]);
     }
     let solid = scene.reference.geometry == Geometry::Solid;
-    if solid || scene.plate_impact().is_ok_and(|setup| setup.series.is_some()) {
+    if kinds::of(scene).is_resumable(scene) {
         command.arg("--checkpoint").arg(store.checkpoint_folder(scene, resolution)?);
     }
     if solid {

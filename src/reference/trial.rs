@@ -8,16 +8,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Two seconds once its kernels are compiled: few elements, and an end during the first contact.
-const SCENE: &str = r#"
-name = "trial"
-kind = "plate-impact"
-materials.steel = { youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = "7780 kg/m^3" }
-plate = { radius = "10 mm", thickness = "2 mm", edge = "clamped", material = "steel" }
-outer = { kind = "sphere", radius = "5 mm", material = "steel", speed = "5 m/s" }
-inner = { kind = "sphere", radius = "5 mm", material = "steel" }
-run = { end_time = "5 us" }
-reference = { elements_per_contact_radius = 4 }
-"#;
+const SCENE: &str = include_str!("trial.toml");
 
 /// Solves it with the interpreter `python`: meshes, assembly, time loop and files, as any reference; the time it took.
 ///

@@ -1,6 +1,6 @@
 //! What a report shows besides the comparison, where there is any of it.
 
-use super::{Film, presentation};
+use super::{Film, kinds};
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
 use crate::coverage::Coverage;
@@ -58,7 +58,7 @@ pub struct Cost {
 impl Attachments {
     /// What the store has beside the numbers of a solution of `scene`. Meshes and fields that can't be drawn are left out.
     pub fn of(scene: &Scene, stored: &Stored) -> Self {
-        let drawn = presentation::of(scene).attachments(stored);
+        let drawn = kinds::of(scene).attachments(stored);
         Attachments { bands: stored.bands.clone(), ..drawn }
     }
 }

@@ -9,7 +9,7 @@ use super::figure_geometry::{FONT_SIZE, Geometry, PanelOf, stroke, text_width, x
 use super::figure_lines::{Line, lines, measured_lines};
 use super::figure_panel::panel;
 use super::figure_residuals::residuals;
-use super::presentation;
+use super::kinds;
 use super::ticks::{tick_label, ticks};
 use crate::curves::CommonAxis;
 use crate::format::significant;
@@ -78,7 +78,7 @@ fn scene_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> Str
         lines.iter_mut().for_each(|line| line.width *= 0.8);
     }
     let title = format!("{}: reduced models and finite-element reference", report.scene.name);
-    drawing(&title, geometry, presentation::of(report.scene).panels(), &lines, axis, theme)
+    drawing(&title, geometry, kinds::of(report.scene).panels(), &lines, axis, theme)
 }
 
 /// The figure of the first measured record beside reference and models (Fig. 12): displacement and velocity of the

@@ -4,13 +4,13 @@ use super::html::{model_badge, named_as, scrolled};
 use super::prose::prose;
 use super::summary_column::Column;
 use super::trust::{LARGE, SMALL, accuracy, size_class, validated, validity};
-use super::{SceneReport, presentation};
+use super::{SceneReport, kinds};
 use crate::comparison::{ModelComparison, SceneComparison};
 use crate::result::Summary;
 use maud::{Markup, html};
 
 pub(super) fn first_screen(report: &SceneReport) -> Markup {
-    let shown = presentation::of(report.scene);
+    let shown = kinds::of(report.scene);
     let (comparison, columns) = (&report.comparison, shown.columns());
     // one model leaves room below its table
     let below = comparison.models.len() == 1;

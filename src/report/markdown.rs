@@ -3,7 +3,7 @@
 use super::overview::{ModelOverview, Overview};
 use super::standing::{self, Standing};
 use super::validated_map::{self, ValidatedMap};
-use super::{Report, SceneReport, presentation};
+use super::{Report, SceneReport, kinds};
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison};
 use crate::format::{model_name, percent, prefixed, significant, with_unit, words};
 use std::cmp::Reverse;
@@ -122,7 +122,7 @@ fn section(scene: &SceneReport) -> String {
         comparison.verdict,
         escape(&scene.scene.description),
     );
-    for drawing in presentation::of(scene.scene).drawings(scene) {
+    for drawing in kinds::of(scene.scene).drawings(scene) {
         if let Some(caption) = drawing.caption {
             text += &format!("\n![{caption}]({}{}.svg)\n", comparison.scene, drawing.ending);
         }

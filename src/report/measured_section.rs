@@ -5,7 +5,7 @@ use super::html::{drawn, scrolled};
 use super::prose::prose;
 use super::{ChartPanel, SceneReport, Series, Theme, chart, measured_figure};
 use crate::format::{prefixed, significant, with_unit, words};
-use crate::kinds::plate_impact::CURVES;
+use crate::kinds::KINDS;
 use crate::measured::{AlignedRecord, Measured, Partner};
 use maud::{Markup, html};
 
@@ -66,8 +66,8 @@ fn alignment(measured: &Measured) -> Rows {
             .channels
             .iter()
             .map(|c| {
-                let unit =
-                    CURVES.iter().find(|curve| curve.name == c.quantity).map_or("1", |curve| curve.unit);
+                let mut curves = KINDS.into_iter().flat_map(|kind| kind.curves());
+                let unit = curves.find(|curve| curve.name == c.quantity).map_or("1", |curve| curve.unit);
                 format!(
                     "{}: {}, {} {unit}/s",
                     words(c.quantity),

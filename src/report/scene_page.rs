@@ -6,7 +6,7 @@ use super::figure::phone_figure;
 use super::html::{badge, model_badge, page};
 use super::section::{Section, contents, sections};
 use super::validated_map::ValidatedMap;
-use super::{SceneReport, Theme, discrepancy_picture, figure, first_screen, interactive, presentation};
+use super::{SceneReport, Theme, discrepancy_picture, figure, first_screen, interactive, kinds};
 use crate::format::{model_name, prefixed, with_unit};
 use crate::validated::Place;
 use maud::{Markup, html};
@@ -24,13 +24,13 @@ pub fn scene_page(report: &SceneReport) -> String {
         (first_screen::first_screen(report))
         (sections(&all))
     };
-    let scripts = interactive::scripts(report, presentation::of(report.scene).panels());
+    let scripts = interactive::scripts(report, kinds::of(report.scene).panels());
     page(&format!("{name} · impactcheck"), &[interactive::STYLE], &body, &scripts)
 }
 
 fn all_sections(report: &SceneReport) -> Vec<Section> {
     let (comparison, attachments) = (&report.comparison, &report.attachments);
-    let shown = presentation::of(report.scene);
+    let shown = kinds::of(report.scene);
     let mut all = vec![
         Section::new("discrepancies", "Discrepancies", discrepancy_picture::discrepancy_picture(comparison)),
         Section::new("over-time", "Curves", curves(report)),
@@ -76,7 +76,7 @@ fn curves(report: &SceneReport) -> Markup {
     html! {
         (interactive::panels(&figure(report, Theme::Inline), &phone_figure(report)))
         p.soft {
-            (presentation::of(report.scene).curves_told()) " Shaded: the 95 % band of the reference. "
+            (kinds::of(report.scene).curves_told()) " Shaded: the 95 % band of the reference. "
             a href=(format!("{scene}.svg")) { "SVG" } " · "
             a href=(format!("{scene}.png")) { "PNG" } " · "
             a href=(format!("{scene}.csv")) { "curves as CSV" }

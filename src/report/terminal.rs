@@ -2,7 +2,7 @@
 
 use super::Report;
 use super::summary_column::Column;
-use super::{measured_section, presentation};
+use super::{kinds, measured_section};
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
 use crate::result::{Outcome, Summary};
 use crate::scene::Scene;
@@ -75,7 +75,7 @@ pub fn terminal(report: &Report) -> String {
     let mut text = String::new();
     for scene in &report.scenes {
         let comparison = &scene.comparison;
-        let (reference, columns) = (&comparison.reference, presentation::of(scene.scene).columns());
+        let (reference, columns) = (&comparison.reference, kinds::of(scene.scene).columns());
         text += &headline(comparison);
         text += &format!("{}  verdict\n", headings(columns));
         text += &format!("  {:<10}{}\n", "reference", cells(columns, reference, None));
@@ -102,7 +102,7 @@ pub fn alone(scene: &Scene, outcomes: &[Outcome]) -> String {
     if outcomes.is_empty() {
         return String::new();
     }
-    let columns = presentation::of(scene).columns();
+    let columns = kinds::of(scene).columns();
     let mut text = format!("{}: reduced models alone\n{}\n", scene.name, headings(columns));
     for Outcome { summary, .. } in outcomes {
         let model = summary.model.as_deref().unwrap_or_default();

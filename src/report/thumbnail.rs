@@ -2,7 +2,7 @@
 
 use super::colours::Look;
 use super::polyline::path;
-use super::{SceneReport, presentation};
+use super::{SceneReport, kinds};
 use crate::curves::{CommonAxis, sample};
 use crate::result::{History, Outcome};
 use maud::{Markup, html};
@@ -13,7 +13,7 @@ const HEIGHT: f64 = 7.0;
 
 /// Paths of the reference and of a model.
 pub(super) fn thumbnail(report: &SceneReport, outcome: &Outcome) -> [String; 2] {
-    let panel = presentation::of(report.scene).panels().last();
+    let panel = kinds::of(report.scene).panels().last();
     let curve = panel.and_then(|panel| panel.curves.first()).map(|(_, name)| *name);
     let (Some(axis), Some(curve)) = (report.comparison.window, curve) else { return Default::default() };
     let values = |history: &History| {

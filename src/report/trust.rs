@@ -3,8 +3,9 @@
 use super::summary_column::Column;
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
 use crate::format::{percent_above, significant, words};
+use crate::kinds;
 use crate::result::Summary;
-use crate::scene::{PlateImpact, Scene};
+use crate::scene::Scene;
 use crate::validated::{MEASURES, Place, Validation, Vicinity};
 
 /// Discrepancy, relative or in rad, up to which a model is said to be right within it rather than off by it.
@@ -99,8 +100,7 @@ pub(super) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
         true => "inside the range of validity".to_owned(),
         false => format!("outside the range of validity: {}", exceeded.join(", ")),
     };
-    let knows = scene.plate_impact().is_ok_and(PlateImpact::yields);
-    let yielding = knows || limits.iter().any(|limit| limit.is_of_yield());
+    let yielding = kinds::of(scene).yields(scene) || limits.iter().any(|limit| limit.is_of_yield());
     let unchecked = "elastic limit not checked: no yield strength given".to_owned();
     std::iter::once(range).chain((!yielding).then_some(unchecked)).collect()
 }

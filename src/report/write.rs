@@ -3,7 +3,7 @@
 use super::run_times::same_but_for_run_times;
 use super::standing::{self, DOCUMENT, Standing};
 use super::validated_map::{self, ValidatedMap};
-use super::{Report, animation_section, coverage_page, presentation};
+use super::{Report, animation_section, coverage_page, kinds};
 use crate::error::{Error, Result};
 use crate::interrupt::Scratch;
 use std::collections::{BTreeMap, BTreeSet};
@@ -107,7 +107,7 @@ fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)
         if !names.insert(name) || ["index", coverage_page::NAME].contains(&&**name) {
             return Err(Error::Usage(format!("scene name `{name}` stands for two pages of the report")));
         }
-        for drawing in presentation::of(scene.scene).drawings(scene) {
+        for drawing in kinds::of(scene.scene).drawings(scene) {
             let stem = format!("{name}{}", drawing.ending);
             files.push((format!("{stem}.png"), super::png(&drawing.svg, PNG_SCALE)?));
             files.push((format!("{stem}.svg"), drawing.svg.into_bytes()));

@@ -1,7 +1,7 @@
 //! An independent solution of a random impact: a Runge-Kutta method of order 8 that knows neither modes nor contacts.
 
 use super::between::{Contact, Watch};
-use super::draw::Impact;
+use super::kinds::Impact;
 use super::{DIFFERENCE_BOUND, END_BOUND, TOLERANCE};
 use crate::dynamics::assured;
 use crate::dynamics::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};

@@ -3,13 +3,13 @@
 //! Every case is drawn from its own seed, so that one command repeats it alone.
 
 mod between;
-mod draw;
 mod independent;
+mod kinds;
 mod results;
 #[cfg(test)]
 mod tests;
 
-pub use draw::{Case, Impact, UnitPlates};
+pub use kinds::{Case, Impact, UnitPlates};
 pub use results::{CaseMotion, CaseResult, StressResults, results};
 
 use crate::dynamics::assured::{all_within, assured};
@@ -18,8 +18,8 @@ use crate::dynamics::integration::{Integration, Options};
 use crate::error::{Error, Result};
 use crate::result::SCHEMA_VERSION;
 use crate::sweep;
-use draw::{DRY, MOVING, WET};
 use independent::{Answer, Comparison};
+use kinds::{DRY, MOVING, WET};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
 //! The result of every case bit for bit.
 
-use super::draw::{Case, Impact, UnitPlates};
+use super::kinds::{Case, Impact, UnitPlates};
 use super::{integrated, options};
 use crate::error::Result;
 use crate::result::SCHEMA_VERSION;

@@ -1,30 +1,12 @@
 //! Parameter studies and the paper's tables and figures: numbers in rows, and what the paper says about them.
 //!
-//! A study is one file with one function that returns a [`Study`], and one line in [`STUDIES`].
+//! A study is one file below `kinds` with one function that returns a [`Study`], and one entry in [`STUDIES`].
 
-pub mod actuators;
-pub mod auto;
-pub mod damping;
-pub mod fig14;
-pub mod fig15;
-pub mod fig16;
-pub mod fig17;
-pub mod flight;
-pub mod fluid;
-pub mod half_period;
-pub mod insensitivity;
-pub mod parameter;
+mod kinds;
 mod plot;
-pub mod rocker;
-pub mod seal_seat;
-pub mod seal_seat_cost;
-pub mod seal_seat_direction;
-pub mod shakedown;
-pub mod table2;
-pub mod test_bed;
-pub mod valve;
 mod write;
 
+pub use kinds::*;
 pub use plot::{Axis, Only, Panel, figure};
 pub use write::{MOST_ROWS, csv, json, markdown, told, write};
 
@@ -71,6 +53,30 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// The study called `name`.
+    const fn new(
+        name: &'static str,
+        run: fn(&Settings, &mut Note) -> Result<Study>,
+        about: &'static str,
+    ) -> Self {
+        Entry { name, about, takes_model: false, run, panels: &[], drawing: None }
+    }
+
+    /// With a figure of panels.
+    const fn panels(self, panels: &'static [Panel]) -> Self {
+        Entry { panels, ..self }
+    }
+
+    /// With a choice of the reduced model.
+    const fn with_models(self) -> Self {
+        Entry { takes_model: true, ..self }
+    }
+
+    /// With a figure of its own.
+    const fn drawn(self, drawing: fn(&Study) -> String) -> Self {
+        Entry { drawing: Some(drawing), ..self }
+    }
+
     /// The figure of the study as SVG, if it has one.
     ///
     /// # Errors
@@ -83,162 +89,6 @@ impl Entry {
         }
     }
 }
-
-/// All studies there are.
-pub const STUDIES: [Entry; 19] = [
-    Entry {
-        name: "table2",
-        about: "Table 2: first and first longitudinal eigenfrequency from plate to rod",
-        takes_model: false,
-        run: |_, note| table2::run(note),
-        panels: &[],
-        drawing: None,
-    },
-    Entry {
-        name: "fig14",
-        about: "Fig. 14: efficiency over Young's modulus of plate and spheres",
-        takes_model: true,
-        run: fig14::run,
-        panels: &fig14::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "fig15",
-        about: "Fig. 15: efficiency over the plate's thickness, clamped and free",
-        takes_model: true,
-        run: fig15::run,
-        panels: &fig15::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "fig16",
-        about: "Fig. 16: efficiency over the plate's radius, and the best radius",
-        takes_model: true,
-        run: fig16::run,
-        panels: &fig16::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "fig17",
-        about: "Fig. 17: efficiency over the tip radius",
-        takes_model: true,
-        run: fig17::run,
-        panels: &fig17::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "half-period",
-        about: "Section 4.1: best when the contact lasts half the plate's first period",
-        takes_model: true,
-        run: half_period::run,
-        panels: &half_period::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "insensitivity",
-        about: "Model C with other numbers of modes, patch radii and meshes, both scenes of Table 1",
-        takes_model: false,
-        run: |_, note| insensitivity::run(note),
-        panels: &[],
-        drawing: None,
-    },
-    Entry {
-        name: "auto",
-        about: "The models that `auto` chooses: estimated against true error, and their cost",
-        takes_model: false,
-        run: auto::run,
-        panels: &[],
-        drawing: Some(auto::figure),
-    },
-    Entry {
-        name: "actuators",
-        about: "Section 2.2: energy of the inner sphere over the gap, from stack, bender and lift magnet",
-        takes_model: true,
-        run: actuators::run,
-        panels: &actuators::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "rocker",
-        about: "Section 4.3: membrane between sapphire spheres, and struck by a piezo bender",
-        takes_model: false,
-        run: |_, note| rocker::run(note),
-        panels: &rocker::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "shakedown",
-        about: "Section 3.4.2, Fig. 13: efficiency of repeated impacts, several yield strengths, same and fresh spots, rate",
-        takes_model: true,
-        run: shakedown::run,
-        panels: &shakedown::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "test-bed",
-        about: "Section 3.4.2, Figs. 12 and 13: whether its statements survive the tolerances of a test bed",
-        takes_model: true,
-        run: test_bed::run,
-        panels: &test_bed::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "flight",
-        about: "Sections 5.1.1 to 5.1.3: flights and shocks of the sphere against MuJoCo, statements on the rocker",
-        takes_model: false,
-        run: |_, note| flight::run(note),
-        panels: &[],
-        drawing: None,
-    },
-    Entry {
-        name: "valve",
-        about: "Section 5: both demonstrators from the voltage to the seat, with the scatter of a workshop",
-        takes_model: false,
-        run: |_, note| valve::run(note),
-        panels: &valve::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "fluid",
-        about: "Section 4.2.5: squeeze film, plate damping, added mass and drag, alone and together",
-        takes_model: true,
-        run: fluid::run,
-        panels: &fluid::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "damping",
-        about: "Section 4.2.4: what a polymer plate's damping takes, in its modes and in both contacts",
-        takes_model: false,
-        run: |_, note| damping::run(note),
-        panels: &damping::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "seal-seat",
-        about: "Section 4.4: what decides the direction of the sphere out of the flexible seal seat",
-        takes_model: false,
-        run: |_, note| seal_seat::run(note),
-        panels: &seal_seat::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "seal-seat-direction",
-        about: "The direction out of the flexible seal seat with the band of many meshes",
-        takes_model: false,
-        run: seal_seat_direction::run,
-        panels: &seal_seat_direction::PANELS,
-        drawing: None,
-    },
-    Entry {
-        name: "seal-seat-cost",
-        about: "Run times of the reduced seal seat and of the finite elements on the same mesh",
-        takes_model: false,
-        run: |_, note| seal_seat_cost::run(note),
-        panels: &[],
-        drawing: None,
-    },
-];
 
 /// A scene of the project by its path below `scenes/`, without the ending.
 ///
@@ -353,6 +203,29 @@ pub struct Study {
     pub claims: Vec<Claim>,
 }
 
+impl Study {
+    /// The study called `study`; its columns are those of `header`, as of a table's, with a unit in brackets where there is one.
+    fn new(
+        study: &'static str,
+        description: impl Into<String>,
+        header: &'static str,
+        rows: Vec<Vec<Cell>>,
+        claims: Vec<Claim>,
+    ) -> Self {
+        let (schema_version, description) = (SCHEMA_VERSION, description.into());
+        let (columns, units) = columns(header).unzip();
+        Study { schema_version, study, description, columns, units, rows, claims }
+    }
+}
+
+/// Name and unit of the columns of `header`, such as `case, gap [m]`; "1" without a unit.
+fn columns(header: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    header.split(", ").map(|column| match column.split_once(" [") {
+        Some((name, unit)) => (name, unit.trim_end_matches(']')),
+        None => (column, "1"),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -365,6 +238,12 @@ mod tests {
         assert_eq!(verdict(None, Some(-2e-3), 1e-3), Verdict::Fail);
         assert_eq!(verdict(None, Some(f64::NAN), 1e-3), Verdict::Fail);
         assert_eq!(verdict(None, None, 1e-3), Verdict::Unchecked);
+    }
+
+    #[test]
+    fn columns_are_those_of_the_header_with_their_units() {
+        let study = Study::new("x", "", "case, gap [m], peak_speed [m/s]", Vec::new(), Vec::new());
+        assert_eq!((study.columns, study.units), (vec!["case", "gap", "peak_speed"], vec!["1", "m", "m/s"]));
     }
 
     #[test]

@@ -15,6 +15,13 @@ pub struct Axis {
     pub factor: f64,
 }
 
+impl Axis {
+    /// The column called `column`.
+    pub const fn new(column: &'static str, label: &'static str, factor: f64) -> Self {
+        Axis { column, label, factor }
+    }
+}
+
 /// One coordinate system of the figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Panel {
@@ -30,6 +37,18 @@ pub struct Panel {
     pub band: Option<(f64, f64)>,
     /// What the paper says of a place on the horizontal axis, in the axis's units.
     pub paper: Option<(f64, &'static str)>,
+}
+
+impl Panel {
+    /// All rows as one curve of `y` over `x`.
+    pub const fn of(x: Axis, y: Axis) -> Self {
+        Panel { x, y, series: None, only: None, band: None, paper: None }
+    }
+
+    /// With a curve for every value of `series`.
+    pub const fn by(self, series: Axis) -> Self {
+        Panel { series: Some(series), ..self }
+    }
 }
 
 /// Rows with one of some texts in a column.

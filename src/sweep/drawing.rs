@@ -6,7 +6,7 @@ use super::references::Known;
 use super::table::Table;
 use crate::error::{Error, Result};
 use crate::format::{prefixed, words};
-use crate::kinds::plate_impact::PlateQuantities;
+use crate::kinds;
 use crate::report::{ChartPanel, ColourMap, Series, chart, colour_maps};
 use crate::scene::{Model, suggestion};
 
@@ -71,7 +71,8 @@ impl Drawn {
     /// Whether the rule is about it, and the inner contact begins at the start, so that its end is how long it lasts.
     fn follows_rule(self, table: &Table) -> bool {
         let plan = table.plan();
-        let touches = plan.template().scene().plate_impact().is_ok_and(|setup| setup.inner.gap == 0.0);
+        let scene = plan.template().scene();
+        let touches = kinds::of(scene).starts_in_contact(scene);
         self.name == "efficiency" && touches && plan.fields().all(|field| field.path() != "inner.gap")
     }
 
@@ -177,8 +178,9 @@ fn map(table: &Table, quantity: Drawn, model: Model, known: &[Known]) -> ColourM
 }
 
 fn over_half_period(table: &Table, record: &Record) -> f64 {
-    let quantities = PlateQuantities::of(|name| table.plan().value(record, name));
-    quantities.map_or(f64::NAN, |quantities| quantities.contact_over_half_period())
+    let plan = table.plan();
+    let kind = kinds::of(plan.template().scene());
+    kind.contact_over_half_period(&|name| plan.value(record, name)).unwrap_or(f64::NAN)
 }
 
 /// Where a curve is 1, linearly between its points.

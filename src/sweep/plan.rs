@@ -3,8 +3,7 @@
 use super::axis::{Axis, Sampling, Vary};
 use super::record::{Outcome, Record, results};
 use crate::error::{Error, Result};
-use crate::kinds::seal_seat::SeatMesh;
-use crate::kinds::{self, Series};
+use crate::kinds::{self, FollowedMesh, Series, Use};
 use crate::reference;
 use crate::sampling::latin_hypercube;
 use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
@@ -175,7 +174,7 @@ impl Plan {
     /// about so many `impacts` will be run, none as yet.
     ///
     /// # Errors
-    /// [`Error::Scene`] if the scene is no plate impact.
+    /// [`Error::Scene`] if scenes of this kind are not sampled.
     pub fn drawn(
         (scene_file, template): (PathBuf, Template),
         (model, modes, tolerance): (Model, Option<usize>, f64),
@@ -184,7 +183,7 @@ impl Plan {
         impacts: usize,
     ) -> Result<Self> {
         let ranges = fields.iter().map(|(field, range)| (field.path(), *range));
-        template.scene().plate_impact()?;
+        kinds::serving(template.scene(), Use::Samples)?;
         let series = Series::new(ranges, template.scene(), None, impacts)?;
         let fields: Vec<Field> = fields.into_iter().map(|(field, _)| field).collect();
         let mut plan = Plan {
@@ -211,7 +210,7 @@ impl Plan {
     }
 
     /// SHA-256 over everything the results depend on.
-    fn identity(&self, file: &File, mesh: Option<&SeatMesh>) -> String {
+    fn identity(&self, file: &File, mesh: Option<&FollowedMesh>) -> String {
         let axis = |a: &Axis| {
             let fields: Vec<&str> = a.fields.iter().map(Field::path).collect();
             json!([fields, format!("{:?}", a.values)])
@@ -388,10 +387,7 @@ fn models(file: &File, scene: &Scene, fault: &dyn Fn(String) -> Error) -> Result
         return Err(fault(format!("model is {names:?}: name each model once, at least one")));
     }
     if let Some(foreign) = models.iter().find(|model| !own.contains(model)) {
-        return Err(fault(format!(
-            "model is {foreign}, but scene `{}` is a seal seat, which has model C only",
-            scene.name
-        )));
+        return Err(fault(format!("model is {foreign}, but {}", kinds::models_only(scene))));
     }
     Ok(models)
 }

@@ -6,7 +6,7 @@ use super::estimate::{Row, mean, standard_deviation};
 use super::request::{Request, Samples};
 use super::scatter::{Impacts, Scatter};
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::PlateQuantities;
+use crate::kinds;
 use crate::scene::{Field, Scene, Template, Uncertainty};
 use crate::sweep::{Outcome, Plan, Progress, Record, Shard, Table, in_memory, run};
 use crate::table_format::TableFormat;
@@ -162,7 +162,7 @@ pub fn study(
             .collect(),
         rows: growing.rows(rows, quantity),
     };
-    let quantities = PlateQuantities::ALL.iter().filter(|quantity| !quantity.is_count);
+    let quantities = kinds::of(scene).quantities().iter().filter(|quantity| !quantity.is_count);
     let mut scatter = Scatter::of(scene, request, inputs, quantities.map(|q| (q.name, q.unit, of(q.name))));
     (scatter.samples, scatter.impacts, scatter.failures, scatter.accurate) =
         (rows, plan.len(), lost, reached);

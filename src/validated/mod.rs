@@ -3,15 +3,15 @@
 //! One entry per scene and model, made by comparisons and never by hand. The project brings along those of its own scenes,
 //! whose references are too large to come with it; those of a user's scenes lie in the user's store, beside the references.
 
-mod place;
 mod record;
 mod vicinity;
 
-pub use place::{MEASURES, Place};
+pub use crate::kinds::{MEASURES, Place};
 pub use record::{merge, of_store, record, shipped, update};
 pub use vicinity::{NEAR, Vicinity};
 
 use crate::comparison::{Check, Discrepancy, ModelComparison, SceneComparison, value_in};
+use crate::format::rounded;
 use crate::reference::revision;
 use crate::result::Summary;
 use crate::scene::{Geometry, Model, Scene};
@@ -66,7 +66,7 @@ pub struct Row {
 impl Row {
     /// `None` if a side is not determined, or nothing can be relative to it.
     fn of(row: &Discrepancy) -> Option<Self> {
-        let finite = |value: Option<f64>| value.filter(|v| v.is_finite()).map(rounded);
+        let finite = |value: Option<f64>| value.filter(|v| v.is_finite()).map(kept);
         let reference = finite(row.reference).filter(|value| *value != 0.0)?;
         let (quantity, band) = (row.quantity.clone(), finite(row.uncertainty));
         Some(Row { quantity, reduced: finite(row.reduced)?, reference, band })
@@ -121,7 +121,7 @@ impl Validation {
 
     /// The same reference beside a model that now gives `summary`.
     pub fn renewed(&self, summary: &Summary) -> Self {
-        let now = |row: &Row| value_in(summary, &row.quantity).map_or(row.reduced, rounded);
+        let now = |row: &Row| value_in(summary, &row.quantity).map_or(row.reduced, kept);
         let rows = self.rows.iter().map(|row| Row { reduced: now(row), ..row.clone() }).collect();
         Validation { modes: summary.modes, program: PROGRAM.into(), rows, ..self.clone() }
     }
@@ -160,7 +160,7 @@ fn are_sound(checks: &[Check]) -> bool {
     !checks.iter().any(|check| check.verdict.failed())
 }
 
-/// `value` with [`DIGITS`] significant digits.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
+/// `value` with the digits that are kept.
+fn kept(value: f64) -> f64 {
+    rounded(value, DIGITS)
 }

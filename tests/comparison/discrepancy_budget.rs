@@ -7,12 +7,13 @@ use impactcheck::body::ModalBody;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions};
 use impactcheck::comparison::budget::{BUDGET_QUANTITIES, CAUSES, QuantityBudget, budget};
 use impactcheck::comparison::{GateRules, compare_scene};
+use impactcheck::kinds::plate_impact::PlateImpact;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::kinds::plate_impact::variants::mean_of_faces;
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::report::{Report, SceneReport, json, markdown, scene_page};
 use impactcheck::result::{Outcome, Source, Summary};
-use impactcheck::scene::{Edge, Model, Plate, PlateImpact, Scene, Shape, resolve};
+use impactcheck::scene::{Edge, Model, Plate, Scene, Shape, resolve};
 use resvg::usvg::roxmltree::Document;
 use std::f64::consts::PI;
 

@@ -1,13 +1,15 @@
 //! Measured signals (section 3.4): synthetic records of known noise, shift, offset and drift, made from a model's history
 //! and laid over the finite-element reference.
 
+use impactcheck::kinds::plate_impact::PlateImpact;
+use impactcheck::kinds::plate_impact::approach;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::measured::{
     AlignedRecord, BANDWIDTH, Channel, ContactEnds, Filtered, Record, Series, Speed, align, compare,
 };
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::result::Outcome;
-use impactcheck::scene::{Model, PlateImpact, Scene, resolve};
+use impactcheck::scene::{Model, Scene, resolve};
 
 fn determined(outcome: &Outcome) -> ContactEnds {
     ContactEnds::of(&outcome.summary).unwrap()
@@ -79,7 +81,7 @@ fn record(truth: &Outcome, signals: &[&'static str], with: Disturbance) -> Recor
 
 fn aligned(record: &Record, partner: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
     let filtered = Filtered::new(&partner.history, BANDWIDTH).unwrap();
-    align(record, &filtered, determined(partner), setup, (BANDWIDTH, speed)).unwrap()
+    align(record, &filtered, determined(partner), &approach(setup), (BANDWIDTH, speed)).unwrap()
 }
 
 #[test]
@@ -179,7 +181,8 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
     };
     let late = part(&|t| t > 0.0);
     let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
-    let error = align(&late, &filtered, determined(&truth), &setup, (BANDWIDTH, Speed::Scene)).unwrap_err();
+    let error = align(&late, &filtered, determined(&truth), &approach(&setup), (BANDWIDTH, Speed::Scene))
+        .unwrap_err();
     assert_eq!(error.exit_status() as u8, 3);
     // 5 us of it, some fifty samples, are before the first touch, but the instrument smears the impact over all of them
     let said = error.to_string().replace('\u{2502}', " ").split_whitespace().collect::<Vec<_>>().join(" ");

@@ -2,10 +2,11 @@
 
 use impactcheck::comparison::compare_scene;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
+use impactcheck::kinds::schema;
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::report::{Attachments, SceneReport, scene_page};
 use impactcheck::result::{Limit, Summary};
-use impactcheck::scene::{Model, Scene, schema};
+use impactcheck::scene::{Model, Scene};
 use std::f64::consts::PI;
 
 const BASE: &str = include_str!("../../scenes/scaled-plate-r10.toml");

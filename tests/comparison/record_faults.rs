@@ -1,18 +1,20 @@
 //! Faults of measured records: each is found and named, and clean records are not accused.
 
+use impactcheck::kinds::Approach;
+use impactcheck::kinds::plate_impact::approach;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::measured::{
     AlignedRecord, BANDWIDTH, Channel, ContactEnds, Filtered, FindingKind, Record, Speed, align, align_all,
 };
 use impactcheck::result::Outcome;
-use impactcheck::scene::{Model, PlateImpact, Scene, resolve};
+use impactcheck::scene::{Model, Scene, resolve};
 use std::f64::consts::PI;
 
 struct Bench {
     truth: Outcome,
     model: Filtered,
     ends: ContactEnds,
-    setup: PlateImpact,
+    approach: Approach,
 }
 
 impl Bench {
@@ -21,7 +23,7 @@ impl Bench {
         let truth = Reduced::new(&scene, Model::B, None).unwrap().run_with_history(1e-7).unwrap();
         let model = Filtered::new(&truth.history, BANDWIDTH).unwrap();
         let ends = ContactEnds::of(&truth.summary).unwrap();
-        Bench { model, ends, setup: scene.plate_impact().unwrap().clone(), truth }
+        Bench { model, ends, approach: approach(scene.plate_impact().unwrap()), truth }
     }
 
     fn efficiency(&self) -> f64 {
@@ -44,7 +46,7 @@ impl Bench {
     }
 
     fn align(&self, record: &Record) -> impactcheck::Result<AlignedRecord> {
-        align(record, &self.model, self.ends, &self.setup, (BANDWIDTH, Speed::Scene))
+        align(record, &self.model, self.ends, &self.approach, (BANDWIDTH, Speed::Scene))
     }
 }
 
@@ -191,7 +193,7 @@ fn one_impact_counts_once() {
         [0, 1].map(|k| Record { channels: vec![first.channels[k].clone()], ..first.clone() });
     let found = |records: &[Record]| {
         let how = (BANDWIDTH, Speed::Scene);
-        let aligned = align_all(records, &bench.model, bench.ends, &bench.setup, how).unwrap();
+        let aligned = align_all(records, &bench.model, bench.ends, &bench.approach, how).unwrap();
         aligned.iter().map(kinds).collect::<Vec<_>>()
     };
     let duplicate = vec![FindingKind::Duplicate];

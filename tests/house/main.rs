@@ -37,14 +37,14 @@ fn files_outside_the_kinds_folders_that_name_a_kind() {
         })
         .map(|source| source.path)
         .collect();
-    ratchet("files outside the kinds' folders that name a kind", &found, 76);
+    ratchet("files outside the kinds' folders that name a kind", &found, 1);
 }
 
 /// Data flows one way: of two rooms at most one imports the other.
 #[test]
 fn rooms_that_import_each_other() {
     let found: Vec<String> = PACKAGES.iter().flat_map(|package| mutual(package)).collect();
-    ratchet("pairs of rooms that import each other", &found, 4);
+    ratchet("pairs of rooms that import each other", &found, 0);
 }
 
 /// The pairs of `package`, with a file of either side.
@@ -91,5 +91,5 @@ fn names_of_types_that_are_defined_more_than_once() {
 #[test]
 fn sources_that_are_part_of_a_key() {
     let found: Vec<String> = sources().flat_map(|source| source.includes_of_sources()).collect();
-    ratchet("sources that are included as text", &found, 23);
+    ratchet("sources that are included as text", &found, 0);
 }

@@ -9,8 +9,9 @@ use impactcheck::dynamics::MovingBody;
 use impactcheck::dynamics::integration::{Integration, Options};
 use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
+use impactcheck::kinds::plate_impact::PlateImpact;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
-use impactcheck::scene::{Bender, Model, PlateImpact, Scene, Shape};
+use impactcheck::scene::{Bender, Model, Scene, Shape};
 use std::f64::consts::TAU;
 
 /// The bender of section 4.3 at a length of 13.7 mm.

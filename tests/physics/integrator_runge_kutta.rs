@@ -8,7 +8,8 @@ use impactcheck::body::kirchhoff;
 use impactcheck::dynamics::integration::{Integration, Options};
 use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
-use impactcheck::scene::{Edge, PlateImpact, Shape};
+use impactcheck::kinds::plate_impact::PlateImpact;
+use impactcheck::scene::{Edge, Shape};
 
 fn system(setup: &PlateImpact, modes: usize) -> System {
     setup.rigid_system(&kirchhoff::modes(&setup.plate, modes).unwrap(), [0.0; 2])

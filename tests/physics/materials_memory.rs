@@ -9,7 +9,8 @@ use impactcheck::dynamics::memory::integrate;
 use impactcheck::dynamics::system::System;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 
-use impactcheck::scene::{Material, Model, PlateImpact, Relaxation, Scene, resolve};
+use impactcheck::kinds::plate_impact::PlateImpact;
+use impactcheck::scene::{Material, Model, Relaxation, Scene, resolve};
 
 fn with(setup: PlateImpact, change: impl Fn(&mut Material)) -> PlateImpact {
     let mut setup = setup;

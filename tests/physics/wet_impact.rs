@@ -13,7 +13,8 @@ use impactcheck::dynamics::system::System;
 use impactcheck::dynamics::wet;
 use impactcheck::dynamics::wet::FluidForces;
 use impactcheck::fluid::added_mass::immersed;
-use impactcheck::scene::{Bender, Edge, Fluid, PlateImpact, Shape, ShearThinning};
+use impactcheck::kinds::plate_impact::PlateImpact;
+use impactcheck::scene::{Bender, Edge, Fluid, Shape, ShearThinning};
 
 fn water() -> Fluid {
     Fluid {

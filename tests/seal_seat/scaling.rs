@@ -3,12 +3,13 @@
 use super::reduced::{fixture, mesh, scene};
 use impactcheck::body::cache::Cache;
 use impactcheck::body::solid::{Solid, TetMesh};
+use impactcheck::kinds::seal_seat::SealSeat;
 use impactcheck::kinds::seal_seat::integrate::{Options, integrate};
 use impactcheck::kinds::seal_seat::integration::Integration;
 use impactcheck::kinds::seal_seat::system::System;
 use impactcheck::kinds::seal_seat::{SeatModel, SeatQuantities, Zones, candidates, supports};
 use impactcheck::result::Summary;
-use impactcheck::scene::{Model, Scene, SealSeat};
+use impactcheck::scene::{Model, Scene};
 
 /// Of the energy at the start, at the default tolerance of 1e-3.
 const RESIDUAL: f64 = 1e-4;

@@ -1,7 +1,8 @@
 //! Seal-seat scenes: what is valid arrives exactly, geometry that can't be is refused with the two features that
 //! collide, the ring lies where cone and sphere touch, and the hashes tell what matters.
 
-use impactcheck::scene::{Fault, Notch, Scene, SealSeat, SphereBody, Template, faults};
+use impactcheck::kinds::seal_seat::{Notch, SealSeat, SphereBody};
+use impactcheck::scene::{Fault, Scene, Template, faults};
 use impactcheck::{Error, ExitStatus};
 
 const VALID: &str = include_str!("../fixtures/seal-seat.toml");

@@ -2,9 +2,10 @@
 
 use super::reduced::{fixture, impactcheck, mesh, scene};
 use super::scaling::scaled;
+use impactcheck::kinds::seal_seat::SealSeat;
 use impactcheck::kinds::seal_seat::{SeatQuantities, SeatSeries};
 use impactcheck::numerics::least_squares::fit;
-use impactcheck::scene::{Model, Scene, SealSeat};
+use impactcheck::scene::{Model, Scene};
 
 fn series() -> SeatSeries {
     SeatSeries::new(&scene(), &mesh()).expect("a mesh of the scene")

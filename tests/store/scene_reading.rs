@@ -1,7 +1,8 @@
 //! Reading of scene files: what is valid arrives exactly, what is not is refused with field,
 //! value, valid range and line, and nothing else happens.
 
-use impactcheck::scene::{self, Edge, Fault, Geometry, Model, PlateImpact, Rigid, Scene, Shape, faults};
+use impactcheck::kinds::plate_impact::PlateImpact;
+use impactcheck::scene::{self, Edge, Fault, Geometry, Model, Rigid, Scene, Shape, faults};
 use impactcheck::{Error, ExitStatus};
 
 pub(super) const VALID: &str = include_str!("../fixtures/plate-impact.toml");

@@ -1,6 +1,7 @@
 //! The JSON schema for editors: it accepts the shipped scenes and refuses what the reader refuses.
 
-use impactcheck::scene::{Scene, schema, shipped};
+use impactcheck::kinds::schema;
+use impactcheck::scene::{Scene, shipped};
 use regex::Regex;
 use serde_json::{Map, Value, json};
 

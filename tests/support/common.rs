@@ -1,6 +1,7 @@
 //! Bodies and scenes that several tests use.
 #![allow(dead_code)]
 
+use impactcheck::kinds::plate_impact::PlateImpact;
 use impactcheck::scene::*;
 
 /// Steel of Table 1.

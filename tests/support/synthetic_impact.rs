@@ -3,11 +3,12 @@
 //! to rounding, so that whatever a check finds in them has been put there.
 #![allow(dead_code)] // Each test file uses its own part.
 
+use impactcheck::kinds::plate_impact::PlateImpact;
 use impactcheck::kinds::plate_impact::{CURVES, PlateQuantities};
 use impactcheck::result::{History, Outcome, SCHEMA_VERSION, Source, Summary};
 use impactcheck::scene::{
-    Edge, Geometry, Inner, Material, Model, Outer, Plate, PlateImpact, ReducedSettings, ReferenceSettings,
-    RunSettings, Scene, Shape, Tolerance,
+    Edge, Geometry, Inner, Material, Model, Outer, Plate, ReducedSettings, ReferenceSettings, RunSettings,
+    Scene, Shape, Tolerance,
 };
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

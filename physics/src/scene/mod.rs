@@ -38,11 +38,6 @@ pub use parts::{
     Bender, Edge, Fluid, Inner, Outer, Plate, Series, Shape, ShearThinning, Spot, Stack, Supply,
 };
 pub use plausibility::doubts;
-// TEMP
-pub use crate::kinds::plate_impact::{MAX_MODES, PlateImpact};
-pub use crate::kinds::seal_seat::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
-pub use crate::kinds::{schema, unit_of};
-
 pub use quantity::in_unit as quantity_in;
 pub use read::MAX_FILE_BYTES;
 pub(crate) use setup::Bodies;

@@ -7,8 +7,7 @@ use super::Context;
 use super::asked_model::Asked;
 use super::asked_model::AskedModel;
 use crate::error::Result;
-use crate::kinds;
-use crate::kinds::plate_impact::shared::SharedBodies;
+use crate::kinds::{self, KINDS, SharedBodies};
 use crate::reference::Stored;
 use crate::report::Cost;
 use crate::result::Outcome;
@@ -62,9 +61,12 @@ pub(super) trait Models: Sync {
     ) -> Result<Compared>;
 }
 
+/// The models of each of [`KINDS`].
+const MODELS: [&dyn Models; KINDS.len()] = [&plate_impact::Plates, &seal_seat::Seats];
+
 /// The models of `scene`.
 pub(super) fn of(scene: &Scene) -> &'static dyn Models {
-    if scene.seal_seat().is_ok() { &seal_seat::Seats } else { &plate_impact::Plates }
+    MODELS[kinds::index(scene)]
 }
 
 /// Whether one of the models `asked` for is one of `scene`; `auto` chooses among several.
@@ -75,11 +77,4 @@ pub(super) fn has_one_of(scene: &Scene, asked: &[AskedModel]) -> bool {
         AskedModel::Auto => own.len() > 1,
         AskedModel::External => !scene.external.is_empty(),
     })
-}
-
-/// That `scene` has other models than those asked for.
-pub(super) fn lacks(scene: &Scene) -> String {
-    let kind = kinds::of(scene);
-    let models: Vec<String> = kind.models().iter().map(ToString::to_string).collect();
-    format!("scene `{}` is of kind `{}`, which has model {} only", scene.name, kind.name(), models.join(", "))
 }

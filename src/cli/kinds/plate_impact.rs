@@ -6,12 +6,13 @@ use crate::cli::asked_model::{self, AskedModel};
 use crate::cli::{Context, progress};
 use crate::curves::CommonAxis;
 use crate::error::{Error, Result};
+use crate::kinds::SharedBodies;
 use crate::kinds::plate_impact::choice;
 use crate::kinds::plate_impact::reduced::Reduced;
-use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::reference::Stored;
 use crate::result::Outcome;
 use crate::scene::{Model, Scene};
+use std::time::Instant;
 
 /// Relative error of the efficiency when the caller names none.
 const DEFAULT_TOLERANCE: f64 = 1e-7;
@@ -66,7 +67,7 @@ impl Models for Plates {
         scene: &Scene,
         (models, tolerance): (&[AskedModel], Option<f64>),
     ) -> Result<Vec<Outcome>> {
-        let models = asked_model::set_up(scene, &having(scene, models, |_| ()), tolerance)?;
+        let models = set_up(scene, &having(scene, models, |_| ()), tolerance)?;
         models.into_iter().map(|(body, _)| body.run_with_history(COMPARISON_TOLERANCE)).collect()
     }
 
@@ -80,7 +81,7 @@ impl Models for Plates {
         // the models' curves are drawn and compared as far as the reference's
         let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
         let models = having(scene, models, |error| context.note(format_args!("{}: {error}", scene.name)));
-        let models = asked_model::set_up(scene, &models, tolerance)?;
+        let models = set_up(scene, &models, tolerance)?;
         let outcomes = models.into_iter().map(|(body, set_up)| {
             let outcome = progress::watched(context, &scene.name, || {
                 body.run_with_history_until(COMPARISON_TOLERANCE, end)
@@ -114,4 +115,32 @@ fn having(scene: &Scene, models: &[AskedModel], left_out: impl Fn(&Error)) -> Ve
     }
     models.iter().filter_map(refused).for_each(|error| left_out(&error));
     kept
+}
+
+/// The `models` of `scene`, each once, in the order asked for, with the time in s that each took to set up. A model that is
+/// named and also chosen by auto is compared as auto chose it.
+fn set_up(scene: &Scene, models: &[AskedModel], tolerance: Option<f64>) -> Result<Vec<(Reduced, f64)>> {
+    let timed = |set_up: &dyn Fn() -> Result<Reduced>| {
+        let start = Instant::now();
+        set_up().map(|body| (body, start.elapsed().as_secs_f64()))
+    };
+    let mut chosen = None;
+    if models.contains(&AskedModel::Auto) {
+        let tolerance = tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
+        chosen = Some(timed(&|| Reduced::auto(scene, tolerance))?);
+    }
+    let auto = chosen.as_ref().map(|(body, _)| body.model());
+    let mut done = Vec::new();
+    let mut bodies = Vec::new();
+    for asked in models {
+        match *asked {
+            AskedModel::Auto => bodies.extend(chosen.take()),
+            AskedModel::Named(model) if auto != Some(model) && !done.contains(&model) => {
+                done.push(model);
+                bodies.push(timed(&|| Reduced::new(scene, model, None))?);
+            }
+            AskedModel::Named(_) | AskedModel::External => {}
+        }
+    }
+    Ok(bodies)
 }

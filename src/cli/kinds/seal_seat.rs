@@ -7,8 +7,8 @@ use crate::cli::asked_model::Asked;
 use crate::cli::asked_model::{self, AskedModel};
 use crate::cli::progress::Bar;
 use crate::error::{Error, Result};
-use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
+use crate::kinds::{self, SharedBodies};
 use crate::reference::{self, Resolution, Stored};
 use crate::report::Cost;
 use crate::result::Outcome;
@@ -29,10 +29,7 @@ impl Models for Seats {
         let model = match asked.model {
             Some(AskedModel::Named(model)) => model,
             Some(AskedModel::Auto) => {
-                return Err(Error::Usage(format!(
-                    "--model auto: scene `{}` is a seal seat, which has model C only",
-                    scene.name
-                )));
+                return Err(Error::Usage(format!("--model auto: {}", kinds::models_only(scene))));
             }
             Some(AskedModel::External) => return Err(asked_model::beside_a_reference()),
             None => scene.reduced.model.unwrap_or(Model::C),

@@ -1,0 +1,28 @@
+//! Where a plate impact lies among others.
+
+use crate::format::rounded;
+use crate::kinds::Place;
+use crate::kinds::plate_impact::PlateImpact;
+use crate::result::Summary;
+use std::f64::consts::PI;
+
+/// Significant digits of its numbers: the same on every machine.
+const DIGITS: usize = 7;
+
+/// The place of `setup` with the result `summary`; `None` beside the centre of the plate or at an angle, or if the result does not tell.
+pub(super) fn place(setup: &PlateImpact, summary: &Summary) -> Option<Place> {
+    let pressure = summary.contact_pressure.as_ref().filter(|_| setup.outer.is_centred())?;
+    let patch = pressure.outer.contact_radius.max(pressure.inner.contact_radius);
+    let contact = summary.value("outer_contact_end")? * summary.value("first_frequency")?;
+    let [outer, inner] = super::approach(setup).masses;
+    let film = setup.fluid.as_ref().filter(|fluid| fluid.squeeze_film);
+    let stokes_number = film.map(|fluid| {
+        let tip = setup.inner.shape.tip_radius();
+        rounded(inner * setup.outer.speed / (6.0 * PI * fluid.viscosity * tip * tip), DIGITS)
+    });
+    let measures = [patch / setup.plate.thickness, contact, inner / outer];
+    let [patch_over_thickness, contact_over_period, mass_ratio] =
+        measures.map(|value| rounded(value, DIGITS));
+    let is_known = measures.iter().all(|measure| measure.is_finite() && *measure > 0.0);
+    is_known.then_some(Place { patch_over_thickness, contact_over_period, mass_ratio, stokes_number })
+}

@@ -1,0 +1,64 @@
+//! How the results of a kind of scene are shown, where that differs from kind to kind.
+
+mod plate_impact;
+mod seal_seat;
+
+pub use plate_impact::{Film, film};
+pub use seal_seat::{Arrow, seat_picture};
+
+use super::figure_geometry::PanelOf;
+use super::section::Section;
+use super::summary_column::Column;
+use super::{Attachments, SceneReport};
+use crate::kinds::{self, KINDS};
+use crate::reference::Stored;
+use crate::scene::Scene;
+use maud::Markup;
+
+/// A drawing of a scene, a file of its own.
+pub(super) struct Drawing {
+    /// What its name adds to that of the scene.
+    pub(super) ending: &'static str,
+    /// What it shows, in words, if it stands at the head of the scene in Markdown.
+    pub(super) caption: Option<&'static str>,
+    /// The drawing as a stand-alone SVG.
+    pub(super) svg: String,
+}
+
+/// What a kind of scene shows.
+pub(super) trait Presentation: Sync {
+    /// The quantities that tell a result in short.
+    fn columns(&self) -> &'static [Column];
+
+    /// The curves, panel by panel.
+    fn panels(&self) -> &'static [PanelOf];
+
+    /// What the curves are, in a sentence.
+    fn curves_told(&self) -> &'static str;
+
+    /// What a stored solution has to be drawn.
+    fn attachments(&self, stored: &Stored) -> Attachments;
+
+    /// The drawings beside the page.
+    fn drawings(&self, report: &SceneReport) -> Vec<Drawing>;
+
+    /// The scene drawn to scale, and what there is to say of the drawing.
+    fn scene_drawing(&self, report: &SceneReport) -> Markup;
+
+    /// The scene in numbers: what, and what it measures.
+    fn measures(&self, scene: &Scene) -> Vec<(String, String)>;
+
+    /// What only this kind shows, behind the models' sections.
+    fn sections(&self, report: &SceneReport) -> Vec<Section>;
+
+    /// Pictures of mesh and stress of the reference; empty if there are none.
+    fn mesh(&self, report: &SceneReport) -> Markup;
+}
+
+/// How results of each of [`KINDS`] are shown.
+const SHOWN: [&dyn Presentation; KINDS.len()] = [&plate_impact::Plate, &seal_seat::Seat];
+
+/// How results of `scene` are shown.
+pub(super) fn of(scene: &Scene) -> &'static dyn Presentation {
+    SHOWN[kinds::index(scene)]
+}

@@ -1,0 +1,118 @@
+//! How a plate impact is shown.
+
+mod animation;
+mod picture;
+
+pub use animation::{Film, film};
+
+use super::{Drawing, Presentation};
+use crate::reference::Stored;
+use crate::report::attachments::instant_of_peak;
+use crate::report::figure_geometry::PanelOf;
+use crate::report::section::Section;
+use crate::report::summary_column::Column;
+use crate::report::{
+    Attachments, SceneReport, Theme, animation_section, budget_section, dents_section, efficiency_figure,
+    figure, flight_section, impacts_section, measured_figure, measured_section, mesh_section,
+};
+use crate::scene::Scene;
+use maud::{Markup, html};
+
+pub(super) struct Plate;
+
+const PANELS: [PanelOf; 3] = [
+    PanelOf {
+        label: "Displacement in µm",
+        factor: 1e6,
+        curves: &[
+            ("outer", "outer_displacement"),
+            ("plate", "plate_displacement"),
+            ("inner", "inner_displacement"),
+        ],
+        boxes: false,
+    },
+    PanelOf {
+        label: "Velocity in mm/s",
+        factor: 1e3,
+        curves: &[("outer", "outer_velocity"), ("plate", "plate_velocity"), ("inner", "inner_velocity")],
+        boxes: true,
+    },
+    PanelOf {
+        label: "Contact force in N",
+        factor: 1.0,
+        curves: &[("outer", "outer_force"), ("inner", "inner_force")],
+        boxes: false,
+    },
+];
+
+impl Presentation for Plate {
+    fn columns(&self) -> &'static [Column] {
+        const COLUMNS: [Column; 5] = [
+            Column::new("efficiency", "efficiency", "efficiency"),
+            Column::new("outer peak", "force peaks", "outer_force_peak"),
+            Column::new("inner peak", "force peaks", "inner_force_peak"),
+            Column::new("outer end", "ends of contact", "outer_contact_end"),
+            Column::new("inner end", "ends of contact", "inner_contact_end"),
+        ];
+        &COLUMNS
+    }
+
+    fn panels(&self) -> &'static [PanelOf] {
+        &PANELS
+    }
+
+    fn curves_told(&self) -> &'static str {
+        "Displacement, velocity and contact force of outer body, plate and inner body, signed along z (from the inner to the \
+         outer side; forces positive in compression)."
+    }
+
+    fn attachments(&self, stored: &Stored) -> Attachments {
+        let peak = instant_of_peak(&stored.outcome.history, "outer_force");
+        Attachments {
+            mesh: stored.mesh().ok(),
+            stress: stored.stress_near(peak).ok().flatten(),
+            dents: stored.dents().unwrap_or_default(),
+            ..Attachments::default()
+        }
+    }
+
+    fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
+        let drawing = |ending, caption, svg| Drawing { ending, caption, svg };
+        let curves = figure(report, Theme::Standalone);
+        let measured = measured_figure(report, Theme::Standalone);
+        let efficiencies = efficiency_figure(report);
+        let curves = drawing("", Some("Displacement, velocity and contact force"), curves);
+        let measured = measured.map(|svg| drawing("-measured", None, svg));
+        let efficiencies = efficiencies.map(|svg| drawing("-efficiencies", None, svg));
+        let impacts = impacts_section::impacts_figure(report)
+            .map(|svg| drawing("-impacts", Some("Efficiency over the number of the impact"), svg));
+        let dents = dents_section::dents_figure(report).map(|svg| drawing("-dents", None, svg));
+        [Some(curves), impacts, dents, measured, efficiencies].into_iter().flatten().collect()
+    }
+
+    fn scene_drawing(&self, report: &SceneReport) -> Markup {
+        report.scene.plate_impact().map_or_else(|_| html! {}, picture::plate_picture)
+    }
+
+    fn measures(&self, scene: &Scene) -> Vec<(String, String)> {
+        scene.plate_impact().map_or_else(|_| Vec::new(), picture::measures)
+    }
+
+    fn sections(&self, report: &SceneReport) -> Vec<Section> {
+        let budget = budget_section::budget_html(&report.comparison);
+        let measured = measured_section::measured_html(report);
+        let dents = dents_section::dents_html(report).unwrap_or_else(|error| html! { p { (error) } });
+        vec![
+            Section::new("movement", "The impact moving", animation_section::animation_html(report)),
+            Section::new("impacts", "Impacts in series", impacts_section::impacts_html(report)),
+            Section::new("landing", "Landing", flight_section::flights_html(report)),
+            Section::new("dents", "Dents", dents),
+            Section::new("budget", "Discrepancy budget", budget),
+            Section::new("measurement", "Measurement", measured),
+        ]
+    }
+
+    fn mesh(&self, report: &SceneReport) -> Markup {
+        mesh_section::mesh_html(report).unwrap_or_else(|error| html! { p { (error) } })
+    }
+}

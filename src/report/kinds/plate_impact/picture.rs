@@ -1,0 +1,174 @@
+//! A plate impact in section, to scale, and in numbers.
+
+use crate::format::{measure, short};
+use crate::kinds::plate_impact::PlateImpact;
+use crate::report::figure_geometry::x2;
+use crate::report::scene_drawing::{Scale, materials};
+use crate::scene::{Edge, Material, Shape};
+use maud::{Markup, html};
+
+const WIDTH: f64 = 340.0;
+/// Largest height of plate and bodies, px.
+const HEIGHT: f64 = 210.0;
+const MARGIN: f64 = 16.0;
+/// Room above the outer body for its speed, below the inner one for the scale, px.
+const ABOVE: f64 = 40.0;
+const BELOW: f64 = 26.0;
+/// Least thickness at which a plate is seen, px.
+const THINNEST: f64 = 1.5;
+
+pub(super) fn plate_picture(scene: &PlateImpact) -> Markup {
+    let (plate, outer, inner) = (&scene.plate, &scene.outer, &scene.inner);
+    let [r_outer, r_inner] = [&outer.shape, &inner.shape].map(|shape| shown_radius(shape, plate.radius));
+    let half = plate.radius.max(outer.offset + r_outer).max(r_inner);
+    let top = 0.5 * plate.thickness + 2.0 * r_outer;
+    let bottom = -0.5 * plate.thickness - inner.gap - 2.0 * r_inner;
+    let factor = ((WIDTH - 2.0 * MARGIN) / (2.0 * half)).min(HEIGHT / (top - bottom));
+    let scale = Scale {
+        factor,
+        left: -0.5 * (WIDTH - 2.0 * MARGIN) / factor,
+        top: top + (ABOVE - MARGIN) / factor,
+        margin: MARGIN,
+    };
+    let height = ABOVE + (top - bottom) * factor + BELOW;
+    let (struck, surface) = (scale.x(outer.offset), scale.z(top));
+    // about its tip, so that it points where the body goes
+    let aslant = (outer.angle != 0.0)
+        .then(|| format!("rotate({:.1} {} {})", -outer.angle.to_degrees(), x2(struck), x2(surface - 6.0)));
+    let thickness = (plate.thickness * factor).max(THINNEST);
+    let z_outer = 0.5 * plate.thickness + r_outer;
+    let z_inner = -0.5 * plate.thickness - inner.gap - r_inner;
+    html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) role="img" data-scale=(factor)
+            font-family="DejaVu Sans, Verdana, sans-serif" font-size="13" {
+            title { "The scene in section, to scale" }
+            (edge(plate.edge, plate.radius, thickness, &scale))
+            rect.fig-body.plate x=(x2(scale.x(-plate.radius))) width=(x2(2.0 * plate.radius * factor))
+                y=(x2(scale.z(0.0) - 0.5 * thickness)) height=(x2(thickness)) {}
+            (body(&outer.shape, "outer", r_outer, [outer.offset, z_outer], 1.0, &scale))
+            (body(&inner.shape, "inner", r_inner, [0.0, z_inner], -1.0, &scale))
+            path.fig-frame transform=[aslant] d=(format!("M{0} {1}V{2}m-4-7l4 7l4-7", x2(struck), x2(surface - 34.0), x2(surface - 6.0))) {}
+            text.fig-text x=(x2(struck + 10.0)) y=(x2(surface - 18.0)) { (measure(outer.speed, "m/s")) }
+            (scale.bar(MARGIN, height - 6.0))
+        }
+    }
+}
+
+/// Of a body of which the tip alone is known that of the tip, as far as it can be drawn.
+fn shown_radius(shape: &Shape, plate: f64) -> f64 {
+    match shape {
+        Shape::Sphere { radius } => *radius,
+        Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => shape.tip_radius().min(plate),
+    }
+}
+
+/// A sphere, or the tip of another body, about `centre`; `side` is 1 above the plate and -1 below it.
+fn body(shape: &Shape, name: &str, radius: f64, centre: [f64; 2], side: f64, scale: &Scale) -> Markup {
+    let (x, y, r) = (scale.x(centre[0]), scale.z(centre[1]), radius * scale.factor);
+    let sweep = if side > 0.0 { 0 } else { 1 };
+    let inside = r > 24.0;
+    let label = if inside {
+        (x, y + if matches!(shape, Shape::Sphere { .. }) { 4.5 } else { side * 14.0 + 4.5 })
+    } else {
+        (x + r + 26.0, y - side * 4.0 + 4.5)
+    };
+    html! {
+        @match shape {
+            Shape::Sphere { .. } => circle class=(format!("fig-body {name}")) cx=(x2(x)) cy=(x2(y)) r=(x2(r)) {},
+            Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => {
+                path class=(format!("fig-body {name}")) d=(format!("M{} {}A{r:.2} {r:.2} 0 0 {sweep} {} {}", x2(x - r), x2(y), x2(x + r), x2(y))) {}
+                path.fig-frame stroke-dasharray="3 3" d=(format!("M{} {}V{}H{}V{}", x2(x - r), x2(y), x2(y - side * r), x2(x + r), x2(y))) {}
+            },
+        }
+        text.fig-text x=(x2(label.0)) y=(x2(label.1)) text-anchor="middle" { (name) }
+    }
+}
+
+/// What holds the rim.
+fn edge(edge: Edge, radius: f64, thickness: f64, scale: &Scale) -> Markup {
+    let (middle, half) = (scale.z(0.0), 0.5 * thickness);
+    html! {
+        @for side in [-1.0, 1.0] {
+            @let x = scale.x(side * radius);
+            @match edge {
+                Edge::Clamped => rect.fig-clamp x=(x2(if side < 0.0 { x - 9.0 } else { x })) width="9" y=(x2(middle - half - 12.0)) height=(x2(thickness + 24.0)) {},
+                Edge::SimplySupported => path.fig-clamp d=(format!("M{0} {1}l-7 12h14Z", x2(x - side * 4.0), x2(middle + half))) {},
+                Edge::Free => {},
+            }
+        }
+    }
+}
+
+/// The scene in numbers.
+pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
+    let (plate, outer, inner) = (&scene.plate, &scene.outer, &scene.inner);
+    let length = |value: f64| measure(value, "m");
+    let edge = match plate.edge {
+        Edge::Clamped => "clamped",
+        Edge::SimplySupported => "simply supported",
+        Edge::Free => "free",
+    };
+    let damping = if plate.damping_ratio > 0.0 {
+        format!(", damping ratio {}", short(plate.damping_ratio))
+    } else {
+        String::new()
+    };
+    let gap = if inner.gap > 0.0 { format!(", gap {}", length(inner.gap)) } else { String::new() };
+    let own = if inner.speed == 0.0 { String::new() } else { format!(", {}", measure(inner.speed, "m/s")) };
+    let aside = match (outer.offset, outer.angle) {
+        (0.0, 0.0) => String::new(),
+        (offset, 0.0) => format!(", {} beside the centre", length(offset)),
+        (0.0, angle) => format!(", at {}", measure(angle, "rad")),
+        (offset, angle) => format!(", {} beside the centre, at {}", length(offset), measure(angle, "rad")),
+    };
+    let mut told = vec![
+        (
+            "outer".to_owned(),
+            format!("{}, {}{aside}", of_body(&outer.shape, &outer.material), measure(outer.speed, "m/s")),
+        ),
+        (
+            "plate".to_owned(),
+            format!(
+                "radius {}, thickness {}, {edge}, {}{damping}",
+                length(plate.radius),
+                length(plate.thickness),
+                plate.material.name
+            ),
+        ),
+        ("inner".to_owned(), of_body(&inner.shape, &inner.material) + &gap + &own),
+    ];
+    if let Some(fluid) = &scene.fluid {
+        let viscosity = short(1e3 * fluid.viscosity);
+        told.push((
+            "fluid".to_owned(),
+            format!("viscosity {viscosity} mPa s, density {} kg/m³", short(fluid.density)),
+        ));
+    }
+    told.extend(materials([&plate.material, &outer.material, &inner.material]));
+    told
+}
+
+fn of_body(shape: &Shape, material: &Material) -> String {
+    let grams = |mass: f64| format!("{} g", short(1e3 * mass));
+    let tip = measure(shape.tip_radius(), "m");
+    match shape {
+        Shape::Sphere { radius } => format!("sphere, radius {}, {}", measure(*radius, "m"), material.name),
+        Shape::Compact { mass, .. } => {
+            format!("compact body, {}, tip radius {tip}, {}", grams(*mass), material.name)
+        }
+        Shape::Bender(bender) => format!(
+            "bender, length {}, tip mass {}, tip radius {tip}, {}",
+            measure(bender.length, "m"),
+            grams(bender.tip_mass),
+            material.name
+        ),
+        Shape::Stack(stack) => format!(
+            "stack, length {}, stroke {}, blocked force {}, {}, tip radius {tip}, {}",
+            measure(stack.length, "m"),
+            measure(stack.stroke, "m"),
+            measure(stack.blocked_force, "N"),
+            measure(stack.voltage, "V"),
+            material.name
+        ),
+    }
+}
