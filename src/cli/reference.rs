@@ -83,7 +83,7 @@ struct ImportArguments {
 fn import(context: &Context, arguments: &ImportArguments) -> Result<ExitStatus> {
     let (file, scene) = super::read_scene(&arguments.scene)?;
     let store = context.store().for_scene_in(&file);
-    let stored = crate::reference::import(&scene, &arguments.from, arguments.map.as_deref(), &store)?;
+    let stored = crate::comparison::import(&scene, &arguments.from, arguments.map.as_deref(), &store)?;
     context
         .note(format_args!("imported {}; compare with it: --resolution imported", stored.folder.display()));
     if stored.outcome.summary.uncertainty.is_empty() {

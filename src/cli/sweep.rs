@@ -6,7 +6,8 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::report;
 use crate::report::FigureFormat;
-use crate::sweep::{self, Drawn, Plan, Shard, Table};
+use crate::report::{Drawn, sweep_figure};
+use crate::sweep::{self, Plan, Shard, Table};
 use crate::table_format::TableFormat;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -110,7 +111,7 @@ fn is_drawn(plan: &Plan) -> bool {
 /// Writes the drawing into `dir` and where it is asked for.
 fn draw(context: &Context, arguments: &Arguments, plan: &Plan, dir: &Path, table: &Table) -> Result<()> {
     let references = sweep::references(plan, &context.store());
-    let svg = sweep::figure(table, &arguments.drawn(plan)?, &references)?;
+    let svg = sweep_figure(table, &arguments.drawn(plan)?, &references)?;
     let path = dir.join("sweep.svg");
     write_file(&path, svg.as_bytes())?;
     context.note(format_args!("wrote {}", path.display()));

@@ -27,7 +27,7 @@ pub use doctor::{Check, doctor};
 pub use entry::Stored;
 pub use fields::FieldMesh;
 pub use identity::{revision, settings_hash};
-pub use import::import;
+pub use import::{Imported, read_import};
 pub use kinds::*;
 pub use python::{prefer_python, python};
 pub use section::MeshSection;

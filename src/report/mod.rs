@@ -62,6 +62,7 @@ mod section;
 mod section_frame;
 mod standing;
 mod summary_column;
+mod sweep_figure;
 mod symmetric_log;
 mod terminal;
 mod thumbnail;
@@ -94,6 +95,7 @@ pub use moves_page::moves_page;
 pub use png::png;
 pub use scatter_figure::scatter_figure;
 pub use scene_page::scene_page;
+pub use sweep_figure::{Drawn, sweep_figure};
 pub use terminal::{alone, terminal};
 pub use write::{check_writable, write};
 

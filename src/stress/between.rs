@@ -4,9 +4,9 @@
 //! and so Hermite's polynomial of fifth degree, as exact as the step itself.
 
 use crate::dynamics::contact_ledger::ContactLedger;
-use crate::dynamics::explicit_runge_kutta::Step;
 use crate::dynamics::integration::NEGLIGIBLE;
 use crate::dynamics::system::{System, dot};
+use crate::numerics::explicit_runge_kutta::Step;
 
 /// Places of a step that are looked at.
 const PLACES: usize = 12;

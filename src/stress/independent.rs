@@ -4,10 +4,11 @@ use super::between::{Contact, Watch};
 use super::kinds::Impact;
 use super::{DIFFERENCE_BOUND, END_BOUND, TOLERANCE};
 use crate::dynamics::assured;
-use crate::dynamics::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Equations, Tolerances};
+use crate::dynamics::equations::Equations;
 use crate::dynamics::integration::Integration;
 use crate::dynamics::system::{INNER, System};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
+use crate::numerics::explicit_runge_kutta::{self as runge_kutta, DORMAND_PRINCE_8, Tolerances};
 
 /// Evaluations times state entries that the solution of a case may cost; dearer cases (high modes, long runs) go without
 /// one and are counted. In a fluid an evaluation costs as much as [`FILM_ENTRIES`] entries more.

@@ -2,17 +2,15 @@
 //!
 //! A [`Plan`] numbers the points; every point's result is a line in an append-only log (`record`) as soon as it is
 //! known, so that an interrupted sweep goes on where it stopped, and shards run side by side; a [`Table`] joins what the
-//! logs hold, and [`figure`] draws it.
+//! logs hold.
 
 mod axis;
-mod drawing;
 mod plan;
 mod record;
 mod references;
 mod run;
 mod table;
 
-pub use drawing::{Drawn, figure};
 pub use plan::{DEFAULT_TOLERANCE, Draw, Plan};
 pub use record::{Outcome, Record};
 pub use references::{Known, references};

@@ -67,7 +67,7 @@ impl<'a> Table<'a> {
     }
 
     /// The plan whose points these are.
-    pub(super) fn plan(&self) -> &Plan {
+    pub fn plan(&self) -> &Plan {
         self.plan
     }
 

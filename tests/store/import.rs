@@ -1,9 +1,10 @@
 //! Results of other programs become references: read with their units and signs, checked, kept with where they come from.
 
 use impactcheck::Error;
+use impactcheck::comparison::import;
 use impactcheck::comparison::{Verdict, compare_scene};
 use impactcheck::kinds::plate_impact::reduced::Reduced;
-use impactcheck::reference::{Lookup, Resolution, Store, import};
+use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::scene::{Model, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -7,7 +7,7 @@ mod clearance;
 pub mod collocation;
 mod contact_forces;
 pub mod contact_ledger;
-pub mod explicit_runge_kutta;
+pub mod equations;
 mod force_peak;
 mod free_flight;
 mod heating;

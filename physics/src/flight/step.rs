@@ -1,7 +1,7 @@
 //! One step of Dormand & Prince's method of order 8: with steps of a fraction of the radius its error is at rounding, and a
 //! parabola is exact.
 
-use crate::dynamics::explicit_runge_kutta::DORMAND_PRINCE_8;
+use crate::numerics::explicit_runge_kutta::DORMAND_PRINCE_8;
 
 /// State after `h` s from `y` at `time`, where y' = `rate`(time, y).
 pub(super) fn step<const N: usize>(

@@ -4,6 +4,7 @@ pub(crate) mod chebyshev;
 pub(crate) mod cholesky;
 pub mod duhamel;
 pub(crate) mod eigenmodes;
+pub mod explicit_runge_kutta;
 pub mod least_squares;
 pub mod quadrature;
 pub(crate) mod root;

@@ -7,7 +7,6 @@ mod mapping;
 use super::entry::{self, MeshFiles, Stored};
 use super::store::Installed;
 use super::{Resolution, Store, identity};
-use crate::comparison::{self, Verdict};
 use crate::curves::table::{self, Columns};
 use crate::external;
 use crate::kinds;
@@ -25,12 +24,19 @@ const FEWEST: usize = 16;
 /// Name of a program that nobody states.
 const UNKNOWN: &str = "another program";
 
-/// Puts the result in `file` into `store` as the imported reference of `scene`; `map` says how it is to be read.
+/// A result of another program that was read and is not stored yet.
+#[derive(Debug)]
+pub struct Imported {
+    /// The result.
+    pub outcome: Outcome,
+    provenance: String,
+}
+
+/// Reads the result in `file` as a reference of `scene`; `map` says how it is to be read.
 ///
 /// # Errors
-/// [`Error::Io`] if a file can't be read or written, [`Error::Reference`] if it can't be used: the file, line or column at
-/// fault, or what the result contradicts.
-pub fn import(scene: &Scene, file: &Path, map: Option<&Path>, store: &Store) -> Result<Stored> {
+/// [`Error::Io`] if a file can't be read, [`Error::Reference`] if it can't be used: the file, line or column at fault.
+pub fn read_import(scene: &Scene, file: &Path, map: Option<&Path>) -> Result<Imported> {
     let read = |path: &Path| std::fs::read(path).map_err(|e| Error::io("reading", path, e));
     let bytes = read(file)?;
     let map_text = map.map(read).transpose()?.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
@@ -40,7 +46,6 @@ pub fn import(scene: &Scene, file: &Path, map: Option<&Path>, store: &Store) -> 
     let stated = mapping.stated(kinds::of(scene)).map_err(of_map)?;
     let history = history(scene, file, &bytes, &mapping).map_err(|reason| unusable(file, reason))?;
     let outcome = outcome(scene, &mapping, stated, history);
-    require_sound(scene, file, &outcome)?;
     let provenance = json!({
         "scene": identity::solver_document(scene, Resolution::Imported)?,
         "scene_hash": scene.hash(),
@@ -56,7 +61,17 @@ pub fn import(scene: &Scene, file: &Path, map: Option<&Path>, store: &Store) -> 
         "file_sha256": sha256_hex(&bytes),
         "map": map_text,
     });
-    install(scene, store, &outcome, &format!("{provenance:#}\n"))
+    Ok(Imported { outcome, provenance: format!("{provenance:#}\n") })
+}
+
+impl Imported {
+    /// Puts it into `store` as the imported reference of `scene`.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if it can't be written.
+    pub fn install(&self, scene: &Scene, store: &Store) -> Result<Stored> {
+        install(scene, store, &self.outcome, &self.provenance)
+    }
 }
 
 /// The curves of a file of any of the forms known, from the first touch on.
@@ -151,21 +166,6 @@ fn outcome(
     let summary = external::summary(scene, program, table, &history);
     let summary = Summary { uncertainty, samples: Some(history.len()), ..summary };
     Outcome { summary, history }
-}
-
-/// That the result is consistent with itself and the scene, which a wrong unit, sign or column is not.
-fn require_sound(scene: &Scene, file: &Path, outcome: &Outcome) -> Result<()> {
-    let checks = comparison::integrity(scene, outcome);
-    let broken: Vec<String> =
-        checks.iter().filter(|check| check.verdict == Verdict::Fail).map(ToString::to_string).collect();
-    if broken.is_empty() {
-        return Ok(());
-    }
-    Err(Error::Reference(format!(
-        "{} contradicts the scene or itself, and nothing is stored; check columns, units, signs and offsets\n  {}",
-        file.display(),
-        broken.join("\n  ")
-    )))
 }
 
 /// Writes the entry and puts it into the store.

@@ -1,14 +1,15 @@
 //! The time integration against general-purpose integrators on the same equations.
 
 use crate::bench::{Bench, OURS, Settings, WorkPrecision, timed};
-use crate::dynamics::explicit_runge_kutta::{
-    self as runge_kutta, DORMAND_PRINCE_5, DORMAND_PRINCE_8, Equations, Tolerances,
-};
+use crate::dynamics::equations::Equations;
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::{INNER, System};
 use crate::error::Result;
 use crate::kinds::plate_impact::reduced::Reduced;
+use crate::numerics::explicit_runge_kutta::{
+    self as runge_kutta, DORMAND_PRINCE_5, DORMAND_PRINCE_8, Tolerances,
+};
 use crate::reference::python;
 use crate::scene::{self, Model, Scene};
 use serde::Deserialize;

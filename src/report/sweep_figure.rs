@@ -1,14 +1,11 @@
 //! A sweep drawn: curves over one parameter, maps over two, with the references that lie in it and what the paper says.
 
-use super::plan::Plan;
-use super::record::Record;
-use super::references::Known;
-use super::table::Table;
+use super::{ChartPanel, ColourMap, Series, chart, colour_maps};
 use crate::error::{Error, Result};
 use crate::format::{prefixed, words};
 use crate::kinds;
-use crate::report::{ChartPanel, ColourMap, Series, chart, colour_maps};
 use crate::scene::{Model, suggestion};
+use crate::sweep::{Known, Plan, Record, Table};
 
 /// The paper's rule for the optimum (section 4.1), which results can be held against.
 const RULE: &str = "paper: best where contact ≈ half the first period";
@@ -88,7 +85,7 @@ impl Drawn {
 ///
 /// # Errors
 /// [`Error::Usage`] if neither one nor two parameters vary.
-pub fn figure(table: &Table, quantities: &[Drawn], known: &[Known]) -> Result<String> {
+pub fn sweep_figure(table: &Table, quantities: &[Drawn], known: &[Known]) -> Result<String> {
     let (plan, title) = (table.plan(), format!("{}: sweep", table.plan().scene()));
     match plan.parameters().len() {
         1 => Ok(chart(&title, &quantities.iter().map(|q| panel(table, *q, known)).collect::<Vec<_>>())),
