@@ -17,7 +17,9 @@ pub fn revision(scene: &Scene) -> u32 {
 /// The same of the results by CalculiX.
 const CALCULIX_REVISION: u32 = 1;
 
-/// Keys of a scene that no exact solution depends on, and the hashes beside them.
+/// Keys of a scene that concern no reference.
+const FOREIGN: [&str; 3] = ["reduced", "tolerances", "external"];
+/// Other keys that no exact solution depends on, and the hashes beside them.
 const NOT_HASHED: [&str; 6] =
     ["name", "description", "reference", "scene_hash", "geometry_hash", "settings_hash"];
 
@@ -42,7 +44,7 @@ pub(super) fn solver_document(scene: &Scene, resolution: Resolution) -> Result<V
     let mut document = serde_json::to_value(scene).map_err(failed)?;
     let fields =
         document.as_object_mut().ok_or_else(|| Error::Internal("the scene is no JSON object".into()))?;
-    for foreign in ["reduced", "tolerances", "external"] {
+    for foreign in FOREIGN {
         fields.remove(foreign);
     }
     fields.insert("scene_hash".into(), scene.hash().into());
@@ -84,7 +86,7 @@ fn hashed(document: &Value) -> Map<String, Value> {
     let mut document = document.clone();
     drop_inelastic(&mut document);
     let mut fields = document.as_object().cloned().unwrap_or_default();
-    fields.retain(|key, _| !NOT_HASHED.contains(&key.as_str()));
+    fields.retain(|key, _| !FOREIGN.iter().chain(&NOT_HASHED).any(|other| other == key));
     fields
 }
 
@@ -140,7 +142,9 @@ mod tests {
         let mut document = solver_document(&scene, Resolution::Paper).expect("a document");
         let [settings, hash] = ["settings_hash", "scene_hash"].map(|key| document[key].clone());
         document["body"] = json!({ "mass": 2 });
-        document["name"] = json!("another");
+        for other in ["name", "reduced", "tolerances"] {
+            document[other] = json!("another");
+        }
         let mut provenance = json!({ "scene": document, "scene_hash": hash, "settings_hash": settings });
         assert_eq!(staleness(&provenance, &scene, Resolution::Paper).expect("compared"), None);
         provenance["scene_hash"] = json!("other");
