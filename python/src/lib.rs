@@ -10,7 +10,7 @@ mod samples;
 mod scene;
 
 use detached::detached;
-use impactcheck::cli::in_process::{self, Asked, AskedModel, Comparing};
+use impactcheck::cli::in_process::{self, AskedModel, Comparing, ModelRequest};
 use impactcheck::interrupt;
 use impactcheck::kinds::SharedBodies;
 use impactcheck::result::Outcome;
@@ -64,7 +64,7 @@ fn reduced(
     threads: Option<usize>,
 ) -> PyResult<Vec<Run>> {
     let model = model.map(AskedModel::from_str).transpose().map_err(usage)?;
-    let asked = Asked { model, modes, tolerance, mesh: None };
+    let asked = ModelRequest { model, modes, tolerance, mesh: None };
     let (bodies, stopped) = (SharedBodies::default(), AtomicBool::new(false));
     let one = |scene: &Py<Scene>| match stopped.load(Relaxed) {
         true => Err(Error::Internal("interrupted".into())),

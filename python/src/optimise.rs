@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const INTERVAL: Duration = Duration::from_millis(100);
 
 /// How far a search is.
-struct Progress {
+struct SearchProgress {
     tried: usize,
     best: Option<f64>,
     told: Instant,
@@ -32,8 +32,8 @@ pub fn optimise(
 ) -> PyResult<(String, String, String)> {
     let template = scene.template().map_err(raised)?;
     let (stopped, told) = (AtomicBool::new(false), Instant::now());
-    let state = Mutex::new(Progress { tried: 0, best: None, told, raised: None });
-    let state = || -> MutexGuard<Progress> { state.lock().unwrap_or_else(PoisonError::into_inner) };
+    let state = Mutex::new(SearchProgress { tried: 0, best: None, told, raised: None });
+    let state = || -> MutexGuard<SearchProgress> { state.lock().unwrap_or_else(PoisonError::into_inner) };
     let watch = |worth: Option<f64>| {
         let mut so_far = state();
         so_far.tried += 1;

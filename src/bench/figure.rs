@@ -12,7 +12,7 @@ const COLOURS: [&str; 8] =
     ["#1a1a1a", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"];
 
 /// One panel: title and runs.
-struct Panel<'a> {
+struct BenchPanel<'a> {
     title: String,
     runs: Vec<&'a WorkPrecision>,
 }
@@ -47,8 +47,8 @@ pub fn figure(bench: &Bench) -> String {
     drawing.into_string()
 }
 
-fn panels(bench: &Bench) -> Vec<Panel<'_>> {
-    let mut panels: Vec<Panel> = Vec::new();
+fn panels(bench: &Bench) -> Vec<BenchPanel<'_>> {
+    let mut panels: Vec<BenchPanel> = Vec::new();
     for run in &bench.work_precision {
         // integrators: a panel per number of modes; models: one for all
         let title = match (run.tolerance, run.modes) {
@@ -58,7 +58,7 @@ fn panels(bench: &Bench) -> Vec<Panel<'_>> {
         };
         match panels.iter_mut().find(|panel| panel.title == title) {
             Some(panel) => panel.runs.push(run),
-            None => panels.push(Panel { title, runs: vec![run] }),
+            None => panels.push(BenchPanel { title, runs: vec![run] }),
         }
     }
     panels
@@ -95,7 +95,7 @@ fn decades(values: impl Iterator<Item = f64>) -> (i32, i32) {
     if low > high { (-1, 0) } else { (low.floor() as i32, (high.ceil() as i32).max(low.floor() as i32 + 1)) }
 }
 
-fn draw(panel: &Panel, solvers: &[String]) -> Markup {
+fn draw(panel: &BenchPanel, solvers: &[String]) -> Markup {
     let (left, top, right, bottom) = MARGIN;
     let (wide, high) = (PANEL.0 - left - right, PANEL.1 - top - bottom);
     let errors = decades(panel.runs.iter().map(|r| r.relative_error.max(1e-13)));

@@ -47,7 +47,7 @@ pub struct Fitted {
 }
 
 /// Differences of a model from data as a function of its parameters in their scales.
-struct Problem<'a, F> {
+struct FitProblem<'a, F> {
     residuals: &'a F,
     scales: &'a [f64],
     at: DVector<f64>,
@@ -55,7 +55,7 @@ struct Problem<'a, F> {
     far_off: DVector<f64>,
 }
 
-impl<F: Fn(&[f64]) -> Option<Vec<f64>>> Problem<'_, F> {
+impl<F: Fn(&[f64]) -> Option<Vec<f64>>> FitProblem<'_, F> {
     fn of(&self, at: &DVector<f64>) -> Option<DVector<f64>> {
         let values: Vec<f64> = at.iter().zip(self.scales).map(|(x, scale)| x * scale).collect();
         (self.residuals)(&values).map(DVector::from_vec)
@@ -81,7 +81,7 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> Problem<'_, F> {
     }
 }
 
-impl<F: Fn(&[f64]) -> Option<Vec<f64>>> LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_, F> {
+impl<F: Fn(&[f64]) -> Option<Vec<f64>>> LeastSquaresProblem<f64, Dyn, Dyn> for FitProblem<'_, F> {
     type ResidualStorage = Owned<f64, Dyn>;
     type JacobianStorage = Owned<f64, Dyn, Dyn>;
     type ParameterStorage = Owned<f64, Dyn>;
@@ -120,7 +120,7 @@ pub fn fit(
     let largest = first.iter().fold(1.0_f64, |most, r| most.max(r.abs()));
     let far_off = DVector::from_element(first.len(), FAR * largest);
     let at = DVector::from_iterator(start.len(), start.iter().zip(scales).map(|(x, scale)| x / scale));
-    let problem = Problem { residuals: &residuals, scales, at, far_off };
+    let problem = FitProblem { residuals: &residuals, scales, at, far_off };
     let (problem, report) =
         LevenbergMarquardt::new().with_ftol(1e-12).with_xtol(1e-10).with_gtol(1e-12).minimize(problem);
     if !report.termination.was_successful()
@@ -161,7 +161,7 @@ fn along(directions: &DMatrix<f64>, blocks: &[DMatrix<f64>]) -> DMatrix<f64> {
 
 /// What the `slopes` at the solution tell, the data having the covariance of `blocks`.
 fn told<F: Fn(&[f64]) -> Option<Vec<f64>>>(
-    problem: &Problem<F>,
+    problem: &FitProblem<F>,
     scatter: f64,
     slopes: DMatrix<f64>,
     blocks: &[DMatrix<f64>],

@@ -91,7 +91,7 @@ pub(super) fn told(choice: &Choice) -> String {
 
 /// The model that is asked for; what is left out is the scene's or the program's choice.
 #[derive(Debug, Clone, Default, Args)]
-pub struct Asked {
+pub struct ModelRequest {
     /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility), or auto, the cheapest whose
     /// estimated error meets the tolerance [default: the scene's, else C]
     #[arg(long)]
@@ -112,7 +112,7 @@ pub struct Asked {
 /// Largest tolerance of a time integration.
 const LARGEST_INTEGRATION: f64 = 1e-2;
 
-impl Asked {
+impl ModelRequest {
     /// The tolerance of the time integration of a model that is named, `default` if the user names none.
     ///
     /// # Errors

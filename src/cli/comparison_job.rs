@@ -6,7 +6,7 @@ use super::compare_inputs;
 use super::external;
 use super::film::film;
 use super::scatter::scatter;
-use super::second_program::{self, Asked};
+use super::second_program::{self, CalculixRequest};
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, kinds, validated_scenes};
 use crate::ci::commit::Commit;
@@ -143,7 +143,7 @@ impl<'a> Job<'a> {
                 let (reduced, _) = models.beside(context, scene, &stored, asked)?;
                 Ok((stored, reduced))
             });
-            let asked = Asked::of(self.arguments.reference_check, self.arguments.compute);
+            let asked = CalculixRequest::of(self.arguments.reference_check, self.arguments.compute);
             let other = second_program::beside(context, file, scene, self.resolution(), asked)?;
             Ok(Results { stored, reduced, cost, coarser: coarser.transpose()?, other })
         };

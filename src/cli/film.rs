@@ -4,7 +4,7 @@ use super::Context;
 use crate::error::Result;
 use crate::movement::Movement;
 use crate::reference::Stored;
-use crate::report::{self, Film};
+use crate::report::{self, Animation};
 use crate::result::Outcome;
 use crate::scene::{Geometry, Scene};
 
@@ -17,7 +17,7 @@ pub(super) fn film(
     scene: &Scene,
     (stored, reduced): (&Stored, &[Outcome]),
     asked: bool,
-) -> Result<Option<Film>> {
+) -> Result<Option<Animation>> {
     if !asked && !Movement::has_fields(scene, stored) {
         return Ok(None);
     }

@@ -158,7 +158,7 @@ fn update(context: &Context, job: &Job, results: &[Results], reason: &str) -> Re
     let report = job.report(context, results)?;
     let scenes = job.scenes.iter().zip(&report.scenes);
     let change = |((file, _), scene): (&(PathBuf, Scene), &SceneReport)| {
-        Change::of(file, &scene.comparison, &scene.attachments, job.resolution(), reason)
+        SceneUpdate::of(file, &scene.comparison, &scene.attachments, job.resolution(), reason)
     };
     let changes = scenes.map(change).collect::<Result<Vec<_>>>()?;
     for change in &changes {
@@ -168,7 +168,7 @@ fn update(context: &Context, job: &Job, results: &[Results], reason: &str) -> Re
 }
 
 /// What an update does to one scene.
-struct Change {
+struct SceneUpdate {
     scene: String,
     file: PathBuf,
     /// The scene file's new text, if it changes.
@@ -177,7 +177,7 @@ struct Change {
     entry: Option<Acceptance>,
 }
 
-impl Change {
+impl SceneUpdate {
     /// The change that makes `comparison` pass, checked, not yet made.
     fn of(
         file: &Path,
@@ -210,7 +210,7 @@ impl Change {
         let standing = tolerance_watch::standing(&text)?;
         let entry = Acceptance { date, reason: reason.to_owned(), tolerances, reference, standing };
         let nothing = entry.tolerances.is_empty() && known;
-        Ok(Change {
+        Ok(SceneUpdate {
             scene: comparison.scene.clone(),
             file: file.to_owned(),
             text: (text != old).then_some(text),

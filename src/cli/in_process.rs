@@ -1,8 +1,8 @@
 //! What the commands compute, for programs that hold scenes in memory, as the Python package does: the same models, defaults,
 //! bounds and sentences; nothing is printed.
 
-pub use super::asked_model::Asked;
 pub use super::asked_model::AskedModel;
+pub use super::asked_model::ModelRequest;
 
 use super::asked_model::within_bounds;
 use super::compare_arguments::Arguments;
@@ -27,7 +27,7 @@ const QUIET: Context = Context { store: None, quiet: true, verbose: false };
 ///
 /// # Errors
 /// Those of the command.
-pub fn reduced(scene: &Scene, asked: &Asked, bodies: &SharedBodies) -> Result<Outcome> {
+pub fn reduced(scene: &Scene, asked: &ModelRequest, bodies: &SharedBodies) -> Result<Outcome> {
     if let Some(tolerance) = asked.tolerance {
         within_bounds(tolerance, &format!("tolerance {tolerance}")).map_err(Error::Usage)?;
     }

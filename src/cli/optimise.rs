@@ -63,7 +63,7 @@ pub struct Arguments {
 
 /// The document of `optimise --json`.
 #[derive(Debug, Serialize)]
-pub(super) struct Document {
+pub(super) struct OptimumDocument {
     #[serde(flatten)]
     pub(super) optimum: Optimum,
     /// What model C says, if another one searched.
@@ -96,7 +96,7 @@ fn probability(text: &str) -> std::result::Result<f64, String> {
 /// What a search found.
 pub(super) struct Solved {
     pub(super) problem: Problem,
-    pub(super) document: Document,
+    pub(super) document: OptimumDocument,
     /// The exit status of a verification without verdict.
     failure: Option<ExitStatus>,
 }
@@ -153,7 +153,7 @@ pub(super) fn solve(
     } else {
         None
     };
-    let document = Document { optimum, confirmation, verification };
+    let document = OptimumDocument { optimum, confirmation, verification };
     if let Some(folder) = &arguments.out {
         write(context, folder, &problem, &document)?;
     }
@@ -187,7 +187,7 @@ fn reference_of(context: &Context, arguments: &Arguments, scene: &Scene) -> Resu
     }
 }
 
-fn write(context: &Context, folder: &Path, problem: &Problem, document: &Document) -> Result<()> {
+fn write(context: &Context, folder: &Path, problem: &Problem, document: &OptimumDocument) -> Result<()> {
     let svg = document.optimum.figure();
     let json = serde_json::to_string_pretty(document)
         .map_err(|e| Error::Internal(format!("writing the optimum as JSON: {e}")))?;
@@ -217,7 +217,7 @@ fn reached(optimum: &Optimum) -> String {
     format!("{name} {objective_value:.5}{unit}{}, efficiency {efficiency:.5}", angle.unwrap_or_default())
 }
 
-fn table(document: &Document) -> String {
+fn table(document: &OptimumDocument) -> String {
     let optimum = &document.optimum;
     let mut lines = vec![format!(
         "{}: {} (model {}, {} impacts{})",

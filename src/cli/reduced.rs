@@ -1,6 +1,6 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
-use super::asked_model::{self, Asked};
+use super::asked_model::{self, ModelRequest};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
@@ -17,7 +17,7 @@ pub struct Arguments {
     /// Scene file, the name of a shipped scene, or `-` for standard input
     scene: String,
     #[command(flatten)]
-    asked: Asked,
+    asked: ModelRequest,
     /// Write displacement, velocity and force over time to this file (.csv or .parquet)
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,

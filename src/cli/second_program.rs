@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// How CalculiX's solutions are asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Asked {
+pub(super) enum CalculixRequest {
     /// They are shown where they are stored and sound.
     Shown,
     /// They have to be there.
@@ -21,10 +21,10 @@ pub(super) enum Asked {
     },
 }
 
-impl Asked {
+impl CalculixRequest {
     /// Of `--reference-check` and `--compute`.
     pub(super) fn of(required: bool, compute: bool) -> Self {
-        if required { Asked::Required { compute } } else { Asked::Shown }
+        if required { CalculixRequest::Required { compute } } else { CalculixRequest::Shown }
     }
 }
 
@@ -38,12 +38,12 @@ pub(super) fn beside(
     file: &Path,
     scene: &Scene,
     resolution: Resolution,
-    asked: Asked,
+    asked: CalculixRequest,
 ) -> Result<Option<Stored>> {
     let Some(resolution) = resolution.by_calculix().filter(|_| kinds::of(scene).calculix_takes(scene)) else {
         return Ok(None);
     };
-    let Asked::Required { compute } = asked else {
+    let CalculixRequest::Required { compute } = asked else {
         let found = context.store().for_scene_in(file).find_here_or_shipped(scene, resolution).found();
         return Ok(found.filter(|stored| require_sound(scene, stored).is_ok()));
     };

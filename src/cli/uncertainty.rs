@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Samples of the inputs, or auto: twice as many again and again until --accuracy is reached. Each takes an impact per input, and
     /// two more
     #[arg(long, default_value = "auto", value_name = "N|auto", value_parser = samples)]
-    samples: Asked,
+    samples: RowCount,
     /// How well auto has to know mean and standard deviation: half width of their 95 % intervals over the standard deviation
     #[arg(long, default_value = "2%", value_name = "SHARE", value_parser = asked_model::tolerance)]
     accuracy: f64,
@@ -53,15 +53,15 @@ pub struct Arguments {
 
 /// What `--samples` says.
 #[derive(Debug, Clone, Copy)]
-enum Asked {
+enum RowCount {
     Auto,
     Rows(usize),
 }
 
-fn samples(text: &str) -> std::result::Result<Asked, String> {
+fn samples(text: &str) -> std::result::Result<RowCount, String> {
     match text {
-        "auto" => Ok(Asked::Auto),
-        _ => text.parse().map(Asked::Rows).map_err(|_| format!("`{text}` is neither a number nor auto")),
+        "auto" => Ok(RowCount::Auto),
+        _ => text.parse().map(RowCount::Rows).map_err(|_| format!("`{text}` is neither a number nor auto")),
     }
 }
 
@@ -96,8 +96,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         model: arguments.model,
         modes: arguments.modes,
         samples: match arguments.samples {
-            Asked::Auto => Samples::Until(arguments.accuracy),
-            Asked::Rows(rows) => Samples::Rows(rows),
+            RowCount::Auto => Samples::Until(arguments.accuracy),
+            RowCount::Rows(rows) => Samples::Rows(rows),
         },
         wanted: arguments.quantities.clone(),
         seed: arguments.seed,

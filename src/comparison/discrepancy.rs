@@ -87,13 +87,13 @@ pub(super) struct Scales {
 }
 
 /// Bound and bias of a [`Tolerance`] in the quantity's own unit.
-struct Bound {
+struct ToleranceBound {
     /// The widest of the bounds given: being within any of them is enough.
     width: f64,
     bias: Option<f64>,
 }
 
-impl Bound {
+impl ToleranceBound {
     /// `None` if the tolerance gives no bound.
     fn of(tolerance: &Tolerance, scales: Scales) -> Option<Self> {
         let bounds = [
@@ -104,7 +104,7 @@ impl Bound {
         let mut given = bounds.into_iter().filter_map(|(bound, scale)| Some((bound?, scale)));
         let (first, scale) = given.next()?;
         let width = given.map(|(bound, scale)| bound * scale).fold(first * scale, f64::max);
-        Some(Bound { width, bias: tolerance.bias.map(|bias| bias * scale) })
+        Some(ToleranceBound { width, bias: tolerance.bias.map(|bias| bias * scale) })
     }
 }
 
@@ -118,7 +118,7 @@ impl Discrepancy {
         uncertainty: Option<f64>,
     ) -> Self {
         let difference = reduced.zip(reference).map(|(reduced, reference)| reduced - reference);
-        let bound = tolerance.and_then(|t| Bound::of(t, scales));
+        let bound = tolerance.and_then(|t| ToleranceBound::of(t, scales));
         let bias = bound.as_ref().and_then(|b| b.bias);
         let checked = difference.map_or(f64::NAN, |difference| (difference - bias.unwrap_or(0.0)).abs());
         // what is no number fails, gated or not; what was not determined only if it is
@@ -154,7 +154,7 @@ impl Discrepancy {
         let scales = Scales { value: reference.map_or(f64::NAN, f64::abs), peak: 1.0 };
         let row = Discrepancy::new((quantity, "1"), (reduced, reference), scales, None, None);
         // A residual is relative already: whatever the bound is called, it is the bound of the number.
-        let bound = tolerance.and_then(|t| Bound::of(t, Scales { value: 1.0, peak: 1.0 }));
+        let bound = tolerance.and_then(|t| ToleranceBound::of(t, Scales { value: 1.0, peak: 1.0 }));
         let width = bound.map(|b| b.width);
         let verdict = width.map_or(row.verdict, |width| {
             let of = |residual: Option<f64>| Verdict::within(residual.map_or(f64::NAN, f64::abs), 0.0, width);

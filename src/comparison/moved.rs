@@ -81,11 +81,11 @@ struct SceneEntry {
 struct ModelEntry {
     model: String,
     verdict: String,
-    discrepancies: Vec<Row>,
+    discrepancies: Vec<DocumentRow>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-struct Row {
+struct DocumentRow {
     quantity: String,
     unit: String,
     reduced: Option<f64>,
@@ -136,7 +136,7 @@ pub fn moved<'d>(a: &'d ComparisonDocument, b: &'d ComparisonDocument, above: f6
             moves.verdicts.push(MovedVerdict { scene: scene.into(), model: model.model.clone(), a, b });
         }
         let (Some(before), Some(after)) = (before, after) else { continue };
-        let mut add = |model: &str, row: &Row, band: Option<f64>, [a, b]: [Option<f64>; 2]| {
+        let mut add = |model: &str, row: &DocumentRow, band: Option<f64>, [a, b]: [Option<f64>; 2]| {
             let relative = a.zip(b).map(|(a, b)| (b - a) / a.abs()).filter(|relative| relative.is_finite());
             let entry = Moved {
                 scene: scene.into(),
@@ -152,13 +152,14 @@ pub fn moved<'d>(a: &'d ComparisonDocument, b: &'d ComparisonDocument, above: f6
                 moves.moved.push(entry);
             }
         };
-        let missing = |row: &&Row| !before.discrepancies.iter().any(|other| other.quantity == row.quantity);
+        let missing =
+            |row: &&DocumentRow| !before.discrepancies.iter().any(|other| other.quantity == row.quantity);
         for row in before.discrepancies.iter().chain(after.discrepancies.iter().filter(missing)) {
             let of = |found: &'d ModelEntry| {
                 found.discrepancies.iter().find(|other| other.quantity == row.quantity)
             };
             let rows = [of(before), of(after)];
-            let both = |side: fn(&Row) -> Option<f64>| rows.map(|row| row.and_then(side));
+            let both = |side: fn(&DocumentRow) -> Option<f64>| rows.map(|row| row.and_then(side));
             let [old_band, band] = both(|row| row.uncertainty);
             let band = band.or(old_band);
             // all models of a scene have the same reference

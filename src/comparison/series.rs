@@ -22,12 +22,12 @@ const ROUNDING: f64 = 1e-6;
 /// A summary's `convergence`, as far as it is looked at.
 #[derive(Deserialize)]
 struct Series {
-    meshes: Vec<Mesh>,
-    quantities: BTreeMap<String, Values>,
+    meshes: Vec<SeriesMesh>,
+    quantities: BTreeMap<String, SeriesValues>,
 }
 
 #[derive(Deserialize)]
-struct Mesh {
+struct SeriesMesh {
     /// On the number of elements along a length; the finest first.
     factor: f64,
     energy_residual: f64,
@@ -35,7 +35,7 @@ struct Mesh {
 }
 
 #[derive(Deserialize)]
-struct Values {
+struct SeriesValues {
     values: Vec<f64>,
 }
 
@@ -52,14 +52,14 @@ pub(super) fn contradictions(summary: &Summary) -> Option<usize> {
     let measured =
         summary.quantities.iter().filter(|quantity| !quantity.is_count && quantity.value.is_some());
     let without_series = measured.filter(|quantity| !quantities.contains_key(quantity.name)).count();
-    let contradicts = |(name, series): &(&String, &Values)| {
+    let contradicts = |(name, series): &(&String, &SeriesValues)| {
         let values = &series.values;
         values.len() < LEAST_MESHES
             || values.len() != sizes.len()
             || summary.value(name).is_some_and(|value| value != values[0])
             || !summary.band(name).is_some_and(|stated| agree(stated, band(values, &sizes)))
     };
-    let run = |finest: &Mesh| (Some(finest.energy_residual), Some(finest.steps));
+    let run = |finest: &SeriesMesh| (Some(finest.energy_residual), Some(finest.steps));
     let run_differs = meshes.first().map(run) != Some((summary.energy_residual, summary.steps));
     let contradicting = quantities.iter().filter(contradicts).count();
     Some(unfounded + without_series + contradicting + usize::from(run_differs))

@@ -3,8 +3,8 @@
 use super::duplicate;
 use super::filter::Filtered;
 use super::finding::{Finding, FindingKind};
-use super::flight::{FEWEST, Flight, FreeFlight};
-use super::judge::{Judged, Seen};
+use super::flight::{FEWEST, FreeFlight, FreeFlightFit};
+use super::judge::{JudgedRecord, Seen};
 use super::record::{Channel, Record};
 use super::screen::screened;
 use super::structure::Disturbance;
@@ -96,7 +96,7 @@ pub struct AlignedRecord {
 
 /// Contact of a body: the instants between which it may not fly freely.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Contact {
+pub(super) struct ContactSpan {
     pub start: f64,
     pub end: f64,
 }
@@ -178,7 +178,7 @@ impl Alignment<'_> {
             values: channel.values.iter().zip(&time).map(|(y, t)| y - seen.taken_out(*t)).collect(),
         };
         let signals = self.record.channels.iter().zip(&seen).map(corrected).collect();
-        let Judged { outer_velocity_initial, inner, efficiency, findings: further } =
+        let JudgedRecord { outer_velocity_initial, inner, efficiency, findings: further } =
             self.judged(shift, &seen)?;
         // a signal at its limit differs from every scene
         let is_clipped = findings.iter().any(|finding| finding.kind == FindingKind::Clipped);
@@ -237,18 +237,18 @@ impl Alignment<'_> {
     }
 
     /// The contact of the body that the signal `quantity` belongs to, widened by what the instrument smears.
-    pub fn contact(&self, quantity: &str) -> Contact {
+    pub fn contact(&self, quantity: &str) -> ContactSpan {
         let end = if quantity.starts_with("outer") { self.ends.outer } else { self.ends.inner };
         let smear = 1.0 / self.bandwidth;
-        Contact { start: -smear, end: LONGER_CONTACT * end + smear }
+        ContactSpan { start: -smear, end: LONGER_CONTACT * end + smear }
     }
 
     /// Offset, drift and step of every signal, from its free flight if the first touch is at `shift`.
-    fn flights(&self, shift: f64) -> Result<Vec<Flight>> {
+    fn flights(&self, shift: f64) -> Result<Vec<FreeFlightFit>> {
         (0..self.record.channels.len()).map(|k| self.fitted(k, &self.free_flight(k, shift)?)).collect()
     }
 
-    fn fitted(&self, k: usize, free: &FreeFlight) -> Result<Flight> {
+    fn fitted(&self, k: usize, free: &FreeFlight) -> Result<FreeFlightFit> {
         free.fitted().ok_or_else(|| {
             Error::Scene(miette::miette!(
                 "{}: the free flight of {} can't be fitted",
@@ -261,7 +261,7 @@ impl Alignment<'_> {
     /// The samples of signal number `k` outside its contact.
     fn free_flight(&self, k: usize, shift: f64) -> Result<FreeFlight> {
         let channel = &self.record.channels[k];
-        let Contact { start, end } = self.contact(channel.quantity);
+        let ContactSpan { start, end } = self.contact(channel.quantity);
         let samples = || self.record.time.iter().map(|t| t - shift).zip(channel.values.iter().copied());
         let before: Vec<(f64, f64)> = samples().filter(|(t, _)| *t < start).collect();
         let mut after: Vec<(f64, f64)> = samples().filter(|(t, _)| *t > end).collect();

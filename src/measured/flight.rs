@@ -1,6 +1,6 @@
 //! The free flight of a signal before and after the impact: offset, drift, velocities with their standard errors.
 
-use super::noise::{Estimate, groups, means};
+use super::noise::{SignalFit, groups, means};
 use crate::numerics::least_squares::fit;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
@@ -24,7 +24,7 @@ pub(super) struct FreeFlight {
 
 /// What the free flight shows.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Flight {
+pub(super) struct FreeFlightFit {
     /// Value at the first touch without an impact, and slope: offset and drift of a velocity at rest.
     pub level: f64,
     pub slope: f64,
@@ -57,12 +57,12 @@ pub(super) struct Grouped {
 
 impl FreeFlight {
     /// Offset, drift and step; `None` if they can't be told apart.
-    pub fn fitted(&self) -> Option<Flight> {
+    pub fn fitted(&self) -> Option<FreeFlightFit> {
         if self.is_velocity && self.after.is_empty() {
             // without free flight on the other side drift and contact can't be told apart
             let rows: Vec<([f64; 1], f64)> = self.before.iter().map(|(_, y)| ([1.0], *y)).collect();
             let found = fit(&rows)?;
-            return Some(Flight {
+            return Some(FreeFlightFit {
                 level: found.coefficients[0],
                 slope: 0.0,
                 noise: found.scatter,
@@ -75,7 +75,7 @@ impl FreeFlight {
                 self.before.iter().map(row(0.0)).chain(self.after.iter().map(row(1.0))).collect();
             let found = fit(&rows)?;
             let [level, slope, step] = found.coefficients;
-            return Some(Flight { level, slope, noise: found.scatter, step: Some(step) });
+            return Some(FreeFlightFit { level, slope, noise: found.scatter, step: Some(step) });
         }
         let line = |side: &[(f64, f64)]| {
             let rows: Vec<([f64; 2], f64)> = side.iter().map(|(t, y)| ([1.0, *t], *y)).collect();
@@ -84,7 +84,7 @@ impl FreeFlight {
         let before = line(&self.before)?;
         let [level, slope] = before.coefficients;
         let step = line(&self.after).map(|after| after.coefficients[1] - slope);
-        Some(Flight { level, slope, noise: before.scatter, step })
+        Some(FreeFlightFit { level, slope, noise: before.scatter, step })
     }
 
     /// Standard errors; `None` if there is too little free flight. `bandwidth` in Hz.
@@ -93,8 +93,8 @@ impl FreeFlight {
         let basis = self.basis(&time, segments[0].end);
         let before = if self.is_velocity { 0 } else { 1 };
         let found = if self.after.is_empty() { before + 1 } else { basis.ncols() };
-        let Estimate { errors, .. } =
-            Estimate::of((&time, &values), &basis.columns(0, found).into_owned(), bandwidth)?;
+        let SignalFit { errors, .. } =
+            SignalFit::of((&time, &values), &basis.columns(0, found).into_owned(), bandwidth)?;
         let of = |k: usize| errors.get(k).copied().unwrap_or(f64::INFINITY);
         Some(FlightErrors { before: of(before), slope: of(1), step: of(basis.ncols() - 1) })
     }

@@ -2,7 +2,7 @@
 
 use super::align::{Alignment, ChannelCorrection, Speed};
 use super::finding::{Finding, FindingKind};
-use super::flight::{Flight, FlightErrors, FreeFlight};
+use super::flight::{FlightErrors, FreeFlight, FreeFlightFit};
 use super::noise::NORMAL_95;
 use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
@@ -27,7 +27,7 @@ const IMPOSSIBLE: f64 = 2.0;
 /// What one signal shows.
 pub(super) struct Seen {
     pub correction: ChannelCorrection,
-    pub flight: Flight,
+    pub flight: FreeFlightFit,
     pub errors: Option<FlightErrors>,
     /// Up to the first further impact.
     pub free: FreeFlight,
@@ -44,7 +44,7 @@ pub(super) struct Seen {
 }
 
 /// What a record shows.
-pub(super) struct Judged {
+pub(super) struct JudgedRecord {
     pub outer_velocity_initial: f64,
     /// Final velocity of the inner body.
     pub inner: Option<f64>,
@@ -76,7 +76,7 @@ impl Seen {
 
 impl Alignment<'_> {
     /// Velocities and efficiency of a record whose first touch is at `shift`, and what is wrong with them.
-    pub fn judged(&self, shift: f64, seen: &[Seen]) -> Result<Judged> {
+    pub fn judged(&self, shift: f64, seen: &[Seen]) -> Result<JudgedRecord> {
         // a velocity is the better witness of a velocity
         let of = |body: &str| {
             ["velocity", "displacement"].into_iter().find_map(|kind| {
@@ -100,7 +100,7 @@ impl Alignment<'_> {
         let mut findings: Vec<Finding> = seen.iter().flat_map(|seen| self.of_signal(shift, seen)).collect();
         findings.extend(self.delay(shift, seen)?);
         findings.extend(self.energy(shift, efficiency, outer.map(|after| share(masses[0], after)))?);
-        Ok(Judged {
+        Ok(JudgedRecord {
             outer_velocity_initial,
             inner: inner.map(|(velocity, _)| velocity),
             efficiency,
@@ -214,7 +214,7 @@ impl Alignment<'_> {
         if seen.len() < 2 {
             return Ok(Vec::new());
         }
-        let flights: Vec<Flight> = seen.iter().map(|seen| seen.flight).collect();
+        let flights: Vec<FreeFlightFit> = seen.iter().map(|seen| seen.flight).collect();
         let period = 1.0 / self.bandwidth;
         let mut own = Vec::new();
         for k in 0..seen.len() {

@@ -210,14 +210,14 @@ pub fn orthonormal(basis: &DMatrix<f64>) -> DMatrix<f64> {
 
 /// Least squares on a signal with such noise.
 #[derive(Debug, Clone)]
-pub struct Estimate {
+pub struct SignalFit {
     /// One a column of the basis.
     pub coefficients: DVector<f64>,
     /// Their standard errors, for intervals of 1.96 of them. Shape (columns).
     pub errors: DVector<f64>,
 }
 
-impl Estimate {
+impl SignalFit {
     /// The coefficients of the columns of `basis` that fit the values at `time`; see [`Noise::of`].
     pub fn of((time, values): (&[f64], &DVector<f64>), basis: &DMatrix<f64>, bandwidth: f64) -> Option<Self> {
         // columns of length one
@@ -228,7 +228,7 @@ impl Estimate {
         let inverse = scaled.pseudo_inverse(1e-10).ok()?;
         let errors = inverse.row_iter().map(|row| noise.standard_error(&row.transpose()));
         let errors = DVector::from_iterator(basis.ncols(), errors);
-        Some(Estimate {
+        Some(SignalFit {
             coefficients: (&inverse * values).component_div(&scale),
             errors: errors.component_div(&scale),
         })

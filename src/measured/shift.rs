@@ -2,7 +2,7 @@
 
 use super::align::Alignment;
 use super::filter::Filtered;
-use super::flight::Flight;
+use super::flight::FreeFlightFit;
 use crate::error::{Error, Result};
 use crate::numerics::least_squares::fit;
 use argmin::core::{CostFunction, Executor, State};
@@ -92,7 +92,7 @@ impl Alignment<'_> {
         signals: &[usize],
         shift: f64,
         reach: f64,
-        flights: &[Flight],
+        flights: &[FreeFlightFit],
     ) -> Result<(f64, [f64; 2])> {
         let mut around = Vec::new();
         for k in signals {
@@ -100,7 +100,7 @@ impl Alignment<'_> {
             let window = self.around(shift, self.contact(channel.quantity).end);
             let points = window.map(|i| (self.record.time[i] - shift, channel.values[i])).collect();
             let scale = flights[*k].noise.hypot(LEAST_NOISE * self.span(channel.quantity));
-            around.push(Signal { quantity: channel.quantity, scale, points });
+            around.push(ShiftedSignal { quantity: channel.quantity, scale, points });
         }
         let misfit = Misfit { model: self.model, signals: &around };
         let failed = |e: argmin::core::Error| Error::Internal(format!("Brent's method: {e}"));
@@ -114,7 +114,7 @@ impl Alignment<'_> {
 }
 
 /// One signal around the impact.
-struct Signal {
+struct ShiftedSignal {
     quantity: &'static str,
     /// What its distances are measured by.
     scale: f64,
@@ -125,7 +125,7 @@ struct Signal {
 /// Squared distance of all signals from the model as a function of a further shift.
 struct Misfit<'a> {
     model: &'a Filtered,
-    signals: &'a [Signal],
+    signals: &'a [ShiftedSignal],
 }
 
 impl CostFunction for Misfit<'_> {
@@ -134,7 +134,7 @@ impl CostFunction for Misfit<'_> {
 
     fn cost(&self, further: &f64) -> std::result::Result<f64, argmin::core::Error> {
         let mut total = 0.0;
-        for Signal { quantity, scale, points } in self.signals {
+        for ShiftedSignal { quantity, scale, points } in self.signals {
             let Some(curve) = self.model.curve(quantity) else { continue };
             let row = |(t, y): &(f64, f64)| ([1.0, *t, curve(t - further)], *y);
             let rows: Vec<([f64; 3], f64)> = points.iter().map(row).collect();

@@ -2,7 +2,7 @@
 //! of an AC-coupled sensor, hum of the mains, a drift that is not constant.
 
 use super::flight::{FreeFlight, Grouped};
-use super::noise::{Estimate, orthonormal};
+use super::noise::{SignalFit, orthonormal};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -48,7 +48,7 @@ impl Hum {
 }
 
 /// A possible disturbance with the columns that describe it.
-struct Candidate {
+struct DisturbanceCandidate {
     kind: Disturbance,
     columns: DMatrix<f64>,
 }
@@ -63,7 +63,7 @@ impl FreeFlight {
         }
         let space = orthonormal(&basis);
         let left = &grouped.values - &space * space.tr_mul(&grouped.values);
-        let remains = |candidate: &Candidate| {
+        let remains = |candidate: &DisturbanceCandidate| {
             let columns = &candidate.columns - &space * space.tr_mul(&candidate.columns);
             let directions = orthonormal(&columns);
             let rest = left.norm_squared() - directions.tr_mul(&left).norm_squared();
@@ -79,7 +79,7 @@ impl FreeFlight {
         let mut columns: Vec<DVector<f64>> = basis.column_iter().map(Into::into).collect();
         columns.extend(best.columns.column_iter().map(Into::<DVector<f64>>::into));
         let found =
-            Estimate::of((&grouped.time, &grouped.values), &DMatrix::from_columns(&columns), bandwidth)?;
+            SignalFit::of((&grouped.time, &grouped.values), &DMatrix::from_columns(&columns), bandwidth)?;
         let new: Vec<usize> = (first..columns.len()).collect();
         let significance =
             (new.iter().map(|k| found.significance(*k).powi(2)).sum::<f64>() / new.len() as f64).sqrt();
@@ -113,10 +113,10 @@ impl FreeFlight {
         }
     }
 
-    fn candidates(&self, grouped: &Grouped) -> Vec<Candidate> {
+    fn candidates(&self, grouped: &Grouped) -> Vec<DisturbanceCandidate> {
         let Grouped { time, values, segments: [early, late], width } = grouped;
         let count = time.len();
-        let column = |kind, of: &dyn Fn(usize) -> f64| Candidate {
+        let column = |kind, of: &dyn Fn(usize) -> f64| DisturbanceCandidate {
             kind,
             columns: DMatrix::from_fn(count, 1, |k, _| of(k)),
         };
@@ -145,7 +145,10 @@ impl FreeFlight {
                 let parts = [[1.0, 0.0], [0.0, 1.0]][j];
                 Hum { frequency, parts }.at(time[k])
             });
-            found.push(Candidate { kind: Disturbance::Hum(Hum { frequency, parts: [0.0; 2] }), columns });
+            found.push(DisturbanceCandidate {
+                kind: Disturbance::Hum(Hum { frequency, parts: [0.0; 2] }),
+                columns,
+            });
         }
         found
     }

@@ -77,14 +77,14 @@ pub struct Tried {
 }
 
 /// The function, recorded and made safe: places outside the cube are mirrored into it, failures are deep valleys.
-struct Cost<'a, F> {
+struct RecordedObjective<'a, F> {
     function: &'a F,
     penalty: f64,
     climb: usize,
     history: Mutex<Vec<Tried>>,
 }
 
-impl<'a, F: Fn(&[f64]) -> Option<f64>> Cost<'a, F> {
+impl<'a, F: Fn(&[f64]) -> Option<f64>> RecordedObjective<'a, F> {
     fn new(function: &'a F, penalty: f64, climb: usize) -> Self {
         Self { function, penalty, climb, history: Mutex::default() }
     }
@@ -102,7 +102,7 @@ impl<'a, F: Fn(&[f64]) -> Option<f64>> Cost<'a, F> {
     }
 }
 
-impl<F: Fn(&[f64]) -> Option<f64>> CostFunction for &Cost<'_, F> {
+impl<F: Fn(&[f64]) -> Option<f64>> CostFunction for &RecordedObjective<'_, F> {
     type Param = Vec<f64>;
     type Output = f64;
     fn cost(&self, place: &Vec<f64>) -> std::result::Result<f64, argmin::core::Error> {
@@ -111,9 +111,9 @@ impl<F: Fn(&[f64]) -> Option<f64>> CostFunction for &Cost<'_, F> {
 }
 
 /// The same along one coordinate, which Brent's method takes as a number.
-struct Line<'a, 'b, F>(&'a Cost<'b, F>);
+struct CoordinateObjective<'a, 'b, F>(&'a RecordedObjective<'b, F>);
 
-impl<F: Fn(&[f64]) -> Option<f64>> CostFunction for Line<'_, '_, F> {
+impl<F: Fn(&[f64]) -> Option<f64>> CostFunction for CoordinateObjective<'_, '_, F> {
     type Param = f64;
     type Output = f64;
     fn cost(&self, place: &f64) -> std::result::Result<f64, argmin::core::Error> {
@@ -149,7 +149,7 @@ where
     let sampled: Vec<(Vec<f64>, f64, Tried)> = places
         .into_par_iter()
         .map(|place| {
-            let sampler = Cost::new(&function, f64::INFINITY, 0);
+            let sampler = RecordedObjective::new(&function, f64::INFINITY, 0);
             let cost = sampler.at(&place);
             (place, cost, sampler.into_history().remove(0))
         })
@@ -165,7 +165,7 @@ where
             search.samples
         )));
     }
-    let cost = |k: usize| Cost::new(&function, high + (high - low).max(1.0), k + 1);
+    let cost = |k: usize| RecordedObjective::new(&function, high + (high - low).max(1.0), k + 1);
     let polished: Vec<(Found, Vec<Tried>)> = if dimensions == 1 {
         brackets(&sampled, search.starts)
             .into_par_iter()
@@ -208,12 +208,12 @@ fn brackets(sampled: &[(Vec<f64>, f64)], count: usize) -> Vec<(f64, f64)> {
     tops.into_iter().map(|k| (sampled[k.saturating_sub(1)].0[0], sampled[(k + 1).min(last)].0[0])).collect()
 }
 
-fn brent<F>(cost: &Cost<F>, (low, high): (f64, f64), search: &Search) -> Result<(Vec<f64>, f64)>
+fn brent<F>(cost: &RecordedObjective<F>, (low, high): (f64, f64), search: &Search) -> Result<(Vec<f64>, f64)>
 where
     F: Fn(&[f64]) -> Option<f64>,
 {
     let solver = BrentOpt::new(low, high).set_tolerance(1e-8, search.resolution);
-    let result = Executor::new(Line(cost), solver)
+    let result = Executor::new(CoordinateObjective(cost), solver)
         .configure(|state| state.max_iters(100))
         .run()
         .map_err(|e| Error::Internal(format!("Brent's method: {e}")))?;
@@ -237,7 +237,7 @@ fn hills(sampled: &[(Vec<f64>, f64)], count: usize) -> Vec<Vec<f64>> {
     chosen
 }
 
-fn simplex<F>(cost: &Cost<F>, top: Vec<f64>, search: &Search) -> Result<(Vec<f64>, f64)>
+fn simplex<F>(cost: &RecordedObjective<F>, top: Vec<f64>, search: &Search) -> Result<(Vec<f64>, f64)>
 where
     F: Fn(&[f64]) -> Option<f64>,
 {

@@ -24,7 +24,7 @@ pub struct Progress {
 /// One line a solver writes to its standard output.
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum Line {
+enum SolverLine {
     Progress(Progress),
     Error { phase: ErrorPhase, message: String },
 }
@@ -37,7 +37,7 @@ enum ErrorPhase {
 
 /// How a solver ended.
 #[derive(Debug)]
-pub(super) struct Ending {
+pub(super) struct SolverExit {
     pub(super) status: ExitStatus,
     /// The message of its error line.
     pub(super) error: Option<String>,
@@ -51,7 +51,7 @@ pub(super) struct Ending {
 ///
 /// # Errors
 /// What the system says if the program can't be started or waited for.
-pub(super) fn run(mut command: Command, progress: &mut dyn FnMut(&Progress)) -> std::io::Result<Ending> {
+pub(super) fn run(mut command: Command, progress: &mut dyn FnMut(&Progress)) -> std::io::Result<SolverExit> {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = Running::start(&mut command)?;
     let log = child.child().stderr.take().map(|stderr| std::thread::spawn(move || tail(stderr)));
@@ -61,7 +61,7 @@ pub(super) fn run(mut command: Command, progress: &mut dyn FnMut(&Progress)) -> 
     };
     let status = child.wait()?;
     let log = log.and_then(|thread: JoinHandle<String>| thread.join().ok()).unwrap_or_default();
-    Ok(Ending { status, error, stray, log })
+    Ok(SolverExit { status, error, stray, log })
 }
 
 fn listen(
@@ -72,8 +72,8 @@ fn listen(
     let (mut error, mut stray) = (None, None);
     while let Some(text) = next_line(&mut reader)? {
         match serde_json::from_str(&text) {
-            Ok(Line::Progress(step)) => progress(&step),
-            Ok(Line::Error { phase: ErrorPhase::Error, message }) => error = Some(message),
+            Ok(SolverLine::Progress(step)) => progress(&step),
+            Ok(SolverLine::Error { phase: ErrorPhase::Error, message }) => error = Some(message),
             Err(_) if text.is_empty() || stray.is_some() => {}
             Err(_) => stray = Some(text.chars().take(SHOWN).collect()),
         }

@@ -15,7 +15,7 @@ pub struct Dents {
 }
 
 #[derive(Deserialize)]
-struct Row {
+struct DentRow {
     impact: u64,
     radius: f64,
     outer_body: f64,
@@ -42,7 +42,7 @@ impl Stored {
 fn read(text: &str) -> Result<Vec<Dents>, csv::Error> {
     let mut all: Vec<Dents> = Vec::new();
     for row in csv::Reader::from_reader(text.as_bytes()).deserialize() {
-        let Row { impact, radius, outer_body, plate_outer_face, plate_inner_face, inner_body } = row?;
+        let DentRow { impact, radius, outer_body, plate_outer_face, plate_inner_face, inner_body } = row?;
         if all.last().is_none_or(|dents| dents.impact != impact) {
             all.push(Dents { impact, ..Dents::default() });
         }

@@ -1,6 +1,6 @@
 //! What the reference needs and what of it is there.
 
-use super::python::{self, Candidate, Interpreter};
+use super::python::{self, Interpreter, PythonCandidate};
 use super::trial::solve_trial;
 use super::{Lookup, Resolution, Store};
 use crate::project::project_root;
@@ -81,7 +81,7 @@ fn project() -> Check {
     }
 }
 
-type Survey = [(Candidate, std::result::Result<Interpreter, String>)];
+type Survey = [(PythonCandidate, std::result::Result<Interpreter, String>)];
 
 /// The first interpreter that can compute references, else the one that lacks least.
 fn chosen(survey: &Survey) -> Option<&Interpreter> {

@@ -9,7 +9,7 @@ const BAND: &str = "_band";
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Column {
+enum HistoryColumn {
     Time,
     /// The curve of this number.
     Curve(usize),
@@ -18,21 +18,21 @@ enum Column {
 }
 
 /// The columns a header names: the time, then every curve once, and the bands of all curves or of none.
-fn columns(header: &csv::StringRecord, curves: &[Curve]) -> Option<Vec<Column>> {
+fn columns(header: &csv::StringRecord, curves: &[Curve]) -> Option<Vec<HistoryColumn>> {
     let curve = |name: &str| curves.iter().position(|curve| curve.name == name);
     let column = |name: &str| match (name, name.strip_suffix(BAND)) {
-        ("time", _) => Some(Column::Time),
-        (_, Some(name)) => curve(name).map(Column::Band),
-        (name, None) => curve(name).map(Column::Curve),
+        ("time", _) => Some(HistoryColumn::Time),
+        (_, Some(name)) => curve(name).map(HistoryColumn::Band),
+        (name, None) => curve(name).map(HistoryColumn::Curve),
     };
-    let columns: Vec<Column> = header.iter().map(column).collect::<Option<_>>()?;
-    let all = |of: fn(usize) -> Column| (0..curves.len()).all(|k| columns.contains(&of(k)));
+    let columns: Vec<HistoryColumn> = header.iter().map(column).collect::<Option<_>>()?;
+    let all = |of: fn(usize) -> HistoryColumn| (0..curves.len()).all(|k| columns.contains(&of(k)));
     // no column twice: there are as many as there are names
-    let complete = columns.first() == Some(&Column::Time)
-        && all(Column::Curve)
+    let complete = columns.first() == Some(&HistoryColumn::Time)
+        && all(HistoryColumn::Curve)
         && match columns.len().checked_sub(1 + curves.len()) {
             Some(0) => true,
-            Some(bands) => bands == curves.len() && all(Column::Band),
+            Some(bands) => bands == curves.len() && all(HistoryColumn::Band),
             None => false,
         };
     complete.then_some(columns)
@@ -75,7 +75,7 @@ pub(super) fn read(
             let number =
                 number.ok_or_else(|| format!("line {line}: {name} is `{text}`, not a finite number"))?;
             match *column {
-                Column::Time => {
+                HistoryColumn::Time => {
                     if let Some(last) = history.time.last().filter(|last| number <= **last) {
                         return Err(format!(
                             "line {line}: time is {number} s, not after {last} s of the line before"
@@ -83,11 +83,11 @@ pub(super) fn read(
                     }
                     history.time.push(number);
                 }
-                Column::Curve(k) => history.curves[k].values.push(number),
-                Column::Band(_) if number < 0.0 => {
+                HistoryColumn::Curve(k) => history.curves[k].values.push(number),
+                HistoryColumn::Band(_) if number < 0.0 => {
                     return Err(format!("line {line}: {name} is `{text}`, not a width of 0 or more"));
                 }
-                Column::Band(k) => bands[k].push(number),
+                HistoryColumn::Band(k) => bands[k].push(number),
             }
         }
     }

@@ -23,7 +23,7 @@ const OWN_ENVIRONMENT: &str = "target/python-tools/bin/python";
 
 /// A Python, and why it is looked at.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Candidate {
+pub(super) struct PythonCandidate {
     pub(super) path: PathBuf,
     pub(super) origin: &'static str,
 }
@@ -42,8 +42,8 @@ pub(super) struct Interpreter {
 
 impl Interpreter {
     /// Lets the interpreter import all that a reference needs; a module that is there but broken counts as missing.
-    pub(super) fn probe(candidate: &Candidate) -> std::result::Result<Self, String> {
-        let Candidate { path, origin } = candidate;
+    pub(super) fn probe(candidate: &PythonCandidate) -> std::result::Result<Self, String> {
+        let PythonCandidate { path, origin } = candidate;
         let mut command = fem_reference(path).map_err(|e| e.to_string())?;
         let output = command.arg("versions").output().map_err(|e| format!("it can't be run ({e})"))?;
         let text = String::from_utf8_lossy(&output.stdout);
@@ -88,7 +88,7 @@ pub fn python() -> Result<PathBuf> {
     find(&candidates(named(), &root, &std::env::var_os("PATH").unwrap_or_default()))
 }
 
-fn find(candidates: &[Candidate]) -> Result<PathBuf> {
+fn find(candidates: &[PythonCandidate]) -> Result<PathBuf> {
     let mut faults = Vec::new();
     for candidate in candidates {
         match Interpreter::probe(candidate).map(|interpreter| interpreter.fault()) {
@@ -103,7 +103,7 @@ fn find(candidates: &[Candidate]) -> Result<PathBuf> {
 }
 
 /// All interpreters that [`python`] looks at, in its order, each with its reason if it does not run.
-pub(super) fn survey() -> Vec<(Candidate, std::result::Result<Interpreter, String>)> {
+pub(super) fn survey() -> Vec<(PythonCandidate, std::result::Result<Interpreter, String>)> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let candidates = candidates(named(), &project_root().unwrap_or_default(), &path);
     candidates.into_iter().map(|c| (c.clone(), Interpreter::probe(&c))).collect()
@@ -113,10 +113,10 @@ fn named() -> Option<PathBuf> {
     std::env::var_os(PYTHON_VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from)
 }
 
-fn candidates(named: Option<PathBuf>, root: &Path, path: &OsStr) -> Vec<Candidate> {
-    let of = |origin| move |path| Candidate { path, origin };
+fn candidates(named: Option<PathBuf>, root: &Path, path: &OsStr) -> Vec<PythonCandidate> {
+    let of = |origin| move |path| PythonCandidate { path, origin };
     if let Some(path) = named {
-        return vec![Candidate { path, origin: PYTHON_VARIABLE }];
+        return vec![PythonCandidate { path, origin: PYTHON_VARIABLE }];
     }
     let on_path = std::env::split_paths(path).map(|folder| folder.join("python3"));
     let all = OWN.get().cloned().map(of("it runs this package")).into_iter();
@@ -124,7 +124,7 @@ fn candidates(named: Option<PathBuf>, root: &Path, path: &OsStr) -> Vec<Candidat
     let all = all
         .chain(on_path.map(of("on PATH")))
         .chain([PathBuf::from("/usr/bin/python3")].map(of("the system's")));
-    let mut found: Vec<Candidate> = Vec::new();
+    let mut found: Vec<PythonCandidate> = Vec::new();
     let mut seen: Vec<PathBuf> = Vec::new();
     for candidate in all {
         // /bin is often a link to /usr/bin: the same program is asked once. The file name stays,
@@ -168,7 +168,7 @@ mod tests {
         path
     }
 
-    fn named(path: PathBuf) -> Vec<Candidate> {
+    fn named(path: PathBuf) -> Vec<PythonCandidate> {
         candidates(Some(path), Path::new("/none"), OsStr::new("/usr/bin"))
     }
 

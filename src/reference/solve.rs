@@ -1,6 +1,6 @@
 //! Computes a reference: one run of `fem_reference`, whose result enters the store when it is proven.
 
-use super::child::{self, Ending, Progress};
+use super::child::{self, Progress, SolverExit};
 use super::entry::{self, Stored};
 use super::store::Installed;
 use super::{Lookup, Resolution, Store, identity, python};
@@ -135,7 +135,7 @@ pub fn solve_with(
 }
 
 /// The error a failed run ends with.
-fn failure(ending: &Ending) -> Error {
+fn failure(ending: &SolverExit) -> Error {
     // Without an exit code a signal ended it: someone killed it, or the memory ran out.
     let Some(code) = ending.status.code() else {
         return Error::Solver(format!(
@@ -160,6 +160,6 @@ fn failure(ending: &Ending) -> Error {
     }
 }
 
-fn log(ending: &Ending) -> String {
+fn log(ending: &SolverExit) -> String {
     if ending.log.is_empty() { String::new() } else { format!("; its last messages:\n{}", ending.log) }
 }

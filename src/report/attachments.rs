@@ -1,6 +1,6 @@
 //! What a report shows besides the comparison, where there is any of it.
 
-use super::{Film, kinds};
+use super::{Animation, kinds};
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
 use crate::coverage::Coverage;
@@ -29,7 +29,7 @@ pub struct Attachments {
     /// The series of deformed states that ParaView plays.
     pub animation: Option<PathBuf>,
     /// The impact moving.
-    pub film: Option<Film>,
+    pub film: Option<Animation>,
     /// What the reduced models have cost, in their order; of models that share a mesh with the reference.
     pub cost: Vec<Cost>,
     /// Folder of the scene's file, for people; empty = not known.

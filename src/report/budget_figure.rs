@@ -30,7 +30,7 @@ pub(super) fn cause_name(cause: &str) -> String {
 }
 
 /// One bar: value and half width of its uncertainty over the magnitude of the reference.
-struct Bar {
+struct BudgetBar {
     class: &'static str,
     value: f64,
     uncertainty: f64,
@@ -39,12 +39,12 @@ struct Bar {
 }
 
 /// The bars of one quantity from top to bottom, with what uncertain inputs leave `open` last; none if the reference is 0.
-fn bars(row: &QuantityBudget, open: Option<f64>) -> Vec<Bar> {
+fn bars(row: &QuantityBudget, open: Option<f64>) -> Vec<BudgetBar> {
     let scale = row.reference.abs();
     if scale.is_nan() || scale == 0.0 {
         return Vec::new();
     }
-    let bar = |class, value: f64, uncertainty: f64| Bar {
+    let bar = |class, value: f64, uncertainty: f64| BudgetBar {
         class,
         value: value / scale,
         uncertainty: uncertainty / scale,
@@ -53,8 +53,8 @@ fn bars(row: &QuantityBudget, open: Option<f64>) -> Vec<Bar> {
     let remainder = if row.explained.passed() { "fig-remainder" } else { "fig-unexplained" };
     let mut bars = vec![bar("fig-total", row.difference, 0.0)];
     bars.extend(row.parts.iter().map(|part| bar("fig-part", part.value, part.uncertainty)));
-    bars.push(Bar { bound: Some(row.bound / scale), ..bar(remainder, row.remainder, 0.0) });
-    bars.extend(open.map(|open| Bar { bound: Some(open / scale), ..bar("fig-part", 0.0, 0.0) }));
+    bars.push(BudgetBar { bound: Some(row.bound / scale), ..bar(remainder, row.remainder, 0.0) });
+    bars.extend(open.map(|open| BudgetBar { bound: Some(open / scale), ..bar("fig-part", 0.0, 0.0) }));
     bars
 }
 
@@ -68,7 +68,8 @@ pub(super) fn budget_figure(rows: &[QuantityBudget], open: &BTreeMap<&str, f64>)
             .chain((!open.is_empty()).then(|| "2 u_val, inputs included".into()))
             .collect()
     });
-    let panels: Vec<Vec<Bar>> = rows.iter().map(|row| bars(row, open.get(&*row.quantity).copied())).collect();
+    let panels: Vec<Vec<BudgetBar>> =
+        rows.iter().map(|row| bars(row, open.get(&*row.quantity).copied())).collect();
     let ends = panels.iter().flatten().flat_map(|bar| {
         let reach = bar.uncertainty.max(bar.bound.unwrap_or(0.0));
         [bar.value - bar.uncertainty, bar.value + bar.uncertainty, reach, -reach]
@@ -109,7 +110,7 @@ pub(super) fn budget_figure(rows: &[QuantityBudget], open: &BTreeMap<&str, f64>)
 }
 
 /// One bar from its `zero`, with its number below at `middle`.
-fn draw(bar: &Bar, zero: Point, x_of: impl Fn(f64) -> f64, middle: f64) -> Markup {
+fn draw(bar: &BudgetBar, zero: Point, x_of: impl Fn(f64) -> f64, middle: f64) -> Markup {
     let top = zero.1 + 5.0;
     let (from, to) = (zero.0.min(x_of(bar.value)), zero.0.max(x_of(bar.value)));
     let (low, high) = (x_of(bar.value - bar.uncertainty), x_of(bar.value + bar.uncertainty));

@@ -1,7 +1,7 @@
 //! Curves over one axis, panel above panel: the figures of studies, sweeps and series of measurements.
 
 use super::figure_geometry::x2;
-use super::plot_axis::{Axis, Plot};
+use super::plot_axis::{Plot, PlotAxis};
 use super::polyline::{Point, path};
 use maud::{Markup, PreEscaped, html};
 
@@ -142,9 +142,9 @@ fn draw(panel: &ChartPanel, page: f64, top: f64) -> Markup {
     };
     let band = panel.band.map(|(middle, half)| [middle - half, middle + half]);
     let statements = panel.statements.iter().map(|(x, _)| *x);
-    let x = Axis::over(points().map(|p| p.0).chain(statements), panel.logarithmic);
+    let x = PlotAxis::over(points().map(|p| p.0).chain(statements), panel.logarithmic);
     let bars = panel.series.iter().flat_map(ends);
-    let y = Axis::over(points().map(|p| p.1).chain(band.into_iter().flatten()).chain(bars), false);
+    let y = PlotAxis::over(points().map(|p| p.1).chain(band.into_iter().flatten()).chain(bars), false);
     // marks at the very edge would be cut
     let side = if panel.series.iter().any(|series| series.marks) { 0.03 } else { 0.0 };
     let (width, height) = (page - LEFT - RIGHT, PANEL_HEIGHT);

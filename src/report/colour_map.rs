@@ -4,7 +4,7 @@ use super::chart::{CHART_WIDTH, FONT_SIZE, LEFT, LEGEND_ROW, PANEL_GAP, sheet};
 use super::colours::hex;
 use super::field_raster::cividis;
 use super::figure_geometry::x2;
-use super::plot_axis::{Axis, Plot};
+use super::plot_axis::{Plot, PlotAxis};
 use super::polyline::Point;
 use maud::{Markup, html};
 
@@ -62,9 +62,10 @@ fn legend(marks: Option<&String>, line: Option<&String>) -> Markup {
 
 fn draw(map: &ColourMap, top: f64) -> Markup {
     let values = map.points.iter().chain(&map.marks.1).map(|(_, value)| *value);
-    let scale = Axis::over(values, false);
-    let axis =
-        |k: usize| Axis::over(map.points.iter().chain(&map.marks.1).map(|(at, _)| at[k]), map.logarithmic[k]);
+    let scale = PlotAxis::over(values, false);
+    let axis = |k: usize| {
+        PlotAxis::over(map.points.iter().chain(&map.marks.1).map(|(at, _)| at[k]), map.logarithmic[k])
+    };
     let grid = map.is_grid.then(|| Grid::of(map));
     let room = |k: usize| grid.as_ref().map_or(0.04, |grid| 0.5 / (grid.values[k].len().max(2) - 1) as f64);
     let (width, height) = (CHART_WIDTH - LEFT - RIGHT, HEIGHT);
@@ -110,7 +111,7 @@ impl Grid {
     }
 
     /// Rectangles that reach half way to the neighbours; cells of the same colour beside each other are one.
-    fn cells(&self, plot: &Plot, scale: &Axis) -> Markup {
+    fn cells(&self, plot: &Plot, scale: &PlotAxis) -> Markup {
         let x = edges(&self.values[0], &plot.x).into_iter().map(|v| plot.x(v)).collect::<Vec<_>>();
         let y = edges(&self.values[1], &plot.y).into_iter().map(|v| plot.y(v)).collect::<Vec<_>>();
         let coloured = |point: &Option<usize>| {
@@ -165,13 +166,13 @@ fn crossing((a, from): (Point, f64), (b, to): (Point, f64)) -> Option<Point> {
 }
 
 /// The ends of the axis, and the middles between neighbours.
-fn edges(values: &[f64], axis: &Axis) -> Vec<f64> {
+fn edges(values: &[f64], axis: &PlotAxis) -> Vec<f64> {
     let [low, high] = axis.ends();
     let middles = values.windows(2).map(|pair| axis.between(pair[0], pair[1]));
     std::iter::once(low).chain(middles).chain([high]).collect()
 }
 
-fn colour(value: f64, scale: &Axis) -> String {
+fn colour(value: f64, scale: &PlotAxis) -> String {
     let step = (scale.place(value) * COLOURS as f64).floor().min(COLOURS as f64 - 1.0);
     hex(cividis(step / (COLOURS - 1) as f64))
 }
@@ -195,7 +196,7 @@ fn contour(data: &str) -> Markup {
     }
 }
 
-fn colour_bar(label: &str, scale: &Axis, top: f64) -> Markup {
+fn colour_bar(label: &str, scale: &PlotAxis, top: f64) -> Markup {
     let x = CHART_WIDTH - RIGHT + 22.0;
     let step = HEIGHT / COLOURS as f64;
     let marks = scale.marks(6);

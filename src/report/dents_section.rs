@@ -4,7 +4,7 @@ use super::SceneReport;
 use super::field_raster::{Raster, View};
 use super::html::detailed;
 use super::mesh_section::{face_heights, picture};
-use super::section_frame::Scale;
+use super::section_frame::ColourScale;
 use super::{ChartPanel, Series, chart};
 use crate::error::Result;
 use crate::reference::Dents;
@@ -74,7 +74,7 @@ fn strains(report: &SceneReport) -> Result<Vec<Markup>> {
         let view = View { radius, low: z - radius, high: z + radius };
         let largest = Raster::within(mesh, strain, 1.0, view, PIXELS);
         let raster = Raster::field(mesh, strain, largest, view, PIXELS);
-        picture(&raster, view, Some(Scale::plastic_strain(largest)), &format!("strain-{k}"))
+        picture(&raster, view, Some(ColourScale::plastic_strain(largest)), &format!("strain-{k}"))
     };
     [top, bottom].into_iter().enumerate().map(around).collect()
 }

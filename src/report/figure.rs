@@ -5,7 +5,7 @@
 //! are those of Okabe and Ito, which colour-blind readers can tell apart.
 
 use super::SceneReport;
-use super::figure_geometry::{FONT_SIZE, Geometry, PanelOf, stroke, text_width, x2};
+use super::figure_geometry::{FONT_SIZE, FigureGeometry, PanelOf, stroke, text_width, x2};
 use super::figure_lines::{Line, lines, measured_lines};
 use super::figure_panel::panel;
 use super::figure_residuals::residuals;
@@ -54,23 +54,23 @@ const MEASURED: [PanelOf; 2] = [
 /// The figure as SVG, inline with residuals; without curves if the reference's history can't be used.
 pub fn figure(report: &SceneReport, theme: Theme) -> String {
     match theme {
-        Theme::Standalone => scene_drawing(report, &Geometry::PAGE, theme),
-        Theme::Inline => scene_drawing(report, &Geometry::PAGE.with_residuals(), theme),
+        Theme::Standalone => scene_drawing(report, &FigureGeometry::PAGE, theme),
+        Theme::Inline => scene_drawing(report, &FigureGeometry::PAGE.with_residuals(), theme),
     }
 }
 
 /// The figure for a page on a phone: its panels as narrow as the screen, with type of the same size as on a wide page.
 pub(super) fn phone_figure(report: &SceneReport) -> String {
-    scene_drawing(report, &Geometry::PHONE, Theme::Inline)
+    scene_drawing(report, &FigureGeometry::PHONE, Theme::Inline)
 }
 
 /// The figure for a paper, `width` mm wide (within [`FIGURE_WIDTHS`]), as stand-alone SVG with its size in mm and type of
 /// 7.5 pt or more.
 pub fn printed_figure(report: &SceneReport, width: f64) -> String {
-    scene_drawing(report, &Geometry::printed(width), Theme::Standalone)
+    scene_drawing(report, &FigureGeometry::printed(width), Theme::Standalone)
 }
 
-fn scene_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> String {
+fn scene_drawing(report: &SceneReport, geometry: &FigureGeometry, theme: Theme) -> String {
     let axis = report.comparison.window;
     let mut lines = axis.map_or_else(Vec::new, |axis| lines(report, axis));
     if !geometry.boxes {
@@ -84,15 +84,15 @@ fn scene_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> Str
 /// The figure of the first measured record beside reference and models (Fig. 12): displacement and velocity of the
 /// bodies, filtered to the instrument's bandwidth. `None` if nothing was measured.
 pub fn measured_figure(report: &SceneReport, theme: Theme) -> Option<String> {
-    measured_drawing(report, &Geometry::PAGE, theme)
+    measured_drawing(report, &FigureGeometry::PAGE, theme)
 }
 
 /// As [`measured_figure`], for a page on a phone.
 pub(super) fn phone_measured_figure(report: &SceneReport) -> Option<String> {
-    measured_drawing(report, &Geometry::PHONE, Theme::Inline)
+    measured_drawing(report, &FigureGeometry::PHONE, Theme::Inline)
 }
 
-fn measured_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> Option<String> {
+fn measured_drawing(report: &SceneReport, geometry: &FigureGeometry, theme: Theme) -> Option<String> {
     let measured = report.comparison.measured.as_ref()?;
     let title = format!("{}: measurement, reduced models and finite-element reference", report.scene.name);
     let lines = measured_lines(measured);
@@ -101,16 +101,16 @@ fn measured_drawing(report: &SceneReport, geometry: &Geometry, theme: Theme) -> 
 
 fn drawing(
     title: &str,
-    geometry: &Geometry,
+    geometry: &FigureGeometry,
     panels: &[PanelOf],
     lines: &[Line],
     axis: Option<CommonAxis>,
     theme: Theme,
 ) -> String {
     let count = panels.len() as f64;
-    let legend = Legend::new(geometry, lines);
+    let legend = FigureLegend::new(geometry, lines);
     let top = legend.height + 14.0;
-    let Geometry { width, panel_height, gap, bottom, .. } = *geometry;
+    let FigureGeometry { width, panel_height, gap, bottom, .. } = *geometry;
     let pair_height = geometry.pair_height();
     let height = top + count * pair_height + (count - 1.0) * gap + bottom;
     let end = axis.map_or(1.0, |a| a.end * 1e6);
@@ -145,13 +145,13 @@ fn drawing(
 }
 
 /// Names of the lines above the panels, in as many rows as they need.
-struct Legend {
+struct FigureLegend {
     height: f64,
     drawing: Markup,
 }
 
-impl Legend {
-    fn new(geometry: &Geometry, lines: &[Line]) -> Self {
+impl FigureLegend {
+    fn new(geometry: &FigureGeometry, lines: &[Line]) -> Self {
         let name = |line: &Line| match geometry.boxes {
             true => line.name.clone(),
             false => format!("{}: efficiency {} %", line.name, significant(100.0 * line.efficiency, 3)),
@@ -173,11 +173,11 @@ impl Legend {
                 text.fig-text x=(x2(x + 37.0)) y=(y + 4.5) { (name) }
             }
         };
-        Legend { height: 26.0 + LEGEND_ROW * f64::from(row), drawing }
+        FigureLegend { height: 26.0 + LEGEND_ROW * f64::from(row), drawing }
     }
 }
 
-fn time_labels(geometry: &Geometry, end: f64, height: f64) -> Markup {
+fn time_labels(geometry: &FigureGeometry, end: f64, height: f64) -> Markup {
     let marks = ticks(0.0, end, (geometry.inner_width() / 80.0) as usize);
     html! {
         @for t in &marks {

@@ -11,7 +11,7 @@ pub(super) const PHONE_WIDTH: f64 = 360.0;
 
 /// Measures of the drawing in px.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Geometry {
+pub(super) struct FigureGeometry {
     pub(super) width: f64,
     pub(super) left: f64,
     pub(super) right: f64,
@@ -26,8 +26,8 @@ pub(super) struct Geometry {
     pub(super) millimetres: Option<f64>,
 }
 
-impl Geometry {
-    pub(super) const PAGE: Geometry = Geometry {
+impl FigureGeometry {
+    pub(super) const PAGE: FigureGeometry = FigureGeometry {
         width: 760.0,
         left: 74.0,
         right: 16.0,
@@ -40,34 +40,34 @@ impl Geometry {
     };
 
     /// For a phone held upright: as wide as its screen, so that type is not shrunk.
-    pub(super) const PHONE: Geometry = Geometry {
+    pub(super) const PHONE: FigureGeometry = FigureGeometry {
         width: PHONE_WIDTH,
         left: 62.0,
         right: 8.0,
         panel_height: 220.0,
         gap: 14.0,
         boxes: false,
-        ..Geometry::PAGE
+        ..FigureGeometry::PAGE
     };
 
     /// For a figure `width` mm wide: type of 8.5 pt, in one column of a paper (below 120 mm) of 7.5 pt.
     pub(super) fn printed(width: f64) -> Self {
         const POINT: f64 = 25.4 / 72.0;
-        let of = |geometry: Geometry, points: f64| {
+        let of = |geometry: FigureGeometry, points: f64| {
             let millimetres = points * POINT / FONT_SIZE;
-            Geometry { width: width / millimetres, millimetres: Some(millimetres), ..geometry }
+            FigureGeometry { width: width / millimetres, millimetres: Some(millimetres), ..geometry }
         };
         if width >= 120.0 {
-            return of(Geometry::PAGE, 8.5);
+            return of(FigureGeometry::PAGE, 8.5);
         }
         of(
-            Geometry {
+            FigureGeometry {
                 left: 66.0,
                 right: 10.0,
                 panel_height: 158.0,
                 gap: 12.0,
                 boxes: false,
-                ..Geometry::PAGE
+                ..FigureGeometry::PAGE
             },
             7.5,
         )
@@ -75,7 +75,7 @@ impl Geometry {
 
     /// With a panel of residuals below each panel.
     pub(super) fn with_residuals(self) -> Self {
-        Geometry { residual_height: 84.0, panel_height: 0.75 * self.panel_height, ..self }
+        FigureGeometry { residual_height: 84.0, panel_height: 0.75 * self.panel_height, ..self }
     }
 
     /// Height of a panel with its residuals.

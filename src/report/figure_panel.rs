@@ -1,9 +1,9 @@
 //! One panel of the figure: a quantity of all bodies and results over time.
 
 use super::efficiency_boxes::EfficiencyBoxes;
-use super::figure_geometry::{FONT_SIZE, Geometry, PanelOf, stroke, text_width, x2};
+use super::figure_geometry::{FONT_SIZE, FigureGeometry, PanelOf, stroke, text_width, x2};
 use super::figure_lines::Line;
-use super::label_placement::{Panel, Rect};
+use super::label_placement::{LabelRoom, Rect};
 use super::polyline::{Point, path, thinned};
 use super::ticks::{tick_label, ticks};
 use crate::curves::{CommonAxis, SampledCurve};
@@ -33,14 +33,14 @@ struct Layout<'a> {
     drawn: Vec<(&'a Line, Vec<Vec<Point>>)>,
     /// Outlines of the bands.
     bands: Vec<Vec<Point>>,
-    geometry: &'a Geometry,
-    room: Panel,
+    geometry: &'a FigureGeometry,
+    room: LabelRoom,
 }
 
 impl<'a> Layout<'a> {
     /// `headroom` px are kept free at the top.
     fn new(
-        geometry: &'a Geometry,
+        geometry: &'a FigureGeometry,
         shown: &PanelOf,
         (top, end, headroom): (f64, f64, f64),
         lines: &'a [Line],
@@ -83,7 +83,7 @@ impl<'a> Layout<'a> {
             })
         });
         let bands = bands.collect();
-        Layout { low, high, top, room: Panel { area, curves, taken: Vec::new() }, drawn, bands, geometry }
+        Layout { low, high, top, room: LabelRoom { area, curves, taken: Vec::new() }, drawn, bands, geometry }
     }
 
     fn y_of(&self, value: f64) -> f64 {
@@ -93,7 +93,7 @@ impl<'a> Layout<'a> {
 
 /// The boxes fit between the curves in one of their two arrangements, or room is made at the top.
 fn layout_with_boxes<'a>(
-    geometry: &'a Geometry,
+    geometry: &'a FigureGeometry,
     shown: &PanelOf,
     top: f64,
     end: f64,
@@ -117,7 +117,7 @@ fn layout_with_boxes<'a>(
 
 /// The panel whose upper edge is at `top`; the time axis ends at `end` (us).
 pub(super) fn panel(
-    geometry: &Geometry,
+    geometry: &FigureGeometry,
     shown: &PanelOf,
     top: f64,
     end: f64,
@@ -133,7 +133,7 @@ pub(super) fn panel(
     let labels: Vec<_> =
         shown.curves.iter().enumerate().map(|(k, (body, _))| body_label(&mut layout, body, k)).collect();
     let (low, high) = (layout.low, layout.high);
-    let Geometry { left, panel_height, .. } = *geometry;
+    let FigureGeometry { left, panel_height, .. } = *geometry;
     let width = geometry.inner_width();
     let x_marks = ticks(0.0, end, (width / 80.0) as usize);
     let y_marks = ticks(low, high, (panel_height / 45.0) as usize);

@@ -1,6 +1,6 @@
 //! The panel of residuals below a panel of the figure: model minus reference on a symmetric logarithmic axis, over the band.
 
-use super::figure_geometry::{FONT_SIZE, Geometry, PanelOf, x2};
+use super::figure_geometry::{FONT_SIZE, FigureGeometry, PanelOf, x2};
 use super::figure_lines::Line;
 use super::polyline::{Point, path_within};
 use super::symmetric_log::SymmetricLog;
@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 0.6;
 const GAP: f64 = 8.0;
 
 pub(super) fn residuals(
-    geometry: &Geometry,
+    geometry: &FigureGeometry,
     shown: &PanelOf,
     top: f64,
     end: f64,

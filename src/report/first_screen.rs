@@ -2,7 +2,7 @@
 
 use super::html::{model_badge, named_as, scrolled};
 use super::prose::prose;
-use super::summary_column::Column;
+use super::summary_column::SummaryColumn;
 use super::trust::{LARGE, SMALL, accuracy, size_class, validated, validity};
 use super::{SceneReport, kinds};
 use crate::comparison::{ModelComparison, SceneComparison};
@@ -39,7 +39,7 @@ fn percent(share: f64) -> String {
 }
 
 /// A sentence per model; what holds of all of them is said once.
-fn trust(columns: &[Column], report: &SceneReport) -> Markup {
+fn trust(columns: &[SummaryColumn], report: &SceneReport) -> Markup {
     let comparison = &report.comparison;
     let models = &comparison.models;
     let of = |model: &ModelComparison| validity(report.scene, &model.summary);
@@ -73,7 +73,7 @@ fn warnings(summary: &Summary) -> String {
 }
 
 /// The table that the terminal prints.
-fn in_short(columns: &[Column], comparison: &SceneComparison) -> Markup {
+fn in_short(columns: &[SummaryColumn], comparison: &SceneComparison) -> Markup {
     let reference = &comparison.reference;
     html! { table.short {
         thead { tr {
@@ -94,7 +94,7 @@ fn in_short(columns: &[Column], comparison: &SceneComparison) -> Markup {
     } }
 }
 
-fn cell(column: &Column, summary: &Summary, reference: Option<&Summary>) -> Markup {
+fn cell(column: &SummaryColumn, summary: &Summary, reference: Option<&Summary>) -> Markup {
     let Some(cell) = column.cell(summary, reference) else { return html! { td { "–" } } };
     html! {
         td data-field=(column.quantity) data-off=[cell.off] {

@@ -5,7 +5,7 @@ use super::SceneReport;
 use super::figure_geometry::x2;
 use super::html::scrolled;
 use super::landing_map::map_picture;
-use super::scene_drawing::Scale;
+use super::scene_drawing::DrawingScale;
 use super::vibration_chart::vibration_chart;
 use crate::flight::{Flight, Landscape, Launch, Setup, Vector, fly};
 use crate::format;
@@ -114,7 +114,7 @@ fn section(setup: &Setup, flight: &Flight, launch: &Launch, scatter: f64) -> Mar
     let top = (highest + 1.2 * setup.radius).min(setup.chamber.ceiling() + setup.radius);
     let bottom = setup.chamber.corners().iter().map(|corner| corner.y).fold(f64::INFINITY, f64::min);
     let factor = (WIDTH - 2.0 * MARGIN) / (high - low);
-    let scale = Scale { factor, left: low, top, margin: MARGIN };
+    let scale = DrawingScale { factor, left: low, top, margin: MARGIN };
     let height = 2.0 * MARGIN + (top - bottom) * factor;
     // walls end where the picture does
     let corners: Vec<[f64; 2]> = setup.chamber.corners().iter().map(|c| [c.x, c.y.min(top)]).collect();

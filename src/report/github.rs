@@ -64,7 +64,7 @@ fn annotations_of(
     place: impl Fn(&str) -> (String, String),
 ) -> Vec<Annotation> {
     let (file, text) = place(&comparison.scene);
-    let annotation = |finding: Finding| {
+    let annotation = |finding: GateFinding| {
         let is_refused =
             finding.row.map_or_else(|| rules.refuse(finding.verdict), |row| row.is_refused(rules));
         let level = match finding.verdict {
@@ -90,7 +90,7 @@ fn annotations_of(
 }
 
 /// Something of a scene that fails, is undecided, or lacks what is required.
-struct Finding<'a> {
+struct GateFinding<'a> {
     verdict: Verdict,
     /// What it belongs to, in words.
     of: String,
@@ -101,19 +101,19 @@ struct Finding<'a> {
 }
 
 /// All that is to be told of a scene.
-fn findings(comparison: &SceneComparison, rules: GateRules) -> Vec<Finding<'_>> {
-    let broken = |of: &str, checks: &'_ [Check]| -> Vec<Finding<'_>> {
+fn findings(comparison: &SceneComparison, rules: GateRules) -> Vec<GateFinding<'_>> {
+    let broken = |of: &str, checks: &'_ [Check]| -> Vec<GateFinding<'_>> {
         let failed = checks.iter().filter(|c| c.verdict.failed());
         let finding = |check: &Check| {
             let message = super::check_failure(check);
-            Finding { verdict: check.verdict, of: of.to_owned(), message, model: None, row: None }
+            GateFinding { verdict: check.verdict, of: of.to_owned(), message, model: None, row: None }
         };
         failed.map(finding).collect()
     };
     let mut found = broken("reference", &comparison.integrity);
     if comparison.verdict == Verdict::NotGated && rules.refuse(comparison.verdict) {
         let message = "nothing is gated, and tolerances are required".to_owned();
-        found.push(Finding {
+        found.push(GateFinding {
             verdict: comparison.verdict,
             of: "gate".to_owned(),
             message,
@@ -125,7 +125,7 @@ fn findings(comparison: &SceneComparison, rules: GateRules) -> Vec<Finding<'_>> 
         let name = format!("model {}", model.model);
         found.extend(broken(&name, &model.integrity));
         for row in model.discrepancies.iter().filter(|d| d.is_told()) {
-            found.push(Finding {
+            found.push(GateFinding {
                 verdict: row.verdict,
                 of: format!("{name}, {}", words(&row.quantity)),
                 message: super::row_told(row),
@@ -178,7 +178,7 @@ fn summary_rows(comparison: &SceneComparison) -> String {
 
 /// Verdict and line of every finding.
 fn list(comparison: &SceneComparison, rules: GateRules) -> Vec<(Verdict, String)> {
-    let line = |finding: Finding| {
+    let line = |finding: GateFinding| {
         // the row's message begins with its quantity
         let of = finding.model.map_or(finding.of, |model| format!("model {model}"));
         let line = format!("- {}, {of}: {}\n", escaped(&comparison.scene), escaped(&finding.message));

@@ -59,7 +59,7 @@ pub(super) struct Label {
 }
 
 /// What is already in a panel.
-pub(super) struct Panel {
+pub(super) struct LabelRoom {
     /// Room for labels.
     pub(super) area: Rect,
     /// Densely sampled curves.
@@ -68,7 +68,7 @@ pub(super) struct Panel {
     pub(super) taken: Vec<Rect>,
 }
 
-impl Panel {
+impl LabelRoom {
     /// The place of most room for a box, of equal ones the one furthest right, with the room it has
     /// on all sides in px.
     pub(super) fn find_box(&self, width: f64, height: f64) -> (f64, Rect) {
@@ -143,7 +143,7 @@ impl Panel {
 
 #[cfg(test)]
 mod tests {
-    use super::{Panel, Rect};
+    use super::{LabelRoom, Rect};
 
     fn line(y: f64) -> Vec<(f64, f64)> {
         (0..=300).map(|x| (f64::from(x), y)).collect()
@@ -153,7 +153,7 @@ mod tests {
     fn labels_overlap_neither_curves_nor_each_other() {
         let curves = vec![line(50.0), line(100.0)];
         let area = Rect { x: 0.0, y: 0.0, width: 300.0, height: 200.0 };
-        let mut panel = Panel { area, curves: curves.clone(), taken: Vec::new() };
+        let mut panel = LabelRoom { area, curves: curves.clone(), taken: Vec::new() };
         let (_, boxed) = panel.find_box(120.0, 40.0);
         panel.taken.push(boxed);
         let first = panel.place_label(&curves[0], &curves[1..], 40.0, 12.0).rect;

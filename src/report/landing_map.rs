@@ -2,7 +2,7 @@
 
 use super::chart::{CHART_WIDTH, FONT_SIZE, LEFT, PANEL_GAP, sheet};
 use super::figure_geometry::x2;
-use super::plot_axis::{Axis, Plot};
+use super::plot_axis::{Plot, PlotAxis};
 use crate::flight::{Landing, Landscape, Launch, Scatter, Seat, Setup, map_of_landings};
 use crate::result::FlightSummary;
 use maud::{Markup, html};
@@ -65,7 +65,7 @@ pub(super) fn map_picture(
 /// Panel number `k`; speeds in m/s, angles in degrees.
 fn plot(k: usize, centre: [f64; 2], half: [f64; 2]) -> Plot {
     let axis = |k: usize, factor: f64| {
-        Axis::over([-1.0, 1.0].into_iter().map(|side| factor * (centre[k] + side * half[k])), false)
+        PlotAxis::over([-1.0, 1.0].into_iter().map(|side| factor * (centre[k] + side * half[k])), false)
     };
     let top = TOP + HEIGHTS[..k].iter().map(|height| height + PANEL_GAP).sum::<f64>();
     let width = CHART_WIDTH - LEFT - RIGHT;

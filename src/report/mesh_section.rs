@@ -2,7 +2,7 @@
 
 use super::SceneReport;
 use super::field_raster::{Raster, View};
-use super::section_frame::{Bounds, Frame, Scale};
+use super::section_frame::{Bounds, ColourScale, Frame};
 use crate::error::Result;
 use crate::format::{prefixed, with_unit};
 use crate::reference::FieldMesh;
@@ -34,7 +34,12 @@ pub(super) fn mesh_html(report: &SceneReport) -> Result<Markup> {
             let share = if k == 0 { 1.0 } else { SHARE_IN_SCALE };
             let largest = Raster::within(stress, values, share, view, PIXELS);
             let raster = Raster::field(stress, values, largest, view, PIXELS);
-            stresses.push(picture(&raster, view, Some(Scale::von_mises(largest)), &format!("stress-{k}"))?);
+            stresses.push(picture(
+                &raster,
+                view,
+                Some(ColourScale::von_mises(largest)),
+                &format!("stress-{k}"),
+            )?);
         }
     }
     Ok(html! {
@@ -83,7 +88,7 @@ fn views(mesh: &FieldMesh, report: &SceneReport) -> Option<[View; 2]> {
 }
 
 /// A picture with its axes and, for a field, the scale of its colours.
-pub(super) fn picture(raster: &Raster, view: View, scale: Option<Scale>, id: &str) -> Result<Markup> {
+pub(super) fn picture(raster: &Raster, view: View, scale: Option<ColourScale>, id: &str) -> Result<Markup> {
     let image = BASE64_STANDARD.encode(raster.png(scale.is_some())?);
     let bounds = Bounds { across: [-view.radius, view.radius], up: [view.low, view.high] };
     let name = scale.map_or("Mesh in section", |scale| scale.name);

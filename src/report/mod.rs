@@ -87,7 +87,7 @@ pub use index_page::index_page;
 pub use json::json;
 pub use junit::junit;
 pub(crate) use junit::{integrity_failure as check_failure, told as row_told};
-pub use kinds::{Arrow, Film, film, seat_picture};
+pub use kinds::{Animation, Arrow, film, seat_picture};
 pub use markdown::markdown;
 pub use measured_section::efficiency_figure;
 pub use model_page::model_page;

@@ -8,13 +8,13 @@ use maud::{Markup, html};
 
 /// A range of values on an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Axis {
+pub(super) struct PlotAxis {
     low: f64,
     high: f64,
     logarithmic: bool,
 }
 
-impl Axis {
+impl PlotAxis {
     /// From the lowest to the highest of `values`, apart; logarithmic only if all are positive.
     pub(super) fn over(values: impl Iterator<Item = f64>, logarithmic: bool) -> Self {
         let (low, high) = values
@@ -27,21 +27,21 @@ impl Axis {
             }
             _ => (low, high),
         };
-        Axis { low, high, logarithmic: logarithmic && low > 0.0 }
+        PlotAxis { low, high, logarithmic: logarithmic && low > 0.0 }
     }
 
     /// With room of a `share` of its length at both ends.
     pub(super) fn widened(self, share: f64) -> Self {
         let (low, high) = (self.measure(self.low), self.measure(self.high));
         let room = share * (high - low);
-        Axis { low: self.value(low - room), high: self.value(high + room), ..self }
+        PlotAxis { low: self.value(low - room), high: self.value(high + room), ..self }
     }
 
     /// Linear, with room at both ends; from zero if it begins near zero.
     pub(super) fn of_quantity(self) -> Self {
         let near_zero = self.low >= 0.0 && self.low < 0.3 * self.high;
         let wide = self.widened(0.04);
-        if near_zero { Axis { low: 0.0, ..wide } } else { wide }
+        if near_zero { PlotAxis { low: 0.0, ..wide } } else { wide }
     }
 
     /// Where `value` is, from 0 to 1.
@@ -94,8 +94,8 @@ pub(super) struct Plot {
     pub(super) top: f64,
     pub(super) width: f64,
     pub(super) height: f64,
-    pub(super) x: Axis,
-    pub(super) y: Axis,
+    pub(super) x: PlotAxis,
+    pub(super) y: PlotAxis,
 }
 
 impl Plot {
@@ -148,11 +148,11 @@ impl Plot {
 
 #[cfg(test)]
 mod tests {
-    use super::Axis;
+    use super::PlotAxis;
 
     #[test]
     fn equal_ratios_are_equally_far_apart_on_a_logarithmic_axis() {
-        let axis = Axis::over([1.0, 1000.0].into_iter(), true);
+        let axis = PlotAxis::over([1.0, 1000.0].into_iter(), true);
         assert!(
             [1.0, 10.0, 100.0, 1000.0]
                 .iter()
@@ -161,19 +161,19 @@ mod tests {
         );
         assert!((axis.between(10.0, 1000.0) - 100.0).abs() < 1e-9);
         assert_eq!(axis.marks(5), [1.0, 10.0, 100.0, 1000.0]);
-        assert_eq!(Axis::over([20.0, 400.0].into_iter(), true).marks(6), [20.0, 50.0, 100.0, 200.0]);
+        assert_eq!(PlotAxis::over([20.0, 400.0].into_iter(), true).marks(6), [20.0, 50.0, 100.0, 200.0]);
         // within less than a decade, and where there is no logarithm
         assert_eq!(
-            Axis::over([3.0, 4.0].into_iter(), true).marks(5),
+            PlotAxis::over([3.0, 4.0].into_iter(), true).marks(5),
             [3.0, 3.2, 3.4000000000000004, 3.6, 3.8000000000000003, 4.0]
         );
-        assert_eq!(Axis::over([0.0, 4.0].into_iter(), true).place(1.0), 0.25);
+        assert_eq!(PlotAxis::over([0.0, 4.0].into_iter(), true).place(1.0), 0.25);
     }
 
     #[test]
     fn nothing_and_one_value_have_an_axis_too() {
         for values in [vec![], vec![2.0], vec![0.0, f64::NAN]] {
-            let axis = Axis::over(values.into_iter(), false).of_quantity();
+            let axis = PlotAxis::over(values.into_iter(), false).of_quantity();
             assert!(axis.place(0.5).is_finite() && axis.low < axis.high, "{axis:?}");
         }
     }

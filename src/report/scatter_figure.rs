@@ -2,7 +2,7 @@
 
 use super::chart::{FONT_SIZE, LEFT, sheet};
 use super::figure_geometry::x2;
-use super::plot_axis::{Axis, Plot};
+use super::plot_axis::{Plot, PlotAxis};
 use super::polyline::path;
 use crate::format::{percent, prefixed, words};
 use crate::uncertainty::{QuantityScatter, Scatter, Share};
@@ -60,9 +60,9 @@ fn histogram(of: &QuantityScatter, top: f64) -> Markup {
     }
     let share = |count: usize| 100.0 * count as f64 / of.values.len() as f64;
     let highest = counts.iter().copied().max().unwrap_or(0);
-    let x =
-        Axis::over([*first, *last].into_iter().chain(of.nominal).map(|v| v * to.factor), false).widened(0.03);
-    let y = Axis::over([0.0, share(highest)].into_iter(), false).of_quantity();
+    let x = PlotAxis::over([*first, *last].into_iter().chain(of.nominal).map(|v| v * to.factor), false)
+        .widened(0.03);
+    let y = PlotAxis::over([0.0, share(highest)].into_iter(), false).of_quantity();
     let plot = Plot { left: LEFT, top, width: HISTOGRAM, height: HEIGHT, x, y };
     let (x_marks, y_marks) = (x.marks(4), y.marks(4));
     let mut outline = vec![plot.at((first * to.factor, 0.0))];

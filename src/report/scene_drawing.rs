@@ -7,7 +7,7 @@ use crate::scene::Material;
 use maud::{Markup, html};
 
 /// From places (x, z) in m to the drawing.
-pub(super) struct Scale {
+pub(super) struct DrawingScale {
     /// Px per m.
     pub(super) factor: f64,
     /// What stands at the left and upper margin.
@@ -16,7 +16,7 @@ pub(super) struct Scale {
     pub(super) margin: f64,
 }
 
-impl Scale {
+impl DrawingScale {
     pub(super) fn x(&self, x: f64) -> f64 {
         self.margin + (x - self.left) * self.factor
     }

@@ -23,7 +23,7 @@ pub(super) struct Bounds {
 
 /// Scale of the colours of a field.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scale {
+pub(super) struct ColourScale {
     /// Value at its end, in the unit of the label.
     largest: f64,
     label: &'static str,
@@ -31,7 +31,7 @@ pub(super) struct Scale {
     pub(super) name: &'static str,
 }
 
-impl Scale {
+impl ColourScale {
     /// Up to `largest` Pa.
     pub(super) fn von_mises(largest: f64) -> Self {
         Self {
@@ -54,7 +54,7 @@ pub(super) struct Frame<'a> {
     pub(super) aspect: Option<f64>,
     /// Label of the horizontal axis.
     pub(super) across: &'static str,
-    pub(super) scale: Option<Scale>,
+    pub(super) scale: Option<ColourScale>,
     pub(super) name: &'static str,
     /// Unique on the page.
     pub(super) id: &'a str,
@@ -122,7 +122,7 @@ impl Frame<'_> {
     }
 }
 
-fn colour_scale(scale: Scale, top: f64, id: &str) -> Markup {
+fn colour_scale(scale: ColourScale, top: f64, id: &str) -> Markup {
     const STOPS: usize = 12;
     let width = WIDTH - LEFT - RIGHT;
     let to = scale.largest;

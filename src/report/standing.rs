@@ -45,7 +45,7 @@ impl Standing {
 
 /// The document as it is written and read again.
 #[derive(Serialize, Deserialize)]
-struct Document {
+struct ReportDocument {
     schema_version: u32,
     verdict: Value,
     scenes: Vec<Value>,
@@ -77,7 +77,7 @@ pub(super) fn in_folder(report: &Report, dir: &Path) -> Vec<Standing> {
 
 fn entries(dir: &Path) -> Vec<Value> {
     let read = std::fs::read(dir.join(DOCUMENT)).ok();
-    let document = read.and_then(|text| serde_json::from_slice::<Document>(&text).ok());
+    let document = read.and_then(|text| serde_json::from_slice::<ReportDocument>(&text).ok());
     document.filter(|d| d.schema_version == SCHEMA_VERSION).map_or_else(Vec::new, |d| d.scenes)
 }
 
@@ -103,7 +103,7 @@ pub(super) fn document(report: &Report, standing: &[Standing]) -> Result<String>
             (kept, _) => Ok(kept.clone().unwrap_or_default()),
         }
     };
-    let document = Document {
+    let document = ReportDocument {
         schema_version: SCHEMA_VERSION,
         verdict: verdict(standing).name().into(),
         scenes: standing.iter().map(entry).collect::<std::result::Result<_, _>>().map_err(internal)?,

@@ -4,7 +4,7 @@ use crate::format::{minus, percent, prefixed, with_unit};
 use crate::result::Summary;
 
 /// A column of the table of a scene's results in short.
-pub(super) struct Column {
+pub(super) struct SummaryColumn {
     pub(super) heading: &'static str,
     /// What it is told with, in one phrase: neighbours of the same name are told together.
     pub(super) group: &'static str,
@@ -14,7 +14,7 @@ pub(super) struct Column {
 }
 
 /// A result in a column.
-pub(super) struct Cell {
+pub(super) struct SummaryCell {
     pub(super) value: String,
     /// How far it is from the reference, signed: relatively, or in rad.
     pub(super) off: Option<f64>,
@@ -22,16 +22,16 @@ pub(super) struct Cell {
     pub(super) off_in_words: Option<String>,
 }
 
-impl Column {
+impl SummaryColumn {
     pub(super) const fn new(heading: &'static str, group: &'static str, quantity: &'static str) -> Self {
-        Column { heading, group, quantity, is_angle: false }
+        SummaryColumn { heading, group, quantity, is_angle: false }
     }
 
     /// What `summary` says, beside `reference`; `None` if it does not know the quantity.
-    pub(super) fn cell(&self, summary: &Summary, reference: Option<&Summary>) -> Option<Cell> {
+    pub(super) fn cell(&self, summary: &Summary, reference: Option<&Summary>) -> Option<SummaryCell> {
         let quantity = summary.quantities.get(self.quantity)?;
         let Some(own) = quantity.value else {
-            return Some(Cell { value: "not determined".into(), off: None, off_in_words: None });
+            return Some(SummaryCell { value: "not determined".into(), off: None, off_in_words: None });
         };
         let other = reference.and_then(|reference| reference.value(self.quantity));
         let value = match self.is_angle {
@@ -43,7 +43,7 @@ impl Column {
             false => other.filter(|other| *other != 0.0).map(|other| (own - other) / other.abs()),
         };
         let told = |off: f64| if self.is_angle { degrees(off) } else { percent(Some(off)) };
-        Some(Cell { value, off, off_in_words: off.map(told) })
+        Some(SummaryCell { value, off, off_in_words: off.map(told) })
     }
 }
 

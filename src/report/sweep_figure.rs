@@ -16,18 +16,18 @@ const LOOKS: [usize; 4] = [1, 0, 2, 4];
 
 /// A number as it is drawn: SI value times a factor.
 #[derive(Debug, Clone)]
-struct Shown {
+struct DrawnNumber {
     label: String,
     factor: f64,
 }
 
-impl Shown {
+impl DrawnNumber {
     fn new(name: &str, unit: &str, values: impl Iterator<Item = f64>) -> Self {
         let to = prefixed(unit, values.filter(|v| v.is_finite()).fold(0.0, |most, v| v.abs().max(most)));
         match to.unit {
-            "" if unit == "1" => Shown { label: name.to_owned(), factor: 1.0 },
-            "" => Shown { label: format!("{name} in {unit}"), factor: 1.0 },
-            unit => Shown { label: format!("{name} in {unit}"), factor: to.factor },
+            "" if unit == "1" => DrawnNumber { label: name.to_owned(), factor: 1.0 },
+            "" => DrawnNumber { label: format!("{name} in {unit}"), factor: 1.0 },
+            unit => DrawnNumber { label: format!("{name} in {unit}"), factor: to.factor },
         }
     }
 }
@@ -73,11 +73,11 @@ impl Drawn {
         self.name == "efficiency" && touches && plan.fields().all(|field| field.path() != "inner.gap")
     }
 
-    fn shown(self, table: &Table) -> Shown {
+    fn shown(self, table: &Table) -> DrawnNumber {
         if self.name == "efficiency" {
-            return Shown { label: "Efficiency in %".into(), factor: 100.0 };
+            return DrawnNumber { label: "Efficiency in %".into(), factor: 100.0 };
         }
-        Shown::new(&words(self.name), self.unit, table.records().iter().map(|record| self.of(record)))
+        DrawnNumber::new(&words(self.name), self.unit, table.records().iter().map(|record| self.of(record)))
     }
 }
 
@@ -98,14 +98,14 @@ pub fn sweep_figure(table: &Table, quantities: &[Drawn], known: &[Known]) -> Res
 }
 
 /// Values and name of parameter number `k` of the plan.
-fn parameter(table: &Table, k: usize) -> (Shown, bool, impl Fn(&Record) -> f64) {
+fn parameter(table: &Table, k: usize) -> (DrawnNumber, bool, impl Fn(&Record) -> f64) {
     let plan = table.plan();
     let (fields, logarithmic) = plan.parameters().swap_remove(k);
     let names: Vec<&str> = plan.fields().map(|field| field.path()).collect();
     let unit = plan.fields().nth(fields.start).map_or("1", |field| field.unit());
     let of = move |record: &Record| plan.numbers(record.index)[fields.start];
     let name = names[plan.parameters()[k].0.clone()].join(", ");
-    (Shown::new(&name, unit, table.records().iter().map(&of)), logarithmic, of)
+    (DrawnNumber::new(&name, unit, table.records().iter().map(&of)), logarithmic, of)
 }
 
 fn of_model<'a>(table: &'a Table, model: Model) -> impl Iterator<Item = &'a Record> {

@@ -1,7 +1,7 @@
 //! A short table for the terminal.
 
 use super::Report;
-use super::summary_column::Column;
+use super::summary_column::SummaryColumn;
 use super::{kinds, measured_section};
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
 use crate::result::{Outcome, Summary};
@@ -111,13 +111,13 @@ pub fn alone(scene: &Scene, outcomes: &[Outcome]) -> String {
     text
 }
 
-fn headings(columns: &[Column]) -> String {
+fn headings(columns: &[SummaryColumn]) -> String {
     let headings: String = columns.iter().map(|column| format!("{:>22}", column.heading)).collect();
     format!("  {:<10}{headings}", "")
 }
 
-fn cells(columns: &[Column], summary: &Summary, reference: Option<&Summary>) -> String {
-    let cell = |column: &Column| {
+fn cells(columns: &[SummaryColumn], summary: &Summary, reference: Option<&Summary>) -> String {
+    let cell = |column: &SummaryColumn| {
         let Some(cell) = column.cell(summary, reference) else { return String::new() };
         cell.value + &cell.off_in_words.map_or(String::new(), |off| format!(" ({off})"))
     };

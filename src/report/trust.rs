@@ -1,6 +1,6 @@
 //! How far a model can be trusted in its scene, in a sentence: what it hits, how well, and whether its theory holds there.
 
-use super::summary_column::Column;
+use super::summary_column::SummaryColumn;
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
 use crate::format::{percent_above, significant, words};
 use crate::kinds;
@@ -23,7 +23,7 @@ pub(super) fn size_class(off: f64) -> &'static str {
 }
 
 /// What the model hits, and how well: the quantities of `columns`, the curves, the numbers of contacts.
-pub(super) fn accuracy(columns: &[Column], model: &ModelComparison) -> String {
+pub(super) fn accuracy(columns: &[SummaryColumn], model: &ModelComparison) -> String {
     let groups = columns.chunk_by(|one, other| one.group == other.group);
     let mut phrases: Vec<String> = groups.filter_map(|group| of_group(group, model)).collect();
     phrases.extend(worst_curve(model));
@@ -41,8 +41,8 @@ pub(super) fn accuracy(columns: &[Column], model: &ModelComparison) -> String {
 }
 
 /// The worst of some quantities, with the reference's band where that is wider.
-fn of_group(group: &[Column], model: &ModelComparison) -> Option<String> {
-    let rows: Vec<(&Column, &Discrepancy)> =
+fn of_group(group: &[SummaryColumn], model: &ModelComparison) -> Option<String> {
+    let rows: Vec<(&SummaryColumn, &Discrepancy)> =
         group.iter().filter_map(|c| Some((c, model.discrepancy(c.quantity)?))).collect();
     let first = group.first().filter(|_| !rows.is_empty())?;
     let size = |is_angle: bool, row: &Discrepancy, of: Option<f64>| {

@@ -4,7 +4,7 @@
 use super::discrepancy_picture::mark;
 use super::figure_geometry::{FONT_SIZE, x2};
 use super::html::scrolled;
-use super::plot_axis::{Axis, Plot};
+use super::plot_axis::{Plot, PlotAxis};
 use super::trust::size_class;
 use crate::format::{percent, percent_above, significant, words};
 use crate::validated::{MEASURES, NEAR, Place, Row, Validation};
@@ -131,10 +131,10 @@ impl<'a> ValidatedMap<'a> {
     }
 
     /// The axis of a measure, the same in all views.
-    fn axis(&self, measure: usize) -> Axis {
+    fn axis(&self, measure: usize) -> PlotAxis {
         let places = self.placed.iter().map(|(_, place)| place).chain(&self.here);
         let values = places.map(|place| place.measures()[measure]);
-        Axis::over(values.flat_map(|value| [value / ROOM, value * ROOM]), true)
+        PlotAxis::over(values.flat_map(|value| [value / ROOM, value * ROOM]), true)
     }
 
     /// The scenes with their validations, the nearest first, or by the first measure.

@@ -22,7 +22,7 @@ type Ends = [[f64; 3]; 2];
 
 /// What happened at one contact.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Contact {
+pub(super) struct ObservedContact {
     /// Largest force, N.
     pub(super) force_peak: f64,
     /// Number of contacts but for those with a negligible impulse.
@@ -34,7 +34,7 @@ pub(super) struct Contact {
     impulse: f64,
 }
 
-impl Contact {
+impl ObservedContact {
     /// Number of contacts that ended: whether a last one began before the run ended can be a matter of rounding.
     pub(super) fn ended(&self) -> u32 {
         self.contacts - u32::from(self.closed)
@@ -48,16 +48,16 @@ impl Contact {
 }
 
 /// Looks into every step, and keeps what happened at outer and inner contact.
-pub(super) struct Watch<'a> {
+pub(super) struct ContactWatch<'a> {
     system: &'a System,
-    pub(super) contacts: [Contact; 2],
+    pub(super) contacts: [ObservedContact; 2],
     /// Time at the end of the steps that were accepted, s.
     time: f64,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> ContactWatch<'a> {
     pub(super) fn new(system: &'a System) -> Self {
-        Self { system, contacts: [Contact::default(); 2], time: 0.0 }
+        Self { system, contacts: [ObservedContact::default(); 2], time: 0.0 }
     }
 
     /// Whether `step` passes no touch that matters; if so, its forces are taken into account.

@@ -1,7 +1,7 @@
 //! An independent solution of a random impact: a Runge-Kutta method of order 8 that knows neither modes nor contacts.
 
-use super::between::{Contact, Watch};
-use super::kinds::Impact;
+use super::between::{ContactWatch, ObservedContact};
+use super::kinds::StressImpact;
 use super::{DIFFERENCE_BOUND, END_BOUND, TOLERANCE};
 use crate::dynamics::assured;
 use crate::dynamics::equations::Equations;
@@ -22,7 +22,7 @@ const LONGER: f64 = 1.5;
 
 /// What came of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Comparison {
+pub(super) enum IndependentCheck {
     /// There is no independent solution at a bearable cost.
     TooDear,
     /// The independent solution is itself uncertain: at two tolerances it differs by more than a third of the bound. Or the result
@@ -59,12 +59,12 @@ impl Differences {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Answer {
     velocity: [f64; 2],
-    contacts: [Contact; 2],
+    contacts: [ObservedContact; 2],
 }
 
 impl From<&Integration> for Answer {
     fn from(result: &Integration) -> Self {
-        Self { velocity: result.velocity, contacts: [0, 1].map(|i| Contact::of(&result.contacts[i])) }
+        Self { velocity: result.velocity, contacts: [0, 1].map(|i| ObservedContact::of(&result.contacts[i])) }
     }
 }
 
@@ -94,7 +94,7 @@ impl Answer {
 }
 
 /// Compares the `result` of the program for `impact` with the independent solution.
-pub(super) fn compare(impact: &Impact, result: &Integration) -> Comparison {
+pub(super) fn compare(impact: &StressImpact, result: &Integration) -> IndependentCheck {
     let bound = DIFFERENCE_BOUND;
     let system = &impact.system;
     let end_time = impact.end_time.unwrap_or_else(|| {
@@ -110,24 +110,24 @@ pub(super) fn compare(impact: &Impact, result: &Integration) -> Comparison {
         Differences { contacts: found.contacts.filter(|_| countable), ..found }
     };
     let [quick, careful] = TOLERANCES;
-    let Some(quick) = solve(quick, WORK) else { return Comparison::TooDear };
+    let Some(quick) = solve(quick, WORK) else { return IndependentCheck::TooDear };
     let difference = apart(ours, quick);
     // much of a larger one is the quick solution's own
     if difference.within(0.1 * bound) {
-        return Comparison::Differences(difference);
+        return IndependentCheck::Differences(difference);
     }
     let more = if impact.forces.is_some() { 4.0 } else { 20.0 };
     match solve(careful, more * WORK) {
-        None if difference.within(bound) => Comparison::Differences(difference),
-        None => Comparison::Undecided,
+        None if difference.within(bound) => IndependentCheck::Differences(difference),
+        None => IndependentCheck::Undecided,
         Some(careful) => {
             let difference = apart(ours, careful);
             let unsure = !apart(quick, careful).within(bound / 3.0)
                 || difference.within(result.error_estimate.unwrap_or(0.0));
             if !difference.within(bound) && unsure {
-                Comparison::Undecided
+                IndependentCheck::Undecided
             } else {
-                Comparison::Differences(difference)
+                IndependentCheck::Differences(difference)
             }
         }
     }
@@ -169,7 +169,7 @@ fn solve(
             }
         }
     };
-    let mut watch = Watch::new(system);
+    let mut watch = ContactWatch::new(system);
     runge_kutta::integrate_watched(
         &DORMAND_PRINCE_8,
         rate,

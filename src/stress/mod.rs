@@ -9,7 +9,7 @@ mod results;
 #[cfg(test)]
 mod tests;
 
-pub use kinds::{Case, Impact, UnitPlates};
+pub use kinds::{StressCase, StressImpact, UnitPlateModes};
 pub use results::{CaseMotion, CaseResult, StressResults, results};
 
 use crate::dynamics::assured::{all_within, assured};
@@ -18,7 +18,7 @@ use crate::dynamics::integration::{Integration, Options};
 use crate::error::{Error, Result};
 use crate::result::SCHEMA_VERSION;
 use crate::sweep;
-use independent::{Answer, Comparison};
+use independent::{Answer, IndependentCheck};
 use kinds::{DRY, MOVING, WET};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -128,11 +128,11 @@ pub struct StressReport {
 /// # Errors
 /// If the modes of a plate can't be computed; a case that fails is in the report.
 pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<StressReport> {
-    let plates = UnitPlates::default();
-    let solved: Result<Vec<Vec<Solved>>> = (0..cases)
+    let plates = UnitPlateModes::default();
+    let solved: Result<Vec<Vec<StressRun>>> = (0..cases)
         .into_par_iter()
         .map(|i| {
-            let case = Case::draw(seed.wrapping_add(i), &plates)?;
+            let case = StressCase::draw(seed.wrapping_add(i), &plates)?;
             let solved = case.impacts().map(|(kind, impact)| solve(case.seed, kind, impact)).collect();
             progress();
             Ok(solved)
@@ -140,10 +140,10 @@ pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<Stress
         .collect();
     let solved = solved?;
     let all = || solved.iter().flatten();
-    let count = |kind: &str, holds: fn(&Solved) -> bool| {
+    let count = |kind: &str, holds: fn(&StressRun) -> bool| {
         all().filter(|solved| solved.kind == kind && holds(solved)).count() as u64
     };
-    let seeds = |holds: fn(&Solved) -> bool| {
+    let seeds = |holds: fn(&StressRun) -> bool| {
         let mut seeds: Vec<u64> = all().filter(|solved| holds(solved)).map(|solved| solved.seed).collect();
         seeds.dedup();
         seeds
@@ -160,8 +160,8 @@ pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<Stress
         moving_compared: count(MOVING, |s| s.compared),
         sweep: SweepReport {
             points: all().filter(|s| s.point.is_some()).count() as u64,
-            unconverged: all().filter(|s| s.point == Some(Point::Unconverged)).count() as u64,
-            wrong: seeds(|s| s.point == Some(Point::Wrong)),
+            unconverged: all().filter(|s| s.point == Some(SweepPoint::Unconverged)).count() as u64,
+            wrong: seeds(|s| s.point == Some(SweepPoint::Wrong)),
         },
         beyond_model: seeds(|s| s.beyond_model),
         recontacts: count(DRY, |s| s.recontact),
@@ -171,7 +171,7 @@ pub fn run(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<Stress
 }
 
 /// The worst of each value.
-fn worst<'a>(solved: impl Iterator<Item = &'a Solved>) -> BTreeMap<String, Worst> {
+fn worst<'a>(solved: impl Iterator<Item = &'a StressRun>) -> BTreeMap<String, Worst> {
     let mut worst = BTreeMap::new();
     for solved in solved {
         for &(name, value) in &solved.values {
@@ -188,7 +188,7 @@ fn worst<'a>(solved: impl Iterator<Item = &'a Solved>) -> BTreeMap<String, Worst
 
 /// What one run gave.
 #[derive(Default)]
-struct Solved {
+struct StressRun {
     seed: u64,
     /// Beginning of its values' names.
     kind: &'static str,
@@ -198,13 +198,13 @@ struct Solved {
     recontact: bool,
     beyond_model: bool,
     /// As a point of a sweep; `None` where there is no result.
-    point: Option<Point>,
+    point: Option<SweepPoint>,
     failure: Option<Failure>,
 }
 
 /// A point of a sweep beside the result.
 #[derive(Clone, Copy, PartialEq)]
-enum Point {
+enum SweepPoint {
     Right,
     Wrong,
     /// Its row says that it is not as exact as it should be.
@@ -212,18 +212,18 @@ enum Point {
 }
 
 /// Options of a run with the program's default tolerance.
-fn options(impact: &Impact) -> Options {
+fn options(impact: &StressImpact) -> Options {
     Options { tolerance: TOLERANCE, end_time: impact.end_time, ..Options::default() }
 }
 
 /// Solves an impact as the program does.
-fn integrated(impact: &Impact, options: &Options) -> Result<Integration> {
+fn integrated(impact: &StressImpact, options: &Options) -> Result<Integration> {
     assured(options, &impact.system, |options| integrate(&impact.system, impact.forces.as_ref(), options))
 }
 
 /// Solves an impact and looks at what has to hold.
-fn solve(seed: u64, kind: &'static str, impact: &Impact) -> Solved {
-    let mut solved = Solved { seed, kind, ..Solved::default() };
+fn solve(seed: u64, kind: &'static str, impact: &StressImpact) -> StressRun {
+    let mut solved = StressRun { seed, kind, ..StressRun::default() };
     let broken = match integrated(impact, &options(impact)) {
         Ok(result) => {
             let point = integrated(impact, &all_within(SWEEP_ERROR, options(impact)));
@@ -245,7 +245,7 @@ fn solve(seed: u64, kind: &'static str, impact: &Impact) -> Solved {
 }
 
 /// Adds the values of `result` to `solved`; gives what does not hold.
-fn judge(impact: &Impact, result: &Integration, solved: &mut Solved) -> Vec<String> {
+fn judge(impact: &StressImpact, result: &Integration, solved: &mut StressRun) -> Vec<String> {
     solved.recontact = result.contacts.iter().any(|c| c.contacts > 1);
     let peaks = result.contacts.map(|c| c.force_peak);
     if result.velocity.iter().chain(&peaks).any(|value| !value.is_finite()) {
@@ -256,9 +256,9 @@ fn judge(impact: &Impact, result: &Integration, solved: &mut Solved) -> Vec<Stri
     solved.values.push(("steps", result.steps as f64));
     let mut broken = Vec::new();
     match independent::compare(impact, result) {
-        Comparison::TooDear => {}
-        Comparison::Undecided => (solved.compared, solved.undecided) = (true, true),
-        Comparison::Differences(found) => {
+        IndependentCheck::TooDear => {}
+        IndependentCheck::Undecided => (solved.compared, solved.undecided) = (true, true),
+        IndependentCheck::Differences(found) => {
             solved.compared = true;
             solved.values.extend([
                 ("velocity_difference", found.velocity),
@@ -281,11 +281,11 @@ fn judge(impact: &Impact, result: &Integration, solved: &mut Solved) -> Vec<Stri
 }
 
 /// Compares a sweep's `point` with the `result`.
-fn compare_point(impact: &Impact, point: &Integration, result: &Integration) -> Point {
+fn compare_point(impact: &StressImpact, point: &Integration, result: &Integration) -> SweepPoint {
     if point.error_estimate.is_some_and(|error| error > SWEEP_ERROR) {
-        return Point::Unconverged;
+        return SweepPoint::Unconverged;
     }
     let found = Answer::from(point).differences(Answer::from(result), &impact.system);
     let right = [found.velocity, found.force, found.end].iter().all(|difference| *difference <= SWEEP_ERROR);
-    if right && found.contacts.is_none() { Point::Right } else { Point::Wrong }
+    if right && found.contacts.is_none() { SweepPoint::Right } else { SweepPoint::Wrong }
 }

@@ -1,6 +1,6 @@
 //! The result of every case bit for bit.
 
-use super::kinds::{Case, Impact, UnitPlates};
+use super::kinds::{StressCase, StressImpact, UnitPlateModes};
 use super::{integrated, options};
 use crate::error::Result;
 use crate::result::SCHEMA_VERSION;
@@ -61,10 +61,10 @@ pub enum CaseMotion {
 /// # Errors
 /// If the modes of a plate can't be computed.
 pub fn results(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<StressResults> {
-    let plates = UnitPlates::default();
+    let plates = UnitPlateModes::default();
     let result = |i: u64| {
-        let case = Case::draw(seed.wrapping_add(i), &plates)?;
-        let of = |impact: &Option<Impact>| impact.as_ref().map(CaseMotion::of);
+        let case = StressCase::draw(seed.wrapping_add(i), &plates)?;
+        let of = |impact: &Option<StressImpact>| impact.as_ref().map(CaseMotion::of);
         progress();
         Ok(CaseResult {
             seed: case.seed,
@@ -78,7 +78,7 @@ pub fn results(cases: u64, seed: u64, progress: &(dyn Fn() + Sync)) -> Result<St
 }
 
 impl CaseMotion {
-    fn of(impact: &Impact) -> Self {
+    fn of(impact: &StressImpact) -> Self {
         match integrated(impact, &options(impact)) {
             Ok(result) => Self::Solved {
                 velocity: result.velocity,

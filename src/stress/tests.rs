@@ -2,16 +2,16 @@
 
 use super::*;
 
-fn draw(seed: u64) -> Case {
-    Case::draw(seed, &UnitPlates::default()).unwrap()
+fn draw(seed: u64) -> StressCase {
+    StressCase::draw(seed, &UnitPlateModes::default()).unwrap()
 }
 
-fn options(case: &Case, tolerance: f64) -> Options {
+fn options(case: &StressCase, tolerance: f64) -> Options {
     Options { tolerance, end_time: case.dry.end_time, ..Options::default() }
 }
 
 /// Largest difference of a velocity to the solution at the tightest tolerance, over the impact speed.
-fn error(case: &Case, result: &Integration) -> f64 {
+fn error(case: &StressCase, result: &Integration) -> f64 {
     let exact = integrate(&case.dry.system, None, &options(case, 1e-12)).unwrap();
     let apart = |i: usize| (result.velocity[i] - exact.velocity[i]).abs() / case.dry.system.speed;
     apart(0).max(apart(1))

@@ -53,7 +53,7 @@ impl Number {
 
 /// What one number of a point does: the fields that take it and the values it has.
 #[derive(Debug)]
-pub(super) struct Axis {
+pub(super) struct SweepAxis {
     pub(super) fields: Vec<Field>,
     pub(super) values: Values,
 }
@@ -120,7 +120,7 @@ impl Values {
     }
 }
 
-impl Axis {
+impl SweepAxis {
     /// What `vary` asks of the scene `template`; `fault` says where it stands in the file.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! What a sweep file asks for, as numbered points.
 
-use super::axis::{Axis, Sampling, Vary};
+use super::axis::{Sampling, SweepAxis, Vary};
 use super::record::{Outcome, Record, results};
 use crate::error::{Error, Result};
 use crate::kinds::{self, FollowedMesh, Series, Use};
@@ -53,7 +53,7 @@ pub struct Plan {
     models: Vec<Model>,
     modes: Option<usize>,
     tolerance: f64,
-    axes: Vec<Axis>,
+    axes: Vec<SweepAxis>,
     points: Points,
     hash: String,
     series: Series,
@@ -74,7 +74,7 @@ enum Points {
 
 impl Points {
     /// Number of points of one model, whose grid is that of `axes`.
-    fn count(&self, axes: &[Axis]) -> usize {
+    fn count(&self, axes: &[SweepAxis]) -> usize {
         match self {
             Points::Grid => axes.iter().map(|axis| axis.values.len()).product(),
             Points::Samples(samples) => samples.len(),
@@ -128,9 +128,9 @@ impl Plan {
             return Err(fault("varies nothing: add a table [[vary]]".into()));
         }
         let axes = file.vary.iter().enumerate();
-        let axes: Vec<Axis> = axes
+        let axes: Vec<SweepAxis> = axes
             .map(|(k, vary)| {
-                Axis::new(vary, file.sampling, &template, &|m| {
+                SweepAxis::new(vary, file.sampling, &template, &|m| {
                     fault(format!("[[vary]] number {}: {m}", k + 1))
                 })
             })
@@ -211,7 +211,7 @@ impl Plan {
 
     /// SHA-256 over everything the results depend on.
     fn identity(&self, file: &File, mesh: Option<&FollowedMesh>) -> String {
-        let axis = |a: &Axis| {
+        let axis = |a: &SweepAxis| {
             let fields: Vec<&str> = a.fields.iter().map(Field::path).collect();
             json!([fields, format!("{:?}", a.values)])
         };
@@ -296,7 +296,7 @@ impl Plan {
     }
 
     /// Whether an axis has more than one value.
-    fn is_varied(&self, axis: &Axis) -> bool {
+    fn is_varied(&self, axis: &SweepAxis) -> bool {
         axis.values.len() > 1 || !self.is_grid()
     }
 

@@ -101,31 +101,33 @@ impl<'a> Table<'a> {
     }
 
     /// What the table has, with names and units.
-    fn columns(&self) -> Vec<(Column, String, &'static str)> {
+    fn columns(&self) -> Vec<(SweepColumn, String, &'static str)> {
         let named = |column, name: &str| (column, name.to_owned(), "1");
-        let model = (self.plan.models().len() > 1).then(|| named(Column::Model, "model"));
+        let model = (self.plan.models().len() > 1).then(|| named(SweepColumn::Model, "model"));
         let fields = self.plan.fields().enumerate();
         let results = self.plan.results().iter().enumerate();
-        [named(Column::Index, "index")]
+        [named(SweepColumn::Index, "index")]
             .into_iter()
             .chain(model)
-            .chain(fields.map(|(k, field)| (Column::Field(k), field.path().to_owned(), field.unit())))
-            .chain([named(Column::Status, "status")])
-            .chain(results.map(|(k, (name, unit))| (Column::Number(k), (*name).to_owned(), *unit)))
-            .chain([named(Column::Reason, "reason")])
+            .chain(fields.map(|(k, field)| (SweepColumn::Field(k), field.path().to_owned(), field.unit())))
+            .chain([named(SweepColumn::Status, "status")])
+            .chain(results.map(|(k, (name, unit))| (SweepColumn::Number(k), (*name).to_owned(), *unit)))
+            .chain([named(SweepColumn::Reason, "reason")])
             .collect()
     }
 
     /// The cells of a row under `columns`.
-    fn cells(&self, record: &Record, columns: &[Column]) -> Vec<Cell> {
+    fn cells(&self, record: &Record, columns: &[SweepColumn]) -> Vec<SweepCell> {
         let (fields, numbers) = (self.plan.numbers(record.index), record.outcome.numbers());
-        let cell = |column: &Column| match *column {
-            Column::Index => Cell::Count(record.index),
-            Column::Model => Cell::Text(self.plan.model(record.index).to_string()),
-            Column::Field(k) => Cell::Number(fields[k]),
-            Column::Status => Cell::Text(record.outcome.status().to_owned()),
-            Column::Number(k) => numbers.map_or(Cell::Missing, |numbers| Cell::Number(numbers[k])),
-            Column::Reason => Cell::Text(record.outcome.reason().to_owned()),
+        let cell = |column: &SweepColumn| match *column {
+            SweepColumn::Index => SweepCell::Count(record.index),
+            SweepColumn::Model => SweepCell::Text(self.plan.model(record.index).to_string()),
+            SweepColumn::Field(k) => SweepCell::Number(fields[k]),
+            SweepColumn::Status => SweepCell::Text(record.outcome.status().to_owned()),
+            SweepColumn::Number(k) => {
+                numbers.map_or(SweepCell::Missing, |numbers| SweepCell::Number(numbers[k]))
+            }
+            SweepColumn::Reason => SweepCell::Text(record.outcome.reason().to_owned()),
         };
         columns.iter().map(cell).collect()
     }
@@ -133,12 +135,12 @@ impl<'a> Table<'a> {
     /// The table as the JSON document of a study.
     pub fn document(&self) -> Document {
         let columns = self.columns();
-        let kinds: Vec<Column> = columns.iter().map(|(column, ..)| *column).collect();
+        let kinds: Vec<SweepColumn> = columns.iter().map(|(column, ..)| *column).collect();
         let value = |cell| match cell {
-            Cell::Count(count) => json!(count),
-            Cell::Number(number) => json!(number),
-            Cell::Text(text) if !text.is_empty() => json!(text),
-            Cell::Text(_) | Cell::Missing => Value::Null,
+            SweepCell::Count(count) => json!(count),
+            SweepCell::Number(number) => json!(number),
+            SweepCell::Text(text) if !text.is_empty() => json!(text),
+            SweepCell::Text(_) | SweepCell::Missing => Value::Null,
         };
         let row = |record| self.cells(record, &kinds).into_iter().map(value).collect();
         let models: Vec<String> = self.plan.models().iter().map(ToString::to_string).collect();
@@ -178,16 +180,16 @@ impl<'a> Table<'a> {
     fn csv(&self) -> Result<Vec<u8>> {
         let failed = |e: csv::Error| Error::Internal(format!("writing CSV: {e}"));
         let columns = self.columns();
-        let kinds: Vec<Column> = columns.iter().map(|(column, ..)| *column).collect();
+        let kinds: Vec<SweepColumn> = columns.iter().map(|(column, ..)| *column).collect();
         let heading = |(_, name, unit): &(_, String, &str)| match *unit {
             "1" => name.clone(),
             unit => format!("{name} [{unit}]"),
         };
         let text = |cell| match cell {
-            Cell::Count(count) => count.to_string(),
-            Cell::Number(number) => number.to_string(),
-            Cell::Text(text) => text,
-            Cell::Missing => String::new(),
+            SweepCell::Count(count) => count.to_string(),
+            SweepCell::Number(number) => number.to_string(),
+            SweepCell::Text(text) => text,
+            SweepCell::Missing => String::new(),
         };
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(columns.iter().map(heading)).map_err(failed)?;
@@ -199,15 +201,15 @@ impl<'a> Table<'a> {
 
     fn parquet(&self) -> parquet::errors::Result<Vec<u8>> {
         let columns = self.columns();
-        let kinds: Vec<Column> = columns.iter().map(|(column, ..)| *column).collect();
-        let field = |(column, name, _): &(Column, String, &str)| {
+        let kinds: Vec<SweepColumn> = columns.iter().map(|(column, ..)| *column).collect();
+        let field = |(column, name, _): &(SweepColumn, String, &str)| {
             let (kind, text) = match column {
-                Column::Index => (Physical::INT64, None),
-                Column::Field(_) | Column::Number(_) => (Physical::DOUBLE, None),
+                SweepColumn::Index => (Physical::INT64, None),
+                SweepColumn::Field(_) | SweepColumn::Number(_) => (Physical::DOUBLE, None),
                 _ => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
             };
             // a point without result has none of its numbers
-            let optional = matches!(column, Column::Number(_));
+            let optional = matches!(column, SweepColumn::Number(_));
             Type::primitive_type_builder(name, kind)
                 .with_logical_type(text)
                 .with_repetition(if optional { Repetition::OPTIONAL } else { Repetition::REQUIRED })
@@ -226,25 +228,25 @@ impl<'a> Table<'a> {
         let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties))?;
         for rows in self.records.chunks(ROW_GROUP) {
             let mut group = writer.next_row_group()?;
-            let rows: Vec<Vec<Cell>> = rows.iter().map(|record| self.cells(record, &kinds)).collect();
+            let rows: Vec<Vec<SweepCell>> = rows.iter().map(|record| self.cells(record, &kinds)).collect();
             for (k, column) in kinds.iter().enumerate() {
                 let Some(mut to) = group.next_column()? else { break };
                 let cells = || rows.iter().map(|row| &row[k]);
-                let present: Vec<i16> = cells().map(|cell| i16::from(*cell != Cell::Missing)).collect();
-                let present = matches!(column, Column::Number(_)).then_some(&present[..]);
+                let present: Vec<i16> = cells().map(|cell| i16::from(*cell != SweepCell::Missing)).collect();
+                let present = matches!(column, SweepColumn::Number(_)).then_some(&present[..]);
                 match column {
-                    Column::Index => to.typed::<Int64Type>().write_batch(
-                        &cells().filter_map(Cell::count).collect::<Vec<_>>(),
+                    SweepColumn::Index => to.typed::<Int64Type>().write_batch(
+                        &cells().filter_map(SweepCell::count).collect::<Vec<_>>(),
                         None,
                         None,
                     )?,
-                    Column::Field(_) | Column::Number(_) => to.typed::<DoubleType>().write_batch(
-                        &cells().filter_map(Cell::number).collect::<Vec<_>>(),
+                    SweepColumn::Field(_) | SweepColumn::Number(_) => to.typed::<DoubleType>().write_batch(
+                        &cells().filter_map(SweepCell::number).collect::<Vec<_>>(),
                         present,
                         None,
                     )?,
                     _ => to.typed::<ByteArrayType>().write_batch(
-                        &cells().filter_map(Cell::text).collect::<Vec<_>>(),
+                        &cells().filter_map(SweepCell::text).collect::<Vec<_>>(),
                         None,
                         None,
                     )?,
@@ -260,7 +262,7 @@ impl<'a> Table<'a> {
 
 /// What a column of the table has.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Column {
+enum SweepColumn {
     Index,
     Model,
     /// The varied field of this number.
@@ -272,23 +274,23 @@ enum Column {
 }
 
 #[derive(Debug, PartialEq)]
-enum Cell {
+enum SweepCell {
     Count(usize),
     Number(f64),
     Text(String),
     Missing,
 }
 
-impl Cell {
+impl SweepCell {
     fn count(&self) -> Option<i64> {
-        if let Cell::Count(count) = self { Some(*count as i64) } else { None }
+        if let SweepCell::Count(count) = self { Some(*count as i64) } else { None }
     }
 
     fn number(&self) -> Option<f64> {
-        if let Cell::Number(number) = self { Some(*number) } else { None }
+        if let SweepCell::Number(number) = self { Some(*number) } else { None }
     }
 
     fn text(&self) -> Option<ByteArray> {
-        if let Cell::Text(text) = self { Some(ByteArray::from(text.as_str())) } else { None }
+        if let SweepCell::Text(text) = self { Some(ByteArray::from(text.as_str())) } else { None }
     }
 }

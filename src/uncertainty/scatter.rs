@@ -115,7 +115,7 @@ pub struct Local {
 
 /// The results that one quantity has in the impacts of a study.
 #[derive(Debug, Clone)]
-pub(super) struct Impacts {
+pub(super) struct SampledImpacts {
     pub(super) nominal: Option<f64>,
     /// Per input: its value and the result, lowered and raised.
     pub(super) moved: Vec<[(f64, Option<f64>); 2]>,
@@ -136,8 +136,8 @@ fn share(Indices { first, total }: Indices) -> Option<Share> {
 }
 
 impl QuantityScatter {
-    fn of(unit: &'static str, inputs: &Inputs, impacts: &Impacts) -> Self {
-        let Impacts { nominal, moved, rows } = impacts;
+    fn of(unit: &'static str, inputs: &Inputs, impacts: &SampledImpacts) -> Self {
+        let SampledImpacts { nominal, moved, rows } = impacts;
         let names = |of: &[usize]| {
             of.iter().map(|k| &*inputs.uncertainty.inputs[*k].field).collect::<Vec<_>>().join(",")
         };
@@ -196,7 +196,7 @@ impl Scatter {
         scene: &Scene,
         request: &Request,
         inputs: &Inputs,
-        quantities: impl Iterator<Item = (&'static str, &'static str, Impacts)>,
+        quantities: impl Iterator<Item = (&'static str, &'static str, SampledImpacts)>,
     ) -> Self {
         let uncertainty = &inputs.uncertainty;
         let quantities: BTreeMap<_, _> = quantities

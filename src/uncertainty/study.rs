@@ -4,7 +4,7 @@ use super::design::{MOST_INPUTS, MOST_ROWS, REPLICATES};
 use super::draw::Inputs;
 use super::estimate::{Row, mean, standard_deviation};
 use super::request::{Request, Samples};
-use super::scatter::{Impacts, Scatter};
+use super::scatter::{SampledImpacts, Scatter};
 use crate::error::{Error, Result};
 use crate::kinds;
 use crate::scene::{Field, Scene, Template, Uncertainty};
@@ -153,7 +153,7 @@ pub fn study(
             records.len()
         )));
     }
-    let of = |quantity: &str| Impacts {
+    let of = |quantity: &str| SampledImpacts {
         nominal: growing.value(0, quantity),
         moved: (0..inputs.uncertainty.inputs.len())
             .map(|k| {

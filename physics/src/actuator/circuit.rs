@@ -22,7 +22,7 @@ const QUICKER: f64 = 2.0;
 
 /// A mode of stack and circuit.
 #[derive(Debug, Clone, Copy)]
-pub struct Mode {
+pub struct CircuitMode {
     /// Its free motion.
     pub oscillator: Oscillator,
     /// Extension of the tip per unit, kg^(-1/2).
@@ -36,7 +36,7 @@ pub struct Mode {
     admittance: Complex<f64>,
 }
 
-impl Mode {
+impl CircuitMode {
     /// Whether it decays without a vibration.
     pub fn is_decay(&self) -> bool {
         self.pole.im == 0.0
@@ -50,7 +50,7 @@ pub struct Circuit {
     supply: Supply,
     rod: Vec<RodMode>,
     /// The modes.
-    pub modes: Vec<Mode>,
+    pub modes: Vec<CircuitMode>,
 }
 
 /// Energies of stack and circuit in J.
@@ -151,7 +151,7 @@ impl Circuit {
         pole
     }
 
-    fn mode(&self, s: Complex<f64>) -> Mode {
+    fn mode(&self, s: Complex<f64>) -> CircuitMode {
         let [a, _] = self.admittance(s);
         let [_, slope] = self.characteristic(s);
         let impedance = s * self.supply.resistance + self.supply.elastance();
@@ -167,7 +167,7 @@ impl Circuit {
         } else {
             Oscillator { omega: s.norm(), alpha: -s.re }
         };
-        Mode {
+        CircuitMode {
             oscillator,
             tip,
             feed: Feed { push: push / tip - tip, slip: slip / tip },
@@ -178,14 +178,14 @@ impl Circuit {
     }
 
     /// What a mode in the state (`q`, `v`) adds to the extension as a complex number, without its conjugate.
-    fn complex(mode: &Mode, q: f64, v: f64) -> Complex<f64> {
+    fn complex(mode: &CircuitMode, q: f64, v: f64) -> Complex<f64> {
         let (q, v, s) = (mode.tip * q, mode.tip * v, mode.pole);
         if s.im == 0.0 { Complex::from(q) } else { Complex::new(0.5 * q, 0.5 * (s.re * q - v) / s.im) }
     }
 
     /// Power in W of the resistor in the state (`q`, `v`) of the modes.
     pub fn heating(&self, q: &[f64], v: &[f64]) -> f64 {
-        let of = |((mode, q), v): ((&Mode, &f64), &f64)| {
+        let of = |((mode, q), v): ((&CircuitMode, &f64), &f64)| {
             let weight = if mode.pole.im == 0.0 { 1.0 } else { 2.0 };
             let charge = self.charge(mode) * Self::complex(mode, *q, *v);
             weight * (mode.pole * charge).re
@@ -199,7 +199,7 @@ impl Circuit {
     pub fn transient_heat(&self, q: &[f64], v: &[f64], force: &[f64]) -> f64 {
         let resistance = self.supply.resistance;
         let now = (self.heating(q, v) / resistance).sqrt();
-        let of = |(mode, q): (&Mode, &f64)| {
+        let of = |(mode, q): (&CircuitMode, &f64)| {
             let rate = mode.pole.re;
             // z' = s z + r F, so that z follows -r (F/s + F'/s^2 + ...)
             let follows = force.iter().rev().fold(0.0, |sum, f| (sum + f) / rate);
@@ -211,7 +211,7 @@ impl Circuit {
     }
 
     /// Charge in C per extension in m that a mode adds.
-    fn charge(&self, mode: &Mode) -> Complex<f64> {
+    fn charge(&self, mode: &CircuitMode) -> Complex<f64> {
         let alpha = self.stack.force_per_voltage();
         Complex::from(self.stack.held_capacitance()) / (mode.admittance * alpha) + alpha
     }
@@ -266,7 +266,7 @@ mod tests {
     /// Extension and its rate `t` s after the circuit was closed, by the modes.
     fn extension(circuit: &Circuit, t: f64) -> [f64; 2] {
         let mut sums = [circuit.final_extension(), 0.0];
-        for Mode { oscillator: o, tip, start: [q, v], .. } in &circuit.modes {
+        for CircuitMode { oscillator: o, tip, start: [q, v], .. } in &circuit.modes {
             let [slope, impulse] = o.free(t);
             sums[0] += tip * ((slope + 2.0 * o.alpha * impulse) * q + impulse * v);
             sums[1] += tip * (slope * v - o.omega.powi(2) * impulse * q);
@@ -343,7 +343,7 @@ mod tests {
         for (resistance, buffer) in [(1.0, Some(20e-6)), (30.0, None)] {
             let circuit = circuit(resistance, buffer);
             let state = |t: f64| -> [Vec<f64>; 2] {
-                let at = circuit.modes.iter().map(|Mode { oscillator: o, start: [q, v], .. }| {
+                let at = circuit.modes.iter().map(|CircuitMode { oscillator: o, start: [q, v], .. }| {
                     let [slope, impulse] = o.free(t);
                     [
                         (slope + 2.0 * o.alpha * impulse) * q + impulse * v,

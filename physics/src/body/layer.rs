@@ -46,7 +46,7 @@ pub struct Waves {
 }
 
 /// A wave number with its share in a flexibility.
-struct Share<W> {
+struct WaveShare<W> {
     /// Between patches on the same face, without the half-space, in m/N.
     own: f64,
     /// Between patches on opposite faces, in m/N.
@@ -150,16 +150,16 @@ impl Waves {
 
     /// Shares of all waves in the flexibilities between patches that are `widest` m wide at most, of which `weight` takes the radii in m to
     /// what they feel of a wave.
-    fn shares<W>(&self, widest: f64, weight: impl Fn(&dyn Fn(f64) -> f64) -> W) -> Vec<Share<W>> {
+    fn shares<W>(&self, widest: f64, weight: impl Fn(&dyn Fn(f64) -> f64) -> W) -> Vec<WaveShare<W>> {
         let half = 0.5 * self.plate.thickness;
         let waves = self.parameter.iter().zip(&self.centre).take(self.modes());
-        let mut shares: Vec<Share<W>> = waves
+        let mut shares: Vec<WaveShare<W>> = waves
             .map(|(k, centre)| {
                 let xi = k / self.plate.radius;
                 let bent = half_space(&self.plate, xi) * bending_ratio(xi * half);
                 let bent = centre * centre * self.mass_per_area() * bent;
                 let rim = [xi, share_of_rim(self.plate.edge, *k)];
-                Share { own: bent, mutual: bent, weight: weight(&|a| under_patch(xi, rim, a)) }
+                WaveShare { own: bent, mutual: bent, weight: weight(&|a| under_patch(xi, rim, a)) }
             })
             .collect();
         shares.extend(local(&self.plate, widest, self.cut() / self.plate.radius, weight, |_| 0.0));
@@ -241,7 +241,7 @@ fn local<W>(
     cut: f64,
     weight: impl Fn(&dyn Fn(f64) -> f64) -> W,
     below: impl Fn(f64) -> f64,
-) -> Vec<Share<W>> {
+) -> Vec<WaveShare<W>> {
     let half = 0.5 * plate.thickness;
     let mut shares = Vec::new();
     let rule = gauss_legendre(POINTS);
@@ -256,7 +256,7 @@ fn local<W>(
                 let half_space = half_space(plate, xi);
                 let bent = if continuous { half_space * bending_ratio(xi * half) } else { below(xi) };
                 let squeezed = half_space * squeezing_ratio(xi * half);
-                shares.push(Share {
+                shares.push(WaveShare {
                     own: per * (bent + squeezed - 2.0 * half_space),
                     mutual: per * (bent - squeezed),
                     weight: weight(&|a| patch_transform(xi * a)),

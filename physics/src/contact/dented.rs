@@ -50,7 +50,7 @@ impl Dent {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Surface {
+struct DentedSurface {
     law: ElasticPlastic,
     dent: Dent,
 }
@@ -62,12 +62,12 @@ pub struct DentedContact {
     /// E* in Pa.
     modulus: f64,
     /// Of body and plate; `None`: elastic. Which of them yields more in the end.
-    surfaces: [Option<Surface>; 2],
+    surfaces: [Option<DentedSurface>; 2],
     weaker: usize,
     /// Squares of the overloads of both surfaces at the end of the last step.
     near: [f64; 2],
     /// Up to where it is elastic.
-    limit: Limit,
+    limit: YieldPoint,
     /// Elastic energy now, and what has been dissipated so far on all spots, J.
     stored: f64,
     dissipated: f64,
@@ -77,7 +77,7 @@ pub struct DentedContact {
 
 /// The end of the elastic branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Limit {
+struct YieldPoint {
     /// Square of the overload of the weaker surface.
     w: f64,
     /// In N; approach beyond that at which the dents touch, m; elastic energy and what both dents have dissipated, J.
@@ -86,8 +86,8 @@ struct Limit {
     energy: f64,
 }
 
-impl Limit {
-    const NONE: Limit = Limit { w: 0.0, force: 0.0, approach: 0.0, energy: 0.0 };
+impl YieldPoint {
+    const NONE: YieldPoint = YieldPoint { w: 0.0, force: 0.0, approach: 0.0, energy: 0.0 };
 }
 
 /// The contact at a pressure.
@@ -112,7 +112,7 @@ impl Pressed {
 }
 
 /// Which of `surfaces` of body and plate yields more in the end: a sphere of equal material is the weaker one in a deep dent.
-fn weaker(surfaces: &[Option<Surface>; 2]) -> usize {
+fn weaker(surfaces: &[Option<DentedSurface>; 2]) -> usize {
     let onset = surfaces.map(|s| s.map_or(f64::INFINITY, |s| s.law.onset_pressure()));
     usize::from(onset[1] < WEAKER_SPHERE * onset[0])
 }
@@ -125,7 +125,7 @@ impl DentedContact {
         let surfaces = [0, 1].map(|i| {
             let law =
                 |y| ElasticPlastic::new(pair[i].plane_strain_modulus(), y, pair[i].poisson_ratio, i == 0);
-            yield_strength[i].map(|y| Surface { law: law(y), dent: Dent::NONE })
+            yield_strength[i].map(|y| DentedSurface { law: law(y), dent: Dent::NONE })
         });
         let weaker = weaker(&surfaces);
         surfaces[weaker]?;
@@ -135,7 +135,7 @@ impl DentedContact {
             surfaces,
             weaker,
             near: [1.0; 2],
-            limit: Limit::NONE,
+            limit: YieldPoint::NONE,
             stored: 0.0,
             dissipated: 0.0,
             widest: 0.0,
@@ -210,7 +210,7 @@ impl DentedContact {
         }
         let w = low.exp();
         let at = self.pressed(w);
-        self.limit = Limit { w, force: at.force, approach: at.recovers, energy: at.energy() };
+        self.limit = YieldPoint { w, force: at.force, approach: at.recovers, energy: at.energy() };
         self
     }
 
@@ -310,7 +310,7 @@ impl DentedContact {
     /// Approach in m of the contact `at` the square `w` of the weaker surface's overload, beyond that at which the dents touch: by itself, since
     /// beside the depth of a dent a first touch is lost in rounding.
     fn approach(&self, w: f64, at: &Pressed) -> f64 {
-        let Limit { force, approach, energy, .. } = self.limit;
+        let YieldPoint { force, approach, energy, .. } = self.limit;
         if w <= self.limit.w {
             return at.recovers;
         }
@@ -382,7 +382,7 @@ impl DentedContact {
         self.dissipated += all;
         self.widest = self.widest.max(at.radius);
         for (i, surface) in self.surfaces.iter_mut().enumerate() {
-            if let (Some(Surface { dent, .. }), Some(now)) = (surface, at.now[i]) {
+            if let (Some(DentedSurface { dent, .. }), Some(now)) = (surface, at.now[i]) {
                 dent.lost = at.lost[i];
                 dent.depth += if all > 0.0 { deeper * lost[i] / all } else { 0.0 };
                 dent.curvature = dent.flattening(at.radius, now.lasting) / at.radius;
@@ -392,7 +392,7 @@ impl DentedContact {
                 }
             }
         }
-        self.limit = Limit { w, force: at.force, approach: at.recovers, energy: at.energy() };
+        self.limit = YieldPoint { w, force: at.force, approach: at.recovers, energy: at.energy() };
     }
 }
 

@@ -95,20 +95,20 @@ impl PatchFlexibility {
     /// Flexibilities in m/N (0,0), (0,1) = (1,0), (1,1) for patches whose radii have the squares `square` in m^2.
     pub fn at(&self, square: [f64; 2]) -> [f64; 3] {
         let x = [0, 1].map(|i| square[i] * self.per_square[i]);
-        let mutual = Surface::at(&self.mutual.map(f64x4::from), x);
-        [Line::at(&self.own[0], x[0]).value, mutual.value, Line::at(&self.own[1], x[1]).value]
+        let mutual = Bicubic::at(&self.mutual.map(f64x4::from), x);
+        [Cubic::at(&self.own[0], x[0]).value, mutual.value, Cubic::at(&self.own[1], x[1]).value]
     }
 }
 
 /// A polynomial's value and derivatives.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Line {
+pub(super) struct Cubic {
     pub value: f64,
     pub first: f64,
     pub second: f64,
 }
 
-impl Line {
+impl Cubic {
     #[inline(always)]
     pub fn at([c0, c1, c2, c3]: &Tabulated, x: f64) -> Self {
         Self {
@@ -121,7 +121,7 @@ impl Line {
 
 /// The value and the derivatives of a polynomial of two variables.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Surface {
+pub(super) struct Bicubic {
     pub value: f64,
     /// By each variable.
     pub first: [f64; 2],
@@ -129,7 +129,7 @@ pub(super) struct Surface {
     pub second: [f64; 3],
 }
 
-impl Surface {
+impl Bicubic {
     /// `coefficients[n]`: those of x_0^m x_1^n for all m.
     #[inline(always)]
     pub fn at([c0, c1, c2, c3]: &[f64x4; TABULATED], [x, y]: [f64; 2]) -> Self {
@@ -187,7 +187,7 @@ mod tests {
             for (found, expected) in found.into_iter().zip([own(0, x), mutual(x, y), own(1, y)]) {
                 assert_relative_eq!(found, expected, max_relative = 1e-12);
             }
-            let surface = |x: f64, y: f64| Surface::at(&flexibility.mutual.map(f64x4::from), [x, y]);
+            let surface = |x: f64, y: f64| Bicubic::at(&flexibility.mutual.map(f64x4::from), [x, y]);
             let (s, h) = (surface(x, y), 1e-5);
             let (east, north) = (surface(x + h, y), surface(x, y + h));
             let (west, south) = (surface(x - h, y), surface(x, y - h));

@@ -8,7 +8,7 @@
 
 use super::contact_ledger::ContactLedger;
 use super::integration::{Converged, Integration, Options};
-use super::step_bounds::{Bounds, least_force, least_impulse};
+use super::step_bounds::{StepBounds, least_force, least_impulse};
 use super::system::System;
 use crate::error::Result;
 
@@ -160,7 +160,7 @@ fn is_strongly_damped(system: &System) -> bool {
 
 fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
     let [outer, inner] = &result.contacts;
-    let bound = Bounds::new(tolerance).force_defect;
+    let bound = StepBounds::new(tolerance).force_defect;
     let sum = if system.is_damped() { SMALL_DEFECTS } else { SMALL_UNDAMPED_DEFECTS };
     let small = |c: &ContactLedger| {
         let within = |defect: f64, share: f64| defect <= share * bound * c.force_peak;

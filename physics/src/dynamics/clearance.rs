@@ -18,7 +18,7 @@ static MIDDLES: LazyLock<[[f64; POINTS - 1]; POINTS]> = LazyLock::new(|| {
 
 /// A touch between the points of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Touch {
+pub(super) struct StepTouch {
     /// Where in the step (0..1) it begins.
     pub(super) place: f64,
     /// Its depth in m.
@@ -28,7 +28,7 @@ pub(super) struct Touch {
 /// The touch, if any, of a contact whose approaches at start, Gauss points and end of a step are `approach` in m, none of
 /// them positive but, by a rounding error, that at the start.
 #[inline]
-pub(super) fn touch_between(collocation: &Collocation, approach: &Points) -> Option<Touch> {
+pub(super) fn touch_between(collocation: &Collocation, approach: &Points) -> Option<StepTouch> {
     let mut middles = [0.0; POINTS - 1];
     for (weights, value) in MIDDLES.iter().zip(approach) {
         for (middle, weight) in middles.iter_mut().zip(weights) {
@@ -43,7 +43,7 @@ pub(super) fn touch_between(collocation: &Collocation, approach: &Points) -> Opt
     let [low, high] = [before, before + 1].map(|p| collocation.points[p]);
     let polynomial = collocation.through(approach);
     let place = crossing(&polynomial, [low, 0.5 * (low + high)], [approach[before], middles[before]]);
-    Some(Touch { place, depth })
+    Some(StepTouch { place, depth })
 }
 
 #[cfg(test)]

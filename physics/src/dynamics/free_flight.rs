@@ -36,9 +36,9 @@ pub fn next_touch(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<F
     let (mut q, mut v, mut start) = (q.to_vec(), v.to_vec(), 0.0);
     for _ in 0..MAX_EVALUATIONS / RENEWAL {
         match search(system, &q, &v, limit - start) {
-            Search::Found(Flight::Touch(time)) => return Ok(Flight::Touch(start + time)),
-            Search::Found(Flight::Over) => return Ok(Flight::Over),
-            Search::NotYet(time) => {
+            TouchSearch::Found(Flight::Touch(time)) => return Ok(Flight::Touch(start + time)),
+            TouchSearch::Found(Flight::Over) => return Ok(Flight::Over),
+            TouchSearch::NotYet(time) => {
                 advance(system, time, &mut q, &mut v);
                 start += time;
             }
@@ -50,14 +50,14 @@ pub fn next_touch(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<F
 }
 
 /// What a search came to.
-enum Search {
+enum TouchSearch {
     Found(Flight),
     /// No touch up to this time in s.
     NotYet(f64),
 }
 
 /// Looks for a touch within `limit` s by [`RENEWAL`] evaluations.
-fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> Search {
+fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> TouchSearch {
     let bounds = [GapBounds::new(system, 0, q, v), GapBounds::new(system, 1, q, v)];
     let mut time = 0.0;
     for _ in 0..RENEWAL {
@@ -67,21 +67,21 @@ fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> Search {
             let (gap, rate) = bound.gap(system, q, v, time);
             let scale = bound.elastic.max(bound.rigid_gap.abs());
             if gap <= 1e-14 * scale && rate < 0.0 {
-                return Search::Found(Flight::Touch(time));
+                return TouchSearch::Found(Flight::Touch(time));
             }
             let safe = bound.safe_step(gap.max(0.0), rate).max(bound.out_of_reach(time));
             step = step.min(safe).min(horizon.max(1e-3 * bound.shortest_period));
         }
         if step.is_infinite() || time > limit {
-            return Search::Found(Flight::Over);
+            return TouchSearch::Found(Flight::Over);
         }
         // a step of round-off size: the touch is here
         if time + step == time {
-            return Search::Found(Flight::Touch(time));
+            return TouchSearch::Found(Flight::Touch(time));
         }
         time += step;
     }
-    Search::NotYet(time)
+    TouchSearch::NotYet(time)
 }
 
 /// Whether no contact can touch any more in free flight from the state (`q`, `v`), both contacts open.

@@ -2,7 +2,7 @@
 
 mod judged;
 
-use self::judged::Judged;
+use self::judged::StepVerdict;
 use super::bank::in_blocks;
 use super::collocation::{Collocation, POINTS};
 use super::contact_forces::{Course, ForceError, StepSolver};
@@ -13,7 +13,7 @@ use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::step_bounds::{Bounds, EnergyAccount, base_step, force_scale, momentum_scale};
+use super::step_bounds::{EnergyAccount, StepBounds, base_step, force_scale, momentum_scale};
 use super::system::{System, dot};
 use crate::error::{Error, Result};
 use crate::numerics::stages::{STAGES, Stages};
@@ -42,15 +42,15 @@ const START_LEVEL: i32 = 4;
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
     let recorder = Recorder::new(system, &COLLOCATION, options);
-    Stepper::new(system, &COLLOCATION, options, recorder).go()
+    DryStepper::new(system, &COLLOCATION, options, recorder).go()
 }
 
 /// State of a run.
-struct Stepper<'a> {
+struct DryStepper<'a> {
     solver: StepSolver<'a>,
     recorder: Option<Recorder<'a>>,
     end_time: f64,
-    bounds: Bounds,
+    bounds: StepBounds,
     base_step: f64,
     tables: Ladder,
     level: i32,
@@ -76,7 +76,7 @@ fn flat(blocks: &[f64x4]) -> &[f64] {
     bytemuck::cast_slice(blocks)
 }
 
-impl<'a> Stepper<'a> {
+impl<'a> DryStepper<'a> {
     fn new(
         system: &'a System,
         collocation: &'a Collocation,
@@ -91,7 +91,7 @@ impl<'a> Stepper<'a> {
             end_time: options.end_time.unwrap_or(f64::INFINITY),
             base_step: base_step(hit.duration(), options.tolerance),
             energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
-            bounds: Bounds::new(options.tolerance),
+            bounds: StepBounds::new(options.tolerance),
             tables: Ladder::new(q.len()),
             level: START_LEVEL,
             time: 0.0,
@@ -191,7 +191,7 @@ impl<'a> Stepper<'a> {
                 (&self.solver.bank, self.solver.collocation, self.solver.system);
             let scale = momentum_scale(system, &self.contacts);
             let least = self.least_forces(scale);
-            let share = Bounds::share(self.steps);
+            let share = StepBounds::share(self.steps);
             let table = match shorter {
                 Some(h) => self.tables.other(bank, collocation, h),
                 None => self.tables.get(bank, collocation, self.level, h),
@@ -217,7 +217,7 @@ impl<'a> Stepper<'a> {
                 continue;
             };
             let energy_error = self.energy_error(&trial);
-            let Judged { excess, event, force_defect } =
+            let StepVerdict { excess, event, force_defect } =
                 self.judge(&trial, scale, self.energy.excess(energy_error, h, 0.0));
             if excess > 1.0 {
                 match event {

@@ -121,7 +121,8 @@ impl MovingBody {
         };
         let mut body = match supply {
             Some(circuit) => {
-                let each = |value: fn(&circuit::Mode) -> f64| circuit.modes.iter().map(value).collect();
+                let each =
+                    |value: fn(&circuit::CircuitMode) -> f64| circuit.modes.iter().map(value).collect();
                 Self {
                     oscillators: circuit.modes.iter().map(|mode| mode.oscillator).collect(),
                     tip: each(|mode| -mode.tip),

@@ -27,7 +27,7 @@ pub(super) fn base_step(contact_time: f64, tolerance: f64) -> f64 {
 }
 
 /// Defects that a step may have, as impulses over the momentum.
-pub(super) struct Bounds {
+pub(super) struct StepBounds {
     /// Where the force is smooth.
     pub(super) smooth: f64,
     /// There too, of the force over its peak: where contacts are much shorter than the impact, impulses alone leave the
@@ -43,7 +43,7 @@ pub(super) struct Bounds {
     pub(super) force: f64,
 }
 
-impl Bounds {
+impl StepBounds {
     /// For a relative error `tolerance` of the efficiency. The error of a step is of about twice the order of its
     /// defect where the forces are smooth, so that the bound may fall more slowly than the tolerance; factors and
     /// exponents are measured over scenes and numbers of modes (tests/physics/integrator_runge_kutta.rs).

@@ -21,7 +21,7 @@ pub struct TooNarrow(pub String);
 
 /// What of the chamber a sphere touches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Feature {
+pub(super) enum ChamberFeature {
     /// The wall of this number, from the corner of the same number on.
     Wall(usize),
     /// The corner of this number.
@@ -32,7 +32,7 @@ pub(super) enum Feature {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearest {
     pub(super) point: Vector,
-    pub(super) feature: Feature,
+    pub(super) feature: ChamberFeature,
 }
 
 impl Chamber {
@@ -179,12 +179,12 @@ impl Chamber {
         let (start, along, length) = (self.corner(wall), self.along(wall), self.length(wall));
         let s = (place - start).dot(&along);
         if s <= 0.0 {
-            Nearest { point: start, feature: Feature::Edge(wall) }
+            Nearest { point: start, feature: ChamberFeature::Edge(wall) }
         } else if s >= length {
             let end = (wall + 1) % self.walls();
-            Nearest { point: self.corner(end), feature: Feature::Edge(end) }
+            Nearest { point: self.corner(end), feature: ChamberFeature::Edge(end) }
         } else {
-            Nearest { point: start + s * along, feature: Feature::Wall(wall) }
+            Nearest { point: start + s * along, feature: ChamberFeature::Wall(wall) }
         }
     }
 
@@ -194,10 +194,10 @@ impl Chamber {
     }
 
     /// Whether `wall` has `feature`.
-    pub(super) fn belongs(&self, wall: usize, feature: Feature) -> bool {
+    pub(super) fn belongs(&self, wall: usize, feature: ChamberFeature) -> bool {
         match feature {
-            Feature::Wall(own) => own == wall,
-            Feature::Edge(corner) => wall == corner || wall == self.before(corner),
+            ChamberFeature::Wall(own) => own == wall,
+            ChamberFeature::Edge(corner) => wall == corner || wall == self.before(corner),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Motion of a sphere that stays on a wall or an edge: rolling, sliding, held.
 
-use super::chamber::Feature;
-use super::friction::{Bond, Loads, Regime};
+use super::chamber::ChamberFeature;
+use super::friction::{Bond, Regime, SurfaceLoads};
 use super::step::step;
 use super::track::Track;
 use super::{Setup, State};
@@ -25,7 +25,7 @@ pub(super) enum Change {
     /// Another wall is touched.
     Touches(usize),
     /// The surface goes on with this.
-    Passes(Feature),
+    Passes(ChamberFeature),
     /// The sphere rests, and nothing will move it.
     Rests,
 }
@@ -52,11 +52,11 @@ struct Rolling<'a> {
 
 impl Setup {
     /// Normal force in N and the loads at a place of the track.
-    pub(super) fn loads(&self, track: &Track, time: f64, [q, v, _]: Course) -> (f64, Loads) {
+    pub(super) fn loads(&self, track: &Track, time: f64, [q, v, _]: Course) -> (f64, SurfaceLoads) {
         let (place, tangent) = (track.place(q), track.tangent(q));
         let pull = self.field.acceleration(self.mass, time, place) + self.field.drag(self.mass, v * tangent);
         let pressed = -self.mass * (pull.dot(&track.normal(q)) + v * v * track.curvature());
-        let loads = Loads {
+        let loads = SurfaceLoads {
             along: self.mass * pull.dot(&tangent),
             grip: self.friction * pressed.max(0.0),
             resistance: self.field.resisting_moment(self.radius, place),
@@ -127,7 +127,7 @@ impl Rolling<'_> {
     }
 
     /// Whether the sphere neither moves nor begins to.
-    fn is_at_rest(&self, loads: &Loads, [_, v, spin]: Course) -> bool {
+    fn is_at_rest(&self, loads: &SurfaceLoads, [_, v, spin]: Course) -> bool {
         let slow = v.abs() < NO_SPEED && (self.setup.radius * spin).abs() < NO_SPEED;
         let answer = self.regime.answer(loads);
         let pull = loads.grip + loads.along.abs() + loads.mass;
@@ -187,7 +187,7 @@ impl Rolling<'_> {
 
     /// Whether `wall` begins where the track's wall ends, turning away from it.
     fn is_beyond_edge(&self, wall: usize) -> bool {
-        let Feature::Wall(own) = self.track.feature else { return false };
+        let ChamberFeature::Wall(own) = self.track.feature else { return false };
         let chamber = &self.setup.chamber;
         let after = (own + 1) % chamber.walls();
         (wall == after && chamber.jut(after) >= 0.0)

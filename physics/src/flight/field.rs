@@ -14,22 +14,22 @@ pub struct Field {
     /// The spring, if there is one.
     pub spring: Option<Spring>,
     /// Drag of a fluid, if there is one.
-    pub drag: Option<Drag>,
+    pub drag: Option<SphereDrag>,
     /// How the valve's body is shaken, if it is.
     pub shaken: Option<Excitation>,
 }
 
 /// Drag of a sphere, eq. (2) of the paper: c_W rho / 2 A v^2.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Drag {
+pub struct SphereDrag {
     /// Half the density of the fluid times coefficient and section of the sphere, kg/m.
     pub factor: f64,
 }
 
-impl Drag {
+impl SphereDrag {
     /// Of a sphere of `radius` m with the drag coefficient c_W in a fluid of `density` kg/m^3.
     pub fn new(coefficient: f64, density: f64, radius: f64) -> Self {
-        Drag { factor: 0.5 * coefficient * density * std::f64::consts::PI * radius.powi(2) }
+        SphereDrag { factor: 0.5 * coefficient * density * std::f64::consts::PI * radius.powi(2) }
     }
 }
 

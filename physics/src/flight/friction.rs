@@ -5,7 +5,7 @@ const STICKS: f64 = 1.0 - 1e-9;
 
 /// What acts on a sphere on a surface besides friction, and how large friction can be.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Loads {
+pub(super) struct SurfaceLoads {
     /// Force along the surface in N.
     pub(super) along: f64,
     /// Largest friction force of the surface in N: coefficient times normal force.
@@ -35,7 +35,7 @@ pub(super) struct Regime {
 
 /// Friction force and moment, and the accelerations that follow.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Answer {
+pub(super) struct FrictionResponse {
     pub(super) friction: f64,
     pub(super) moment: f64,
     /// Along the surface in m/s^2.
@@ -51,8 +51,8 @@ impl Regime {
     }
 
     /// Forces and accelerations in this regime.
-    pub(super) fn answer(self, loads: &Loads) -> Answer {
-        let Loads { along, grip, resistance, mass, inertia, radius } = *loads;
+    pub(super) fn answer(self, loads: &SurfaceLoads) -> FrictionResponse {
+        let SurfaceLoads { along, grip, resistance, mass, inertia, radius } = *loads;
         let moment_of = |sign: i8| -f64::from(sign) * resistance;
         let (friction, moment) = match (self.surface, self.turn) {
             (Bond::Stick, Bond::Stick) => (-along, radius * along),
@@ -71,7 +71,7 @@ impl Regime {
                 (friction, moment)
             }
         };
-        Answer {
+        FrictionResponse {
             friction,
             moment,
             acceleration: (along + friction) / mass,
@@ -81,7 +81,7 @@ impl Regime {
 
     /// The regime at a `slip` of the surface in m/s and a `spin` in rad/s, either of which may be exactly 0: then what friction
     /// can hold stays, and what it can't moves as the rest of the forces has it.
-    pub(super) fn at(loads: &Loads, slip: f64, spin: f64) -> Self {
+    pub(super) fn at(loads: &SurfaceLoads, slip: f64, spin: f64) -> Self {
         let bonds = |rate: f64, holds: bool| -> Vec<Bond> {
             let signs = [Bond::Slip(1), Bond::Slip(-1)];
             match rate {
@@ -108,7 +108,7 @@ impl Regime {
     }
 
     /// By how much, relative to the loads, the regime contradicts itself at a slip and a spin; 0 if it does not.
-    fn excess(self, loads: &Loads, [slip, spin]: [f64; 2]) -> f64 {
+    fn excess(self, loads: &SurfaceLoads, [slip, spin]: [f64; 2]) -> f64 {
         let answer = self.answer(loads);
         let begins = |rate: f64, sign: i8| (-f64::from(sign) * rate).max(0.0) * loads.mass;
         let surface = match self.surface {

@@ -153,7 +153,7 @@ fn golden(f: &dyn Fn(f64) -> f64, mut a: f64, mut b: f64) -> f64 {
 
 /// A column lower, or higher, than those around it.
 #[derive(Debug, Clone, Copy)]
-struct Turn {
+struct Extremum {
     x: f64,
     energy: f64,
     lowest: bool,
@@ -161,7 +161,7 @@ struct Turn {
 
 /// The columns at which the landscape turns, from left to right: lowest and highest ones alternate, the first and the last are
 /// lowest ones. Of a level stretch the middle counts.
-fn turns(setup: &Setup, x: &[f64], energy: &[f64]) -> Vec<Turn> {
+fn turns(setup: &Setup, x: &[f64], energy: &[f64]) -> Vec<Extremum> {
     let scale = energy.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
     let level = 1e-12 * scale;
     // stretches of equal energy: first and last column
@@ -187,7 +187,7 @@ fn turns(setup: &Setup, x: &[f64], energy: &[f64]) -> Vec<Turn> {
             } else {
                 0.5 * (x[stretch[0]] + x[stretch[1]])
             };
-            found.push(Turn { x, energy: self::lowest(setup, x).0, lowest });
+            found.push(Extremum { x, energy: self::lowest(setup, x).0, lowest });
         }
     }
     found

@@ -23,7 +23,7 @@ mod track;
 mod vibration;
 
 pub use chamber::{Chamber, TooNarrow};
-pub use field::{Drag, Excitation, Field, Wave};
+pub use field::{Excitation, Field, SphereDrag, Wave};
 pub use judged::{Judged, Landing, Scatter, judge, least_shift, map_of_landings};
 pub use landscape::{Landscape, Saddle};
 pub use run::{Ending, Flight, Touch, fly};

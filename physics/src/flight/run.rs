@@ -1,6 +1,6 @@
 //! From a start to the end of the motion: free flight, touches, rolling, rest.
 
-use super::chamber::Feature;
+use super::chamber::ChamberFeature;
 use super::contact::Change;
 use super::impact::rebound;
 use super::landscape::Landscape;
@@ -85,7 +85,7 @@ pub struct Flight {
 
 /// What is asked of a motion.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Asked {
+pub(super) struct MotionRequest {
     /// Whether its path is kept.
     pub(super) path: bool,
     /// Whether it ends as soon as the sphere is beyond this x in m, on the other side than at the start.
@@ -101,21 +101,27 @@ pub fn fly(setup: &Setup, landscape: &Landscape, launch: &Launch, path: bool) ->
         velocity: launch.speed * Vector::new(sin, cos),
         spin: launch.spin,
     };
-    moved(setup, landscape, start, Mode::Free, Asked { path, beyond: None })
+    moved(setup, landscape, start, MotionMode::Free, MotionRequest { path, beyond: None })
 }
 
 /// What the sphere is at.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Mode {
+pub(super) enum MotionMode {
     Free,
     On(Track),
     /// At rest between two surfaces of these normals.
-    Wedged([Vector; 2], [Feature; 2]),
+    Wedged([Vector; 2], [ChamberFeature; 2]),
 }
 
 /// Moves the sphere until its seat is certain, or what is asked has happened.
-pub(super) fn moved(setup: &Setup, landscape: &Landscape, start: State, mode: Mode, asked: Asked) -> Flight {
-    let mut running = Running { setup, landscape, state: start, mode, events: 0, touches: 0, first: None };
+pub(super) fn moved(
+    setup: &Setup,
+    landscape: &Landscape,
+    start: State,
+    mode: MotionMode,
+    asked: MotionRequest,
+) -> Flight {
+    let mut running = FlightRun { setup, landscape, state: start, mode, events: 0, touches: 0, first: None };
     let mut path = if asked.path { vec![start] } else { Vec::new() };
     let side = asked.beyond.map(|x| (start.place.x - x).signum());
     for _ in 0..MOST_STEPS {
@@ -126,25 +132,25 @@ pub(super) fn moved(setup: &Setup, landscape: &Landscape, start: State, mode: Mo
             path.push(running.state);
         }
         if let Some(ending) = ending {
-            let Running { state, first, touches, .. } = running;
+            let FlightRun { state, first, touches, .. } = running;
             return Flight { ending, time: state.time, first_touch: first, touches, path };
         }
     }
-    let Running { state, first, touches, .. } = running;
+    let FlightRun { state, first, touches, .. } = running;
     Flight { ending: Ending::Moves, time: state.time, first_touch: first, touches, path }
 }
 
-struct Running<'a> {
+struct FlightRun<'a> {
     setup: &'a Setup,
     landscape: &'a Landscape,
     state: State,
-    mode: Mode,
+    mode: MotionMode,
     events: u32,
     touches: u32,
     first: Option<Touch>,
 }
 
-impl Running<'_> {
+impl FlightRun<'_> {
     /// The end, if it is certain by now.
     fn ending(&self) -> Option<Ending> {
         if self.setup.is_still(self.state.time)
@@ -165,7 +171,7 @@ impl Running<'_> {
     /// One step, or until something changes; the end if that is one.
     fn go(&mut self) -> Option<Ending> {
         match self.mode {
-            Mode::Free => {
+            MotionMode::Free => {
                 let (state, touched) = self.setup.fly_on(&self.state);
                 self.state = state;
                 if let Some(wall) = touched {
@@ -173,20 +179,22 @@ impl Running<'_> {
                 }
                 None
             }
-            Mode::On(track) => {
+            MotionMode::On(track) => {
                 let (state, change) = self.setup.roll_on(&track, &self.state);
                 self.events += u32::from(change != Change::Goes || state.time == self.state.time);
                 self.state = state;
                 match change {
                     Change::Goes => {}
-                    Change::Leaves => self.mode = Mode::Free,
-                    Change::Passes(feature) => self.mode = Mode::On(Track::of(&self.setup.chamber, feature)),
+                    Change::Leaves => self.mode = MotionMode::Free,
+                    Change::Passes(feature) => {
+                        self.mode = MotionMode::On(Track::of(&self.setup.chamber, feature))
+                    }
                     Change::Touches(wall) => self.touch(wall),
                     Change::Rests => return Some(self.at_rest()),
                 }
                 None
             }
-            Mode::Wedged(normals, features) => self.wait(normals, features),
+            MotionMode::Wedged(normals, features) => self.wait(normals, features),
         }
     }
 
@@ -225,12 +233,12 @@ impl Running<'_> {
         }
         held.sort_by(|a, b| b.1.total_cmp(&a.1));
         self.mode = match held[..] {
-            [] => Mode::Free,
+            [] => MotionMode::Free,
             [(a, _), (b, _), ..] if state.velocity.norm_squared() < 2.0 * pull.norm() * bounce => {
                 let normals = [a, b].map(|track| track.normal(track.along(state.place)));
                 if self.presses(state.time, normals).into_iter().all(|force| force > 0.0) {
                     (self.state.velocity, self.state.spin) = (Vector::zeros(), 0.0);
-                    Mode::Wedged(normals, [a.feature, b.feature])
+                    MotionMode::Wedged(normals, [a.feature, b.feature])
                 } else {
                     self.lay_on(&a)
                 }
@@ -240,12 +248,12 @@ impl Running<'_> {
     }
 
     /// Takes away what moves the sphere off the `track`.
-    fn lay_on(&mut self, track: &Track) -> Mode {
+    fn lay_on(&mut self, track: &Track) -> MotionMode {
         let q = track.along(self.state.place);
         let tangent = track.tangent(q);
         self.state.place = track.place(q);
         self.state.velocity = self.state.velocity.dot(&tangent) * tangent;
-        Mode::On(*track)
+        MotionMode::On(*track)
     }
 
     /// Forces, per unit of mass, with which a sphere at rest presses on surfaces of these `normals`.
@@ -256,7 +264,7 @@ impl Running<'_> {
     }
 
     /// Rests between two surfaces until the valve's motion takes it off one of them.
-    fn wait(&mut self, normals: [Vector; 2], features: [Feature; 2]) -> Option<Ending> {
+    fn wait(&mut self, normals: [Vector; 2], features: [ChamberFeature; 2]) -> Option<Ending> {
         if self.setup.is_still(self.state.time) {
             return Some(self.at_rest());
         }
@@ -272,9 +280,9 @@ impl Running<'_> {
         let presses = self.presses(self.state.time, normals);
         let stays = usize::from(presses[1] > presses[0]);
         self.mode = if presses[stays] > 0.0 {
-            Mode::On(Track::of(&self.setup.chamber, features[stays]))
+            MotionMode::On(Track::of(&self.setup.chamber, features[stays]))
         } else {
-            Mode::Free
+            MotionMode::Free
         };
         None
     }
@@ -285,7 +293,7 @@ impl Running<'_> {
         match (self.setup.chamber.seats().map(near), self.mode) {
             ([true, _], _) => Ending::Seat(Seat::Same),
             ([_, true], _) => Ending::Seat(Seat::Other),
-            (_, Mode::Wedged(..)) => Ending::Hollow(place.x),
+            (_, MotionMode::Wedged(..)) => Ending::Hollow(place.x),
             _ => Ending::Held(place.x),
         }
     }
@@ -293,11 +301,18 @@ impl Running<'_> {
 
 impl Setup {
     /// How a sphere at rest in its seat is held there: the mode to start from.
-    pub(super) fn seated(&self, landscape: &Landscape) -> (State, Mode) {
+    pub(super) fn seated(&self, landscape: &Landscape) -> (State, MotionMode) {
         let place = self.chamber.seats()[0];
         let state = State { time: 0.0, place, velocity: Vector::zeros(), spin: 0.0 };
-        let mut running =
-            Running { setup: self, landscape, state, mode: Mode::Free, events: 0, touches: 0, first: None };
+        let mut running = FlightRun {
+            setup: self,
+            landscape,
+            state,
+            mode: MotionMode::Free,
+            events: 0,
+            touches: 0,
+            first: None,
+        };
         running.settle();
         (running.state, running.mode)
     }

@@ -1,12 +1,12 @@
 //! The line or arc on which the centre of a sphere moves that stays on a wall or an edge.
 
 use super::Vector;
-use super::chamber::{Chamber, Feature};
+use super::chamber::{Chamber, ChamberFeature};
 
 /// Path of the centre along a wall (straight) or around an edge (an arc of the sphere's radius).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Track {
-    pub(super) feature: Feature,
+    pub(super) feature: ChamberFeature,
     /// The wall's start, or the edge.
     origin: Vector,
     /// Normal where the path begins.
@@ -17,17 +17,17 @@ pub(super) struct Track {
 }
 
 impl Track {
-    pub(super) fn of(chamber: &Chamber, feature: Feature) -> Self {
+    pub(super) fn of(chamber: &Chamber, feature: ChamberFeature) -> Self {
         let radius = chamber.radius();
         match feature {
-            Feature::Wall(wall) => Track {
+            ChamberFeature::Wall(wall) => Track {
                 feature,
                 origin: chamber.corner(wall),
                 normal: chamber.normal(wall),
                 radius,
                 length: chamber.length(wall),
             },
-            Feature::Edge(corner) => Track {
+            ChamberFeature::Edge(corner) => Track {
                 feature,
                 origin: chamber.corner(corner),
                 normal: chamber.normal(chamber.before(corner)),
@@ -39,7 +39,7 @@ impl Track {
 
     /// Curvature in 1/m: how much the path bends away from the free space.
     pub(super) fn curvature(&self) -> f64 {
-        if matches!(self.feature, Feature::Edge(_)) { 1.0 / self.radius } else { 0.0 }
+        if matches!(self.feature, ChamberFeature::Edge(_)) { 1.0 / self.radius } else { 0.0 }
     }
 
     /// Normal into the chamber at `q` m from the path's begin.
@@ -70,12 +70,12 @@ impl Track {
     }
 
     /// What the path goes on with beyond its end (or, `backwards`, before its begin).
-    pub(super) fn next(&self, chamber: &Chamber, backwards: bool) -> Feature {
+    pub(super) fn next(&self, chamber: &Chamber, backwards: bool) -> ChamberFeature {
         match (self.feature, backwards) {
-            (Feature::Wall(wall), true) => Feature::Edge(wall),
-            (Feature::Wall(wall), false) => Feature::Edge((wall + 1) % chamber.walls()),
-            (Feature::Edge(corner), true) => Feature::Wall(chamber.before(corner)),
-            (Feature::Edge(corner), false) => Feature::Wall(corner),
+            (ChamberFeature::Wall(wall), true) => ChamberFeature::Edge(wall),
+            (ChamberFeature::Wall(wall), false) => ChamberFeature::Edge((wall + 1) % chamber.walls()),
+            (ChamberFeature::Edge(corner), true) => ChamberFeature::Wall(chamber.before(corner)),
+            (ChamberFeature::Edge(corner), false) => ChamberFeature::Wall(corner),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! How hard the valve can be shaken: the least accelerations that take the sphere off its seat and over the saddle (section 5.1.3).
 
 use super::landscape::Landscape;
-use super::run::{Asked, Ending, Mode, moved};
+use super::run::{Ending, MotionMode, MotionRequest, moved};
 use super::{Excitation, Setup, Vector, Wave};
 
 /// Relative steps of the amplitude in which a shift is looked for, and halvings of the step in which it is found.
@@ -45,7 +45,7 @@ fn shaken_over(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Vec
     setup.field.shaken = Some(Excitation { direction, amplitude, wave: wave.clone() });
     setup.end_time += wave.end();
     let (state, mode) = setup.seated(landscape);
-    let asked = Asked { path: false, beyond: Some(landscape.saddle.x) };
+    let asked = MotionRequest { path: false, beyond: Some(landscape.saddle.x) };
     moved(&setup, landscape, state, mode, asked).ending == Ending::Passed
 }
 
@@ -67,7 +67,7 @@ fn least(low: f64, happens: impl Fn(f64) -> bool) -> Option<f64> {
 
 /// Least amplitude at which a surface of the seat has no more to carry: the statics of a sphere between two surfaces.
 fn static_limit(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Vector) -> Option<f64> {
-    let (state, Mode::Wedged(normals, _)) = setup.seated(landscape) else { return Some(0.0) };
+    let (state, MotionMode::Wedged(normals, _)) = setup.seated(landscape) else { return Some(0.0) };
     let pull = setup.field.acceleration(setup.mass, f64::INFINITY, state.place);
     let [a, b] = normals;
     let presses = |pull: Vector| [-pull.perp(&b) / a.perp(&b), pull.perp(&a) / a.perp(&b)];

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// A model that was considered.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Candidate {
+pub struct CandidateModel {
     /// A, B or C.
     pub model: String,
     /// Elastic modes; of model C bending modes alone.
@@ -33,7 +33,7 @@ pub struct Choice {
     /// Whether the estimate meets the tolerance.
     pub met: bool,
     /// The models considered, in the order of their cost.
-    pub tried: Vec<Candidate>,
+    pub tried: Vec<CandidateModel>,
     /// Why, in a sentence.
     pub reason: String,
 }

@@ -13,7 +13,7 @@ mod statement;
 mod summary;
 pub(crate) mod table;
 
-pub use choice::{Candidate, Choice};
+pub use choice::{CandidateModel, Choice};
 pub use contact_pressure::{ContactPatch, ContactPressure};
 pub use drive::Drive;
 pub use flight::{FlightSummary, VibrationSummary};

@@ -4,8 +4,8 @@ mod plate_impact;
 mod seal_seat;
 
 use super::Context;
-use super::asked_model::Asked;
 use super::asked_model::AskedModel;
+use super::asked_model::ModelRequest;
 use crate::error::Result;
 use crate::kinds::{self, KINDS, SharedBodies};
 use crate::reference::Stored;
@@ -17,7 +17,7 @@ use crate::scene::{Model, Scene};
 pub(super) type Compared = (Vec<Outcome>, Vec<Cost>);
 
 /// The reduced models of a kind of scene.
-pub(super) trait Models: Sync {
+pub(super) trait ReducedModels: Sync {
     /// Runs the model that is `asked` for, one of a series of impacts that share `bodies`; without `curves` its history has no more
     /// samples than its limits need.
     ///
@@ -27,12 +27,12 @@ pub(super) trait Models: Sync {
         &self,
         context: &Context,
         scene: &Scene,
-        asked: &Asked,
+        asked: &ModelRequest,
         bodies: &SharedBodies,
         curves: bool,
     ) -> Result<Outcome>;
 
-    /// Whether [`Models::beside`] solves on the very mesh of the reference.
+    /// Whether [`ReducedModels::beside`] solves on the very mesh of the reference.
     fn shares_mesh(&self) -> bool {
         false
     }
@@ -62,10 +62,10 @@ pub(super) trait Models: Sync {
 }
 
 /// The models of each of [`KINDS`].
-const MODELS: [&dyn Models; KINDS.len()] = [&plate_impact::Plates, &seal_seat::Seats];
+const MODELS: [&dyn ReducedModels; KINDS.len()] = [&plate_impact::Plates, &seal_seat::Seats];
 
 /// The models of `scene`.
-pub(super) fn of(scene: &Scene) -> &'static dyn Models {
+pub(super) fn of(scene: &Scene) -> &'static dyn ReducedModels {
     MODELS[kinds::index(scene)]
 }
 

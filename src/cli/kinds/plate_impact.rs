@@ -1,7 +1,7 @@
 //! The reduced models of plate impacts.
 
-use super::{Compared, Models};
-use crate::cli::asked_model::Asked;
+use super::{Compared, ReducedModels};
+use crate::cli::asked_model::ModelRequest;
 use crate::cli::asked_model::{self, AskedModel};
 use crate::cli::{Context, progress};
 use crate::curves::CommonAxis;
@@ -22,12 +22,12 @@ const COMPARISON_TOLERANCE: f64 = 1e-7;
 /// Models A, B and C.
 pub(super) struct Plates;
 
-impl Models for Plates {
+impl ReducedModels for Plates {
     fn reduced(
         &self,
         _: &Context,
         scene: &Scene,
-        asked: &Asked,
+        asked: &ModelRequest,
         bodies: &SharedBodies,
         curves: bool,
     ) -> Result<Outcome> {

@@ -1,9 +1,9 @@
 //! The reduced model of seal seats; beside a stored reference it runs on the reference's very mesh.
 
-use super::{Compared, Models};
+use super::{Compared, ReducedModels};
 use crate::body::cache::Cache;
 use crate::cli::Context;
-use crate::cli::asked_model::Asked;
+use crate::cli::asked_model::ModelRequest;
 use crate::cli::asked_model::{self, AskedModel};
 use crate::cli::progress::Bar;
 use crate::error::{Error, Result};
@@ -17,12 +17,12 @@ use crate::scene::{Model, Scene};
 /// Model C.
 pub(super) struct Seats;
 
-impl Models for Seats {
+impl ReducedModels for Seats {
     fn reduced(
         &self,
         context: &Context,
         scene: &Scene,
-        asked: &Asked,
+        asked: &ModelRequest,
         _: &SharedBodies,
         _: bool,
     ) -> Result<Outcome> {

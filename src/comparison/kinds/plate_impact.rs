@@ -113,7 +113,7 @@ const BEST: usize = CAUSES.len();
 
 /// Number of modes of the models, and those that stand for all.
 #[derive(Debug, Clone, Copy)]
-struct Modes {
+struct ModeCounts {
     b: usize,
     c: usize,
     many_kirchhoff: usize,
@@ -127,7 +127,7 @@ struct Modes {
 pub fn budget(scene: &Scene, reference: &Summary, b: &Summary, c: &Summary) -> Result<Vec<QuantityBudget>> {
     let [start, end] = [values(|name| b.value(name))?, values(|name| reference.value(name))?];
     let own = |summary: &Summary| summary.modes.unwrap_or(1);
-    let modes = Modes {
+    let modes = ModeCounts {
         b: own(b),
         c: own(c),
         many_kirchhoff: MANY_KIRCHHOFF_MODES.max(2 * own(b)),
@@ -206,7 +206,7 @@ fn values(value: impl Fn(&str) -> Option<f64>) -> Result<[f64; BUDGET_QUANTITIES
 /// The budget of quantity number `q`, from the links as they are and as other choices would shift them.
 fn quantity_budget(
     q: usize,
-    modes: Modes,
+    modes: ModeCounts,
     chain: &Chain,
     shifted: &[Chain],
     (reference, reference_value): (&Summary, f64),
@@ -238,8 +238,8 @@ fn quantity_budget(
 }
 
 /// What each cause switches, in words.
-fn switches(modes: Modes) -> [String; CAUSES.len()] {
-    let Modes { b, c, many_kirchhoff, many_continuum } = modes;
+fn switches(modes: ModeCounts) -> [String; CAUSES.len()] {
+    let ModeCounts { b, c, many_kirchhoff, many_continuum } = modes;
     [
         format!("model B as it stands → relative error {TIGHT:e}"),
         format!("{b} → {many_kirchhoff} Kirchhoff modes"),

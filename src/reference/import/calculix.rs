@@ -29,8 +29,8 @@ impl Rows {
     ///
     /// # Errors
     /// One sentence if it has no rows, or not as many as before.
-    fn close(&mut self, block: Option<Block>) -> Result<(), String> {
-        let Some(Block { name, components, set, time, sums, rows }) = block else { return Ok(()) };
+    fn close(&mut self, block: Option<PrintedBlock>) -> Result<(), String> {
+        let Some(PrintedBlock { name, components, set, time, sums, rows }) = block else { return Ok(()) };
         let before = *self.counts.entry(format!("{name} {set}")).or_insert(rows);
         if rows == 0 || rows != before {
             return Err(format!(
@@ -62,7 +62,7 @@ impl Rows {
 }
 
 /// A block of printed rows that belong to one set.
-struct Block<'t> {
+struct PrintedBlock<'t> {
     name: &'t str,
     components: Vec<&'t str>,
     set: String,
@@ -72,11 +72,11 @@ struct Block<'t> {
     rows: usize,
 }
 
-impl<'t> Block<'t> {
+impl<'t> PrintedBlock<'t> {
     fn new(name: &'t str, components: &'t str, set: String, time: f64) -> Self {
         let components: Vec<&str> = components.split(',').map(str::trim).collect();
         let sums = vec![0.0; components.len()];
-        Block { name, components, set, time, sums, rows: 0 }
+        PrintedBlock { name, components, set, time, sums, rows: 0 }
     }
 
     /// The block that `line` is the heading of. A contact pair's heading is in two lines: `pair` keeps set and time of the first.
@@ -91,10 +91,10 @@ impl<'t> Block<'t> {
         let (name, components, rest) = heading(line)?;
         if rest.starts_with("and moment") {
             let (set, time) = pair.clone()?;
-            return Some(Block::new(name, components, set, time));
+            return Some(PrintedBlock::new(name, components, set, time));
         }
         let (set, time) = rest.strip_prefix("for set ")?.split_once(" and time")?;
-        Some(Block::new(name, components, set.trim().to_owned(), table::number(time.trim())?))
+        Some(PrintedBlock::new(name, components, set.trim().to_owned(), table::number(time.trim())?))
     }
 
     /// Adds a row: the numbers of nodes or elements, and one value of each component. A row of a contact pair goes on with its moments.
@@ -128,11 +128,11 @@ fn heading(line: &str) -> Option<(&str, &str, &str)> {
 /// One sentence with the line.
 pub(super) fn dat(text: &str) -> Result<String, String> {
     let mut rows = Rows::default();
-    let (mut open, mut pair): (Option<Block>, _) = (None, None);
+    let (mut open, mut pair): (Option<PrintedBlock>, _) = (None, None);
     for (number, line) in text.lines().enumerate().map(|(k, line)| (k + 1, line.trim())) {
         if line.starts_with(char::is_alphabetic) {
             rows.close(open.take())?;
-            open = Block::of(line, &mut pair);
+            open = PrintedBlock::of(line, &mut pair);
         } else if let Some(block) = open.as_mut().filter(|_| !line.is_empty()) {
             block.add(line).ok_or_else(|| format!("line {number}: `{line}` is no row of {}", block.name))?;
         }

@@ -9,12 +9,12 @@ use serde::Deserialize;
 use std::path::Path;
 
 #[derive(Deserialize)]
-struct Document {
-    modes: Vec<Mode>,
+struct ModesDocument {
+    modes: Vec<SlepcMode>,
 }
 
 #[derive(Deserialize)]
-struct Mode {
+struct SlepcMode {
     /// Hz.
     frequency: f64,
     longitudinal: bool,
@@ -44,11 +44,11 @@ pub fn plate_modes(python: &Path, scene: &Scene, count: usize) -> Result<Vec<Pla
         let log = String::from_utf8_lossy(&output.stderr);
         return Err(failed(log.lines().last().unwrap_or("the solver failed and says nothing").to_owned()));
     }
-    let document: Document = serde_json::from_slice(&output.stdout)
+    let document: ModesDocument = serde_json::from_slice(&output.stdout)
         .map_err(|e| failed(format!("the answer can't be read: {e}")))?;
     if document.modes.len() != count {
         return Err(failed(format!("{} modes came back, {count} were asked for", document.modes.len())));
     }
-    let mode = |m: Mode| PlateMode { frequency: m.frequency, longitudinal: m.longitudinal };
+    let mode = |m: SlepcMode| PlateMode { frequency: m.frequency, longitudinal: m.longitudinal };
     Ok(document.modes.into_iter().map(mode).collect())
 }

@@ -3,12 +3,12 @@
 mod plate_impact;
 mod seal_seat;
 
-pub use plate_impact::{Film, film};
+pub use plate_impact::{Animation, film};
 pub use seal_seat::{Arrow, seat_picture};
 
 use super::figure_geometry::PanelOf;
 use super::section::Section;
-use super::summary_column::Column;
+use super::summary_column::SummaryColumn;
 use super::{Attachments, SceneReport};
 use crate::kinds::{self, KINDS};
 use crate::reference::Stored;
@@ -28,7 +28,7 @@ pub(super) struct Drawing {
 /// What a kind of scene shows.
 pub(super) trait Presentation: Sync {
     /// The quantities that tell a result in short.
-    fn columns(&self) -> &'static [Column];
+    fn columns(&self) -> &'static [SummaryColumn];
 
     /// The curves, panel by panel.
     fn panels(&self) -> &'static [PanelOf];

@@ -2,4 +2,4 @@
 
 mod plate_impact;
 
-pub use plate_impact::{Case, DRY, Impact, MOVING, UnitPlates, WET};
+pub use plate_impact::{DRY, MOVING, StressCase, StressImpact, UnitPlateModes, WET};

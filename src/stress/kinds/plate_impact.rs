@@ -33,9 +33,9 @@ const DURATIONS: f64 = 6.0;
 
 /// Modes of plates of unit radius, solved when they are first asked for.
 #[derive(Default)]
-pub struct UnitPlates(Mutex<HashMap<(Edge, usize, usize), Arc<UnitPlate>>>);
+pub struct UnitPlateModes(Mutex<HashMap<(Edge, usize, usize), Arc<UnitPlate>>>);
 
-impl UnitPlates {
+impl UnitPlateModes {
     fn get(&self, edge: Edge, poisson: usize, tier: usize) -> Result<Arc<UnitPlate>> {
         // a clamped plate's modes do not depend on Poisson's ratio beyond its rigidity, but the type checks it
         let key = (edge, poisson, tier);
@@ -50,7 +50,7 @@ impl UnitPlates {
 }
 
 /// An impact to be solved.
-pub struct Impact {
+pub struct StressImpact {
     /// In words.
     pub description: String,
     /// The bodies; in a fluid with its mass and damping.
@@ -62,18 +62,18 @@ pub struct Impact {
 }
 
 /// What one seed gives.
-pub struct Case {
+pub struct StressCase {
     /// Seed it was drawn from.
     pub seed: u64,
     /// The inner body at rest, the outer one a sphere, the end given, no fluid.
-    pub dry: Impact,
+    pub dry: StressImpact,
     /// The same in a fluid, for some of the cases.
-    pub wet: Option<Impact>,
+    pub wet: Option<StressImpact>,
     /// The same with a compact outer body or an inner one that moves, some without a given end; for some of the cases.
-    pub moving: Option<Impact>,
+    pub moving: Option<StressImpact>,
 }
 
-impl Impact {
+impl StressImpact {
     /// The impact `dry` of `setup` on a plate reduced to `body` in a random fluid; each of its effects may be absent. `unit` is the
     /// plate of unit radius.
     fn wet(
@@ -146,9 +146,9 @@ impl Impact {
     }
 }
 
-impl Case {
+impl StressCase {
     /// The impacts, each with its kind.
-    pub fn impacts(&self) -> impl Iterator<Item = (&'static str, &Impact)> {
+    pub fn impacts(&self) -> impl Iterator<Item = (&'static str, &StressImpact)> {
         let others = [(WET, &self.wet), (MOVING, &self.moving)];
         let others = others.into_iter().filter_map(|(kind, impact)| Some((kind, impact.as_ref()?)));
         std::iter::once((DRY, &self.dry)).chain(others)
@@ -158,7 +158,7 @@ impl Case {
     ///
     /// # Errors
     /// If the plate's eigenproblem can't be solved.
-    pub fn draw(seed: u64, plates: &UnitPlates) -> Result<Self> {
+    pub fn draw(seed: u64, plates: &UnitPlateModes) -> Result<Self> {
         let mut random = Random(fastrand::Rng::with_seed(seed));
         let mut material = |name: &str, poisson_ratio: f64| {
             Material::elastic(name, random.log(1e6, 1e12), poisson_ratio, random.log(500.0, 2e4))
@@ -235,14 +235,14 @@ impl Case {
             setup.inner.gap,
             system.residual.is_some(),
         );
-        let dry = Impact { description, system, forces: None, end_time: Some(end_time) };
+        let dry = StressImpact { description, system, forces: None, end_time: Some(end_time) };
         // streams of their own: what is drawn above stays the same
         let mut random = Random(fastrand::Rng::with_seed(seed.rotate_left(32) ^ MOVING_SEED));
-        let moving =
-            (random.0.u8(0..4) == 0).then(|| Impact::moving(&mut random, setup.clone(), &body, tips, &dry));
+        let moving = (random.0.u8(0..4) == 0)
+            .then(|| StressImpact::moving(&mut random, setup.clone(), &body, tips, &dry));
         let mut random = Random(fastrand::Rng::with_seed(!seed));
         let wet = (modes <= WET_MODES && random.0.u8(0..4) < WET_SHARE)
-            .then(|| Impact::wet(&mut random, setup, body, tips, &unit, &dry))
+            .then(|| StressImpact::wet(&mut random, setup, body, tips, &unit, &dry))
             .transpose()?
             .filter(|wet| wet.system.highest_frequency() * end_time <= WET_TURNS);
         Ok(Self { seed, dry, wet, moving })

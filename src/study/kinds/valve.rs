@@ -114,7 +114,7 @@ const fn panel(column: &'static str, label: &'static str) -> Panel {
 }
 
 /// An impact and the flight that follows.
-struct Shift {
+struct ValveShift {
     flight: FlightSummary,
     /// Kinetic energy of the actuator at the touch in J.
     actuator_energy: f64,
@@ -169,7 +169,7 @@ impl Valve {
     }
 
     /// A shift with other numbers than the scene's.
-    fn shift(&self, numbers: &[(&Field, f64)]) -> Result<Shift> {
+    fn shift(&self, numbers: &[(&Field, f64)]) -> Result<ValveShift> {
         let mut scene =
             self.template.with(numbers).map_err(|rejected| Error::Internal(rejected.to_string()))?;
         let spring = scene.flight.as_mut().and_then(|flight| flight.spring.as_mut());
@@ -188,11 +188,11 @@ impl Valve {
         };
         let flight = summary.flight.ok_or_else(|| Error::Internal("a shift has no flight".into()))?;
         let sphere_energy = 0.5 * sphere_mass * flight.launch.speed.powi(2);
-        Ok(Shift { flight, actuator_energy, sphere_energy })
+        Ok(ValveShift { flight, actuator_energy, sphere_energy })
     }
 
     /// A shift by `voltage` V.
-    fn at(&self, voltage: f64) -> Result<Shift> {
+    fn at(&self, voltage: f64) -> Result<ValveShift> {
         self.shift(&[(&self.speed, self.nominal * voltage / NOMINAL)])
     }
 
@@ -265,7 +265,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
         let [low, high] = VOLTAGES;
         let step = (high - low) / (COUNT - 1) as f64;
         let voltages: Vec<f64> = (0..COUNT).map(|k| low + step * k as f64).collect();
-        let shifts: Vec<Shift> =
+        let shifts: Vec<ValveShift> =
             voltages.par_iter().map(|voltage| valve.at(*voltage)).collect::<Result<_>>()?;
         let struck = |voltage: f64| valve.nominal * voltage / NOMINAL;
         for (voltage, shift) in voltages.iter().zip(&shifts) {
@@ -316,7 +316,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
 /// What section 5 says of a demonstrator, and what it leaves open.
 fn claims_of(
     demonstrator: &Demonstrator,
-    shifts: &[Shift],
+    shifts: &[ValveShift],
     (least, energies): (Option<f64>, Vec<(&'static str, f64)>),
     workshop: &Workshop,
 ) -> Vec<Claim> {

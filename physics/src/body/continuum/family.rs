@@ -7,7 +7,7 @@
 
 use super::patch::half_space_flexibility;
 use super::plate::ContinuumPlate;
-use super::unit::{UnitPlate, UnitSphere, patches, widest_patch};
+use super::unit::{MeshedPlate, UnitSphere, patches, widest_patch};
 use crate::contact::WHOLE;
 use crate::error::Result;
 use crate::numerics::chebyshev::{Chebyshev, blend};
@@ -34,7 +34,7 @@ pub(super) struct PlateFamily {
     thicknesses: Chebyshev,
     poisson_ratios: Chebyshev,
     /// Shape (thicknesses, Poisson's ratios).
-    plates: Vec<UnitPlate>,
+    plates: Vec<MeshedPlate>,
     /// Widest patch over the thickness.
     widest: f64,
 }
@@ -56,7 +56,7 @@ impl PlateFamily {
         let at = |[from, to]: [f64; 2], s: f64| 0.5 * ((1.0 - s) * from + (1.0 + s) * to);
         let exact = |[s, r]: [f64; 2]| {
             let (t, nu) = (at(thickness.map(f64::ln), s).exp(), at(poisson_ratio, r));
-            UnitPlate::new(edge, nu, t, modes, widest)
+            MeshedPlate::new(edge, nu, t, modes, widest)
         };
         let [between, end] = TRIED;
         let thickest = exact(end)?;
@@ -67,7 +67,7 @@ impl PlateFamily {
         for counts in NODES {
             let family = Self::through(edge, (thickness, poisson_ratio), counts, modes)?;
             let miss =
-                |exact: &UnitPlate| family.at(exact.thickness, exact.poisson_ratio).largest_miss(exact);
+                |exact: &MeshedPlate| family.at(exact.thickness, exact.poisson_ratio).largest_miss(exact);
             let worst = tried.iter().map(|exact| miss(exact).unwrap_or(f64::INFINITY)).fold(0.0, f64::max);
             if worst <= ENOUGH {
                 return Ok(Some(family));
@@ -94,7 +94,7 @@ impl PlateFamily {
         };
         for x in &family.thicknesses.nodes {
             for nu in &family.poisson_ratios.nodes {
-                let mut plate = UnitPlate::new(edge, *nu, x.exp(), modes, family.widest)?;
+                let mut plate = MeshedPlate::new(edge, *nu, x.exp(), modes, family.widest)?;
                 if let Some(before) = family.plates.last() {
                     align(&mut plate, before);
                 }
@@ -105,7 +105,7 @@ impl PlateFamily {
     }
 
     /// The plate of `thickness` radii.
-    pub(super) fn at(&self, thickness: f64, poisson_ratio: f64) -> UnitPlate {
+    pub(super) fn at(&self, thickness: f64, poisson_ratio: f64) -> MeshedPlate {
         let first = &self.plates[0];
         let (by_thickness, by_ratio) =
             (self.thicknesses.weights(thickness.ln()), self.poisson_ratios.weights(poisson_ratio));
@@ -117,7 +117,7 @@ impl PlateFamily {
         // shapes, and what yields beyond the lowest modes goes with a power of the thickness between bending's 3 and a half-space's 1.
         let scaled = |power: i32, stiffening: f64| -> Vec<f64> {
             let stiffness = |nu: f64| (1.0 - nu * nu).powf(stiffening);
-            let of = |plate: &UnitPlate| {
+            let of = |plate: &MeshedPlate| {
                 (thickness / plate.thickness).powi(power) * stiffness(plate.poisson_ratio)
                     / stiffness(poisson_ratio)
             };
@@ -137,7 +137,7 @@ impl PlateFamily {
             (0..first.patches.nodes.len()).map(row).collect()
         };
         let shape = |i: usize| blend(&of_shapes, self.plates.iter().map(|plate| &plate.shapes[i]));
-        UnitPlate {
+        MeshedPlate {
             edge: first.edge,
             poisson_ratio,
             thickness,
@@ -153,7 +153,7 @@ impl PlateFamily {
 }
 
 /// Gives the shapes of `plate` the signs they have in `neighbour`.
-fn align(plate: &mut UnitPlate, neighbour: &UnitPlate) {
+fn align(plate: &mut MeshedPlate, neighbour: &MeshedPlate) {
     for k in 0..plate.omega.len() {
         let along: f64 = plate.shapes.iter().zip(&neighbour.shapes).map(|(a, b)| a[k] * b[k]).sum();
         if along < 0.0 {
@@ -162,7 +162,7 @@ fn align(plate: &mut UnitPlate, neighbour: &UnitPlate) {
     }
 }
 
-impl UnitPlate {
+impl MeshedPlate {
     /// Whether its modes go beyond the lowest frequency at which its thickness shears, pi c/t with the speed c of shear waves
     /// (Mindlin, J. Appl. Mech. 18, 1951, 31): families up to 0.95 of it were found good enough, and none from 1.05 on.
     fn reaches_shear(&self) -> bool {
@@ -244,7 +244,7 @@ mod tests {
         let (thickness, ratio, modes) = ([0.045, 0.079], [0.25, 0.35], 8);
         let family = PlateFamily::new(Edge::Clamped, thickness, ratio, modes).unwrap().expect("good enough");
         for (t, nu) in [(0.045, 0.35), (0.052, 0.27), (0.067, 0.31)] {
-            let exact = UnitPlate::new(Edge::Clamped, nu, t, modes, family.widest).unwrap();
+            let exact = MeshedPlate::new(Edge::Clamped, nu, t, modes, family.widest).unwrap();
             let miss = family.at(t, nu).largest_miss(&exact).unwrap();
             assert!(miss < 2.0 * ENOUGH, "{t} {nu}: {miss:e}");
         }
@@ -261,7 +261,7 @@ mod tests {
             (Edge::Clamped, [0.05, 0.08], 24),
         ] {
             let widest = widest_patch(range[1]);
-            let exact = |t: f64| UnitPlate::new(edge, ratio[0], t, modes, widest).unwrap();
+            let exact = |t: f64| MeshedPlate::new(edge, ratio[0], t, modes, widest).unwrap();
             assert!(exact(range[1]).reaches_shear(), "{edge:?} {range:?} {modes}");
             assert!(PlateFamily::new(edge, range, ratio, modes).unwrap().is_none());
             let family = PlateFamily::through(edge, (range, ratio), NODES[1], modes).unwrap();

@@ -60,7 +60,7 @@ pub(in crate::body) fn lowest_modes(
         )));
     }
     let mut random = SplitMix(0x9e37_79b9_7f4a_7c15);
-    let mut basis = Columns::new(body.size()); // M-orthonormal
+    let mut basis = ColumnVectors::new(body.size()); // M-orthonormal
     let (mut alpha, mut beta): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let mut next = random.vector(body.size());
     body.remove_rigid(&mut next);
@@ -121,12 +121,12 @@ pub(in crate::body) fn lowest_modes(
 }
 
 /// Vectors of equal length, side by side in memory.
-struct Columns {
+struct ColumnVectors {
     length: usize,
     values: Vec<f64>,
 }
 
-impl Columns {
+impl ColumnVectors {
     fn new(length: usize) -> Self {
         Self { length, values: Vec::new() }
     }
@@ -147,7 +147,7 @@ impl Columns {
 /// Makes `w` M-orthogonal to the basis, and `w_mass` = M w with it.
 ///
 /// Once more if much of `w` was lost: twice is enough (Parlett, The Symmetric Eigenvalue Problem, 6.9).
-fn orthogonalise(body: &impl ShiftInvert, w: &mut [f64], w_mass: &mut Vec<f64>, basis: &Columns) {
+fn orthogonalise(body: &impl ShiftInvert, w: &mut [f64], w_mass: &mut Vec<f64>, basis: &ColumnVectors) {
     let n = w.len();
     for _ in 0..2 {
         let before = dot(w, w_mass);
@@ -177,7 +177,7 @@ fn tridiagonal_eigen(alpha: &[f64], beta: &[f64]) -> Result<(Vec<f64>, Mat<f64>)
     Ok((theta, vectors))
 }
 
-fn ritz(basis: &Columns, theta: &[f64], vectors: &Mat<f64>) -> Modes {
+fn ritz(basis: &ColumnVectors, theta: &[f64], vectors: &Mat<f64>) -> Modes {
     let steps = basis.len();
     let chosen = Mat::from_fn(steps, theta.len(), |i, k| vectors[(i, steps - 1 - k)]);
     let shapes = basis.matrix() * chosen;

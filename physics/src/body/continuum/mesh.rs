@@ -23,7 +23,7 @@ pub(super) struct Mesh {
 }
 
 /// Logically rectangular part of a mesh.
-struct Block<'a> {
+struct MeshBlock<'a> {
     /// Breakpoints of the elements in the first direction, in [0, 1].
     s: &'a [f64],
     /// Breakpoints of the elements in the second direction, in [0, 1].
@@ -50,7 +50,7 @@ impl Mesh {
     }
 
     /// Adds a block whose nodes are new, except those in `shared` (by position (i, j) in the block).
-    fn add(&mut self, block: &Block, shared: &HashMap<(usize, usize), usize>) -> NodeGrid {
+    fn add(&mut self, block: &MeshBlock, shared: &HashMap<(usize, usize), usize>) -> NodeGrid {
         let p = self.order;
         let basis = Basis::new(p);
         let fine = |breakpoints: &[f64]| -> Vec<f64> {
@@ -98,7 +98,7 @@ pub(super) fn plate(order: usize, radial: &[f64], depth: &[f64]) -> Mesh {
     let t: Vec<f64> = depth.iter().rev().map(|d| 1.0 - d / half_thickness).collect();
     let mut mesh = Mesh::empty(order, radius);
     let map = |s: f64, t: f64| [s * radius, t * half_thickness];
-    let grid = mesh.add(&Block { s: &s, t: &t, map: &map }, &HashMap::new());
+    let grid = mesh.add(&MeshBlock { s: &s, t: &t, map: &map }, &HashMap::new());
     let top = grid.columns - 1;
     for element in 0..radial.len() - 1 {
         let edge = (0..=order).map(|k| grid.at(element * order + k, top)).collect();
@@ -150,12 +150,12 @@ pub(super) fn half_sphere(
     let mut mesh = Mesh::empty(order, radius);
     let (rows, columns) = ((depth.len() - 1) * order, (lateral.len() - 1) * order);
     let core_rows = (core.len() - 1) * order;
-    let pole = mesh.add(&Block { s: &depth, t: &lateral, map: &pole_map }, &HashMap::new());
+    let pole = mesh.add(&MeshBlock { s: &depth, t: &lateral, map: &pole_map }, &HashMap::new());
     let shared = (0..=columns).map(|j| ((0, j), pole.at(rows, j))).collect();
-    let centre = mesh.add(&Block { s: &core, t: &lateral, map: &core_map }, &shared);
+    let centre = mesh.add(&MeshBlock { s: &core, t: &lateral, map: &core_map }, &shared);
     let mut shared: HashMap<_, _> = (0..=rows).map(|i| ((i, 0), pole.at(i, columns))).collect();
     shared.extend((0..=core_rows).map(|k| ((rows, k), centre.at(k, columns))));
-    mesh.add(&Block { s: &depth, t: &core, map: &equator_map }, &shared);
+    mesh.add(&MeshBlock { s: &depth, t: &core, map: &equator_map }, &shared);
     for element in 0..lateral.len() - 1 {
         mesh.surface.push((0..=order).map(|k| pole.at(0, element * order + k)).collect());
     }

@@ -2,7 +2,7 @@
 
 use super::family::{NODES, PlateFamily, SphereFamily};
 use super::plate::ContinuumPlate;
-use super::unit::{UnitPlate, UnitSphere};
+use super::unit::{MeshedPlate, UnitSphere};
 use crate::body::kept::Kept;
 use crate::error::Result;
 use crate::scene::{Edge, Material, Plate};
@@ -59,7 +59,7 @@ fn part([from, to]: [f64; 2], largest: f64, x: f64) -> Option<[f64; 2]> {
 
 /// A family of plates that is made when the first of them is asked for.
 #[derive(Debug)]
-struct Plates {
+struct LazyPlateFamily {
     edge: Edge,
     thickness: [f64; 2],
     poisson_ratio: [f64; 2],
@@ -72,9 +72,9 @@ struct Plates {
 #[derive(Debug, Default)]
 pub struct UnitBodies {
     varied: Varied,
-    plates: Kept<UnitPlate>,
+    plates: Kept<MeshedPlate>,
     spheres: Kept<UnitSphere>,
-    families: Kept<Plates>,
+    families: Kept<LazyPlateFamily>,
     sphere_families: Kept<([f64; 2], SphereFamily)>,
 }
 
@@ -98,7 +98,7 @@ impl UnitBodies {
         if self.varied.thickness.is_some() || ratio.is_some() {
             return self.between(plate, patch_radius, modes, ratio);
         }
-        let unit = self.plates.find_or(|unit| unit.is_of(plate, modes), || UnitPlate::of(plate, modes))?;
+        let unit = self.plates.find_or(|unit| unit.is_of(plate, modes), || MeshedPlate::of(plate, modes))?;
         Ok(unit.scaled(plate, patch_radius))
     }
 
@@ -118,12 +118,12 @@ impl UnitBodies {
         let ratio = ratio.map_or(Some([nu; 2]), |range| part(range, POISSON_RANGE, nu));
         let (Some(thickness), Some(poisson_ratio)) = (thickness, ratio) else { return Ok(None) };
         let edge = plate.edge;
-        let fits = |plates: &Plates| {
+        let fits = |plates: &LazyPlateFamily| {
             (plates.edge, plates.thickness, plates.poisson_ratio, plates.modes)
                 == (edge, thickness, poisson_ratio, modes)
         };
         let plates = self.families.find_or(fits, || {
-            Ok(Plates { edge, thickness, poisson_ratio, modes, family: OnceLock::new() })
+            Ok(LazyPlateFamily { edge, thickness, poisson_ratio, modes, family: OnceLock::new() })
         })?;
         // by one thread, while the others wait: it takes seconds
         let family = plates

@@ -34,7 +34,7 @@ const GROWTH: [f64; 2] = [1.15, 1.4];
 
 /// Plates of one shape.
 #[derive(Debug)]
-pub(super) struct UnitPlate {
+pub(super) struct MeshedPlate {
     pub(super) edge: Edge,
     pub(super) poisson_ratio: f64,
     /// Over the radius.
@@ -53,7 +53,7 @@ pub(super) struct UnitPlate {
     pub(super) degrees_of_freedom: usize,
 }
 
-impl UnitPlate {
+impl MeshedPlate {
     /// Plates like `plate`.
     pub(super) fn of(plate: &Plate, modes: usize) -> Result<Self> {
         let thickness = plate.thickness / plate.radius;
@@ -199,7 +199,7 @@ fn weighted(spectrum: &[SpectrumEntry], [bending, longitudinal]: &Loads) -> Vec<
     bending.iter().zip(longitudinal).map(over).collect()
 }
 
-/// [`UnitPlate::own`] and [`UnitPlate::mutual`] of patches of the `radii` under their `loads`.
+/// [`MeshedPlate::own`] and [`MeshedPlate::mutual`] of patches of the `radii` under their `loads`.
 fn static_flexibility(
     unit: &Plate,
     radii: &[f64],

@@ -14,7 +14,7 @@ type Block = [f64; 9];
 
 /// Stiffness by pairs of coupled nodes, in compressed rows, and the nodes' masses.
 #[derive(Debug, Clone)]
-pub(super) struct Matrices {
+pub(super) struct SolidMatrices {
     /// Range of each node's row. Shape (nodes + 1).
     start: Vec<usize>,
     /// Coupled node, ascending in each row.
@@ -25,7 +25,7 @@ pub(super) struct Matrices {
     pub mass: Vec<f64>,
 }
 
-impl Matrices {
+impl SolidMatrices {
     /// Integrates all elements of `mesh`.
     pub fn new(mesh: &TetMesh, material: &Material) -> Self {
         let (start, column) = sparsity(mesh);
@@ -199,7 +199,7 @@ mod tests {
     }
 
     /// Force on the nodes under the displacements `u`. Shape (nodes, 3).
-    fn forces(matrices: &Matrices, u: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    fn forces(matrices: &SolidMatrices, u: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
         (0..matrices.mass.len())
             .map(|node| {
                 let force = |(other, block): (usize, &Block)| Matrix3::from_row_slice(block) * u[other];
@@ -217,7 +217,7 @@ mod tests {
     fn rigid_motions_need_no_force() {
         for order in [1, 2] {
             let mesh = sheared(order);
-            let matrices = Matrices::new(&mesh, &material());
+            let matrices = SolidMatrices::new(&mesh, &material());
             let scale = 2.6e9 * 3.0;
             for axis in 0..3 {
                 let mut omega = Vector3::zeros();
@@ -241,7 +241,7 @@ mod tests {
         let density = 0.5 * lambda * strain.trace().powi(2) + mu * strain.norm_squared();
         for order in [1, 2] {
             let mesh = sheared(order);
-            let matrices = Matrices::new(&mesh, &material());
+            let matrices = SolidMatrices::new(&mesh, &material());
             let u: Vec<_> = mesh.points.iter().map(|p| gradient * p).collect();
             let force = forces(&matrices, &u);
             let whole: f64 = mesh.cells().map(|cell| volume(&mesh.corners(cell))).sum();
@@ -261,7 +261,7 @@ mod tests {
     fn masses_are_positive_and_add_up() {
         for order in [1, 2] {
             let mesh = sheared(order);
-            let matrices = Matrices::new(&mesh, &material());
+            let matrices = SolidMatrices::new(&mesh, &material());
             let whole: f64 = mesh.cells().map(|cell| volume(&mesh.corners(cell))).sum();
             assert_relative_eq!(matrices.mass.iter().sum::<f64>(), 1320.0 * whole, max_relative = 1e-13);
             assert!(matrices.mass.iter().all(|m| *m > 0.0));

@@ -16,7 +16,7 @@ pub use surface::Surface;
 use super::continuum::lanczos::{ShiftInvert, lowest_modes};
 use crate::error::{Error, Result};
 use crate::scene::Material;
-use elasticity::{FIXED, Matrices};
+use elasticity::{FIXED, SolidMatrices};
 use factor::Factor;
 use serde::{Deserialize, Serialize};
 
@@ -55,7 +55,7 @@ impl Solid {
     /// # Errors
     /// [`Error::Solver`] if the supports leave a rigid motion or the material is too nearly incompressible.
     pub fn new(mesh: &TetMesh, material: &Material, held: &[[bool; 3]], interface: &[usize]) -> Result<Self> {
-        let matrices = Matrices::new(mesh, material);
+        let matrices = SolidMatrices::new(mesh, material);
         let mut size = 0;
         let dof: Vec<[usize; 3]> = held
             .iter()

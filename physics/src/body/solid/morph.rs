@@ -3,7 +3,7 @@
 //! The corners of the outer faces are pulled onto their surfaces, along which they slide freely; all others follow elastically.
 //! No element comes or goes: what is computed on the mesh changes smoothly with the shape.
 
-use super::elasticity::Matrices;
+use super::elasticity::SolidMatrices;
 use super::factor::Factor;
 use super::mesh::{EDGES, TetMesh, volume};
 use super::surface::Surface;
@@ -31,7 +31,7 @@ impl TetMesh {
         let (corners, body) = self.corners_alone();
         let surfaces: Vec<&[Surface]> = corners.iter().map(|node| &surfaces[*node][..]).collect();
         let mut displaced = body.points.clone();
-        let matrices = Matrices::new(&body, &Material::elastic("mesh", 1.0, POISSON_RATIO, 1.0));
+        let matrices = SolidMatrices::new(&body, &Material::elastic("mesh", 1.0, POISSON_RATIO, 1.0));
         let pull = PULL * matrices.stiffest();
         for _ in 0..ROUNDS {
             let (mut pulled, mut load) = (matrices.clone(), vec![0.0; 3 * displaced.len()]);

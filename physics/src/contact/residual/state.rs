@@ -2,7 +2,7 @@
 
 use super::Residual;
 use crate::contact::Hertz;
-use crate::contact::patch_flexibility::{Line, Surface};
+use crate::contact::patch_flexibility::{Bicubic, Cubic};
 
 /// State of two contacts with the patches p.
 #[derive(Debug, Clone, Copy, Default)]
@@ -54,7 +54,7 @@ impl Residual {
             let beyond = (coordinate[i] - self.largest[i]).max(0.0);
             let per_patch = laws[i].stiffness * p.sqrt();
             let scale = self.per_patch[i];
-            let Line { value, first, second } = Line::at(&self.own[i], scale * p);
+            let Cubic { value, first, second } = Cubic::at(&self.own[i], scale * p);
             s.p[i] = p;
             s.tangent[i] = 1.5 * per_patch;
             s.half_space[i] = if per_patch > 0.0 { 0.8 / per_patch } else { 0.0 };
@@ -68,7 +68,7 @@ impl Residual {
             s.bending[i] = 5.0 * per_patch * p;
         }
         let [w0, w1] = self.per_patch;
-        let surface = Surface::at(&self.mutual, [w0 * s.p[0], w1 * s.p[1]]);
+        let surface = Bicubic::at(&self.mutual, [w0 * s.p[0], w1 * s.p[1]]);
         (s.r[0][1], s.r[1][0]) = (surface.value, surface.value);
         (s.g[0][1], s.g[1][0]) = (w0 * surface.first[0], w1 * surface.first[1]);
         s.g_mutual = [w0 * w0 * surface.second[0], w0 * w1 * surface.second[1], w1 * w1 * surface.second[2]];

@@ -1,17 +1,17 @@
 //! What a solved step is wrong by, and where it should have ended.
 
-use super::Stepper;
+use super::DryStepper;
 use crate::dynamics::clearance::touch_between;
 use crate::dynamics::collocation::{Collocation, POINTS, Points, crossing};
 use crate::dynamics::contact_forces::Course;
-use crate::dynamics::step_bounds::{Bounds, force_scale, peak_share};
+use crate::dynamics::step_bounds::{StepBounds, force_scale, peak_share};
 use crate::dynamics::system::dot;
 
 /// Places of a step (0..1) at which it is cut for an event; nearer to its ends shorter steps find it.
 const EVENTS: std::ops::Range<f64> = 0.002..0.99;
 
 /// What is wrong with a step.
-pub(super) struct Judged {
+pub(super) struct StepVerdict {
     /// Its largest error over what may be.
     pub(super) excess: f64,
     /// Where in it (0..1) the first touch or release is that it should end at.
@@ -20,18 +20,18 @@ pub(super) struct Judged {
     pub(super) force_defect: [f64; 2],
 }
 
-impl Judged {
+impl StepVerdict {
     fn event_at(&mut self, place: f64) {
         self.event = Some(self.event.map_or(place, |event| event.min(place)));
     }
 }
 
-impl Stepper<'_> {
+impl DryStepper<'_> {
     /// What `trial` is wrong by, with the momenta `scale` (see [`momentum_scale`]) and the excess of its energy.
-    pub(super) fn judge(&self, trial: &Course, scale: [f64; 2], energy_excess: f64) -> Judged {
+    pub(super) fn judge(&self, trial: &Course, scale: [f64; 2], energy_excess: f64) -> StepVerdict {
         let (collocation, h) = (self.solver.collocation, trial.h);
-        let share = Bounds::share(self.steps);
-        let mut judged = Judged { excess: energy_excess, event: None, force_defect: [0.0; 2] };
+        let share = StepBounds::share(self.steps);
+        let mut judged = StepVerdict { excess: energy_excess, event: None, force_defect: [0.0; 2] };
         for i in 0..2 {
             let defect = self.defect(trial, i) / scale[i];
             let kinked = is_kinked(trial, i);

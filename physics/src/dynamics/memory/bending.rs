@@ -23,14 +23,14 @@ const WIDE: f64 = 1.724;
 
 /// Forces of outer and inner contact over the time of an impact, from before the first touch on.
 #[derive(Debug, Clone, Default)]
-pub struct Loads {
+pub struct ForceHistory {
     /// In s.
     time: Vec<f64>,
     /// In N. Shape (2, samples).
     force: [Vec<f64>; 2],
 }
 
-impl Loads {
+impl ForceHistory {
     /// Those of a `history`; `None` if it does not tell them.
     pub fn of(history: &History) -> Option<Self> {
         let force = |name: &str| Some(history.curve(name)?.to_vec());
@@ -87,7 +87,7 @@ impl Bending {
     }
 
     /// Stress in Pa along the faces under outer and inner contact, tension positive, where the forces there are largest.
-    pub fn at_peaks(&self, laws: &[Hertz; 2], loads: &Loads) -> [f64; 2] {
+    pub fn at_peaks(&self, laws: &[Hertz; 2], loads: &ForceHistory) -> [f64; 2] {
         [(0, -1.0), (1, 1.0)].map(|(i, sign)| {
             let (weights, peak) = loads.weights(i);
             let ring = self.ring(laws[i].contact_radius(peak));
@@ -109,8 +109,8 @@ impl Bending {
     }
 
     /// Bending moment per width in N within forces on rings of the radius `ring` in m at the sample `end`.
-    fn moment(&self, ring: f64, loads: &Loads, end: usize) -> f64 {
-        let Loads { time, force: [outer, inner] } = loads;
+    fn moment(&self, ring: f64, loads: &ForceHistory, end: usize) -> f64 {
+        let ForceHistory { time, force: [outer, inner] } = loads;
         let force = |k: usize| outer[k] - inner[k];
         let step = |k: usize| {
             let rise = force(k) - force(k - 1);
@@ -155,7 +155,7 @@ mod tests {
     /// Under a force that stays the plate comes to the moment that its edge leaves it.
     #[test]
     fn at_rest_the_moment_is_that_of_the_plate_s_modes() {
-        let lasting = Loads { time: vec![0.0, 1.0, 1e9], force: [vec![0.0, 1.0, 1.0], vec![0.0; 3]] };
+        let lasting = ForceHistory { time: vec![0.0, 1.0, 1e9], force: [vec![0.0, 1.0, 1.0], vec![0.0; 3]] };
         for edge in [Edge::Clamped, Edge::SimplySupported, Edge::Free] {
             let found = Bending::new(&plate(edge)).moment(0.03 * RADIUS, &lasting, 2);
             assert_relative_eq!(found, by_modes(edge, 0.03, |w| w.powi(-2)), max_relative = 5e-3);
@@ -171,7 +171,7 @@ mod tests {
         for t in [0.02, 0.04, 0.06] {
             let time: Vec<f64> = (0..=2000).map(|k| f64::from(k) / 2000.0 * t * unit).collect();
             let grown = |force: f64| time.iter().map(|now| force * now / (t * unit)).collect::<Vec<f64>>();
-            let loads = Loads { force: [grown(3.0), grown(2.0)], time: time.clone() };
+            let loads = ForceHistory { force: [grown(3.0), grown(2.0)], time: time.clone() };
             let found = Bending::new(&plate).moment(0.03 * RADIUS, &loads, 2000);
             let exact = by_modes(Edge::Clamped, 0.03, |w| (1.0 - (w * t).sin() / (w * t)) / (w * w));
             assert_relative_eq!(found, exact, max_relative = 0.02);

@@ -12,12 +12,12 @@ mod step_force;
 mod step_length;
 mod stepper;
 
-pub use self::bending::{Bending, Loads};
-pub(crate) use self::modes::Mode;
+pub use self::bending::{Bending, ForceHistory};
+pub(crate) use self::modes::ModeFlow;
 
 use self::contact::Contact;
 use self::step_force::StepForce;
-use self::stepper::Stepper;
+use self::stepper::MemoryStepper;
 use super::assured::differences;
 use super::integration::{Converged, Integration, Options};
 use super::system::System;
@@ -61,7 +61,7 @@ const HARDENED: f64 = 0.05;
 /// What the materials of an impact remember.
 #[derive(Debug, Clone)]
 pub struct Memory {
-    bodies: Bodies,
+    bodies: CreepingContacts,
     /// What the models leave out, a sentence each.
     pub warnings: Vec<String>,
     /// Relaxation of the plate's material.
@@ -71,7 +71,7 @@ pub struct Memory {
 
 /// Contacts and what lies beneath them.
 #[derive(Debug, Clone)]
-struct Bodies {
+struct CreepingContacts {
     contacts: [Contact; 2],
     /// Creep of the plate and of the tips of both bodies beyond half-spaces.
     plate: Creep,
@@ -80,7 +80,7 @@ struct Bodies {
     tip_residual: [f64; 2],
 }
 
-impl Bodies {
+impl CreepingContacts {
     /// Prepares steps of `h` s.
     fn prepare(&mut self, h: f64) {
         self.contacts.iter_mut().for_each(|contact| contact.prepare(h));
@@ -153,7 +153,7 @@ impl Memory {
         warnings.extend(overloaded(&contacts, &hits)?);
         Ok(Some(Self {
             warnings,
-            bodies: Bodies {
+            bodies: CreepingContacts {
                 contacts,
                 plate: Creep::new(&plate.relaxation),
                 tips: bodies.map(|m| Creep::new(&m.relaxation)),
@@ -170,7 +170,7 @@ impl Memory {
     }
 
     /// Whether they stay so under `loads` with the largest forces `peaks` in N, in a model that is `system`.
-    pub fn is_elastic_under(&self, system: &System, loads: &Loads, peaks: [f64; 2]) -> bool {
+    pub fn is_elastic_under(&self, system: &System, loads: &ForceHistory, peaks: [f64; 2]) -> bool {
         let critical = self.critical_forces(self.bending.at_peaks(&system.laws, loads));
         self.plate.is_empty() && critical.into_iter().zip(peaks).all(|(critical, peak)| peak <= critical)
     }
@@ -241,7 +241,7 @@ impl OnsetOfYield {
     }
 
     /// Force in N at which contact `i` of `system` begins to yield in an impact with the course of `loads`; `None` if nothing there can.
-    pub fn force(&self, i: usize, system: &System, loads: &Loads) -> Option<f64> {
+    pub fn force(&self, i: usize, system: &System, loads: &ForceHistory) -> Option<f64> {
         let stress = self.bending.at_peaks(&system.laws, loads)[i];
         Some(self.contacts[i]?.on_a_pulled_plate(stress).critical_force())
     }
@@ -314,7 +314,7 @@ struct Ran {
     integration: Integration,
     /// The contacts as they are then.
     contacts: [Contact; 2],
-    loads: Loads,
+    loads: ForceHistory,
 }
 
 /// Integrates the impact of `system` with materials that remember `memory`; gives also what they remember afterwards.
@@ -334,10 +334,10 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
                 *contact = contact.with_springs_every(radius / SPRINGS * FINER.powi(halvings as i32));
             }
         }
-        Stepper::new(system, bodies, &memory.plate, h, options).go(options.end_time)
+        MemoryStepper::new(system, bodies, &memory.plate, h, options).go(options.end_time)
     };
     let after = |ran: &Ran| Memory {
-        bodies: Bodies { contacts: ran.contacts.clone(), ..memory.bodies.clone() },
+        bodies: CreepingContacts { contacts: ran.contacts.clone(), ..memory.bodies.clone() },
         ..memory.clone()
     };
     if let Some(Converged::Even { halvings, stress, peaks }) = options.converged {

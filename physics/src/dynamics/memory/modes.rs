@@ -13,7 +13,7 @@ use std::ops::Range;
 
 /// One mode: its flow over a step.
 #[derive(Debug)]
-pub(crate) struct Mode {
+pub(crate) struct ModeFlow {
     oscillator: Oscillator,
     /// Displacement, velocity and internal variables at the end per each at the start, row by row. Shape (n, n).
     flow: Vec<f64>,
@@ -24,23 +24,23 @@ pub(crate) struct Mode {
 }
 
 /// All modes of a system, and the relaxation of those of the plate.
-pub(super) struct Modes<'a> {
+pub(super) struct ModeSet<'a> {
     system: &'a System,
     terms: &'a [Relaxation],
-    modes: Vec<Mode>,
+    modes: Vec<ModeFlow>,
     /// Flows of the modes without a force over 2, 4, 8, ... steps, those that have been asked for.
     longer: Vec<Vec<Vec<f64>>>,
     /// Approaches lost at the end of a step per force that acts in it, m/N.
     pub(super) coupling: [[f64; 2]; 2],
 }
 
-impl<'a> Modes<'a> {
+impl<'a> ModeSet<'a> {
     /// The modes of `system`, whose plate relaxes by `terms`, for steps of `h` s under forces of the kind `step_force`.
     pub(super) fn new(system: &'a System, terms: &'a [Relaxation], h: f64, step_force: StepForce) -> Self {
         let (mut modes, mut first) = (Vec::new(), 0);
         let plate = system.elastic();
         for (k, &oscillator) in system.oscillators.iter().enumerate() {
-            let mode = Mode::new(oscillator, if plate.contains(&k) { terms } else { &[] }, h, first);
+            let mode = ModeFlow::new(oscillator, if plate.contains(&k) { terms } else { &[] }, h, first);
             first += mode.size();
             modes.push(mode);
         }
@@ -123,7 +123,7 @@ impl<'a> Modes<'a> {
 
     /// Largest rate that every mode can have by itself with the energy of its `state`, m/s kg^(1/2); none of a rigid motion.
     pub(super) fn most_speeds(&self, state: &[f64]) -> Vec<f64> {
-        let speed = |mode: &Mode| match mode.oscillator.omega > 0.0 {
+        let speed = |mode: &ModeFlow| match mode.oscillator.omega > 0.0 {
             true => (2.0 * mode.energy(&state[mode.own()], self.terms)[0]).sqrt(),
             false => 0.0,
         };
@@ -143,7 +143,7 @@ fn move_by(flow: &[f64], now: &[f64], next: &mut [f64]) {
     }
 }
 
-impl Mode {
+impl ModeFlow {
     /// Relaxing by `terms`, for steps of `h` s; its state (displacement, velocity, internal variables) begins at `first` of all states.
     pub(crate) fn new(oscillator: Oscillator, terms: &[Relaxation], h: f64, first: usize) -> Self {
         let Oscillator { omega, alpha } = oscillator;
@@ -243,7 +243,7 @@ mod tests {
             [at.re, (root * at).re, xi[0].re, xi[1].re]
         };
         for (h, steps) in [(1e-7, 500), (2e-5, 3)] {
-            let mode = Mode::new(Oscillator { omega, alpha: 0.0 }, &terms, h, 0);
+            let mode = ModeFlow::new(Oscillator { omega, alpha: 0.0 }, &terms, h, 0);
             let mut now = state(Complex::from(1.0));
             for _ in 0..steps {
                 now = std::array::from_fn(|row| {
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn a_force_that_grows_evenly_is_answered_exactly() {
         let (omega, h) = (3e5, 1e-5);
-        let mode = Mode::new(Oscillator { omega, alpha: 0.0 }, &[], h, 0);
+        let mode = ModeFlow::new(Oscillator { omega, alpha: 0.0 }, &[], h, 0);
         let x = omega * h;
         assert_relative_eq!(mode.forced[1][0], (1.0 - x.sin() / x) / (omega * omega), max_relative = 1e-12);
         assert_relative_eq!(mode.forced[1][1], (1.0 - x.cos()) / (omega * x), max_relative = 1e-12);

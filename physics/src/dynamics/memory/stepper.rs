@@ -2,12 +2,12 @@
 
 mod equilibrium;
 
-use self::equilibrium::Trial;
-use super::bending::Loads;
-use super::modes::Modes;
+use self::equilibrium::ApproachTrial;
+use super::bending::ForceHistory;
+use super::modes::ModeSet;
 use super::step_force::{StepForce, mean};
 use super::step_length::StepLength;
-use super::{Bodies, CHANGE, MAX_STEPS, Ran};
+use super::{CHANGE, CreepingContacts, MAX_STEPS, Ran};
 use crate::dynamics::contact_ledger::ContactLedger;
 use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
 use crate::dynamics::recorder::{CURVES, sample};
@@ -25,12 +25,12 @@ const PATIENCE: u64 = 4096;
 /// Most doublings of a step in flight.
 const MAX_DOUBLINGS: usize = 40;
 
-pub(super) struct Stepper<'a> {
+pub(super) struct MemoryStepper<'a> {
     system: &'a System,
-    bodies: Bodies,
+    bodies: CreepingContacts,
     /// Relaxation of the plate, and the modes for steps of every length, the shortest first.
     terms: &'a [Relaxation],
-    modes: Vec<Modes<'a>>,
+    modes: Vec<ModeSet<'a>>,
     step_force: StepForce,
     step_length: StepLength,
     /// Doublings of the shortest step for which contacts and modes are prepared.
@@ -70,18 +70,18 @@ pub(super) struct Stepper<'a> {
     power: f64,
     /// What the contacts add to the displacement of the plate's centre, m.
     centre: f64,
-    loads: Loads,
+    loads: ForceHistory,
     sample_interval: f64,
     /// Samples per e-fold of the time since the last contact at most.
     samples_per_fold: f64,
     history: Option<History>,
 }
 
-impl<'a> Stepper<'a> {
+impl<'a> MemoryStepper<'a> {
     /// With `h` s at most per step.
     pub(super) fn new(
         system: &'a System,
-        mut bodies: Bodies,
+        mut bodies: CreepingContacts,
         terms: &'a [Relaxation],
         h: f64,
         options: &Options,
@@ -89,7 +89,7 @@ impl<'a> Stepper<'a> {
         // a whole number of steps to the end that is asked for
         let h = options.end_time.map_or(h, |end| end / (end / h).ceil());
         let step_force = bodies.step_force();
-        let modes = Modes::new(system, terms, h, step_force);
+        let modes = ModeSet::new(system, terms, h, step_force);
         bodies.prepare(h);
         let offset = [0, 1].map(|i| bodies.contacts[i].depth());
         let start = modes.start();
@@ -125,7 +125,7 @@ impl<'a> Stepper<'a> {
             modal_loss: 0.0,
             power: 0.0,
             centre: 0.0,
-            loads: Loads::default(),
+            loads: ForceHistory::default(),
             sample_interval: options.sample_interval.unwrap_or(0.0),
             samples_per_fold: (options.samples_between as f64 / FOLDS).max(1.0),
             history: options.sample_interval.map(|_| History::new(&CURVES)),
@@ -200,7 +200,7 @@ impl<'a> Stepper<'a> {
     /// Takes one step within the `rest` of the run in s.
     fn step(&mut self, rest: f64) -> Result<()> {
         let (free, trial) = self.solved(rest)?;
-        let Trial { x, force, acting, patch, taken, energy, .. } = trial;
+        let ApproachTrial { x, force, acting, patch, taken, energy, .. } = trial;
         let h = self.step_length.of(self.level);
         let modes = &self.modes[self.level];
         let [now, next] = &mut self.state;
@@ -224,7 +224,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// The end of the next step, and the approaches in m that the modes alone would have there.
-    fn solved(&mut self, rest: f64) -> Result<([f64; 2], Trial)> {
+    fn solved(&mut self, rest: f64) -> Result<([f64; 2], ApproachTrial)> {
         loop {
             let level = self.step_length.level_within(rest);
             self.prepare(level);
@@ -253,7 +253,7 @@ impl<'a> Stepper<'a> {
     /// Prepares modes and contacts for steps of the `level`.
     fn prepare(&mut self, level: usize) {
         for k in self.modes.len()..=level {
-            self.modes.push(Modes::new(self.system, self.terms, self.step_length.of(k), self.step_force));
+            self.modes.push(ModeSet::new(self.system, self.terms, self.step_length.of(k), self.step_force));
         }
         if level != self.level {
             self.level = level;

@@ -6,7 +6,7 @@
 //! long as the iteration gains enough by them, from step to step of one length.
 
 use super::solve::{Defect, Factors, Trial, Wet};
-use super::table::Table;
+use super::table::WetTable;
 use crate::dynamics::system::INNER;
 use crate::numerics::stages::STAGES;
 use faer::Mat;
@@ -24,7 +24,7 @@ fn load(k: usize, stage: usize) -> usize {
 
 impl Wet<'_> {
     /// The equations for steps of the length of `table`, with the tangents in the motion of `trial`.
-    pub(super) fn factors(&self, table: &Table, defect: &Defect, trial: &Trial) -> Factors {
+    pub(super) fn factors(&self, table: &WetTable, defect: &Defect, trial: &Trial) -> Factors {
         let fluid = trial.fluid.len();
         let size = (2 + fluid) * STAGES;
         let mut matrix = Mat::<f64>::identity(size, size);

@@ -8,14 +8,14 @@ use self::judged::defect_bound;
 use self::ledger::StepAccount;
 use super::guess::StepForces;
 use super::solve::{END, Trial, Wet};
-use super::table::Table;
+use super::table::WetTable;
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS};
 use crate::dynamics::contact_ledger::{ContactLedger, StepCourse};
 use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
 use crate::dynamics::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::step_bounds::{Bounds, EnergyAccount, base_step, momentum_scale};
+use crate::dynamics::step_bounds::{EnergyAccount, StepBounds, base_step, momentum_scale};
 use crate::dynamics::system::{System, dot};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::error::{Error, Result};
@@ -52,13 +52,13 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         loads: vec![FluidLoad::default(); STAGES],
         ..Trial::default()
     };
-    let mut stepper = Stepper {
+    let mut stepper = WetStepper {
         wet: Wet { system, fluid },
         collocation: &collocation,
         recorder,
         end_time: options.end_time.unwrap_or(f64::INFINITY),
         defect_bound: defect_bound(options.tolerance),
-        bounds: Bounds::new(options.tolerance),
+        bounds: StepBounds::new(options.tolerance),
         base_step: base_step(hit.duration(), options.tolerance),
         tables: BTreeMap::new(),
         level: 8,
@@ -91,15 +91,15 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
 }
 
 /// State of a run.
-struct Stepper<'a> {
+struct WetStepper<'a> {
     wet: Wet<'a>,
     collocation: &'a Collocation<RADAU_POINTS>,
     recorder: Option<Recorder<'a, RADAU_POINTS>>,
     end_time: f64,
     defect_bound: f64,
-    bounds: Bounds,
+    bounds: StepBounds,
     base_step: f64,
-    tables: BTreeMap<i32, Table>,
+    tables: BTreeMap<i32, WetTable>,
     level: i32,
     time: f64,
     q: Vec<f64>,
@@ -118,7 +118,7 @@ struct Stepper<'a> {
     steps: u64,
 }
 
-impl Stepper<'_> {
+impl WetStepper<'_> {
     fn go(&mut self) -> Result<()> {
         let system = self.wet.system;
         let mut touching = true;
@@ -183,10 +183,10 @@ impl Stepper<'_> {
             let system = self.wet.system;
             let last;
             let table = if rest < h {
-                last = Table::new(system, self.collocation, rest);
+                last = WetTable::new(system, self.collocation, rest);
                 &last
             } else {
-                self.tables.entry(self.level).or_insert_with(|| Table::new(system, self.collocation, h))
+                self.tables.entry(self.level).or_insert_with(|| WetTable::new(system, self.collocation, h))
             };
             let h = table.h;
             if !self.wet.solve(table, &self.q, &self.v, settled.in_step(h), &mut self.trial) {
@@ -204,7 +204,7 @@ impl Stepper<'_> {
                 continue;
             }
             if may_end && let Some(end) = self.end_in_step(h) {
-                let table = Table::new(system, self.collocation, end);
+                let table = WetTable::new(system, self.collocation, end);
                 if !self.wet.solve(&table, &self.q, &self.v, settled.in_step(end), &mut self.trial) {
                     self.level += 1;
                     continue;
@@ -305,7 +305,7 @@ impl Stepper<'_> {
     /// Books the step of `h` s just solved.
     ///
     /// # Errors
-    /// [`Error::BeyondModel`] as [`Stepper::check_overlap`].
+    /// [`Error::BeyondModel`] as [`WetStepper::check_overlap`].
     fn accept(&mut self, h: f64, account: &StepAccount) -> Result<()> {
         self.check_overlap(h, |overlap| overlap.depth > self.wet.fluid.minimum_gap())?;
         if let Some(recorder) = &mut self.recorder {

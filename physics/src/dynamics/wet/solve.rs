@@ -6,7 +6,7 @@
 //! at four points) however many modes there are; what D leaves out is found by the iteration, or, where that is slow, by
 //! Newton's step with the whole matrix.
 
-use super::table::{Motion, Table};
+use super::table::{StageMotion, WetTable};
 use crate::dynamics::system::{INNER, System};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::numerics::stages::{STAGES, Stages};
@@ -35,7 +35,7 @@ pub const END: usize = STAGES - 1;
 #[derive(Debug, Clone, Default)]
 pub struct Trial {
     /// Motion.
-    pub motion: Motion,
+    pub motion: StageMotion,
     /// Modal approach of both contacts in m.
     pub approach: [Stages; 2],
     /// Patches of both contacts, see [`System::contact`].
@@ -62,7 +62,7 @@ pub struct Wet<'a> {
 impl Wet<'_> {
     /// Solves for the forces of a step from the state (`q`, `v`), from those in `trial` on; `false` if the iteration
     /// does not settle within `force_error` N or the contact has no equilibrium.
-    pub fn solve(&self, table: &Table, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
+    pub fn solve(&self, table: &WetTable, q: &[f64], v: &[f64], force_error: f64, trial: &mut Trial) -> bool {
         let (mut last, mut best, mut stalls) = (f64::INFINITY, f64::INFINITY, 0);
         for iteration in 0..MAX_ITERATIONS {
             table.motion(q, v, &self.generalised(trial), &mut trial.motion);
@@ -105,7 +105,7 @@ impl Wet<'_> {
     /// the iteration leaves can't unbalance the momenta, step after step. The motion follows; the fluid is not asked again,
     /// since a stiff film would magnify the difference, which the next step stops. `false` if the contact has no
     /// equilibrium.
-    fn balance(&self, table: &Table, q: &[f64], v: &[f64], trial: &mut Trial) -> bool {
+    fn balance(&self, table: &WetTable, q: &[f64], v: &[f64], trial: &mut Trial) -> bool {
         for (k, fluid) in trial.fluid.iter_mut().enumerate() {
             *fluid = std::array::from_fn(|j| trial.loads[j].force[k]);
         }
@@ -189,7 +189,7 @@ impl Wet<'_> {
     }
 
     /// Improves the forces; `false` if the equations are singular.
-    fn newton(&self, table: &Table, defect: &Defect, trial: &mut Trial) -> bool {
+    fn newton(&self, table: &WetTable, defect: &Defect, trial: &mut Trial) -> bool {
         let n = self.system.size();
         // directions in which the forces at point l can change: contact 0, contact 1, film
         let film: Vec<Vec<f64>> = (0..STAGES)

@@ -6,7 +6,7 @@ use crate::numerics::stages::{STAGES, Stages};
 
 /// Everything about a step of one length that does not depend on the state.
 #[derive(Debug, Clone)]
-pub struct Table {
+pub struct WetTable {
     /// Length of the step in s.
     pub h: f64,
     /// Answers at Radau's points. Shape (STAGES, n).
@@ -15,14 +15,14 @@ pub struct Table {
 
 /// Coordinates and their rates at Radau's points of a step, the last of which is its end. Shape (STAGES, n) each.
 #[derive(Debug, Clone, Default)]
-pub struct Motion {
+pub struct StageMotion {
     /// Coordinates.
     pub q: Vec<Vec<f64>>,
     /// Rates.
     pub v: Vec<Vec<f64>>,
 }
 
-impl Table {
+impl WetTable {
     /// Table of `system` for steps of length `h` s.
     pub fn new(system: &System, collocation: &Collocation<RADAU_POINTS>, h: f64) -> Self {
         let answers = collocation
@@ -35,7 +35,7 @@ impl Table {
 
     /// Motion from the state (`q`, `v`) at the start of the step under the generalised forces `force` at Radau's
     /// points, shape (n).
-    pub fn motion(&self, q: &[f64], v: &[f64], force: &[Stages], motion: &mut Motion) {
+    pub fn motion(&self, q: &[f64], v: &[f64], force: &[Stages], motion: &mut StageMotion) {
         motion.q.resize(STAGES, Vec::new());
         motion.v.resize(STAGES, Vec::new());
         for (point, answers) in self.answers.iter().enumerate() {

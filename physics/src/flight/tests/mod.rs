@@ -1,8 +1,8 @@
 //! The flight against closed forms.
 
-use super::chamber::Feature;
+use super::chamber::ChamberFeature;
 use super::contact::Change;
-use super::run::{Asked, Mode, moved};
+use super::run::{MotionMode, MotionRequest, moved};
 use super::track::Track;
 use super::*;
 use crate::scene::Scene;
@@ -150,7 +150,7 @@ fn rolling_and_sliding_down_an_incline() {
         let setup = Setup { friction, ..yard(down(G), 0.5, 0.0) };
         let corners = Chamber::new(&floor, 2.0, 1e-3, [Vector::new(0.5, 1.5); 2]).expect("room");
         let setup = Setup { chamber: corners, ..setup };
-        let track = Track::of(&setup.chamber, Feature::Wall(0));
+        let track = Track::of(&setup.chamber, ChamberFeature::Wall(0));
         let mut state = State { time: 0.0, place: track.place(0.1), velocity: Vector::zeros(), spin: 0.0 };
         while state.time < 0.1 {
             let (next, change) = setup.roll_on(&track, &state);
@@ -173,7 +173,7 @@ fn rolling_off_an_edge() {
     let floor = [(0.0, 0.5), (0.5, 0.5), (0.5, 0.0), (1.0, 0.0)].map(|(x, z)| Vector::new(x, z));
     let chamber = Chamber::new(&floor, 2.0, 0.1, [Vector::new(0.25, 1.0); 2]).expect("room");
     let setup = Setup { chamber, radius: 0.1, friction: 1e6, ..yard(down(G), 0.5, 0.0) };
-    let mut track = Track::of(&setup.chamber, Feature::Wall(0));
+    let mut track = Track::of(&setup.chamber, ChamberFeature::Wall(0));
     let velocity = Vector::new(1e-4, 0.0);
     let mut state = State { time: 0.0, place: track.place(0.4999), velocity, spin: -1e-4 / 0.1 };
     let turn = loop {
@@ -331,7 +331,7 @@ fn a_sphere_that_nothing_holds_is_told() {
 #[test]
 fn steps_leave_no_trace() {
     let mut setup = rocker(0.5, 0.2, 0.0);
-    setup.field.drag = Some(Drag::new(0.4, 1000.0, setup.radius));
+    setup.field.drag = Some(SphereDrag::new(0.4, 1000.0, setup.radius));
     let free = Setup { chamber: Chamber::over_rocker(0.2, 0.2, 2e-3).expect("wide"), ..setup };
     let state =
         State { time: 0.0, place: Vector::new(0.01, 0.05), velocity: Vector::new(0.5, 0.3), spin: 3.0 };

@@ -65,8 +65,8 @@ fn a_weak_shock_leaves_the_sphere_in_its_seat() {
     let wave = Wave::Sine { frequency: 200.0, periods: 5.0 };
     setup.field.shaken = Some(Excitation { direction: Vector::new(-1.0, 0.0), amplitude: 150.0, wave });
     let (state, mode) = setup.seated(&landscape);
-    assert!(matches!(mode, Mode::Wedged(..)), "{mode:?}");
-    let flight = moved(&setup, &landscape, state, mode, Asked { path: true, beyond: None });
+    assert!(matches!(mode, MotionMode::Wedged(..)), "{mode:?}");
+    let flight = moved(&setup, &landscape, state, mode, MotionRequest { path: true, beyond: None });
     assert_eq!(flight.ending, Ending::Seat(Seat::Same));
     let farthest = flight.path.iter().map(|s| (s.place - state.place).norm()).fold(0.0, f64::max);
     assert!(farthest > 1e-6, "150 m/s^2 lift it off: {farthest}");

@@ -25,7 +25,7 @@ use crate::dynamics::assured;
 use crate::dynamics::integration::Options;
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
-use crate::result::{Candidate, Choice};
+use crate::result::{CandidateModel, Choice};
 use crate::scene::{Edge, Model, Scene};
 
 /// Tolerance of `auto` when the user names none.
@@ -72,14 +72,14 @@ const KIRCHHOFF_RUNGS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 type Rated = (Model, usize, f64);
 
 /// The choice as far as it has come.
-pub(super) struct Plan<'a> {
+pub(super) struct ChoicePlan<'a> {
     tolerance: f64,
     /// What model C was found to be off by; `None` beyond what was measured.
     floor: Option<f64>,
     pub(super) trials: Trials<'a>,
     /// The impact on the layer with all its modes.
     layer: Option<PlateQuantities>,
-    tried: Vec<Candidate>,
+    tried: Vec<CandidateModel>,
     pub(super) model: Model,
     /// Kirchhoff modes of models A and B, bending modes of model C.
     pub(super) modes: usize,
@@ -102,7 +102,7 @@ pub fn integration_tolerance(tolerance: f64) -> f64 {
     (INTEGRATION_SHARE * tolerance).min(assured::ROUGH)
 }
 
-impl<'a> Plan<'a> {
+impl<'a> ChoicePlan<'a> {
     /// Plans `auto` for `scene`: models A or B, or with which modes model C is to be built.
     ///
     /// # Errors
@@ -320,7 +320,7 @@ impl<'a> Plan<'a> {
         let model = model.to_string();
         self.tried.retain(|tried| tried.model != model || tried.modes != modes);
         let quantity = quantity.map(str::to_owned);
-        self.tried.push(Candidate { model, modes, estimated_error: error, quantity, chosen: false });
+        self.tried.push(CandidateModel { model, modes, estimated_error: error, quantity, chosen: false });
     }
 
     /// What was chosen, from what, and why.

@@ -5,7 +5,7 @@
 //!
 //! What the modes left out lack is their inertia: a mode of the frequency omega follows a force of the contacts' frequency w later by
 //! powers of w/omega. Weighed by what the modes yield, over what the outer contact yields and over what the plate moves by, that
-//! estimates the error of the forces ([`Lack`]); impacts that touch again and again exceed others by far. A number of modes that looks
+//! estimates the error of the forces ([`ModalTruncation`]); impacts that touch again and again exceed others by far. A number of modes that looks
 //! enough is held against twice as many: without that about 1 in 100 promises of 0.3, 1 and 3 % was broken, by up to ten times the
 //! estimate. Their shapes are off by what the closed form may be ([`misshapen`]), so that impacts which take small errors far tell it.
 
@@ -22,7 +22,7 @@ use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::System;
 use crate::error::Result;
-use crate::result::{Candidate, Choice};
+use crate::result::{CandidateModel, Choice};
 use crate::scene::{Edge, Model, Plate, Shape};
 
 /// Thickness over radius up to which the closed form is taken.
@@ -117,8 +117,9 @@ pub(super) fn choose(
     let own = own_error(plate) * amplified(predictor.touches);
     let enough = |modes: &[BendingMode]| {
         let lacks = lacks(plate, modes, &predictor);
-        let estimate =
-            |(n, lack): (usize, &Lack)| (n, total(own + lack.error(approach, predictor.touches), &modes[n]));
+        let estimate = |(n, lack): (usize, &ModalTruncation)| {
+            (n, total(own + lack.error(approach, predictor.touches), &modes[n]))
+        };
         lacks.iter().enumerate().skip(choice::LEAST).map(estimate).find(|(_, error)| *error <= tolerance)
     };
     let mut found = enough(&modes);
@@ -152,7 +153,7 @@ pub(super) fn choose(
         return Ok(None);
     }
     let warnings = validity::warnings(setup, &predictor, &system);
-    let candidate = Candidate {
+    let candidate = CandidateModel {
         model: Model::C.to_string(),
         modes: count,
         estimated_error: Some(estimate),
@@ -186,14 +187,14 @@ fn waves(plate: &Plate, modes: &[BendingMode]) -> ModalBody {
 
 /// What modes left out lack.
 #[derive(Debug, Clone, Copy, Default)]
-struct Lack {
+struct ModalTruncation {
     /// What they yield at the outer face times w/omega, m/N.
     yielding: f64,
     /// What they yield between the faces times (w/omega)^2, over what the plate moves by.
     share: f64,
 }
 
-impl Lack {
+impl ModalTruncation {
     /// Relative error of the forces, with the `approach` of the outer contact in m/N and so many `touches` beyond the first of either
     /// body.
     fn error(&self, approach: f64, touches: f64) -> f64 {
@@ -203,12 +204,12 @@ impl Lack {
 }
 
 /// What is lacking with the first n of the `modes`. Shape (modes).
-fn lacks(plate: &Plate, modes: &[BendingMode], predictor: &Predictor) -> Vec<Lack> {
+fn lacks(plate: &Plate, modes: &[BendingMode], predictor: &Predictor) -> Vec<ModalTruncation> {
     let (slow, patch) = (predictor.slow(), predictor.patch_radius);
-    let mut lacks = vec![Lack::default(); modes.len()];
+    let mut lacks = vec![ModalTruncation::default(); modes.len()];
     // a force of the contacts' frequency moves slower modes by their inertia
     let mut motion = if plate.edge == Edge::Free { 1.0 / (plate.mass() * slow * slow) } else { 0.0 };
-    let mut lack = Lack::default();
+    let mut lack = ModalTruncation::default();
     for (n, mode) in modes.iter().enumerate().rev() {
         let phi = patch.map(|a| mode.under(a));
         let late = slow / mode.omega;

@@ -39,7 +39,7 @@ pub(super) fn laws(
     laws.extend(history.and_then(|history| inner_is_pushed(setup, history)));
     // the clamp of a bender and the voltage of a stack bring energy and momentum of their own
     if !setup.outer.shape.is_held() {
-        let scales = Scales::of(setup);
+        let scales = ImpactScales::of(setup);
         laws.extend(energy(&scales, setup, summary));
         laws.extend(scales.forces_and_times(summary));
         laws.extend(history.into_iter().flat_map(|history| scales.motion(setup, history)));
@@ -84,7 +84,7 @@ fn inner_is_pushed(setup: &PlateImpact, history: &History) -> Option<Statement> 
 }
 
 /// Energy that both bodies have gained, relative to what they had.
-fn energy(scales: &Scales, setup: &PlateImpact, summary: &Summary) -> Option<Statement> {
+fn energy(scales: &ImpactScales, setup: &PlateImpact, summary: &Summary) -> Option<Statement> {
     let (outer, inner) = masses(setup);
     let kinetic = |mass: f64, velocity: f64| 0.5 * mass * velocity.powi(2);
     let of_outer = summary.value("outer_velocity_final").map(|v| kinetic(outer, v));
@@ -103,7 +103,7 @@ fn masses(setup: &PlateImpact) -> (f64, f64) {
 }
 
 /// How large what happens can be.
-struct Scales {
+struct ImpactScales {
     /// Masses of outer and inner body in kg.
     masses: [f64; 2],
     /// Velocities of both at t = 0 in m/s.
@@ -121,7 +121,7 @@ struct Scales {
     is_wet: bool,
 }
 
-impl Scales {
+impl ImpactScales {
     fn of(setup: &PlateImpact) -> Self {
         let (outer, inner) = masses(setup);
         let energy = 0.5 * outer * setup.outer.speed.powi(2) + 0.5 * inner * setup.inner.speed.powi(2);
@@ -151,7 +151,7 @@ impl Scales {
         let depth = STATICS_SLACK * (deflection + full(&contacts[0]).approach_peak());
         let shortest = HertzImpact { speed: setup.outer.normal_speed(), ..full(&contacts[0]) }.duration();
         let swing = 2.0 * PI * ((outer + inner + plate.mass()) / stiffness * shear).sqrt();
-        Scales {
+        ImpactScales {
             masses: [outer, inner],
             start: [-setup.outer.normal_speed(), setup.inner.speed],
             energy,

@@ -3,7 +3,7 @@
 use super::PlateCurves;
 use super::PlateImpact;
 use crate::contact::Hertz;
-use crate::dynamics::memory::{Bending, Loads};
+use crate::dynamics::memory::{Bending, ForceHistory};
 use crate::result::limit::{self, ELASTIC_BENDING, QUASI_STATIC, SMALL_DEFLECTION, SMALL_ROTATION};
 use crate::result::{ContactPressure, History, Limit, Summary};
 use crate::scene::{Edge, Material, Shape};
@@ -35,7 +35,8 @@ pub(super) fn judge(setup: &PlateImpact, summary: &mut Summary, history: Option<
     limits.extend(deflection.map(|w| SMALL_DEFLECTION.at("plate", w / setup.plate.thickness)));
     // forces beside the centre bend the plate in two places, a film in none
     let is_struck_alone = setup.outer.is_centred() && setup.fluid.as_ref().is_none_or(|f| !f.squeeze_film);
-    let loads = history.and_then(Loads::of).filter(|_| is_struck_alone && peaks.iter().all(Option::is_some));
+    let loads =
+        history.and_then(ForceHistory::of).filter(|_| is_struck_alone && peaks.iter().all(Option::is_some));
     if let (Some(strength), Some(loads)) = (plate.yield_strength, loads) {
         let [outer, inner] = Bending::new(&setup.plate).at_peaks(&laws, &loads).map(f64::abs);
         limits.push(ELASTIC_BENDING.at("plate", outer.max(inner) / strength));

@@ -2,7 +2,7 @@
 
 mod run;
 
-use super::choice::Plan;
+use super::choice::ChoicePlan;
 use super::closed_form;
 use super::continua::Continua;
 use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate};
@@ -116,7 +116,7 @@ impl Reduced {
         if let Some((built, choice)) = closed_form::choose(setup, tolerance, scene.run.end_time)? {
             return Self::of(built, Model::C, scene.clone(), Some(choice));
         }
-        let mut plan = Plan::new(&normal, tolerance)?;
+        let mut plan = ChoicePlan::new(&normal, tolerance)?;
         let mut continua: Option<Joined> = plan.closed_form.then(|| plan.trials.closed_form(plan.modes));
         while let Some(cut) = plan.cut {
             match continuum(setup, Wanted::Below(cut), &plan.trials.predictor, Continua::meshed(cache)) {

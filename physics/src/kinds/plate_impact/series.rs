@@ -4,7 +4,7 @@ use super::results::values;
 use crate::dynamics::assured::assured;
 use crate::dynamics::integrate;
 use crate::dynamics::integration::{Integration, Options};
-use crate::dynamics::memory::{self, Loads, Memory, OnsetOfYield};
+use crate::dynamics::memory::{self, ForceHistory, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
@@ -98,13 +98,13 @@ impl Impacts<'_> {
     }
 
     /// The elastic impact, and the course of its forces.
-    fn loaded(&self, options: &Options) -> Result<(Integration, Loads)> {
+    fn loaded(&self, options: &Options) -> Result<(Integration, ForceHistory)> {
         let interval = self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT;
         // nothing is loaded in flight
         let alone = Options { sample_interval: Some(interval), samples_between: 0, ..*options };
         let sampled = if options.sample_interval.is_some() { *options } else { alone };
         let mut result = self.elastic(&sampled)?;
-        let loads = result.history.as_ref().and_then(Loads::of);
+        let loads = result.history.as_ref().and_then(ForceHistory::of);
         let loads = loads.ok_or_else(|| Error::Internal("a history was asked for".into()))?;
         result.history = result.history.filter(|_| options.sample_interval.is_some());
         Ok((result, loads))

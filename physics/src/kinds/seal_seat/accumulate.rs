@@ -84,7 +84,7 @@ fn add_two(
 }
 
 /// u += sum_k q_k phi_k
-struct Modes<'a> {
+struct AddedModes<'a> {
     u: &'a mut [f64],
     shapes: &'a [f64],
     q: &'a [f64],
@@ -92,10 +92,10 @@ struct Modes<'a> {
 
 /// Adds to `u` the `shapes` (shape (N, length of u)) times the coordinates `q`.
 pub(super) fn add_modes(u: &mut [f64], shapes: &[f64], q: &[f64]) {
-    Arch::new().dispatch(Modes { u, shapes, q });
+    Arch::new().dispatch(AddedModes { u, shapes, q });
 }
 
-impl WithSimd for Modes<'_> {
+impl WithSimd for AddedModes<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -10,7 +10,7 @@
 //! contact set all at once, each time with a Newton step on the set; if that makes no progress only the last wrong one
 //! is exchanged, which ends after a finite number of exchanges (Judice & Pires 1994, Computers Ops Res. 21, 587).
 //!
-//! From one instant to the next only candidates with a small gap are watched; [`Contact::survey`] looks at all and tells
+//! From one instant to the next only candidates with a small gap are watched; [`ContactProblem::survey`] looks at all and tells
 //! whether one has been missed.
 
 use super::nodes::{Ball, Nodes};
@@ -45,7 +45,7 @@ pub struct Loads {
 
 /// The contact problem and its last solution.
 #[derive(Debug, Clone)]
-pub struct Contact<'a> {
+pub struct ContactProblem<'a> {
     pub(super) nodes: &'a Nodes,
     /// Largest gap in magnitude in m of a closed contact.
     pub(super) closed: f64,
@@ -55,7 +55,7 @@ pub struct Contact<'a> {
     gap: Vec<f64>,
     /// Nodes on the wrong side: in contact with a tensile force, or out of contact and too deep. Shape (n).
     pub(super) wrong: Vec<bool>,
-    /// Whether a node is in contact; for [`Contact::mark_wrong`]. Shape (n).
+    /// Whether a node is in contact; for [`ContactProblem::mark_wrong`]. Shape (n).
     touching: Vec<bool>,
     /// Factor of G on the nodes `factored`, in this order.
     pub(super) factor: Cholesky,
@@ -93,7 +93,7 @@ pub struct Work {
     pub loaded: u64,
 }
 
-impl<'a> Contact<'a> {
+impl<'a> ContactProblem<'a> {
     /// The problem of `nodes`, without forces, where contacts indent by about `indentation` in m: what is small goes by that. A body
     /// that relaxes remembers `traces`. Before the first solution there has to be a survey.
     pub fn new(nodes: &'a Nodes, indentation: f64, traces: Option<Traces>) -> Self {
@@ -356,7 +356,7 @@ mod tests {
         let mut touching = 0;
         for n in [1, 2, 5, 12, 40] {
             let (nodes, residual) = nodes(n, &mut random);
-            let mut contact = Contact::new(&nodes, INDENTATION, None);
+            let mut contact = ContactProblem::new(&nodes, INDENTATION, None);
             let far = [Ball { centre: Vector3::new(0.0, 0.0, -20.0), radius: 10.0 }];
             contact.survey(&vec![0.0; 3 * n], &far, f64::INFINITY);
             // one sequence of instants: each starts from the last, deeper or shallower
@@ -389,7 +389,7 @@ mod tests {
     fn a_survey_finds_what_was_not_watched() {
         let mut random = fastrand::Rng::with_seed(5);
         let (nodes, _) = nodes(20, &mut random);
-        let mut contact = Contact::new(&nodes, INDENTATION, None);
+        let mut contact = ContactProblem::new(&nodes, INDENTATION, None);
         let modal = vec![0.0; 60];
         let ball = |height: f64| [Ball { centre: Vector3::new(0.0, 0.0, height - 10.0), radius: 10.0 }];
         contact.survey(&modal, &ball(-0.1), f64::INFINITY);

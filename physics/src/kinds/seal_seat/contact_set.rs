@@ -1,12 +1,12 @@
 //! The contact set: how it changes, and the factor of the flexibility between its nodes.
 
-use super::contact::Contact;
+use super::contact::ContactProblem;
 use crate::error::{Error, Result};
 
 /// Rows that the factor takes up or loses, beyond a sixteenth of it, before it is rather made anew.
 const UPDATES: usize = 4;
 
-impl Contact<'_> {
+impl ContactProblem<'_> {
     /// Makes the factor that of the contact set: anew if `anew` or much has changed, else by adding and taking rows. Rows that
     /// stay keep the normals they were made with, which is what the method's chord is.
     pub(super) fn fit(&mut self, anew: bool) -> Result<()> {

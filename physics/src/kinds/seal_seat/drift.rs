@@ -1,7 +1,7 @@
 //! Exact motion of the seat's modes between two kicks.
 
 use super::system::{State, System};
-use crate::dynamics::memory::Mode;
+use crate::dynamics::memory::ModeFlow;
 use crate::material::Relaxation;
 use crate::numerics::duhamel::Oscillator;
 
@@ -23,7 +23,7 @@ pub(super) struct Rotation {
 /// Of a seat that relaxes: every mode with the internal variables of its material.
 pub(super) struct Flow<'a> {
     terms: &'a [Relaxation],
-    modes: Vec<Mode>,
+    modes: Vec<ModeFlow>,
 }
 
 impl<'a> Drift<'a> {
@@ -33,7 +33,7 @@ impl<'a> Drift<'a> {
         if terms.is_empty() {
             return Self::Elastic(Rotation::over(&system.omega, step));
         }
-        let mode = |&omega: &f64| Mode::new(Oscillator { omega, alpha: 0.0 }, terms, step, 0);
+        let mode = |&omega: &f64| ModeFlow::new(Oscillator { omega, alpha: 0.0 }, terms, step, 0);
         Self::Relaxing(Flow { terms, modes: system.omega.iter().map(mode).collect() })
     }
 
@@ -56,7 +56,7 @@ impl<'a> Drift<'a> {
                 modes.map(|((omega, q), v)| q.hypot(v / omega)).collect()
             }
             Self::Relaxing(flow) => {
-                let of = |(k, mode): (usize, &Mode)| mode.reach(&flow.of_mode(state, k), flow.terms);
+                let of = |(k, mode): (usize, &ModeFlow)| mode.reach(&flow.of_mode(state, k), flow.terms);
                 flow.modes.iter().enumerate().map(of).collect()
             }
         }

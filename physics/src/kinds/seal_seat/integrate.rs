@@ -52,7 +52,7 @@ pub(super) fn integrate_from(system: &System, start: State, options: &Options) -
     let traces = (!system.relaxation.is_empty()).then(|| Traces::new(&system.relaxation, options.step));
     let softer = traces.as_ref().map(|traces| system.nodes.softer(traces.growth()));
     let workspace = Workspace::new(system, softer.as_ref().unwrap_or(&system.nodes), traces);
-    let mut run = Running::new(system, start, options, workspace);
+    let mut run = SealSeatRun::new(system, start, options, workspace);
     run.workspace.survey(system, &run.state, run.margin());
     run.workspace.forces(system, &run.state, options.step, &mut run.forces)?;
     run.sample();
@@ -68,7 +68,7 @@ pub(super) fn integrate_from(system: &System, start: State, options: &Options) -
     Ok(run.finish())
 }
 
-struct Running<'a> {
+struct SealSeatRun<'a> {
     system: &'a System,
     options: Options,
     drift: Drift<'a>,
@@ -78,11 +78,11 @@ struct Running<'a> {
     tally: Tally,
     samples: Vec<Sample>,
     start_energy: f64,
-    kept: Kept,
+    kept: Checkpoint,
 }
 
 /// Where a run can go back to.
-struct Kept {
+struct Checkpoint {
     state: State,
     forces: Forces,
     tally: Tally,
@@ -90,7 +90,7 @@ struct Kept {
     samples: usize,
 }
 
-impl<'a> Running<'a> {
+impl<'a> SealSeatRun<'a> {
     fn new(system: &'a System, state: State, options: &Options, workspace: Workspace<'a>) -> Self {
         Self {
             system,
@@ -101,7 +101,7 @@ impl<'a> Running<'a> {
             forces: Forces::default(),
             tally: Tally::default(),
             samples: Vec::new(),
-            kept: Kept {
+            kept: Checkpoint {
                 state: state.clone(),
                 forces: Forces::default(),
                 tally: Tally::default(),

@@ -1,7 +1,7 @@
 //! Which candidates are watched from one look at all of them to the next.
 
 use super::accumulate::{add_modes, yield_under};
-use super::contact::Contact;
+use super::contact::ContactProblem;
 use super::nodes::Ball;
 use nalgebra::Vector3;
 
@@ -21,8 +21,8 @@ pub struct Survey {
     pub needed: f64,
 }
 
-impl Contact<'_> {
-    /// Looks at all candidates after [`Contact::solve`], and sees to it that those with gaps below `margin` in m, or
+impl ContactProblem<'_> {
+    /// Looks at all candidates after [`ContactProblem::solve`], and sees to it that those with gaps below `margin` in m, or
     /// below some times the margin that would have been needed since the last survey, are watched from now on.
     pub fn survey(&mut self, modal: &[f64], balls: &[Ball], margin: f64) -> Survey {
         let (nodes, n) = (self.nodes, self.nodes.len());

@@ -4,7 +4,7 @@
 
 use super::SealSeat;
 use super::candidates::{Candidate, Partner, on_half_space};
-use super::contact::Contact;
+use super::contact::ContactProblem;
 use super::nodes::{Ball, Nodes};
 use super::survey::Survey;
 use super::traces::Traces;
@@ -175,7 +175,7 @@ impl Forces {
 #[derive(Debug, Clone)]
 pub struct Workspace<'a> {
     /// Contact problem.
-    pub contact: Contact<'a>,
+    pub contact: ContactProblem<'a>,
     /// Of the modes; as many as them.
     accelerations: Vec<f64>,
     balls: Vec<Ball>,
@@ -185,7 +185,7 @@ impl<'a> Workspace<'a> {
     /// Room for `system`, which yields within a step as `nodes` do, and remembers `traces` if it relaxes.
     pub fn new(system: &System, nodes: &'a Nodes, traces: Option<Traces>) -> Self {
         Self {
-            contact: Contact::new(nodes, system.indentation, traces),
+            contact: ContactProblem::new(nodes, system.indentation, traces),
             accelerations: Vec::new(),
             balls: system.balls.clone(),
         }
@@ -196,7 +196,7 @@ impl<'a> Workspace<'a> {
     /// Where a node touches or lets go H is that of the contact set.
     ///
     /// # Errors
-    /// As [`Contact::solve`].
+    /// As [`ContactProblem::solve`].
     pub fn forces(&mut self, system: &System, state: &State, step: f64, forces: &mut Forces) -> Result<()> {
         self.place(system, state);
         self.contact.solve(&state.modal, &self.balls)?;
@@ -235,7 +235,7 @@ impl<'a> Workspace<'a> {
         contact.respond(opening, |i, normal, change| forces.add(system, i, normal, change));
     }
 
-    /// Looks at all candidates at `state`, whose forces have been evaluated: see [`Contact::survey`].
+    /// Looks at all candidates at `state`, whose forces have been evaluated: see [`ContactProblem::survey`].
     pub fn survey(&mut self, system: &System, state: &State, margin: f64) -> Survey {
         self.place(system, state);
         self.contact.survey(&state.modal, &self.balls, margin)

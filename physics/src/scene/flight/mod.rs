@@ -15,7 +15,7 @@ pub(super) use record::with_record;
 use super::Scene;
 use super::collision::{Collision, Rule, broken};
 use super::tolerances::LANDING_SHARE;
-use crate::flight::{self as physics, Chamber, Drag, Field, Scatter, Vector, Wave};
+use crate::flight::{self as physics, Chamber, Field, Scatter, SphereDrag, Vector, Wave};
 
 /// A spring as a scene gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,7 +91,7 @@ impl Flight {
             friction: spring.friction,
             seat,
         });
-        let drag = self.drag.map(|[density, coefficient]| Drag::new(coefficient, density, radius));
+        let drag = self.drag.map(|[density, coefficient]| SphereDrag::new(coefficient, density, radius));
         let field = Field { gravity: self.gravity, spring, drag, shaken: None };
         Ok(physics::Setup {
             mass,

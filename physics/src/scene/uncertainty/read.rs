@@ -39,20 +39,20 @@ pub(in crate::scene) static CORRELATIONS: grammar::Field = grammar::optional(
 );
 
 /// A value of the table: under the name it has there, which dots may take apart.
-struct Entry<'t> {
+struct RawEntry<'t> {
     field: String,
     place: std::ops::Range<usize>,
     value: &'t Spanned<DeValue<'t>>,
 }
 
-impl Entry<'_> {
+impl RawEntry<'_> {
     fn place<'p>(&self, path: &'p str) -> Place<'p> {
         Place { path, span: self.place.clone() }
     }
 }
 
 /// The entries of `table`, those of tables within it (`plate.thickness` without quotes) included.
-fn entries<'t>(table: &'t DeTable<'t>, prefix: &str, fields: &[Field], found: &mut Vec<Entry<'t>>) {
+fn entries<'t>(table: &'t DeTable<'t>, prefix: &str, fields: &[Field], found: &mut Vec<RawEntry<'t>>) {
     for (key, value) in table {
         let field = format!("{prefix}{}", key.get_ref());
         let within = format!("{field}.");
@@ -60,7 +60,7 @@ fn entries<'t>(table: &'t DeTable<'t>, prefix: &str, fields: &[Field], found: &m
             DeValue::Table(inner) if fields.iter().any(|f| f.path().starts_with(&within)) => {
                 entries(inner, &within, fields, found);
             }
-            _ => found.push(Entry { field, place: key.span(), value }),
+            _ => found.push(RawEntry { field, place: key.span(), value }),
         }
     }
 }
@@ -98,7 +98,7 @@ impl Checker<'_> {
         Some(uncertainty)
     }
 
-    fn input(&mut self, entry: &Entry, fields: &[Field], values: &Values) -> Option<UncertainInput> {
+    fn input(&mut self, entry: &RawEntry, fields: &[Field], values: &Values) -> Option<UncertainInput> {
         let path = format!("uncertainty.{}", entry.field);
         let place = entry.place(&path);
         let field = self.field(entry, fields, values)?;
@@ -143,7 +143,7 @@ impl Checker<'_> {
     }
 
     /// The field that an entry names.
-    fn field<'f>(&mut self, entry: &Entry, fields: &'f [Field], values: &Values) -> Option<&'f Field> {
+    fn field<'f>(&mut self, entry: &RawEntry, fields: &'f [Field], values: &Values) -> Option<&'f Field> {
         let name = &entry.field;
         let (message, help) = match fields.iter().find(|field| field.path() == name) {
             Some(field) if !field.is_count() => return Some(field),
@@ -229,7 +229,7 @@ impl Checker<'_> {
         )
     }
 
-    fn correlations(&mut self, entry: &Entry, uncertainty: &mut Uncertainty) {
+    fn correlations(&mut self, entry: &RawEntry, uncertainty: &mut Uncertainty) {
         let path = format!("uncertainty.{CORRELATED}");
         let place = entry.place(&path);
         let Some(items) = entry.value.get_ref().as_array() else {

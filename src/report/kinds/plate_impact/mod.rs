@@ -3,14 +3,14 @@
 mod animation;
 mod picture;
 
-pub use animation::{Film, film};
+pub use animation::{Animation, film};
 
 use super::{Drawing, Presentation};
 use crate::reference::Stored;
 use crate::report::attachments::instant_of_peak;
 use crate::report::figure_geometry::PanelOf;
 use crate::report::section::Section;
-use crate::report::summary_column::Column;
+use crate::report::summary_column::SummaryColumn;
 use crate::report::{
     Attachments, SceneReport, Theme, animation_section, budget_section, dents_section, efficiency_figure,
     figure, flight_section, impacts_section, measured_figure, measured_section, mesh_section,
@@ -46,13 +46,13 @@ const PANELS: [PanelOf; 3] = [
 ];
 
 impl Presentation for Plate {
-    fn columns(&self) -> &'static [Column] {
-        const COLUMNS: [Column; 5] = [
-            Column::new("efficiency", "efficiency", "efficiency"),
-            Column::new("outer peak", "force peaks", "outer_force_peak"),
-            Column::new("inner peak", "force peaks", "inner_force_peak"),
-            Column::new("outer end", "ends of contact", "outer_contact_end"),
-            Column::new("inner end", "ends of contact", "inner_contact_end"),
+    fn columns(&self) -> &'static [SummaryColumn] {
+        const COLUMNS: [SummaryColumn; 5] = [
+            SummaryColumn::new("efficiency", "efficiency", "efficiency"),
+            SummaryColumn::new("outer peak", "force peaks", "outer_force_peak"),
+            SummaryColumn::new("inner peak", "force peaks", "inner_force_peak"),
+            SummaryColumn::new("outer end", "ends of contact", "outer_contact_end"),
+            SummaryColumn::new("inner end", "ends of contact", "inner_contact_end"),
         ];
         &COLUMNS
     }

@@ -3,7 +3,7 @@
 use crate::format::{measure, short};
 use crate::kinds::plate_impact::PlateImpact;
 use crate::report::figure_geometry::x2;
-use crate::report::scene_drawing::{Scale, materials};
+use crate::report::scene_drawing::{DrawingScale, materials};
 use crate::scene::{Edge, Material, Shape};
 use maud::{Markup, html};
 
@@ -24,7 +24,7 @@ pub(super) fn plate_picture(scene: &PlateImpact) -> Markup {
     let top = 0.5 * plate.thickness + 2.0 * r_outer;
     let bottom = -0.5 * plate.thickness - inner.gap - 2.0 * r_inner;
     let factor = ((WIDTH - 2.0 * MARGIN) / (2.0 * half)).min(HEIGHT / (top - bottom));
-    let scale = Scale {
+    let scale = DrawingScale {
         factor,
         left: -0.5 * (WIDTH - 2.0 * MARGIN) / factor,
         top: top + (ABOVE - MARGIN) / factor,
@@ -63,7 +63,7 @@ fn shown_radius(shape: &Shape, plate: f64) -> f64 {
 }
 
 /// A sphere, or the tip of another body, about `centre`; `side` is 1 above the plate and -1 below it.
-fn body(shape: &Shape, name: &str, radius: f64, centre: [f64; 2], side: f64, scale: &Scale) -> Markup {
+fn body(shape: &Shape, name: &str, radius: f64, centre: [f64; 2], side: f64, scale: &DrawingScale) -> Markup {
     let (x, y, r) = (scale.x(centre[0]), scale.z(centre[1]), radius * scale.factor);
     let sweep = if side > 0.0 { 0 } else { 1 };
     let inside = r > 24.0;
@@ -85,7 +85,7 @@ fn body(shape: &Shape, name: &str, radius: f64, centre: [f64; 2], side: f64, sca
 }
 
 /// What holds the rim.
-fn edge(edge: Edge, radius: f64, thickness: f64, scale: &Scale) -> Markup {
+fn edge(edge: Edge, radius: f64, thickness: f64, scale: &DrawingScale) -> Markup {
     let (middle, half) = (scale.z(0.0), 0.5 * thickness);
     html! {
         @for side in [-1.0, 1.0] {

@@ -5,7 +5,7 @@ use crate::reference::MeshSection;
 use crate::report::SceneReport;
 use crate::report::field_raster::cividis;
 use crate::report::figure_geometry::x2;
-use crate::report::section_frame::{Bounds, Frame, Place, Scale};
+use crate::report::section_frame::{Bounds, ColourScale, Frame, Place};
 use maud::{Markup, html};
 
 /// Colours of stresses between 0 and the end of the scale.
@@ -76,7 +76,7 @@ fn covering(section: &MeshSection, values: &[f64]) -> f64 {
 /// Triangles with their edges or, with `field` (values and the end of the scale in Pa), in colours.
 fn picture(section: &MeshSection, bounds: Bounds, field: Option<(&[f64], f64)>, id: &str) -> Markup {
     let name = if field.is_some() { "Von Mises stress in section" } else { "Mesh in section" };
-    let scale = field.map(|(_, largest)| Scale::von_mises(largest));
+    let scale = field.map(|(_, largest)| ColourScale::von_mises(largest));
     let frame = Frame { bounds, aspect: None, across: "x in mm", scale, name, id };
     let shown = |t: &&[[f64; 2]; 3]| {
         let outside =

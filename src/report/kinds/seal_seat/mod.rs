@@ -15,7 +15,7 @@ use crate::report::figure_geometry::PanelOf;
 use crate::report::html::{named, scrolled};
 use crate::report::run_times::marked;
 use crate::report::section::Section;
-use crate::report::summary_column::{Column, degrees};
+use crate::report::summary_column::{SummaryColumn, degrees};
 use crate::report::{Attachments, SceneReport, Theme, figure, flight_section};
 use crate::result::Summary;
 use crate::scene::Scene;
@@ -58,13 +58,13 @@ const PANELS: [PanelOf; 3] = [
 ];
 
 impl Presentation for Seat {
-    fn columns(&self) -> &'static [Column] {
-        const COLUMNS: [Column; 5] = [
-            Column { is_angle: true, ..Column::new("direction", "direction", "sphere_angle") },
-            Column::new("speed", "speed", "sphere_speed"),
-            Column::new("efficiency", "efficiency", "efficiency"),
-            Column::new("sphere peak", "force peaks", "sphere_force_peak"),
-            Column::new("actuator peak", "force peaks", "actuator_force_peak"),
+    fn columns(&self) -> &'static [SummaryColumn] {
+        const COLUMNS: [SummaryColumn; 5] = [
+            SummaryColumn { is_angle: true, ..SummaryColumn::new("direction", "direction", "sphere_angle") },
+            SummaryColumn::new("speed", "speed", "sphere_speed"),
+            SummaryColumn::new("efficiency", "efficiency", "efficiency"),
+            SummaryColumn::new("sphere peak", "force peaks", "sphere_force_peak"),
+            SummaryColumn::new("actuator peak", "force peaks", "actuator_force_peak"),
         ];
         &COLUMNS
     }

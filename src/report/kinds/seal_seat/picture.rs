@@ -4,7 +4,7 @@ use crate::format::{measure, short};
 use crate::kinds::seal_seat::{SealSeat, SphereBody};
 use crate::report::Theme;
 use crate::report::figure_geometry::x2;
-use crate::report::scene_drawing::{Scale, materials};
+use crate::report::scene_drawing::{DrawingScale, materials};
 use crate::report::summary_column::degrees;
 use maud::{Markup, PreEscaped, html};
 
@@ -44,7 +44,7 @@ pub fn seat_picture(scene: &SealSeat, arrows: &[Arrow], theme: Theme) -> String 
     let bottom = -0.5 * actuator.tip_radius;
     let left = -1.02 * seat.membrane_radius;
     let factor = (width - 2.0 * MARGIN) / (-2.0 * left);
-    let scale = Scale { factor, left, top, margin: MARGIN };
+    let scale = DrawingScale { factor, left, top, margin: MARGIN };
     let legend = if alone { 24.0 * arrows.len() as f64 + 8.0 } else { 0.0 };
     let section_height = 2.0 * MARGIN + (top - bottom) * factor;
     let height = section_height + legend;
@@ -96,7 +96,7 @@ fn label(arrow: &Arrow) -> String {
 }
 
 /// Membrane and island, with both seats and the notch taken out.
-fn seat_body(scene: &SealSeat, scale: &Scale) -> Markup {
+fn seat_body(scene: &SealSeat, scale: &DrawingScale) -> Markup {
     let seat = &scene.seat;
     let (r, t) = (seat.membrane_radius, seat.membrane_thickness);
     let (half, h) = (0.5 * seat.island_length, seat.island_height);
@@ -141,7 +141,7 @@ fn hollow(scene: &SealSeat, side: f64) -> Vec<[f64; 2]> {
 }
 
 /// The round end of the actuator that touches the underside at `x`, down to `bottom`.
-fn tip(x: f64, radius: f64, bottom: f64, scale: &Scale) -> String {
+fn tip(x: f64, radius: f64, bottom: f64, scale: &DrawingScale) -> String {
     let depth = -bottom;
     let half = (radius * radius - (radius - depth).powi(2)).max(0.0).sqrt();
     let r = radius * scale.factor;
@@ -152,7 +152,13 @@ fn tip(x: f64, radius: f64, bottom: f64, scale: &Scale) -> String {
     )
 }
 
-fn draw_arrow(arrow: &Arrow, from: [f64; 2], length_per_speed: f64, width: f64, scale: &Scale) -> Markup {
+fn draw_arrow(
+    arrow: &Arrow,
+    from: [f64; 2],
+    length_per_speed: f64,
+    width: f64,
+    scale: &DrawingScale,
+) -> Markup {
     let speed = arrow.velocity[0].hypot(arrow.velocity[1]);
     // at rest, or not a number
     if speed.is_nan() || speed == 0.0 {
@@ -243,7 +249,7 @@ mod tests {
     #[test]
     fn an_arrow_points_where_the_sphere_flies_and_is_as_long_as_it_is_fast() {
         let arrow = |velocity| Arrow { name: "a".into(), velocity, class: "fig-C", dashes: "" };
-        let scale = Scale { factor: 1.0, left: 0.0, top: 0.0, margin: MARGIN };
+        let scale = DrawingScale { factor: 1.0, left: 0.0, top: 0.0, margin: MARGIN };
         let head = |velocity| {
             let svg = draw_arrow(&arrow(velocity), [0.0, 0.0], 10.0, 3.0, &scale).into_string();
             let shaft = svg.split("points=\"").nth(1).expect("shaft").split('"').next().expect("end");

@@ -59,7 +59,7 @@ const fn panel(column: &'static str, label: &'static str, factor: f64) -> Panel 
 }
 
 /// An actuator with the plate at a place.
-struct Case {
+struct ActuatorCase {
     actuator: &'static str,
     gap: f64,
     setup: Option<PlateImpact>,
@@ -68,32 +68,32 @@ struct Case {
 }
 
 /// What a case comes to: kinetic energy of the inner sphere, electrical energy taken, mechanical energy given or had, J.
-struct Outcome {
+struct ActuatorEnergies {
     inner: f64,
     electrical: Option<f64>,
     mechanical: Option<f64>,
 }
 
 /// The stack at `gap` m behind `resistance` Ohm; `None` for the setup if it does not reach the plate.
-fn stack(name: &'static str, resistance: f64, gap: f64) -> Case {
+fn stack(name: &'static str, resistance: f64, gap: f64) -> ActuatorCase {
     let drive = (resistance > 0.0).then_some(Supply { resistance, buffer_capacitance: None });
     let stack = Stack { gap, drive, ..STACK };
     let setup = Some(setup(Shape::Stack(stack), stack.step_speed()))
         .filter(|setup| MovingBody::outer(&setup.outer).is_ok());
-    Case { actuator: name, gap, setup, energies: [None; 2] }
+    ActuatorCase { actuator: name, gap, setup, energies: [None; 2] }
 }
 
 /// The bender with its plate `gap` m beyond the straight position of its tip.
 ///
 /// # Errors
 /// As [`Release::new`].
-fn bent(gap: f64) -> Result<Case> {
+fn bent(gap: f64) -> Result<ActuatorCase> {
     let straight = bender(DISCHARGE)?;
     let (length, stiffness) = (straight.length, straight.bending_stiffness);
     let deflection = TORQUE / moment_for_deflection(length, stiffness, 1.0);
     let bender = Bender { strike_at: -gap / deflection, ..straight };
     let speed = TORQUE * Release::new(&bender)?.speed_per_moment;
-    Ok(Case {
+    Ok(ActuatorCase {
         actuator: "bender",
         gap,
         setup: Some(setup(Shape::Bender(bender), speed)),
@@ -105,12 +105,12 @@ fn bent(gap: f64) -> Result<Case> {
 ///
 /// # Errors
 /// As [`Magnet::lift`].
-fn magnet(gap: f64) -> Result<Case> {
+fn magnet(gap: f64) -> Result<ActuatorCase> {
     let (mass, travel) = PLUNGER;
     let inductance = Inductance::even_gap([20e-3, 40e-3], travel);
     let lift = Magnet { mass, voltage: 12.0, resistance: 8.0, inductance, travel: travel + gap }.lift()?;
     let plunger = Shape::Compact { mass, tip_radius: STACK.tip_radius };
-    Ok(Case {
+    Ok(ActuatorCase {
         actuator: "magnet",
         gap,
         setup: Some(setup(plunger, lift.speed)),
@@ -118,15 +118,15 @@ fn magnet(gap: f64) -> Result<Case> {
     })
 }
 
-fn solve(case: &Case, model: Model) -> Result<Outcome> {
+fn solve(case: &ActuatorCase, model: Model) -> Result<ActuatorEnergies> {
     let Some(setup) = &case.setup else {
-        return Ok(Outcome { inner: 0.0, electrical: None, mechanical: Some(0.0) });
+        return Ok(ActuatorEnergies { inner: 0.0, electrical: None, mechanical: Some(0.0) });
     };
     let mass = setup.inner.shape.mass(&setup.inner.material);
     let scene = parameter::scene("actuators", setup.clone());
     let result: Summary = Reduced::new(&scene, model, None)?.run(TOLERANCE)?;
     let [electrical, mechanical] = case.energies;
-    Ok(Outcome {
+    Ok(ActuatorEnergies {
         inner: 0.5 * mass * result.value("inner_velocity_final").unwrap_or(f64::NAN).powi(2),
         electrical: electrical.or(result.stack.map(|stack| stack.electrical_energy)),
         mechanical: mechanical.or(result.stack.map(|stack| stack.mechanical_energy)),
@@ -141,7 +141,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
     let model = settings.model.unwrap_or(Model::B);
     let gaps = linear(0.0, GAPS.0, GAPS.1);
     let offsets = linear(-OFFSETS.0, OFFSETS.0, OFFSETS.1);
-    let mut cases: Vec<Case> =
+    let mut cases: Vec<ActuatorCase> =
         DRIVES.iter().flat_map(|(name, r)| gaps.iter().map(|gap| stack(name, *r, *gap))).collect();
     for gap in offsets {
         cases.push(bent(gap)?);
@@ -150,7 +150,8 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
         }
     }
     note(&format!("{} impacts with model {model}", cases.len()));
-    let outcomes = cases.par_iter().map(|case| solve(case, model)).collect::<Result<Vec<Outcome>>>()?;
+    let outcomes =
+        cases.par_iter().map(|case| solve(case, model)).collect::<Result<Vec<ActuatorEnergies>>>()?;
     let curve = |name: &str| -> Vec<(f64, f64)> {
         let own = cases.iter().zip(&outcomes).filter(|(case, _)| case.actuator == name);
         own.map(|(case, outcome)| (case.gap, outcome.inner)).collect()
@@ -159,7 +160,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
         let near = curve(name).into_iter().min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
         near.map_or(f64::NAN, |(_, energy)| energy)
     };
-    let row = |(case, outcome): (&Case, &Outcome)| {
+    let row = |(case, outcome): (&ActuatorCase, &ActuatorEnergies)| {
         vec![
             Cell::Text(case.actuator),
             case.gap.into(),

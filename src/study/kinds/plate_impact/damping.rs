@@ -65,13 +65,13 @@ fn lost(scene: &Scene, summary: &Summary) -> [f64; 3] {
 }
 
 /// The impact over the loss factors, by one model or by finite elements.
-struct Course {
+struct LossFactorCurve {
     by: &'static str,
     /// The columns behind `by`, for each loss factor.
     rows: Vec<[Option<f64>; 6]>,
 }
 
-impl Course {
+impl LossFactorCurve {
     fn by(model: Model, name: &'static str, scenes: &[Scene]) -> Result<Self> {
         let row = |(scene, loss_factor): (&Scene, f64)| {
             let summary = Reduced::new(scene, model, None)?.run(TOLERANCE)?;
@@ -120,10 +120,10 @@ pub fn run(note: &mut Note) -> Result<Study> {
     let scenes: Vec<Scene> = LOSS_FACTORS.into_iter().map(scene).collect::<Result<_>>()?;
     note(&format!("{} impacts with models A, B and C", scenes.len()));
     let courses = [
-        Course::by(Model::A, "A", &scenes)?,
-        Course::by(Model::B, "B", &scenes)?,
-        Course::by(Model::C, "C", &scenes)?,
-        Course::recorded(&scenes)?,
+        LossFactorCurve::by(Model::A, "A", &scenes)?,
+        LossFactorCurve::by(Model::B, "B", &scenes)?,
+        LossFactorCurve::by(Model::C, "C", &scenes)?,
+        LossFactorCurve::recorded(&scenes)?,
     ];
     Ok(Study::new(
         "damping",
@@ -131,14 +131,14 @@ pub fn run(note: &mut Note) -> Result<Study> {
                       1.5 mm over its loss factor, the same at all frequencies; the modulus is the storage modulus at 10 kHz. Losses are over the \
                       energy of the outer sphere. Finite elements are those recorded of the validation scenes.",
         "by, loss_factor, efficiency, band, lost_in_plate, lost_in_outer_contact, lost_in_inner_contact",
-        courses.iter().flat_map(Course::cells).collect(),
+        courses.iter().flat_map(LossFactorCurve::cells).collect(),
         claims(&courses),
     ))
 }
 
-fn claims(courses: &[Course; 4]) -> Vec<Claim> {
+fn claims(courses: &[LossFactorCurve; 4]) -> Vec<Claim> {
     let [.., ours, theirs] = courses;
-    let two_per_cent = |course: &Course| {
+    let two_per_cent = |course: &LossFactorCurve| {
         let claim = format!(
             "a polymer's damping takes about two per cent: efficiency lost at a loss factor of {USUAL}, {}",
             course.by

@@ -21,21 +21,21 @@ const TOLERANCE: f64 = 1e-8;
 const BOUNDS: [(&str, f64); 3] = [("efficiency", 1e-3), ("force peaks", 6e-3), ("contact ends", 3e-3)];
 
 /// One way to set model C up.
-struct Case {
+struct ModelVariant {
     name: &'static str,
     setup: ContinuumSetup,
     modes: &'static [usize],
 }
 
-fn cases() -> [Case; 5] {
+fn cases() -> [ModelVariant; 5] {
     let normal = ContinuumSetup::default();
-    let case = |name, patch_factor, mesh| Case {
+    let case = |name, patch_factor, mesh| ModelVariant {
         name,
         setup: ContinuumSetup { patch_factor, mesh },
         modes: &MODES[..1],
     };
     [
-        Case { name: "modes", setup: normal, modes: &MODES },
+        ModelVariant { name: "modes", setup: normal, modes: &MODES },
         case("patch x 0.5", 0.5, normal.mesh),
         case("patch x 2", 2.0, normal.mesh),
         case("mesh coarser by 1.5", 1.0, normal.mesh.refined(1.0 / 1.5)),

@@ -54,15 +54,15 @@ const fn panel(spheres: &'static [&'static str]) -> Panel {
 }
 
 /// A course of the efficiency: number of the impact, efficiency, half width of its band.
-struct Course {
+struct EfficiencyCurve {
     case: &'static str,
     points: Vec<(u64, Option<f64>, Option<f64>)>,
 }
 
-impl Course {
+impl EfficiencyCurve {
     fn of(case: &'static str, impacts: &[Impact]) -> Self {
         let point = |i: &Impact| (i.number, i.value("efficiency"), i.band("efficiency"));
-        Course { case, points: impacts.iter().map(point).collect() }
+        EfficiencyCurve { case, points: impacts.iter().map(point).collect() }
     }
 
     fn first(&self) -> Option<f64> {
@@ -118,7 +118,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
 }
 
 /// The courses of all cases, and the elastic value as one.
-fn courses(radius: f64, speed: f64, model: Model) -> Result<Vec<Course>> {
+fn courses(radius: f64, speed: f64, model: Model) -> Result<Vec<EfficiencyCurve>> {
     let summary = |(_, strength, sphere_spot, rate): &Case| {
         let mut setup = impact(PLATE.0, PLATE.1, Edge::Clamped, steel(), radius);
         setup.outer.speed = speed;
@@ -130,11 +130,12 @@ fn courses(radius: f64, speed: f64, model: Model) -> Result<Vec<Course>> {
         Reduced::new(&scene("shakedown", setup), model, None)?.run(TOLERANCE)
     };
     let summaries = CASES.par_iter().map(summary).collect::<Result<Vec<_>>>()?;
-    let of_case = |(case, summary): (&Case, &Summary)| Course::of(case.0, &summary.impacts);
-    let mut courses: Vec<Course> = CASES.iter().zip(&summaries).map(of_case).collect();
+    let of_case = |(case, summary): (&Case, &Summary)| EfficiencyCurve::of(case.0, &summary.impacts);
+    let mut courses: Vec<EfficiencyCurve> = CASES.iter().zip(&summaries).map(of_case).collect();
     let longest = courses.iter().filter_map(|course| Some(course.points.last()?.0)).max().unwrap_or(1);
     let elastic = summaries[0].elastic_efficiency;
-    courses.push(Course { case: ELASTIC, points: vec![(1, elastic, None), (longest, elastic, None)] });
+    courses
+        .push(EfficiencyCurve { case: ELASTIC, points: vec![(1, elastic, None), (longest, elastic, None)] });
     Ok(courses)
 }
 
@@ -142,7 +143,7 @@ fn courses(radius: f64, speed: f64, model: Model) -> Result<Vec<Course>> {
 ///
 /// # Errors
 /// [`Error::Reference`] if there is none; as [`Scene::read`].
-fn of_reference(name: &str, store: &Store) -> Result<Course> {
+fn of_reference(name: &str, store: &Store) -> Result<EfficiencyCurve> {
     let scene = of_project(name)?;
     let mut resolutions = [Resolution::Fine, Resolution::Paper, Resolution::Coarse].into_iter();
     let missing = || {
@@ -150,17 +151,17 @@ fn of_reference(name: &str, store: &Store) -> Result<Course> {
     };
     let stored =
         resolutions.find_map(|resolution| store.find(&scene, resolution).found()).ok_or_else(missing)?;
-    Ok(Course::of(REFERENCE, &stored.outcome.summary.impacts))
+    Ok(EfficiencyCurve::of(REFERENCE, &stored.outcome.summary.impacts))
 }
 
 /// What the paper says of Fig. 13, by `model`; its numbers are in a picture only, so that the bounds are on the signs.
-fn claims_of(spheres: &str, model: &str, courses: &[Course]) -> Vec<Claim> {
-    let find = |case| courses.iter().find(|course: &&Course| course.case == case);
+fn claims_of(spheres: &str, model: &str, courses: &[EfficiencyCurve]) -> Vec<Claim> {
+    let find = |case| courses.iter().find(|course: &&EfficiencyCurve| course.case == case);
     let shown = find(SHOWN);
-    let elastic = find(ELASTIC).and_then(Course::first);
+    let elastic = find(ELASTIC).and_then(EfficiencyCurve::first);
     let share = |top: Option<f64>, bottom: Option<f64>| Some(top? / bottom?);
     let told = |text: &str| format!("{spheres} spheres, {SHOWN}, model {model}: {text}");
-    let (first, steady) = (shown.and_then(Course::first), shown.and_then(Course::steady));
+    let (first, steady) = (shown.and_then(EfficiencyCurve::first), shown.and_then(EfficiencyCurve::steady));
     let holds = |text: &str, value: Option<bool>| {
         let value = value.map(|holds| f64::from(u8::from(holds)));
         Claim::new(told(text), "1", Some(1.0), value, 0.0)
@@ -182,8 +183,8 @@ fn claims_of(spheres: &str, model: &str, courses: &[Course]) -> Vec<Claim> {
         holds(
             "a lower yield strength needs more impacts to come within 1 % of the steady state",
             find(CASES[0].0)
-                .and_then(Course::impacts_needed)
-                .zip(shown.and_then(Course::impacts_needed))
+                .and_then(EfficiencyCurve::impacts_needed)
+                .zip(shown.and_then(EfficiencyCurve::impacts_needed))
                 .map(|(weak, strong)| weak > strong),
         ),
     ]

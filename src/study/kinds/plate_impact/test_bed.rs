@@ -43,7 +43,7 @@ pub const PANELS: [Panel; 1] = [Panel::of(
 .by(Axis::new("case", "", 1.0))];
 
 /// What one test bed would find.
-struct Found {
+struct TestBedResult {
     /// Pa
     yield_strength: f64,
     /// Efficiency of the first impact and of the last.
@@ -89,7 +89,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
 }
 
 /// What [`DRAWN`] test beds like the validation scene `name` would find.
-fn found(name: &str, model: Model) -> Result<Vec<Found>> {
+fn found(name: &str, model: Model) -> Result<Vec<TestBedResult>> {
     let path = project_root()?.join(format!("scenes/validation/{name}.toml"));
     let text = fs::read_to_string(&path).map_err(|e| Error::io("read", &path, e))? + TOLERANCES;
     let template = Template::parse(name, &text)?;
@@ -111,15 +111,15 @@ fn found(name: &str, model: Model) -> Result<Vec<Found>> {
             .zip(strength);
         let (((first, last), elastic), strength) =
             whole.ok_or_else(|| Error::Internal("a series has impacts with efficiencies".into()))?;
-        Ok(Found { yield_strength: numbers[strength], first, last, elastic })
+        Ok(TestBedResult { yield_strength: numbers[strength], first, last, elastic })
     };
     (0..DRAWN).into_par_iter().map(one).collect()
 }
 
 /// What the paper says of Figs. 12 and 13, each as the share of the test beds of which it is true. Of the smaller spheres it says
 /// less, since they were measured less accurately.
-fn claims_of(spheres: &str, found: &[Found]) -> Vec<Claim> {
-    let share = |text: &str, holds: &dyn Fn(&Found) -> bool| {
+fn claims_of(spheres: &str, found: &[TestBedResult]) -> Vec<Claim> {
+    let share = |text: &str, holds: &dyn Fn(&TestBedResult) -> bool| {
         let share = found.iter().filter(|one| holds(one)).count() as f64 / found.len() as f64;
         // true of at least so many
         Claim::new(format!("{spheres} spheres: {text}"), "1", Some(1.0), Some(share), 1.0 - MOST)

@@ -29,7 +29,7 @@ const HEIGHT: f64 = 20e-3;
 
 /// What MuJoCo was asked and said, in mm, ms, g and N.
 #[derive(Debug, Deserialize)]
-struct Stored {
+struct MujocoRecord {
     flights: Vec<StoredFlight>,
     shocks: Vec<StoredShock>,
 }
@@ -84,7 +84,7 @@ struct ComparedShock<'a> {
 }
 
 /// A flight of both.
-struct Compared {
+struct ComparedFlight {
     seed: usize,
     ours: Seat,
     theirs: Seat,
@@ -102,11 +102,11 @@ pub fn run(note: &mut Note) -> Result<Study> {
     // without MuJoCo's flights the rocker's statements are left
     let stored = stored().unwrap_or_else(|error| {
         note(&error.to_string());
-        Stored { flights: Vec::new(), shocks: Vec::new() }
+        MujocoRecord { flights: Vec::new(), shocks: Vec::new() }
     });
     let improved = of_project("seal-seat-improved")?.seal_seat()?.clone();
     note(&format!("{} flights with 26 neighbours each", stored.flights.len()));
-    let compared: Vec<Compared> =
+    let compared: Vec<ComparedFlight> =
         stored.flights.par_iter().map(|flight| compare(&improved, flight)).collect::<Result<_>>()?;
     note("shocks");
     let shocks: Vec<ComparedShock> =
@@ -127,7 +127,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
     ))
 }
 
-fn stored() -> Result<Stored> {
+fn stored() -> Result<MujocoRecord> {
     let path = project_root()?.join(STORED);
     let missing = |why: String| {
         Error::Reference(format!(
@@ -139,7 +139,7 @@ fn stored() -> Result<Stored> {
     serde_json::from_str(&text).map_err(|error| missing(error.to_string()))
 }
 
-fn row(compared: &Compared) -> Vec<Cell> {
+fn row(compared: &ComparedFlight) -> Vec<Cell> {
     let [distance, time] = [0, 1].map(|k| Cell::from(compared.first_touch.map(|off| off[k])));
     let unanimous = if compared.unanimous { "yes" } else { "no" };
     let texts = [compared.ours.name(), compared.theirs.name(), unanimous].map(Cell::Text);
@@ -147,7 +147,7 @@ fn row(compared: &Compared) -> Vec<Cell> {
     vec![Cell::Count(compared.seed), ours, theirs, unanimous, distance, time]
 }
 
-fn of_flights(compared: &[Compared]) -> Vec<Claim> {
+fn of_flights(compared: &[ComparedFlight]) -> Vec<Claim> {
     let unanimous = compared.iter().filter(|flight| flight.unanimous);
     let differ = unanimous.clone().filter(|flight| flight.ours != flight.theirs).count();
     let equal = compared.iter().filter(|flight| flight.ours == flight.theirs).count();
@@ -235,7 +235,7 @@ fn valve(seat: &SealSeat, flight: &StoredFlight) -> Result<Setup> {
     })
 }
 
-fn compare(improved: &SealSeat, stored: &StoredFlight) -> Result<Compared> {
+fn compare(improved: &SealSeat, stored: &StoredFlight) -> Result<ComparedFlight> {
     let mut seat = improved.clone();
     seat.seat.tilt = stored.seat.tilt;
     seat.seat.aperture_angle = stored.seat.aperture_angle;
@@ -264,7 +264,7 @@ fn compare(improved: &SealSeat, stored: &StoredFlight) -> Result<Compared> {
         let distance = (own.place - 1e-3 * Vector::new(x, z)).norm();
         [distance, own.time - 1e-3 * time]
     });
-    Ok(Compared { seed: stored.seed, ours, theirs: stored.found.seat, unanimous, first_touch })
+    Ok(ComparedFlight { seed: stored.seed, ours, theirs: stored.found.seat, unanimous, first_touch })
 }
 
 fn landscape(setup: &Setup) -> Result<Landscape> {

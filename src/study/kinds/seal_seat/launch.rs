@@ -20,7 +20,7 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const DESIGNS: [(&str, &str); 2] = [("initial", "seal-seat-initial"), ("improved", "seal-seat-improved")];
 
 /// A design with one thing changed.
-struct Case {
+struct LaunchCase {
     design: &'static str,
     varied: &'static str,
     /// What is changed, one of [`PARAMETERS`], or [`NOTHING`].
@@ -82,7 +82,7 @@ const fn only(texts: &'static [&'static str]) -> Option<Only> {
     Some(Only { column: "parameter", texts })
 }
 
-impl Case {
+impl LaunchCase {
     fn seat(&self) -> Result<&SealSeat> {
         self.scene.seal_seat()
     }
@@ -109,7 +109,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
         results.push(solved.ok());
     }
     let corners = CORNERS.map(|corner| corner.reference(note));
-    let reference = |case: &Case| {
+    let reference = |case: &LaunchCase| {
         let corner = CORNERS.iter().position(|c| (c.design, c.varied) == (case.design, case.varied));
         corner.and_then(|k| corners[k].as_ref())
     };
@@ -221,7 +221,7 @@ fn claims(intended: f64, angle: &dyn Fn(&str, &str) -> Option<f64>) -> Vec<Claim
     ]
 }
 
-fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<Case>> {
+fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<LaunchCase>> {
     let mut cases = Vec::new();
     let notch = improved.seal_seat()?.seat.notch;
     for ((design, _), base) in DESIGNS.into_iter().zip([initial, improved]) {
@@ -234,7 +234,7 @@ fn cases(initial: &Scene, improved: &Scene) -> Result<Vec<Case>> {
                 notch.floor = notch.floor.max(seat.seat.membrane_thickness);
             }
             let scene = Scene { setup: seat.into(), ..base.clone() };
-            cases.push(Case { design, varied, parameter, scene });
+            cases.push(LaunchCase { design, varied, parameter, scene });
         };
         let [aperture, tilt, impact, slot, membrane] = PARAMETERS;
         add(NOTHING, "nothing", &|_| {});
@@ -289,7 +289,7 @@ pub(super) fn determined(summary: &Summary) -> Result<SeatQuantities> {
 }
 
 fn row(
-    case: &Case,
+    case: &LaunchCase,
     result: Option<&SeatQuantities>,
     reference: Option<&SeatQuantities>,
 ) -> Result<Vec<Cell>> {

@@ -1,6 +1,6 @@
 //! The end of a step: what contacts, modes and residual flexibilities agree on.
 
-use super::Stepper;
+use super::MemoryStepper;
 use crate::dynamics::memory::step_force::StepForce;
 
 /// Newton steps after which a contact counts as unsolvable, and the least part of one.
@@ -11,7 +11,7 @@ const SETTLED: f64 = 1e-13;
 const ROUNDING: f64 = 1e-10;
 
 /// Approaches tried for the end of a step.
-pub(super) struct Trial {
+pub(super) struct ApproachTrial {
     pub(super) x: [f64; 2],
     pub(super) force: [f64; 2],
     /// The forces that act in the step, N.
@@ -28,7 +28,7 @@ pub(super) struct Trial {
     error: [f64; 2],
 }
 
-impl Trial {
+impl ApproachTrial {
     /// Not a number if an error is none.
     fn size(&self) -> f64 {
         let [a, b] = self.error.map(f64::abs);
@@ -36,17 +36,17 @@ impl Trial {
     }
 }
 
-impl Stepper<'_> {
+impl MemoryStepper<'_> {
     /// The end of the step in which the modes alone would approach by `free` m, by Newton's method with halved steps; `None` if there is
     /// no equilibrium. Where the law of a contact has a kink within the step the forces may have to be their means.
-    pub(super) fn solve(&self, free: [f64; 2]) -> Option<Trial> {
+    pub(super) fn solve(&self, free: [f64; 2]) -> Option<ApproachTrial> {
         self.solve_by(self.step_force, free).or_else(|| match self.step_force {
             StepForce::Conserving => self.solve_by(StepForce::Mean, free),
             _ => None,
         })
     }
 
-    fn solve_by(&self, step_force: StepForce, free: [f64; 2]) -> Option<Trial> {
+    fn solve_by(&self, step_force: StepForce, free: [f64; 2]) -> Option<ApproachTrial> {
         let free = [free[0] + self.offset[0], free[1] + self.offset[1]];
         let scale = free[0].abs().max(free[1].abs()).max(f64::MIN_POSITIVE);
         let trial = |x: [f64; 2], patch: [f64; 2]| self.trial(step_force, free, x, patch);
@@ -76,7 +76,7 @@ impl Stepper<'_> {
     }
 
     /// What the contacts answer at the approaches `x`, from the patches of a nearby state on.
-    fn trial(&self, step_force: StepForce, free: [f64; 2], x: [f64; 2], patch: [f64; 2]) -> Trial {
+    fn trial(&self, step_force: StepForce, free: [f64; 2], x: [f64; 2], patch: [f64; 2]) -> ApproachTrial {
         let answer = [0, 1].map(|i| self.bodies.contacts[i].answer(x[i]));
         let [force, slope, taken] = [0, 1, 2].map(|of| answer.map(|answer| answer[of]));
         let (elastic, patch, flexibility) = self.bodies.elastic(self.system, force, patch);
@@ -92,12 +92,12 @@ impl Stepper<'_> {
             let lost = coupling[i][0] * acting[0] + coupling[i][1] * acting[1];
             bodies[i] + lost - free[i]
         });
-        Trial { x, force, acting, slope, taken, energy, patch, flexibility, error }
+        ApproachTrial { x, force, acting, slope, taken, energy, patch, flexibility, error }
     }
 
     /// Newton's step in the approaches, m, to be taken off: as if the flexibility did not change with the patches.
-    fn newton(&self, trial: &Trial) -> [f64; 2] {
-        let Trial { slope, flexibility, error, .. } = trial;
+    fn newton(&self, trial: &ApproachTrial) -> [f64; 2] {
+        let ApproachTrial { slope, flexibility, error, .. } = trial;
         let growth = |i: usize| self.bodies.creep(i, 0).growth().max(self.bodies.creep(i, 1).growth());
         let share = self.step_force.share_of_end();
         let per_force = |i: usize, j: usize| {

@@ -1,6 +1,6 @@
 //! Where the plate bends around the inner body, which the model does not compute: contact is on the axis only.
 
-use super::Stepper;
+use super::WetStepper;
 use crate::dynamics::wet::FluidLoad;
 use crate::error::{Error, Result};
 use crate::fluid::film::Overlap;
@@ -8,7 +8,7 @@ use crate::fluid::film::Overlap;
 /// Width of the film over that farther in, from which on it is closed there: what is inside has nowhere to flow.
 const CLOSED: f64 = 0.1;
 
-impl Stepper<'_> {
+impl WetStepper<'_> {
     /// Why no step longer than `h` s meets the tolerance.
     pub(super) fn stalled(&self, h: f64) -> Error {
         // the film's law jumps where an overlap begins, however small

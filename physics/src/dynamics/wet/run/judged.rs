@@ -1,6 +1,6 @@
 //! What a solved wet step is wrong by.
 
-use super::{Stepper, joined};
+use super::{WetStepper, joined};
 use crate::dynamics::step_bounds::{force_scale, peak_share};
 use crate::dynamics::system::dot;
 use crate::dynamics::wet::touch_between;
@@ -25,7 +25,7 @@ impl Settled {
     }
 }
 
-impl Stepper<'_> {
+impl WetStepper<'_> {
     /// Errors at which the iteration may end, with the momenta `scale` (see [`super::momentum_scale`]).
     pub(super) fn settled(&self, scale: [f64; 2]) -> Settled {
         let least = (0..2).map(|i| self.force_scale(i, &[], scale)).fold(f64::INFINITY, f64::min);

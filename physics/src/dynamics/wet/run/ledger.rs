@@ -1,6 +1,6 @@
 //! What is booked of a wet step: impulses, work and losses.
 
-use super::{Stepper, joined};
+use super::{WetStepper, joined};
 use crate::dynamics::contact_ledger::work;
 use crate::dynamics::integration::FluidAccount;
 use crate::dynamics::system::INNER;
@@ -22,7 +22,7 @@ pub(super) struct StepAccount {
     pub(super) rounding: f64,
 }
 
-impl Stepper<'_> {
+impl WetStepper<'_> {
     /// What the fluid does in the step of `h` s just solved.
     fn fluid_in_step(&self, h: f64) -> FluidAccount {
         let trial = &self.trial;

@@ -8,12 +8,12 @@ use crate::result::Outcome;
 const SAMPLES: usize = 600;
 
 /// The contact forces over time: outer and inner one, of reference and model. Times in µs, forces in N.
-pub(super) struct Forces {
+pub(super) struct ForceCurves {
     pub(super) curves: [[Vec<(f64, f64)>; 2]; 2],
     pub(super) end: f64,
 }
 
-impl Forces {
+impl ForceCurves {
     pub(super) fn new(reference: &Outcome, reduced: &Outcome, movement: &Movement) -> Self {
         let end = movement.times.last().copied().unwrap_or(0.0);
         let time = |k: usize| end * k as f64 / (SAMPLES - 1) as f64;
@@ -22,7 +22,7 @@ impl Forces {
             values.into_iter().enumerate().map(|(k, force)| (1e6 * time(k), force)).collect()
         };
         let of = |outcome| ["outer_force", "inner_force"].map(|name| curve(outcome, name));
-        Forces { curves: [of(reference), of(reduced)], end: 1e6 * end }
+        ForceCurves { curves: [of(reference), of(reduced)], end: 1e6 * end }
     }
 
     pub(super) fn at(&self, curve: &[(f64, f64)], time: f64) -> (f64, f64) {

@@ -4,9 +4,9 @@ use super::stage::{Stage, WIDTH};
 use crate::report::colours::{BODIES, hex};
 use crate::report::field_raster::cividis;
 use crate::report::figure_geometry::x2;
-use crate::report::plot_axis::{Axis, Plot};
+use crate::report::plot_axis::{Plot, PlotAxis};
 use crate::report::polyline::path;
-use crate::report::scene_drawing::Scale;
+use crate::report::scene_drawing::DrawingScale;
 use crate::report::ticks::{tick_label, ticks};
 use crate::scene::Shape;
 use maud::{Markup, PreEscaped, html};
@@ -61,7 +61,7 @@ fn halves(stage: &Stage) -> Markup {
 fn picture(stage: &Stage, k: usize) -> Markup {
     let [left, top, width, height] = stage.picture();
     let alone = stage.movement.fields.is_empty();
-    let scale = Scale {
+    let scale = DrawingScale {
         factor: width / (2.0 * stage.view.radius),
         left: -stage.view.radius,
         top: stage.view.high,
@@ -79,7 +79,7 @@ fn picture(stage: &Stage, k: usize) -> Markup {
     }
 }
 
-fn bodies(stage: &Stage, k: usize, scale: &Scale) -> Markup {
+fn bodies(stage: &Stage, k: usize, scale: &DrawingScale) -> Markup {
     let (setup, movement, by) = (stage.setup, stage.movement, stage.exaggeration);
     let half = 0.5 * setup.plate.thickness;
     let face = |side: f64| {
@@ -102,7 +102,7 @@ fn bodies(stage: &Stage, k: usize, scale: &Scale) -> Markup {
 }
 
 /// A sphere, or the sphere that a tip is part of.
-fn body(shape: &Shape, z: f64, fill: &str, scale: &Scale) -> Markup {
+fn body(shape: &Shape, z: f64, fill: &str, scale: &DrawingScale) -> Markup {
     html! {
         circle.body cx=(x2(scale.x(0.0))) cy=(x2(scale.z(z))) r=(x2(shape.tip_radius() * scale.factor)) fill=(fill) {}
     }
@@ -112,7 +112,7 @@ fn body(shape: &Shape, z: f64, fill: &str, scale: &Scale) -> Markup {
 fn scales(stage: &Stage) -> Markup {
     let [left, top, width, height] = stage.picture();
     let bottom = top + height;
-    let scale = Scale { factor: width / (2.0 * stage.view.radius), left: 0.0, top: 0.0, margin: 0.0 };
+    let scale = DrawingScale { factor: width / (2.0 * stage.view.radius), left: 0.0, top: 0.0, margin: 0.0 };
     let (bar, count) = (0.4 * width, 60);
     let to = 1e-6 * stage.largest;
     let marks = ticks(0.0, to, 4);
@@ -145,8 +145,8 @@ fn forces(stage: &Stage, time: f64) -> Markup {
         top: top + height + SCALES,
         width: WIDTH as f64 - 74.0 - 12.0,
         height: FORCES,
-        x: Axis::over([0.0, stage.forces.end].into_iter(), false),
-        y: Axis::over(all, false).of_quantity(),
+        x: PlotAxis::over([0.0, stage.forces.end].into_iter(), false),
+        y: PlotAxis::over(all, false).of_quantity(),
     };
     let (x_marks, y_marks) = (plot.x.marks(8), plot.y.marks(3));
     let line = |points: &[(f64, f64)]| path(&points.iter().map(|p| plot.at(*p)).collect::<Vec<_>>());

@@ -21,7 +21,7 @@ const PAUSE: u16 = 120;
 
 /// An animation and one of its frames.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Film {
+pub struct Animation {
     /// The animation as GIF.
     pub gif: Vec<u8>,
     /// PNG of the frame nearest to the largest force.
@@ -36,15 +36,20 @@ pub struct Film {
 ///
 /// # Errors
 /// [`Error::Internal`] if it can't be drawn.
-pub fn film(scene: &Scene, reference: &Outcome, reduced: &[Outcome], movement: &Movement) -> Result<Film> {
+pub fn film(
+    scene: &Scene,
+    reference: &Outcome,
+    reduced: &[Outcome],
+    movement: &Movement,
+) -> Result<Animation> {
     let stage = Stage::new(scene, reference, &reduced[movement.model], movement)?;
     let mut palette = Palette::new();
-    let frames = (0..movement.times.len()).map(|k| Frame::new(&stage, k, &mut palette));
-    let frames: Vec<Frame> = frames.collect::<Result<_>>()?;
+    let frames = (0..movement.times.len()).map(|k| AnimationFrame::new(&stage, k, &mut palette));
+    let frames: Vec<AnimationFrame> = frames.collect::<Result<_>>()?;
     let peak = instant_of_peak(&reference.history, "outer_force");
     let distance = |k: &usize| (movement.times[*k] - peak).abs();
     let nearest = (0..frames.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
-    Ok(Film {
+    Ok(Animation {
         gif: gif(&frames, &palette).map_err(|e| internal(&e.to_string()))?,
         still: palette.png(&frames[nearest])?,
         instant: movement.times[nearest],
@@ -57,13 +62,13 @@ fn internal(what: &str) -> Error {
 }
 
 /// Indices into the palette, row by row.
-struct Frame {
+struct AnimationFrame {
     width: usize,
     height: usize,
     pixels: Vec<u8>,
 }
 
-impl Frame {
+impl AnimationFrame {
     /// Frame number `k`: the drawing, and the field in its left half.
     fn new(stage: &Stage, k: usize, palette: &mut Palette) -> Result<Self> {
         let drawing = raster(&frame::svg(stage, k), SCALE as f32)?;
@@ -74,12 +79,12 @@ impl Frame {
             let shown = field.as_ref().map_or(ground, |field| field.colour_at(n % width, n / width, ground));
             palette.index(shown)
         };
-        Ok(Frame { width, height, pixels: drawing.pixels().iter().enumerate().map(index).collect() })
+        Ok(AnimationFrame { width, height, pixels: drawing.pixels().iter().enumerate().map(index).collect() })
     }
 }
 
 /// Frames one after the other, of each what has changed.
-fn gif(frames: &[Frame], palette: &Palette) -> std::result::Result<Vec<u8>, gif::EncodingError> {
+fn gif(frames: &[AnimationFrame], palette: &Palette) -> std::result::Result<Vec<u8>, gif::EncodingError> {
     let mut bytes = Vec::new();
     let [width, height] = frames.first().map_or([0; 2], |frame| [frame.width as u16, frame.height as u16]);
     let mut encoder = gif::Encoder::new(&mut bytes, width, height, &palette.colours().concat())?;
@@ -129,7 +134,7 @@ mod tests {
         }
     }
 
-    fn acted(fields: Vec<FieldMesh>) -> (Film, Vec<Vec<u8>>, [usize; 2]) {
+    fn acted(fields: Vec<FieldMesh>) -> (Animation, Vec<Vec<u8>>, [usize; 2]) {
         let text = include_str!("../../../../../tests/fixtures/plate-impact.toml");
         let scene = Scene::parse("plate-impact.toml", text).expect("valid");
         let run =

@@ -1,6 +1,6 @@
 //! The colours of an animation: one palette for all its frames, so that what does not move stays the same.
 
-use super::Frame;
+use super::AnimationFrame;
 use crate::error::{Error, Result};
 use crate::report::colours::{BODIES, MODELS};
 use crate::report::field_raster::cividis;
@@ -59,7 +59,7 @@ impl Palette {
     ///
     /// # Errors
     /// [`Error::Internal`] if it can't be encoded.
-    pub(super) fn png(&self, frame: &Frame) -> Result<Vec<u8>> {
+    pub(super) fn png(&self, frame: &AnimationFrame) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, frame.width as u32, frame.height as u32);
         encoder.set_color(png::ColorType::Indexed);

@@ -1,6 +1,6 @@
 //! What all frames of an animation have in common: the part of the scene in view, the scales, and the fields.
 
-use super::forces::Forces;
+use super::forces::ForceCurves;
 use crate::curves::peak;
 use crate::error::Result;
 use crate::format::{minus, model_name};
@@ -36,7 +36,7 @@ pub(super) struct Stage<'a> {
     pub(super) movement: &'a Movement,
     pub(super) model: String,
     pub(super) colour: String,
-    pub(super) forces: Forces,
+    pub(super) forces: ForceCurves,
     pub(super) view: View,
     /// By which displacements are drawn too large.
     pub(super) exaggeration: f64,
@@ -89,7 +89,7 @@ impl<'a> Stage<'a> {
             movement,
             model: format!("model {}", model_name(model, reduced.summary.modes)),
             colour: hex(of_model(model)),
-            forces: Forces::new(reference, reduced, movement),
+            forces: ForceCurves::new(reference, reduced, movement),
             view,
             exaggeration: if largest > 0.0 { round_below(room / largest).max(1.0) } else { 1.0 },
             largest: movement.fields.iter().map(within).fold(0.0, f64::max),

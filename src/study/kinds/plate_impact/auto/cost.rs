@@ -13,7 +13,7 @@ const REPEATS: usize = 3;
 
 /// Wall times in s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cost {
+pub(super) struct WallTimes {
     /// Set-up and run, nothing cached.
     pub(super) fresh: f64,
     /// The same with the bodies of model C from the cache.
@@ -22,7 +22,7 @@ pub(super) struct Cost {
     pub(super) run: f64,
 }
 
-impl Cost {
+impl WallTimes {
     /// Of `auto` at `tolerance`, its choice included.
     pub(super) fn of_auto(scene: &Scene, tolerance: f64, folder: &Cache) -> Result<Self> {
         Self::of(tolerance, folder, |cache| Reduced::auto_in(scene, tolerance, cache))

@@ -19,7 +19,7 @@ use crate::result::Summary;
 use crate::sampling::latin_hypercube;
 use crate::scene::{self, Model, Scene};
 use crate::study::{Cell, Claim, Note, Settings, Study, columns};
-use cost::Cost;
+use cost::WallTimes;
 use draw::{DIMENSIONS, draw};
 use rayon::prelude::*;
 use truth::{Setting, Truth};
@@ -121,7 +121,7 @@ pub fn check(extent: &Extent, store: &Store, note: &mut Note) -> Result<Study> {
 }
 
 /// A scene to be judged.
-struct Case {
+struct AutoCase {
     scene: Scene,
     /// What counts as exact, if it is known beforehand: the reference.
     reference: Option<PlateQuantities>,
@@ -130,7 +130,7 @@ struct Case {
 }
 
 /// What auto made of a scene, and what is true.
-struct Judged {
+struct JudgedScene {
     /// One for each tolerance.
     autos: Vec<Auto>,
     truth: Option<Truth>,
@@ -150,7 +150,7 @@ struct Auto {
 }
 
 /// Lets auto choose, and looks for the truth where it makes a promise or costs are measured.
-fn judged(case: &Case, cache: &Cache) -> Result<Judged> {
+fn judged(case: &AutoCase, cache: &Cache) -> Result<JudgedScene> {
     let speed = case.scene.plate_impact()?.outer.speed;
     let chosen = TOLERANCES.map(|tolerance| Reduced::auto_in(&case.scene, tolerance, cache).ok());
     let promises =
@@ -185,11 +185,11 @@ fn judged(case: &Case, cache: &Cache) -> Result<Judged> {
         }
     };
     let autos = chosen.into_iter().zip(TOLERANCES).map(auto).collect();
-    Ok(Judged { autos, truth })
+    Ok(JudgedScene { autos, truth })
 }
 
 /// The plate impacts among the project's scenes that have a stored reference with narrow bands.
-fn references(store: &Store) -> Result<Vec<Case>> {
+fn references(store: &Store) -> Result<Vec<AutoCase>> {
     let mut cases = Vec::new();
     for file in scene::every()? {
         let scene = Scene::read(&file)?;
@@ -202,7 +202,7 @@ fn references(store: &Store) -> Result<Vec<Case>> {
             && let Some(exact) = PlateQuantities::of_table(&reference.quantities)
             && is_sharp(&reference, &exact, scene.plate_impact()?.outer.speed)
         {
-            cases.push(Case { scene, reference: Some(exact), costed: false });
+            cases.push(AutoCase { scene, reference: Some(exact), costed: false });
         }
     }
     Ok(cases)
@@ -217,27 +217,27 @@ fn is_sharp(reference: &Summary, exact: &PlateQuantities, speed: f64) -> bool {
 }
 
 /// `count` random scenes, the costs of the first `costed` to be measured.
-fn random(count: usize, seed: u64, costed: usize) -> Vec<Case> {
+fn random(count: usize, seed: u64, costed: usize) -> Vec<AutoCase> {
     let points = latin_hypercube(DRAWS * count, DIMENSIONS, seed);
     let scenes = points.iter().enumerate().filter_map(|(k, x)| draw(&format!("random-{k}"), x));
-    let case = |(k, scene)| Case { scene, reference: None, costed: k < costed };
+    let case = |(k, scene)| AutoCase { scene, reference: None, costed: k < costed };
     scenes.take(count).enumerate().map(case).collect()
 }
 
 /// One scene at one tolerance.
 fn row(
     index: usize,
-    case: &Case,
+    case: &AutoCase,
     auto: &Auto,
     cheapest: Option<Setting>,
     cache: &Cache,
 ) -> Result<Vec<Cell>> {
-    let Case { scene, reference, costed } = case;
+    let AutoCase { scene, reference, costed } = case;
     let plate = &scene.plate_impact()?.plate;
     let tolerance = auto.tolerance;
-    let own = costed.then(|| Cost::of_auto(scene, tolerance, cache).ok()).flatten();
-    let least = cheapest.and_then(|setting| Cost::of_setting(scene, setting, tolerance, cache).ok());
-    let ratio = |part: fn(&Cost) -> f64| Some(part(own.as_ref()?) / part(least.as_ref()?));
+    let own = costed.then(|| WallTimes::of_auto(scene, tolerance, cache).ok()).flatten();
+    let least = cheapest.and_then(|setting| WallTimes::of_setting(scene, setting, tolerance, cache).ok());
+    let ratio = |part: fn(&WallTimes) -> f64| Some(part(own.as_ref()?) / part(least.as_ref()?));
     let estimated = auto.reduced.as_ref().and_then(Reduced::choice).and_then(|choice| choice.estimated_error);
     let text = |model: Model| Cell::Text(name(model));
     Ok(vec![
