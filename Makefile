@@ -56,7 +56,8 @@ python: setup wheel
 	$(TOOL) -m mypy
 	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference
 	cargo build --release
-	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck $(WHEEL)/bin/python -m pytest -q python
+	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck IMPACTCHECK_PYTHON=$(or $(IMPACTCHECK_PYTHON),$(CURDIR)/$(TOOL)) \
+	    $(WHEEL)/bin/python -m pytest -q python
 	$(WHEEL)/bin/python -m mypy.stubtest impactcheck._core
 
 # a live finite-element run on coarse meshes, and the gate on what it gives; the scene is the one whose coarse mesh is
