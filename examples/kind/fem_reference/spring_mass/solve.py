@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
+import meshio
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -126,7 +129,13 @@ def _contact(times: Floats, approach: Floats, force: Floats, impulse: float) -> 
 
 def solver(scene: SpringScene) -> ImpactSolver[Solution]:
     """How the scene is solved."""
-    details = Details(contacts=("sphere",), duration=_duration(scene))
+
+    def details(folder: Path, *_: Any) -> Details:
+        # the store asks for the file of a mesh: here the centre of the sphere and the mass
+        points = np.array([[0.0, 0.0, -scene.sphere.radius], [0.0, 0.0, 0.0]])
+        meshio.write_points_cells(folder / "mesh.vtu", points, [("vertex", np.array([[0], [1]]))])
+        return Details(contacts=("sphere",), duration=_duration(scene))
+
     return ImpactSolver(
         scene=scene,
         method=[1, scene.raw],
@@ -136,5 +145,5 @@ def solver(scene: SpringScene) -> ImpactSolver[Solution]:
         compute=lambda factor, *_: compute(scene, factor),
         quantities=lambda solution: solution.values,
         curves=CURVES,
-        details=lambda *_: details,
+        details=details,
     )
