@@ -42,7 +42,8 @@ class Solution:
 
     run: ImpactRun
     values: dict[str, float]
-    dofs: int = 2
+    dofs: int = 4
+    """Of two nodes with two components each; those along the radius are fixed."""
 
 
 def _duration(scene: SpringScene) -> float:
