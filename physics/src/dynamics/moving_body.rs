@@ -62,7 +62,7 @@ impl MovingBody {
     /// The outer body: rigid, a bender with the modes of its beam, or a stack with those of its rod.
     ///
     /// # Errors
-    /// As [`Release::new`] and [`Self::stack`].
+    /// As [`Release::new`]; [`Error::Solver`] for a stack that does not reach the plate, and as [`Circuit::new`].
     pub fn outer(outer: &Outer) -> Result<Self> {
         let bender = match &outer.shape {
             Shape::Bender(bender) => bender,
