@@ -11,7 +11,10 @@ from typing import Any, cast
 from .common.arguments import Study
 from .common.decode import member, one_of
 
-KINDS = {"plate-impact": "plate_impact", "seal-seat": "seal_seat"}
+KINDS = {
+    "plate-impact": "plate_impact",
+    "seal-seat": "seal_seat",
+}
 """Folder of each kind. Its module `command` has a dictionary ``COMMANDS`` by name, and may have
 one of ``STUDIES``; it imports late what these need."""
 

@@ -4,7 +4,7 @@ pub mod fit;
 mod residuals;
 
 use crate::error::{Error, Result};
-use crate::kinds::{self, Series};
+use crate::kinds;
 use crate::measured::{AlignedRecord, ContactEnds, Filtered, Finding, FindingKind, Record, Speed, align_all};
 use crate::result::{CUT, SCHEMA_VERSION};
 use crate::scene::{Field, Model, Template};
@@ -91,7 +91,7 @@ pub fn calibrate(
     let ranges =
         fields.iter().zip(&nominal).map(|(field, x)| (field.path(), [x * (1.0 - REACH), x * (1.0 + REACH)]));
     let approach = kinds::of(template.scene()).approach(template.scene())?;
-    let series = Series::new(ranges, template.scene(), None, IMPACTS)?;
+    let series = kinds::series(ranges, template.scene(), None, IMPACTS)?;
     let run = |values: &[f64]| {
         let numbers: Vec<(&Field, f64)> = fields.iter().zip(values.iter().copied()).collect();
         let scene = template.with(&numbers).map_err(|e| Error::Usage(e.to_string()))?;

@@ -1,8 +1,9 @@
 //! Models as the command line names them: A, B, C, `auto`, or `external`; and what is asked of one.
 
 use crate::error::{Error, Result};
+use crate::kinds;
 use crate::result::Choice;
-use crate::scene::Model;
+use crate::scene::{Model, Scene};
 use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -113,6 +114,26 @@ pub struct ModelRequest {
 const LARGEST_INTEGRATION: f64 = 1e-2;
 
 impl ModelRequest {
+    /// The model of `scene` that is asked for, of a kind among whose models the program does not choose: the scene's, or the kind's
+    /// last one, if none is.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] of what is no model of such a kind.
+    pub(super) fn named(&self, scene: &Scene) -> Result<Model> {
+        match self.model {
+            Some(AskedModel::Named(model)) => Ok(model),
+            Some(AskedModel::Auto) => {
+                Err(Error::Usage(format!("--model auto: {}", kinds::models_only(scene))))
+            }
+            Some(AskedModel::External) => Err(beside_a_reference()),
+            None => {
+                let last = kinds::of(scene).models().last().copied();
+                let found = scene.reduced.model.or(last);
+                found.ok_or_else(|| Error::Internal(format!("`{}` has no models", scene.name)))
+            }
+        }
+    }
+
     /// The tolerance of the time integration of a model that is named, `default` if the user names none.
     ///
     /// # Errors

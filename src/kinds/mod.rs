@@ -51,7 +51,9 @@ pub struct Starter {
 /// What the program has to know of a kind of scene.
 pub trait Kind: physics::Kind {
     /// Whether a scene of this kind can be used so.
-    fn serves(&self, purpose: Use) -> bool;
+    fn serves(&self, _purpose: Use) -> bool {
+        false
+    }
 
     /// A scene file to start from.
     fn starter(&self) -> Starter;
@@ -61,7 +63,9 @@ pub trait Kind: physics::Kind {
 
     /// Counts changes of `fem_reference` that change the results of this kind with this `geometry`; raising it makes their stored
     /// solutions stale.
-    fn revision(&self, geometry: Geometry) -> u32;
+    fn revision(&self, _: Geometry) -> u32 {
+        1
+    }
 
     /// Hash of the geometry that a mesh file belongs to, if there is such a file.
     fn geometry_hash(&self, _: &Scene) -> Option<String> {

@@ -109,7 +109,7 @@ pub struct Problem {
     objective: Objective,
     model: Model,
     modes: Option<usize>,
-    series: Impacts,
+    series: Box<dyn Impacts>,
     /// If a quantile of the objective is maximised.
     robust: Option<Robust>,
 }
@@ -192,7 +192,7 @@ impl Problem {
         if !kinds::of(scene).models().contains(&model) {
             return Err(Error::Usage(format!("--model {model}: {}", kinds::models_only(scene))));
         }
-        let series = Impacts::new(ranges, scene, mesh, impacts)?;
+        let series = kinds::series(ranges, scene, mesh, impacts)?;
         Ok(Problem { template, variables, objective, model, modes, series, robust })
     }
 
@@ -236,7 +236,7 @@ impl Problem {
         if self.series.is_dear() { EXPENSIVE_TOLERANCE } else { TOLERANCE }
     }
 
-    fn model(&self, values: &[f64]) -> Result<SeriesModel> {
+    fn model(&self, values: &[f64]) -> Result<Box<dyn SeriesModel>> {
         self.series.model(self.scene(values)?, self.model, self.modes)
     }
 
@@ -253,7 +253,7 @@ impl Problem {
     /// Those of the model.
     fn efficiency_of(&self, model: Model, values: &[f64]) -> Result<f64> {
         let scene = self.scene(values)?;
-        let alone = Impacts::new([], &scene, None, 1)?;
+        let alone = kinds::series([], &scene, None, 1)?;
         let summary = alone.model(scene, model, None)?.run(TOLERANCE)?;
         summary.value("efficiency").ok_or_else(|| Error::Solver(CUT.into()))
     }

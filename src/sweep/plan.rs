@@ -56,7 +56,7 @@ pub struct Plan {
     axes: Vec<SweepAxis>,
     points: Points,
     hash: String,
-    series: Series,
+    series: Box<dyn Series>,
     /// Name and unit of the numbers of a result.
     results: Vec<(&'static str, &'static str)>,
 }
@@ -153,7 +153,7 @@ impl Plan {
         });
         let points = samples.map_or(Points::Grid, Points::Samples);
         let impacts = models.len() * points.count(&axes);
-        let series = Series::new(varied, template.scene(), mesh.as_ref(), impacts)?;
+        let series = kinds::series(varied, template.scene(), mesh.as_ref(), impacts)?;
         let mut plan = Plan {
             results: results(kinds::of(template.scene())),
             scene_file,
@@ -184,7 +184,7 @@ impl Plan {
     ) -> Result<Self> {
         let ranges = fields.iter().map(|(field, range)| (field.path(), *range));
         kinds::serving(template.scene(), Use::Samples)?;
-        let series = Series::new(ranges, template.scene(), None, impacts)?;
+        let series = kinds::series(ranges, template.scene(), None, impacts)?;
         let fields: Vec<Field> = fields.into_iter().map(|(field, _)| field).collect();
         let mut plan = Plan {
             results: results(kinds::of(template.scene())),

@@ -7,12 +7,14 @@ mod reading;
 pub mod seal_seat;
 mod series;
 
+use crate::error::{Error, Result};
 use crate::flight::Launch;
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table};
 use crate::scene::{Language, Model, Scene};
 
 pub use reading::{schema, unit_of};
-pub use series::{Series, SeriesModel};
+use seal_seat::SeatMesh;
+pub use series::{Series, SeriesModel, series};
 
 /// What everything that compares, shows or keeps results has to know of a kind of scene.
 #[expect(private_bounds, reason = "what a kind adds to the scene language is the affair of this crate")]
@@ -34,17 +36,42 @@ pub trait Kind: Language {
     /// The curves of its histories, in order, without samples.
     fn curves(&self) -> &'static [Curve];
 
+    /// `model` of `scene`, ready to run, with so many `modes`, its own or the scene's number if it is `None`.
+    ///
+    /// # Errors
+    /// Those of the model's set-up; [`Error::Internal`] of a kind whose models need a mesh.
+    fn model(&self, scene: &Scene, model: Model, _modes: Option<usize>) -> Result<Box<dyn SeriesModel>> {
+        Err(Error::Internal(format!("model {model} of `{}` needs a mesh", scene.name)))
+    }
+
+    /// What the impacts of a [`series`] share: nothing, unless a kind says otherwise.
+    ///
+    /// # Errors
+    /// As [`series`].
+    fn series(
+        &self,
+        _varied: &[(&str, [f64; 2])],
+        _: &Scene,
+        _mesh: Option<&SeatMesh>,
+        _impacts: usize,
+    ) -> Result<Box<dyn Series>> {
+        Ok(Box::new(series::Independent))
+    }
+
     /// Adds to the `summary` of any model or reference of a scene of this kind how near it comes to the bounds of the
     /// theories behind it, and warns where it is beyond. Without `history` some of it is not known.
-    fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>);
+    fn judge(&self, _: &Scene, _: &mut Summary, _: Option<&History>) {}
 
     /// The quantities that the curves of a `history` show, which another program need not state.
     fn shown(&self, _: &Scene, _: &History) -> Table {
         Table::new(self.quantities())
     }
 
-    /// How an impact with the results `summary` launches the sphere that flies; `None` if the run was cut during a contact.
-    fn launch(&self, summary: &Summary) -> Option<Launch>;
+    /// How an impact with the results `summary` launches the sphere that flies; `None` if the run was cut during a contact, or
+    /// if none flies.
+    fn launch(&self, _: &Summary) -> Option<Launch> {
+        None
+    }
 
     /// What must hold of a result of `scene`; of its curves, if they can be sampled.
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement>;

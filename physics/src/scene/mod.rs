@@ -130,6 +130,19 @@ pub struct ReferenceSettings {
     pub rigid: Option<Rigid>,
 }
 
+impl ReferenceSettings {
+    /// Of elements of this geometry, with nothing else said.
+    pub(crate) fn of(geometry: Geometry) -> Self {
+        Self {
+            geometry,
+            elements_per_contact_radius: None,
+            elements_per_ring_radius: None,
+            element_order: None,
+            rigid: None,
+        }
+    }
+}
+
 /// Spheres that the solid reference takes as rigid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]

@@ -12,16 +12,22 @@ pub(crate) trait Bodies: Any + Debug + Send + Sync + erased_serde::Serialize + V
     fn kind(&self) -> &'static str;
 
     /// Geometry that can't be.
-    fn collisions(&self) -> Vec<Collision>;
+    fn collisions(&self) -> Vec<Collision> {
+        Vec::new()
+    }
 
     /// Numbers that are admissible and yet hardly meant.
-    fn doubts(&self) -> Vec<String>;
+    fn doubts(&self) -> Vec<String> {
+        Vec::new()
+    }
 
-    /// The sphere of a `flight` after the impact, and its chamber.
+    /// The sphere of a `flight` after the impact, and its chamber; of kinds that have the key.
     ///
     /// # Errors
     /// A sentence if the sphere has no room in the chamber, or is none.
-    fn flyer(&self, flight: &Flight) -> Result<Flyer, String>;
+    fn flyer(&self, _: &Flight) -> Result<Flyer, String> {
+        Err(format!("a scene of kind `{}` has no flight", self.kind()))
+    }
 }
 
 /// What can be copied and compared behind a reference.

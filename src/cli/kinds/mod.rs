@@ -6,31 +6,42 @@ mod seal_seat;
 use super::Context;
 use super::asked_model::AskedModel;
 use super::asked_model::ModelRequest;
-use crate::error::Result;
-use crate::kinds::{self, KINDS, SharedBodies};
+use crate::error::{Error, Result};
+use crate::kinds::{self, Kind, SharedBodies};
 use crate::reference::Stored;
 use crate::report::Cost;
 use crate::result::Outcome;
 use crate::scene::{Model, Scene};
+
+/// Relative error of the time integration when the caller names none.
+const DEFAULT_TOLERANCE: f64 = 1e-7;
 
 /// Results of the models, and what they have cost if they share a mesh with the reference.
 pub(super) type Compared = (Vec<Outcome>, Vec<Cost>);
 
 /// The reduced models of a kind of scene.
 pub(super) trait ReducedModels: Sync {
-    /// Runs the model that is `asked` for, one of a series of impacts that share `bodies`; without `curves` its history has no more
+    /// Runs the model that is `asked` for, the scene's or the kind's last one if none is, one of a series of impacts that share `bodies`; without `curves` its history has no more
     /// samples than its limits need.
     ///
     /// # Errors
     /// Those of the arguments and of the model.
     fn reduced(
         &self,
-        context: &Context,
+        _: &Context,
         scene: &Scene,
         asked: &ModelRequest,
-        bodies: &SharedBodies,
-        curves: bool,
-    ) -> Result<Outcome>;
+        _bodies: &SharedBodies,
+        _curves: bool,
+    ) -> Result<Outcome> {
+        if let Some(mesh) = &asked.mesh {
+            let mesh = mesh.display();
+            return Err(Error::Usage(format!("--mesh {mesh}: the models of `{}` have no mesh", scene.name)));
+        }
+        let model = asked.named(scene)?;
+        let tolerance = asked.integration_tolerance(DEFAULT_TOLERANCE)?;
+        kinds::of(scene).model(scene, model, asked.modes)?.run_with_history(tolerance)
+    }
 
     /// Whether [`ReducedModels::beside`] solves on the very mesh of the reference.
     fn shares_mesh(&self) -> bool {
@@ -38,14 +49,18 @@ pub(super) trait ReducedModels: Sync {
     }
 
     /// Whether `model` takes `scene`.
-    fn takes(&self, scene: &Scene, model: Model) -> bool;
+    fn takes(&self, scene: &Scene, model: Model) -> bool {
+        kinds::of(scene).model(scene, model, None).is_ok()
+    }
 
     /// Runs the models `asked` for, with the tolerance of `auto`, without a reference; none if they need its mesh.
     ///
     /// # Errors
     /// Those of the models.
-    fn alone(&self, _: &Scene, _: (&[AskedModel], Option<f64>)) -> Result<Vec<Outcome>> {
-        Ok(Vec::new())
+    fn alone(&self, scene: &Scene, (models, _): (&[AskedModel], Option<f64>)) -> Result<Vec<Outcome>> {
+        let kind = kinds::of(scene);
+        let own = kind.models().iter().filter(|model| models.contains(&AskedModel::Named(**model)));
+        own.map(|model| kind.model(scene, *model, None)?.run_with_history(DEFAULT_TOLERANCE)).collect()
     }
 
     /// Runs those of the models `asked` for that there are, with the tolerance of `auto`, beside a reference.
@@ -54,19 +69,28 @@ pub(super) trait ReducedModels: Sync {
     /// Those of the models.
     fn beside(
         &self,
-        context: &Context,
+        _: &Context,
         scene: &Scene,
-        stored: &Stored,
+        _: &Stored,
         asked: (&[AskedModel], Option<f64>),
-    ) -> Result<Compared>;
+    ) -> Result<Compared> {
+        Ok((self.alone(scene, asked)?, Vec::new()))
+    }
 }
 
-/// The models of each of [`KINDS`].
-const MODELS: [&dyn ReducedModels; KINDS.len()] = [&plate_impact::Plates, &seal_seat::Seats];
+/// Models that need nothing but the scene.
+struct Plain;
+
+impl ReducedModels for Plain {}
+
+/// The kinds whose models need more than the scene: a mesh, or bodies that several of them share.
+const MODELS: [(&dyn Kind, &dyn ReducedModels); 2] =
+    [(&kinds::plate_impact::Kind, &plate_impact::Plates), (&kinds::seal_seat::Kind, &seal_seat::Seats)];
 
 /// The models of `scene`.
 pub(super) fn of(scene: &Scene) -> &'static dyn ReducedModels {
-    MODELS[kinds::index(scene)]
+    let name = kinds::of(scene).name();
+    MODELS.iter().find(|(kind, _)| kind.name() == name).map_or(&Plain, |(_, models)| *models)
 }
 
 /// Whether one of the models `asked` for is one of `scene`; `auto` chooses among several.

@@ -58,10 +58,6 @@ impl ReducedModels for Plates {
         if curves { reduced.run_with_history(tolerance) } else { reduced.run_judged(tolerance) }
     }
 
-    fn takes(&self, scene: &Scene, model: Model) -> bool {
-        Reduced::new(scene, model, None).is_ok()
-    }
-
     fn alone(
         &self,
         scene: &Scene,

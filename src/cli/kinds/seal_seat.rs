@@ -3,12 +3,11 @@
 use super::{Compared, ReducedModels};
 use crate::body::cache::Cache;
 use crate::cli::Context;
-use crate::cli::asked_model::ModelRequest;
-use crate::cli::asked_model::{self, AskedModel};
+use crate::cli::asked_model::{AskedModel, ModelRequest};
 use crate::cli::progress::Bar;
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::kinds::SharedBodies;
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
-use crate::kinds::{self, SharedBodies};
 use crate::reference::{self, Resolution, Stored};
 use crate::report::Cost;
 use crate::result::Outcome;
@@ -26,14 +25,7 @@ impl ReducedModels for Seats {
         _: &SharedBodies,
         _: bool,
     ) -> Result<Outcome> {
-        let model = match asked.model {
-            Some(AskedModel::Named(model)) => model,
-            Some(AskedModel::Auto) => {
-                return Err(Error::Usage(format!("--model auto: {}", kinds::models_only(scene))));
-            }
-            Some(AskedModel::External) => return Err(asked_model::beside_a_reference()),
-            None => scene.reduced.model.unwrap_or(Model::C),
-        };
+        let model = asked.named(scene)?;
         let cache = Cache::from_environment();
         let bar = Bar::new(context, &scene.name);
         let mesh = match &asked.mesh {
@@ -63,6 +55,10 @@ impl ReducedModels for Seats {
 
     fn takes(&self, _: &Scene, model: Model) -> bool {
         model == Model::C
+    }
+
+    fn alone(&self, _: &Scene, _: (&[AskedModel], Option<f64>)) -> Result<Vec<Outcome>> {
+        Ok(Vec::new())
     }
 
     fn beside(

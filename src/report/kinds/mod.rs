@@ -9,11 +9,11 @@ pub use seal_seat::{Arrow, seat_picture};
 use super::figure_geometry::PanelOf;
 use super::section::Section;
 use super::summary_column::SummaryColumn;
-use super::{Attachments, SceneReport};
+use super::{Attachments, SceneReport, Theme, figure};
 use crate::kinds::{self, KINDS};
 use crate::reference::Stored;
 use crate::scene::Scene;
-use maud::Markup;
+use maud::{Markup, html};
 
 /// A drawing of a scene, a file of its own.
 pub(super) struct Drawing {
@@ -23,6 +23,14 @@ pub(super) struct Drawing {
     pub(super) caption: Option<&'static str>,
     /// The drawing as a stand-alone SVG.
     pub(super) svg: String,
+}
+
+impl Drawing {
+    /// The curves of model and reference.
+    pub(super) fn curves(report: &SceneReport) -> Self {
+        let caption = Some("Displacement, velocity and contact force");
+        Drawing { ending: "", caption, svg: figure(report, Theme::Standalone) }
+    }
 }
 
 /// What a kind of scene shows.
@@ -37,22 +45,34 @@ pub(super) trait Presentation: Sync {
     fn curves_told(&self) -> &'static str;
 
     /// What a stored solution has to be drawn.
-    fn attachments(&self, stored: &Stored) -> Attachments;
+    fn attachments(&self, _: &Stored) -> Attachments {
+        Attachments::default()
+    }
 
     /// The drawings beside the page.
-    fn drawings(&self, report: &SceneReport) -> Vec<Drawing>;
+    fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
+        vec![Drawing::curves(report)]
+    }
 
     /// The scene drawn to scale, and what there is to say of the drawing.
-    fn scene_drawing(&self, report: &SceneReport) -> Markup;
+    fn scene_drawing(&self, _: &SceneReport) -> Markup {
+        html! {}
+    }
 
     /// The scene in numbers: what, and what it measures.
-    fn measures(&self, scene: &Scene) -> Vec<(String, String)>;
+    fn measures(&self, _: &Scene) -> Vec<(String, String)> {
+        Vec::new()
+    }
 
     /// What only this kind shows, behind the models' sections.
-    fn sections(&self, report: &SceneReport) -> Vec<Section>;
+    fn sections(&self, _: &SceneReport) -> Vec<Section> {
+        Vec::new()
+    }
 
     /// Pictures of mesh and stress of the reference; empty if there are none.
-    fn mesh(&self, report: &SceneReport) -> Markup;
+    fn mesh(&self, _: &SceneReport) -> Markup {
+        html! {}
+    }
 }
 
 /// How results of each of [`KINDS`] are shown.

@@ -7,7 +7,7 @@
 
 use crate::error::{Error, Result};
 use crate::flight::Seat;
-use crate::kinds::Series;
+use crate::kinds::{self, Series};
 use crate::project::project_root;
 use crate::reference::mesh_to_follow;
 use crate::result::FlightSummary;
@@ -131,7 +131,7 @@ struct Valve {
     nominal: f64,
     /// In F.
     capacitance: Option<f64>,
-    series: Series,
+    series: Box<dyn Series>,
     model: Model,
     /// What scatters.
     fields: Vec<Field>,
@@ -163,7 +163,7 @@ impl Valve {
         let inputs = Inputs::new(&uncertainty, SEED)
             .ok_or_else(|| Error::Internal("independent inputs have a correlation".into()))?;
         let transmission = demonstrator.transmission;
-        let series = Series::new([], template.scene(), mesh.as_ref(), 1)?;
+        let series = kinds::series([], template.scene(), mesh.as_ref(), 1)?;
         let model = demonstrator.model;
         Ok(Self { template, transmission, speed, nominal, capacitance, series, model, fields, inputs })
     }

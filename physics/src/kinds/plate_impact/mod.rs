@@ -22,6 +22,8 @@ mod truncation;
 mod validity;
 pub mod variants;
 
+use super::{SeatMesh, Series, SeriesModel};
+use crate::error::Result;
 use crate::flight::Launch;
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table};
 use crate::scene::{Model, Scene};
@@ -55,6 +57,21 @@ impl super::Kind for Kind {
 
     fn curves(&self) -> &'static [Curve] {
         &CURVES
+    }
+
+    fn model(&self, scene: &Scene, model: Model, modes: Option<usize>) -> Result<Box<dyn SeriesModel>> {
+        Ok(Box::new(reduced::Reduced::new(scene, model, modes)?))
+    }
+
+    fn series(
+        &self,
+        varied: &[(&str, [f64; 2])],
+        scene: &Scene,
+        _: Option<&SeatMesh>,
+        impacts: usize,
+    ) -> Result<Box<dyn Series>> {
+        let varied = varied.iter().copied();
+        Ok(Box::new(shared::SharedBodies::for_varied(varied, scene.plate_impact()?, impacts)))
     }
 
     fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>) {

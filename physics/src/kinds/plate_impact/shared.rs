@@ -4,12 +4,14 @@ use super::PlateImpact;
 use super::continua::Continua;
 use super::joined::{join, kirchhoff_system};
 use super::predictor::Predictor;
+use super::reduced::Reduced;
 use crate::body::cache::Cache;
 use crate::body::continuum::{UnitBodies, Varied};
 use crate::body::kirchhoff::UnitPlates;
 use crate::error::Result;
+use crate::kinds::{Series, SeriesModel};
 use crate::scene::DEFAULT_MODES;
-use crate::scene::Plate;
+use crate::scene::{Model, Plate, Scene};
 
 /// Eigenproblems that are not solved again, and, where shapes recur, bodies that are not meshed again.
 #[derive(Debug)]
@@ -73,5 +75,11 @@ impl SharedBodies {
     /// The bodies of model C.
     pub(super) fn continua(&self) -> Continua<'_> {
         Continua::new(self.continuum.as_ref(), &self.cache)
+    }
+}
+
+impl Series for SharedBodies {
+    fn model(&self, scene: Scene, model: Model, modes: Option<usize>) -> Result<Box<dyn SeriesModel>> {
+        Ok(Box::new(Reduced::in_series(scene, model, modes, self)?))
     }
 }

@@ -28,6 +28,8 @@ pub mod traces;
 mod truncation;
 mod watch;
 
+use super::Series;
+use crate::error::{Error, Result};
 use crate::flight::Launch;
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
 use crate::scene::{Model, Scene};
@@ -61,6 +63,17 @@ impl super::Kind for Kind {
 
     fn curves(&self) -> &'static [Curve] {
         &CURVES
+    }
+
+    fn series(
+        &self,
+        _: &[(&str, [f64; 2])],
+        scene: &Scene,
+        mesh: Option<&SeatMesh>,
+        _: usize,
+    ) -> Result<Box<dyn Series>> {
+        let mesh = mesh.ok_or_else(|| Error::Internal("a series of seal seats has a mesh".into()))?;
+        Ok(Box::new(SeatSeries::new(scene, mesh)?))
     }
 
     fn judge(&self, scene: &Scene, summary: &mut Summary, history: Option<&History>) {

@@ -13,10 +13,10 @@ use super::truncation;
 use crate::body::cache::Cache;
 use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
-use crate::kinds::Kind as _;
 use crate::kinds::flight;
+use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::vibration_frequency;
-use crate::result::{CUT, History, Losses, Outcome, Point, Summary};
+use crate::result::{CUT, History, Losses, Outcome, Point, Summary, Table};
 use crate::scene::DEFAULT_MODES;
 use crate::scene::{Model, Scene};
 use std::sync::Arc;
@@ -313,4 +313,18 @@ fn history(result: &Integration) -> History {
         history.push(s.time, sample);
     }
     history
+}
+
+impl SeriesModel for SeatModel {
+    fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
+        SeatModel::run_with_history(self, tolerance)
+    }
+
+    fn run(&self, tolerance: f64) -> Result<Summary> {
+        SeatModel::run(self, tolerance)
+    }
+
+    fn point(&self, tolerance: f64) -> Result<Point<Table>> {
+        SeatModel::point(self, tolerance).map(|point| point.map(|found| found.table()))
+    }
 }

@@ -9,6 +9,7 @@ use crate::body::cache::Cache;
 use crate::body::kept::Kept;
 use crate::body::solid::TetMesh;
 use crate::error::Result;
+use crate::kinds::{Series, SeriesModel};
 use crate::scene::{Material, Model, Scene};
 use std::sync::Arc;
 
@@ -79,5 +80,15 @@ impl SeatSeries {
             Ok(Made { geometry, material, zones: *zones, modes, mesh: mesh.clone(), body })
         };
         Ok(Arc::clone(&self.made.find_or(fits, make)?.body))
+    }
+}
+
+impl Series for SeatSeries {
+    fn is_dear(&self) -> bool {
+        true
+    }
+
+    fn model(&self, scene: Scene, model: Model, modes: Option<usize>) -> Result<Box<dyn SeriesModel>> {
+        Ok(Box::new(SeatSeries::model(self, &scene, model, modes)?))
     }
 }

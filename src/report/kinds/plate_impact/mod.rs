@@ -13,7 +13,7 @@ use crate::report::section::Section;
 use crate::report::summary_column::SummaryColumn;
 use crate::report::{
     Attachments, SceneReport, Theme, animation_section, budget_section, dents_section, efficiency_figure,
-    figure, flight_section, impacts_section, measured_figure, measured_section, mesh_section,
+    flight_section, impacts_section, measured_figure, measured_section, mesh_section,
 };
 use crate::scene::Scene;
 use maud::{Markup, html};
@@ -78,16 +78,17 @@ impl Presentation for Plate {
 
     fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
         let drawing = |ending, caption, svg| Drawing { ending, caption, svg };
-        let curves = figure(report, Theme::Standalone);
         let measured = measured_figure(report, Theme::Standalone);
         let efficiencies = efficiency_figure(report);
-        let curves = drawing("", Some("Displacement, velocity and contact force"), curves);
         let measured = measured.map(|svg| drawing("-measured", None, svg));
         let efficiencies = efficiencies.map(|svg| drawing("-efficiencies", None, svg));
         let impacts = impacts_section::impacts_figure(report)
             .map(|svg| drawing("-impacts", Some("Efficiency over the number of the impact"), svg));
         let dents = dents_section::dents_figure(report).map(|svg| drawing("-dents", None, svg));
-        [Some(curves), impacts, dents, measured, efficiencies].into_iter().flatten().collect()
+        [Some(Drawing::curves(report)), impacts, dents, measured, efficiencies]
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     fn scene_drawing(&self, report: &SceneReport) -> Markup {

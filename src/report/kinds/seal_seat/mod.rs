@@ -16,7 +16,7 @@ use crate::report::html::{named, scrolled};
 use crate::report::run_times::marked;
 use crate::report::section::Section;
 use crate::report::summary_column::{SummaryColumn, degrees};
-use crate::report::{Attachments, SceneReport, Theme, figure, flight_section};
+use crate::report::{Attachments, SceneReport, Theme, flight_section};
 use crate::result::Summary;
 use crate::scene::Scene;
 use maud::{Markup, PreEscaped, html};
@@ -98,9 +98,7 @@ impl Presentation for Seat {
             caption: Some("Section with the directions of flight"),
             svg: seat_picture(setup, &arrows(report), Theme::Standalone),
         });
-        let svg = figure(report, Theme::Standalone);
-        let curves = Drawing { ending: "", caption: Some("Displacement, velocity and contact force"), svg };
-        section.into_iter().chain([curves]).collect()
+        section.into_iter().chain([Drawing::curves(report)]).collect()
     }
 
     fn scene_drawing(&self, report: &SceneReport) -> Markup {

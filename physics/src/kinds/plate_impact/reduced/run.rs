@@ -8,13 +8,13 @@ use crate::dynamics::ledger_check;
 use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
-use crate::kinds::Kind as _;
 use crate::kinds::plate_impact::Kind;
 use crate::kinds::plate_impact::results::{PlateQuantities, quantities, values};
 use crate::kinds::plate_impact::series::{Done, Impacts, SAMPLES_PER_CONTACT};
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
-use crate::result::{BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary};
+use crate::kinds::{Kind as _, SeriesModel};
+use crate::result::{self, BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary, Table};
 use crate::scene::{self, Shape};
 use std::time::Instant;
 
@@ -293,6 +293,21 @@ fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
             )
         })
         .collect()
+}
+
+impl SeriesModel for Reduced {
+    fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
+        Reduced::run_with_history(self, tolerance)
+    }
+
+    fn run(&self, tolerance: f64) -> Result<Summary> {
+        Reduced::run(self, tolerance)
+    }
+
+    /// `tolerance` bounds the error of the time integration in all results.
+    fn point(&self, tolerance: f64) -> Result<result::Point<Table>> {
+        self.all_within(tolerance).map(|point| point.map(|found| found.table()))
+    }
 }
 
 #[cfg(test)]

@@ -57,12 +57,10 @@ pub(super) fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
     let empty = Values::new();
     let settings = settings.unwrap_or(Node(&empty));
     Ok(ReferenceSettings {
-        geometry: Geometry::Solid,
-        elements_per_contact_radius: None,
         elements_per_ring_radius: Some(
             settings.number_or("elements_per_ring_radius", DEFAULT_RING_ELEMENTS)?,
         ),
         element_order: element_order(&settings),
-        rigid: None,
+        ..ReferenceSettings::of(Geometry::Solid)
     })
 }

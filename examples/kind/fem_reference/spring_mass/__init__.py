@@ -1,0 +1,1 @@
+"""A sphere strikes a mass on a spring."""
