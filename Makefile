@@ -110,6 +110,8 @@ evidence: setup wheel
 	$(PYTHON) -m fem_reference speed --out reports/reference-speed.json \
 	    --scene fem_reference/solutions/solid-plate-r10/paper/provenance.json
 	IMPACTCHECK_GUIDE=slow cargo test --release --test command_line guide
+	# a third kind of scene as an overlay
+	tests/new-kind
 	for study in table2 actuators rocker flight fluid damping shakedown test-bed insensitivity seal-seat seal-seat-direction seal-seat-cost; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done
 	for study in fig14 fig15 fig16 fig17 half-period; do $(RUN) study $$study --model C --out $(OUT)/studies || exit 1; done
 	cargo build --release --manifest-path benches/diffsol/Cargo.toml
