@@ -28,11 +28,10 @@ use std::collections::BTreeMap;
 const TOLERANCE: f64 = 1e-7;
 /// Largest difference to the independent solution: of a final velocity, over the impact speed, of a force peak and an efficiency, relative.
 const DIFFERENCE_BOUND: f64 = 1e-5;
+/// The same of the time of the last release, at which a force vanishes slowly.
+const END_BOUND: f64 = 3e-4;
 /// Error that the results of a sweep's point may have: a sweep's default.
 const SWEEP_ERROR: f64 = sweep::DEFAULT_TOLERANCE;
-/// Largest difference of the time of the last release, at which a force vanishes slowly: the error of velocities and forces there is far
-/// below [`DIFFERENCE_BOUND`].
-const END_BOUND: f64 = SWEEP_ERROR;
 /// One point of a sweep in so many may be wrong.
 const WRONG_POINTS: u64 = 1000;
 /// Bounds of the invariants. Momentum relative to the initial one; energy gained relative to the initial one; differences to the
