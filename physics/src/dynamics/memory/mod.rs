@@ -19,6 +19,7 @@ use self::contact::Contact;
 use self::step_force::StepForce;
 use self::stepper::MemoryStepper;
 use super::assured::differences;
+use super::driver;
 use super::integration::{Converged, Integration, Options};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
@@ -29,8 +30,6 @@ use crate::scene::Spot;
 
 /// Steps of the first run per duration of the outer body's impact on a rigid wall.
 const FIRST_STEPS: f64 = 200.0;
-/// Steps after which a run counts as endless.
-const MAX_STEPS: u64 = 4_000_000;
 /// Springs of a viscoelastic contact across its radius in the first run, and their distance over that of the run before.
 const SPRINGS: f64 = 64.0;
 const FINER: f64 = 0.8;
@@ -334,7 +333,9 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
                 *contact = contact.with_springs_every(radius / SPRINGS * FINER.powi(halvings as i32));
             }
         }
-        MemoryStepper::new(system, bodies, &memory.plate, h, options).go(options.end_time)
+        let mut stepper = MemoryStepper::new(system, bodies, &memory.plate, h, options);
+        driver::run(&mut stepper)?;
+        Ok(stepper.finish())
     };
     let after = |ran: &Ran| Memory {
         bodies: CreepingContacts { contacts: ran.contacts.clone(), ..memory.bodies.clone() },

@@ -1,6 +1,7 @@
 //! Runs of a reduced model, and what they come to.
 
 use super::{Point, Reduced};
+use crate::dynamics::StopReason;
 use crate::dynamics::assured;
 use crate::dynamics::contact_ledger::ContactLedger;
 use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
@@ -237,14 +238,16 @@ impl Reduced {
         }
         let values = self.of_all_energy(values(system, result));
         let mut table = values.table();
-        if result.is_cut() {
+        if result.stop == StopReason::Cut {
             table = table.cut();
             warnings.push(CUT.into());
         }
         if system.stack.is_some() {
             // eq. (1) relates to a kinetic energy before the impact, and the tip vibrates on
             let open = ["efficiency", "outer_velocity_final"].into_iter();
-            let pressing = ["outer_contact_end", "outer_contacts"].into_iter().filter(|_| result.pressed);
+            let pressing = ["outer_contact_end", "outer_contacts"]
+                .into_iter()
+                .filter(|_| result.stop == StopReason::Pressed);
             for name in open.chain(pressing) {
                 table.value_mut(name).into_iter().for_each(|value| *value = None);
             }
@@ -259,14 +262,17 @@ impl Reduced {
             bender: system.drive.map(|drive| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
                 let efficiency = transmitted / drive.strain_energy;
-                BenderSummary { strain_energy_efficiency: (!result.is_cut()).then_some(efficiency), drive }
+                BenderSummary {
+                    strain_energy_efficiency: (result.stop != StopReason::Cut).then_some(efficiency),
+                    drive,
+                }
             }),
             stack: result.supplied.map(|supplied| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
                 StackSummary {
                     electrical_energy: supplied.taken,
                     mechanical_energy: supplied.given,
-                    share: (!result.is_cut()).then_some(transmitted / supplied.taken),
+                    share: (result.stop != StopReason::Cut).then_some(transmitted / supplied.taken),
                 }
             }),
             losses: (system.is_damped() && system.stack.is_none()
