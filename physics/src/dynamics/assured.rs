@@ -44,7 +44,7 @@ pub const ENOUGH: f64 = 10.0;
 /// known: strong damping lets forces die away slowly, or bodies part slowly.
 const RELEASED: f64 = 3e-4;
 /// Sensitivity of a time of release from which on bodies part slowly, see [`ContactLedger::end_sensitivity`]; of a half-sine it is 1/pi.
-const SLOW_SEPARATION: f64 = 30.0;
+const SLOW_SEPARATION: f64 = 5.0;
 
 /// Tolerance of the first solution over the error that all results may have ([`Options::results`]), and its least value. Of 3000 random
 /// impacts around Table 1 force peaks and times of separation then had up to 0.6 of that error.
