@@ -1,8 +1,8 @@
 //! `impactcheck bench`: run time against error.
 
 use super::{Context, JsonArgument};
-use crate::bench::{self, Bench, Settings};
 use crate::error::{ExitStatus, Result};
+use crate::evidence::bench::{self, Bench, Settings};
 use crate::file::write_file;
 use crate::report;
 use clap::Args;

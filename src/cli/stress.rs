@@ -2,7 +2,7 @@
 
 use super::{Context, JsonArgument};
 use crate::error::{ExitStatus, Result};
-use crate::stress::{self, StressReport};
+use crate::evidence::stress::{self, StressReport};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 

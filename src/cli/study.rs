@@ -3,7 +3,7 @@
 use super::{Context, JsonArgument, sweep};
 use crate::error::{Error, ExitStatus, Result};
 use crate::scene::Model;
-use crate::{report, study};
+use crate::{evidence::study, report};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 

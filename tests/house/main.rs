@@ -80,6 +80,22 @@ fn circular(package: &str) -> Vec<String> {
     imports.iter().map(told).collect()
 }
 
+/// What shows that the program is right and fast is no part of it.
+#[test]
+fn imports_of_evidence_outside_the_command_line() {
+    let room = |source: &Source| source.room("src").map(str::to_owned);
+    let product = |source: &Source| {
+        source.path.starts_with("src/")
+            && !matches!(room(source).as_deref(), Some("cli" | "evidence" | "lib.rs"))
+    };
+    let found: Vec<String> = sources()
+        .filter(product)
+        .filter(|source| source.imports("src").contains(&"evidence".to_owned()))
+        .map(|source| source.path)
+        .collect();
+    ratchet("files that import evidence", &found, 0);
+}
+
 /// A type's name says where to look: it is defined once.
 #[test]
 fn names_of_types_that_are_defined_more_than_once() {

@@ -14,7 +14,7 @@ use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::step_bounds::{EnergyAccount, StepBounds, StepLength, base_step, force_scale, momentum_scale};
+use super::step_bounds::{AdaptedLength, EnergyAccount, StepBounds, base_step, force_scale, momentum_scale};
 use super::system::{System, dot};
 use crate::error::{Error, Result};
 use crate::numerics::stages::{STAGES, Stages};
@@ -50,7 +50,7 @@ struct DryStepper<'a> {
     recorder: Option<Recorder<'a>>,
     end_time: f64,
     bounds: StepBounds,
-    length: StepLength,
+    length: AdaptedLength,
     tables: Ladder,
     time: f64,
     q: Vec<f64x4>,
@@ -87,7 +87,7 @@ impl<'a> DryStepper<'a> {
         Self {
             recorder,
             end_time: options.end_time.unwrap_or(f64::INFINITY),
-            length: StepLength::new(base_step(hit.duration(), options.tolerance), START_LEVEL),
+            length: AdaptedLength::new(base_step(hit.duration(), options.tolerance), START_LEVEL),
             energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
             bounds: StepBounds::new(options.tolerance),
             tables: Ladder::new(q.len()),

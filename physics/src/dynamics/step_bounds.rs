@@ -25,12 +25,12 @@ const STEP_POWER: f64 = 0.14;
 const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 
 /// Length of adapted steps.
-pub(super) struct StepLength {
+pub(super) struct AdaptedLength {
     base: f64,
     level: i32,
 }
 
-impl StepLength {
+impl AdaptedLength {
     /// `base` s times 2^-level.
     pub(super) fn new(base: f64, level: i32) -> Self {
         Self { base, level }

@@ -16,7 +16,7 @@ use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
 use crate::dynamics::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::step_bounds::{EnergyAccount, StepBounds, StepLength, base_step, momentum_scale};
+use crate::dynamics::step_bounds::{AdaptedLength, EnergyAccount, StepBounds, base_step, momentum_scale};
 use crate::dynamics::system::{System, dot};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
 use crate::error::Result;
@@ -56,7 +56,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         end_time: options.end_time.unwrap_or(f64::INFINITY),
         defect_bound: defect_bound(options.tolerance),
         bounds: StepBounds::new(options.tolerance),
-        length: StepLength::new(base_step(hit.duration(), options.tolerance), START_LEVEL),
+        length: AdaptedLength::new(base_step(hit.duration(), options.tolerance), START_LEVEL),
         tables: BTreeMap::new(),
         looked: 0.0,
         time: 0.0,
@@ -95,7 +95,7 @@ struct WetStepper<'a> {
     end_time: f64,
     defect_bound: f64,
     bounds: StepBounds,
-    length: StepLength,
+    length: AdaptedLength,
     tables: BTreeMap<i32, WetTable>,
     /// When it was last looked whether the steps get anywhere, s.
     looked: f64,
