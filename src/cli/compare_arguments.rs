@@ -52,6 +52,9 @@ pub struct Arguments {
     /// Results over commits to draw in the report [default: trends.jsonl in the report's folder, if it exists]
     #[arg(long, value_name = "FILE")]
     pub(super) trends: Option<PathBuf>,
+    /// Print the values of the models too; the table is then up to 150 columns wide
+    #[arg(long, conflicts_with = "json")]
+    pub(super) wide: bool,
     /// Folder the report is written to
     #[arg(long, default_value = "reports", value_name = "DIR")]
     pub(super) out: PathBuf,

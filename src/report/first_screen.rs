@@ -78,7 +78,7 @@ fn in_short(columns: &[SummaryColumn], comparison: &SceneComparison) -> Markup {
     html! { table.short {
         thead { tr {
             th scope="col" { "source" }
-            @for column in columns { th scope="col" { (named_as(column.heading, column.quantity)) } }
+            @for column in columns { th scope="col" { (named_as(&column.label(), column.quantity)) } }
             th.left scope="col" { "gate" }
         } }
         tbody {

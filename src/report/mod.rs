@@ -11,6 +11,7 @@ mod budget_section;
 mod chart;
 mod colour_map;
 pub mod colours;
+mod conclusion;
 mod coverage_page;
 mod curves_chart;
 mod curves_csv;
@@ -96,7 +97,7 @@ pub use png::png;
 pub use scatter_figure::scatter_figure;
 pub use scene_page::scene_page;
 pub use sweep_figure::{Drawn, sweep_figure};
-pub use terminal::{alone, terminal};
+pub use terminal::{Width, alone, terminal};
 pub use write::{check_writable, write};
 
 use crate::comparison::{ChangedTolerance, Comparison, GateRules, SceneComparison};

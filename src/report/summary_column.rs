@@ -5,9 +5,12 @@ use crate::result::Summary;
 
 /// A column of the table of a scene's results in short.
 pub(super) struct SummaryColumn {
+    /// Neighbours of the same heading share it.
     pub(super) heading: &'static str,
-    /// What it is told with, in one phrase: neighbours of the same name are told together.
-    pub(super) group: &'static str,
+    /// Which of those with the same heading: `outer`; empty if there is one.
+    pub(super) place: &'static str,
+    /// The quantity in a sentence, after "the".
+    pub(super) phrase: &'static str,
     pub(super) quantity: &'static str,
     /// Whether it is shown in degrees, with differences in degrees, rather than with its unit and differences in per cent.
     pub(super) is_angle: bool,
@@ -23,8 +26,33 @@ pub(super) struct SummaryCell {
 }
 
 impl SummaryColumn {
-    pub(super) const fn new(heading: &'static str, group: &'static str, quantity: &'static str) -> Self {
-        SummaryColumn { heading, group, quantity, is_angle: false }
+    pub(super) const fn new(
+        heading: &'static str,
+        place: &'static str,
+        phrase: &'static str,
+        quantity: &'static str,
+    ) -> Self {
+        SummaryColumn { heading, place, phrase, quantity, is_angle: false }
+    }
+
+    /// Heading and place in one line.
+    pub(super) fn label(&self) -> String {
+        if self.place.is_empty() {
+            self.heading.to_owned()
+        } else {
+            format!("{}, {}", self.heading, self.place)
+        }
+    }
+
+    /// The uncertainty (95 %) of the reference's value in the unit that its cell has.
+    pub(super) fn uncertainty(&self, reference: &Summary, band: f64) -> String {
+        match (self.is_angle, reference.quantities.get(self.quantity)) {
+            (true, _) => format!("{:.2}°", band.to_degrees()),
+            (false, Some(quantity)) => {
+                with_unit(band, prefixed(quantity.unit, quantity.value.unwrap_or(band)), 2)
+            }
+            (false, None) => String::new(),
+        }
     }
 
     /// What `summary` says, beside `reference`; `None` if it does not know the quantity.

@@ -48,11 +48,11 @@ const PANELS: [PanelOf; 3] = [
 impl Presentation for Plate {
     fn columns(&self) -> &'static [SummaryColumn] {
         const COLUMNS: [SummaryColumn; 5] = [
-            SummaryColumn::new("efficiency", "efficiency", "efficiency"),
-            SummaryColumn::new("outer peak", "force peaks", "outer_force_peak"),
-            SummaryColumn::new("inner peak", "force peaks", "inner_force_peak"),
-            SummaryColumn::new("outer end", "ends of contact", "outer_contact_end"),
-            SummaryColumn::new("inner end", "ends of contact", "inner_contact_end"),
+            SummaryColumn::new("efficiency", "", "efficiency", "efficiency"),
+            SummaryColumn::new("peak force", "outer", "peak force at the outer contact", "outer_force_peak"),
+            SummaryColumn::new("peak force", "inner", "peak force at the inner contact", "inner_force_peak"),
+            SummaryColumn::new("contact ends", "outer", "end of the outer contact", "outer_contact_end"),
+            SummaryColumn::new("contact ends", "inner", "end of the inner contact", "inner_contact_end"),
         ];
         &COLUMNS
     }

@@ -60,11 +60,14 @@ const PANELS: [PanelOf; 3] = [
 impl Presentation for Seat {
     fn columns(&self) -> &'static [SummaryColumn] {
         const COLUMNS: [SummaryColumn; 5] = [
-            SummaryColumn { is_angle: true, ..SummaryColumn::new("direction", "direction", "sphere_angle") },
-            SummaryColumn::new("speed", "speed", "sphere_speed"),
-            SummaryColumn::new("efficiency", "efficiency", "efficiency"),
-            SummaryColumn::new("sphere peak", "force peaks", "sphere_force_peak"),
-            SummaryColumn::new("actuator peak", "force peaks", "actuator_force_peak"),
+            SummaryColumn {
+                is_angle: true,
+                ..SummaryColumn::new("direction", "", "direction of the sphere", "sphere_angle")
+            },
+            SummaryColumn::new("speed", "", "speed of the sphere", "sphere_speed"),
+            SummaryColumn::new("efficiency", "", "efficiency", "efficiency"),
+            SummaryColumn::new("peak force", "sphere", "peak force on the sphere", "sphere_force_peak"),
+            SummaryColumn::new("peak force", "actuator", "peak force on the actuator", "actuator_force_peak"),
         ];
         &COLUMNS
     }
