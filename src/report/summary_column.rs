@@ -4,31 +4,31 @@ use crate::format::{minus, percent, prefixed, with_unit};
 use crate::result::Summary;
 
 /// A column of the table of a scene's results in short.
-pub(super) struct SummaryColumn {
-    pub(super) heading: &'static str,
+pub(crate) struct SummaryColumn {
+    pub(crate) heading: &'static str,
     /// What it is told with, in one phrase: neighbours of the same name are told together.
-    pub(super) group: &'static str,
-    pub(super) quantity: &'static str,
+    pub(crate) group: &'static str,
+    pub(crate) quantity: &'static str,
     /// Whether it is shown in degrees, with differences in degrees, rather than with its unit and differences in per cent.
-    pub(super) is_angle: bool,
+    pub(crate) is_angle: bool,
 }
 
 /// A result in a column.
-pub(super) struct SummaryCell {
-    pub(super) value: String,
+pub(crate) struct SummaryCell {
+    pub(crate) value: String,
     /// How far it is from the reference, signed: relatively, or in rad.
-    pub(super) off: Option<f64>,
+    pub(crate) off: Option<f64>,
     /// The same in words.
-    pub(super) off_in_words: Option<String>,
+    pub(crate) off_in_words: Option<String>,
 }
 
 impl SummaryColumn {
-    pub(super) const fn new(heading: &'static str, group: &'static str, quantity: &'static str) -> Self {
+    pub(crate) const fn new(heading: &'static str, group: &'static str, quantity: &'static str) -> Self {
         SummaryColumn { heading, group, quantity, is_angle: false }
     }
 
     /// What `summary` says, beside `reference`; `None` if it does not know the quantity.
-    pub(super) fn cell(&self, summary: &Summary, reference: Option<&Summary>) -> Option<SummaryCell> {
+    pub(crate) fn cell(&self, summary: &Summary, reference: Option<&Summary>) -> Option<SummaryCell> {
         let quantity = summary.quantities.get(self.quantity)?;
         let Some(own) = quantity.value else {
             return Some(SummaryCell { value: "not determined".into(), off: None, off_in_words: None });
@@ -48,7 +48,7 @@ impl SummaryColumn {
 }
 
 /// An angle with its sign, in degrees.
-pub(super) fn degrees(angle: f64) -> String {
+pub(crate) fn degrees(angle: f64) -> String {
     // no minus sign before what rounds to zero
     let rounded = (100.0 * angle.to_degrees()).round() / 100.0 + 0.0;
     minus(&format!("{rounded:+.2}°"))

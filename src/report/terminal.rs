@@ -1,9 +1,10 @@
 //! A short table for the terminal.
 
-use super::Report;
-use super::summary_column::SummaryColumn;
-use super::{kinds, measured_section};
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
+use crate::report::Report;
+use crate::report::kinds;
+use crate::report::page::section::measured;
+use crate::report::summary_column::SummaryColumn;
 use crate::result::{Outcome, Summary};
 use crate::scene::Scene;
 use anstyle::{AnsiColor, Style};
@@ -14,7 +15,7 @@ const GREEN: Style = AnsiColor::Green.on_default().bold();
 const RED: Style = AnsiColor::Red.on_default().bold();
 
 /// A verdict in its colour, in these words.
-pub(super) fn coloured(verdict: Verdict, words: &str) -> String {
+pub(crate) fn coloured(verdict: Verdict, words: &str) -> String {
     let style = match verdict {
         Verdict::Pass => GREEN,
         Verdict::Fail => RED,
@@ -24,18 +25,18 @@ pub(super) fn coloured(verdict: Verdict, words: &str) -> String {
 }
 
 /// A scene's line.
-pub(super) fn headline(comparison: &SceneComparison) -> String {
+pub(crate) fn headline(comparison: &SceneComparison) -> String {
     let verdict = comparison.verdict;
     format!("{}: {}\n", comparison.scene, coloured(verdict, verdict.words()))
 }
 
 /// A model's verdict.
-pub(super) fn of_model(model: &ModelComparison) -> String {
+pub(crate) fn of_model(model: &ModelComparison) -> String {
     coloured(model.verdict, model.verdict_in_words())
 }
 
 /// One per line: warnings, what failed and what is undecided; then how many did.
-pub(super) fn findings(comparison: &SceneComparison) -> String {
+pub(crate) fn findings(comparison: &SceneComparison) -> String {
     let mut text = String::new();
     let mut line = |of: &str, what: String| text += &format!("  {of}: {what}\n");
     let warning = format!("{YELLOW}warning{YELLOW:#}");
@@ -43,9 +44,9 @@ pub(super) fn findings(comparison: &SceneComparison) -> String {
         line(&format!("{warning}: reference"), of_reference.clone());
     }
     for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
-        line("reference", super::junit::integrity_failure(check));
+        line("reference", crate::report::ci::junit::integrity_failure(check));
     }
-    for (record, effect) in comparison.measured.iter().flat_map(measured_section::effects) {
+    for (record, effect) in comparison.measured.iter().flat_map(measured::effects) {
         line(&format!("{warning}: {record}"), effect.to_owned());
     }
     for model in &comparison.models {
@@ -53,10 +54,10 @@ pub(super) fn findings(comparison: &SceneComparison) -> String {
             line(&format!("{warning}: {}", model.model), of_model.clone());
         }
         for row in model.discrepancies.iter().filter(|d| d.is_told()) {
-            line(&model.model, super::junit::told(row));
+            line(&model.model, crate::report::ci::junit::told(row));
         }
         for check in model.integrity.iter().filter(|c| c.verdict.failed()) {
-            line(&model.model, super::junit::integrity_failure(check));
+            line(&model.model, crate::report::ci::junit::integrity_failure(check));
         }
     }
     let gated = comparison.gated_verdicts().count();
@@ -88,10 +89,10 @@ pub fn terminal(report: &Report) -> String {
             text += &format!("  {:<10}{row}  {}\n", check.program, check.words());
         }
         if let Some(measured) = &comparison.measured {
-            text += &format!("  {}\n", measured_section::sentence(measured));
+            text += &format!("  {}\n", measured::sentence(measured));
         }
         text += &findings(comparison);
-        text += &super::validation_section::validation_text(comparison);
+        text += &crate::report::page::section::validation::validation_text(comparison);
         text.push('\n');
     }
     text

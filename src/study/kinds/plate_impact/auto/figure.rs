@@ -1,7 +1,7 @@
 //! Estimated against true error, both logarithmic: a panel per tolerance.
 
 use super::{TOLERANCES, number};
-use crate::report::colours::{MODELS, hex};
+use crate::plot::colours::{MODELS, hex};
 use crate::study::{Cell, Study};
 use maud::{Markup, html};
 
