@@ -39,6 +39,7 @@ pub mod kinds;
 pub mod measured;
 pub mod movement;
 pub mod optimise;
+pub mod plot;
 mod process_output;
 pub mod project;
 pub mod reference;

@@ -47,7 +47,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         let svg = bench::figure(&bench);
         let text = serde_json::to_string_pretty(&bench)
             .map_err(|e| crate::error::Error::Internal(format!("writing JSON: {e}")))?;
-        let png = report::png(&svg, 2.0)?;
+        let png = crate::plot::png(&svg, 2.0)?;
         for (name, bytes) in
             [("bench.json", text.as_bytes()), ("bench.svg", svg.as_bytes()), ("bench.png", &png[..])]
         {

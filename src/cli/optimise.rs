@@ -195,7 +195,7 @@ fn write(context: &Context, folder: &Path, problem: &Problem, document: &Optimum
         ("optimum.json", (json + "\n").into_bytes()),
         ("history.csv", document.optimum.history_csv()?),
         ("optimum.toml", problem.scene_text(&document.optimum.values())?.into_bytes()),
-        ("optimum.png", report::png(&svg, 3.0)?),
+        ("optimum.png", crate::plot::png(&svg, 3.0)?),
         ("optimum.svg", svg.into_bytes()),
     ];
     for (name, bytes) in files {

@@ -123,7 +123,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         let json = serde_json::to_string_pretty(&scatter)
             .map_err(|e| Error::Internal(format!("writing the scatter as JSON: {e}")))?;
         write_file(&folder.join("uncertainty.json"), (json + "\n").as_bytes())?;
-        write_file(&folder.join("uncertainty.png"), &report::png(&svg, 2.0)?)?;
+        write_file(&folder.join("uncertainty.png"), &crate::plot::png(&svg, 2.0)?)?;
         write_file(&folder.join("uncertainty.svg"), svg.as_bytes())?;
         context.note(format_args!("wrote {}", folder.join("uncertainty.svg").display()));
     }

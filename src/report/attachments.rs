@@ -1,10 +1,10 @@
 //! What a report shows besides the comparison, where there is any of it.
 
-use super::{Animation, kinds};
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
 use crate::coverage::Coverage;
 use crate::reference::{CurveBands, Dents, FieldMesh, MeshSection, Stored};
+use crate::report::{Animation, kinds};
 use crate::result::History;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -64,7 +64,7 @@ impl Attachments {
 }
 
 /// When the curve called `name` is largest, s.
-pub(super) fn instant_of_peak(history: &History, name: &str) -> f64 {
+pub(crate) fn instant_of_peak(history: &History, name: &str) -> f64 {
     let values = history.time.iter().zip(history.curve(name).unwrap_or_default());
     values.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0.0, |(time, _)| *time)
 }

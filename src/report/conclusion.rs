@@ -47,7 +47,7 @@ impl Finding<'_> {
 }
 
 /// The sentences on all models of `comparison`, the nearest to the reference first; empty if there is none.
-pub(super) fn conclusion(columns: &[SummaryColumn], comparison: &SceneComparison) -> String {
+pub(crate) fn conclusion(columns: &[SummaryColumn], comparison: &SceneComparison) -> String {
     let mut findings: Vec<_> = comparison
         .models
         .iter()
@@ -81,17 +81,17 @@ fn sentence(model: &str, finding: &Finding) -> String {
 }
 
 /// That the assumptions hold.
-pub(super) const HOLD: &str = "assumptions hold";
+pub(crate) const HOLD: &str = "assumptions hold";
 
 /// Whether the assumptions of reference and models hold, as far as that was computed: the second part of a scene's verdict.
-pub(super) fn assumptions(comparison: &SceneComparison) -> Option<&'static str> {
+pub(crate) fn assumptions(comparison: &SceneComparison) -> Option<&'static str> {
     let mut limits = summaries(comparison).flat_map(|(_, summary)| &summary.limits).peekable();
     limits.peek()?;
     Some(if limits.any(|limit| limit.is_exceeded()) { "assumptions violated" } else { HOLD })
 }
 
 /// The results of a comparison with their names, the reference first.
-pub(super) fn summaries(
+pub(crate) fn summaries(
     comparison: &SceneComparison,
 ) -> impl Iterator<Item = (&str, &crate::result::Summary)> {
     let models = comparison.models.iter().map(|model| (model.model.as_str(), &model.summary));

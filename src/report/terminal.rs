@@ -1,11 +1,12 @@
 //! A short table for the terminal.
 
-use super::Report;
-use super::conclusion::{HOLD, assumptions, conclusion, summaries};
-use super::summary_column::SummaryColumn;
-use super::{kinds, measured_section};
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
 use crate::format::significant;
+use crate::report::Report;
+use crate::report::conclusion::{HOLD, assumptions, conclusion, summaries};
+use crate::report::kinds;
+use crate::report::page::section::measured;
+use crate::report::summary_column::SummaryColumn;
 use crate::result::{Limit, Outcome, Summary};
 use crate::scene::Scene;
 use anstyle::{AnsiColor, Style};
@@ -16,7 +17,7 @@ const GREEN: Style = AnsiColor::Green.on_default().bold();
 const RED: Style = AnsiColor::Red.on_default().bold();
 
 /// A verdict in its colour, in these words.
-pub(super) fn coloured(verdict: Verdict, words: &str) -> String {
+pub(crate) fn coloured(verdict: Verdict, words: &str) -> String {
     let style = match verdict {
         Verdict::Pass => GREEN,
         Verdict::Fail => RED,
@@ -26,7 +27,7 @@ pub(super) fn coloured(verdict: Verdict, words: &str) -> String {
 }
 
 /// A scene's line: the verdict on its tolerances, and whether the assumptions hold.
-pub(super) fn headline(comparison: &SceneComparison) -> String {
+pub(crate) fn headline(comparison: &SceneComparison) -> String {
     let verdict = coloured(comparison.verdict, comparison.verdict.words());
     let assumptions = assumptions(comparison).map_or(String::new(), |words| {
         let style = if words == HOLD { Style::new() } else { YELLOW };
@@ -36,12 +37,12 @@ pub(super) fn headline(comparison: &SceneComparison) -> String {
 }
 
 /// A model's verdict.
-pub(super) fn of_model(model: &ModelComparison) -> String {
+pub(crate) fn of_model(model: &ModelComparison) -> String {
     coloured(model.verdict, model.verdict_in_words())
 }
 
 /// Warnings, what failed and what is undecided; then how many did.
-pub(super) fn findings(comparison: &SceneComparison) -> String {
+pub(crate) fn findings(comparison: &SceneComparison) -> String {
     let mut text = String::new();
     let mut line = |of: &str, what: String| text += &wrapped(&format!("{of}: {what}"));
     let warning = format!("{YELLOW}warning{YELLOW:#}");
@@ -49,17 +50,17 @@ pub(super) fn findings(comparison: &SceneComparison) -> String {
         line(&warning, shared);
     }
     for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
-        line("reference", super::junit::integrity_failure(check));
+        line("reference", crate::report::ci::junit::integrity_failure(check));
     }
-    for (record, effect) in comparison.measured.iter().flat_map(measured_section::effects) {
+    for (record, effect) in comparison.measured.iter().flat_map(measured::effects) {
         line(&format!("{warning}: {record}"), effect.to_owned());
     }
     for model in &comparison.models {
         for row in model.discrepancies.iter().filter(|d| d.is_told()) {
-            line(&model.model, super::junit::told(row));
+            line(&model.model, crate::report::ci::junit::told(row));
         }
         for check in model.integrity.iter().filter(|c| c.verdict.failed()) {
-            line(&model.model, super::junit::integrity_failure(check));
+            line(&model.model, crate::report::ci::junit::integrity_failure(check));
         }
     }
     let gated = comparison.gated_verdicts().count();
@@ -91,10 +92,10 @@ pub fn terminal(report: &Report, width: Width) -> String {
         text += &wrapped(&conclusion(columns, comparison));
         text += &rows(columns, comparison, width).text();
         if let Some(measured) = &comparison.measured {
-            text += &wrapped(&measured_section::sentence(measured));
+            text += &wrapped(&measured::sentence(measured));
         }
         text += &findings(comparison);
-        text += &super::validation_section::validation_text(comparison);
+        text += &crate::report::page::section::validation::validation_text(comparison);
         text.push('\n');
     }
     text

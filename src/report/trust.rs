@@ -1,20 +1,20 @@
 //! How far a model can be trusted in its scene, in a sentence: what it hits, how well, and whether its theory holds there.
 
-use super::summary_column::SummaryColumn;
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
 use crate::format::{percent_above, significant, words};
 use crate::kinds;
+use crate::report::summary_column::SummaryColumn;
 use crate::result::Summary;
 use crate::scene::Scene;
 use crate::validated::{MEASURES, Place, Validation, Vicinity};
 
 /// Discrepancy, relative or in rad, up to which a model is said to be right within it rather than off by it.
-pub(super) const SMALL: f64 = 0.01;
+pub(crate) const SMALL: f64 = 0.01;
 /// Discrepancy from which on it counts as large.
-pub(super) const LARGE: f64 = 0.05;
+pub(crate) const LARGE: f64 = 0.05;
 
 /// The class of a discrepancy of this size.
-pub(super) fn size_class(off: f64) -> &'static str {
+pub(crate) fn size_class(off: f64) -> &'static str {
     match off.abs() {
         size if size <= SMALL => "small",
         size if size <= LARGE => "medium",
@@ -23,7 +23,7 @@ pub(super) fn size_class(off: f64) -> &'static str {
 }
 
 /// What the model hits, and how well: the quantities of `columns`, the curves, the numbers of contacts.
-pub(super) fn accuracy(columns: &[SummaryColumn], model: &ModelComparison) -> String {
+pub(crate) fn accuracy(columns: &[SummaryColumn], model: &ModelComparison) -> String {
     let groups = columns.chunk_by(|one, other| one.heading == other.heading);
     let mut phrases: Vec<String> = groups.filter_map(|group| of_group(group, model)).collect();
     phrases.extend(worst_curve(model));
@@ -86,7 +86,7 @@ fn worst_curve(model: &ModelComparison) -> Option<String> {
 }
 
 /// Whether the theories hold that the model shares with the reference, as far as that was computed.
-pub(super) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
+pub(crate) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
     let limits = &summary.limits;
     if limits.is_empty() {
         return Vec::new();
@@ -107,7 +107,7 @@ pub(super) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
 
 /// Where `model` was held against references in other scenes, seen from the scene that `reference` lies in: whether that was
 /// near by, and how far off the model was there.
-pub(super) fn validated(
+pub(crate) fn validated(
     scene: &Scene,
     comparison: &SceneComparison,
     model: &str,

@@ -2,8 +2,8 @@
 
 use crate::format::{measure, short};
 use crate::kinds::plate_impact::PlateImpact;
-use crate::report::figure_geometry::x2;
-use crate::report::scene_drawing::{DrawingScale, materials};
+use crate::plot::svg::x2;
+use crate::report::figure::scene_drawing::{DrawingScale, materials};
 use crate::scene::{Edge, Material, Shape};
 use maud::{Markup, html};
 

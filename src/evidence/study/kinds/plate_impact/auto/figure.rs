@@ -2,7 +2,7 @@
 
 use super::{TOLERANCES, number};
 use crate::evidence::study::{Cell, Study};
-use crate::report::colours::{MODELS, hex};
+use crate::plot::colours::{MODELS, hex};
 use maud::{Markup, html};
 
 const PANEL: f64 = 330.0;
