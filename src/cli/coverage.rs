@@ -14,12 +14,12 @@ use clap::Args;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene files or names of shipped scenes [default: all scenes of the project, examples and validation too]
+    /// Scene files or names of shipped scenes [default: all scenes of the project]
     scenes: Vec<String>,
     #[command(flatten)]
     permission: Permission,
-    /// Write what was found to the project's record of validated scenes; where the reference is elsewhere, the models as they
-    /// are now beside what is recorded of it
+    /// Update the project's record of compared scenes. Where a reference is not stored here, the models are updated
+    /// and its recorded values kept
     #[arg(long)]
     record: bool,
     #[command(flatten)]

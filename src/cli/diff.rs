@@ -12,14 +12,14 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// A document of `compare` or `gate`, or the folder of a report
+    /// JSON document of `compare` or `gate`, or folder of a report
     a: PathBuf,
-    /// Another
+    /// The other one
     b: PathBuf,
-    /// Leave out numbers that moved by less than this share, such as 0.1%
+    /// Omit numbers that changed by less than this, such as 0.1%
     #[arg(long, value_name = "SHARE")]
     above: Option<TargetError>,
-    /// Write what moved as a page, the largest move first
+    /// Write the changes as a page, the largest first
     #[arg(long, value_name = "FILE.html")]
     out: Option<PathBuf>,
     #[command(flatten)]

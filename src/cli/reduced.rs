@@ -14,14 +14,14 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, the name of a shipped scene, or `-` for standard input
+    /// Scene file, name of a shipped scene, or `-` for standard input
     scene: String,
     #[command(flatten)]
     asked: ModelRequest,
-    /// Write displacement, velocity and force over time to this file (.csv or .parquet)
+    /// Write displacements, velocities and forces over time to this file (.csv or .parquet)
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
-    /// Write a page with results, curves and, of scenes that have one, the flight to this file (.html)
+    /// Write a page with results, curves and flight to this file (.html)
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
     #[command(flatten)]

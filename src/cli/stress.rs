@@ -11,10 +11,10 @@ pub struct Arguments {
     /// Number of random scenes
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     cases: u64,
-    /// Seed of the first scene; the others follow
+    /// Seed of the first scene
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Print the result of every scene instead, to compare two programs bit for bit
+    /// Print all results, to compare two versions bit for bit
     #[arg(long, requires = "json")]
     results: bool,
     #[command(flatten)]

@@ -54,16 +54,16 @@ const MOST_DRAWN: usize = 100_000;
 pub struct Arguments {
     /// Sweep file, see below
     file: PathBuf,
-    /// Folder of the records and of the table [default: the file's name without .toml, in this folder, with `-sweep`]
+    /// Folder of the results [default: the sweep file's name with `-sweep`]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Format of the table: csv or parquet
     #[arg(long, default_value = "csv")]
     format: TableFormat,
-    /// Quantities that are drawn
+    /// Quantities to draw
     #[arg(long = "quantity", value_delimiter = ',', default_value = "efficiency", value_name = "NAME,…")]
     quantities: Vec<String>,
-    /// Write the drawing to this file as well (.svg, .pdf or .png)
+    /// Write the figure to this file (.svg, .pdf or .png)
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
     #[command(flatten)]
@@ -74,7 +74,7 @@ pub struct Arguments {
 pub struct SweepArguments {
     #[command(flatten)]
     common: Arguments,
-    /// Run only part i of n; `study merge` joins the parts
+    /// Run part i of n only; `study merge` joins the parts
     #[arg(long, value_name = "i/n", conflicts_with = "figure")]
     shard: Option<Shard>,
 }

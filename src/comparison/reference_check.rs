@@ -58,8 +58,8 @@ impl ReferenceCheck {
     /// For people.
     pub fn words(&self) -> &'static str {
         match self.verdict {
-            BandVerdict::Within => "within the joint bands",
-            BandVerdict::Beyond => "beyond the joint bands",
+            BandVerdict::Within => "agrees",
+            BandVerdict::Beyond => "differs",
         }
     }
 }
@@ -124,7 +124,7 @@ mod tests {
         );
         set(&mut other, "outer_force_peak", 94.9, 4.0);
         let beyond = ReferenceCheck::of(&own, &other);
-        assert_eq!((beyond.verdict, beyond.words()), (BandVerdict::Beyond, "beyond the joint bands"));
+        assert_eq!((beyond.verdict, beyond.words()), (BandVerdict::Beyond, "differs"));
         *other.quantities.value_mut("outer_force_peak").expect("there") = None;
         let open = ReferenceCheck::of(&own, &other);
         assert_eq!((open.rows.len(), open.verdict), (beyond.rows.len() - 1, BandVerdict::Within));

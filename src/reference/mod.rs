@@ -23,7 +23,7 @@ mod turn;
 pub use child::Progress;
 pub use curve_bands::CurveBands;
 pub use dents::Dents;
-pub use doctor::{Check, doctor};
+pub use doctor::{CALCULIX, Check, doctor};
 pub use entry::Stored;
 pub use fields::FieldMesh;
 pub use identity::{revision, settings_hash};

@@ -64,10 +64,10 @@ pub(crate) fn findings(comparison: &SceneComparison) -> String {
         }
     }
     let gated = comparison.gated_verdicts().count();
-    for (verdict, did) in [(Verdict::Fail, "failed"), (Verdict::Undecided, "are undecided")] {
+    for (verdict, what) in [(Verdict::Fail, "outside its tolerance"), (Verdict::Undecided, "undecided")] {
         let count = comparison.gated_verdicts().filter(|v| *v == verdict).count();
         if count > 0 {
-            text += &format!("  {count} of {gated} gated quantities {did}\n");
+            text += &format!("  {what}: {count} of {gated} quantities with a tolerance\n");
         }
     }
     text

@@ -3,7 +3,7 @@
 
 use crate::comparison::{Check, Discrepancy, GateRules, NO_RESULT, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, Result};
-use crate::format::{percent, short};
+use crate::format::{percent, prefixed, with_unit};
 use crate::report::Report;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
@@ -109,37 +109,35 @@ fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
 
 /// What is wrong with a row, or open, in one sentence with numbers, unit and bound.
 pub(crate) fn told(row: &Discrepancy) -> String {
-    let Discrepancy { quantity, unit, .. } = row;
-    let side = |value: Option<f64>| value.map_or("not determined".into(), |v| in_unit(short(v), unit));
-    let numbers = format!("{quantity}: reduced {}, reference {}", side(row.reduced), side(row.reference));
+    let to = prefixed(&row.unit, row.reference.filter(|r| *r != 0.0).or(row.reduced).unwrap_or(0.0));
+    let side = |value: Option<f64>| value.map_or("not determined".into(), |v| with_unit(v, to, 4));
+    let values = format!("{}: model {}, reference {}", row.quantity, side(row.reduced), side(row.reference));
     let Some(difference) = row.difference else {
-        if let Some(how) = &row.would_decide {
-            return format!("{numbers}: undecided; {how}");
-        }
-        return format!("{numbers}; a tolerance needs both: set a later `run.end_time`, or none");
+        return match &row.would_decide {
+            Some(how) => format!("{values}: undecided; {how}"),
+            None => format!("{values}; a tolerance needs both: set a later `run.end_time`, or none"),
+        };
     };
-    // what 100 % is, so that bounds stand in the same measure as the difference
+    // what 100 % is, so that bounds have the same measure as the difference
     let whole = row.relative.filter(|r| *r != 0.0).map(|relative| difference / relative);
-    let with_share = |value: f64| {
+    let with_share = |value: f64, digits: usize| {
         let share = whole.map_or(String::new(), |whole| format!(" ({})", percent(Some(value / whole))));
-        in_unit(short(value), unit) + &share
+        with_unit(value, to, digits) + &share
     };
-    let difference = with_share(difference);
     // a bound has no sign
-    let bound = |width| with_share(width).replace("(+", "(\u{b1}");
+    let bound = |width, digits| format!("\u{b1}{}", with_share(width, digits).replace("(+", "(\u{b1}"));
+    let compared = format!("{values}, difference {}", with_share(difference, 3));
     let bounded = match (row.tolerance, row.bias) {
-        (None, _) => return format!("{numbers}: not a number"),
-        (Some(width), None) => format!("{numbers}, difference {difference}, bound {}", bound(width)),
-        (Some(width), Some(bias)) => format!(
-            "{numbers}, difference {difference} where {} is known, bound {} about it",
-            with_share(bias),
-            bound(width)
-        ),
+        (None, _) => return format!("{values}: not a number"),
+        (Some(width), None) => format!("{compared}, tolerance {}", bound(width, 3)),
+        (Some(width), Some(bias)) => {
+            format!("{compared}, declared bias {} with tolerance {}", with_share(bias, 3), bound(width, 3))
+        }
     };
-    let whose = row.difference_uncertainty.map_or("the reference", |_| "the difference on the common mesh");
+    let whose = row.difference_uncertainty.map_or("reference", |_| "difference on the common mesh");
     match (&row.would_decide, row.band()) {
         (Some(how), Some(band)) => {
-            format!("{bounded}, 95 % band of {whose} {}: undecided; {how}", bound(band))
+            format!("{bounded}, uncertainty (95 %) of the {whose} {}: undecided; {how}", bound(band, 2))
         }
         _ => bounded,
     }

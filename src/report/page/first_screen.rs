@@ -1,6 +1,7 @@
 //! The first screen of a scene's page: the scene, how far each model can be trusted in it, and the results in short.
 
 use crate::comparison::{ModelComparison, SceneComparison};
+use crate::report::conclusion::conclusion;
 use crate::report::page::html::{model_badge, named_as, scrolled};
 use crate::report::page::prose::prose;
 use crate::report::summary_column::SummaryColumn;
@@ -20,13 +21,14 @@ pub(crate) fn first_screen(report: &SceneReport) -> Markup {
     html! {
         div.first {
             div.answer {
-                (trust(columns, report))
+                p.conclusion { strong { (conclusion(columns, comparison)) } }
                 (scrolled("Results in short", &in_short(columns, comparison)))
                 p.soft.note {
-                    "Gate: the tolerances. Shaded by size, whatever the gate says: "
+                    "Verdict: against the tolerances. Colours show the size of the difference, whatever the verdict: "
                     span.off.small { "up to " (percent(SMALL)) } " " span.off.medium { "up to " (percent(LARGE)) } " "
                     span.off.large { "beyond" } "."
                 }
+                details { summary { "How far each model can be trusted here" } (trust(columns, report)) }
                 @if below { (measures) }
             }
             figure.scene { (shown.scene_drawing(report)) @if !below { (measures) } }
@@ -79,7 +81,7 @@ fn in_short(columns: &[SummaryColumn], comparison: &SceneComparison) -> Markup {
         thead { tr {
             th scope="col" { "source" }
             @for column in columns { th scope="col" { (named_as(&column.label(), column.quantity)) } }
-            th.left scope="col" { "gate" }
+            th.left scope="col" { "verdict" }
         } }
         tbody {
             tr { th scope="row" { "reference" } @for column in columns { (cell(column, reference, None)) } td.left {} }

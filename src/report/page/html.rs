@@ -3,6 +3,7 @@
 
 use crate::comparison::{ModelComparison, Verdict};
 use crate::format::{Prefixed, with_unit, words};
+use crate::report::conclusion::HOLD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("assets/style.css");
@@ -43,6 +44,12 @@ pub(crate) fn worded(verdict: Verdict, words: &str) -> Markup {
         Verdict::Undecided => "verdict undecided",
         Verdict::Fail => "verdict fail",
     };
+    html! { span class=(class) { (words) } }
+}
+
+/// Whether the assumptions hold: beside the verdict, so that a pass alone does not mislead.
+pub(crate) fn assumptions_badge(words: &str) -> Markup {
+    let class = if words == HOLD { "verdict open" } else { "verdict undecided" };
     html! { span class=(class) { (words) } }
 }
 

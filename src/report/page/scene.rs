@@ -1,9 +1,10 @@
 //! The page of one scene, whatever its kind: what to trust first, then the curves, then everything that backs it.
 
 use crate::format::{model_name, prefixed, with_unit};
+use crate::report::conclusion::assumptions;
 use crate::report::figure::scene::phone_figure;
 use crate::report::page::facts::facts;
-use crate::report::page::html::{badge, model_badge, page};
+use crate::report::page::html::{assumptions_badge, badge, model_badge, page};
 use crate::report::page::section::discrepancy::{checks, contradictions, model_section};
 use crate::report::page::section::{Section, contents, sections};
 use crate::report::page::validated_map::ValidatedMap;
@@ -18,7 +19,7 @@ pub fn scene_page(report: &SceneReport) -> String {
     let name = &comparison.scene;
     let all = all_sections(report);
     let body = html! {
-        h1 { (name) " " (badge(comparison.verdict)) }
+        h1 { (name) " " (badge(comparison.verdict)) @if let Some(words) = assumptions(comparison) { " " (assumptions_badge(words)) } }
         p.soft { (report.scene.description) }
         (contents(&all))
         (contradictions("reference", &comparison.integrity))
@@ -33,7 +34,7 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
     let (comparison, attachments) = (&report.comparison, &report.attachments);
     let shown = kinds::of(report.scene);
     let mut all = vec![
-        Section::new("discrepancies", "Discrepancies", discrepancy_picture::discrepancy_picture(comparison)),
+        Section::new("discrepancies", "Differences", discrepancy_picture::discrepancy_picture(comparison)),
         Section::new("over-time", "Curves", curves(report)),
         Section::new(
             "validation",
@@ -55,15 +56,15 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
     all.extend([
         Section::new(
             "reference-check",
-            "Reference and another program",
+            "Independent solver",
             crate::report::page::section::reference_check::reference_check_html(
                 comparison.reference_check.as_ref(),
             ),
         ),
-        Section::new("validated", "Validated scenes", validated(report)),
+        Section::new("validated", "Compared scenes", validated(report)),
         Section::new(
             "validity",
-            "Range of validity",
+            "Assumptions",
             crate::report::page::section::limits::limits_html(comparison),
         ),
         Section::new("trends", "Trends", crate::report::page::section::trend::trends_html(attachments)),
@@ -86,7 +87,7 @@ fn curves(report: &SceneReport) -> Markup {
     html! {
         (interactive::panels(&figure(report, Theme::Inline), &phone_figure(report)))
         p.soft {
-            (kinds::of(report.scene).curves_told()) " Shaded: the 95 % band of the reference. "
+            (kinds::of(report.scene).curves_told()) " Shaded: the uncertainty (95 %) of the reference. "
             a href=(format!("{scene}.svg")) { "SVG" } " · "
             a href=(format!("{scene}.png")) { "PNG" } " · "
             a href=(format!("{scene}.csv")) { "curves as CSV" }
