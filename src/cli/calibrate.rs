@@ -70,7 +70,7 @@ fn table(found: &Calibration) -> String {
         let to = prefixed(input.unit, input.value);
         let deviation = input
             .standard_deviation
-            .map_or(" (not told by the records)".to_owned(), |u| format!(" ± {}", with_unit(u, to, 2)));
+            .map_or(" (not identifiable)".to_owned(), |u| format!(" ± {}", with_unit(u, to, 2)));
         let off = percent(Some(input.value / input.nominal - 1.0));
         lines.push(format!(
             "  {:<36} {:>16}{deviation}  ({off} of the scene's)",

@@ -115,7 +115,11 @@ fn table(found: &Coverage) -> String {
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
     let mut lines = vec![format!(
         "{:<28} {:<6} {:<14} {:>6}  {}",
-        "feature", "model", "held against", "scenes", "largest difference (95 % band of the partner)"
+        "feature",
+        "model",
+        "held against",
+        "scenes",
+        "largest difference (uncertainty of the comparator, 95 %)"
     )];
     for feature in &found.features {
         let mut name = feature.feature;

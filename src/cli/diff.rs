@@ -54,7 +54,7 @@ fn markdown(moves: &Moves) -> String {
         rows.push([row.scene.clone(), row.model.clone(), row.quantity.clone(), a, b, percent(row.relative)]);
     }
     if rows.is_empty() {
-        return "nothing moved".into();
+        return "nothing changed".into();
     }
     let heads = ["scene", "model", "quantity", "A", "B", "moved"].map(String::from);
     let widths: [usize; 6] = std::array::from_fn(|k| {

@@ -2,7 +2,7 @@
 
 use super::{Context, JsonArgument};
 use crate::error::{ExitStatus, Result};
-use crate::reference::{CALCULIX, Check};
+use crate::reference::{Check, INDEPENDENT_SOLVER};
 
 /// Runs the checks. If anything is missing, the exit status says so too; what is stored can be compared all the same.
 pub fn run(context: &Context, arguments: JsonArgument) -> Result<ExitStatus> {
@@ -34,7 +34,7 @@ fn ready(checks: &[Check]) -> String {
     let missing = checks.iter().find(|check| check.found.is_none() && !check.optional);
     let finite_elements = missing.map_or("yes".to_owned(), |check| format!("no ({} is missing)", check.name));
     let has = |name: &str| checks.iter().any(|check| check.name == name && check.found.is_some());
-    let solver = if has(CALCULIX) { "yes" } else { "no (optional)" };
+    let solver = if has(INDEPENDENT_SOLVER) { "yes" } else { "no (optional)" };
     format!(
         "ready for: reduced models and reports: yes; finite elements: {finite_elements}; independent solver: {solver}"
     )

@@ -117,7 +117,7 @@ fn tell_verdicts(job: &Job, report: &Report) {
                 lacking.join(", ")
             )),
             Verdict::Undecided => super::tell(format_args!(
-                "{word}: scene `{scene}` is undecided: the band of its reference leaves tolerances open; each such quantity says what would decide it"
+                "{word}: scene `{scene}` is undecided: the uncertainty of its reference is too large for some tolerances; see the lines above for what decides them"
             )),
             _ => {}
         }

@@ -229,7 +229,7 @@ fn table(document: &OptimumDocument) -> String {
     )];
     if let Some(robust) = &optimum.robust {
         lines.push(format!(
-            "  {} % quantile of the {} under scatter: {:.5} ({} samples of every design)",
+            "  {} % quantile of the {} with uncertain inputs: {:.5} ({} samples of every design)",
             100.0 * robust.probability,
             words(optimum.objective).to_lowercase(),
             robust.quantile,

@@ -141,7 +141,7 @@ pub fn table(summary: &Summary) -> String {
     lines
         .extend(errors.iter().filter_map(|(name, error)| Some(format!("  {name:<24} {:>14.1e}", (*error)?))));
     let seconds = with_unit(summary.solve_seconds, prefixed("s", summary.solve_seconds), 3);
-    lines.extend(summary.steps.map(|steps| format!("  {steps} steps in {seconds}, set-up apart")));
+    lines.extend(summary.steps.map(|steps| format!("  {steps} steps in {seconds}, excluding set-up")));
     lines.extend(summary.choice.as_ref().map(asked_model::told));
     lines.join("\n")
 }

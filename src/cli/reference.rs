@@ -151,7 +151,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     };
     let convergence = stored.outcome.summary.convergence.as_ref();
     if let Some(reached) = convergence.and_then(|c| c["relative_error"].as_f64()) {
-        context.note(format_args!("95 % band of efficiency and force peaks: {:.2} %", 100.0 * reached));
+        context
+            .note(format_args!("uncertainty (95 %) of efficiency and peak forces: {:.2} %", 100.0 * reached));
     }
     for warning in &stored.outcome.summary.warnings {
         context.note(format_args!("warning: {warning}"));

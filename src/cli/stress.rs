@@ -57,13 +57,13 @@ fn table(report: &StressReport) -> String {
     }
     if !report.beyond_model.is_empty() {
         lines.push(format!(
-            "  refused, since the plate bends around the inner body in the fluid, or rattles or trembles endlessly: {}",
+            "  refused, since the plate bends around the inner body in the fluid, or by contact chatter without end: {}",
             report.beyond_model.len()
         ));
     }
     let sweep = &report.sweep;
     lines.push(format!(
-        "  as points of a sweep: {} of {} have not converged and say so; {} are wrong and do not say so (bound 1 in 1000)",
+        "  as points of a sweep: {} of {} have not converged (stated); {} are wrong without a statement (bound 1 in 1000)",
         sweep.unconverged,
         sweep.points,
         sweep.wrong.len()

@@ -15,11 +15,11 @@ use std::time::Instant;
 
 /// What a sweep file looks like, for `--help`.
 pub const EXAMPLE: &str = r#"A sweep file (TOML):
-  scene     = "scaled-plate-r10"     # a file beside this one, or a shipped scene
+  scene     = "scaled-plate-r10"     # a file in this folder, or a shipped scene
   model     = "B"                    # A, B, C or several, ["B", "C"]; absent = the scene's, else B; a seal seat has C only
   modes     = 16                     # absent = the scene's, else the model's
   tolerance = 1e-4                   # relative error of efficiency, velocities, force peaks and times; absent = 1e-3
-  mesh      = "seat.vtu"             # of a seal seat, beside this file; absent = a coarse one
+  mesh      = "seat.vtu"             # of a seal seat, in this folder; absent = a coarse one
   sampling  = "grid"                 # or "latin-hypercube", with samples = 10000 and seed = 1
 
   [[vary]]
@@ -35,7 +35,7 @@ pub const EXAMPLE: &str = r#"A sweep file (TOML):
 
 Where one or two parameters vary, over 100 000 points at most, the folder gets sweep.svg: curves
 over one parameter, a line per model; a map in colours over two, one per model. It has the
-stored references (of shipped scenes and of those beside the swept one) that differ from the
+stored references (of shipped scenes and of those in the folder of the swept one) that differ from the
 scene in the varied fields alone, with their bands, and where the paper's section 4.1 expects
 the optimum. Several models number the points model after model and have a column `model`.
 

@@ -120,7 +120,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     if let (Some(folder), Some(svg)) = (&arguments.out, drawn) {
         let json = serde_json::to_string_pretty(&scatter)
-            .map_err(|e| Error::Internal(format!("writing the scatter as JSON: {e}")))?;
+            .map_err(|e| Error::Internal(format!("writing the results as JSON: {e}")))?;
         write_file(&folder.join("uncertainty.json"), (json + "\n").as_bytes())?;
         write_file(&folder.join("uncertainty.png"), &crate::plot::png(&svg, 2.0)?)?;
         write_file(&folder.join("uncertainty.svg"), svg.as_bytes())?;

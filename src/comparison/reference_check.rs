@@ -9,7 +9,7 @@ use serde::Serialize;
 pub struct ReferenceCheck {
     /// Name of the other program.
     pub program: String,
-    /// Whether all rows are within their joint bands.
+    /// Whether all rows are within their joint uncertaintys.
     pub verdict: BandVerdict,
     /// One entry per quantity that both determine with a band.
     pub rows: Vec<ReferenceRow>,
@@ -43,7 +43,7 @@ pub struct ReferenceRow {
 }
 
 impl ReferenceCheck {
-    /// `other` beside `reference`, both of the same scene. Numbers of contacts, which have no band, are left out.
+    /// `other` beside `reference`, both of the same scene. Numbers of contacts, which have no band, are omitted.
     pub fn of(reference: &Summary, other: &Summary) -> Self {
         let rows: Vec<ReferenceRow> = reference
             .quantities

@@ -63,7 +63,7 @@ pub struct ChartPanel {
     pub band: Option<(f64, f64)>,
 }
 
-/// The chart as a stand-alone SVG; values that are not finite are left out.
+/// The chart as a stand-alone SVG; values that are not finite are omitted.
 pub fn chart(title: &str, panels: &[ChartPanel]) -> String {
     let width = CHART_WIDTH;
     let names: Vec<&Series> = panels.first().map_or_else(Vec::new, |panel| panel.series.iter().collect());

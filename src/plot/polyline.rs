@@ -33,7 +33,7 @@ fn distance(p: Point, a: Point, b: Point) -> f64 {
     (p.0 - a.0 - s * dx).hypot(p.1 - a.1 - s * dy)
 }
 
-/// SVG path of the line; points that are not finite are left out.
+/// SVG path of the line; points that are not finite are omitted.
 pub(crate) fn path(line: &[Point]) -> String {
     path_within(line, 0.08)
 }

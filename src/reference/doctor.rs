@@ -13,7 +13,7 @@ use std::process::{Command, Stdio};
 const CALCULIX_VARIABLE: &str = "IMPACTCHECK_CCX";
 
 /// Name of the check for the independent solver.
-pub const CALCULIX: &str = "CalculiX";
+pub const INDEPENDENT_SOLVER: &str = "CalculiX";
 
 /// One thing that is needed, and whether it is there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,7 +47,7 @@ pub fn doctor(store: &Store) -> Vec<Check> {
     });
     checks.push(launcher(chosen));
     checks.push(Check {
-        name: CALCULIX.to_owned(),
+        name: INDEPENDENT_SOLVER.to_owned(),
         found: calculix(),
         needed_for: "references of an independent solver (`reference --solver calculix`)".to_owned(),
         install: "sudo apt-get install calculix-ccx".to_owned(),
@@ -56,8 +56,7 @@ pub fn doctor(store: &Store) -> Vec<Check> {
     checks.push(Check {
         name: "MuJoCo".to_owned(),
         found: mujoco(),
-        needed_for: "new flights to hold the reduced flight against (`python -m fem_reference flights`)"
-            .to_owned(),
+        needed_for: "reference flights of another program (`python -m fem_reference flights`)".to_owned(),
         install: "make setup".to_owned(),
         optional: true,
     });

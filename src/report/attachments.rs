@@ -40,7 +40,7 @@ pub struct Attachments {
     pub trends: Vec<Trend>,
     /// Changes of tolerances and reference accepted so far, oldest first.
     pub acceptances: Vec<Acceptance>,
-    /// Scenes in which models were held against references, this one among them.
+    /// Scenes in which models were compared with references, this one among them.
     pub validated: Arc<[Validation]>,
     /// Which features of scenes are held against what.
     pub coverage: Option<Arc<Coverage>>,
@@ -56,7 +56,7 @@ pub struct Cost {
 }
 
 impl Attachments {
-    /// What the store has beside the numbers of a solution of `scene`. Meshes and fields that can't be drawn are left out.
+    /// What the store has beside the numbers of a solution of `scene`. Meshes and fields that can't be drawn are omitted.
     pub fn of(scene: &Scene, stored: &Stored) -> Self {
         let drawn = kinds::of(scene).attachments(stored);
         Attachments { bands: stored.bands.clone(), ..drawn }

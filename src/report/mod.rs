@@ -81,7 +81,7 @@ impl Report<'_> {
         Comparison::new(self.scenes.iter().map(|s| s.comparison.clone()).collect())
     }
 
-    /// Scenes in which models were held against references, the same for all scenes of the report.
+    /// Scenes in which models were compared with references, the same for all scenes of the report.
     pub(crate) fn validated(&self) -> &[Validation] {
         self.scenes.first().map_or(&[], |scene| &scene.attachments.validated)
     }

@@ -109,7 +109,7 @@ fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)
             return Err(Error::Usage(format!("scene name `{name}` can't be used as a file name")));
         }
         if !names.insert(name) || ["index", coverage::NAME].contains(&&**name) {
-            return Err(Error::Usage(format!("scene name `{name}` stands for two pages of the report")));
+            return Err(Error::Usage(format!("scene name `{name}` occurs twice in the report")));
         }
         for drawing in kinds::of(scene.scene).drawings(scene) {
             let stem = format!("{name}{}", drawing.ending);

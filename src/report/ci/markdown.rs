@@ -42,7 +42,7 @@ pub(crate) fn of(report: &Report, scenes: &[Standing]) -> String {
     }
     text += &format!("\n{AMONG}\n");
     if ValidatedMap::of(report.validated(), None).is_some() {
-        text += &format!("\n![Where the models were held against references]({})\n", validated_map::FILE);
+        text += &format!("\n![Where models were compared with references]({})\n", validated_map::FILE);
     }
     let room = MOST.saturating_sub(size(&text));
     text + &sections(report, scenes, urgency, room)
@@ -149,7 +149,7 @@ fn section(scene: &SceneReport) -> String {
 fn model_section(model: &ModelComparison) -> String {
     let name = escape(&model_name(&model.model, model.summary.modes));
     let mut text = format!(
-        "\n### Model {name}: {}\n\n| quantity | reduced | reference | difference | relative | 95 % band | \\|E\\| against u | tolerance | bias | verdict |\n|---|--:|--:|--:|--:|--:|---|--:|--:|---|\n",
+        "\n### Model {name}: {}\n\n| quantity | reduced | reference | difference | relative | uncertainty (95 %) | \\|E\\| against u | tolerance | bias | verdict |\n|---|--:|--:|--:|--:|--:|---|--:|--:|---|\n",
         model.verdict_in_words()
     );
     for row in &model.discrepancies {

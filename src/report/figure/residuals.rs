@@ -77,7 +77,7 @@ pub(crate) fn residuals(
             text.fig-text x=(left - 8.0) y=(x2(y_of(v) + 0.36 * FONT_SIZE)) text-anchor="end" font-size="11.5" { (label(v)) }
         }
         text.fig-text transform=(format!("translate(17 {:.2}) rotate(-90)", top + 0.5 * height))
-            text-anchor="middle" { "less FE" }
+            text-anchor="middle" { "model − FE" }
         rect.fig-frame x=(left) y=(x2(top)) width=(x2(right - left)) height=(x2(height)) {}
     }
 }

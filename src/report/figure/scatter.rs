@@ -42,7 +42,7 @@ pub fn scatter_figure(scatter: &Scatter, wanted: &[String]) -> String {
         }
     };
     sheet(
-        &format!("{}: scatter by model {}", scatter.scene, scatter.model),
+        &format!("{}: propagated input uncertainty, model {}", scatter.scene, scatter.model),
         8.0 + block * quantities.len() as f64,
         &content,
     )

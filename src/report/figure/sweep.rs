@@ -10,7 +10,7 @@ use crate::sweep::{Known, Plan, Record, Table};
 /// The paper's rule for the optimum (section 4.1), which results can be held against.
 const RULE: &str = "paper: best where contact ≈ half the first period";
 /// Name of the references' marks.
-const REFERENCE: &str = "reference (95 % band)";
+const REFERENCE: &str = "reference (uncertainty 95 %)";
 /// Looks of models A, B, C and of the reference, as in the other figures.
 const LOOKS: [usize; 4] = [1, 0, 2, 4];
 

@@ -28,9 +28,9 @@ pub(crate) fn of(coverage: &Coverage, standing: &[Standing]) -> String {
         (scrolled("Coverage", &table(coverage, &pages)))
         p.soft.note {
             "Models A, B and C: the largest relative difference to finite elements or another program in any scene with the feature, and the "
-            "partner's 95 % band of that quantity. What they are held against: the same of the model that is nearest to it, and the scenes. "
+            "uncertainty (95 %) of the comparator there. Compared with: the same of the nearest model, and the scenes. "
             "Closed forms are of a part of a model: the plate's or the bender's frequencies, the contact on a rigid half-space, the film "
-            "above a plane; they have no band. Everything is found from scenes, records and formulas of this program; nothing is entered by hand."
+            "above a plane; they have no uncertainty. All entries are found from the scenes, records and formulas of this program."
         }
     };
     page("Coverage", &[], &body, &html! {})
@@ -42,9 +42,9 @@ fn told(coverage: &Coverage) -> String {
     let (held, alone): (Vec<_>, Vec<_>) = coverage.features.iter().partition(is_held);
     let names: Vec<&str> = alone.iter().map(|feature| feature.feature).collect();
     let rest = match names.len() {
-        0 => "every one is held against something independent".to_owned(),
+        0 => "every one is compared with something independent".to_owned(),
         _ => format!(
-            "{} of them are held against something independent; not so: {}",
+            "{} of them are compared with something independent; not: {}",
             held.len(),
             names.join(", ")
         ),
@@ -89,7 +89,7 @@ fn of_model(feature: &FeatureCoverage, model: &str) -> Markup {
         @match (worst, own.is_empty()) {
             (Some(worst), _) => (difference(worst)),
             (None, true) => span.soft { "not for it" },
-            (None, false) => span.alone { "no partner" },
+            (None, false) => span.alone { "not compared" },
         }
     }
 }
@@ -164,7 +164,7 @@ mod tests {
             of_c.contains("3.0 %") && of_c.contains("± 0.20 %") && of_c.contains("inner force, peak"),
             "{of_c}"
         );
-        assert!(of_model(&held, "B").into_string().contains("no partner"));
+        assert!(of_model(&held, "B").into_string().contains("not compared"));
         let axisymmetric = of_partner(&with(&held, |name| name == "axisymmetric"), &["here"]).into_string();
         assert!(axisymmetric.starts_with("C: ") && axisymmetric.contains("2 scenes"), "{axisymmetric}");
         assert!(

@@ -37,7 +37,7 @@ pub(crate) fn discrepancy_picture(comparison: &SceneComparison) -> Markup {
         p.soft.note {
             "Reduced minus reference over the reference, in %. "
             @for model in &comparison.models { (key(look(&model.model, comparison.names()))) " " (model_name(&model.model, model.summary.modes)) ", " }
-            "each over its tolerance (bar in its colour; about the known discrepancy, where one is stated). Grey: 95 % band of the "
+            "each over its tolerance (bar in its colour; about the declared bias, where there is one). Grey: uncertainty (95 %) of the "
             @if first.is_on_common_mesh() { "difference, as both are solutions on the same mesh. " } @else { "reference. " }
             "Curves: root mean square of the distance over the reference's peak, with a line to the largest distance."
         }

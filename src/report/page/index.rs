@@ -29,18 +29,18 @@ pub(crate) fn index_of(report: &Report, scenes: &[Standing]) -> String {
         h1 { "impactcheck " (badge(standing::verdict(scenes))) }
         p.soft { "Reduced models of an impact against explicit finite elements. " (counts(scenes)) }
         @if let Some(map) = ValidatedMap::of(report.validated(), None) {
-            details { summary { "Where the models were held against references" } (map.html()) }
+            details { summary { "Where models were compared with references" } (map.html()) }
         }
         (contents(scenes))
         p #search hidden { label { "Search " input type="search" autocomplete="off"; } " " output role="status" {} }
         (scrolled("Scenes", &table(scenes)))
         p.soft.note { "Curves: the first contact force, the reference in black under the models. Largest discrepancy: shaded by size, whatever the "
-            "gate says. Tolerance used: how much of its tolerance the gated quantity nearest to its bound takes; where the reference's 95 % "
-            "band reaches across the bound the verdict is undecided, and the scene's page says what would decide it. Drift: numbers that "
+            "verdict. Tolerance used: largest share of a tolerance that a quantity uses; where the reference's 95 % "
+            "uncertainty contains the bound the verdict is undecided, and the scene's page shows how to decide it. Trend: numbers that "
             "drift over the commits recorded." }
         p.soft.note { (EFFICIENCY) } p.soft.note { (AMONG) }
         @if report.coverage().is_some() {
-            p { a href=(coverage::FILE) { "Coverage" } ": which features of scenes are held against what, and how far models and partners lie apart there." }
+            p { a href=(coverage::FILE) { "Coverage" } ": which features of scenes were compared with what, and how far models differ there." }
         }
         p { "As data: " a href="comparison.json" { "JSON" } " · " a href="comparison.md" { "Markdown" } " · "
             a href="junit.xml" { "JUnit" } }

@@ -24,9 +24,9 @@ pub fn moves_page(names: [&str; 2], moves: &Moves, above: f64) -> String {
     let (distances, rows): (Vec<&Moved>, Vec<&Moved>) = rows.into_iter().partition(|row| is_distance(row));
     let title = format!("{} of {} and {}", told(moves), names[0], names[1]);
     let body = html! {
-        h1 { "What moved" }
+        h1 { "What changed" }
         p { "A: " code { (names[0]) } ", B: " code { (names[1]) } ". " (told(moves)) "." }
-        @if above > 0.0 { p.soft { "Moves of up to " (percent(Some(above)).trim_start_matches('+')) " are left out." } }
+        @if above > 0.0 { p.soft { "Moves of up to " (percent(Some(above)).trim_start_matches('+')) " are omitted." } }
         @if !moves.verdicts.is_empty() { h2 { "Verdicts" } (scrolled("Verdicts", &verdicts(&moves.verdicts))) }
         @if !rows.is_empty() {
             h2 { "Numbers" }
@@ -35,11 +35,11 @@ pub fn moves_page(names: [&str; 2], moves: &Moves, above: f64) -> String {
         }
         @if !distances.is_empty() {
             h2 { "Distances of curves, and residuals" }
-            details { summary { (distances.len()) " moved: models against the reference, and conservation" } (numbers("distances", &distances)) }
+            details { summary { (distances.len()) " changed: models against the reference, and conservation" } (numbers("distances", &distances)) }
         }
         @if !moves.moved.is_empty() {
             p.soft.note {
-                "B minus A over A, in %, on an axis that is logarithmic beyond its middle. Grey: the reference's 95 % band; what moved less "
+                "B minus A over A, in %, on an axis that is logarithmic beyond its middle. Grey: the uncertainty (95 %) of the reference; what changed less "
                 "than that is no more than the mesh leaves open."
             }
         }
@@ -53,10 +53,10 @@ pub fn moves_page(names: [&str; 2], moves: &Moves, above: f64) -> String {
 fn told(moves: &Moves) -> String {
     let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
     match (moves.moved.len(), moves.verdicts.len()) {
-        (0, 0) => "Nothing moved".into(),
-        (numbers, 0) => format!("{} moved, no verdict", count(numbers, "number")),
+        (0, 0) => "Nothing changed".into(),
+        (numbers, 0) => format!("{} changed, no verdict", count(numbers, "number")),
         (numbers, verdicts) => {
-            format!("{} and {} moved", count(numbers, "number"), count(verdicts, "verdict"))
+            format!("{} and {} changed", count(numbers, "number"), count(verdicts, "verdict"))
         }
     }
 }

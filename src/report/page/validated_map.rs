@@ -48,7 +48,7 @@ impl<'a> ValidatedMap<'a> {
         html! {
             div.map { @for (model, measure) in views() { (self.view(model, measure, None)) } }
             p.soft.note {
-                "Every mark is a scene in which the model was held against a reference: off in efficiency and force peaks by "
+                "Every mark is a scene in which the model was compared with a reference: it differs in efficiency and peak forces by "
                 @for (shape, size, told) in [(2, "small", "up to 1 %, "), (1, "medium", "up to 5 %, "), (0, "large", "more. ")] {
                     svg.key viewBox="-6 -6 12 12" aria-hidden="true" { (mark(shape, &format!("size-{size}"))) } " " (told)
                 }
@@ -68,7 +68,7 @@ impl<'a> ValidatedMap<'a> {
         html! {
             svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {width} {height}")) width=(width) height=(height)
                 font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) role="img" {
-                title { "Scenes in which models were held against references" }
+                title { "Scenes in which models were compared with references" }
                 style { (PreEscaped(STYLE)) }
                 rect width=(width) height=(height) fill="#ffffff" {}
                 @for (k, (model, measure)) in views.into_iter().enumerate() { (self.view(model, measure, Some(place(k)))) }
@@ -154,7 +154,7 @@ impl<'a> ValidatedMap<'a> {
                 th scope="col" { "scene" }
                 @for measure in MEASURES { th scope="col" { (measure) } }
                 @if self.here.is_some() { th scope="col" { "away by a factor of" } }
-                @for model in &models { th scope="col" { (model) " is off by (95 % band)" } }
+                @for model in &models { th scope="col" { (model) " differs by (uncertainty, 95 %)" } }
             } }
             tbody { @for scene in self.scenes() { @let place = &scene[0].1; tr {
                 th scope="row" { (scene[0].0.scene) }

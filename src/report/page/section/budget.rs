@@ -11,7 +11,7 @@ use maud::{Markup, html};
 const EXPLANATION: &str = "What each simplification of model B adds to its difference from the reference. They are \
     given up from top to bottom, one at a time; the parts belong to this order, another one would share the \
     difference out otherwise. Parts and remainder add up to the difference. The remainder, the best model C less the \
-    reference, is explained if it lies within its bound: the 95 % band of the reference and the uncertainty \
+    reference, is explained if it lies within its bound: the uncertainty (95 %) of the reference and the uncertainty \
     of model C, added as independent. Reported, not gated.";
 
 /// Section of the page; nothing if there is no budget.
@@ -43,7 +43,7 @@ pub(crate) fn budget_html(comparison: &SceneComparison) -> Markup {
                     }
                 }
                 tr { th scope="row" { "remainder" } @for row in rows { (cell(row, "remainder", row.remainder, None)) } }
-                tr { th scope="row" { "95 % band of the reference" }
+                tr { th scope="row" { "uncertainty (95 %) of the reference" }
                     @for row in rows { (cell(row, "reference_uncertainty", row.reference_uncertainty.unwrap_or(f64::NAN), None)) } }
                 tr { th scope="row" { "uncertainty of C" }
                     @for row in rows { (cell(row, "model_uncertainty", row.model_uncertainty, None)) } }

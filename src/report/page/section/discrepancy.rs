@@ -31,10 +31,10 @@ pub(crate) fn model_section(model: &ModelComparison) -> Markup {
         } }))
         p.soft { "Difference is reduced minus reference. A row without tolerance is not gated. Bias is the known "
             "discrepancy about which the tolerance lies. A distance of curves is relative to the reference's peak. "
-            "|E| against u (ASME V&V 20): a difference within the reference's 95 % band proves no error of the model."
+            "|E| against u (ASME V&V 20): a difference within the uncertainty of the reference shows no error of the model."
             @if common_mesh {
                 " Model and reference are solutions on the same mesh and have its error in common: verdicts and u are of the "
-                "band of the difference, three times what a mesh with elements 1.5 times as large lets expect (Roache's index of two meshes)."
+                "uncertainty of the difference: three times the change from a mesh with elements 1.5 times as large (Roache's grid convergence index)."
             }
         }
         }

@@ -94,8 +94,7 @@ fn pictures(scene: &Scene, summary: &FlightSummary) -> Markup {
         }
         figure {
             (PreEscaped(map_picture(&setup, &landscape, summary, &scatter)))
-            figcaption { "Where launches of other speeds and angles end, with the launch (ring) and its band. Below, the band: the launches whose share is told above, \
-                with their restitutions, too." }
+            figcaption { "Where launches of other speeds and angles end, with the launch (ring) and its band. Below, the band: the range of launches of the share above." }
         }
         @if let Some(chart) = shaken {
             figure {

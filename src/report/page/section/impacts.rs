@@ -28,7 +28,7 @@ pub(crate) fn impacts_figure(report: &SceneReport) -> Option<String> {
     let reference = Series {
         marks: true,
         half_widths: bands.collect(),
-        ..course(&comparison.reference, "FE, with its 95 % band".into())
+        ..course(&comparison.reference, "FE, with its uncertainty (95 %)".into())
     };
     let panel = ChartPanel {
         x_label: "Number of the impact".into(),

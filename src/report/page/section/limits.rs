@@ -32,7 +32,7 @@ pub(crate) fn limits_html(comparison: &SceneComparison) -> Markup {
             } }))
             @for model in models() { (elastic_limit(model)) }
             @if !measures.iter().any(|limit| limit.is_of_yield()) && models().all(|model| model.elastic_limit.is_none()) {
-                p { "Elastic limit not checked: no yield strength given (" code { "yield_strength" } " of a material)." }
+                p { "Elastic limit not checked: no yield strength is specified (" code { "yield_strength" } " of a material)." }
             }
             @if let Some(pressure) = &comparison.reference.contact_pressure { (pressures("Reference", pressure)) }
         }

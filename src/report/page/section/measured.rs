@@ -61,7 +61,7 @@ pub(crate) fn effects(measured: &Measured) -> impl Iterator<Item = (String, &str
 }
 
 fn alignment(measured: &Measured) -> Rows {
-    let heading = ["record", "samples", "first touch at", "offset and drift", "efficiency", "95 % band"];
+    let heading = ["record", "samples", "first contact at", "offset and drift", "efficiency", "95 % band"];
     let row = |record: &AlignedRecord| {
         let corrections: Vec<String> = record
             .channels
@@ -141,7 +141,7 @@ fn validation(measured: &Measured) -> Option<Rows> {
 }
 
 /// What the columns of [`validation`] are.
-const VALIDATION: &str = "Efficiency with the inputs as uncertain as the scene says: E is the partner's less the mean of the measured ones;     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the partner's efficiency and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the partner's is larger and smaller.";
+const VALIDATION: &str = "Efficiency with the uncertain inputs of the scene: E is the computed value minus the mean of the measured ones;     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the partner's efficiency and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the partner's is larger and smaller.";
 
 /// Mean and scatter in a sentence.
 pub(crate) fn sentence(measured: &Measured) -> String {
@@ -188,7 +188,7 @@ pub(crate) fn measured_html(report: &SceneReport) -> Markup {
                 (drawn(&wide, &narrow))
             }
             figcaption {
-                "The first record beside reference and models. " (bandwidth(measured)) " "
+                "The first record with reference and models. " (bandwidth(measured)) " "
                 a href=(format!("{}-measured.svg", report.comparison.scene)) { "SVG" } " · "
                 a href=(format!("{}-measured.png", report.comparison.scene)) { "PNG" }
                 @if measured.records.len() > 1 {

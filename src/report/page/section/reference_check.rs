@@ -14,7 +14,7 @@ pub(crate) fn reference_check_html(check: Option<&ReferenceCheck>) -> Markup {
             thead { tr {
                 th scope="col" { "quantity" } th scope="col" { "reference" } th scope="col" { "± (95 %)" }
                 th scope="col" { (check.program) } th scope="col" { "± (95 %)" }
-                th scope="col" { "difference" } th scope="col" { "relative" } th scope="col" { "joint band" } th.left scope="col" {}
+                th scope="col" { "difference" } th scope="col" { "relative" } th scope="col" { "joint uncertainty" } th.left scope="col" {}
             } }
             tbody { @for row in &check.rows {
                 @let to = prefixed(row.unit, row.reference.abs().max(row.other.abs()));
@@ -47,8 +47,7 @@ fn said(verdict: BandVerdict) -> &'static str {
 
 fn told(check: &ReferenceCheck) -> String {
     format!(
-        "The same scene solved by {}, with a 95 % band of its own. Two solutions agree as far as they are sure of themselves if they \
-         differ by no more than both bands, added as independent: here they are {}.",
+        "The same scene solved by {}, with its own uncertainty (95 %). Two solutions agree if they differ by less than both uncertainties together (root of the sum of squares). Here: {}.",
         check.program,
         check.words()
     )
@@ -74,7 +73,7 @@ pub(crate) fn reference_check_markdown(check: Option<&ReferenceCheck>) -> String
         )
     });
     format!(
-        "\n### Reference and {}: {}\n\n| quantity | reference | {} | difference | joint band | |\n|---|--:|--:|--:|--:|---|\n{}",
+        "\n### Reference and {}: {}\n\n| quantity | reference | {} | difference | joint uncertainty | |\n|---|--:|--:|--:|--:|---|\n{}",
         check.program,
         check.words(),
         check.program,

@@ -24,7 +24,7 @@ pub(crate) fn trends_html(attachments: &Attachments) -> Markup {
     let drifting = trends.iter().filter(|t| t.drifts_since.is_some()).count();
     html! {
         p.soft {
-            "Gated numbers over the commits recorded, oldest first; shaded is what does not fail the gate now (darker: what passes, between them it is undecided), and for the reference its 95 % band. A number drifts "
+            "Gated numbers over the commits recorded, oldest first; shaded is what does not fail the gate now (darker: what passes, between them it is undecided), and for the reference its uncertainty (95 %). A number drifts "
             "since the commit from which on it is farther than a tenth of its tolerance from its first value. "
             strong { (drifting) " of " (trends.len()) @if drifting == 1 { " numbers drifts." } @else { " numbers drift." } }
         }

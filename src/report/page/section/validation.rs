@@ -8,9 +8,8 @@ use crate::uncertainty::WANTED;
 use crate::uncertainty::validation::{Assessment, Shown, line};
 use maud::{Markup, html};
 
-const EXPLANATION: &str = "The scene says how uncertain its inputs are. E = S - D is the difference of a model from the reference, u_val the standard \
-    uncertainty with which a measurement of such bodies could be compared: u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009), of the modes left out, \
-    the inputs and the reference's band. |E| beyond 2 u_val would be shown as an error of the model by one measurement, |E| within u_val would not. \
+const EXPLANATION: &str = "The scene specifies the uncertainty of its inputs. E = S - D is the difference of a model from the reference, u_val the standard \
+    uncertainty with which a measurement of such bodies could be compared: u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009), of the truncated modes, the inputs and the reference. |E| beyond 2 u_val would be shown as an error of the model by one measurement, |E| within u_val would not. \
     Reference and model have the same nominal inputs, so that the gate does not ask for u_input. Reported, not gated.";
 
 /// Rows of a model that have an assessment.

@@ -296,7 +296,7 @@ fn claims(rows: &[Vec<Cell>], known: usize) -> Vec<Claim> {
             let broken = errors.iter().filter(|error| **error > tolerance).count();
             if decided > 0 {
                 let text = format!(
-                    "{percent} %: share of broken promises among {decided} on {what} ({} promises on {} scenes, {} of which no converged solution decides)",
+                    "{percent} %: share not within the tolerance among {decided} on {what} ({} statements on {} scenes, {} of which no converged solution decides)",
                     errors.len(),
                     of.len(),
                     errors.len() - decided
