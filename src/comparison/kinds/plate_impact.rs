@@ -32,8 +32,8 @@ use crate::body::continuum::MeshOptions;
 use crate::comparison::Verdict;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
-use crate::result::{CUT, Summary};
-use crate::scene::Scene;
+use crate::result::{CUT, Outcome, Summary};
+use crate::scene::{Model, Scene};
 use serde::Serialize;
 
 /// The quantities of the budget.
@@ -118,6 +118,21 @@ struct ModeCounts {
     c: usize,
     many_kirchhoff: usize,
     many_continuum: usize,
+}
+
+/// The budget of `scene` if models B and C are both among the results `reduced`; else empty.
+///
+/// # Errors
+/// As [`budget`].
+pub fn budget_of(scene: &Scene, reference: &Summary, reduced: &[Outcome]) -> Result<Vec<QuantityBudget>> {
+    let summary = |model: Model| {
+        let name = model.to_string();
+        reduced.iter().map(|outcome| &outcome.summary).find(|summary| summary.model.as_ref() == Some(&name))
+    };
+    match (summary(Model::B), summary(Model::C)) {
+        (Some(b), Some(c)) => budget(scene, reference, b, c),
+        _ => Ok(Vec::new()),
+    }
 }
 
 /// The budget of the difference between model `b` and `reference`; `c` is model C's result for the same scene.
