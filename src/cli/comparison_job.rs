@@ -6,13 +6,12 @@ use super::compare_inputs;
 use super::external;
 use super::film::film;
 use super::scatter::scatter;
-use super::second_program::{self, CalculixRequest};
+use super::second_program;
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, kinds, validated_scenes};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
-use crate::comparison::budget::budget_of;
-use crate::comparison::{Comparison, ComparisonInput, GateRules, SceneComparison};
+use crate::comparison::{Comparison, ComparisonInput, GateRules, SceneComparison, budget};
 use crate::error::{Error, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record};
@@ -135,8 +134,7 @@ impl<'a> Job<'a> {
                 let (reduced, _) = models.beside(context, scene, &stored, asked)?;
                 Ok((stored, reduced))
             });
-            let asked = CalculixRequest::of(self.arguments.reference_check, self.arguments.compute);
-            let other = second_program::beside(context, file, scene, self.resolution(), asked)?;
+            let other = second_program::independent(context, file, scene, self.arguments)?;
             Ok(Results { stored, reduced, cost, coarser: coarser.transpose()?, other })
         };
         self.scenes.iter().zip(references).map(result).collect()
@@ -166,7 +164,7 @@ impl<'a> Job<'a> {
     ) -> Result<SceneComparison> {
         let reference = &stored.outcome;
         let acceptances = acceptance::read(file)?;
-        let budget = budget_of(scene, &reference.summary, reduced).unwrap_or_else(|error| {
+        let budget = budget::of_results(scene, &reference.summary, reduced).unwrap_or_else(|error| {
             context.note(format_args!("scene `{}` has no discrepancy budget: {error}", scene.name));
             Vec::new()
         });

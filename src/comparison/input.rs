@@ -66,74 +66,58 @@ impl<'a> ComparisonInput<'a> {
     /// All curves are resampled on the window that the reference fixes (see [`CommonAxis::of_reference`] and [`align`]), so
     /// that differently sampled histories don't differ for that reason.
     pub fn compare(self) -> SceneComparison {
-        let ComparisonInput { scene, reference, reduced, .. } = self;
-        let mut integrity = integrity::check(scene, reference);
-        integrity.extend(self.accepted);
-        let comparator = Comparator {
-            scene,
-            reference,
-            flight: landing::of_reference(scene, &reference.summary, reduced),
-            window: CommonAxis::of_reference(reference),
-            sound: soundness(&integrity),
-            coarser: self.coarser.map(|(reference, reduced)| compare_scene(scene, reference, reduced)),
-            scatters: self.scatters,
-        };
-        let models: Vec<_> = reduced.iter().map(|outcome| comparator.model(outcome)).collect();
+        let reference = &self.reference.summary;
+        let mut integrity = integrity::check(self.scene, self.reference);
+        integrity.extend(self.accepted.iter().cloned());
+        let (window, sound) = (CommonAxis::of_reference(self.reference), soundness(&integrity));
+        let flight = landing::of_reference(self.scene, reference, self.reduced);
+        let coarser = self.coarser.map(|(reference, reduced)| compare_scene(self.scene, reference, reduced));
+        let comparator = Comparator { input: &self, flight: flight.as_ref(), window, sound, coarser };
+        let models: Vec<_> = self.reduced.iter().map(|outcome| comparator.model(outcome)).collect();
         SceneComparison {
-            scene: scene.name.clone(),
-            verdict: Verdict::worst(models.iter().map(|model| model.verdict).chain([comparator.sound])),
+            scene: self.scene.name.clone(),
+            verdict: Verdict::worst(models.iter().map(|model| model.verdict).chain([sound])),
+            reference_check: self.other.map(|other| ReferenceCheck::of(reference, &other.summary)),
+            reference: Summary { flight, ..reference.clone() },
             integrity,
-            window: comparator.window,
+            window,
             models,
             budget: self.budget,
             changed_tolerances: self.changed_tolerances,
             measured: self.measured,
-            reference_check: self.other.map(|other| ReferenceCheck::of(&reference.summary, &other.summary)),
-            reference: Summary { flight: comparator.flight, ..reference.summary.clone() },
         }
     }
 }
 
 /// What every model of a scene is compared with.
 struct Comparator<'a> {
-    scene: &'a Scene,
-    reference: &'a Outcome,
+    input: &'a ComparisonInput<'a>,
     /// Where the reference's launch lands.
-    flight: Option<FlightSummary>,
+    flight: Option<&'a FlightSummary>,
     window: Option<CommonAxis>,
     /// Fail if the reference contradicts itself.
     sound: Verdict,
     coarser: Option<SceneComparison>,
-    scatters: BTreeMap<String, Scatter>,
 }
 
 impl Comparator<'_> {
     fn model(&self, reduced: &Outcome) -> ModelComparison {
-        let (scene, reference) = (self.scene, &self.reference.summary);
+        let ComparisonInput { scene, reference, .. } = self.input;
         let summary = reduced.summary.clone();
         let model = summary.model.clone().unwrap_or_default();
-        let mut integrity = integrity::check(scene, reduced);
-        // of a program that has failed nothing can be compared
-        if summary.failure.is_some() {
-            return ModelComparison {
-                model,
-                summary,
-                verdict: Verdict::Fail,
-                discrepancies: Vec::new(),
-                curves: Vec::new(),
-                integrity,
-                aligned: Vec::new(),
-            };
-        }
         let none = Tolerances::new();
         let tolerances = scene.tolerances.get(&model).unwrap_or(&none);
-        let aligned =
-            self.window.map_or_else(Vec::new, |w| align(w, &self.reference.history, &reduced.history));
-        let sides = (self.reference, self.flight.as_ref());
-        let rows = rows(scene, sides, reduced, &aligned, tolerances).into_iter();
-        let discrepancies: Vec<_> = rows.map(|row| self.judged(row, &summary)).collect();
-        integrity.push(integrity::same_impact(reference, &summary));
-        integrity.push(integrity::tolerances_are_used(tolerances, &discrepancies));
+        let (mut aligned, mut discrepancies) = (Vec::new(), Vec::new());
+        let mut integrity = integrity::check(scene, reduced);
+        // of a program that has failed nothing can be compared, which its checks say
+        if summary.failure.is_none() {
+            aligned =
+                self.window.map_or_else(Vec::new, |w| align(w, &reference.history, &reduced.history));
+            let rows = rows(scene, (reference, self.flight), reduced, &aligned, tolerances).into_iter();
+            discrepancies = rows.map(|row| self.judged(row, &summary)).collect();
+            integrity.push(integrity::same_impact(&reference.summary, &summary));
+            integrity.push(integrity::tolerances_are_used(tolerances, &discrepancies));
+        }
         let verdicts = discrepancies.iter().map(|row| row.verdict);
         ModelComparison {
             model,
@@ -151,12 +135,12 @@ impl Comparator<'_> {
         let model = reduced.model.as_deref().unwrap_or_default();
         let before = self.coarser.as_ref().and_then(|coarser| coarser.model(model)?.discrepancy(&row.quantity));
         let row = row.on_common_mesh(before);
-        let validation = scatter_of(&self.scatters, model).and_then(|scatter| {
-            let band = row.band().map(|band| band / validation::COVERAGE);
-            let sides = (numerical(reduced, &row.quantity), band);
+        let validation = scatter_of(&self.input.scatters, model).and_then(|scatter| {
+            let sides =
+                (numerical(reduced, &row.quantity), row.band().map(|band| band / validation::COVERAGE));
             Assessment::of(row.difference?, sides, scatter.quantities.get(&*row.quantity)?)
         });
-        let would_decide = undecided::advice(&row, &self.reference.summary);
+        let would_decide = undecided::advice(&row, &self.input.reference.summary);
         Discrepancy { would_decide, validation, ..row }
     }
 }

@@ -124,7 +124,7 @@ struct ModeCounts {
 ///
 /// # Errors
 /// As [`budget`].
-pub fn budget_of(scene: &Scene, reference: &Summary, reduced: &[Outcome]) -> Result<Vec<QuantityBudget>> {
+pub fn of_results(scene: &Scene, reference: &Summary, reduced: &[Outcome]) -> Result<Vec<QuantityBudget>> {
     let summary = |model: Model| {
         let name = model.to_string();
         reduced.iter().map(|outcome| &outcome.summary).find(|summary| summary.model.as_ref() == Some(&name))
